@@ -1,0 +1,72 @@
+//! What a clip keeps: half-spaces and how they combine.
+
+use glam::DVec3;
+
+use crate::error::{Error, Result};
+
+/// A half-space: the points x with `normal . x + offset >= 0` are visible.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plane {
+    normal: DVec3,
+    offset: f64,
+}
+
+impl Plane {
+    /// A plane from any non-zero normal; both are divided by the normal's length, in f64.
+    pub fn new(normal: DVec3, offset: f64) -> Result<Self> {
+        // Scale by the largest component first, so that normals of 1e-300 or 1e300 do not under- or overflow.
+        let largest = normal.abs().max_element();
+        if !(largest > 0.0 && normal.is_finite() && offset.is_finite()) {
+            return Err(Error::Invalid(format!(
+                "the clip plane {},{},{},{offset} needs a finite, non-zero normal and a finite distance",
+                normal.x, normal.y, normal.z
+            )));
+        }
+        let scaled = normal / largest;
+        let length = scaled.length();
+        let offset = offset / largest / length;
+        if !offset.is_finite() {
+            return Err(Error::Invalid(
+                "the clip plane's distance overflows once its normal is made a unit vector".into(),
+            ));
+        }
+        Ok(Self {
+            normal: scaled / length,
+            offset,
+        })
+    }
+
+    /// The unit normal; it points to the visible side.
+    pub fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
+    /// The distance term of `normal . x + offset`, world units.
+    pub fn offset(&self) -> f64 {
+        self.offset
+    }
+
+    /// Signed distance of a point, positive on the visible side, world units.
+    pub fn distance(&self, point: DVec3) -> f64 {
+        self.normal.dot(point) + self.offset
+    }
+}
+
+/// How several planes combine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ClipOp {
+    /// Visible where every plane keeps it (an intersection).
+    #[default]
+    And,
+    /// Visible where any plane keeps it (a union).
+    Or,
+}
+
+/// The region that stays visible. No planes means that everything does.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Clip {
+    /// The half-spaces, at most [`MAX_CLIP_PLANES`](crate::limits::MAX_CLIP_PLANES).
+    pub planes: Vec<Plane>,
+    /// How they combine.
+    pub op: ClipOp,
+}

@@ -1,0 +1,72 @@
+//! One error type for the whole crate: what is wrong, where, and what to do about it.
+
+use std::path::PathBuf;
+
+/// Everything that can go wrong for reasons the caller could not foresee.
+///
+/// The text of each error is one or two plain sentences that name the place (file, byte, line or element) and the
+/// remedy. Misuse of the library is a panic with a sentence instead; repairable data is repaired, counted and
+/// reported by the loader.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A file could not be opened, read or written.
+    #[error("{path}: {source}", path = path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// A file was read but what stands in it is not usable.
+    #[error("{path}: {message}", path = path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, where in the file, and the remedy.
+        message: String,
+    },
+    /// The caller asked for something that is not possible, for example a clip plane with a zero normal.
+    #[error("{0}")]
+    Invalid(String),
+    /// No usable Vulkan device, or the one asked for lacks something.
+    #[error("{0}")]
+    Device(String),
+    /// A Vulkan call failed.
+    #[error("{call} failed: {result}")]
+    Vulkan {
+        /// The call.
+        call: &'static str,
+        /// Its result code.
+        result: ash::vk::Result,
+    },
+    /// The device has not enough memory for what was asked.
+    #[error("{0}")]
+    Memory(String),
+    /// The validation layer reported something; the messages are the layer's own.
+    #[error("the validation layer reported {} message(s); the first: {}", .0.len(), .0.first().map_or("", |m| m.as_str()))]
+    Validation(Vec<String>),
+}
+
+impl Error {
+    /// An [`Error::Io`] for `path`, to be used with `map_err`.
+    pub fn io(path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.into();
+        move |source| Self::Io { path, source }
+    }
+
+    /// An [`Error::Format`] for `path`.
+    pub fn format(path: impl Into<PathBuf>, message: impl Into<String>) -> Self {
+        Self::Format {
+            path: path.into(),
+            message: message.into(),
+        }
+    }
+
+    /// An [`Error::Vulkan`] for `call`, to be used with `map_err`.
+    pub fn vulkan(call: &'static str) -> impl FnOnce(ash::vk::Result) -> Self {
+        move |result| Self::Vulkan { call, result }
+    }
+}
+
+/// The crate's result type.
+pub type Result<T> = std::result::Result<T, Error>;

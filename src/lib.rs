@@ -1,0 +1,18 @@
+//! rara draws 3D Gaussian Splatting scenes with Vulkan and cuts them exactly.
+
+pub mod camera;
+pub mod clip;
+pub mod error;
+pub mod limits;
+pub mod picture;
+pub mod scene;
+pub mod settings;
+pub mod stats;
+
+pub use camera::Camera;
+pub use clip::{Clip, ClipOp, Plane};
+pub use error::{Error, Result};
+pub use picture::Picture;
+pub use scene::Gaussians;
+pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings};
+pub use stats::{Counts, FrameStats, PassTime};

@@ -1,0 +1,2 @@
+//! rara
+fn main() {}

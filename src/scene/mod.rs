@@ -1,0 +1,5 @@
+//! Files to Gaussians and back, and synthetic scenes. No Vulkan, no `unsafe`.
+
+mod gaussians;
+
+pub use gaussians::{Gaussians, sh_coefficients};

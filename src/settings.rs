@@ -1,0 +1,109 @@
+//! What a frame is asked to be, apart from scene, camera and clip.
+
+/// How a clip treats the Gaussians that it cuts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Mode {
+    /// No clipping.
+    None,
+    /// Keep or drop by the centre.
+    Hard,
+    /// The paper's length ratio along each pixel's ray.
+    Rara,
+    /// The exact visible share of the splat, the low-pass of 3DGS included.
+    #[default]
+    Exact,
+}
+
+/// What the weight w of a cut splat scales.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Decay {
+    /// Alpha: `alpha' = alpha w` (the paper).
+    Linear,
+    /// Optical depth: `alpha' = 1 - (1 - alpha)^w`. Complementary halves rebuild the whole.
+    Depth,
+}
+
+/// [`Mode::Rara`] only: what a cutoff splat keeps in a pixel whose ray misses the traced ellipsoid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Miss {
+    /// Everything (the paper's text).
+    Keep,
+    /// Nothing (the paper's released code).
+    Drop,
+    /// All or nothing, by the side on which the ray's densest point lies: the limit of the ratio.
+    #[default]
+    Peak,
+}
+
+/// How splats become pixels. All give the same picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Raster {
+    /// The faster path on the device at hand.
+    #[default]
+    Auto,
+    /// `VK_EXT_mesh_shader`.
+    Mesh,
+    /// Instanced quads.
+    Quad,
+}
+
+/// Which form of the exact weight a cut splat gets.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum ExactForm {
+    /// Affine in the pixel for small splats, perspective-exact for large ones (the switch is in `limits.glsl`).
+    #[default]
+    Auto,
+    /// Perspective-exact for every cut splat: the truth that errors are measured against.
+    Beam,
+    /// Affine for every cut splat.
+    Affine,
+}
+
+/// The options of a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// How cut Gaussians are treated.
+    pub mode: Mode,
+    /// What the weight scales; `None` is the mode's own (linear for `rara`, depth for `exact`).
+    pub decay: Option<Decay>,
+    /// [`Mode::Rara`]: the traced ellipsoid, in standard deviations.
+    pub sigma: f32,
+    /// [`Mode::Rara`]: what a missed pixel keeps.
+    pub miss: Miss,
+    /// Ablation: treat every Gaussian as cutoff.
+    pub trace_all: bool,
+    /// [`Mode::Exact`]: the form of the weight.
+    pub form: ExactForm,
+    /// Opaque background colour; `None` is transparent.
+    pub background: Option<[f32; 3]>,
+    /// Highest spherical-harmonics degree to evaluate; `None` is the scene's own.
+    pub sh_degree: Option<u32>,
+    /// How splats become pixels.
+    pub raster: Raster,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            mode: Mode::default(),
+            decay: None,
+            sigma: 3.0,
+            miss: Miss::default(),
+            trace_all: false,
+            form: ExactForm::default(),
+            background: None,
+            sh_degree: None,
+            raster: Raster::default(),
+        }
+    }
+}
+
+impl Settings {
+    /// The decay law in force: the one asked for, or the mode's own.
+    pub fn decay_law(&self) -> Decay {
+        self.decay.unwrap_or(match self.mode {
+            Mode::Rara => Decay::Linear,
+            Mode::None | Mode::Hard | Mode::Exact => Decay::Depth,
+        })
+    }
+}

@@ -1,0 +1,42 @@
+//! What a frame tells about itself; the `--json` statistics are made of it.
+
+use serde::Serialize;
+
+/// How many Gaussians ended where. `visible + cutoff + invisible + culled` is the scene's count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Counts {
+    /// In view and untouched by the clip.
+    pub visible: u32,
+    /// In view and cut by the clip.
+    pub cutoff: u32,
+    /// In view but wholly clipped away.
+    pub invisible: u32,
+    /// Outside the view or too faint, whatever the clip says.
+    pub culled: u32,
+    /// Splats handed to the rasteriser.
+    pub drawn: u32,
+}
+
+/// GPU time of one stage.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PassTime {
+    /// The stage: the same name as its shader, module and debug label.
+    pub name: &'static str,
+    /// Milliseconds between its timestamps.
+    pub ms: f64,
+}
+
+/// The statistics of one frame.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct FrameStats {
+    /// How many Gaussians ended where.
+    pub counts: Counts,
+    /// GPU time of each stage, in order.
+    pub passes: Vec<PassTime>,
+    /// GPU time of the frame, milliseconds.
+    pub gpu_ms: f64,
+    /// From recording to the picture being ready on the device, milliseconds.
+    pub wall_ms: f64,
+    /// The stages that this frame did not need.
+    pub skipped: Vec<&'static str>,
+}

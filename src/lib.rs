@@ -3,6 +3,8 @@
 pub mod camera;
 pub mod clip;
 pub mod error;
+pub mod gpu;
+pub mod headless;
 pub mod limits;
 pub mod picture;
 pub mod scene;
@@ -12,6 +14,7 @@ pub mod stats;
 pub use camera::Camera;
 pub use clip::{Clip, ClipOp, Plane};
 pub use error::{Error, Result};
+pub use headless::{Headless, HeadlessDesc};
 pub use picture::Picture;
 pub use scene::Gaussians;
 pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings};

@@ -1,0 +1,48 @@
+//! What build.rs knows about each shader: its SPIR-V in both bindings and the buffers it declares.
+
+use ash::vk;
+
+/// How a shader uses a buffer, as its GLSL declares it (`readonly`, `writeonly` or neither).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BufferAccess {
+    /// `readonly`.
+    Read,
+    /// `writeonly`.
+    Write,
+    /// Neither.
+    ReadWrite,
+}
+
+/// A buffer that a shader declares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BufferUse {
+    /// Its name in the GLSL.
+    pub name: &'static str,
+    /// Its place in the pass's list of buffers: binding number, or index into the push constants' addresses.
+    pub binding: u32,
+    /// How it is used.
+    pub access: BufferAccess,
+}
+
+/// A compiled shader. The same source is compiled twice: with buffers behind device addresses (fast, and free of the
+/// binding size limit) and with bound storage buffers (which the validation layer can watch).
+#[derive(Debug, Clone, Copy)]
+pub struct Shader {
+    /// File name without its stage's ending: `classify` for `glsl/classify.comp`.
+    pub name: &'static str,
+    /// The stage.
+    pub stage: vk::ShaderStageFlags,
+    /// SPIR-V that reaches its buffers through the addresses in the push constants.
+    pub address: &'static [u32],
+    /// SPIR-V that reaches its buffers through descriptor set 0.
+    pub bound: &'static [u32],
+    /// The buffers, by ascending binding.
+    pub buffers: &'static [BufferUse],
+}
+
+/// Buffers a pass can have: device addresses that fit in the guaranteed 128 bytes of push constants beside
+/// [`MAX_PARAMS`] words. `glsl/buffers.glsl` declares the same block.
+pub const MAX_BUFFERS: usize = 10;
+
+/// 32-bit parameters a pass can have.
+pub const MAX_PARAMS: usize = 12;

@@ -17,3 +17,20 @@ const float BEAM_SWITCH = 0.02;
 const uint MAX_CLIP_PLANES = 32u;
 // Degree 3: the most coefficients a colour channel has.
 const uint MAX_SH_COEFFICIENTS = 16u;
+// Opacity below which a splat is invisible everywhere, and more of a cut splat is never computed: 1/255.
+const float ALPHA_MIN = 1.0 / ALPHA_MIN_INVERSE;
+// Gaussians a workgroup of classify and compact handles; eight words of its bit masks.
+const uint GROUP_SIZE = 256u;
+// Survivors a workgroup of project and cutoff handles.
+const uint SURVIVOR_GROUP_SIZE = 64u;
+// Splats a mesh workgroup emits: 4 vertices and 2 triangles each, half of the least that Vulkan guarantees.
+const uint MESH_GROUP_SIZE = 32u;
+// Bits a pass of the radix sort looks at.
+const uint SORT_BITS = 8u;
+// Workgroup size of the sort; one invocation owns a run of consecutive keys, which makes the sort stable.
+const uint SORT_GROUP_SIZE = 64u;
+// Indirect dispatches are folded into rows of this many workgroups, so that no dimension exceeds 65535.
+const uint GROUP_COLUMNS = 32768u;
+// Half side of the largest quad drawn along a splat's own axes, px. Beyond it the corners' f32 error reaches pixels,
+// and the quad becomes the splat's bounding box inside the picture.
+const float QUAD_MAX_EXTENT = 4096.0;

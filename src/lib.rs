@@ -6,10 +6,12 @@ pub mod error;
 pub mod gpu;
 pub mod headless;
 pub mod limits;
+pub mod passes;
 pub mod picture;
 pub mod scene;
 pub mod settings;
 pub mod stats;
+pub mod types;
 
 pub use camera::Camera;
 pub use clip::{Clip, ClipOp, Plane};

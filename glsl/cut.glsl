@@ -1,0 +1,19 @@
+// The cutoff record: what the fragment stage needs to weight a cut splat, computed once a splat by cutoff.comp.
+// vec4s of a record (FRAME.cut_stride of them):
+//   0      b1, screen gradient along x, times scale; bits: CUT_RAY, CUT_FRONT, number of planes from bit 8 up
+//   1      b2, screen gradient along y, times scale; scale
+//   2      e = m3 / Z, how the gradients change with the pixel, times scale; low-pass times scale^2
+//   3...   a plane each. Affine: z at the centre, dz/dx, dz/dy, and 1 where the far side is kept, -1 the near side.
+//          Ray: normal in unit space, and the centre's distance, both divided by the normal's largest component.
+//   last   with CUT_FRONT: the plane through the eye across the view axis, in the same form
+#ifndef RARA_CUT
+#define RARA_CUT
+
+const uint CUT_HEADER = 3u;
+// The planes are in the ray form, else affine.
+const uint CUT_RAY = 1u;
+// The splat reaches behind the eye.
+const uint CUT_FRONT = 2u;
+const uint CUT_COUNT_SHIFT = 8u;
+
+#endif

@@ -1,0 +1,91 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One invocation a cutoff Gaussian: everything the fragment stage needs to weight it, into its cutoff record.
+#include "side.glsl"
+#include "cut.glsl"
+
+layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
+
+BUFFER(readonly, 1, Gaussian, gaussians)
+BUFFER(readonly, 2, uint, cutoffs)
+BUFFER(readonly, 3, FrameCounts, counts)
+BUFFER(writeonly, 4, vec4, cuts)
+
+// A plane in the ray form. Dividing by the largest component keeps the squares of sigmas of 1e5 and 1e-7 in range.
+vec4 ray_plane(vec3 normal, float distance) {
+    float size = largest(normal);
+    return size > 0.0 ? vec4(normal, distance) / size : vec4(vec3(0.0), distance >= 0.0 ? 1.0 : -1.0);
+}
+
+// A plane in the affine form. Given the pixel, the Gaussian seen through the low-pass has, along the plane's normal,
+// mean g + k.delta and variance s^2 (the update of a Kalman filter that has observed the pixel):
+//   k = S^-1 B a, s^2 = |a|^2 - (B a)^T S^-1 (B a), with S = B B^T + L the splat's 2D covariance,
+// so the share on the visible side is Phi((g + k.delta) / s). Both written as sums of squares over det S.
+vec4 affine_plane(Footprint f, vec4 plane) {
+    vec3 a = plane.xyz;
+    vec3 c = cross(f.b1, f.b2);
+    vec3 a1 = cross(a, f.b1);
+    vec3 a2 = cross(a, f.b2);
+    float ac = dot(a, c);
+    float variance = ac * ac + f.low_pass * (dot(a1, a1) + dot(a2, a2)) + f.low_pass * f.low_pass * dot(a, a);
+    vec2 slope = vec2(dot(c, a2) + f.low_pass * dot(a, f.b1), -dot(c, a1) + f.low_pass * dot(a, f.b2));
+    float side = ac >= 0.0 ? 1.0 : -1.0;
+    if (!(variance > 0.0)) {
+        return vec4(plane.w >= 0.0 ? 40.0 : -40.0, 0.0, 0.0, side);
+    }
+    float inverse = inversesqrt(variance / f.det);
+    return vec4(plane.w * inverse, slope * (f.scale / f.det * inverse), side);
+}
+
+void main() {
+    uint cut = LINEAR_GROUP * SURVIVOR_GROUP_SIZE + gl_LocalInvocationIndex;
+    if (cut >= counts.at[0].cutoff) {
+        return;
+    }
+    Gaussian gaussian = gaussians.at[cutoffs.at[cut]];
+    vec3 position = gaussian.position_opacity.xyz;
+    Footprint f = footprint(gaussian);
+    float extent = opacity_extent(gaussian.position_opacity.w);
+    float reach = band(extent);
+
+    bool front = f.view.z < reach * length(f.m3);
+    bool ray = FRAME.mode == MODE_RARA || FRAME.form == FORM_BEAM;
+    if (FRAME.mode == MODE_EXACT && FRAME.form == FORM_AUTO) {
+        ray = front || f.clamped || gaussian.scale.w > FRAME.beam_switch * f.view.z;
+    }
+    front = front && ray;
+
+    uint base = cut * FRAME.cut_stride;
+    uint at = base + CUT_HEADER;
+    uint kept = FRAME.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
+    for (uint plane = 0u; plane < FRAME.plane_count; plane++) {
+        float distance = plane_distance(plane, position);
+        vec3 normal = unit_normal(plane, f);
+        // A plane that keeps the whole splat changes no intersection, one that drops it no union.
+        if (plane_side(distance, normal, reach) != kept) {
+            vec4 form = ray_plane(normal, distance);
+            cuts.at[at++] = ray ? form : affine_plane(f, form);
+        }
+    }
+    uint flags = (at - base - CUT_HEADER) << CUT_COUNT_SHIFT;
+    if (ray) {
+        flags |= CUT_RAY;
+        // True rays: gradients at the centre's own slope, not the clamped one.
+        vec3 b1;
+        vec3 b2;
+        screen_gradients(f, f.view.xy / f.view.z, b1, b2);
+        vec3 e = f.m3 / f.view.z;
+        // The gradients grow with the distance from the centre; scale for the farthest pixel of the splat.
+        vec2 far = min(max(abs(f.centre), abs(FRAME.size.xy - f.centre)), box_extent(f, extent));
+        float scale = 1.0 / max(1.0, max(largest(b1) + far.x * largest(e), largest(b2) + far.y * largest(e)));
+        if (front) {
+            flags |= CUT_FRONT;
+            cuts.at[at] = ray_plane(f.m3, f.view.z);
+        }
+        cuts.at[base + 1u] = vec4(b2 * scale, scale);
+        cuts.at[base + 2u] = vec4(e * scale, LOW_PASS * scale * scale);
+        cuts.at[base] = vec4(b1 * scale, uintBitsToFloat(flags));
+    } else {
+        cuts.at[base] = vec4(vec3(0.0), uintBitsToFloat(flags));
+    }
+}

@@ -1,0 +1,95 @@
+// A Gaussian on the screen: EWA projection as published with 3DGS (Kerbl et al. 2023), in forms without cancelling
+// determinants. With the view-space factor M (rows m1 m2 m3, covariance M M^T) the screen gradient in the Gaussian's
+// own unit space is b1 = fx/Z (m1 - X/Z m3), b2 = fy/Z (m2 - Y/Z m3); the 2D covariance is
+// [b1.b1 + L, b1.b2; b1.b2, b2.b2 + L] with the low-pass L, and its determinant |b1 x b2|^2 + L(|b1|^2+|b2|^2) + L^2
+// is a sum of non-negative terms where the textbook subtracts.
+#ifndef RARA_FOOTPRINT
+#define RARA_FOOTPRINT
+#include "frame.glsl"
+#include "two_float.glsl"
+
+struct Footprint {
+    vec3 view; // centre in the camera's frame
+    vec3 relative; // centre relative to the eye, world axes
+    mat3 world_factor; // columns: the Gaussian's axes in the world, times their standard deviations
+    vec3 m1, m2, m3; // rows of the view-space factor
+    vec3 b1, b2; // screen gradients, times scale
+    vec2 slope; // x/z and y/z at which they were evaluated
+    float scale; // 1 / max(1, |b|): keeps every product below in range
+    float low_pass; // LOW_PASS scale^2
+    float xx, xy, yy, det; // 2D covariance and determinant, times scale^2 and scale^4
+    vec2 centre; // px
+    bool clamped; // whether the slope was clamped
+};
+
+mat3 rotation_matrix(vec4 q) {
+    vec3 d = q.xyz + q.xyz;
+    vec3 x = q.x * d;
+    vec3 w = q.w * d;
+    float yy = q.y * d.y;
+    float yz = q.y * d.z;
+    float zz = q.z * d.z;
+    return mat3(1.0 - (yy + zz), x.y + w.z, x.z - w.y,
+                x.y - w.z, 1.0 - (x.x + zz), yz + w.x,
+                x.z + w.y, yz - w.x, 1.0 - (x.x + yy));
+}
+
+// The centre relative to the eye, world axes.
+vec3 eye_relative(vec3 position) {
+    return two_float_difference(position, FRAME.eye_high.xyz, FRAME.eye_low.xyz);
+}
+
+vec3 to_view(vec3 relative) {
+    return vec3(dot(FRAME.rotation_x.xyz, relative), dot(FRAME.rotation_y.xyz, relative),
+                dot(FRAME.rotation_z.xyz, relative));
+}
+
+float largest(vec3 v) {
+    return max(abs(v.x), max(abs(v.y), abs(v.z)));
+}
+
+// Screen gradients at a slope, unscaled.
+void screen_gradients(Footprint f, vec2 slope, out vec3 b1, out vec3 b2) {
+    b1 = FRAME.focal.x / f.view.z * (f.m1 - slope.x * f.m3);
+    b2 = FRAME.focal.y / f.view.z * (f.m2 - slope.y * f.m3);
+}
+
+Footprint footprint(Gaussian gaussian) {
+    Footprint f;
+    f.relative = eye_relative(gaussian.position_opacity.xyz);
+    f.view = to_view(f.relative);
+    mat3 axes = rotation_matrix(gaussian.rotation);
+    f.world_factor = mat3(axes[0] * gaussian.scale.x, axes[1] * gaussian.scale.y, axes[2] * gaussian.scale.z);
+    f.m1 = FRAME.rotation_x.xyz * f.world_factor;
+    f.m2 = FRAME.rotation_y.xyz * f.world_factor;
+    f.m3 = FRAME.rotation_z.xyz * f.world_factor;
+    vec2 slope = f.view.xy / f.view.z;
+    f.centre = FRAME.focal.xy * slope + FRAME.focal.zw;
+    f.slope = clamp(slope, FRAME.slope_bounds.xz, FRAME.slope_bounds.yw);
+    f.clamped = f.slope != slope;
+    screen_gradients(f, f.slope, f.b1, f.b2);
+    f.scale = 1.0 / max(1.0, max(largest(f.b1), largest(f.b2)));
+    f.b1 *= f.scale;
+    f.b2 *= f.scale;
+    f.low_pass = LOW_PASS * f.scale * f.scale;
+    float n1 = dot(f.b1, f.b1);
+    float n2 = dot(f.b2, f.b2);
+    vec3 c = cross(f.b1, f.b2);
+    f.xx = n1 + f.low_pass;
+    f.yy = n2 + f.low_pass;
+    f.xy = dot(f.b1, f.b2);
+    f.det = dot(c, c) + f.low_pass * (n1 + n2) + f.low_pass * f.low_pass;
+    return f;
+}
+
+// Half the sides of the bounding box of the splat's contour at q = extent^2, px.
+vec2 box_extent(Footprint f, float extent) {
+    return extent * sqrt(vec2(f.xx, f.yy)) / f.scale;
+}
+
+// The contour at which alpha falls to 1/255: opacity exp(-K^2/2) = 1/255, in standard deviations.
+float opacity_extent(float opacity) {
+    return sqrt(max(0.0, 2.0 * log(opacity * ALPHA_MIN_INVERSE)));
+}
+
+#endif

@@ -1,0 +1,28 @@
+// What the two front ends of the splat pass share: which splat is the n-th, and where its corners are.
+#ifndef RARA_QUAD
+#define RARA_QUAD
+#include "frame.glsl"
+
+BUFFER(readonly, 1, FrameCounts, counts)
+BUFFER(readonly, 2, Splat, splats)
+BUFFER(readonly, 3, uint, order)
+
+// Back to front: the blend is the ordinary `over`, so that a host can draw splats onto what it has drawn already.
+Splat splat_at(uint number) {
+    return splats.at[order.at[counts.at[0].mesh_groups.w - 1u - number]];
+}
+
+// Corner 0 to 3 of a strip. Parameters 0 and 1 are where the viewport begins, px.
+vec4 corner(Splat splat, uint number) {
+    float first = (number & 1u) == 0u ? -1.0 : 1.0;
+    float second = (number & 2u) == 0u ? -1.0 : 1.0;
+    vec2 at = splat.centre_axis.xy + splat.middle_axis.xy + first * splat.centre_axis.zw + second * splat.middle_axis.zw;
+    return vec4(2.0 * at * FRAME.size.zw - 1.0, 0.0, 1.0);
+}
+
+// The centre in the coordinates of gl_FragCoord.
+vec2 fragment_centre(Splat splat) {
+    return splat.centre_axis.xy + vec2(uintBitsToFloat(push.param[0]), uintBitsToFloat(push.param[1]));
+}
+
+#endif

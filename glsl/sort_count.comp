@@ -1,0 +1,19 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// First step of a pass: how often each run holds each digit.
+#include "sort.glsl"
+
+BUFFER(readonly, 1, FrameCounts, counts)
+BUFFER(readonly, 2, uint, keys)
+BUFFER(, 3, uint, histogram)
+
+void main() {
+    uint run = gl_GlobalInvocationID.x;
+    for (uint d = 0u; d < DIGITS; d++) {
+        histogram.at[d * FRAME.sort_runs + run] = 0u;
+    }
+    uvec2 bounds = run_bounds(run, counts.at[0].visible + counts.at[0].cutoff);
+    for (uint i = bounds.x; i < bounds.y; i++) {
+        histogram.at[digit(keys.at[i]) * FRAME.sort_runs + run]++;
+    }
+}

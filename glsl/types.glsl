@@ -1,0 +1,81 @@
+// Every struct that host and shaders share. build.rs turns each into a Rust struct of the same name (`rara::types`)
+// and asserts its std430 offsets, so each stands here and nowhere else.
+#ifndef RARA_TYPES
+#define RARA_TYPES
+#include "limits.glsl"
+
+// What is constant in a frame.
+struct FrameData {
+    vec4 rotation_x; // world to camera, first row; w unused
+    vec4 rotation_y; // second row
+    vec4 rotation_z; // third row: the view direction
+    vec4 eye_high; // the eye, rounded to single precision; w unused
+    vec4 eye_low; // what the rounding lost
+    vec4 focal; // fx, fy, cx, cy, px
+    vec4 slope_bounds; // lowest and highest x/z, lowest and highest y/z at which the Jacobian is evaluated
+    vec4 size; // width, height, px; reciprocals
+    uint gaussian_count; // Gaussians in the scene
+    uint sh_coefficients; // coefficients a colour channel in the scene
+    uint sh_degree; // highest degree to evaluate
+    uint plane_count; // half-spaces of the clip
+    uint mode; // MODE_*
+    uint op; // OP_*
+    uint decay; // DECAY_*
+    uint miss; // MISS_*
+    float sigma; // rara: the traced ellipsoid, standard deviations
+    float beam_switch; // sigma_max / Z above which the perspective-exact form is used
+    uint trace_all; // 1: every Gaussian in view is cutoff
+    uint cut_stride; // vec4s of a cutoff record
+    uint sort_runs; // invocations of the sort
+    uint group_count; // workgroups of classify
+    uint form; // FORM_*
+    uint pad_0; // unused
+    vec4 plane_high[MAX_CLIP_PLANES]; // unit normal and distance, rounded to single precision
+    vec4 plane_low[MAX_CLIP_PLANES]; // what the rounding lost
+};
+
+// A Gaussian without its colour.
+struct Gaussian {
+    vec4 position_opacity; // centre, world units; opacity 0 to 1
+    vec4 scale; // standard deviations, world units; w the largest of them
+    vec4 rotation; // unit quaternion x y z w
+};
+
+// A survivor on the screen: what the rasteriser needs.
+struct Splat {
+    vec4 centre_axis; // centre, px; the quad's first half axis, px
+    vec4 conic; // Cholesky factor k0 k1 k2 of the inverse 2D covariance, 1/px; opacity
+    vec4 colour_cut; // colour; w: bits of the cutoff record's number, or NOT_CUT
+    vec4 middle_axis; // middle of the quad relative to the centre, px; the quad's second half axis, px
+};
+
+// How many Gaussians ended where, and the indirect commands that follow from it.
+struct FrameCounts {
+    uint visible; // in view, untouched
+    uint cutoff; // in view, cut
+    uint invisible; // in view, wholly clipped away
+    uint culled; // outside the view or too faint
+    uvec4 project_groups; // indirect dispatch over the survivors
+    uvec4 cutoff_groups; // indirect dispatch over the cutoff Gaussians
+    uvec4 sort_groups; // indirect dispatch of the sort's runs
+    uvec4 draw; // indirect draw: vertices, instances, first vertex, first instance
+    uvec4 mesh_groups; // indirect mesh tasks; w: survivors
+};
+
+const uint MODE_NONE = 0u;
+const uint MODE_HARD = 1u;
+const uint MODE_RARA = 2u;
+const uint MODE_EXACT = 3u;
+const uint OP_AND = 0u;
+const uint OP_OR = 1u;
+const uint DECAY_LINEAR = 0u;
+const uint DECAY_DEPTH = 1u;
+const uint MISS_KEEP = 0u;
+const uint MISS_DROP = 1u;
+const uint MISS_PEAK = 2u;
+const uint FORM_AUTO = 0u;
+const uint FORM_BEAM = 1u;
+const uint FORM_AFFINE = 2u;
+const uint NOT_CUT = 0xffffffffu;
+
+#endif

@@ -1,0 +1,169 @@
+// The weight w of a cut splat in a pixel, and what it does to alpha. Included by the fragment stage only, after it has
+// declared the buffers `frame` and `cuts`.
+#ifndef RARA_WEIGHT
+#define RARA_WEIGHT
+#include "cut.glsl"
+
+// The normal distribution's Phi by a logistic of an odd quintic: absolute error 1.9e-5, and Phi(z) + Phi(-z) = 1 to
+// rounding. Beyond |z| = 8 the quintic would turn back.
+float phi(float z) {
+    float x = clamp(z, -8.0, 8.0);
+    float s = x * x;
+    return 1.0 / (1.0 + exp2(-x * (2.3017272 + s * (0.10617733 - 9.1122696e-4 * s))));
+}
+
+// Half-spaces on one line of sight are thresholds in one variable: those that keep the far side bound it from below,
+// the others from above. An intersection is what both leave; a union is the rest of the complements' intersection,
+// which is why every plane is negated (`sign`) under OP_OR.
+float complement_sign() {
+    return FRAME.op == OP_OR ? -1.0 : 1.0;
+}
+
+float combined(float share) {
+    return FRAME.op == OP_OR ? 1.0 - share : share;
+}
+
+// `exact`, affine in the pixel.
+float affine_weight(uint at, uint count, vec2 delta) {
+    float sign = complement_sign();
+    float far = 1.0;
+    float near = 1.0;
+    for (uint plane = 0u; plane < count; plane++) {
+        vec4 form = cuts.at[at + plane];
+        float kept = phi(sign * (form.x + form.y * delta.x + form.z * delta.y));
+        if (sign * form.w > 0.0) {
+            far = min(far, kept);
+        } else {
+            near = min(near, kept);
+        }
+    }
+    return combined(max(0.0, far + near - 1.0));
+}
+
+// The line of sight of a pixel in the Gaussian's unit space: the points u with b1.u = delta.x and b2.u = delta.y.
+// A pixel is two planes through the eye; dividing them by Z turns the centre's gradients b into b - delta e.
+struct Sight {
+    vec3 b1, b2, c;
+    vec2 delta;
+    float low_pass;
+};
+
+Sight line_of_sight(uint base, vec2 delta) {
+    vec4 h0 = cuts.at[base];
+    vec4 h1 = cuts.at[base + 1u];
+    vec4 h2 = cuts.at[base + 2u];
+    Sight sight;
+    sight.b1 = h0.xyz - delta.x * h2.xyz;
+    sight.b2 = h1.xyz - delta.y * h2.xyz;
+    sight.c = cross(sight.b1, sight.b2);
+    sight.delta = delta * h1.w;
+    sight.low_pass = h2.w;
+    return sight;
+}
+
+// `exact`, perspective included: the same update as the affine form with this pixel's own gradients.
+float ray_z(Sight s, float det, vec4 plane, out float depth_slope) {
+    vec3 a = plane.xyz;
+    vec3 a1 = cross(a, s.b1);
+    vec3 a2 = cross(a, s.b2);
+    depth_slope = dot(a, s.c);
+    float variance = depth_slope * depth_slope + s.low_pass * (dot(a1, a1) + dot(a2, a2))
+        + s.low_pass * s.low_pass * dot(a, a);
+    vec2 k = vec2(dot(s.c, a2) + s.low_pass * dot(a, s.b1), -dot(s.c, a1) + s.low_pass * dot(a, s.b2));
+    float mean = plane.w + dot(k, s.delta) / det;
+    return mean * inversesqrt(max(variance / det, 1e-30));
+}
+
+float beam_weight(uint base, uint count, bool has_front, vec2 delta) {
+    Sight s = line_of_sight(base, delta);
+    float det = dot(s.c, s.c) + s.low_pass * (dot(s.b1, s.b1) + dot(s.b2, s.b2)) + s.low_pass * s.low_pass;
+    float sign = complement_sign();
+    float far = 1.0;
+    float near = 1.0;
+    float depth_slope;
+    for (uint plane = 0u; plane < count; plane++) {
+        float kept = phi(sign * ray_z(s, det, cuts.at[base + CUT_HEADER + plane], depth_slope));
+        if (sign * depth_slope > 0.0) {
+            far = min(far, kept);
+        } else {
+            near = min(near, kept);
+        }
+    }
+    float whole = 1.0;
+    if (has_front) {
+        // The camera is inside: only the part in front of the eye counts, as part and as whole.
+        float front = phi(ray_z(s, det, cuts.at[base + CUT_HEADER + count], depth_slope));
+        if (front >= 1e-4) {
+            whole = front;
+            far = min(far, front);
+        }
+    }
+    return combined(max(0.0, far + near - 1.0) / whole);
+}
+
+// `rara`: the visible share of the chord that the ray cuts out of the ellipsoid (paper section 3.3 and eq. 11). The
+// line is p + t c/|c| with p its point nearest the centre; |p|^2 = |delta.x b2 - delta.y b1|^2 / |c|^2 needs no
+// inverse of M and no B^2 - 4 A C.
+float chord_weight(uint base, uint count, bool has_front, vec2 delta) {
+    Sight s = line_of_sight(base, delta);
+    float cc = dot(s.c, s.c);
+    bool degenerate = !(cc > 0.0);
+    float inverse = degenerate ? 0.0 : 1.0 / cc;
+    vec3 nearest = (s.delta.x * cross(s.b2, s.c) + s.delta.y * cross(s.c, s.b1)) * inverse;
+    vec3 direction = s.c * sqrt(inverse);
+    vec3 offset = s.delta.x * s.b2 - s.delta.y * s.b1;
+    float half_square = degenerate ? -1.0 : FRAME.sigma * FRAME.sigma - dot(offset, offset) * inverse;
+    float high = half_square > 0.0 ? sqrt(half_square) : 0.0;
+    float low = -high;
+    if (has_front) {
+        vec4 front = cuts.at[base + CUT_HEADER + count];
+        // The view direction's component along the line is never negative.
+        low = max(low, -(front.w + dot(front.xyz, nearest)) / max(dot(front.xyz, direction), 1e-30));
+    }
+    float whole = high - low;
+    bool miss = !(half_square > 0.0) || !(whole > 0.0);
+    if (miss && FRAME.miss != MISS_PEAK) {
+        return FRAME.miss == MISS_KEEP ? 1.0 : 0.0;
+    }
+    float sign = complement_sign();
+    bool inside = true;
+    for (uint plane = 0u; plane < count; plane++) {
+        vec4 form = sign * cuts.at[base + CUT_HEADER + plane];
+        float value = form.w + dot(form.xyz, nearest);
+        float slope = dot(form.xyz, direction);
+        if (miss || slope == 0.0) {
+            inside = inside && value >= 0.0;
+        } else if (slope > 0.0) {
+            low = max(low, -value / slope);
+        } else {
+            high = min(high, -value / slope);
+        }
+    }
+    float share = !inside ? 0.0 : miss ? 1.0 : max(0.0, high - low) / whole;
+    return combined(share);
+}
+
+// Which of the three by the frame's mode and the record's form.
+float cut_weight(uint mode, uint cut, vec2 delta) {
+    uint base = cut * FRAME.cut_stride;
+    uint flags = floatBitsToUint(cuts.at[base].w);
+    uint count = flags >> CUT_COUNT_SHIFT;
+    if (mode == MODE_RARA) {
+        return chord_weight(base, count, (flags & CUT_FRONT) != 0u, delta);
+    }
+    if ((flags & CUT_RAY) != 0u) {
+        return beam_weight(base, count, (flags & CUT_FRONT) != 0u, delta);
+    }
+    return affine_weight(base + CUT_HEADER, count, delta);
+}
+
+// The paper scales alpha (eq. 12). The default for `exact` scales optical depth, -ln(1 - alpha): then complementary
+// halves rebuild the whole. A weight of one leaves alpha untouched to the bit.
+float decayed(float alpha, float weight) {
+    if (weight >= 1.0) {
+        return alpha;
+    }
+    return FRAME.decay == DECAY_LINEAR ? alpha * weight : 1.0 - exp2(weight * log2(1.0 - alpha));
+}
+
+#endif

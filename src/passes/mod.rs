@@ -1,0 +1,3 @@
+//! The stages of the frame, one file each.
+
+mod shaders;

@@ -66,6 +66,7 @@ const uint MODE_NONE = 0u;
 const uint MODE_HARD = 1u;
 const uint MODE_RARA = 2u;
 const uint MODE_EXACT = 3u;
+const uint MODE_COUNT = 4u;
 const uint OP_AND = 0u;
 const uint OP_OR = 1u;
 const uint DECAY_LINEAR = 0u;

@@ -1,3 +1,22 @@
-//! The stages of the frame, one file each.
+//! The stages of the frame, one file each: buffers in, buffers out. [`frame`] lists them in order.
 
+mod buffers;
+mod classify;
+mod compact;
+mod context;
+mod cutoff;
+mod frame;
+mod plan;
+mod project;
+mod scene_buffers;
 mod shaders;
+mod sort;
+mod splat;
+mod stages;
+
+pub(crate) use buffers::Buffers;
+pub(crate) use context::Context;
+pub(crate) use frame::record;
+pub(crate) use plan::{Plan, SceneFacts};
+pub use scene_buffers::SceneBuffers;
+pub(crate) use stages::Stages;

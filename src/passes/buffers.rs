@@ -1,0 +1,90 @@
+//! The frame's working memory: one buffer per array that a stage writes, sized for the worst the scene can need.
+
+use crate::error::Result;
+use crate::gpu::{Buffer, BufferDesc, Device, Location};
+use crate::limits;
+use crate::passes::plan::Plan;
+use crate::types::{FrameCounts, FrameData, Splat};
+
+/// Everything the stages hand to each other. No stage reads a count on the CPU, so each array has room for every
+/// Gaussian of the scene; drivers back untouched memory lazily.
+#[derive(Debug)]
+pub(crate) struct Buffers {
+    pub(crate) frame: Buffer,
+    pub(crate) masks: Buffer,
+    pub(crate) group_counts: Buffer,
+    pub(crate) group_offsets: Buffer,
+    pub(crate) counts: Buffer,
+    pub(crate) survivors: Buffer,
+    pub(crate) cutoffs: Buffer,
+    pub(crate) cuts: Buffer,
+    pub(crate) splats: Buffer,
+    pub(crate) keys: [Buffer; 2],
+    pub(crate) order: [Buffer; 2],
+    pub(crate) histogram: Buffer,
+    pub(crate) digit_totals: Buffer,
+    /// A copy of `counts` for the host.
+    pub(crate) counts_readback: Buffer,
+    sized_for: Sizes,
+}
+
+/// What the sizes depend on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Sizes {
+    gaussians: u64,
+    cut_bytes: u64,
+    sort_runs: u64,
+}
+
+impl Sizes {
+    fn of(plan: &Plan) -> Self {
+        let gaussians = u64::from(plan.gaussians);
+        let cut_bytes = if plan.cutoff { gaussians * u64::from(plan.cut_stride) * 16 } else { 0 };
+        Self { gaussians, cut_bytes, sort_runs: u64::from(plan.sort_runs) }
+    }
+}
+
+impl Buffers {
+    /// Allocates for a plan.
+    pub(crate) fn new(device: &Device, plan: &Plan) -> Result<Self> {
+        let sizes = Sizes::of(plan);
+        let gpu = |name, size| device.create_buffer(&BufferDesc { name, size, location: Location::GpuOnly });
+        let n = sizes.gaussians;
+        let groups = n.div_ceil(u64::from(limits::GROUP_SIZE));
+        let digits = 1_u64 << limits::SORT_BITS;
+        let counts_size = size_of::<FrameCounts>() as u64;
+        Ok(Self {
+            frame: gpu("frame", size_of::<FrameData>() as u64)?,
+            masks: gpu("masks", groups * u64::from(limits::GROUP_SIZE) / 4)?,
+            group_counts: gpu("group_counts", groups * 16)?,
+            group_offsets: gpu("group_offsets", groups * 8)?,
+            counts: gpu("counts", counts_size)?,
+            survivors: gpu("survivors", n * 8)?,
+            cutoffs: gpu("cutoffs", n * 4)?,
+            cuts: gpu("cuts", sizes.cut_bytes)?,
+            splats: gpu("splats", n * size_of::<Splat>() as u64)?,
+            keys: [gpu("keys", n * 4)?, gpu("sorted_keys", n * 4)?],
+            order: [gpu("order", n * 4)?, gpu("sorted_order", n * 4)?],
+            histogram: gpu("histogram", digits * sizes.sort_runs * 4)?,
+            digit_totals: gpu("digit_totals", digits * 4)?,
+            counts_readback: device.create_buffer(&BufferDesc {
+                name: "counts_readback",
+                size: counts_size,
+                location: Location::Readback,
+            })?,
+            sized_for: sizes,
+        })
+    }
+
+    /// Whether a plan fits into what is allocated.
+    pub(crate) fn fit(&self, plan: &Plan) -> bool {
+        let (have, need) = (self.sized_for, Sizes::of(plan));
+        have.gaussians == need.gaussians && have.cut_bytes >= need.cut_bytes && have.sort_runs == need.sort_runs
+    }
+
+    /// The largest buffer that a shader binds, bytes.
+    pub(crate) fn largest(plan: &Plan) -> u64 {
+        let sizes = Sizes::of(plan);
+        sizes.cut_bytes.max(sizes.gaussians * size_of::<Splat>() as u64)
+    }
+}

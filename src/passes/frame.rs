@@ -1,0 +1,32 @@
+//! The frame: every stage in order. Nothing waits or is read back in between; each stage's work follows from what the
+//! one before left on the device.
+
+use crate::gpu::Recorder;
+use crate::passes::buffers::Buffers;
+use crate::passes::plan::Plan;
+use crate::passes::scene_buffers::SceneBuffers;
+use crate::passes::stages::Stages;
+
+/// Records everything up to the draw.
+pub(crate) fn record(recorder: &mut Recorder<'_>, stages: &Stages, scene: &SceneBuffers, b: &Buffers, plan: &Plan) {
+    let groups = plan.data.group_count;
+    recorder.update(&b.frame, 0, bytemuck::bytes_of(&plan.data));
+
+    // Which Gaussians are in view, and on which side of the clip.
+    recorder.pass("classify", |r| stages.classify(plan).record(r, scene, b, groups));
+    // Their numbers, in order, and the sizes of all that follows.
+    recorder.pass("compact", |r| stages.compact.record(r, b, groups));
+    // What the fragment stage needs of the cut ones.
+    if let Some(cutoff) = stages.cutoff.as_ref().filter(|_| plan.cutoff) {
+        recorder.pass("cutoff", |r| cutoff.record(r, scene, b));
+    }
+    // Conic, quad, colour and depth key of the survivors.
+    recorder.pass("project", |r| stages.project.record(r, scene, b));
+    // Their order.
+    if plan.gaussians > 1 {
+        recorder.pass("sort", |r| stages.sort.record(r, b));
+    }
+
+    recorder.copy(&b.counts, &b.counts_readback);
+    recorder.ready_to_draw(&[&b.frame, &b.counts, &b.splats, &b.order[0], &b.cuts]);
+}

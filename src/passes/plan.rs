@@ -1,0 +1,134 @@
+//! What a frame needs, decided on the CPU before anything is recorded: which stages run, and the frame's constants.
+
+use glam::DVec3;
+
+use crate::camera::Camera;
+use crate::clip::{Clip, ClipOp};
+use crate::error::{Error, Result};
+use crate::limits;
+use crate::settings::{Decay, ExactForm, Miss, Mode, Settings};
+use crate::types::{self, FrameData};
+
+/// A frame, decided but not recorded.
+#[derive(Debug, Clone)]
+pub(crate) struct Plan {
+    /// Gaussians in the scene.
+    pub(crate) gaussians: u32,
+    /// The mode, reduced to `MODE_NONE` where there is nothing to clip with.
+    pub(crate) mode: u32,
+    /// Whether cutoff Gaussians can exist.
+    pub(crate) cutoff: bool,
+    /// vec4s of a cutoff record.
+    pub(crate) cut_stride: u32,
+    /// Invocations of the sort.
+    pub(crate) sort_runs: u32,
+    /// The frame's constants.
+    pub(crate) data: FrameData,
+}
+
+/// What a plan is made from besides camera, clip and settings.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SceneFacts {
+    pub(crate) gaussians: u32,
+    pub(crate) sh_degree: u32,
+    pub(crate) sort_runs: u32,
+}
+
+impl Plan {
+    /// Decides what a frame needs.
+    pub(crate) fn new(scene: SceneFacts, camera: &Camera, clip: &Clip, settings: &Settings) -> Result<Self> {
+        if clip.planes.len() > limits::MAX_CLIP_PLANES as usize {
+            let (have, most) = (clip.planes.len(), limits::MAX_CLIP_PLANES);
+            return Err(Error::Invalid(format!("a clip of {have} half-spaces is beyond the {most} supported; use fewer")));
+        }
+        if !(settings.sigma.is_finite() && settings.sigma > 0.0) {
+            return Err(Error::Invalid(format!("an ellipsoid of {} standard deviations cannot be traced", settings.sigma)));
+        }
+        let clipping = settings.mode != Mode::None && !clip.planes.is_empty();
+        let mode = match settings.mode {
+            Mode::Hard if clipping => types::MODE_HARD,
+            Mode::Rara if clipping => types::MODE_RARA,
+            Mode::Exact if clipping => types::MODE_EXACT,
+            _ => types::MODE_NONE,
+        };
+        let planes = if clipping { clip.planes.as_slice() } else { &[] };
+        let cutoff = mode == types::MODE_RARA || mode == types::MODE_EXACT;
+        // A header of three, the planes, and the eye's own plane where the camera may be inside a splat.
+        let cut_stride = if cutoff { 3 + planes.len() as u32 + 1 } else { 0 };
+
+        let mut data: FrameData = bytemuck::Zeroable::zeroed();
+        camera_constants(&mut data, camera);
+        data.gaussian_count = scene.gaussians;
+        data.sh_coefficients = (scene.sh_degree + 1) * (scene.sh_degree + 1);
+        data.sh_degree = settings.sh_degree.map_or(scene.sh_degree, |cap| cap.min(scene.sh_degree));
+        data.plane_count = planes.len() as u32;
+        data.mode = mode;
+        data.op = if clipping && clip.op == ClipOp::Or { types::OP_OR } else { types::OP_AND };
+        data.decay = match settings.decay_law() {
+            Decay::Linear => types::DECAY_LINEAR,
+            Decay::Depth => types::DECAY_DEPTH,
+        };
+        data.miss = match settings.miss {
+            Miss::Keep => types::MISS_KEEP,
+            Miss::Drop => types::MISS_DROP,
+            Miss::Peak => types::MISS_PEAK,
+        };
+        data.form = match settings.form {
+            ExactForm::Auto => types::FORM_AUTO,
+            ExactForm::Beam => types::FORM_BEAM,
+            ExactForm::Affine => types::FORM_AFFINE,
+        };
+        data.sigma = settings.sigma;
+        data.beam_switch = limits::BEAM_SWITCH;
+        data.trace_all = settings.trace_all.into();
+        data.cut_stride = cut_stride;
+        data.sort_runs = scene.sort_runs;
+        data.group_count = scene.gaussians.div_ceil(limits::GROUP_SIZE);
+        for (index, plane) in planes.iter().enumerate() {
+            let (high, low) = two_float(plane.normal());
+            let offset_high = plane.offset() as f32;
+            let offset_low = (plane.offset() - f64::from(offset_high)) as f32;
+            data.plane_high[index] = [high[0], high[1], high[2], offset_high];
+            data.plane_low[index] = [low[0], low[1], low[2], offset_low];
+        }
+        Ok(Self { gaussians: scene.gaussians, mode, cutoff, cut_stride, sort_runs: scene.sort_runs, data })
+    }
+
+    /// The stages that this frame does not need.
+    pub(crate) fn skipped(&self) -> Vec<&'static str> {
+        match (self.gaussians, self.cutoff) {
+            (0, _) => vec!["classify", "compact", "cutoff", "project", "sort", "splat"],
+            (1, true) => vec!["sort"],
+            (1, false) => vec!["cutoff", "sort"],
+            (_, true) => vec![],
+            (_, false) => vec!["cutoff"],
+        }
+    }
+}
+
+fn camera_constants(data: &mut FrameData, camera: &Camera) {
+    let rows = camera.rotation.transpose();
+    let row = |axis: DVec3| axis.extend(0.0).as_vec4().into();
+    data.rotation_x = row(rows.x_axis);
+    data.rotation_y = row(rows.y_axis);
+    data.rotation_z = row(rows.z_axis);
+    let (high, low) = two_float(camera.eye);
+    data.eye_high = [high[0], high[1], high[2], 0.0];
+    data.eye_low = [low[0], low[1], low[2], 0.0];
+    data.focal = [camera.fx, camera.fy, camera.cx, camera.cy].map(|x| x as f32);
+    let (width, height) = (f64::from(camera.width), f64::from(camera.height));
+    let margin = f64::from(limits::CLAMP_MARGIN);
+    let bounds = |size: f64, centre: f64, focal: f64| {
+        ((-margin * size - centre) / focal, ((1.0 + margin) * size - centre) / focal)
+    };
+    let (x_low, x_high) = bounds(width, camera.cx, camera.fx);
+    let (y_low, y_high) = bounds(height, camera.cy, camera.fy);
+    data.slope_bounds = [x_low, x_high, y_low, y_high].map(|x| x as f32);
+    data.size = [width, height, 1.0 / width, 1.0 / height].map(|x| x as f32);
+}
+
+/// A vector as the sum of two single-precision ones.
+fn two_float(v: DVec3) -> ([f32; 3], [f32; 3]) {
+    let high = v.as_vec3();
+    (high.into(), (v - high.as_dvec3()).as_vec3().into())
+}

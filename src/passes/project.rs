@@ -1,0 +1,29 @@
+//! Stage 4, a survivor an invocation: conic, quad, colour and depth key.
+
+use std::mem::offset_of;
+
+use crate::error::Result;
+use crate::gpu::{ComputePipeline, Groups, Recorder};
+use crate::passes::buffers::Buffers;
+use crate::passes::context::Context;
+use crate::passes::scene_buffers::SceneBuffers;
+use crate::passes::shaders;
+use crate::types::FrameCounts;
+
+#[derive(Debug)]
+pub(crate) struct Project {
+    pipeline: ComputePipeline,
+}
+
+impl Project {
+    pub(crate) fn new(context: &Context<'_> {
+        Ok(Self { pipeline: context.compute("project", &shaders::PROJECT_COMP, &[])? })
+    }
+
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, b: &Buffers) {
+        let (keys, order) = (&b.keys[0], &b.order[0]);
+        let buffers = [&b.frame, &scene.gaussians, &scene.sh, &b.survivors, &b.counts, &b.splats, keys, order];
+        let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, project_groups) as u64);
+        recorder.dispatch(&self.pipeline, &buffers, &[], groups);
+    }
+}

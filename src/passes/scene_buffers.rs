@@ -1,0 +1,61 @@
+//! The scene on the device: geometry and spherical harmonics, uploaded once.
+
+use bytemuck::cast_slice;
+
+use crate::error::{Error, Result};
+use crate::gpu::{Buffer, BufferDesc, Device, Location};
+use crate::scene::Gaussians;
+use crate::types::Gaussian;
+
+/// A scene's Gaussians in device memory.
+#[derive(Debug)]
+pub struct SceneBuffers {
+    pub(crate) gaussians: Buffer,
+    pub(crate) sh: Buffer,
+    pub(crate) count: u32,
+    pub(crate) sh_degree: u32,
+}
+
+/// Gaussians converted at a time while uploading, so that the scene is never in memory a third time.
+const UPLOAD_CHUNK: usize = 1 << 16;
+
+impl SceneBuffers {
+    /// Uploads a scene and waits for it.
+    pub fn upload(device: &Device, scene: &Gaussians) -> Result<Self> {
+        let too_many = |_| Error::Invalid(format!("a scene of {} Gaussians is beyond the 2^32 of an index", scene.len()));
+        let count = u32::try_from(scene.len()).map_err(too_many)?;
+        if scene.sh.len() > u32::MAX as usize {
+            return Err(Error::Invalid(format!(
+                "{} Gaussians of spherical-harmonics degree {} need more than 2^32 numbers; lower the degree",
+                scene.len(),
+                scene.sh_degree
+            )));
+        }
+        let gpu = |name, size| device.create_buffer(&BufferDesc { name, size, location: Location::GpuOnly });
+        let gaussians = gpu("gaussians", u64::from(count) * size_of::<Gaussian>() as u64)?;
+        let mut offset = 0;
+        for begin in (0..scene.len()).step_by(UPLOAD_CHUNK) {
+            let end = scene.len().min(begin + UPLOAD_CHUNK);
+            let packed: Vec<Gaussian> = (begin..end).map(|index| pack(scene, index)).collect();
+            device.upload(&gaussians, offset, cast_slice(&packed))?;
+            offset += size_of_val(packed.as_slice()) as u64;
+        }
+        let sh = gpu("sh", size_of_val(scene.sh.as_slice()) as u64)?;
+        device.upload(&sh, 0, cast_slice(&scene.sh))?;
+        Ok(Self { gaussians, sh, count, sh_degree: scene.sh_degree })
+    }
+
+    /// The larger of the two buffers, bytes.
+    pub(crate) fn largest(&self) -> u64 {
+        self.gaussians.size().max(self.sh.size())
+    }
+}
+
+fn pack(scene: &Gaussians, index: usize) -> Gaussian {
+    let scale = scene.scales[index];
+    Gaussian {
+        position_opacity: scene.positions[index].extend(scene.opacities[index]).into(),
+        scale: scale.extend(scale.max_element()).into(),
+        rotation: scene.rotations[index].into(),
+    }
+}

@@ -1,0 +1,48 @@
+//! Stage 5: stable radix sort of the survivors by linear view depth, ties by their number.
+
+use std::mem::offset_of;
+
+use crate::error::Result;
+use crate::gpu::{ComputePipeline, Groups, Recorder};
+use crate::limits;
+use crate::passes::buffers::Buffers;
+use crate::passes::context::Context;
+use crate::passes::shaders;
+use crate::types::FrameCounts;
+
+/// Passes over a 32-bit key: an even number, so that the result ends where it began, in `keys[0]` and `order[0]`.
+const PASSES: u32 = u32::BITS / limits::SORT_BITS;
+const _: () = assert!(PASSES.is_multiple_of(2) && u32::BITS.is_multiple_of(limits::SORT_BITS));
+
+#[derive(Debug)]
+pub(crate) struct Sort {
+    count: ComputePipeline,
+    scan: ComputePipeline,
+    scatter: ComputePipeline,
+}
+
+impl Sort {
+    pub(crate) fn new(context: &Context<'_> {
+        Ok(Self {
+            count: context.compute("sort_count", &shaders::SORT_COUNT_COMP, &[])?,
+            scan: context.compute("sort_scan", &shaders::SORT_SCAN_COMP, &[])?,
+            scatter: context.compute("sort_scatter", &shaders::SORT_SCATTER_COMP, &[])?,
+        })
+    }
+
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, b: &Buffers) {
+        let runs = Groups::Indirect(&b.counts, offset_of!(FrameCounts, sort_groups) as u64);
+        for pass in 0..PASSES {
+            let (from, to) = ((pass % 2) as usize, (pass % 2) as usize ^ 1);
+            let first_bit = [pass * limits::SORT_BITS];
+            let count = [&b.frame, &b.counts, &b.keys[from], &b.histogram];
+            recorder.dispatch(&self.count, &count, &first_bit, runs);
+            let scan = [&b.frame, &b.histogram, &b.digit_totals];
+            recorder.dispatch(&self.scan, &scan, &first_bit, Groups::Count(1 << limits::SORT_BITS));
+            let (sorted_keys, sorted_order) = (&b.keys[to], &b.order[to]);
+            let (keys, order) = (&b.keys[from], &b.order[from]);
+            let scatter = [&b.frame, &b.counts, keys, order, &b.histogram, &b.digit_totals, sorted_keys, sorted_order];
+            recorder.dispatch(&self.scatter, &scatter, &first_bit, runs);
+        }
+    }
+}

@@ -1,8 +1,11 @@
 //! rara draws 3D Gaussian Splatting scenes with Vulkan and cuts them exactly.
 
 pub mod camera;
+pub mod camera_files;
 pub mod clip;
 pub mod error;
+pub mod files;
+pub mod framing;
 pub mod gpu;
 pub mod headless;
 pub mod limits;

@@ -1,5 +1,17 @@
 //! Files to Gaussians and back, and synthetic scenes. No Vulkan, no `unsafe`.
 
+#![forbid(unsafe_code)]
+
+mod bounds;
 mod gaussians;
 
+pub mod ply;
+mod report;
+mod save;
+
+pub use bounds::{Bounds, extent_along};
 pub use gaussians::{Gaussians, sh_coefficients};
+
+pub use ply::{Loaded, load};
+pub use report::{LoadReport, Remark};
+pub use save::save_ply;

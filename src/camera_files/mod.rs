@@ -1,0 +1,157 @@
+//! Reading cameras: 3DGS `cameras.json`, nerfstudio `transforms.json`, COLMAP sparse folders and our single camera.
+
+#![forbid(unsafe_code)]
+
+mod colmap;
+mod colmap_binary;
+mod colmap_text;
+mod inria;
+mod nerfstudio;
+mod single;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use glam::{DMat3, DMat4, DVec3};
+
+use crate::camera::{Camera, MAX_SIZE};
+use crate::error::{Error, Result};
+
+/// A camera and what its file calls it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedCamera {
+    /// The picture's name in the file, or the camera's number there.
+    pub name: String,
+    /// The camera.
+    pub camera: Camera,
+}
+
+/// More than any file of cameras; keeps a wrong path (a video, a scene) from filling the memory.
+const MAX_JSON: u64 = 256 << 20;
+
+/// Loads every camera of a 3DGS `cameras.json`, a nerfstudio `transforms.json` or a COLMAP sparse folder (with
+/// `cameras` and `images`, each `.bin` or `.txt`; a folder that has `sparse/0` does too). JSON files keep their order,
+/// COLMAP's cameras are sorted by picture name. A file with a single camera (see [`load_camera`]) gives that one.
+///
+/// World coordinates are taken as the file has them. Cameras with lens distortion are an error.
+///
+/// # Errors
+/// [`Error::Io`] if something can't be read, [`Error::Format`] if it is none of these or has unusable cameras in it.
+pub fn load_cameras(path: &Path) -> Result<Vec<NamedCamera>> {
+    let cameras = if path.is_dir() {
+        colmap::load(path)?
+    } else if let (Some("bin" | "txt"), Some(folder)) =
+        (path.extension().and_then(|e| e.to_str()), path.parent())
+    {
+        // One of the files in the folder was named instead.
+        colmap::load(if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            folder
+        })?
+    } else {
+        let json = read_json(path)?;
+        let cameras = match json.first() {
+            Some(b'[') => inria::parse(&json),
+            Some(b'{') => nerfstudio::parse(&json).or_else(|error| match single::parse(&json) {
+                Ok(camera) => Ok(vec![NamedCamera { name: "0".into(), camera }]),
+                Err(_) => Err(error),
+            }),
+            _ => Err("this is neither a cameras.json, a transforms.json nor a COLMAP folder; give one of these".into()),
+        };
+        cameras.map_err(|message| Error::format(path, message))?
+    };
+    if cameras.is_empty() {
+        return Err(Error::format(
+            path,
+            "there is no camera in it; export the cameras again",
+        ));
+    }
+    Ok(cameras)
+}
+
+/// Loads a single camera: JSON `{"width", "height", "fx", "fy", "cx", "cy", "world_to_camera": [16 numbers,
+/// row-major]}`; without `cx` or `cy` the principal point is the middle.
+///
+/// # Errors
+/// [`Error::Io`] if the file can't be read, [`Error::Format`] if it has no usable camera.
+pub fn load_camera(path: &Path) -> Result<Camera> {
+    single::parse(&read_json(path)?).map_err(|message| Error::format(path, message))
+}
+
+/// The text of a JSON file without byte-order mark and leading blanks.
+fn read_json(path: &Path) -> Result<Vec<u8>> {
+    let file = File::open(path).map_err(Error::io(path))?;
+    let mut bytes = Vec::new();
+    file.take(MAX_JSON + 1)
+        .read_to_end(&mut bytes)
+        .map_err(Error::io(path))?;
+    if bytes.len() as u64 > MAX_JSON {
+        return Err(Error::format(
+            path,
+            "this is too large to be a file of cameras; give a cameras.json or similar",
+        ));
+    }
+    let text = bytes
+        .strip_prefix(b"\xef\xbb\xbf")
+        .unwrap_or(&bytes)
+        .trim_ascii_start();
+    let blanks = bytes.len() - text.len();
+    bytes.drain(..blanks);
+    Ok(bytes)
+}
+
+/// What each format comes down to. `pose` takes camera coordinates (right, down, forward) to the world.
+struct Parts {
+    width: f64,
+    height: f64,
+    focal: (f64, f64),
+    /// `None` where the file is silent: the middle.
+    centre: (Option<f64>, Option<f64>),
+    pose: Pose,
+}
+
+enum Pose {
+    CameraToWorld { axes: DMat3, eye: DVec3 },
+    WorldToCamera(DMat4),
+}
+
+impl Parts {
+    /// The camera, or what is wrong with it; `what` names it.
+    fn camera(self, what: &str) -> std::result::Result<Camera, String> {
+        let side = |side: f64, name: &str| {
+            let whole = side.fract() == 0.0 && side >= 1.0 && side <= f64::from(MAX_SIZE);
+            let error = || {
+                format!(
+                    "{what} has the {name} {side}; it must be a whole number from 1 to {MAX_SIZE}"
+                )
+            };
+            whole.then_some(side as u32).ok_or_else(error)
+        };
+        let size = (side(self.width, "width")?, side(self.height, "height")?);
+        let world_to_camera = match self.pose {
+            Pose::WorldToCamera(matrix) => matrix,
+            Pose::CameraToWorld { axes, eye } => {
+                let rotation = axes.transpose();
+                DMat4::from_mat3_translation(rotation, -(rotation * eye))
+            }
+        };
+        let centre = (
+            self.centre.0.unwrap_or(self.width / 2.0),
+            self.centre.1.unwrap_or(self.height / 2.0),
+        );
+        let intrinsics = (self.focal.0, self.focal.1, centre.0, centre.1);
+        Camera::from_world_to_camera(world_to_camera, intrinsics, size)
+            .map_err(|error| format!("{what}: {error}"))
+    }
+}
+
+/// A JSON error in our words: the line is what helps.
+fn json_error(error: &serde_json::Error) -> String {
+    format!(
+        "line {} column {}: this is not the JSON expected here ({error})",
+        error.line(),
+        error.column()
+    )
+}

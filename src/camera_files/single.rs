@@ -1,0 +1,37 @@
+//! Our own file of one camera: the matrix as a renderer has it.
+
+use glam::{DMat4, DVec4};
+use serde::Deserialize;
+
+use super::{Parts, Pose, json_error};
+use crate::camera::Camera;
+
+#[derive(Deserialize)]
+struct Single {
+    width: f64,
+    height: f64,
+    fx: f64,
+    fy: f64,
+    cx: Option<f64>,
+    cy: Option<f64>,
+    /// Row by row.
+    world_to_camera: [f64; 16],
+}
+
+pub(super) fn parse(json: &[u8]) -> Result<Camera, String> {
+    let single: Single = serde_json::from_slice(json).map_err(|error| json_error(&error))?;
+    let matrix = DMat4::from_cols_array(&single.world_to_camera).transpose();
+    if matrix.row(3) != DVec4::W {
+        return Err(
+            "the last row of world_to_camera is not 0, 0, 0, 1; write the matrix row by row".into(),
+        );
+    }
+    let parts = Parts {
+        width: single.width,
+        height: single.height,
+        focal: (single.fx, single.fy),
+        centre: (single.cx, single.cy),
+        pose: Pose::WorldToCamera(matrix),
+    };
+    parts.camera("the camera")
+}

@@ -1,0 +1,159 @@
+//! Where a scene is, by percentiles: scanner exports carry far shells, and trained scenes a few strays at infinity.
+
+use glam::{DVec3, Vec3};
+
+use super::Gaussians;
+
+/// Share of the centres that may lie beyond each end. A smaller one lets a scanner's far shell decide how the scene
+/// is framed, a larger one cuts visible parts off.
+const OUTLIERS: f64 = 0.01;
+
+/// An axis-aligned box around nearly all of a scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// The corner with the smallest coordinates.
+    pub min: DVec3,
+    /// The corner with the largest coordinates.
+    pub max: DVec3,
+}
+
+impl Bounds {
+    /// Bounds that hold all but the outermost percent of the centres at each end of each axis, wider by the median
+    /// Gaussian's largest standard deviation. They are never empty: an empty scene has the unit box about the origin.
+    pub fn of(gaussians: &Gaussians) -> Self {
+        let axis = |axis: DVec3| extent_along(gaussians, axis);
+        let (x, y, z) = (axis(DVec3::X), axis(DVec3::Y), axis(DVec3::Z));
+        Self {
+            min: DVec3::new(x.0, y.0, z.0),
+            max: DVec3::new(x.1, y.1, z.1),
+        }
+    }
+
+    /// The middle.
+    pub fn centre(&self) -> DVec3 {
+        (self.min + self.max) / 2.0
+    }
+
+    /// Half the diagonal.
+    pub fn radius(&self) -> f64 {
+        (self.max - self.min).length() / 2.0
+    }
+
+    /// The eight corners.
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |bit: usize, min: f64, max: f64| if i & bit == 0 { min } else { max };
+            DVec3::new(
+                pick(1, self.min.x, self.max.x),
+                pick(2, self.min.y, self.max.y),
+                pick(4, self.min.z, self.max.z),
+            )
+        })
+    }
+}
+
+/// Smallest and largest `normal . x` of the scene, with the outermost percent of the centres left out at each end and
+/// the median Gaussian's largest standard deviation added: where a plane that sweeps along `normal` enters and leaves.
+/// The first is always less than the second; an empty scene is the unit box about the origin.
+pub fn extent_along(gaussians: &Gaussians, normal: DVec3) -> (f64, f64) {
+    if gaussians.is_empty() {
+        let half = 0.5 * (normal.x.abs() + normal.y.abs() + normal.z.abs());
+        return widened(-half, half, 0.0);
+    }
+    let mut along: Vec<f64> = gaussians
+        .positions
+        .iter()
+        .map(|p| normal.dot(p.as_dvec3()))
+        .collect();
+    let last = along.len() - 1;
+    let outliers = (OUTLIERS * last as f64).round() as usize;
+    let (_, &mut low, above) = along.select_nth_unstable_by(outliers, f64::total_cmp);
+    // The upper percentile is in what is not below the lower one: outliers < last - outliers unless both are one.
+    let high = match (last - outliers).checked_sub(outliers + 1) {
+        Some(nth) => *above.select_nth_unstable_by(nth, f64::total_cmp).1,
+        None => low,
+    };
+    drop(along);
+    widened(low, high, median_size(gaussians) * normal.length())
+}
+
+fn median_size(gaussians: &Gaussians) -> f64 {
+    let mut sizes: Vec<f32> = gaussians
+        .scales
+        .iter()
+        .copied()
+        .map(Vec3::max_element)
+        .collect();
+    let middle = sizes.len() / 2;
+    f64::from(*sizes.select_nth_unstable_by(middle, f32::total_cmp).1)
+}
+
+/// Adds `by` at both ends, and in any case so much that the interval isn't empty (a flat or a one-point scene).
+fn widened(low: f64, high: f64, by: f64) -> (f64, f64) {
+    let least = 1e-6 * (1.0 + low.abs().max(high.abs()));
+    let by = by.max(least);
+    (low - by, high + by)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(positions: impl Iterator<Item = f32>) -> Gaussians {
+        let positions: Vec<_> = positions.map(|x| Vec3::new(x, 0.0, 0.0)).collect();
+        Gaussians {
+            scales: vec![Vec3::ZERO; positions.len()],
+            positions,
+            ..Gaussians::default()
+        }
+    }
+
+    #[test]
+    fn far_strays_do_not_count() {
+        let scene = line(
+            (0..=1000)
+                .map(|i| i as f32 / 1000.0)
+                .chain([1e30, -1e30, 1e6]),
+        );
+        let bounds = Bounds::of(&scene);
+        assert!(
+            (bounds.min.x - 0.01).abs() < 0.002 && (bounds.max.x - 0.99).abs() < 0.002,
+            "{bounds:?}"
+        );
+        let (low, high) = extent_along(&scene, DVec3::new(-2.0, 1.0, 0.0));
+        assert!(
+            (low + 1.98).abs() < 0.004 && (high + 0.02).abs() < 0.004,
+            "{low} {high}"
+        );
+    }
+
+    #[test]
+    fn no_scene_has_empty_bounds() {
+        for scene in [
+            line([].into_iter()),
+            line([3.0].into_iter()),
+            line([3.0, 4.0].into_iter()),
+            line([1e30; 9].into_iter()),
+        ] {
+            let bounds = Bounds::of(&scene);
+            assert!(
+                bounds.min.cmplt(bounds.max).all() && bounds.radius() > 0.0,
+                "{bounds:?}"
+            );
+            assert!(bounds.centre().is_finite());
+        }
+        let unit = Bounds::of(&Gaussians::default());
+        assert!((unit.min + 0.5).length() < 1e-5 && (unit.max - 0.5).length() < 1e-5);
+    }
+
+    #[test]
+    fn corners_are_all_eight() {
+        let bounds = Bounds {
+            min: DVec3::ZERO,
+            max: DVec3::ONE,
+        };
+        let corners = bounds.corners();
+        assert_eq!(corners.iter().copied().sum::<DVec3>(), DVec3::splat(4.0));
+        assert_eq!(corners[7], DVec3::ONE);
+    }
+}

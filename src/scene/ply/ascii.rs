@@ -1,0 +1,148 @@
+//! The ascii payload: one element a line, blank lines skipped, every complaint with its line's number.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+
+use super::Progress;
+use super::assemble::{Assembler, Row};
+use super::binary::Failure;
+use super::header::{Header, shortened};
+use super::layout::{Field, Layout, SLOTS};
+
+/// A Gaussian takes about 1 kB; a longer line than this is not text at all.
+const MAX_LINE: u64 = 4 << 20;
+
+struct Lines {
+    reader: BufReader<File>,
+    line: Vec<u8>,
+    /// Number of the line in `line`, counted from 1 at the top of the file.
+    number: u64,
+    left: u64,
+    end: u8,
+}
+
+/// Reads the payload that begins at `file`'s position into `assembler`; `left` bytes remain of the file there.
+pub(super) fn read(
+    file: File,
+    left: u64,
+    header: &Header,
+    layout: &Layout<'_>,
+    assembler: &mut Assembler,
+    progress: &mut Progress<'_>,
+) -> Result<(), Failure> {
+    let mut lines = Lines {
+        reader: BufReader::with_capacity(1 << 20, file),
+        line: Vec::new(),
+        number: header.lines,
+        left,
+        end: header.line_end,
+    };
+    for element in layout.before {
+        for index in 0..element.count {
+            lines.next(|| format!("`{}` element {index} of {}", element.name, element.count))?;
+        }
+    }
+    let mut row: Row = [0.0; SLOTS];
+    while assembler.rows < layout.count {
+        lines.next(|| format!("Gaussian {} of {}", assembler.rows, layout.count))?;
+        parse(&lines.line, &layout.fields, &mut row)
+            .map_err(|what| Failure::Format(format!("line {}: {what}", lines.number)))?;
+        assembler.push(&row);
+        if assembler.rows % 8192 == 0 {
+            progress.left(lines.left);
+        }
+    }
+    // Only what follows the last declared element is trailing, and only if it says something.
+    if layout.after == Some(0) {
+        let after = lines.left;
+        if lines.next(String::new).is_ok() {
+            assembler.report.trailing_bytes = after;
+        }
+    }
+    Ok(())
+}
+
+impl Lines {
+    /// The next line that is not blank, into `self.line`; `what` names the thing it must hold.
+    fn next(&mut self, what: impl Fn() -> String) -> Result<(), Failure> {
+        loop {
+            self.line.clear();
+            let mut limited = (&mut self.reader).take(MAX_LINE);
+            let read = limited.read_until(self.end, &mut self.line)? as u64;
+            self.left = self.left.saturating_sub(read);
+            self.number += 1;
+            let number = self.number;
+            if read == 0 {
+                return Err(Failure::Format(format!(
+                    "line {number}: the file ends where {} should stand; it is cut off, get it again",
+                    what()
+                )));
+            }
+            if read == MAX_LINE && self.line.last() != Some(&self.end) {
+                return Err(Failure::Format(format!(
+                    "line {number} is longer than {MAX_LINE} bytes; this is no ascii PLY, export the scene again"
+                )));
+            }
+            if !self.line.trim_ascii().is_empty() {
+                return Ok(());
+            }
+        }
+    }
+}
+
+/// Splits a line into the numbers of a row.
+fn parse(line: &[u8], fields: &[Field], row: &mut Row) -> Result<(), String> {
+    let mut words = line
+        .split(u8::is_ascii_whitespace)
+        .filter(|word| !word.is_empty());
+    let mut next = || {
+        words.next().ok_or_else(|| {
+            format!(
+                "too few numbers, the header declares {} properties; export the scene again",
+                fields.len()
+            )
+        })
+    };
+    for field in fields {
+        match *field {
+            // Not even looked at: an extra property may hold anything.
+            Field::Scalar(_, None) => {
+                next()?;
+            }
+            Field::Scalar(_, Some(slot)) => row[slot] = number(next()?)?,
+            Field::List(..) => {
+                let items = number(next()?)?;
+                if !(items >= 0.0 && items.fract() == 0.0) {
+                    return Err(format!(
+                        "{items} is no length of a list; export the scene again"
+                    ));
+                }
+                // Ends with the line at the latest, whatever the length says.
+                for _ in 0..items as u64 {
+                    next()?;
+                }
+            }
+        }
+    }
+    match words.next() {
+        None => Ok(()),
+        Some(_) => Err(format!(
+            "more numbers than the {} declared properties; export the scene again",
+            fields.len()
+        )),
+    }
+}
+
+fn number(word: &[u8]) -> Result<f64, String> {
+    let text = std::str::from_utf8(word).unwrap_or_default();
+    // Windows prints NaN as nan(ind) and nan(snan).
+    let plain = text.split('(').next().unwrap_or(text);
+    let error = |_| {
+        let word = String::from_utf8_lossy(word);
+        format!(
+            "\"{}\" is not a number; export the scene again",
+            shortened(&word)
+        )
+    };
+    plain.parse().map_err(error)
+}

@@ -1,0 +1,181 @@
+//! From a row of raw numbers to a Gaussian: units converted, unusable rows dropped, both counted.
+
+use glam::{DVec4, Quat, Vec3};
+
+use super::layout::{SH, SLOTS, slot_name};
+use crate::scene::{Gaussians, LoadReport, sh_coefficients};
+
+/// The numbers of one Gaussian as the file has them, by slot; the unused tail stays zero.
+pub(super) type Row = [f64; SLOTS];
+
+/// Collects rows into [`Gaussians`].
+pub(super) struct Assembler {
+    gaussians: Gaussians,
+    pub(super) report: LoadReport,
+    /// Rows so far, dropped ones included.
+    pub(super) rows: u64,
+    /// Slots in use.
+    used: usize,
+}
+
+impl Assembler {
+    /// Room for exactly `count` Gaussians; the caller has checked that the file is big enough for them. `None` if
+    /// the memory can't be had.
+    pub(super) fn with_room(count: u64, sh_degree: u32) -> Option<Self> {
+        let count = usize::try_from(count).ok()?;
+        let numbers = 3 * sh_coefficients(sh_degree);
+        let mut gaussians = Gaussians {
+            sh_degree,
+            ..Gaussians::default()
+        };
+        gaussians.positions.try_reserve_exact(count).ok()?;
+        gaussians.scales.try_reserve_exact(count).ok()?;
+        gaussians.rotations.try_reserve_exact(count).ok()?;
+        gaussians.opacities.try_reserve_exact(count).ok()?;
+        gaussians
+            .sh
+            .try_reserve_exact(count.checked_mul(numbers)?)
+            .ok()?;
+        Some(Self {
+            gaussians,
+            report: LoadReport::default(),
+            rows: 0,
+            used: SH + numbers,
+        })
+    }
+
+    /// Takes the next row.
+    pub(super) fn push(&mut self, row: &Row) {
+        let element = self.rows;
+        self.rows += 1;
+        let degree = self.gaussians.sh_degree;
+        if let Some(slot) = row[..self.used]
+            .iter()
+            .position(|&v| !(v as f32).is_finite())
+        {
+            self.report.drop_element(element, || {
+                let value = row[slot];
+                let beyond = if value.is_finite() {
+                    ", beyond single precision"
+                } else {
+                    ""
+                };
+                format!("{} is {value:e}{beyond}", slot_name(slot, degree))
+            });
+            return;
+        }
+        let scale = [row[3], row[4], row[5]].map(|log| log.exp() as f32);
+        if let Some(axis) = scale.iter().position(|s| !s.is_finite()) {
+            self.report.drop_element(element, || {
+                format!(
+                    "exp(scale_{axis}) is beyond single precision: scale_{axis} is {}",
+                    row[3 + axis]
+                )
+            });
+            return;
+        }
+        let rotation = unit(DVec4::new(row[7], row[8], row[9], row[6])).unwrap_or_else(|| {
+            let reason = || "its rotation was all zeros, now the identity".into();
+            self.report.repair_element(element, reason);
+            Quat::IDENTITY
+        });
+        let to = &mut self.gaussians;
+        to.positions
+            .push(Vec3::new(row[0] as f32, row[1] as f32, row[2] as f32));
+        to.scales.push(Vec3::from_array(scale));
+        to.rotations.push(rotation);
+        to.opacities.push((1.0 / (1.0 + (-row[10]).exp())) as f32);
+        to.sh.extend(row[SH..self.used].iter().map(|&v| v as f32));
+    }
+
+    /// The scene and what was done to it.
+    pub(super) fn finish(self) -> (Gaussians, LoadReport) {
+        (self.gaussians, self.report)
+    }
+}
+
+/// The quaternion x, y, z, w at length one; `None` for zero. Dividing by the largest component first keeps the
+/// squares of tiny and huge ones in range.
+fn unit(q: DVec4) -> Option<Quat> {
+    let largest = q.abs().max_element();
+    if largest == 0.0 {
+        return None;
+    }
+    let q = (q / largest).normalize();
+    Some(Quat::from_vec4(q.as_vec4()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row() -> Row {
+        let mut row = [0.0; SLOTS];
+        row[6] = 1.0;
+        row
+    }
+
+    fn load(rows: &[Row]) -> (Gaussians, LoadReport) {
+        let mut assembler = Assembler::with_room(rows.len() as u64, 0).unwrap();
+        rows.iter().for_each(|row| assembler.push(row));
+        assembler.finish()
+    }
+
+    #[test]
+    fn quaternions_of_any_length_are_normalised() {
+        for length in [1e-300, 1e-40, 1e-25, 0.03, 1.0, 1.93, 1e25, 3e37] {
+            let mut r = row();
+            (r[6], r[7], r[8], r[9]) = (length, -length, length, -length);
+            let (gaussians, report) = load(&[r]);
+            assert!(report.is_clean());
+            assert_eq!(
+                gaussians.rotations[0],
+                Quat::from_xyzw(-0.5, 0.5, -0.5, 0.5)
+            );
+        }
+    }
+
+    #[test]
+    fn a_zero_quaternion_is_repaired_and_counted() {
+        let mut r = row();
+        r[6] = -0.0;
+        let (gaussians, report) = load(&[row(), r]);
+        assert_eq!(gaussians.rotations[1], Quat::IDENTITY);
+        assert_eq!((report.repaired, report.dropped), (1, 0));
+        assert_eq!(report.first_repaired[0].element, 1);
+    }
+
+    #[test]
+    fn extreme_opacities_and_scales_stay_finite() {
+        let mut rows = [row(), row()];
+        rows[0][10] = 1000.0;
+        rows[1][10] = -1000.0;
+        rows[1][3] = -1e30;
+        rows[1][4] = 88.7;
+        let (gaussians, report) = load(&rows);
+        assert!(report.is_clean());
+        assert_eq!(gaussians.opacities, [1.0, 0.0]);
+        assert_eq!(gaussians.scales[1].x, 0.0);
+        assert!(gaussians.scales[1].y > 1e38);
+    }
+
+    #[test]
+    fn what_is_not_finite_is_dropped_with_its_property_named() {
+        for (slot, value, named) in [
+            (0, f64::NAN, "x is NaN"),
+            (4, 100.0, "scale_1"),
+            (5, f64::INFINITY, "scale_2 is inf"),
+            (9, 1e39, "rot_3 is 1e39, beyond"),
+            (10, f64::NEG_INFINITY, "opacity is -inf"),
+            (13, f64::NAN, "f_dc_2"),
+        ] {
+            let mut r = row();
+            r[slot] = value;
+            let (gaussians, report) = load(&[row(), r, row()]);
+            assert_eq!((gaussians.len(), report.dropped), (2, 1));
+            assert_eq!(report.first_dropped[0].element, 1);
+            let reason = &report.first_dropped[0].reason;
+            assert!(reason.contains(named), "{reason}");
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! From declared properties to slots: which value of a row is which attribute of a Gaussian.
+
+use ply_rs::ply::{ElementDef, Encoding, PropertyType};
+
+use super::header::{Header, shortened};
+use super::number::Number;
+use crate::scene::sh_coefficients;
+
+/// Slots of a row, see [`FIXED`]; from here on the spherical harmonics as `[coefficient][r, g, b]`.
+pub(super) const SH: usize = 11;
+/// Slots of a row at degree 3.
+pub(super) const SLOTS: usize = SH + 48;
+
+/// The properties that every scene has, in the order of their slots: `FIXED[slot]`.
+const FIXED: [&str; SH + 3] = [
+    "x", "y", "z", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3", "opacity",
+    "f_dc_0", "f_dc_1", "f_dc_2",
+];
+
+/// One declared property of the Gaussians, in file order.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Field {
+    /// A number, and the slot it goes to; `None` for one that we don't use.
+    Scalar(Number, Option<usize>),
+    /// A list that we don't use: type of its length and of its items.
+    List(Number, Number),
+}
+
+/// Where everything stands in the payload.
+#[derive(Debug)]
+pub(super) struct Layout<'a> {
+    /// Elements that stand before the Gaussians.
+    pub(super) before: &'a [ElementDef],
+    /// Gaussians the header promises.
+    pub(super) count: u64,
+    pub(super) fields: Vec<Field>,
+    pub(super) sh_degree: u32,
+    /// Bytes of all elements after the Gaussians, if no list makes that unknowable.
+    pub(super) after: Option<u64>,
+}
+
+impl<'a> Layout<'a> {
+    /// Maps `header`'s properties by name, or says why this is no scene.
+    pub(super) fn of(header: &'a Header) -> Result<Self, String> {
+        let at = header.elements.iter().position(|e| e.name == "vertex");
+        let at = at.ok_or("the file has no `vertex` element, which holds the Gaussians of a 3DGS .ply; export the scene again")?;
+        let vertex = &header.elements[at];
+        if vertex.properties.contains_key("packed_position") {
+            return Err("this is a compressed PLY (packed_position); convert it to an uncompressed 3DGS .ply, for \
+                        example with splat-transform"
+                .into());
+        }
+        if vertex.count as u64 > u64::from(u32::MAX) {
+            return Err(format!(
+                "the header promises {} Gaussians, more than the {} that can be numbered; split the file",
+                vertex.count,
+                u32::MAX
+            ));
+        }
+        let rest = count_rest(vertex)?;
+        let sh_degree = match rest {
+            0 => 0,
+            9 => 1,
+            24 => 2,
+            45 => 3,
+            _ => {
+                return Err(format!(
+                    "the file has {rest} f_rest properties; spherical harmonics of degree 0, 1, 2 or 3 have 0, 9, 24 \
+                     or 45, export the scene with one of these"
+                ));
+            }
+        };
+        let missing: Vec<_> = FIXED
+            .iter()
+            .copied()
+            .filter(|name| !vertex.properties.contains_key(*name))
+            .collect();
+        if missing.iter().any(|name| name.len() > 1) && missing.len() > 8 {
+            return Err(
+                "the file holds points or a mesh, not Gaussians: it has no scale_*, rot_*, opacity and f_dc_* \
+                 properties; use the .ply that 3DGS training wrote"
+                    .into(),
+            );
+        }
+        if !missing.is_empty() {
+            return Err(format!(
+                "the `vertex` element lacks {}; export the scene with all 3DGS properties",
+                missing.join(", ")
+            ));
+        }
+        let fields = vertex
+            .properties
+            .values()
+            .map(|property| {
+                let slot = slot_of(&property.name, rest);
+                match Field::from(&property.data_type) {
+                    Field::Scalar(kind, _) => Ok(Field::Scalar(kind, slot)),
+                    Field::List(..) if slot.is_some() => Err(format!(
+                        "the property `{}` is a list where a number is needed; export the scene again",
+                        property.name
+                    )),
+                    list => Ok(list),
+                }
+            })
+            .collect::<Result<_, _>>()?;
+        let after = header.elements[at + 1..].iter().try_fold(0_u64, |sum, e| {
+            sum.checked_add((e.count as u64).checked_mul(fixed_size(e)?)?)
+        });
+        Ok(Self {
+            before: &header.elements[..at],
+            count: vertex.count as u64,
+            fields,
+            sh_degree,
+            after,
+        })
+    }
+
+    /// Checks that `available` payload bytes can hold what the header promises, before anything is allocated for it.
+    pub(super) fn check_size(&self, encoding: Encoding, available: u64) -> Result<(), String> {
+        let least = |fields: &mut dyn Iterator<Item = Field>| -> u128 {
+            fields.map(|f| u128::from(least_size(f, encoding))).sum()
+        };
+        let before: u128 = self
+            .before
+            .iter()
+            .map(|e| {
+                e.count as u128
+                    * least(&mut e.properties.values().map(|p| Field::from(&p.data_type)))
+            })
+            .sum();
+        let each = least(&mut self.fields.iter().copied());
+        let mut needed = before + u128::from(self.count) * each;
+        if encoding == Encoding::Ascii {
+            // The very last line may do without an end.
+            needed = needed.saturating_sub(1);
+        }
+        if needed > u128::from(available) {
+            let whole = u128::from(available).saturating_sub(before) / each.max(1);
+            return Err(format!(
+                "the header promises {} Gaussians of at least {each} bytes, but the {available} bytes after it have \
+                 room for {whole}; the file is cut off, get it again",
+                self.count
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The number of `f_rest_*` properties, which must be numbered from 0 without a gap.
+fn count_rest(vertex: &ElementDef) -> Result<usize, String> {
+    let names = || {
+        let names = vertex.properties.keys();
+        names.filter_map(|name| Some((name, name.strip_prefix("f_rest_")?)))
+    };
+    let count = names().count();
+    for (name, digits) in names() {
+        match digits.parse::<usize>() {
+            Ok(number) if number.to_string() != digits => {}
+            Ok(number) if number < count => continue,
+            Ok(_) => {
+                let gap =
+                    (0..count).find(|i| !vertex.properties.contains_key(&format!("f_rest_{i}")));
+                return Err(format!(
+                    "the f_rest properties have a gap: there is `{}` but no f_rest_{}; export the scene again",
+                    shortened(name),
+                    gap.unwrap_or(count)
+                ));
+            }
+            Err(_) => {}
+        }
+        return Err(format!(
+            "`{}` is not a valid spherical-harmonics property (f_rest_ and a number); export the scene again",
+            shortened(name)
+        ));
+    }
+    Ok(count)
+}
+
+/// The slot of a property. Files store `f_rest` channel by channel: all of red, then green, then blue.
+fn slot_of(name: &str, rest: usize) -> Option<usize> {
+    if let Some(number) = name.strip_prefix("f_rest_") {
+        let number: usize = number.parse().ok()?;
+        let a_channel = rest / 3;
+        return Some(SH + 3 + 3 * (number % a_channel) + number / a_channel);
+    }
+    FIXED.iter().position(|&fixed| fixed == name)
+}
+
+/// The property a slot was read from, for messages.
+pub(super) fn slot_name(slot: usize, sh_degree: u32) -> String {
+    if slot < FIXED.len() {
+        return FIXED[slot].into();
+    }
+    let (coefficient, channel) = ((slot - SH) / 3 - 1, (slot - SH) % 3);
+    format!(
+        "f_rest_{}",
+        channel * (sh_coefficients(sh_degree) - 1) + coefficient
+    )
+}
+
+impl From<&PropertyType> for Field {
+    /// A property that we skip, until it gets a slot.
+    fn from(kind: &PropertyType) -> Self {
+        match kind {
+            PropertyType::Scalar(kind) => Self::Scalar(kind.into(), None),
+            PropertyType::List(length, item) => Self::List(length.into(), item.into()),
+        }
+    }
+}
+
+/// Bytes of one such element in a binary payload, if it has no list.
+pub(super) fn fixed_size(element: &ElementDef) -> Option<u64> {
+    element
+        .properties
+        .values()
+        .try_fold(0_u64, |sum, p| match Field::from(&p.data_type) {
+            Field::Scalar(kind, _) => Some(sum + kind.size() as u64),
+            Field::List(..) => None,
+        })
+}
+
+/// The fewest bytes a field can take: in ascii a digit and a separator, in binary an empty list's length.
+fn least_size(field: Field, encoding: Encoding) -> u64 {
+    match (encoding, field) {
+        (Encoding::Ascii, _) => 2,
+        (_, Field::Scalar(kind, _) | Field::List(kind, _)) => kind.size() as u64,
+    }
+}

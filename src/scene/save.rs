@@ -1,0 +1,96 @@
+//! Writing 3DGS `.ply` scenes as INRIA's trainer does: the same properties in the same order, binary little endian.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use super::Gaussians;
+use crate::error::Result;
+use crate::files::write_atomically;
+
+/// What the logarithm of a scale of exactly zero is written as: exp(-104) is below the smallest single-precision
+/// number, so that loading gives zero again, and other readers see a finite number.
+const LN_ZERO: f32 = -104.0;
+/// Opacities of exactly 0 and 1 have no finite logit. Loading -104 gives zero again, loading 40 gives one.
+const LOGIT_ZERO: f32 = -104.0;
+const LOGIT_ONE: f32 = 40.0;
+
+/// Writes `gaussians` to a 3DGS `.ply` (normals zero, as the trainer writes them). The file appears when complete.
+///
+/// Scales are stored as logarithms and opacities as logits in single precision, which rounds them; a scale of zero is
+/// stored as ln of a number below the smallest (-104), opacities of 0 and 1 as the logits -104 and 40.
+///
+/// # Errors
+/// [`Error::Io`](crate::Error::Io) if the file can't be written.
+pub fn save_ply(path: &Path, gaussians: &Gaussians) -> Result<()> {
+    write_atomically(path, |out| {
+        write_header(out, gaussians)?;
+        (0..gaussians.len()).try_for_each(|index| write_row(out, gaussians, index))
+    })
+}
+
+fn write_header(out: &mut dyn Write, gaussians: &Gaussians) -> io::Result<()> {
+    let rest = 3 * (gaussians.sh_coefficients() - 1);
+    write!(
+        out,
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\n",
+        gaussians.len()
+    )?;
+    let fixed = |names: &'static [&'static str]| names.iter().map(|name| name.to_string());
+    let names = fixed(&[
+        "x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2",
+    ])
+    .chain((0..rest).map(|i| format!("f_rest_{i}")))
+    .chain(fixed(&[
+        "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3",
+    ]));
+    for name in names {
+        writeln!(out, "property float {name}")?;
+    }
+    writeln!(out, "end_header")
+}
+
+fn write_row(out: &mut dyn Write, gaussians: &Gaussians, index: usize) -> io::Result<()> {
+    // At most degree 3: 3 + 3 + 48 + 1 + 3 + 4 numbers. Collected first, since `out` is a virtual call a time.
+    let mut row = [0.0_f32; 62];
+    let sh = gaussians.sh_of(index);
+    let coefficients = sh.len() / 3;
+    row[..3].copy_from_slice(&gaussians.positions[index].to_array());
+    row[6..9].copy_from_slice(&sh[..3]);
+    for (at, value) in row[9..].iter_mut().take(sh.len() - 3).enumerate() {
+        let (channel, coefficient) = (at / (coefficients - 1), at % (coefficients - 1) + 1);
+        *value = sh[3 * coefficient + channel];
+    }
+    let tail = 6 + sh.len();
+    row[tail] = logit(gaussians.opacities[index]);
+    let scale = gaussians.scales[index].to_array().map(log);
+    row[tail + 1..][..3].copy_from_slice(&scale);
+    let q = gaussians.rotations[index];
+    row[tail + 4..][..4].copy_from_slice(&[q.w, q.x, q.y, q.z]);
+    let mut bytes = [0_u8; 4 * 62];
+    for (to, value) in bytes.chunks_exact_mut(4).zip(row) {
+        to.copy_from_slice(&value.to_le_bytes());
+    }
+    out.write_all(&bytes[..4 * (tail + 8)])
+}
+
+fn log(scale: f32) -> f32 {
+    (f64::from(scale).ln() as f32).max(LN_ZERO)
+}
+
+fn logit(opacity: f32) -> f32 {
+    let opacity = f64::from(opacity);
+    ((opacity / (1.0 - opacity)).ln() as f32).clamp(LOGIT_ZERO, LOGIT_ONE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zeros_and_ones_are_stored_finite_and_come_back() {
+        assert_eq!(f64::from(log(0.0)).exp() as f32, 0.0);
+        let back = |o: f32| (1.0 / (1.0 + (-f64::from(logit(o))).exp())) as f32;
+        assert_eq!((back(0.0), back(1.0), back(0.5)), (0.0, 1.0, 0.5));
+        assert!((back(1.0 - 6e-8) - 1.0).abs() < 1e-6 && back(1e-40) > 0.0);
+    }
+}

@@ -3,10 +3,13 @@
 pub mod camera;
 pub mod clip;
 pub mod error;
+mod files;
 pub mod gpu;
 pub mod headless;
 pub mod limits;
+pub mod measure;
 pub mod picture;
+pub mod reference;
 pub mod scene;
 pub mod settings;
 pub mod stats;

@@ -1,0 +1,208 @@
+//! Pictures to files and back.
+
+use std::fs::File;
+use std::io::{BufReader, Cursor};
+use std::path::Path;
+
+use image::codecs::{openexr::OpenExrEncoder, png::PngEncoder};
+use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits};
+
+use super::{Picture, premultiplied, to_bytes};
+use crate::camera::MAX_SIZE;
+use crate::files::write_atomically;
+use crate::{Error, Result};
+
+/// The kinds of picture file there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// 8-bit RGBA, un-premultiplied.
+    Png,
+    /// 32-bit float RGBA, premultiplied.
+    Exr,
+}
+
+impl Kind {
+    fn of(path: &Path) -> Result<Self> {
+        let extension = path
+            .extension()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_lowercase();
+        match extension.as_str() {
+            "png" => Ok(Self::Png),
+            "exr" => Ok(Self::Exr),
+            _ => Err(Error::format(
+                path,
+                "the name of a picture must end in .png (8 bits) or .exr (32-bit float)",
+            )),
+        }
+    }
+}
+
+impl Picture {
+    /// Writes the picture to a file whose extension says how: `.png` is 8-bit RGBA, un-premultiplied, `round(255 c)`
+    /// clamped; `.exr` is 32-bit float RGBA, premultiplied, the values as they are. The file appears whole or not at
+    /// all.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
+        let path = path.as_ref();
+        let kind = Kind::of(path)?;
+        let mut bytes = Vec::new();
+        let (width, height) = (self.width, self.height);
+        let encoded = match kind {
+            Kind::Png => {
+                let pixels: Vec<_> = self
+                    .pixels
+                    .iter()
+                    .flat_map(|&pixel| to_bytes(pixel))
+                    .collect();
+                PngEncoder::new(&mut bytes).write_image(
+                    &pixels,
+                    width,
+                    height,
+                    ExtendedColorType::Rgba8,
+                )
+            }
+            Kind::Exr => {
+                let pixels = bytemuck::cast_slice(&self.pixels);
+                let encoder = OpenExrEncoder::new(Cursor::new(&mut bytes));
+                encoder.write_image(pixels, width, height, ExtendedColorType::Rgba32F)
+            }
+        };
+        encoded.map_err(|error| {
+            Error::format(path, format!("the picture could not be encoded: {error}"))
+        })?;
+        write_atomically(path, |file| file.write_all(&bytes))
+    }
+
+    /// Reads a picture that [`save`](Self::save) (or anyone else) wrote. PNG pixels are premultiplied; a file without
+    /// alpha is opaque. What counts is the file's content, not its name.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let file = BufReader::new(File::open(path).map_err(Error::io(path))?);
+        let mut reader = ImageReader::new(file)
+            .with_guessed_format()
+            .map_err(Error::io(path))?;
+        let straight = match reader.format() {
+            Some(ImageFormat::Png) => true,
+            Some(ImageFormat::OpenExr) => false,
+            _ => {
+                return Err(Error::format(
+                    path,
+                    "this is neither a PNG nor an OpenEXR picture",
+                ));
+            }
+        };
+        let mut limits = Limits::no_limits();
+        (limits.max_image_width, limits.max_image_height) = (Some(MAX_SIZE), Some(MAX_SIZE));
+        reader.limits(limits);
+        let image = reader.decode();
+        let image = image.map_err(|error| {
+            Error::format(path, format!("the picture cannot be decoded: {error}"))
+        })?;
+        Ok(Self::from_image(image, straight))
+    }
+
+    fn from_image(image: DynamicImage, straight: bool) -> Self {
+        let image = image.into_rgba32f();
+        let pixels = image.pixels().map(|pixel| {
+            if straight {
+                premultiplied(pixel.0)
+            } else {
+                pixel.0
+            }
+        });
+        Self {
+            width: image.width(),
+            height: image.height(),
+            pixels: pixels.collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A directory of its own for one test, removed at the end.
+    struct Scratch(std::path::PathBuf);
+
+    impl Scratch {
+        fn new(name: &str) -> Self {
+            let path =
+                std::env::temp_dir().join(format!("rara-picture-{name}-{}", std::process::id()));
+            std::fs::create_dir_all(&path).unwrap();
+            Self(path)
+        }
+    }
+
+    impl Drop for Scratch {
+        fn drop(&mut self) {
+            let _ = std::fs::remove_dir_all(&self.0);
+        }
+    }
+
+    fn ramp() -> Picture {
+        let pixel = |i: u32| {
+            let alpha = (i % 7) as f32 / 6.0;
+            [
+                i as f32 / 34.0 * alpha,
+                1.7 * alpha,
+                0.1234567 * alpha,
+                alpha,
+            ]
+        };
+        Picture {
+            width: 7,
+            height: 5,
+            pixels: (0..35).map(pixel).collect(),
+        }
+    }
+
+    #[test]
+    fn exr_keeps_every_bit_and_png_what_quantised_says() {
+        let scratch = Scratch::new("round-trip");
+        for (name, expected) in [("a.exr", ramp()), ("a.PNG", ramp().quantised())] {
+            let path = scratch.0.join(name);
+            ramp().save(&path).unwrap();
+            assert_eq!(Picture::load(&path).unwrap(), expected, "{name}");
+        }
+        assert_eq!(
+            std::fs::read_dir(&scratch.0).unwrap().count(),
+            2,
+            "nothing else is left in the folder"
+        );
+    }
+
+    #[test]
+    fn errors_name_the_file_and_leave_nothing_behind() {
+        let scratch = Scratch::new("errors");
+        let saved = ramp()
+            .save(scratch.0.join("a.jpg"))
+            .unwrap_err()
+            .to_string();
+        assert!(saved.contains("a.jpg") && saved.contains(".png"), "{saved}");
+        assert!(ramp().save(scratch.0.join("no/such/folder.png")).is_err());
+        assert!(
+            Picture::load(scratch.0.join("missing.png"))
+                .unwrap_err()
+                .to_string()
+                .contains("missing.png")
+        );
+        let broken = scratch.0.join("broken.png");
+        std::fs::write(&broken, b"\x89PNG\r\n\x1a\n and no more").unwrap();
+        assert!(
+            Picture::load(&broken)
+                .unwrap_err()
+                .to_string()
+                .contains("cannot be decoded")
+        );
+        std::fs::write(&broken, b"plain text").unwrap();
+        assert!(
+            Picture::load(&broken)
+                .unwrap_err()
+                .to_string()
+                .contains("neither")
+        );
+        assert_eq!(std::fs::read_dir(&scratch.0).unwrap().count(), 1);
+    }
+}

@@ -1,0 +1,151 @@
+//! Stage `classify`: what the clip does to each Gaussian (the paper, section 3.2).
+//!
+//! The paper's band is 3 max(sigma) on either side of the plane. Here it is K |M^T n|: the Gaussian's own extent along
+//! the normal, out to the contour on which its alpha falls to 1/255. Outside of it no pixel would change by more
+//! than half of 1/255, and half as many needles are called cut.
+
+use super::footprint::Footprint;
+use super::real::{Real, Vec3, vec3};
+use super::view::View;
+use crate::{Clip, ClipOp, Gaussians, Mode, Plane, Settings};
+
+/// The paper's three classes, and what is not seen anyway.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Outside the view or too faint, whatever the clip says.
+    Culled,
+    /// In view and untouched.
+    Visible,
+    /// In view and cut.
+    Cutoff,
+    /// In view but wholly clipped away.
+    Invisible,
+}
+
+/// A clip plane in a Gaussian's unit space: the point `mu + M u` is visible iff `offset + normal . u >= 0`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UnitPlane<T> {
+    /// `a = M^T n`, world units.
+    pub normal: Vec3<T>,
+    /// `g = n . mu + d`: the signed distance of the Gaussian's centre, world units.
+    pub offset: T,
+}
+
+impl<T: Real> UnitPlane<T> {
+    /// The plane seen from inside Gaussian `index`. The distance is taken in double precision and rounded even in
+    /// f32: far from the world's origin its two terms cancel, and the GPU computes it in two floats for that reason.
+    pub fn new(scene: &Gaussians, index: usize, axes: &[Vec3<T>; 3], plane: &Plane) -> Self {
+        let n = Vec3::of(plane.normal());
+        Self {
+            normal: vec3(axes[0].dot(n), axes[1].dot(n), axes[2].dot(n)),
+            offset: T::of(plane.distance(scene.positions[index].as_dvec3())),
+        }
+    }
+
+    /// Whether the Gaussian is farther from the plane than `reach` standard deviations, and on which side.
+    fn verdict(&self, reach: T) -> Verdict {
+        let half = reach * self.normal.length();
+        if self.offset >= half {
+            Verdict::Keep
+        } else if self.offset <= -half {
+            Verdict::Drop
+        } else {
+            Verdict::Cut
+        }
+    }
+}
+
+/// What one plane does to one Gaussian.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Verdict {
+    Keep,
+    Cut,
+    Drop,
+}
+
+/// The class of every Gaussian of the scene.
+pub fn classify<T: Real>(
+    scene: &Gaussians,
+    view: &View<T>,
+    clip: &Clip,
+    settings: &Settings,
+) -> Vec<Side> {
+    (0..scene.len())
+        .map(|index| match Footprint::new(scene, index, view) {
+            Some(footprint) => side(scene, index, &footprint, clip, settings),
+            None => Side::Culled,
+        })
+        .collect()
+}
+
+/// The class of one Gaussian in view.
+pub fn side<T: Real>(
+    scene: &Gaussians,
+    index: usize,
+    footprint: &Footprint<T>,
+    clip: &Clip,
+    settings: &Settings,
+) -> Side {
+    if clip.planes.is_empty() || settings.mode == Mode::None {
+        return Side::Visible;
+    }
+    let planes = clip
+        .planes
+        .iter()
+        .map(|plane| UnitPlane::new(scene, index, &footprint.axes, plane));
+    if settings.mode == Mode::Hard {
+        let mut kept = planes.map(|plane| plane.offset >= T::zero());
+        let visible = match clip.op {
+            ClipOp::And => kept.all(|k| k),
+            ClipOp::Or => kept.any(|k| k),
+        };
+        return if visible {
+            Side::Visible
+        } else {
+            Side::Invisible
+        };
+    }
+    if settings.trace_all {
+        return Side::Cutoff;
+    }
+    let reach = band(footprint, settings);
+    let verdicts: Vec<_> = planes.map(|plane| plane.verdict(reach)).collect();
+    let (all, any) = (
+        |v| verdicts.iter().all(|&x| x == v),
+        |v| verdicts.contains(&v),
+    );
+    match clip.op {
+        ClipOp::And if any(Verdict::Drop) => Side::Invisible,
+        ClipOp::And if all(Verdict::Keep) => Side::Visible,
+        ClipOp::Or if any(Verdict::Keep) => Side::Visible,
+        ClipOp::Or if all(Verdict::Drop) => Side::Invisible,
+        _ => Side::Cutoff,
+    }
+}
+
+/// The planes that cut a Gaussian of class [`Side::Cutoff`], in the clip's order.
+pub fn cutting<T: Real>(
+    scene: &Gaussians,
+    index: usize,
+    footprint: &Footprint<T>,
+    clip: &Clip,
+    settings: &Settings,
+) -> Vec<UnitPlane<T>> {
+    let reach = band(footprint, settings);
+    let planes = clip
+        .planes
+        .iter()
+        .map(|plane| UnitPlane::new(scene, index, &footprint.axes, plane));
+    planes
+        .filter(|plane| settings.trace_all || plane.verdict(reach) == Verdict::Cut)
+        .collect()
+}
+
+/// Half width of the band in which a plane cuts, standard deviations. The paper's chord can be longer than the
+/// visible footprint; a splat is then cut as soon as its traced ellipsoid is.
+fn band<T: Real>(footprint: &Footprint<T>, settings: &Settings) -> T {
+    match settings.mode {
+        Mode::Rara => footprint.reach.max(T::of(f64::from(settings.sigma))),
+        Mode::None | Mode::Hard | Mode::Exact => footprint.reach,
+    }
+}

@@ -1,0 +1,94 @@
+//! Stage `cutoff`: how a cut splat's weight varies over its pixels.
+
+use super::chord::Chord;
+use super::classify::{Side, cutting, side};
+use super::exact::{AffinePlane, Beam};
+use super::footprint::Footprint;
+use super::real::Real;
+use super::view::View;
+use crate::limits::BEAM_SWITCH;
+use crate::{Clip, ClipOp, ExactForm, Gaussians, Mode, Settings};
+
+/// The record of a cut splat: everything that its weight in a pixel depends on.
+#[derive(Debug, Clone)]
+pub enum Cut<T> {
+    /// The exact share, affine in the pixel within each plane's normal distribution function.
+    Affine {
+        /// The planes that cut the splat.
+        planes: Vec<AffinePlane<T>>,
+        /// How they combine.
+        op: ClipOp,
+    },
+    /// The exact share along each pixel's true ray.
+    Beam(Beam<T>),
+    /// The paper's length ratio.
+    Chord(Chord<T>),
+}
+
+impl<T: Real> Cut<T> {
+    /// The visible share of the splat at an offset from its centre in pixels: 0 to 1.
+    pub fn weight(&self, dx: T, dy: T) -> T {
+        match self {
+            Cut::Affine { planes, op } => {
+                super::exact::combine(*op, planes.iter().map(|plane| plane.share(dx, dy)), None)
+            }
+            Cut::Beam(beam) => beam.weight(dx, dy),
+            Cut::Chord(chord) => chord.weight(dx, dy),
+        }
+    }
+}
+
+/// The record of one Gaussian, or nothing if the clip leaves it whole (or none of it).
+pub fn cutoff<T: Real>(
+    scene: &Gaussians,
+    index: usize,
+    footprint: &Footprint<T>,
+    view: &View<T>,
+    clip: &Clip,
+    settings: &Settings,
+) -> Option<Cut<T>> {
+    if side(scene, index, footprint, clip, settings) != Side::Cutoff {
+        return None;
+    }
+    let planes = cutting(scene, index, footprint, clip, settings);
+    Some(match settings.mode {
+        Mode::Rara => Cut::Chord(Chord {
+            gradients: footprint.true_gradients(view),
+            rows: footprint.rows,
+            depth: footprint.centre.z,
+            planes,
+            op: clip.op,
+            sigma: T::of(f64::from(settings.sigma)),
+            miss: settings.miss,
+        }),
+        _ if is_beam(scene, index, footprint, settings.form) => {
+            Cut::Beam(Beam::new(footprint, view, planes, clip.op))
+        }
+        _ => Cut::Affine {
+            planes: planes
+                .iter()
+                .map(|plane| AffinePlane::new(footprint.gradients, plane))
+                .collect(),
+            op: clip.op,
+        },
+    })
+}
+
+/// Whether a splat is too large, too far off the axis or too near for the affine form.
+fn is_beam<T: Real>(
+    scene: &Gaussians,
+    index: usize,
+    footprint: &Footprint<T>,
+    form: ExactForm,
+) -> bool {
+    match form {
+        ExactForm::Beam => true,
+        ExactForm::Affine => false,
+        ExactForm::Auto => {
+            let sigma_max = T::of(f64::from(scene.scales[index].max_element()));
+            sigma_max / footprint.centre.z > T::of(f64::from(BEAM_SWITCH))
+                || footprint.clamped
+                || super::exact::holds_the_eye(footprint)
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! The weight of mode `exact`: the visible share of a cut Gaussian in a pixel, low-pass included.
+//!
+//! Seen from a Gaussian's unit space (u ~ N(0, I)), a pixel at offset delta from the splat's centre is an observation
+//! of two linear functions of u: `(b1 . u, b2 . u) = delta + noise`, where the noise is the low-pass that 3DGS adds
+//! to each footprint. The evidence of that observation is the footprint `exp(-q / 2)` itself, and given it, the
+//! plane function `g + a . u` is again a normal variable. Its mean is affine in delta and its variance does not
+//! depend on delta: conditioning a Gaussian on a linear observation (the update of a Kalman filter). The share of
+//! the splat on the visible side is therefore `Phi(mean / deviation)`, and alpha times that share is what EWA
+//! splatting (the paper's equation 9) makes of the truncated Gaussian, filtered like every other splat.
+
+use super::classify::UnitPlane;
+use super::footprint::{Footprint, determinant, scaled};
+use super::real::{Real, Vec3};
+use super::view::View;
+use crate::ClipOp;
+
+/// The part of a splat that one plane keeps in a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Share<T> {
+    /// How much, 0 to 1.
+    pub weight: T,
+    /// Whether the visible side is the farther one along the ray. See [`combine`].
+    pub far: bool,
+}
+
+/// The plane function given a pixel: normal with mean `mean[0] + mean[1] dx + mean[2] dy`.
+#[derive(Debug, Clone, Copy)]
+struct Conditional<T> {
+    mean: [T; 3],
+    deviation: T,
+    far: bool,
+}
+
+/// Conditions a plane function on a pixel whose image derivatives are b1 and b2.
+///
+/// With `c = b1 x b2` (the ray's direction in unit space) and L the low-pass, the textbook expressions
+/// `k = Sigma'^-1 B a` and `s^2 = |a|^2 - (B a)^T Sigma'^-1 (B a)` become sums of terms that do not cancel:
+/// `s^2 det = (a . c)^2 + L (|a x b1|^2 + |a x b2|^2) + L^2 |a|^2`, which keeps needles and grazing planes accurate in
+/// single precision.
+fn condition<T: Real>(gradients: [Vec3<T>; 2], plane: &UnitPlane<T>) -> Conditional<T> {
+    let largest = plane.normal.largest();
+    let unit = if largest > T::zero() {
+        T::one() / largest
+    } else {
+        T::one()
+    };
+    let (a, g) = (plane.normal * unit, plane.offset * unit);
+    let ([b1, b2], factor, low_pass) = scaled(gradients);
+    let c = b1.cross(b2);
+    let det = determinant([b1, b2], c, low_pass);
+    let along = a.dot(c);
+    let (ab1, ab2) = (a.cross(b1), a.cross(b2));
+    let variance = along * along
+        + low_pass * (ab1.squared() + ab2.squared())
+        + low_pass * low_pass * a.squared();
+    let kx = c.dot(ab2) + low_pass * a.dot(b1);
+    let ky = low_pass * a.dot(b2) - c.dot(ab1);
+    Conditional {
+        mean: [g, kx * factor / det, ky * factor / det],
+        deviation: (variance / det).sqrt(),
+        far: is_far(along, a),
+    }
+}
+
+/// Whether a plane keeps the farther side of a ray, from `along = a . c`.
+///
+/// c points away from the eye: the depth changes along it by `m3 . c = fx fy / Z^2 det(M)`, which is not negative for
+/// a rotation and scales that are not negative. Flat Gaussians have `a . c = 0` for every plane: any rule will do
+/// then that gives opposite answers for a plane and its complement.
+fn is_far<T: Real>(along: T, a: Vec3<T>) -> bool {
+    let signs = [along, a.x, a.y, a.z];
+    signs
+        .iter()
+        .find(|&&v| v != T::zero())
+        .is_none_or(|&v| v > T::zero())
+}
+
+/// One plane of a cut splat in the affine form: `w = Phi(z[0] + z[1] dx + z[2] dy)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AffinePlane<T> {
+    /// Coefficients of the argument; dx and dy in pixels from the splat's centre.
+    pub z: [T; 3],
+    /// Whether the visible side is the farther one.
+    pub far: bool,
+}
+
+impl<T: Real> AffinePlane<T> {
+    /// The form for a plane and the footprint's own image derivatives.
+    pub fn new(gradients: [Vec3<T>; 2], plane: &UnitPlane<T>) -> Self {
+        let Conditional {
+            mean,
+            deviation,
+            far,
+        } = condition(gradients, plane);
+        // No deviation: the Gaussian is a point, wholly on one side (the plane itself is visible).
+        let z = if deviation > T::zero() {
+            mean.map(|m| m / deviation)
+        } else if mean[0] >= T::zero() {
+            [T::infinity(), T::zero(), T::zero()]
+        } else {
+            [T::neg_infinity(), T::zero(), T::zero()]
+        };
+        Self { z, far }
+    }
+
+    /// The share that the plane keeps at an offset from the splat's centre, pixels.
+    pub fn share(&self, dx: T, dy: T) -> Share<T> {
+        let [z0, zx, zy] = self.z;
+        Share {
+            weight: (z0 + zx * dx + zy * dy).phi(),
+            far: self.far,
+        }
+    }
+}
+
+/// A cut splat in the perspective form.
+///
+/// A pixel's ray is the intersection of two planes through the eye: `fx (X + m1 . u) = px (Z + m3 . u)` with px
+/// counted from the principal point, and the same for y. Divided by Z these read `(b1 - dx e) . u = dx` and
+/// `(b2 - dy e) . u = dy` with `e = m3 / Z`. So the affine form becomes exact for every size of splat by taking those
+/// derivatives, per pixel, with b1 and b2 at the centre's true direction.
+#[derive(Debug, Clone)]
+pub struct Beam<T> {
+    /// Image derivatives at the centre's true direction, pixels.
+    pub gradients: [Vec3<T>; 2],
+    /// `e = m3 / Z`.
+    pub lean: Vec3<T>,
+    /// The planes that cut the splat.
+    pub planes: Vec<UnitPlane<T>>,
+    /// How they combine.
+    pub op: ClipOp,
+    /// If the eye is within the splat: the plane through the eye that bounds what is in front of it.
+    pub front: Option<UnitPlane<T>>,
+}
+
+/// A front part smaller than this is not divided by: the splat is then weighted as if the eye were outside of it.
+pub const FRONT_MIN: f64 = 1e-4;
+
+impl<T: Real> Beam<T> {
+    /// The form for a splat and the planes that cut it.
+    pub fn new(
+        footprint: &Footprint<T>,
+        view: &View<T>,
+        planes: Vec<UnitPlane<T>>,
+        op: ClipOp,
+    ) -> Self {
+        let (m3, depth) = (footprint.rows[2], footprint.centre.z);
+        Self {
+            gradients: footprint.true_gradients(view),
+            lean: m3 * (T::one() / depth),
+            planes,
+            op,
+            front: holds_the_eye(footprint).then_some(UnitPlane {
+                normal: m3,
+                offset: depth,
+            }),
+        }
+    }
+
+    /// The visible share at an offset from the splat's centre, pixels.
+    pub fn weight(&self, dx: T, dy: T) -> T {
+        let [b1, b2] = self.gradients;
+        let ray = [b1 - self.lean * dx, b2 - self.lean * dy];
+        let share = |plane: &UnitPlane<T>| AffinePlane::new(ray, plane).share(dx, dy);
+        let front = self.front.as_ref().map(|plane| share(plane).weight);
+        let front = front.filter(|&front| front >= T::of(FRONT_MIN));
+        combine(self.op, self.planes.iter().map(share), front)
+    }
+}
+
+/// Whether the eye's plane reaches into the splat: the part behind it must not count.
+pub fn holds_the_eye<T: Real>(footprint: &Footprint<T>) -> bool {
+    footprint.centre.z < footprint.reach * footprint.rows[2].length()
+}
+
+/// Joins the shares that several planes keep in one pixel.
+///
+/// On one ray every plane is a threshold in the same normal variable: "far" planes keep what lies beyond theirs,
+/// "near" ones what lies before. Of each kind only the strictest (for `and`) or the most generous (for `or`) matters,
+/// and the two kinds overlap in what is left of 1. With the low-pass this is exact for one plane and for parallel ones,
+/// and close otherwise. `front` is the share in front of the eye where that is not everything: one more far threshold
+/// for what is visible as for what is not, and the whole that the result is a share of.
+pub fn combine<T: Real>(op: ClipOp, shares: impl Iterator<Item = Share<T>>, front: Option<T>) -> T {
+    let (zero, one) = (T::zero(), T::one());
+    let (mut near, mut far) = match op {
+        ClipOp::And => (one, one),
+        ClipOp::Or => (zero, zero),
+    };
+    for share in shares {
+        let side = if share.far { &mut far } else { &mut near };
+        *side = match op {
+            ClipOp::And => side.min(share.weight),
+            ClipOp::Or => side.max(share.weight),
+        };
+    }
+    // `far - (1 - near)` and not `near + far - 1`: where no near plane cuts, the share must stay as it is, to the bit.
+    match (op, front) {
+        (ClipOp::And, None) => (far - (one - near)).max(zero),
+        (ClipOp::Or, None) => (near + far).min(one),
+        (ClipOp::And, Some(front)) => (far.min(front) - (one - near)).max(zero) / front,
+        // The complement of a union: before every far threshold, beyond every near one.
+        (ClipOp::Or, Some(front)) => one - ((one - near).min(front) - far).max(zero) / front,
+    }
+}

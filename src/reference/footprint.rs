@@ -1,0 +1,176 @@
+//! One Gaussian seen by the camera: the EWA footprint of 3D Gaussian Splatting, and whether it is in view.
+//!
+//! A point of the Gaussian is `x = mu + M u` with `u ~ N(0, I)` and `M = R(q) S` (the paper, section 3.3: the map
+//! from the unit sphere to the ellipsoid). To first order, u moves the point's image by `(b1 . u, b2 . u)` pixels,
+//! where b1 and b2 are the rows of J W M in the paper's equation 9. 3DGS widens that image by a Gaussian of
+//! [`LOW_PASS`] px^2, so the footprint's covariance is `B B^T + LOW_PASS I`.
+
+use glam::{Quat, Vec3 as Point};
+
+use super::real::{Real, Vec3, vec3};
+use super::view::View;
+use crate::Gaussians;
+use crate::limits::{ALPHA_MIN_INVERSE, LOW_PASS, NEAR_Z};
+
+/// A Gaussian in view: what every later stage is computed from.
+#[derive(Debug, Clone, Copy)]
+pub struct Footprint<T> {
+    /// Columns of M: the Gaussian's half axes in the world, one standard deviation long.
+    pub axes: [Vec3<T>; 3],
+    /// Rows of M in camera axes, m1, m2 and m3: the derivatives of the point's X, Y and Z by u, world units.
+    pub rows: [Vec3<T>; 3],
+    /// The centre relative to the eye, world axes.
+    pub relative: Vec3<T>,
+    /// The centre in camera axes (X, Y, Z), world units.
+    pub centre: Vec3<T>,
+    /// Image derivatives b1, b2 of the footprint, evaluated at the clamped direction, pixels.
+    pub gradients: [Vec3<T>; 2],
+    /// Whether that direction was clamped.
+    pub clamped: bool,
+    /// The centre's pixel position (not clamped).
+    pub pixel: [T; 2],
+    /// Cholesky factors k0, k1, k2 of the footprint's inverse covariance: see [`power`](Self::power).
+    pub factors: [T; 3],
+    /// Opacity at the centre, 0 to 1.
+    pub opacity: T,
+    /// K: the standard deviations out to which the splat counts, `opacity exp(-K^2 / 2) = 1/255`.
+    pub reach: T,
+    /// Half extents of the footprint's box, pixels.
+    pub half: [T; 2],
+}
+
+impl<T: Real> Footprint<T> {
+    /// The footprint of one Gaussian, or nothing if it is culled: nearer than [`NEAR_Z`] or behind the eye, fainter
+    /// than 1/255 even at its centre, or its box holds no pixel centre of the picture.
+    pub fn new(scene: &Gaussians, index: usize, view: &View<T>) -> Option<Self> {
+        let relative = view.relative(scene.positions[index]);
+        let centre = view.turn(relative);
+        let opacity = T::of(f64::from(scene.opacities[index]));
+        let brightness = opacity * T::of(f64::from(ALPHA_MIN_INVERSE));
+        if !(centre.z >= T::of(f64::from(NEAR_Z)) && brightness >= T::one()) {
+            return None;
+        }
+
+        let axes = half_axes(scene.scales[index], scene.rotations[index]);
+        let rows = view
+            .rows
+            .map(|row| vec3(row.dot(axes[0]), row.dot(axes[1]), row.dot(axes[2])));
+        let slopes = [centre.x / centre.z, centre.y / centre.z];
+        let clamp = |axis: usize| {
+            slopes[axis]
+                .max(view.slope_min[axis])
+                .min(view.slope_max[axis])
+        };
+        let clamped = [clamp(0), clamp(1)];
+        let gradients = image_gradients(&rows, view.focal, clamped, centre.z);
+        let (factors, deviations) = factorise(gradients);
+
+        let reach = (T::of(2.0) * brightness.ln()).sqrt();
+        let footprint = Self {
+            axes,
+            rows,
+            relative,
+            centre,
+            gradients,
+            clamped: clamped != slopes,
+            pixel: [0, 1].map(|axis| view.focal[axis] * slopes[axis] + view.principal[axis]),
+            factors,
+            opacity,
+            reach,
+            half: deviations.map(|deviation| reach * deviation),
+        };
+        let holds_a_pixel =
+            (0..2).all(|axis| footprint.span(axis, view.size[axis], T::zero()).is_some());
+        let drawable = factors.iter().all(|k| k.is_finite()); // f32 only: deviations beyond its range
+        (holds_a_pixel && drawable).then_some(footprint)
+    }
+
+    /// Image derivatives at the centre's true direction, for what is computed along true rays.
+    pub fn true_gradients(&self, view: &View<T>) -> [Vec3<T>; 2] {
+        let slopes = [self.centre.x / self.centre.z, self.centre.y / self.centre.z];
+        image_gradients(&self.rows, view.focal, slopes, self.centre.z)
+    }
+
+    /// The exponent q of the footprint `exp(-q / 2)` at an offset from its centre, pixels. A sum of two squares: the
+    /// three coefficients of the inverse covariance would cancel for needles.
+    pub fn power(&self, dx: T, dy: T) -> T {
+        let [k0, k1, k2] = self.factors;
+        let (u, v) = (k0 * dx, k1 * dx + k2 * dy);
+        u * u + v * v
+    }
+
+    /// First and last pixel whose centres the box covers along an axis, widened by `padding` pixels.
+    pub fn span(&self, axis: usize, size: u32, padding: T) -> Option<(u32, u32)> {
+        let half = T::of(0.5);
+        let (centre, reach) = (self.pixel[axis] - half, self.half[axis] + padding);
+        if !centre.is_finite() || reach.is_nan() {
+            return None;
+        }
+        let first = (centre - reach).ceil().max(T::zero());
+        let last = (centre + reach).floor().min(T::of(f64::from(size) - 1.0));
+        (first <= last).then(|| (first.wide() as u32, last.wide() as u32))
+    }
+}
+
+/// Columns of R(q) S.
+fn half_axes<T: Real>(scale: Point, rotation: Quat) -> [Vec3<T>; 3] {
+    let [x, y, z, w] = rotation.to_array().map(|v| T::of(f64::from(v)));
+    let [sx, sy, sz] = scale.to_array().map(|v| T::of(f64::from(v)));
+    let (one, two) = (T::one(), T::of(2.0));
+    [
+        vec3(
+            one - two * (y * y + z * z),
+            two * (x * y + w * z),
+            two * (x * z - w * y),
+        ) * sx,
+        vec3(
+            two * (x * y - w * z),
+            one - two * (x * x + z * z),
+            two * (y * z + w * x),
+        ) * sy,
+        vec3(
+            two * (x * z + w * y),
+            two * (y * z - w * x),
+            one - two * (x * x + y * y),
+        ) * sz,
+    ]
+}
+
+/// Derivatives of the pixel position `f X / Z` by u: `f / Z (m - slope m3)`.
+fn image_gradients<T: Real>(
+    rows: &[Vec3<T>; 3],
+    focal: [T; 2],
+    slopes: [T; 2],
+    depth: T,
+) -> [Vec3<T>; 2] {
+    [0, 1].map(|axis| (rows[axis] - rows[2] * slopes[axis]) * (focal[axis] / depth))
+}
+
+/// Scales image derivatives and low-pass together so that their products stay in single precision's range; returns
+/// the scaled derivatives, the factor (also that of pixel offsets) and the scaled low-pass.
+pub(super) fn scaled<T: Real>([b1, b2]: [Vec3<T>; 2]) -> ([Vec3<T>; 2], T, T) {
+    let factor = T::one() / T::one().max(b1.largest()).max(b2.largest());
+    let low_pass = T::of(f64::from(LOW_PASS)) * factor * factor;
+    ([b1 * factor, b2 * factor], factor, low_pass)
+}
+
+/// Determinant of the footprint's covariance: `|b1|^2 |b2|^2 - (b1 . b2)^2` and the low-pass, written with the cross
+/// product `c = b1 x b2` as a sum of terms that are not negative.
+pub(super) fn determinant<T: Real>([b1, b2]: [Vec3<T>; 2], c: Vec3<T>, low_pass: T) -> T {
+    c.squared() + low_pass * (b1.squared() + b2.squared()) + low_pass * low_pass
+}
+
+/// The factors of `q = (k0 dx)^2 + (k1 dx + k2 dy)^2` and the standard deviations along x and y, pixels.
+fn factorise<T: Real>(gradients: [Vec3<T>; 2]) -> ([T; 3], [T; 2]) {
+    let ([b1, b2], factor, low_pass) = scaled(gradients);
+    let (xx, yy) = (b1.squared() + low_pass, b2.squared() + low_pass);
+    let deviation = determinant([b1, b2], b1.cross(b2), low_pass).sqrt();
+    let sx = xx.sqrt();
+    // q = dx^2 / xx + (dy - xy/xx dx)^2 xx/det: the marginal of x, then y given x.
+    let k2 = sx / deviation;
+    let factors = [T::one() / sx, -(b1.dot(b2) / xx) * k2, k2];
+    (
+        factors.map(|k| k * factor),
+        [sx / factor, yy.sqrt() / factor],
+    )
+}

@@ -1,0 +1,83 @@
+//! The renderer on the CPU, written for reading: one file per stage, under the stages' names on the GPU.
+//!
+//! In f64 it is the truth that errors are measured against, in f32 the twin of the shaders: integers agree exactly and
+//! floats to a few units in the last place. Nothing in here knows about Vulkan.
+
+pub mod chord;
+pub mod classify;
+pub mod compact;
+pub mod cutoff;
+pub mod exact;
+pub mod footprint;
+pub mod harmonics;
+pub mod project;
+mod real;
+pub mod sort;
+pub mod splat;
+mod view;
+
+pub use classify::{Side, UnitPlane};
+pub use cutoff::Cut;
+pub use footprint::Footprint;
+pub use project::Splat;
+pub use real::{Real, Vec3, vec3};
+pub use view::View;
+
+use crate::{Camera, Clip, Counts, Gaussians, Picture, Settings};
+
+/// A rendered frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// The picture, rounded to f32 at the very end.
+    pub picture: Picture,
+    /// How many Gaussians ended where.
+    pub counts: Counts,
+}
+
+/// Renders a frame: the stages in order.
+pub fn render<T: Real>(
+    scene: &Gaussians,
+    camera: &Camera,
+    clip: &Clip,
+    settings: &Settings,
+) -> Frame {
+    let view = View::<T>::new(camera);
+    // What the clip does to each Gaussian.
+    let sides = classify::classify(scene, &view, clip, settings);
+    // Those that are drawn.
+    let drawn = compact::compact(&sides);
+    // Their footprints and colours, and how the cut ones vary over their pixels.
+    let splats = drawn.iter().filter_map(|&index| {
+        let index = index as usize;
+        let mut splat = project::project(scene, index, &view, settings)?;
+        splat.cut = cutoff::cutoff(scene, index, &splat.footprint, &view, clip, settings);
+        Some(splat)
+    });
+    let mut splats: Vec<_> = splats.collect();
+    // Front to back.
+    sort::sort(&mut splats);
+    // Blended.
+    let picture = splat::splat(&splats, &view, settings);
+    Frame {
+        picture,
+        counts: counts(&sides),
+    }
+}
+
+/// How many Gaussians are of which class.
+pub fn counts(sides: &[Side]) -> Counts {
+    let mut counts = Counts::default();
+    for side in sides {
+        *match side {
+            Side::Culled => &mut counts.culled,
+            Side::Visible => &mut counts.visible,
+            Side::Cutoff => &mut counts.cutoff,
+            Side::Invisible => &mut counts.invisible,
+        } += 1;
+    }
+    counts.drawn = counts.visible + counts.cutoff;
+    counts
+}
+
+#[cfg(test)]
+mod tests;

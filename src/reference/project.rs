@@ -1,0 +1,41 @@
+//! Stage `project`: a Gaussian's footprint, colour and place in depth.
+
+use super::cutoff::Cut;
+use super::footprint::Footprint;
+use super::harmonics;
+use super::real::Real;
+use super::view::View;
+use crate::{Gaussians, Settings};
+
+/// A splat, ready to be drawn.
+#[derive(Debug, Clone)]
+pub struct Splat<T> {
+    /// Its index in the scene.
+    pub index: u32,
+    /// Where and how large it is, and how opaque.
+    pub footprint: Footprint<T>,
+    /// Red, green and blue, not negative.
+    pub colour: [T; 3],
+    /// How it is cut, if it is.
+    pub cut: Option<Cut<T>>,
+}
+
+/// Projects one Gaussian; nothing if it is culled. The splat is whole: stage `cutoff` says how it is cut.
+pub fn project<T: Real>(
+    scene: &Gaussians,
+    index: usize,
+    view: &View<T>,
+    settings: &Settings,
+) -> Option<Splat<T>> {
+    let footprint = Footprint::new(scene, index, view)?;
+    let degree = settings
+        .sh_degree
+        .unwrap_or(scene.sh_degree)
+        .min(scene.sh_degree);
+    Some(Splat {
+        index: u32::try_from(index).expect("scenes have fewer than 2^32 Gaussians"),
+        colour: harmonics::colour(scene.sh_of(index), degree, footprint.relative),
+        footprint,
+        cut: None,
+    })
+}

@@ -1,0 +1,142 @@
+//! Stage `splat`: blends the splats over their pixels, front to back.
+
+use std::sync::Mutex;
+
+use super::footprint::Footprint;
+use super::project::Splat;
+use super::real::Real;
+use super::view::View;
+use crate::limits::{ALPHA_MAX, ALPHA_MIN_INVERSE};
+use crate::{Decay, Picture, Settings};
+
+/// Rows of the picture that one thread blends at a time.
+const BAND: u32 = 16;
+
+/// Draws splats that are sorted front to back.
+pub fn splat<T: Real>(splats: &[Splat<T>], view: &View<T>, settings: &Settings) -> Picture {
+    let [width, height] = view.size;
+    let mut members = vec![Vec::new(); height.div_ceil(BAND) as usize];
+    for splat in splats {
+        // A pixel of padding: what counts is each pixel's alpha, not how the box was rounded.
+        if let Some((first, last)) = splat.footprint.span(1, height, T::one()) {
+            for band in first / BAND..=last / BAND {
+                members[band as usize].push(splat);
+            }
+        }
+    }
+
+    let mut picture = Picture::filled(width, height, [0.0; 4]);
+    let pixels = picture.pixels.chunks_mut(BAND as usize * width as usize);
+    let bands = (0..).step_by(BAND as usize).zip(&members).zip(pixels);
+    let queue = Mutex::new(bands);
+    let work = || {
+        // Bands do not share pixels, so the picture does not depend on who draws which.
+        loop {
+            let band = queue
+                .lock()
+                .expect("no thread panics while it holds the queue")
+                .next();
+            let Some(((top, splats), pixels)) = band else {
+                return;
+            };
+            draw_band(splats, top, pixels, width, settings);
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        (1..threads).for_each(|_| drop(scope.spawn(work)));
+        work();
+    });
+    picture
+}
+
+/// Blends the splats of one band of rows and composites the background.
+fn draw_band<T: Real>(
+    splats: &[&Splat<T>],
+    top: u32,
+    pixels: &mut [[f32; 4]],
+    width: u32,
+    settings: &Settings,
+) {
+    let law = settings.decay_law();
+    let mut blended = vec![[T::zero(); 4]; pixels.len()];
+    for splat in splats {
+        for (y, row) in (top..).zip(blended.chunks_mut(width as usize)) {
+            let dy = T::of(f64::from(y) + 0.5) - splat.footprint.pixel[1];
+            let Some((first, last)) = row_span(&splat.footprint, dy, width) else {
+                continue;
+            };
+            for (x, pixel) in (first..=last).zip(&mut row[first as usize..]) {
+                let dx = T::of(f64::from(x) + 0.5) - splat.footprint.pixel[0];
+                if let Some(alpha) = alpha(splat, dx, dy, law) {
+                    blend(pixel, alpha, splat.colour);
+                }
+            }
+        }
+    }
+    for (pixel, blended) in pixels.iter_mut().zip(&mut blended) {
+        if let Some(background) = settings.background {
+            blend(blended, T::one(), background.map(|c| T::of(f64::from(c))));
+        }
+        *pixel = blended.map(|v| v.wide() as f32);
+    }
+}
+
+/// Opacity of a splat at an offset from its centre in pixels; nothing where it does not count: where its uncut alpha is
+/// below 1/255, or the clip keeps none of it.
+pub fn alpha<T: Real>(splat: &Splat<T>, dx: T, dy: T, law: Decay) -> Option<T> {
+    let footprint = &splat.footprint;
+    let falloff = (T::of(-0.5) * footprint.power(dx, dy)).exp();
+    let whole = T::of(f64::from(ALPHA_MAX)).min(footprint.opacity * falloff);
+    if whole * T::of(f64::from(ALPHA_MIN_INVERSE)) < T::one() {
+        return None;
+    }
+    match &splat.cut {
+        Some(cut) => decayed(whole, cut.weight(dx, dy), law),
+        None => Some(whole),
+    }
+}
+
+/// What is left of an alpha whose share `weight` is visible (the paper's `alpha w`, or the Beer-Lambert law).
+pub fn decayed<T: Real>(alpha: T, weight: T, law: Decay) -> Option<T> {
+    if weight >= T::one() {
+        Some(alpha) // to the bit: a clip that removes nothing changes nothing
+    } else if weight > T::zero() {
+        Some(match law {
+            Decay::Linear => alpha * weight,
+            // 1 - (1 - alpha)^w without cancellation for small alpha.
+            Decay::Depth => -(weight * (-alpha).ln_1p()).exp_m1(),
+        })
+    } else {
+        None
+    }
+}
+
+/// Adds a colour behind what a pixel holds (premultiplied RGBA).
+fn blend<T: Real>(pixel: &mut [T; 4], alpha: T, colour: [T; 3]) {
+    let through = (T::one() - pixel[3]) * alpha;
+    for (channel, colour) in pixel.iter_mut().zip(colour) {
+        *channel = *channel + through * colour;
+    }
+    pixel[3] = pixel[3] + through;
+}
+
+/// The pixels of one row that a footprint can reach, a pixel more on either side. In double precision for either type:
+/// it must only never be too short.
+fn row_span<T: Real>(footprint: &Footprint<T>, dy: T, width: u32) -> Option<(u32, u32)> {
+    let [k0, k1, k2] = footprint.factors.map(T::wide);
+    let (dy, reach, centre) = (dy.wide(), footprint.reach.wide(), footprint.pixel[0].wide());
+    // q = (k0 dx)^2 + (k1 dx + k2 dy)^2 is at its least in this row at `middle`, and at most K^2 within `half` of it.
+    let squares = k0 * k0 + k1 * k1;
+    let middle = -k1 * k2 * dy / squares;
+    let least = (k0 * k2 * dy).powi(2) / squares;
+    let half = ((reach * reach - least).max(0.0) / squares).sqrt() + 1.0;
+    if least > 1.01 * reach * reach + 0.01 {
+        return None;
+    }
+    let first = (centre + middle - half - 0.5).ceil().max(0.0);
+    let last = (centre + middle + half - 0.5)
+        .floor()
+        .min(f64::from(width) - 1.0);
+    (first <= last).then_some((first as u32, last as u32))
+}

@@ -1,0 +1,65 @@
+//! The camera as the stages use it: its numbers in the reference's own type.
+
+use super::real::{Real, Vec3};
+use crate::Camera;
+use crate::limits::CLAMP_MARGIN;
+
+/// What the stages need to know about the camera. In f32 these are the numbers that the GPU is given.
+#[derive(Debug, Clone, Copy)]
+pub struct View<T> {
+    /// Picture width and height, pixels.
+    pub size: [u32; 2],
+    /// Focal lengths along x and y, pixels.
+    pub focal: [T; 2],
+    /// Principal point, pixels from the picture's top left corner.
+    pub principal: [T; 2],
+    /// Smallest x/z and y/z at which the projection's Jacobian is evaluated.
+    pub slope_min: [T; 2],
+    /// Largest x/z and y/z at which the projection's Jacobian is evaluated.
+    pub slope_max: [T; 2],
+    /// Rows of the world to camera rotation: right, down, forward.
+    pub rows: [Vec3<T>; 3],
+    /// The eye rounded to `T`, world units.
+    pub eye_high: Vec3<T>,
+    /// What that rounding lost, world units: zero in f64.
+    pub eye_low: Vec3<T>,
+}
+
+impl<T: Real> View<T> {
+    /// The view of a camera.
+    pub fn new(camera: &Camera) -> Self {
+        let margin = f64::from(CLAMP_MARGIN);
+        let size = [camera.width, camera.height].map(f64::from);
+        let (focal, principal) = ([camera.fx, camera.fy], [camera.cx, camera.cy]);
+        let slope =
+            |axis: usize, edge: f64| T::of((edge * size[axis] - principal[axis]) / focal[axis]);
+        let rows = camera.rotation.transpose();
+        let eye_high = Vec3::<T>::of(camera.eye);
+        let rounded = glam::DVec3::new(eye_high.x.wide(), eye_high.y.wide(), eye_high.z.wide());
+        Self {
+            size: [camera.width, camera.height],
+            focal: focal.map(T::of),
+            principal: principal.map(T::of),
+            slope_min: [slope(0, -margin), slope(1, -margin)],
+            slope_max: [slope(0, 1.0 + margin), slope(1, 1.0 + margin)],
+            rows: [rows.x_axis, rows.y_axis, rows.z_axis].map(Vec3::of),
+            eye_high,
+            eye_low: Vec3::of(camera.eye - rounded),
+        }
+    }
+
+    /// A point relative to the eye, along the world's axes. Subtracting the eye in two steps keeps the digits that a
+    /// single-precision eye far from the origin would lose.
+    pub fn relative(&self, point: glam::Vec3) -> Vec3<T> {
+        (Vec3::of(point.as_dvec3()) - self.eye_high) - self.eye_low
+    }
+
+    /// A direction of the world in camera axes.
+    pub fn turn(&self, v: Vec3<T>) -> Vec3<T> {
+        Vec3 {
+            x: self.rows[0].dot(v),
+            y: self.rows[1].dot(v),
+            z: self.rows[2].dot(v),
+        }
+    }
+}

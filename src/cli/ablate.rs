@@ -18,7 +18,7 @@ use super::scenes;
 use super::session::Session;
 use super::settings::{DeviceArgs, LookArgs};
 
-/// Repeat the paper's ablation: a plane at infinity, with and without tracing only what is cut
+/// Repeat the paper's ablation with a plane at infinity
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -30,15 +30,15 @@ pub(super) struct Ablate {
     /// Scene files (3DGS .ply); several are merged
     #[arg(value_name = "SCENE", required = true)]
     scenes: Vec<PathBuf>,
+    /// Print the table as JSON to stdout
+    #[arg(long)]
+    json: bool,
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
     look: LookArgs,
     #[command(flatten)]
     device: DeviceArgs,
-    /// Print the table as JSON to stdout
-    #[arg(long)]
-    json: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -60,7 +60,7 @@ impl Ablate {
         let views = self.camera.meant()?;
         let scene = scenes::load(&self.scenes)?;
         let camera = views.of(&scene.gaussians)?.remove(0).camera;
-        let bounds = Bounds::robust(&scene.gaussians);
+        let bounds = Bounds::of(&scene.gaussians);
         let reach = bounds
             .min
             .abs()

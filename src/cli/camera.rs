@@ -7,7 +7,8 @@ use glam::DVec3;
 use rara::{Camera, Gaussians};
 
 use super::failure::Failure;
-use super::pending::{camera_files, frame_scene};
+use super::pending::Framing;
+use super::pending::{camera_files, scene::Bounds};
 use super::values;
 
 /// Where the camera stands. Without any of these it frames the scene.
@@ -23,16 +24,16 @@ pub(super) struct CameraArgs {
     target: Option<DVec3>,
     /// What is up in the picture
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
-    #[arg(default_value = "0,-1,0", requires = "eye")]
+    #[arg(default_value = "0,-1,0", conflicts_with_all = ["cameras", "camera"])]
     up: DVec3,
     /// Vertical field of view, degrees
     #[arg(
         long,
         value_name = "DEG",
         default_value_t = 50.0,
-        allow_hyphen_values = true,
-        requires = "eye"
+        allow_hyphen_values = true
     )]
+    #[arg(conflicts_with_all = ["cameras", "camera"])]
     fov_y: f64,
     /// Cameras of a 3DGS cameras.json, a nerfstudio transforms.json or a COLMAP sparse folder
     #[arg(long, value_name = "FILE", conflicts_with = "camera")]
@@ -70,8 +71,12 @@ pub(super) struct View {
 pub(super) enum Views {
     /// Known before the scene is.
     Given(Vec<View>),
-    /// One that the scene's bounds will place, and its picture's size.
-    Framed((u32, u32)),
+    /// One that the scene's bounds will place.
+    Framed {
+        up: DVec3,
+        fov_y: f64,
+        size: (u32, u32),
+    },
 }
 
 impl CameraArgs {
@@ -101,8 +106,11 @@ impl CameraArgs {
             }]));
         }
         let Some(path) = &self.cameras else {
-            check_size(size)?;
-            return Ok(Views::Framed(size));
+            let (up, fov_y) = (self.up, self.fov_y);
+            // What the scene cannot change is checked before it is read.
+            Camera::frame(&Bounds::of(&Gaussians::default()), up, fov_y, size)
+                .map_err(Failure::usage)?;
+            return Ok(Views::Framed { up, fov_y, size });
         };
         let loaded = camera_files::load_cameras(path)?.into_iter().enumerate();
         let mut views: Vec<View> = loaded
@@ -133,8 +141,8 @@ impl Views {
     pub(super) fn of(self, scene: &Gaussians) -> Result<Vec<View>, Failure> {
         match self {
             Self::Given(views) => Ok(views),
-            Self::Framed(size) => {
-                let camera = frame_scene(scene, size)?;
+            Self::Framed { up, fov_y, size } => {
+                let camera = Camera::frame(&Bounds::of(scene), up, fov_y, size)?;
                 Ok(vec![View {
                     number: 0,
                     name: "framing".into(),
@@ -164,12 +172,6 @@ fn pick(views: Vec<View>, wanted: &str, path: &Path) -> Result<View, Failure> {
             path.display()
         ))
     })
-}
-
-/// Whether a picture can have this size; it is said before a scene is read for it.
-fn check_size(size: (u32, u32)) -> Result<(), Failure> {
-    let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::NEG_Y, 50.0, size);
-    camera.map(|_| ()).map_err(Failure::usage)
 }
 
 #[cfg(test)]

@@ -8,7 +8,6 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::output::{self, say};
-#[allow(unused_imports)]
 use super::pending::PictureFile;
 use super::pending::measure::{self, Comparison};
 

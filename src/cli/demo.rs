@@ -9,7 +9,6 @@ use super::camera::CameraArgs;
 use super::compare::Measures;
 use super::failure::Failure;
 use super::output::{self, grouped, say};
-#[allow(unused_imports)]
 use super::pending::PictureFile;
 use super::pending::scene::{self, Bounds};
 use super::pending::{measure, reference};
@@ -123,10 +122,7 @@ fn made_up() -> Scene {
 /// A plane through the scene's middle that shows the camera the cut: what is near and to the left goes.
 fn middle(scene: &Scene, camera: &Camera) -> rara::Result<Plane> {
     let normal = camera.rotation.row(0) * 0.8 + camera.rotation.row(2) * 0.6;
-    Plane::new(
-        normal,
-        -normal.dot(Bounds::robust(&scene.gaussians).centre()),
-    )
+    Plane::new(normal, -normal.dot(Bounds::of(&scene.gaussians).centre()))
 }
 
 fn print_frames(shots: &[Shot]) {

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::output::{self, say};
-use super::pending::gpu::Device;
+use super::pending::gpu::list_devices;
 
 /// List the Vulkan devices, and why one will not do
 #[derive(Debug, Args)]
@@ -25,7 +25,7 @@ struct Line {
     number: usize,
     name: String,
     driver: String,
-    kind: String,
+    kind: &'static str,
     supported: bool,
     /// What it lacks.
     problem: Option<String>,
@@ -33,16 +33,16 @@ struct Line {
 
 impl Devices {
     pub(super) fn run(self) -> Result<(), Failure> {
-        let list = Device::list()?
+        let list = list_devices()?
             .into_iter()
             .enumerate()
             .map(|(number, device)| Line {
                 number,
+                kind: device.kind_name(),
                 name: device.name,
                 driver: device.driver,
-                kind: device.kind,
-                supported: device.problem.is_none(),
-                problem: device.problem,
+                supported: device.support.is_ok(),
+                problem: device.support.err(),
             });
         let list: Vec<Line> = list.collect();
         if self.json {

@@ -108,7 +108,7 @@ impl Info {
         } else {
             DVec3::INFINITY
         };
-        let robust = Bounds::robust(gaussians);
+        let robust = Bounds::of(gaussians);
         let document = Document {
             gaussians: gaussians.len(),
             sh_degree: gaussians.sh_degree,

@@ -1,5 +1,5 @@
 //! Stand-ins with the signatures of library parts that this branch does not have yet. At merge this file goes, and
-//! every `super::pending::` becomes `rara::` (`PictureFile` and `frame_scene` become methods).
+//! every `super::pending::` becomes `rara::`; the imports of the two traits go, since their functions are methods there.
 
 use rara::{Error, Result};
 
@@ -57,7 +57,7 @@ pub(super) mod scene {
     }
 
     impl Bounds {
-        pub(in crate::cli) fn robust(_scene: &Gaussians) -> Self {
+        pub(in crate::cli) fn of(_scene: &Gaussians) -> Self {
             Self {
                 min: -DVec3::ONE,
                 max: DVec3::ONE,
@@ -67,6 +67,10 @@ pub(super) mod scene {
         pub(in crate::cli) fn centre(&self) -> DVec3 {
             (self.min + self.max) / 2.0
         }
+    }
+
+    pub(in crate::cli) fn extent_along(_scene: &Gaussians, _normal: DVec3) -> (f64, f64) {
+        (-1.0, 1.0)
     }
 }
 
@@ -89,16 +93,22 @@ pub(super) mod camera_files {
     }
 }
 
-/// `Camera::frame`: a camera that sees the scene's robust bounds.
-pub(super) fn frame_scene(_scene: &rara::Gaussians, size: (u32, u32)) -> Result<rara::Camera> {
-    use glam::DVec3;
-    rara::Camera::look_at(
-        DVec3::new(0.0, 0.0, -3.0),
-        DVec3::ZERO,
-        DVec3::NEG_Y,
-        50.0,
-        size,
-    )
+/// `Camera::frame`.
+pub(super) trait Framing: Sized {
+    fn frame(bounds: &scene::Bounds, up: glam::DVec3, fov_y: f64, size: (u32, u32))
+    -> Result<Self>;
+}
+
+impl Framing for rara::Camera {
+    fn frame(
+        bounds: &scene::Bounds,
+        up: glam::DVec3,
+        fov_y: f64,
+        size: (u32, u32),
+    ) -> Result<Self> {
+        let eye = bounds.centre() - 3.0 * glam::DVec3::Z;
+        rara::Camera::look_at(eye, bounds.centre(), up, fov_y, size)
+    }
 }
 
 pub(super) mod reference {
@@ -158,18 +168,19 @@ impl PictureFile for rara::Picture {
 pub(super) mod gpu {
     use rara::Result;
 
-    pub(in crate::cli) struct Device;
-
     pub(in crate::cli) struct DeviceInfo {
         pub(in crate::cli) name: String,
         pub(in crate::cli) driver: String,
-        pub(in crate::cli) kind: String,
-        pub(in crate::cli) problem: Option<String>,
+        pub(in crate::cli) support: std::result::Result<(), String>,
     }
 
-    impl Device {
-        pub(in crate::cli) fn list() -> Result<Vec<DeviceInfo>> {
-            super::missing("listing devices")
+    impl DeviceInfo {
+        pub(in crate::cli) fn kind_name(&self) -> &'static str {
+            "cpu"
         }
+    }
+
+    pub(in crate::cli) fn list_devices() -> Result<Vec<DeviceInfo>> {
+        super::missing("listing devices")
     }
 }

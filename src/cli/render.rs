@@ -8,7 +8,6 @@ use super::camera::{CameraArgs, View, Views};
 use super::clip::ClipArgs;
 use super::failure::Failure;
 use super::output::{self, Progress, say};
-#[allow(unused_imports)]
 use super::pending::PictureFile;
 use super::report::{self, Report};
 use super::session::Session;
@@ -34,6 +33,12 @@ pub(super) struct Render {
     /// Where the picture goes, .png or .exr; {} becomes the camera's number. May be left out with --json
     #[arg(short, long, value_name = "OUT", value_parser = values::picture_path, required_unless_present = "json")]
     output: Option<PathBuf>,
+    /// Render N times, nothing carried over between them, and report the medians
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    repeat: u32,
+    /// Print the statistics as JSON to stdout
+    #[arg(long)]
+    json: bool,
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
@@ -42,12 +47,6 @@ pub(super) struct Render {
     settings: SettingsArgs,
     #[command(flatten)]
     device: DeviceArgs,
-    /// Render N times, nothing carried over between them, and report the medians
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    repeat: u32,
-    /// Print the statistics as JSON to stdout
-    #[arg(long)]
-    json: bool,
 }
 
 impl Render {
@@ -98,7 +97,7 @@ impl Render {
         };
         let first = match views {
             Views::Given(views) => views.first().map_or(0, |v: &View| v.number),
-            Views::Framed(_) => 0,
+            Views::Framed { .. } => 0,
         };
         if self.camera.all() && numbered(pattern, 0) == numbered(pattern, 1) {
             return Err(Failure::Usage(

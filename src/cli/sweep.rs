@@ -9,9 +9,8 @@ use rara::{Clip, ClipOp, Plane};
 use super::camera::CameraArgs;
 use super::failure::Failure;
 use super::output::{self, Progress, say};
-#[allow(unused_imports)]
 use super::pending::PictureFile;
-use super::pending::scene::Bounds;
+use super::pending::scene::extent_along;
 use super::report::{self, Report};
 use super::session::Session;
 use super::settings::{DeviceArgs, SettingsArgs};
@@ -39,18 +38,18 @@ pub(super) struct Sweep {
     /// Folder for the pictures; made unless it is there
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    #[command(flatten)]
-    camera: CameraArgs,
-    #[command(flatten)]
-    settings: SettingsArgs,
-    #[command(flatten)]
-    device: DeviceArgs,
     /// Render each frame N times, nothing carried over between them, and take the medians
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     repeat: u32,
     /// Print the statistics as JSON to stdout
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    settings: SettingsArgs,
+    #[command(flatten)]
+    device: DeviceArgs,
 }
 
 impl Sweep {
@@ -71,7 +70,7 @@ impl Sweep {
 
         let scene = scenes::load(&self.scenes)?;
         let camera = views.of(&scene.gaussians)?.remove(0).camera;
-        let range = extent(&Bounds::robust(&scene.gaussians), normal);
+        let range = extent_along(&scene.gaussians, normal);
         let mut session = Session::open(&self.device.meant(), &scene.gaussians)?;
         let mut frames = Vec::new();
         let mut written = Vec::new();
@@ -102,13 +101,6 @@ impl Sweep {
         say(report::wrote(&written));
         Ok(())
     }
-}
-
-/// From where to where the bounds reach along a unit vector.
-fn extent(bounds: &Bounds, along: DVec3) -> (f64, f64) {
-    let half = ((bounds.max - bounds.min) / 2.0).dot(along.abs());
-    let centre = bounds.centre().dot(along);
-    (centre - half, centre + half)
 }
 
 /// Where the plane of one frame stands: both ends included, the middle when there is one frame only.

@@ -1,0 +1,199 @@
+//! `rara demo`: one scene, one plane through its middle, four modes, side by side and measured.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use rara::{Camera, Clip, ClipOp, Decay, ExactForm, FrameStats, Mode, Picture, Plane, Settings};
+
+use super::camera::CameraArgs;
+use super::compare::Measures;
+use super::failure::Failure;
+use super::output::{self, grouped, say};
+use super::pending::PictureFile;
+use super::pending::scene::{self, Bounds};
+use super::pending::{measure, reference};
+use super::scenes::{self, Scene};
+use super::session::Session;
+use super::settings::{DeviceArgs, LookArgs, ModeArg};
+use super::sheet;
+
+/// Draw a scene cut through its middle in all four modes, and measure them
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  rara demo -o out
+  rara demo scene.ply -o out --cameras cameras.json --view 3
+
+Writes none.png, hard.png, rara.png, exact.png and sheet.png. \"own\" compares the picture with the same mode computed
+in double precision on the CPU; \"truth\" with the exact cut.")]
+pub(super) struct Demo {
+    /// Scene files (3DGS .ply); several are merged. Without any, a made-up scene
+    #[arg(value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+    /// Folder for the pictures; made unless it is there
+    #[arg(short, long, value_name = "DIR", default_value = "out")]
+    output: PathBuf,
+    /// Leave out the double-precision reference, which takes a while for large scenes
+    #[arg(long)]
+    no_reference: bool,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    look: LookArgs,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+/// What one mode made.
+struct Shot {
+    mode: ModeArg,
+    settings: Settings,
+    picture: Picture,
+    stats: FrameStats,
+}
+
+impl Demo {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let look = self.look.meant()?;
+        if self.camera.all() {
+            return Err(Failure::Usage(
+                "a demo has one camera: give --view a number or a name".into(),
+            ));
+        }
+        let views = self.camera.meant()?;
+        output::make_folder(&self.output)?;
+        let scene = if self.scenes.is_empty() {
+            made_up()
+        } else {
+            scenes::load(&self.scenes)?
+        };
+        let camera = views.of(&scene.gaussians)?.remove(0).camera;
+        let clip = Clip {
+            planes: vec![middle(&scene, &camera)?],
+            op: ClipOp::And,
+        };
+
+        let mut session = Session::open(&self.device.meant(), &scene.gaussians)?;
+        let (device, driver, _) = session.about();
+        let count = grouped(scene.gaussians.len() as u64);
+        say(format_args!(
+            "{device} ({driver}); {count} Gaussians, {}x{}",
+            camera.width, camera.height
+        ));
+        let mut shots = Vec::new();
+        for mode in ModeArg::ALL {
+            let settings = Settings {
+                mode: mode.mode(),
+                ..look
+            };
+            let (picture, stats) = session.picture(&camera, &clip, &settings)?;
+            picture.save(&self.output.join(format!("{}.png", mode.name())))?;
+            shots.push(Shot {
+                mode,
+                settings,
+                picture,
+                stats,
+            });
+        }
+        let labelled: Vec<_> = shots
+            .iter()
+            .map(|s| (s.mode.name(), s.picture.clone()))
+            .collect();
+        sheet::sheet(&labelled).save(&self.output.join("sheet.png"))?;
+        print_frames(&shots);
+        if !self.no_reference {
+            print_errors(&shots, &scene, &camera, &clip)?;
+        }
+        Ok(())
+    }
+}
+
+/// The scene that is there without a file.
+fn made_up() -> Scene {
+    let gaussians = scene::generate(scene::Kind::General, 60_000, 1);
+    Scene {
+        gaussians,
+        repaired: 0,
+        dropped: 0,
+        notes: Vec::new(),
+    }
+}
+
+/// A plane through the scene's middle that shows the camera the cut: what is near and to the left goes.
+fn middle(scene: &Scene, camera: &Camera) -> rara::Result<Plane> {
+    let normal = camera.rotation.row(0) * 0.8 + camera.rotation.row(2) * 0.6;
+    Plane::new(normal, -normal.dot(Bounds::of(&scene.gaussians).centre()))
+}
+
+fn print_frames(shots: &[Shot]) {
+    say(format_args!(
+        "\n{:<6} {:>10} {:>10} {:>10} {:>10} {:>9}  ms a stage",
+        "mode", "visible", "cut", "clipped", "culled", "ms"
+    ));
+    for Shot { mode, stats, .. } in shots {
+        let c = stats.counts;
+        let [visible, cut, clipped, culled] =
+            [c.visible, c.cutoff, c.invisible, c.culled].map(|n| grouped(n.into()));
+        let passes: Vec<String> = stats
+            .passes
+            .iter()
+            .map(|p| format!("{} {:.2}", p.name, p.ms))
+            .collect();
+        say(format_args!(
+            "{:<6} {visible:>10} {cut:>10} {clipped:>10} {culled:>10} {:>9.2}  {}",
+            mode.name(),
+            stats.gpu_ms,
+            passes.join(", ")
+        ));
+    }
+}
+
+/// Each picture against its own mode in f64, and the cuts against the exact cut.
+fn print_errors(
+    shots: &[Shot],
+    scene: &Scene,
+    camera: &Camera,
+    clip: &Clip,
+) -> Result<(), Failure> {
+    say("\nmeasuring against the double-precision reference on the CPU ...");
+    let render = |settings: &Settings| {
+        reference::render::<f64>(&scene.gaussians, camera, clip, settings).picture
+    };
+    let exact = Settings {
+        mode: Mode::Exact,
+        decay: Some(Decay::Depth),
+        form: ExactForm::Beam,
+        ..shots[0].settings
+    };
+    let truth = render(&exact);
+    say(format_args!(
+        "{:<6} {:>10} {:>10} {:>10}   {:>10} {:>10} {:>10}",
+        "mode", "own: PSNR", "L1", "largest", "truth: PSNR", "L1", "largest"
+    ));
+    for Shot {
+        mode,
+        settings,
+        picture,
+        ..
+    } in shots
+    {
+        let own = columns(&measure::compare(picture, &render(settings))?.into());
+        let cut = match mode {
+            ModeArg::None => String::new(), // Nothing is cut, so there is nothing to be exact about.
+            _ => columns(&measure::compare(picture, &truth)?.into()),
+        };
+        say(format_args!("{:<6} {own}   {cut}", mode.name())
+            .to_string()
+            .trim_end());
+    }
+    Ok(())
+}
+
+fn columns(measures: &Measures) -> String {
+    format!(
+        "{:>10} {:>10.4} {:>10.2}",
+        measures.psnr_text(),
+        measures.l1,
+        measures.max
+    )
+}

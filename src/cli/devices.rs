@@ -1,0 +1,71 @@
+//! `rara devices`: which Vulkan devices there are, and which of them will do.
+
+use clap::Args;
+use rara::Error;
+use serde::Serialize;
+
+use super::failure::Failure;
+use super::output::{self, say};
+use super::pending::gpu::list_devices;
+
+/// List the Vulkan devices, and why one will not do
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  rara devices
+  rara render scene.ply -o picture.png --device 1")]
+pub(super) struct Devices {
+    /// Print the list as JSON to stdout
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct Line {
+    number: usize,
+    name: String,
+    driver: String,
+    kind: &'static str,
+    supported: bool,
+    /// What it lacks.
+    problem: Option<String>,
+}
+
+impl Devices {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let list = list_devices()?
+            .into_iter()
+            .enumerate()
+            .map(|(number, device)| Line {
+                number,
+                kind: device.kind_name(),
+                name: device.name,
+                driver: device.driver,
+                supported: device.support.is_ok(),
+                problem: device.support.err(),
+            });
+        let list: Vec<Line> = list.collect();
+        if self.json {
+            return Ok(output::json(&list)?);
+        }
+        if list.is_empty() {
+            let message = "there is no Vulkan device; install a driver (tools/setup installs lavapipe, which needs no GPU)";
+            return Err(Error::Device(message.into()).into());
+        }
+        for Line {
+            number,
+            name,
+            driver,
+            kind,
+            problem,
+            ..
+        } in list
+        {
+            say(format_args!("{number}  {name} ({kind}; {driver})"));
+            if let Some(problem) = problem {
+                say(format_args!("   will not do: {problem}"));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,101 @@
+//! Why a command did not do its work, as a sentence and an exit status.
+
+use std::fmt;
+use std::process::ExitCode;
+
+/// A command's failure.
+#[derive(Debug)]
+pub(super) enum Failure {
+    /// The command line is wrong: exit status 2.
+    Usage(String),
+    /// Clap's help, asked for by typing nothing: exit status 2.
+    Help(clap::Error),
+    /// The work failed: exit status 1.
+    Work(rara::Error),
+}
+
+impl Failure {
+    /// For library errors that what was typed has caused.
+    pub(super) fn usage(error: impl fmt::Display) -> Self {
+        Self::Usage(error.to_string())
+    }
+
+    pub(super) fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Usage(_) | Self::Help(_) => ExitCode::from(2),
+            Self::Work(_) => ExitCode::FAILURE,
+        }
+    }
+}
+
+impl From<rara::Error> for Failure {
+    fn from(error: rara::Error) -> Self {
+        Self::Work(error)
+    }
+}
+
+impl From<clap::Error> for Failure {
+    fn from(error: clap::Error) -> Self {
+        if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+            return Self::Help(error);
+        }
+        Self::Usage(one_line(&error.to_string()))
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Usage(message) => write!(f, "rara: {message}"),
+            Self::Help(help) => write!(f, "{help}"),
+            Self::Work(error) => write!(f, "rara: {}", chain(error)),
+        }
+    }
+}
+
+/// Clap's message without its layout: what is wrong and its tip, but not the usage and the pointer to `--help`.
+fn one_line(message: &str) -> String {
+    let message = message.strip_prefix("error: ").unwrap_or(message);
+    let parts = message
+        .split("\n\n")
+        .filter(|part| !part.starts_with("Usage:") && !part.starts_with("For more information"));
+    let lines: Vec<String> = parts
+        .map(|part| part.split_whitespace().collect::<Vec<_>>().join(" "))
+        .filter(|part| !part.is_empty())
+        .collect();
+    lines.join("; ")
+}
+
+/// An error and its causes on one line; a cause that its effect already quotes is not repeated.
+fn chain(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut source = error.source();
+    while let Some(cause) = source {
+        let cause_text = cause.to_string();
+        if !text.contains(&cause_text) {
+            text = format!("{text}: {cause_text}");
+        }
+        source = cause.source();
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clap_messages_become_one_line() {
+        let message = "error: unexpected argument '--mod' found\n\n  tip: a similar argument exists: '--mode'\n\nUsage: rara render --mode <MODE>\n\nFor more information, try '--help'.\n";
+        assert_eq!(
+            one_line(message),
+            "unexpected argument '--mod' found; tip: a similar argument exists: '--mode'"
+        );
+    }
+
+    #[test]
+    fn a_quoted_cause_is_not_repeated() {
+        let error = rara::Error::io("scene.ply")(std::io::Error::other("the disk is gone"));
+        assert_eq!(chain(&error), "scene.ply: the disk is gone");
+    }
+}

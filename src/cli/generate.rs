@@ -1,0 +1,71 @@
+//! `rara generate`: scenes made up by rule, the same for the same seed.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::failure::Failure;
+use super::output::{self, grouped, say};
+use super::pending::scene;
+
+/// Write a made-up scene
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  rara generate general -n 100000 -o general.ply
+  rara generate strands -n 3000000 --seed 7 -o hair.ply")]
+pub(super) struct Generate {
+    /// What it looks like
+    kind: KindArg,
+    /// Number of Gaussians
+    #[arg(short = 'n', long, value_name = "COUNT", default_value_t = 100_000)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..))]
+    count: u32,
+    /// The same seed makes the same scene
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Where the scene goes
+    #[arg(short, long, value_name = "OUT.ply", value_parser = ply_path)]
+    output: PathBuf,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum KindArg {
+    /// Surfaces of all sizes, like a trained scene
+    General,
+    /// Thin needles along strands, like hair
+    Strands,
+    /// Nested filled layers, like anatomy
+    Layers,
+}
+
+impl Generate {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        output::check_file(&self.output)?;
+        let kind = match self.kind {
+            KindArg::General => scene::Kind::General,
+            KindArg::Strands => scene::Kind::Strands,
+            KindArg::Layers => scene::Kind::Layers,
+        };
+        let made = scene::generate(kind, self.count as usize, self.seed);
+        scene::save_ply(&self.output, &made)?;
+        say(format_args!(
+            "wrote {} Gaussians to {}",
+            grouped(made.len() as u64),
+            self.output.display()
+        ));
+        Ok(())
+    }
+}
+
+fn ply_path(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let fits = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("ply"));
+    if fits {
+        Ok(path)
+    } else {
+        Err("a scene's name ends in .ply".into())
+    }
+}

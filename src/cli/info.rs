@@ -1,0 +1,186 @@
+//! `rara info`: what stands in a scene.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use glam::DVec3;
+use serde::Serialize;
+
+use super::failure::Failure;
+use super::output::{self, grouped, say};
+use super::pending::scene::Bounds;
+use super::scenes;
+
+/// Tell what stands in a scene
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  rara info scene.ply
+
+Statistics are the least value, the 1st, 50th and 99th percentiles, and the greatest. What the loader repaired or
+dropped is told first.")]
+pub(super) struct Info {
+    /// Scene files (3DGS .ply); several are merged
+    #[arg(value_name = "SCENE", required = true)]
+    scenes: Vec<PathBuf>,
+    /// Print it as JSON to stdout
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct Document {
+    gaussians: usize,
+    sh_degree: u32,
+    repaired: u64,
+    dropped: u64,
+    notes: Vec<String>,
+    /// Box around all centres.
+    centres: Extent,
+    /// Box without the stray ones; cameras and sweeps go by it.
+    robust_bounds: Extent,
+    opacity: Spread,
+    /// Of each Gaussian's longest axis, world units.
+    scale: Spread,
+    /// Longest to middle axis, so that flat Gaussians do not count as needles.
+    elongation: Spread,
+    /// Middle to shortest axis.
+    flatness: Spread,
+}
+
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Extent {
+    min: [f64; 3],
+    max: [f64; 3],
+}
+
+/// A value's distribution; infinite ratios are null in the JSON.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Spread {
+    min: f32,
+    p1: f32,
+    median: f32,
+    p99: f32,
+    max: f32,
+}
+
+impl Spread {
+    fn of(values: impl Iterator<Item = f32>) -> Self {
+        let mut values: Vec<f32> = values.collect();
+        values.sort_unstable_by(f32::total_cmp);
+        let at = |share: f64| {
+            let index = (share * values.len().saturating_sub(1) as f64).round() as usize;
+            values.get(index).copied().unwrap_or(0.0)
+        };
+        Self {
+            min: at(0.0),
+            p1: at(0.01),
+            median: at(0.5),
+            p99: at(0.99),
+            max: at(1.0),
+        }
+    }
+}
+
+impl Extent {
+    fn new(min: DVec3, max: DVec3) -> Self {
+        Self {
+            min: min.to_array(),
+            max: max.to_array(),
+        }
+    }
+}
+
+impl Info {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let scene = scenes::load(&self.scenes)?;
+        let gaussians = &scene.gaussians;
+        let sorted = |index: usize| {
+            let mut axes = gaussians.scales[index].to_array();
+            axes.sort_unstable_by(f32::total_cmp);
+            axes
+        };
+        let all = 0..gaussians.len();
+        let ratio = |long: f32, short: f32| if long == short { 1.0 } else { long / short };
+        let centres = gaussians.positions.iter().map(|p| p.as_dvec3());
+        let empty = if gaussians.is_empty() {
+            DVec3::ZERO
+        } else {
+            DVec3::INFINITY
+        };
+        let robust = Bounds::of(gaussians);
+        let document = Document {
+            gaussians: gaussians.len(),
+            sh_degree: gaussians.sh_degree,
+            repaired: scene.repaired,
+            dropped: scene.dropped,
+            notes: scene.notes,
+            centres: Extent::new(
+                centres.clone().fold(empty, DVec3::min),
+                centres.fold(-empty, DVec3::max),
+            ),
+            robust_bounds: Extent::new(robust.min, robust.max),
+            opacity: Spread::of(gaussians.opacities.iter().copied()),
+            scale: Spread::of(all.clone().map(|i| sorted(i)[2])),
+            elongation: Spread::of(all.clone().map(|i| ratio(sorted(i)[2], sorted(i)[1]))),
+            flatness: Spread::of(all.map(|i| ratio(sorted(i)[1], sorted(i)[0]))),
+        };
+        if self.json {
+            return Ok(output::json(&document)?);
+        }
+        print(&document);
+        Ok(())
+    }
+}
+
+fn print(document: &Document) {
+    let corner = |[x, y, z]: [f64; 3]| format!("{x:.4}, {y:.4}, {z:.4}");
+    let extent = |e: Extent| format!("({}) to ({})", corner(e.min), corner(e.max));
+    let spread = |s: Spread| {
+        format!(
+            "{:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e}",
+            s.min, s.p1, s.median, s.p99, s.max
+        )
+    };
+    say(format_args!(
+        "gaussians      {}",
+        grouped(document.gaussians as u64)
+    ));
+    say(format_args!("SH degree      {}", document.sh_degree));
+    say(format_args!(
+        "repaired       {}",
+        grouped(document.repaired)
+    ));
+    say(format_args!("dropped        {}", grouped(document.dropped)));
+    say(format_args!("centres        {}", extent(document.centres)));
+    say(format_args!(
+        "robust bounds  {}",
+        extent(document.robust_bounds)
+    ));
+    say(format_args!(
+        "{:>26} {:>11} {:>11} {:>11} {:>11}",
+        "min", "1 %", "median", "99 %", "max"
+    ));
+    say(format_args!("opacity        {}", spread(document.opacity)));
+    say(format_args!("scale          {}", spread(document.scale)));
+    say(format_args!(
+        "elongation     {}",
+        spread(document.elongation)
+    ));
+    say(format_args!("flatness       {}", spread(document.flatness)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Spread;
+
+    #[test]
+    fn spreads_pick_by_rank_and_take_no_values_at_all() {
+        let spread = Spread::of((0..=100).rev().map(|v| v as f32));
+        assert_eq!(
+            [spread.min, spread.p1, spread.median, spread.p99, spread.max],
+            [0.0, 1.0, 50.0, 99.0, 100.0]
+        );
+        assert_eq!(Spread::of(std::iter::empty()).max, 0.0);
+    }
+}

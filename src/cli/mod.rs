@@ -1,0 +1,107 @@
+//! The command line: one file a command, and the pieces they share.
+//!
+//! Each command goes from what was typed (clap's structs) to what it means (the library's types, checked once) to
+//! done. Only [`output::json`] writes to stdout; everything for people goes to stderr.
+
+mod ablate;
+mod camera;
+mod clip;
+mod compare;
+mod demo;
+mod devices;
+mod failure;
+mod generate;
+mod info;
+mod output;
+mod pending;
+mod render;
+mod report;
+mod scenes;
+mod session;
+mod settings;
+mod sheet;
+mod sweep;
+mod values;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::Failure;
+
+/// Draws 3D Gaussian Splatting scenes with Vulkan and cuts them exactly.
+#[derive(Debug, Parser)]
+#[command(
+    name = "rara",
+    version,
+    propagate_version = true,
+    arg_required_else_help = true,
+    max_term_width = 100
+)]
+#[command(after_help = "\
+Examples:
+  rara render scene.ply -o picture.png
+  rara render scene.ply -o cut.png --clip plane:1,0,0,-0.5
+  rara sweep scene.ply --clip-normal 0,0,1 -o frames
+  rara demo scene.ply -o out
+
+Exit status: 0 done, 1 the work failed, 2 the command line is wrong.")]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Render(render::Render),
+    Sweep(sweep::Sweep),
+    Ablate(ablate::Ablate),
+    Demo(demo::Demo),
+    Compare(compare::Compare),
+    Generate(generate::Generate),
+    Info(info::Info),
+    Devices(devices::Devices),
+}
+
+impl Command {
+    fn run(self) -> Result<(), Failure> {
+        match self {
+            Self::Render(command) => command.run(),
+            Self::Sweep(command) => command.run(),
+            Self::Ablate(command) => command.run(),
+            Self::Demo(command) => command.run(),
+            Self::Compare(command) => command.run(),
+            Self::Generate(command) => command.run(),
+            Self::Info(command) => command.run(),
+            Self::Devices(command) => command.run(),
+        }
+    }
+}
+
+/// Parses, runs, and turns a failure into its sentence and exit status.
+pub(crate) fn main() -> ExitCode {
+    let outcome = match Cli::try_parse() {
+        Ok(cli) => cli.command.run(),
+        Err(error) if !error.use_stderr() => {
+            // `--help` and `--version` arrive as errors too; a closed pipe is the reader's business.
+            let _ = error.print();
+            Ok(())
+        }
+        Err(error) => Err(error.into()),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            output::say(&failure);
+            failure.exit_code()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn clap_finds_no_fault_with_the_definitions() {
+        <super::Cli as clap::CommandFactory>::command().debug_assert();
+    }
+}

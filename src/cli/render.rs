@@ -1,0 +1,117 @@
+//! `rara render`: pictures of a scene.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::camera::{CameraArgs, View, Views};
+use super::clip::ClipArgs;
+use super::failure::Failure;
+use super::output::{self, Progress, say};
+use super::pending::PictureFile;
+use super::report::{self, Report};
+use super::session::Session;
+use super::settings::{DeviceArgs, SettingsArgs};
+use super::{scenes, values};
+
+/// Draw one picture, or one for each camera of a file
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  rara render scene.ply -o picture.png
+  rara render scene.ply -o cut.png --clip plane:0,0,1,-2 --mode exact
+  rara render scene.ply -o box.exr --clip box:0,0,0,1,1,2 --eye 3,-1,-4 --target 0,0,0
+  rara render body.ply organ.ply -o both.png --background 1,1,1
+  rara render scene.ply -o view_{}.png --cameras cameras.json --view all
+  rara render scene.ply --repeat 20 --json
+
+Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premultiplied.")]
+pub(super) struct Render {
+    /// Scene files (3DGS .ply); several are merged
+    #[arg(value_name = "SCENE", required = true)]
+    scenes: Vec<PathBuf>,
+    /// Where the picture goes, .png or .exr; {} becomes the camera's number. May be left out with --json
+    #[arg(short, long, value_name = "OUT", value_parser = values::picture_path, required_unless_present = "json")]
+    output: Option<PathBuf>,
+    /// Render N times, nothing carried over between them, and report the medians
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    repeat: u32,
+    /// Print the statistics as JSON to stdout
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    clip: ClipArgs,
+    #[command(flatten)]
+    settings: SettingsArgs,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+impl Render {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let settings = self.settings.meant()?;
+        let clip = self.clip.meant()?;
+        let views = self.camera.meant()?;
+        self.check_output(&views)?;
+
+        let scene = scenes::load(&self.scenes)?;
+        let views = views.of(&scene.gaussians)?;
+        let mut session = Session::open(&self.device.meant(), &scene.gaussians)?;
+        let mut frames = Vec::new();
+        let mut written = Vec::new();
+        let mut progress = Progress::new("rendering");
+        for (done, view) in views.iter().enumerate() {
+            progress.update(done as u64, views.len() as u64);
+            frames.push(session.frame(&view.camera, &clip, &settings, self.repeat)?);
+            if let Some(pattern) = &self.output {
+                let path = numbered(pattern, view.number);
+                session.last_picture()?.save(&path)?;
+                written.push(path);
+            }
+        }
+        drop(progress);
+
+        let size = views
+            .first()
+            .map_or((0, 0), |v| (v.camera.width, v.camera.height));
+        let report = Report::new(&session, &scene, size, self.settings.mode.name(), &frames);
+        let report = if self.camera.all() {
+            report.with_frames(frames)
+        } else {
+            report
+        };
+        if self.json {
+            return Ok(output::json(&report)?);
+        }
+        say(&report);
+        say(report::wrote(&written));
+        Ok(())
+    }
+
+    /// Says what is wrong with `-o` before any work is done.
+    fn check_output(&self, views: &Views) -> Result<(), Failure> {
+        let Some(pattern) = &self.output else {
+            return Ok(());
+        };
+        let first = match views {
+            Views::Given(views) => views.first().map_or(0, |v: &View| v.number),
+            Views::Framed { .. } => 0,
+        };
+        if self.camera.all() && numbered(pattern, 0) == numbered(pattern, 1) {
+            return Err(Failure::Usage(
+                "--view all makes several pictures: put {} where their number goes, as in -o view_{}.png".into(),
+            ));
+        }
+        Ok(output::check_file(&numbered(pattern, first))?)
+    }
+}
+
+/// `pattern` with the number in place of `{}`.
+fn numbered(pattern: &Path, number: usize) -> PathBuf {
+    match pattern.to_str() {
+        Some(text) => PathBuf::from(text.replace("{}", &number.to_string())),
+        None => pattern.to_owned(),
+    }
+}

@@ -1,0 +1,61 @@
+//! A device with a scene on it.
+
+use rara::{
+    Camera, Clip, FrameStats, Gaussians, Headless, HeadlessDesc, Picture, Result, Settings,
+};
+
+use super::report::{Combine, combine};
+
+/// A device with a scene on it.
+pub(super) struct Session {
+    headless: Headless,
+}
+
+impl Session {
+    pub(super) fn open(desc: &HeadlessDesc, scene: &Gaussians) -> Result<Self> {
+        let mut headless = Headless::new(desc)?;
+        headless.load(scene)?;
+        Ok(Self { headless })
+    }
+
+    /// Renders the frame `repeat` times; the statistics are the medians.
+    pub(super) fn frame(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+        repeat: u32,
+    ) -> Result<FrameStats> {
+        let frames = (0..repeat).map(|_| self.headless.render(camera, clip, settings));
+        Ok(combine(
+            &frames.collect::<Result<Vec<_>>>()?,
+            Combine::Median,
+        ))
+    }
+
+    /// One frame and its picture.
+    pub(super) fn picture(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<(Picture, FrameStats)> {
+        let stats = self.frame(camera, clip, settings, 1)?;
+        Ok((self.last_picture()?, stats))
+    }
+
+    /// The picture of the last frame.
+    pub(super) fn last_picture(&mut self) -> Result<Picture> {
+        self.headless.picture()
+    }
+
+    /// Device name, driver, and device memory in use.
+    pub(super) fn about(&self) -> (String, String, u64) {
+        let headless = &self.headless;
+        (
+            headless.device_name().to_owned(),
+            headless.driver().to_owned(),
+            headless.device_bytes(),
+        )
+    }
+}

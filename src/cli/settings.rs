@@ -1,0 +1,182 @@
+//! The flags that say how a frame is drawn, and on which device.
+
+use clap::{Args, ValueEnum};
+use rara::{Decay, HeadlessDesc, Miss, Mode, Raster, Settings};
+
+use super::failure::Failure;
+use super::{output, values};
+
+/// How to draw.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Drawing")]
+pub(super) struct SettingsArgs {
+    /// How Gaussians that the clip cuts are treated
+    #[arg(long, default_value = "exact")]
+    pub(super) mode: ModeArg,
+    /// What a cut splat's visible share scales [default: linear for rara, depth for exact]
+    #[arg(long, value_name = "LAW")]
+    decay: Option<DecayArg>,
+    /// Mode rara: the ellipsoid it traces, in standard deviations [default: 3]
+    #[arg(long, value_name = "K", value_parser = values::positive, allow_hyphen_values = true)]
+    sigma: Option<f32>,
+    /// Mode rara: what a cut splat keeps where the pixel's ray misses its ellipsoid [default: peak]
+    #[arg(long, value_name = "WHAT")]
+    miss: Option<MissArg>,
+    /// Ablation: treat every Gaussian as cut
+    #[arg(long)]
+    trace_all: bool,
+    #[command(flatten)]
+    look: LookArgs,
+}
+
+/// The settings that have nothing to do with clipping.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Drawing")]
+pub(super) struct LookArgs {
+    /// Background colour, each 0 to 1 [default: transparent]
+    #[arg(long, value_name = "R,G,B", value_parser = values::colour, allow_hyphen_values = true)]
+    background: Option<[f32; 3]>,
+    /// Highest spherical-harmonics degree to evaluate [default: the scene's own]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=3))]
+    sh_degree: Option<u32>,
+    /// How splats become pixels; the picture is the same
+    #[arg(long, value_name = "HOW", default_value = "auto")]
+    raster: RasterArg,
+}
+
+/// Which device, and how closely it is watched.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Device")]
+pub(super) struct DeviceArgs {
+    /// Device number or part of its name; `rara devices` lists them [default: the best]
+    #[arg(long, value_name = "N|NAME")]
+    device: Option<String>,
+    /// Load the Khronos validation layer with synchronisation checks; any message is an error
+    #[arg(long)]
+    validation: bool,
+}
+
+/// `--mode`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum ModeArg {
+    /// No clipping
+    None,
+    /// Keep or drop by the centre
+    Hard,
+    /// The RaRa Clipper paper's length ratio along each pixel's ray
+    Rara,
+    /// The exact visible share of the splat, low-pass included
+    Exact,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum DecayArg {
+    /// Alpha, as in the paper
+    Linear,
+    /// Optical depth: complementary halves rebuild the whole
+    Depth,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum MissArg {
+    /// Everything: the paper's text, with --sigma 1
+    Keep,
+    /// Nothing: the paper's released code
+    Drop,
+    /// All or nothing, by the side of the ray's densest point
+    Peak,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum RasterArg {
+    /// Mesh shader
+    Mesh,
+    /// Instanced quads
+    Quad,
+    /// Compute tiles (not implemented yet)
+    Tiles,
+    /// The faster one on the device
+    Auto,
+}
+
+impl ModeArg {
+    /// All modes, the simplest first.
+    pub(super) const ALL: [Self; 4] = [Self::None, Self::Hard, Self::Rara, Self::Exact];
+
+    /// The library's mode.
+    pub(super) fn mode(self) -> Mode {
+        match self {
+            Self::None => Mode::None,
+            Self::Hard => Mode::Hard,
+            Self::Rara => Mode::Rara,
+            Self::Exact => Mode::Exact,
+        }
+    }
+
+    /// As typed and as in the statistics.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Hard => "hard",
+            Self::Rara => "rara",
+            Self::Exact => "exact",
+        }
+    }
+}
+
+impl SettingsArgs {
+    /// The settings that were meant.
+    pub(super) fn meant(&self) -> Result<Settings, Failure> {
+        if self.mode != ModeArg::Rara && (self.sigma.is_some() || self.miss.is_some()) {
+            output::say("note: --sigma and --miss change nothing without --mode rara");
+        }
+        let defaults = self.look.meant()?;
+        Ok(Settings {
+            mode: self.mode.mode(),
+            decay: self.decay.map(|law| match law {
+                DecayArg::Linear => Decay::Linear,
+                DecayArg::Depth => Decay::Depth,
+            }),
+            sigma: self.sigma.unwrap_or(defaults.sigma),
+            miss: self.miss.map_or(defaults.miss, |miss| match miss {
+                MissArg::Keep => Miss::Keep,
+                MissArg::Drop => Miss::Drop,
+                MissArg::Peak => Miss::Peak,
+            }),
+            trace_all: self.trace_all,
+            ..defaults
+        })
+    }
+}
+
+impl LookArgs {
+    /// The default settings with this look.
+    pub(super) fn meant(&self) -> Result<Settings, Failure> {
+        let raster = match self.raster {
+            RasterArg::Auto => Raster::Auto,
+            RasterArg::Mesh => Raster::Mesh,
+            RasterArg::Quad => Raster::Quad,
+            RasterArg::Tiles => {
+                return Err(Failure::Usage(
+                    "--raster tiles is not implemented yet; use mesh, quad or auto".into(),
+                ));
+            }
+        };
+        Ok(Settings {
+            background: self.background,
+            sh_degree: self.sh_degree,
+            raster,
+            ..Settings::default()
+        })
+    }
+}
+
+impl DeviceArgs {
+    /// What to open.
+    pub(super) fn meant(&self) -> HeadlessDesc {
+        HeadlessDesc {
+            device: self.device.clone(),
+            validation: self.validation,
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! A contact sheet: pictures side by side, a label over each, and the middle of each magnified below.
+
+use rara::Picture;
+
+/// Pixels between two pictures.
+const GAP: u32 = 4;
+/// Colour of what is between the pictures.
+const MARGIN: [f32; 4] = [0.25, 0.25, 0.25, 1.0];
+const INK: [f32; 4] = [1.0; 4];
+/// How far the lower row is magnified.
+const ZOOM: u32 = 6;
+
+/// Pictures of one size with their labels, and under each its middle, magnified.
+pub(super) fn sheet(pictures: &[(&str, Picture)]) -> Picture {
+    let Some((_, first)) = pictures.first() else {
+        return Picture::default();
+    };
+    let (width, height) = (first.width, first.height);
+    let scale = (width / 200).max(1);
+    let band = 11 * scale;
+    let count = pictures.len() as u32;
+    let mut sheet = Picture::filled(count * (width + GAP) - GAP, band + 2 * height + GAP, MARGIN);
+    for (column, (label, picture)) in (0..).zip(pictures) {
+        let left = column * (width + GAP);
+        write(&mut sheet, label, left + 2 * scale, 2 * scale, scale);
+        let (from_x, from_y) = ((width - width / ZOOM) / 2, (height - height / ZOOM) / 2);
+        for y in 0..height {
+            for x in 0..width {
+                set(&mut sheet, left + x, band + y, picture.at(x, y));
+                let near = picture.at(from_x + x / ZOOM, from_y + y / ZOOM);
+                set(&mut sheet, left + x, band + height + GAP + y, near);
+            }
+        }
+    }
+    sheet
+}
+
+fn set(picture: &mut Picture, x: u32, y: u32, pixel: [f32; 4]) {
+    if x < picture.width && y < picture.height {
+        picture.pixels[y as usize * picture.width as usize + x as usize] = pixel;
+    }
+}
+
+/// Writes `text` with its top left corner at (x, y); each dot is `scale` pixels wide.
+fn write(picture: &mut Picture, text: &str, x: u32, y: u32, scale: u32) {
+    for (place, letter) in (0..).zip(text.chars()) {
+        for (row, dots) in (0..).zip(glyph(letter)) {
+            for column in (0..5).filter(|column| dots >> (4 - column) & 1 == 1) {
+                for dot in 0..scale * scale {
+                    let (dx, dy) = (dot % scale, dot / scale);
+                    set(
+                        picture,
+                        x + (6 * place + column) * scale + dx,
+                        y + row * scale + dy,
+                        INK,
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// A letter's rows from the top, five dots each; the letters that the names of the modes need.
+fn glyph(letter: char) -> [u8; 7] {
+    match letter {
+        'a' => [0, 0, 0b01110, 0b00001, 0b01111, 0b10001, 0b01111],
+        'c' => [0, 0, 0b01110, 0b10001, 0b10000, 0b10001, 0b01110],
+        'd' => [
+            0b00001, 0b00001, 0b01101, 0b10011, 0b10001, 0b10011, 0b01101,
+        ],
+        'e' => [0, 0, 0b01110, 0b10001, 0b11111, 0b10000, 0b01110],
+        'h' => [
+            0b10000, 0b10000, 0b10110, 0b11001, 0b10001, 0b10001, 0b10001,
+        ],
+        'n' => [0, 0, 0b10110, 0b11001, 0b10001, 0b10001, 0b10001],
+        'o' => [0, 0, 0b01110, 0b10001, 0b10001, 0b10001, 0b01110],
+        'r' => [0, 0, 0b10110, 0b11001, 0b10000, 0b10000, 0b10000],
+        't' => [
+            0b01000, 0b01000, 0b11110, 0b01000, 0b01000, 0b01001, 0b00110,
+        ],
+        'x' => [0, 0, 0b10001, 0b01010, 0b00100, 0b01010, 0b10001],
+        _ => [0; 7],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::settings::ModeArg;
+    use super::*;
+
+    #[test]
+    fn every_mode_can_be_labelled() {
+        let letters = ModeArg::ALL.iter().flat_map(|mode| mode.name().chars());
+        for letter in letters {
+            assert_ne!(glyph(letter), [0; 7], "{letter}");
+        }
+    }
+
+    #[test]
+    fn pictures_stand_side_by_side_and_magnified_below() {
+        let mut red = Picture::filled(12, 12, [1.0, 0.0, 0.0, 1.0]);
+        set(&mut red, 5, 5, [0.0, 1.0, 0.0, 1.0]);
+        let blue = Picture::filled(12, 12, [0.0, 0.0, 1.0, 1.0]);
+        let made = sheet(&[("x", red), ("o", blue)]);
+        assert_eq!((made.width, made.height), (28, 11 + 12 + 4 + 12));
+        assert_eq!(made.at(0, 11), [1.0, 0.0, 0.0, 1.0]);
+        assert_eq!(made.at(12, 11), MARGIN);
+        assert_eq!(made.at(16, 11), [0.0, 0.0, 1.0, 1.0]);
+        assert_eq!(made.at(0, 27), [0.0, 1.0, 0.0, 1.0]);
+        assert_eq!(made.at(6, 27), [1.0, 0.0, 0.0, 1.0]);
+    }
+}

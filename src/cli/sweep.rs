@@ -1,0 +1,124 @@
+//! `rara sweep`: the camera stands still and one plane moves across the scene.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use glam::DVec3;
+use rara::{Clip, ClipOp, Plane};
+
+use super::camera::CameraArgs;
+use super::failure::Failure;
+use super::output::{self, Progress, say};
+use super::pending::PictureFile;
+use super::pending::scene::extent_along;
+use super::report::{self, Report};
+use super::session::Session;
+use super::settings::{DeviceArgs, SettingsArgs};
+use super::{scenes, values};
+
+/// Move a clip plane across the scene in equal steps
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  rara sweep scene.ply --clip-normal 0,0,1 -o frames
+  rara sweep scene.ply --clip-normal 1,0,0 --frames 30 --mode hard --json
+
+The first frame keeps the whole of the scene's robust bounds, the last one nothing of them. Pictures are
+frame_000.png and so on. The JSON has the frames, their medians on top and their means under \"mean\".")]
+pub(super) struct Sweep {
+    /// Scene files (3DGS .ply); several are merged
+    #[arg(value_name = "SCENE", required = true)]
+    scenes: Vec<PathBuf>,
+    /// The moving plane's normal; it points to the side that stays
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    clip_normal: DVec3,
+    /// Number of frames
+    #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    frames: u32,
+    /// Folder for the pictures; made unless it is there
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Render each frame N times, nothing carried over between them, and take the medians
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    repeat: u32,
+    /// Print the statistics as JSON to stdout
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    settings: SettingsArgs,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+impl Sweep {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let settings = self.settings.meant()?;
+        let normal = Plane::new(self.clip_normal, 0.0)
+            .map_err(Failure::usage)?
+            .normal();
+        if self.camera.all() {
+            return Err(Failure::Usage(
+                "a sweep has one camera: give --view a number or a name".into(),
+            ));
+        }
+        let views = self.camera.meant()?;
+        if let Some(folder) = &self.output {
+            output::make_folder(folder)?;
+        }
+
+        let scene = scenes::load(&self.scenes)?;
+        let camera = views.of(&scene.gaussians)?.remove(0).camera;
+        let range = extent_along(&scene.gaussians, normal);
+        let mut session = Session::open(&self.device.meant(), &scene.gaussians)?;
+        let mut frames = Vec::new();
+        let mut written = Vec::new();
+        let mut progress = Progress::new("sweeping");
+        for index in 0..self.frames {
+            progress.update(index.into(), self.frames.into());
+            let plane = Plane::new(normal, -position(range, index, self.frames))?;
+            let clip = Clip {
+                planes: vec![plane],
+                op: ClipOp::And,
+            };
+            frames.push(session.frame(&camera, &clip, &settings, self.repeat)?);
+            if let Some(folder) = &self.output {
+                let path = folder.join(format!("frame_{index:03}.png"));
+                session.last_picture()?.save(&path)?;
+                written.push(path);
+            }
+        }
+        drop(progress);
+
+        let size = (camera.width, camera.height);
+        let report = Report::new(&session, &scene, size, self.settings.mode.name(), &frames);
+        let report = report.with_frames(frames).with_mean();
+        if self.json {
+            return Ok(output::json(&report)?);
+        }
+        say(&report);
+        say(report::wrote(&written));
+        Ok(())
+    }
+}
+
+/// Where the plane of one frame stands: both ends included, the middle when there is one frame only.
+fn position((from, to): (f64, f64), index: u32, frames: u32) -> f64 {
+    match frames {
+        1 => (from + to) / 2.0,
+        _ => from + (to - from) * f64::from(index) / f64::from(frames - 1),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_equal_and_reach_both_ends() {
+        let positions = [0, 1, 2, 3, 4].map(|i| position((-1.0, 3.0), i, 5));
+        assert_eq!(positions, [-1.0, 0.0, 1.0, 2.0, 3.0]);
+        assert_eq!(position((-1.0, 3.0), 0, 1), 1.0);
+    }
+}

@@ -1,0 +1,85 @@
+//! The `rara` command as people and scripts meet it: texts, exit statuses, documents. Nothing here is timed.
+
+mod refusals;
+mod work;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// Runs `rara` with these arguments.
+fn rara<A: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = A>) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rara"));
+    command
+        .args(arguments)
+        .output()
+        .expect("the rara binary runs")
+}
+
+/// Runs `rara` with a line's words, `@` standing for `folder`.
+fn line(folder: &Path, words: &str) -> Output {
+    let folder = folder.to_str().expect("the test folder's name is text");
+    rara(
+        words
+            .split_whitespace()
+            .map(|word| word.replace('@', folder)),
+    )
+}
+
+/// A folder of the test's own, empty.
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("cli")
+        .join(test);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("the target folder is writable");
+    folder
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("messages are UTF-8")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("documents are UTF-8")
+}
+
+/// Asserts success, with what went wrong if not.
+fn done(output: Output) -> Output {
+    assert!(
+        output.status.success(),
+        "{:?}: {}",
+        output.status,
+        stderr(&output)
+    );
+    output
+}
+
+/// The one JSON document on stdout.
+fn document(output: Output) -> Value {
+    let output = done(output);
+    serde_json::from_str(&stdout(&output)).expect("stdout is one JSON document and nothing else")
+}
+
+/// Asserts a failure with this status, nothing on stdout, and one line that says `what`.
+#[track_caller]
+fn refused(output: &Output, status: i32, what: &str) {
+    let message = stderr(output);
+    assert_eq!(output.status.code(), Some(status), "{message}");
+    assert!(output.stdout.is_empty());
+    assert!(message.starts_with("rara: "), "{message}");
+    assert!(message.contains(what), "'{what}' is not in: {message}");
+    assert_eq!(message.trim_end().lines().count(), 1, "one line: {message}");
+    assert!(!message.contains("panicked"), "{message}");
+}
+
+/// A small scene in `folder`.
+fn scene(folder: &Path) -> PathBuf {
+    done(line(
+        folder,
+        "generate general -n 2000 --seed 3 -o @/scene.ply",
+    ));
+    folder.join("scene.ply")
+}

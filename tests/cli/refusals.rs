@@ -1,0 +1,253 @@
+//! Help texts, wrong command lines, and files and places that will not do.
+
+use std::fs;
+
+use super::{done, folder, line, rara, refused, stderr, stdout};
+
+#[test]
+fn every_command_has_help_with_an_example() {
+    let commands = [
+        "render", "sweep", "ablate", "demo", "compare", "generate", "info", "devices",
+    ];
+    let overview = stdout(&done(rara(["--help"])));
+    for command in commands {
+        assert!(overview.contains(&format!("\n  {command} ")), "{command}");
+        let help = stdout(&done(rara([command, "--help"])));
+        assert!(
+            help.contains("Usage: rara") && help.contains("Example"),
+            "{command}"
+        );
+        assert!(help.contains(&format!("  rara {command}")), "{command}");
+    }
+    assert_eq!(
+        stdout(&done(rara(["--version"]))),
+        concat!("rara ", env!("CARGO_PKG_VERSION"), "\n")
+    );
+}
+
+#[test]
+fn render_takes_the_flags_that_scripts_rely_on() {
+    let help = stdout(&done(rara(["render", "--help"])));
+    for flag in [
+        "--output",
+        "--eye",
+        "--target",
+        "--up",
+        "--fov-y",
+        "--cameras",
+        "--view",
+        "--camera",
+        "--size",
+        "--clip",
+        "--clip-op",
+        "--mode",
+        "--decay",
+        "--sigma",
+        "--miss",
+        "--trace-all",
+        "--background",
+        "--sh-degree",
+        "--raster",
+        "--device",
+        "--validation",
+        "--repeat",
+        "--json",
+    ] {
+        assert!(
+            help.contains(&format!("{flag} ")) || help.contains(&format!("{flag}\n")),
+            "{flag}"
+        );
+    }
+}
+
+#[test]
+fn typing_nothing_shows_the_help_and_is_an_error() {
+    let output = rara([] as [&str; 0]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(output.stdout.is_empty() && stderr(&output).contains("Usage: rara"));
+}
+
+#[test]
+fn a_wrong_command_line_is_status_2_and_one_line() {
+    let here = folder("usage");
+    for (words, what) in [
+        ("frobnicate", "frobnicate"),
+        ("render", "SCENE"),
+        ("render x.ply", "--output"),
+        ("render x.ply -o a.png --frob", "--frob"),
+        ("render x.ply -o a.jpg", ".png"),
+        (
+            "render x.ply -o a.png --mode soft",
+            "none, hard, rara, exact",
+        ),
+        ("render x.ply -o a.png --decay square", "linear, depth"),
+        ("render x.ply -o a.png --miss maybe", "keep, drop, peak"),
+        ("render x.ply -o a.png --sigma -1", "above zero"),
+        ("render x.ply -o a.png --sigma nan", "above zero"),
+        ("render x.ply -o a.png --eye 1,2,3", "--target"),
+        (
+            "render x.ply -o a.png --eye 1,2 --target 0,0,0",
+            "3 numbers",
+        ),
+        (
+            "render x.ply -o a.png --eye 1,2,x --target 0,0,0",
+            "'x' is not a finite number",
+        ),
+        (
+            "render x.ply -o a.png --eye 1,2,3 --target 1,2,3",
+            "same point",
+        ),
+        ("render x.ply -o a.png --eye 0,1,0 --target 0,0,0", "up"),
+        (
+            "render x.ply -o a.png --eye 0,0,1 --target 0,0,0 --fov-y 180",
+            "180",
+        ),
+        (
+            "render x.ply -o a.png --eye 0,0,1 --target 0,0,0 --camera c.json",
+            "--camera",
+        ),
+        (
+            "render x.ply -o a.png --cameras c.json --camera c.json",
+            "--camera",
+        ),
+        ("render x.ply -o a.png --view 1", "--cameras"),
+        ("render x.ply -o a.png --size 100", "1024x768"),
+        ("render x.ply -o a.png --size 0x100", "0x100"),
+        ("render x.ply -o a.png --size 100000x1", "100000x1"),
+        (
+            "render x.ply -o a.png --clip plane:0,0,0,1",
+            "non-zero normal",
+        ),
+        ("render x.ply -o a.png --clip plane:inf,0,0,1", "finite"),
+        ("render x.ply -o a.png --clip plane:1,0,0", "4 numbers"),
+        (
+            "render x.ply -o a.png --clip ball:1,0,0",
+            "'ball' is not a shape",
+        ),
+        (
+            "render x.ply -o a.png --clip sphere:0,0,0,1",
+            "not implemented yet",
+        ),
+        (
+            "render x.ply -o a.png --clip !cylinder:0,0,0,1,0,0,1",
+            "not implemented yet",
+        ),
+        (
+            "render x.ply -o a.png --clip box:0,0,0,1,1,-1",
+            "above zero",
+        ),
+        (
+            "render x.ply -o a.png --clip !box:0,0,0,1,1,1 --clip plane:1,0,0,0",
+            "cannot be combined",
+        ),
+        (
+            "render x.ply -o a.png --clip box:0,0,0,1,1,1 --clip plane:1,0,0,0 --clip-op or",
+            "cannot be combined",
+        ),
+        ("render x.ply -o a.png --clip-op xor", "and, or"),
+        (
+            "render x.ply -o a.png --raster tiles",
+            "not implemented yet",
+        ),
+        (
+            "render x.ply -o a.png --background 1,2,3",
+            "between 0 and 1",
+        ),
+        ("render x.ply -o a.png --sh-degree 4", "4"),
+        ("render x.ply -o a.png --repeat 0", "0"),
+        ("sweep x.ply", "--clip-normal"),
+        ("sweep x.ply --clip-normal 0,0,0", "zero"),
+        ("sweep x.ply --clip-normal 1,0,0 --frames 0", "0"),
+        ("generate blob -o a.ply", "general, strands, layers"),
+        ("generate general -o a.txt", ".ply"),
+        ("compare a.png", "B"),
+    ] {
+        refused(&line(&here, words), 2, what);
+    }
+    assert_eq!(
+        fs::read_dir(&here).unwrap().count(),
+        0,
+        "nothing was written"
+    );
+}
+
+#[test]
+fn negative_numbers_are_values() {
+    // The scene is missing, which is only found out once the command line has been understood.
+    let output = rara([
+        "render",
+        "none.ply",
+        "--json",
+        "--eye",
+        "-1,2,-3",
+        "--target",
+        "-1,-1,-1",
+        "--up",
+        "-1,-1,0",
+        "--clip",
+        "plane:-1,-2,-3,-4",
+    ]);
+    refused(&output, 1, "none.ply");
+    refused(
+        &rara(["sweep", "none.ply", "--clip-normal", "-1,0,0", "--json"]),
+        1,
+        "none.ply",
+    );
+}
+
+#[test]
+fn places_that_cannot_be_written_are_found_before_the_work() {
+    let here = folder("places");
+    fs::write(here.join("file"), "").unwrap();
+    fs::create_dir(here.join("folder.png")).unwrap();
+    // None of the scenes exists either; that the message is about the place shows that it was looked at first.
+    refused(
+        &line(&here, "render none.ply -o @/no/such/a.png"),
+        1,
+        "does not exist",
+    );
+    refused(
+        &line(&here, "render none.ply -o @/file/a.png"),
+        1,
+        "not a folder",
+    );
+    refused(
+        &line(&here, "render none.ply -o @/folder.png"),
+        1,
+        "this is a folder",
+    );
+    refused(
+        &line(&here, "sweep none.ply --clip-normal 1,0,0 -o @/file"),
+        1,
+        "not a folder",
+    );
+    refused(&line(&here, "demo none.ply -o @/no/such"), 1, "no/such");
+    refused(
+        &line(&here, "generate general -o @/no/such/a.ply"),
+        1,
+        "does not exist",
+    );
+}
+
+#[test]
+fn files_that_cannot_be_read_are_status_1_and_named() {
+    let here = folder("unreadable");
+    fs::write(
+        here.join("bad.ply"),
+        "ply\nformat binary_little_endian 1.0\nelement vertex 5\n",
+    )
+    .unwrap();
+    fs::write(here.join("bad.json"), "{").unwrap();
+    fs::write(here.join("bad.png"), "no picture").unwrap();
+    for (words, what) in [
+        ("info @/none.ply", "none.ply"),
+        ("info @/bad.ply", "bad.ply"),
+        ("render @/bad.ply --json", "bad.ply"),
+        ("render @/bad.ply --json --camera @/none.json", "none.json"),
+        ("render @/bad.ply --json --cameras @/bad.json", "bad.json"),
+        ("compare @/none.png @/none.png", "none.png"),
+        ("compare @/bad.png @/bad.png", "bad.png"),
+    ] {
+        refused(&line(&here, words), 1, what);
+    }
+}

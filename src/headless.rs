@@ -47,12 +47,12 @@ impl Headless {
     /// Opens the device.
     pub fn new(desc: &HeadlessDesc) -> Result<Self> {
         let selector = desc.device.clone();
-        let device = Device::headless(&DeviceDesc { selector, validation: desc.validation, application_name: "rara" })?;
+        let device = Device::headless(&DeviceDesc { selector, validation: desc.validation, application_name: "rara".into() })?;
         // Under validation, buffers are bound so that the layer's synchronisation checks can see them.
         let bindings = if desc.validation { Bindings::Bound } else { Bindings::Address };
         let renderer = Renderer::new(
             &device,
-            RendererDesc { color_format: FORMAT, bindings, pipeline_cache: vk::PipelineCache::null(), timing: true },
+            RendererDesc { color_format: FORMAT, bindings, timing: true },
         )?;
         Ok(Self { renderer, scene: None, target: None, device })
     }
@@ -92,7 +92,7 @@ impl Headless {
         let extent = vk::Extent2D { width: camera.width, height: camera.height };
         if self.target.as_ref().is_none_or(|target| target.image.extent() != extent) {
             self.target = None;
-            let image = self.device.create_image(&ImageDesc { name: "target", extent, format: FORMAT })?;
+            let image = self.device.create_image(&ImageDesc { name: "target", width: camera.width, height: camera.height, format: FORMAT })?;
             self.target = Some(Target { image, readback: None });
         }
         let Some(target) = &self.target else { unreachable!("created above") };

@@ -23,6 +23,7 @@ pub use camera::Camera;
 pub use clip::{Clip, ClipOp, Plane};
 pub use error::{Error, Result};
 pub use headless::{Headless, HeadlessDesc};
+pub use passes::SceneBuffers;
 pub use picture::Picture;
 pub use renderer::{Renderer, RendererDesc};
 pub use scene::Gaussians;

@@ -5,7 +5,7 @@ use ash::vk;
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
-use crate::gpu::{Bindings, Device, Recorder, Timer};
+use crate::gpu::{Bindings, Device, Drawer, Recorder, Timer};
 use crate::passes::{self, Buffers, Context, Plan, SceneBuffers, SceneFacts, Stages};
 use crate::settings::{Raster, Settings};
 use crate::stats::{Counts, PassTime};
@@ -19,8 +19,6 @@ pub struct RendererDesc {
     /// Whether buffers are reached by address (fast) or bound (the validation layer can watch them). With
     /// [`Bindings::Bound`] a frame whose buffers exceed the device's binding size still uses addresses.
     pub bindings: Bindings,
-    /// The host's pipeline cache, or null.
-    pub pipeline_cache: vk::PipelineCache,
     /// Whether to take timestamps around the stages.
     pub timing: bool,
 }
@@ -58,12 +56,13 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<()> {
         let support = self.device.support();
-        let sort_runs = if self.device.is_cpu() { SORT_RUNS_CPU } else { SORT_RUNS_GPU };
+        let is_cpu = self.device.info().kind == vk::PhysicalDeviceType::CPU;
+        let sort_runs = if is_cpu { SORT_RUNS_CPU } else { SORT_RUNS_GPU };
         let facts = SceneFacts { gaussians: scene.count, sh_degree: scene.sh_degree, sort_runs };
         let plan = Plan::new(facts, camera, clip, settings)?;
         self.mesh = match settings.raster {
             // On CPU drivers a mesh shader costs several times a quad's vertices; see the README's measurements.
-            Raster::Auto => support.mesh_shader && !self.device.is_cpu(),
+            Raster::Auto => support.mesh_shader && !is_cpu,
             Raster::Mesh if !support.mesh_shader => {
                 return Err(Error::Device("this device has no mesh shaders (VK_EXT_mesh_shader); use --raster quad".into()));
             }
@@ -75,12 +74,7 @@ impl Renderer {
             Bindings::Bound if support.push_descriptor && largest <= support.max_storage_buffer_range => Bindings::Bound,
             Bindings::Bound | Bindings::Address => Bindings::Address,
         };
-        let context = Context {
-            device: &self.device,
-            bindings,
-            color_format: self.desc.color_format,
-            cache: self.desc.pipeline_cache,
-        };
+        let context = Context { device: &self.device, bindings, color_format: self.desc.color_format };
         if self.stages.as_ref().is_none_or(|(have, _)| *have != bindings) {
             self.stages = Some((bindings, Stages::new(&context)?));
         }
@@ -102,14 +96,14 @@ impl Renderer {
     /// `cmd` is in the recording state, outside a rendering scope, on a queue family with compute and graphics, and
     /// `scene` is the one given to [`configure`](Self::configure) and lives until the commands have executed.
     pub unsafe fn prepare(&mut self, cmd: vk::CommandBuffer, scene: &SceneBuffers) {
-        let (Some((bindings, stages)), Some(buffers), Some(plan)) = (&self.stages, &self.buffers, &self.plan) else {
+        let (Some((_, stages)), Some(buffers), Some(plan)) = (&self.stages, &self.buffers, &self.plan) else {
             panic!("Renderer::prepare needs a successful configure() before it");
         };
         if plan.gaussians == 0 {
             return;
         }
         // SAFETY: the caller promises that `cmd` is recording, outside a rendering scope.
-        let mut recorder = unsafe { Recorder::begin(&self.device, cmd, *bindings, self.timer.as_mut()) };
+        let mut recorder = unsafe { Recorder::begin(&self.device, cmd, self.timer.as_mut()) };
         passes::record(&mut recorder, stages, scene, buffers, plan);
     }
 
@@ -128,7 +122,8 @@ impl Renderer {
         }
         let splat = stages.splat(plan, self.mesh);
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
-        unsafe { self.device.timed(cmd, "splat", self.timer.as_mut(), || splat.record(cmd, buffers, origin)) };
+        let mut drawer = unsafe { Drawer::new(&self.device, cmd, self.timer.as_mut()) };
+        drawer.pass("splat", |drawer| splat.record(drawer, buffers, origin));
     }
 
     /// The stages that the configured frame does not need.

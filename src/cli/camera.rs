@@ -7,8 +7,7 @@ use glam::DVec3;
 use rara::{Camera, Gaussians};
 
 use super::failure::Failure;
-use super::pending::Framing;
-use super::pending::{camera_files, scene::Bounds};
+use rara::{camera_files, scene::Bounds};
 use super::values;
 
 /// Where the camera stands. Without any of these it frames the scene.

@@ -8,8 +8,7 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::output::{self, say};
-use super::pending::PictureFile;
-use super::pending::measure::{self, Comparison};
+use rara::measure::{self, Comparison};
 
 /// Measure how far two pictures are apart
 #[derive(Debug, Args)]

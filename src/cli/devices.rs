@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::output::{self, say};
-use super::pending::gpu::list_devices;
+use rara::gpu::list_devices;
 
 /// List the Vulkan devices, and why one will not do
 #[derive(Debug, Args)]

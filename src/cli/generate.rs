@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::failure::Failure;
 use super::output::{self, grouped, say};
-use super::pending::scene;
+use rara::scene;
 
 /// Write a made-up scene
 #[derive(Debug, Args)]

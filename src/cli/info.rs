@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::output::{self, grouped, say};
-use super::pending::scene::Bounds;
+use rara::scene::Bounds;
 use super::scenes;
 
 /// Tell what stands in a scene

@@ -13,7 +13,6 @@ mod failure;
 mod generate;
 mod info;
 mod output;
-mod pending;
 mod render;
 mod report;
 mod scenes;

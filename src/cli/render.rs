@@ -8,7 +8,6 @@ use super::camera::{CameraArgs, View, Views};
 use super::clip::ClipArgs;
 use super::failure::Failure;
 use super::output::{self, Progress, say};
-use super::pending::PictureFile;
 use super::report::{self, Report};
 use super::session::Session;
 use super::settings::{DeviceArgs, SettingsArgs};

@@ -6,7 +6,7 @@ use rara::Gaussians;
 
 use super::failure::Failure;
 use super::output::{Progress, say};
-use super::pending::scene;
+use rara::scene;
 
 /// One or more scene files, merged.
 pub(super) struct Scene {

@@ -15,7 +15,7 @@ pub(crate) struct Classify {
 
 impl Classify {
     /// With `clip` false the shader holds no clip code.
-    pub(crate) fn new(context: &Context<'_> {
+    pub(crate) fn new(context: &Context<'_>, clip: bool) -> Result<Self> {
         Ok(Self { pipeline: context.compute("classify", &shaders::CLASSIFY_COMP, &[(0, clip.into())])? })
     }
 

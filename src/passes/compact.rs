@@ -14,7 +14,7 @@ pub(crate) struct Compact {
 }
 
 impl Compact {
-    pub(crate) fn new(context: &Context<'_> {
+    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
         Ok(Self {
             scan: context.compute("compact_scan", &shaders::COMPACT_SCAN_COMP, &[])?,
             compact: context.compute("compact", &shaders::COMPACT_COMP, &[])?,

@@ -11,7 +11,6 @@ pub(crate) struct Context<'a> {
     pub(crate) device: &'a Device,
     pub(crate) bindings: Bindings,
     pub(crate) color_format: vk::Format,
-    pub(crate) cache: vk::PipelineCache,
 }
 
 impl Context<'_> {
@@ -21,8 +20,8 @@ impl Context<'_> {
         shader: &'static Shader,
         constants: &[(u32, u32)],
     ) -> Result<ComputePipeline> {
-        let (bindings, cache) = (self.bindings, self.cache);
-        ComputePipeline::new(self.device, &ComputeDesc { name, shader, constants, bindings, cache })
+        let bindings = self.bindings;
+        ComputePipeline::new(self.device, &ComputeDesc { name, shader, constants, bindings })
     }
 
     pub(crate) fn graphics(
@@ -34,9 +33,9 @@ impl Context<'_> {
         blend: vk::PipelineColorBlendAttachmentState,
     ) -> Result<GraphicsPipeline> {
         let topology = vk::PrimitiveTopology::TRIANGLE_STRIP;
-        let (bindings, cache, color_format) = (self.bindings, self.cache, self.color_format);
+        let (bindings, color_format) = (self.bindings, self.color_format);
         let blend = Some(blend);
-        let desc = GraphicsDesc { name, front, fragment, constants, color_format, blend, topology, bindings, cache };
+        let desc = GraphicsDesc { name, front, fragment, constants, color_format, blend, topology, bindings };
         GraphicsPipeline::new(self.device, &desc)
     }
 }

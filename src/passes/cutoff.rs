@@ -16,7 +16,7 @@ pub(crate) struct Cutoff {
 }
 
 impl Cutoff {
-    pub(crate) fn new(context: &Context<'_> {
+    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
         Ok(Self { pipeline: context.compute("cutoff", &shaders::CUTOFF_COMP, &[])? })
     }
 

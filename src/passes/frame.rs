@@ -27,6 +27,7 @@ pub(crate) fn record(recorder: &mut Recorder<'_>, stages: &Stages, scene: &Scene
         recorder.pass("sort", |r| stages.sort.record(r, b));
     }
 
-    recorder.copy(&b.counts, &b.counts_readback);
+    recorder.copy(&b.counts, &b.counts_readback, &[ash::vk::BufferCopy::default().size(b.counts.size())]);
+    recorder.ready_for_host(&[&b.counts_readback]);
     recorder.ready_to_draw(&[&b.frame, &b.counts, &b.splats, &b.order[0], &b.cuts]);
 }

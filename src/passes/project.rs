@@ -16,7 +16,7 @@ pub(crate) struct Project {
 }
 
 impl Project {
-    pub(crate) fn new(context: &Context<'_> {
+    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
         Ok(Self { pipeline: context.compute("project", &shaders::PROJECT_COMP, &[])? })
     }
 

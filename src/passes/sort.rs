@@ -22,7 +22,7 @@ pub(crate) struct Sort {
 }
 
 impl Sort {
-    pub(crate) fn new(context: &Context<'_> {
+    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
         Ok(Self {
             count: context.compute("sort_count", &shaders::SORT_COUNT_COMP, &[])?,
             scan: context.compute("sort_scan", &shaders::SORT_SCAN_COMP, &[])?,

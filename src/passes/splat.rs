@@ -6,7 +6,7 @@ use std::mem::offset_of;
 use ash::vk;
 
 use crate::error::Result;
-use crate::gpu::{GraphicsPipeline, draw_indirect, draw_mesh_tasks_indirect};
+use crate::gpu::{Drawer, GraphicsPipeline};
 use crate::passes::buffers::Buffers;
 use crate::passes::context::Context;
 use crate::passes::shaders;
@@ -39,15 +39,15 @@ impl Splat {
     }
 
     /// Draws inside the host's rendering scope; `origin` is where its viewport begins, px.
-    pub(crate) fn record(&self, cmd: vk::CommandBuffer, b: &Buffers, origin: [f32; 2]) {
+    pub(crate) fn record(&self, drawer: &mut Drawer<'_>, b: &Buffers, origin: [f32; 2]) {
         let buffers = [&b.frame, &b.counts, &b.splats, &b.order[0], &b.cuts];
         let params = origin.map(f32::to_bits);
         if self.mesh {
             let at = offset_of!(FrameCounts, mesh_groups) as u64;
-            draw_mesh_tasks_indirect(cmd, &self.pipeline, &buffers, &params, &b.counts, at);
+            drawer.draw_mesh_tasks_indirect(&self.pipeline, &buffers, &params, &b.counts, at);
         } else {
             let at = offset_of!(FrameCounts, draw) as u64;
-            draw_indirect(cmd, &self.pipeline, &buffers, &params, &b.counts, at);
+            drawer.draw_indirect(&self.pipeline, &buffers, &params, &b.counts, at);
         }
     }
 }

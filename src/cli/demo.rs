@@ -4,13 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rara::{Camera, Clip, ClipOp, Decay, ExactForm, FrameStats, Mode, Picture, Plane, Settings};
+use rara::{measure, reference, scene};
 
 use super::camera::CameraArgs;
 use super::compare::Measures;
 use super::failure::Failure;
 use super::output::{self, grouped, say};
-use rara::scene::{self, Bounds};
-use rara::{measure, reference};
 use super::scenes::{self, Scene};
 use super::session::Session;
 use super::settings::{DeviceArgs, LookArgs, ModeArg};
@@ -23,7 +22,8 @@ Examples:
   rara demo -o out
   rara demo scene.ply -o out --cameras cameras.json --view 3
 
-Writes none.png, hard.png, rara.png, exact.png and sheet.png. \"own\" compares the picture with the same mode computed
+Writes none.png, hard.png, rara.png, exact.png and sheet.png, which also magnifies the piece in which hard and exact
+differ most. \"own\" compares the picture with the same mode computed
 in double precision on the CPU; \"truth\" with the exact cut.")]
 pub(super) struct Demo {
     /// Scene files (3DGS .ply); several are merged. Without any, a made-up scene
@@ -98,7 +98,9 @@ impl Demo {
             .iter()
             .map(|s| (s.mode.name(), s.picture.clone()))
             .collect();
-        sheet::sheet(&labelled).save(&self.output.join("sheet.png"))?;
+        let [_, hard, _, exact] = [0, 1, 2, 3].map(|index| &shots[index].picture);
+        let corner = sheet::where_they_differ(hard, exact);
+        sheet::sheet(&labelled, corner).save(&self.output.join("sheet.png"))?;
         print_frames(&shots);
         if !self.no_reference {
             print_errors(&shots, &scene, &camera, &clip)?;
@@ -118,10 +120,13 @@ fn made_up() -> Scene {
     }
 }
 
-/// A plane through the scene's middle that shows the camera the cut: what is near and to the left goes.
+/// A plane that shows the camera the cut: what is near and to the left goes, and that is half of the Gaussians.
 fn middle(scene: &Scene, camera: &Camera) -> rara::Result<Plane> {
     let normal = camera.rotation.row(0) * 0.8 + camera.rotation.row(2) * 0.6;
-    Plane::new(normal, -normal.dot(Bounds::of(&scene.gaussians).centre()))
+    let centres = scene.gaussians.positions.iter();
+    let mut along: Vec<f64> = centres.map(|p| normal.dot(p.as_dvec3())).collect();
+    along.sort_unstable_by(f64::total_cmp);
+    Plane::new(normal, -along.get(along.len() / 2).unwrap_or(&0.0))
 }
 
 fn print_frames(shots: &[Shot]) {
@@ -166,7 +171,7 @@ fn print_errors(
     };
     let truth = render(&exact);
     say(format_args!(
-        "{:<6} {:>10} {:>10} {:>10}   {:>10} {:>10} {:>10}",
+        "{:<6} {:>11} {:>10} {:>10}   {:>11} {:>10} {:>10}",
         "mode", "own: PSNR", "L1", "largest", "truth: PSNR", "L1", "largest"
     ));
     for Shot {
@@ -190,7 +195,7 @@ fn print_errors(
 
 fn columns(measures: &Measures) -> String {
     format!(
-        "{:>10} {:>10.4} {:>10.2}",
+        "{:>11} {:>10.5} {:>10.2}",
         measures.psnr_text(),
         measures.l1,
         measures.max

@@ -6,6 +6,7 @@
 mod ablate;
 mod camera;
 mod clip;
+mod combine;
 mod compare;
 mod demo;
 mod devices;

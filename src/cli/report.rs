@@ -1,11 +1,12 @@
-//! The statistics: the `--json` document, medians and means over frames, and the table for people.
+//! The statistics: the `--json` document and the table for people.
 
 use std::fmt;
 use std::path::PathBuf;
 
-use rara::{Counts, FrameStats, PassTime};
+use rara::{Counts, FrameStats};
 use serde::Serialize;
 
+use super::combine::{Combine, combine};
 use super::output::grouped;
 use super::scenes::Scene;
 use super::session::Session;
@@ -170,77 +171,6 @@ pub(super) fn wrote(paths: &[PathBuf]) -> String {
     }
 }
 
-/// How the values of several frames become one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Combine {
-    Median,
-    Mean,
-}
-
-impl Combine {
-    fn of(self, mut values: Vec<f64>) -> f64 {
-        let count = values.len();
-        match self {
-            _ if count == 0 => 0.0,
-            Self::Mean => values.iter().sum::<f64>() / count as f64,
-            Self::Median => {
-                values.sort_unstable_by(f64::total_cmp);
-                (values[(count - 1) / 2] + values[count / 2]) / 2.0
-            }
-        }
-    }
-}
-
-/// Each value's median or mean over the frames. A stage that a frame did not run took it 0 ms there, and counts as
-/// skipped when most frames skipped it.
-pub(super) fn combine(frames: &[FrameStats], how: Combine) -> FrameStats {
-    let value = |get: &dyn Fn(&FrameStats) -> f64| how.of(frames.iter().map(get).collect());
-    let count = |get: fn(&Counts) -> u32| value(&|frame| get(&frame.counts).into()).round() as u32;
-    let ms = |name: &str, frame: &FrameStats| {
-        frame
-            .passes
-            .iter()
-            .filter(|p| p.name == name)
-            .map(|p| p.ms)
-            .sum()
-    };
-    let passes = distinct(frames.iter().flat_map(|f| f.passes.iter().map(|p| p.name)));
-    let mut skipped = distinct(frames.iter().flat_map(|f| f.skipped.iter().copied()));
-    skipped.retain(|name| {
-        2 * frames.iter().filter(|f| f.skipped.contains(name)).count() > frames.len()
-    });
-    FrameStats {
-        counts: Counts {
-            visible: count(|c| c.visible),
-            cutoff: count(|c| c.cutoff),
-            invisible: count(|c| c.invisible),
-            culled: count(|c| c.culled),
-            drawn: count(|c| c.drawn),
-        },
-        passes: passes
-            .into_iter()
-            .map(|name| PassTime {
-                name,
-                ms: value(&|frame| ms(name, frame)),
-            })
-            .collect(),
-        gpu_ms: value(&|frame| frame.gpu_ms),
-        wall_ms: value(&|frame| frame.wall_ms),
-        skipped,
-    }
-}
-
-/// The names in the order of their first appearance.
-fn distinct(names: impl Iterator<Item = &'static str>) -> Vec<&'static str> {
-    let mut seen = Vec::new();
-    for name in names {
-        if !seen.contains(&name) {
-            seen.push(name);
-        }
-    }
-    seen
-}
-
 /// The most memory this process ever had resident; 0 where the system does not tell.
 fn peak_rss_bytes() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -253,49 +183,4 @@ fn peak_rss_bytes() -> u64 {
             .ok()
     });
     kib.unwrap_or(0) * 1024
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn frame(gpu_ms: f64, visible: u32, sort: Option<f64>) -> FrameStats {
-        let mut frame = FrameStats {
-            gpu_ms,
-            ..FrameStats::default()
-        };
-        frame.counts.visible = visible;
-        frame.passes.push(PassTime {
-            name: "classify",
-            ms: 1.0,
-        });
-        match sort {
-            Some(ms) => frame.passes.push(PassTime { name: "sort", ms }),
-            None => frame.skipped.push("sort"),
-        }
-        frame
-    }
-
-    #[test]
-    fn medians_and_means() {
-        let frames = [
-            frame(9.0, 10, Some(3.0)),
-            frame(1.0, 30, None),
-            frame(2.0, 20, Some(6.0)),
-        ];
-        let median = combine(&frames, Combine::Median);
-        assert_eq!((median.gpu_ms, median.counts.visible), (2.0, 20));
-        assert_eq!(
-            median.passes[1],
-            PassTime {
-                name: "sort",
-                ms: 3.0
-            }
-        );
-        assert!(median.skipped.is_empty());
-        let mean = combine(&frames, Combine::Mean);
-        assert_eq!((mean.gpu_ms, mean.passes[1].ms), (4.0, 3.0));
-        assert_eq!(combine(&frames[1..2], Combine::Median), frames[1]);
-        assert_eq!(combine(&frames[1..], Combine::Median).gpu_ms, 1.5);
-    }
 }

@@ -4,7 +4,7 @@ use rara::{
     Camera, Clip, FrameStats, Gaussians, Headless, HeadlessDesc, Picture, Result, Settings,
 };
 
-use super::report::{Combine, combine};
+use super::combine::{Combine, combine};
 
 /// A device with a scene on it.
 pub(super) struct Session {

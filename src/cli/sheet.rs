@@ -1,4 +1,4 @@
-//! A contact sheet: pictures side by side, a label over each, and the middle of each magnified below.
+//! A contact sheet: pictures side by side, a label over each, and a piece of each magnified below.
 
 use rara::Picture;
 
@@ -10,29 +10,49 @@ const INK: [f32; 4] = [1.0; 4];
 /// How far the lower row is magnified.
 const ZOOM: u32 = 6;
 
-/// Pictures of one size with their labels, and under each its middle, magnified.
-pub(super) fn sheet(pictures: &[(&str, Picture)]) -> Picture {
+/// Pictures of one size with their labels, and under each the same piece of it, magnified; `corner` is the piece's
+/// top left.
+pub(super) fn sheet(pictures: &[(&str, Picture)], corner: (u32, u32)) -> Picture {
     let Some((_, first)) = pictures.first() else {
         return Picture::default();
     };
     let (width, height) = (first.width, first.height);
-    let scale = (width / 200).max(1);
+    let scale = (width / 128).max(1);
     let band = 11 * scale;
     let count = pictures.len() as u32;
     let mut sheet = Picture::filled(count * (width + GAP) - GAP, band + 2 * height + GAP, MARGIN);
     for (column, (label, picture)) in (0..).zip(pictures) {
         let left = column * (width + GAP);
         write(&mut sheet, label, left + 2 * scale, 2 * scale, scale);
-        let (from_x, from_y) = ((width - width / ZOOM) / 2, (height - height / ZOOM) / 2);
         for y in 0..height {
             for x in 0..width {
                 set(&mut sheet, left + x, band + y, picture.at(x, y));
-                let near = picture.at(from_x + x / ZOOM, from_y + y / ZOOM);
+                let near = picture.at(corner.0 + x / ZOOM, corner.1 + y / ZOOM);
                 set(&mut sheet, left + x, band + height + GAP + y, near);
             }
         }
     }
     sheet
+}
+
+/// The top left of the piece, as large as a sheet magnifies, in which two pictures of one size differ most.
+pub(super) fn where_they_differ(a: &Picture, b: &Picture) -> (u32, u32) {
+    let (width, height) = (a.width.div_ceil(ZOOM), a.height.div_ceil(ZOOM));
+    let difference = |x: u32, y: u32| -> f32 {
+        let pairs = a.at(x, y).into_iter().zip(b.at(x, y));
+        pairs.map(|(p, q)| (p - q).abs()).sum()
+    };
+    let total = |&(left, top): &(u32, u32)| -> f32 {
+        (top..top + height)
+            .flat_map(|y| (left..left + width).map(move |x| difference(x, y)))
+            .sum()
+    };
+    let places = |size: u32, piece: u32| (0..=size - piece).step_by((piece / 4).max(1) as usize);
+    let corners = places(a.height, height)
+        .flat_map(|top| places(a.width, width).map(move |left| (left, top)));
+    let best = corners.map(|corner| (total(&corner), corner));
+    best.max_by(|p, q| p.0.total_cmp(&q.0))
+        .map_or((0, 0), |(_, corner)| corner)
 }
 
 fn set(picture: &mut Picture, x: u32, y: u32, pixel: [f32; 4]) {
@@ -97,11 +117,20 @@ mod tests {
     }
 
     #[test]
+    fn the_piece_is_where_the_difference_is() {
+        let plain = Picture::filled(60, 48, [0.0; 4]);
+        let mut spotted = plain.clone();
+        set(&mut spotted, 33, 41, [1.0; 4]);
+        let (x, y) = where_they_differ(&plain, &spotted);
+        assert!((24..=33).contains(&x) && (34..=41).contains(&y), "{x} {y}");
+    }
+
+    #[test]
     fn pictures_stand_side_by_side_and_magnified_below() {
         let mut red = Picture::filled(12, 12, [1.0, 0.0, 0.0, 1.0]);
         set(&mut red, 5, 5, [0.0, 1.0, 0.0, 1.0]);
         let blue = Picture::filled(12, 12, [0.0, 0.0, 1.0, 1.0]);
-        let made = sheet(&[("x", red), ("o", blue)]);
+        let made = sheet(&[("x", red), ("o", blue)], (5, 5));
         assert_eq!((made.width, made.height), (28, 11 + 12 + 4 + 12));
         assert_eq!(made.at(0, 11), [1.0, 0.0, 0.0, 1.0]);
         assert_eq!(made.at(12, 11), MARGIN);

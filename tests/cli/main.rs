@@ -18,14 +18,21 @@ fn rara<A: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = A>) -> Ou
         .expect("the rara binary runs")
 }
 
-/// Runs `rara` with a line's words, `@` standing for `folder`.
+/// Runs `rara` with a line's words, `@` standing for `folder`; what draws, draws on `RARA_TEST_DEVICE` if that is set.
 fn line(folder: &Path, words: &str) -> Output {
     let folder = folder.to_str().expect("the test folder's name is text");
-    rara(
-        words
-            .split_whitespace()
-            .map(|word| word.replace('@', folder)),
-    )
+    let mut words: Vec<String> = words
+        .split_whitespace()
+        .map(|word| word.replace('@', folder))
+        .collect();
+    let draws = ["render", "sweep", "ablate", "demo"].contains(&words[0].as_str());
+    if let Ok(device) = std::env::var("RARA_TEST_DEVICE")
+        && draws
+        && !words.iter().any(|word| word == "--device")
+    {
+        words.extend(["--device".into(), device]);
+    }
+    rara(words)
 }
 
 /// A folder of the test's own, empty.

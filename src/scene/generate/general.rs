@@ -122,7 +122,7 @@ fn push_floater(builder: &mut Builder, sigma: f64, random: &mut Random) {
         position: 0.85 * random.in_ball() * DVec3::new(1.0, 0.6, 1.0),
         axes: axes_about(random.direction(), 0.0),
         scales: size * DVec3::new(random.factor(0.3), random.factor(0.3), random.factor(0.3)),
-        opacity: random.range(0.006, 0.05),
+        opacity: random.range(0.005, 0.03),
     };
     let grey = DVec3::splat(random.range(0.3, 0.6));
     builder.push(&splat, &Colours::plain(grey).0);

@@ -56,7 +56,7 @@ const LAYERS: [Layer; 5] = [
     Layer {
         inner: 0.93,
         outer: 1.0,
-        density: 1.8,
+        density: 3.0,
         opacity: 0.9,
         colour: skin,
     },

@@ -24,8 +24,10 @@ impl Colours {
         let basis = basis(axis);
         for (degree, band) in (1..).zip(bands) {
             let factor = 4.0 * PI / (2 * degree + 1) as f64 * band;
-            for at in degree * degree..(degree + 1) * (degree + 1) {
-                self.0[at] += factor * basis[at] * colour;
+            let of_degree = degree * degree..(degree + 1) * (degree + 1);
+            for (coefficient, basis) in self.0[of_degree.clone()].iter_mut().zip(&basis[of_degree])
+            {
+                *coefficient += factor * basis * colour;
             }
         }
     }

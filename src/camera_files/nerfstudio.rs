@@ -8,6 +8,9 @@ use super::{NamedCamera, Parts, Pose, json_error};
 /// Picture side where a file gives the angle of view alone, as the synthetic NeRF scenes do: their pictures are square.
 const DEFAULT_SIDE: f64 = 1024.0;
 
+/// Along x and along y.
+type Pair = (f64, f64);
+
 #[derive(Deserialize)]
 struct Transforms {
     #[serde(flatten)]
@@ -82,7 +85,7 @@ impl Intrinsics {
     }
 
     /// Picture size and focal lengths, from lengths or from angles.
-    fn size_and_focal(&self, what: &str) -> Result<((f64, f64), (f64, f64)), String> {
+    fn size_and_focal(&self, what: &str) -> Result<(Pair, Pair), String> {
         let angles_only = self.fl_x.is_none() && self.fl_y.is_none();
         let side = |side: Option<f64>, centre: Option<f64>, name: &str| match (side, centre) {
             (Some(side), _) => Ok(side),

@@ -4,14 +4,14 @@
 
 mod bounds;
 mod gaussians;
-
+mod generate;
 pub mod ply;
 mod report;
 mod save;
 
 pub use bounds::{Bounds, extent_along};
 pub use gaussians::{Gaussians, sh_coefficients};
-
+pub use generate::{Kind, generate};
 pub use ply::{Loaded, load};
 pub use report::{LoadReport, Remark};
 pub use save::save_ply;

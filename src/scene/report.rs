@@ -18,7 +18,8 @@ pub struct Remark {
 ///
 /// *Dropped* elements hold a number that is not finite (or is not once converted to single precision, or whose scale
 /// is not once exponentiated); nothing sensible can be drawn from them. *Repaired* elements have a quaternion of four
-/// zeros, which became the identity. Bringing an ordinary quaternion to length one is no repair: trainers store them
+/// zeros, which became the identity, or an infinity that stands for a finite value: the logit of opacity 0 or 1, the
+/// logarithm of scale 0. Bringing an ordinary quaternion to length one is no repair: trainers store them
 /// unnormalised on purpose.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct LoadReport {

@@ -48,7 +48,7 @@ pub(super) fn read(
         parse(&lines.line, &layout.fields, &mut row)
             .map_err(|what| Failure::Format(format!("line {}: {what}", lines.number)))?;
         assembler.push(&row);
-        if assembler.rows % 8192 == 0 {
+        if assembler.rows.is_multiple_of(8192) {
             progress.left(lines.left);
         }
     }

@@ -2,7 +2,7 @@
 
 use glam::{DVec4, Quat, Vec3};
 
-use super::layout::{SH, SLOTS, slot_name};
+use super::layout::{OPACITY, ROTATION, SCALES, SH, SLOTS, slot_name};
 use crate::scene::{Gaussians, LoadReport, sh_coefficients};
 
 /// The numbers of one Gaussian as the file has them, by slot; the unused tail stays zero.
@@ -49,10 +49,11 @@ impl Assembler {
         let element = self.rows;
         self.rows += 1;
         let degree = self.gaussians.sh_degree;
-        if let Some(slot) = row[..self.used]
-            .iter()
-            .position(|&v| !(v as f32).is_finite())
-        {
+        let unusable = |(slot, &value): (usize, &f64)| {
+            let value = value as f32;
+            !(value.is_finite() || is_limit(slot, value))
+        };
+        if let Some(slot) = row[..self.used].iter().enumerate().position(unusable) {
             self.report.drop_element(element, || {
                 let value = row[slot];
                 let beyond = if value.is_finite() {
@@ -74,16 +75,29 @@ impl Assembler {
             });
             return;
         }
-        let rotation = unit(DVec4::new(row[7], row[8], row[9], row[6])).unwrap_or_else(|| {
-            let reason = || "its rotation was all zeros, now the identity".into();
-            self.report.repair_element(element, reason);
-            Quat::IDENTITY
-        });
+        let rotation = unit(DVec4::new(row[7], row[8], row[9], row[6]));
+        let limit = (SCALES..=OPACITY).find(|&slot| is_limit(slot, row[slot] as f32));
+        // Counted once, whatever there is to repair.
+        if rotation.is_none() {
+            self.report.repair_element(element, || {
+                "its rotation was all zeros, now the identity".into()
+            });
+        } else if let Some(slot) = limit {
+            self.report.repair_element(element, || {
+                let becomes = if slot == OPACITY { "opacity" } else { "scale" };
+                let value = if row[slot] > 0.0 { 1 } else { 0 };
+                format!(
+                    "{} is {:e}, taken as the {becomes} {value}",
+                    slot_name(slot, degree),
+                    row[slot]
+                )
+            });
+        }
         let to = &mut self.gaussians;
         to.positions
             .push(Vec3::new(row[0] as f32, row[1] as f32, row[2] as f32));
         to.scales.push(Vec3::from_array(scale));
-        to.rotations.push(rotation);
+        to.rotations.push(rotation.unwrap_or(Quat::IDENTITY));
         to.opacities.push((1.0 / (1.0 + (-row[10]).exp())) as f32);
         to.sh.extend(row[SH..self.used].iter().map(|&v| v as f32));
     }
@@ -91,6 +105,16 @@ impl Assembler {
     /// The scene and what was done to it.
     pub(super) fn finish(self) -> (Gaussians, LoadReport) {
         (self.gaussians, self.report)
+    }
+}
+
+/// Whether an infinite value is the exact stored form of a sensible one: editors write the logit of opacity 1 as
+/// infinity, and the logarithm of scale 0 as its negative.
+fn is_limit(slot: usize, value: f32) -> bool {
+    match slot {
+        OPACITY => value.is_infinite(),
+        SCALES..ROTATION => value == f32::NEG_INFINITY,
+        _ => false,
     }
 }
 
@@ -160,13 +184,29 @@ mod tests {
     }
 
     #[test]
+    fn infinite_logits_and_logarithms_of_zero_are_taken_at_their_word() {
+        let mut rows = [row(), row(), row()];
+        rows[0][OPACITY] = f64::INFINITY;
+        rows[1][OPACITY] = f64::NEG_INFINITY;
+        rows[2][SCALES + 2] = f64::NEG_INFINITY;
+        let (gaussians, report) = load(&rows);
+        assert_eq!((gaussians.len(), report.repaired), (3, 3));
+        assert_eq!(gaussians.opacities, [1.0, 0.0, 0.5]);
+        assert_eq!(gaussians.scales[2], Vec3::new(1.0, 1.0, 0.0));
+        assert_eq!(
+            report.first_repaired[0].reason,
+            "opacity is inf, taken as the opacity 1"
+        );
+    }
+
+    #[test]
     fn what_is_not_finite_is_dropped_with_its_property_named() {
         for (slot, value, named) in [
             (0, f64::NAN, "x is NaN"),
             (4, 100.0, "scale_1"),
             (5, f64::INFINITY, "scale_2 is inf"),
             (9, 1e39, "rot_3 is 1e39, beyond"),
-            (10, f64::NEG_INFINITY, "opacity is -inf"),
+            (10, f64::NAN, "opacity is NaN"),
             (13, f64::NAN, "f_dc_2"),
         ] {
             let mut r = row();

@@ -114,7 +114,7 @@ impl Payload {
                 |slot, value| row[slot] = value,
             )?;
             assembler.push(&row);
-            if assembler.rows % 8192 == 0 {
+            if assembler.rows.is_multiple_of(8192) {
                 progress.left(self.left);
             }
         }

@@ -6,7 +6,13 @@ use super::header::{Header, shortened};
 use super::number::Number;
 use crate::scene::sh_coefficients;
 
-/// Slots of a row, see [`FIXED`]; from here on the spherical harmonics as `[coefficient][r, g, b]`.
+/// Slots of a row, see [`FIXED`]: logarithms of the scales.
+pub(super) const SCALES: usize = 3;
+/// The quaternion, w first.
+pub(super) const ROTATION: usize = 6;
+/// The opacity's logit.
+pub(super) const OPACITY: usize = 10;
+/// From here on the spherical harmonics as `[coefficient][r, g, b]`.
 pub(super) const SH: usize = 11;
 /// Slots of a row at degree 3.
 pub(super) const SLOTS: usize = SH + 48;

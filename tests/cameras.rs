@@ -1,0 +1,360 @@
+//! Reading camera files: each format gives the same camera, bad files give a sentence, nothing panics.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use glam::{DMat4, DQuat, DVec3, DVec4};
+use proptest::prelude::*;
+use rara::Camera;
+use rara::camera_files::{NamedCamera, load_camera, load_cameras};
+
+/// A folder of its own, removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Self {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let path =
+            std::env::temp_dir().join(format!("rara-cameras-{}-{number}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn file(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, bytes).unwrap();
+        path
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        std::fs::remove_dir_all(&self.0).unwrap();
+    }
+}
+
+fn load_json(text: &str) -> rara::Result<Vec<NamedCamera>> {
+    let folder = Folder::new();
+    load_cameras(&folder.file("cameras.json", text))
+}
+
+/// The camera that all the files below describe.
+fn camera() -> Camera {
+    let rotation = DQuat::from_xyzw(0.1, -0.3, 0.2, 0.9).normalize();
+    let matrix = DMat4::from_rotation_translation(rotation, DVec3::new(0.5, -0.25, 3.0));
+    Camera::from_world_to_camera(matrix, (800.0, 810.0, 500.0, 300.0), (1000, 600)).unwrap()
+}
+
+fn assert_same(a: &Camera, b: &Camera) {
+    assert_eq!((a.width, a.height), (b.width, b.height));
+    for (a, b) in [(a.fx, b.fx), (a.fy, b.fy), (a.cx, b.cx), (a.cy, b.cy)] {
+        assert!((a - b).abs() < 1e-9, "{a} {b}");
+    }
+    assert!(a.eye.abs_diff_eq(b.eye, 1e-9), "{} {}", a.eye, b.eye);
+    assert!(a.rotation.abs_diff_eq(b.rotation, 1e-9));
+}
+
+fn json<const N: usize>(row: [f64; N]) -> String {
+    format!("{row:?}")
+}
+
+fn inria_entry(name: &str) -> String {
+    let camera = camera();
+    let to_world = camera.rotation.transpose();
+    let rows: Vec<_> = (0..3).map(|i| json(to_world.row(i).to_array())).collect();
+    format!(
+        r#"{{"id": 4, "img_name": "{name}", "width": 1000, "height": 600, "position": {}, "rotation": [{}],
+        "fx": 800.0, "fy": 810, "extra": null}}"#,
+        json(camera.eye.to_array()),
+        rows.join(", ")
+    )
+}
+
+#[test]
+fn cameras_json() {
+    let cameras = load_json(&format!(
+        "\u{feff} [{}, {}]",
+        inria_entry("b"),
+        inria_entry("a")
+    ))
+    .unwrap();
+    assert_eq!([&cameras[0].name, &cameras[1].name], ["b", "a"]);
+    assert_same(&cameras[0].camera, &camera());
+}
+
+fn opengl_matrix() -> String {
+    let to_world = camera().world_to_camera().inverse()
+        * DMat4::from_diagonal(DVec4::new(1.0, -1.0, -1.0, 1.0));
+    let mut rows: Vec<_> = (0..3).map(|i| json(to_world.row(i).to_array())).collect();
+    rows.push("[0.0, 0.0, 0.0, 1.0]".into());
+    format!("[{}]", rows.join(", "))
+}
+
+#[test]
+fn transforms_json() {
+    let matrix = opengl_matrix();
+    let shared = load_json(&format!(
+        r#"{{"w": 1000, "h": 600.0, "fl_x": 800, "fl_y": 810, "cx": 500, "cy": 300, "k1": 0, "camera_model": "OPENCV",
+        "frames": [{{"file_path": "images/1.png", "transform_matrix": {matrix}}}]}}"#
+    ))
+    .unwrap();
+    assert_eq!(shared[0].name, "images/1.png");
+    assert_same(&shared[0].camera, &camera());
+    let own = load_json(&format!(
+        r#"{{"w": 1, "h": 1, "fl_x": 1, "frames": [{{"w": 1000, "h": 600, "fl_x": 800, "fl_y": 810,
+        "transform_matrix": {matrix}}}]}}"#
+    ))
+    .unwrap();
+    assert_eq!(own[0].name, "0");
+    assert_same(&own[0].camera, &camera());
+    let angle = load_json(&format!(
+        r#"{{"camera_angle_x": 1.5707963267948966, "frames": [{{"transform_matrix": {matrix}}}]}}"#
+    ))
+    .unwrap()[0]
+        .camera;
+    assert!((angle.fx - 512.0).abs() < 1e-9 && angle.fx == angle.fy && angle.width == 1024);
+}
+
+fn single() -> String {
+    let matrix = camera().world_to_camera().transpose().to_cols_array();
+    format!(
+        r#"{{"width": 1000, "height": 600, "fx": 800, "fy": 810, "cx": 500, "cy": 300, "world_to_camera": {}}}"#,
+        json(matrix)
+    )
+}
+
+#[test]
+fn one_camera() {
+    let folder = Folder::new();
+    let path = folder.file("camera.json", single());
+    assert_same(&load_camera(&path).unwrap(), &camera());
+    assert_same(&load_cameras(&path).unwrap()[0].camera, &camera());
+}
+
+/// One picture of `images.bin`.
+fn image_record(name: &str, camera_id: u32, points: u64) -> Vec<u8> {
+    let matrix = camera().world_to_camera();
+    let (_, q, t) = matrix.to_scale_rotation_translation();
+    let mut bytes = 7_u32.to_le_bytes().to_vec();
+    for number in [q.w, q.x, q.y, q.z, t.x, t.y, t.z] {
+        bytes.extend(number.to_le_bytes());
+    }
+    bytes.extend(camera_id.to_le_bytes());
+    bytes.extend(name.as_bytes());
+    bytes.push(0);
+    bytes.extend(points.to_le_bytes());
+    bytes.extend(vec![9; 24 * points as usize]);
+    bytes
+}
+
+fn colmap_binary() -> (Vec<u8>, Vec<u8>) {
+    let mut cameras = 2_u64.to_le_bytes().to_vec();
+    let lenses: [(u32, i32, &[f64]); 2] = [
+        (3, 1, &[800.0, 810.0, 500.0, 300.0]),
+        (5, 2, &[800.0, 500.0, 300.0, 0.0]),
+    ];
+    for (id, model, parameters) in lenses {
+        cameras.extend(id.to_le_bytes());
+        cameras.extend(model.to_le_bytes());
+        cameras.extend(1000_u64.to_le_bytes());
+        cameras.extend(600_u64.to_le_bytes());
+        parameters
+            .iter()
+            .for_each(|p| cameras.extend(p.to_le_bytes()));
+    }
+    let images = [
+        2_u64.to_le_bytes().to_vec(),
+        image_record("b.png", 5, 1000),
+        image_record("a.png", 3, 0),
+    ]
+    .concat();
+    (cameras, images)
+}
+
+#[test]
+fn colmap_folders_binary_and_text() {
+    let folder = Folder::new();
+    let (cameras, images) = colmap_binary();
+    folder.file("sparse/0/cameras.bin", cameras);
+    let file = folder.file("sparse/0/images.bin", images);
+    let text = Folder::new();
+    text.file(
+        "cameras.txt",
+        "# comment\n3 PINHOLE 1000 600 800 810 500 300\n5 SIMPLE_RADIAL 1000 600 800 500 300 0\n",
+    );
+    let (_, q, t) = camera().world_to_camera().to_scale_rotation_translation();
+    let pose = format!("{} {} {} {} {} {} {}", q.w, q.x, q.y, q.z, t.x, t.y, t.z);
+    text.file(
+        "images.txt",
+        format!("# comment\n1 {pose} 5 b.png\n1 2 -1 3 4 7\n2 {pose} 3 a.png\n\n"),
+    );
+    for path in [&folder.0, &folder.0.join("sparse"), &file, &text.0] {
+        let cameras = load_cameras(path).unwrap();
+        assert_eq!([&cameras[0].name, &cameras[1].name], ["a.png", "b.png"]);
+        assert_same(&cameras[0].camera, &camera());
+        assert_eq!(cameras[1].camera.fy, 800.0);
+    }
+}
+
+#[test]
+fn unusable_files_are_refused_with_a_sentence() {
+    let matrix = opengl_matrix();
+    let frame = format!(r#""frames": [{{"transform_matrix": {matrix}}}]"#);
+    let inria = inria_entry("a");
+    for (text, words) in [
+        ("".into(), "neither"),
+        ("[]".into(), "no camera"),
+        ("{}".into(), "frames"),
+        ("[1, 2".into(), "line 1"),
+        (format!("[{}]", inria.replace("1000", "0")), "width 0"),
+        (format!("[{}]", inria.replace("1000", "10.5")), "width 10.5"),
+        (format!("[{}]", inria.replace("800.0", "-1")), "focal"),
+        (
+            format!(
+                "[{}]",
+                inria.replace("\"rotation\": [[", "\"rotation\": [[5")
+            ),
+            "rotation",
+        ),
+        (format!(r#"{{"fl_x": 5, {frame}}}"#), "no `w`"),
+        (format!(r#"{{"w": 5, "h": 5, {frame}}}"#), "camera_angle_x"),
+        (
+            format!(r#"{{"w": 5, "h": 5, "fl_x": 5, "k1": 0.1, {frame}}}"#),
+            "distortion",
+        ),
+        (
+            format!(r#"{{"w": 5, "h": 5, "fl_x": 5, "camera_model": "OPENCV_FISHEYE", {frame}}}"#),
+            "distortion",
+        ),
+        (
+            r#"{"w": 5, "h": 5, "fl_x": 5, "frames": [{"transform_matrix": [[1, 0, 0, 0]]}]}"#
+                .into(),
+            "4x4",
+        ),
+    ] {
+        let message = load_json(&text).unwrap_err().to_string();
+        assert!(
+            message.contains(words) && message.contains("cameras.json"),
+            "{message:?} lacks {words:?}"
+        );
+    }
+    let folder = Folder::new();
+    let transposed = folder.file(
+        "c.json",
+        single().replace("0.0, 0.0, 0.0, 1.0]", "1.0, 0.0, 0.0, 1.0]"),
+    );
+    assert!(
+        load_camera(&transposed)
+            .unwrap_err()
+            .to_string()
+            .contains("last row")
+    );
+    assert!(
+        load_cameras(&folder.0)
+            .unwrap_err()
+            .to_string()
+            .contains("COLMAP")
+    );
+    assert!(load_cameras(Path::new("no/such.json")).is_err());
+}
+
+#[test]
+fn unusable_colmap_models_are_refused() {
+    let refused = |cameras: &[u8], images: &[u8]| {
+        let folder = Folder::new();
+        folder.file("cameras.bin", cameras);
+        folder.file("images.bin", images);
+        load_cameras(&folder.0).unwrap_err().to_string()
+    };
+    let (cameras, images) = colmap_binary();
+    let with = |at: usize, bytes: &[u8]| {
+        let mut cameras = cameras.clone();
+        cameras[at..at + bytes.len()].copy_from_slice(bytes);
+        cameras
+    };
+    assert!(refused(&with(0, &u64::MAX.to_le_bytes()), &images).contains("promises"));
+    assert!(refused(&with(12, &99_i32.to_le_bytes()), &images).contains("unknown model 99"));
+    let last = cameras.len() - 8;
+    assert!(refused(&with(last, &0.1_f64.to_le_bytes()), &images).contains("distortion"));
+    assert!(refused(&with(8, &77_u32.to_le_bytes()), &images).contains("camera 3"));
+    assert!(
+        refused(
+            &cameras,
+            &[&u64::MAX.to_le_bytes()[..], &images[8..]].concat()
+        )
+        .contains("promises")
+    );
+    let endless = [1_u64.to_le_bytes().to_vec(), image_record("a", 3, 0)].concat();
+    let endless = [&endless[..endless.len() - 8], &u64::MAX.to_le_bytes()].concat();
+    assert!(refused(&cameras, &endless).contains("cut off"));
+    for cut in 1..images.len().min(200) {
+        refused(&cameras, &images[..images.len() - cut]);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn mutated_colmap_models_never_panic(
+        which in any::<bool>(),
+        edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    ) {
+        let (mut cameras, mut images) = colmap_binary();
+        for (at, byte) in edits {
+            let bytes = if which { &mut cameras } else { &mut images };
+            let at = at.index(bytes.len().min(300));
+            bytes[at] = byte;
+        }
+        let folder = Folder::new();
+        folder.file("cameras.bin", cameras);
+        folder.file("images.bin", images);
+        let _ = load_cameras(&folder.0);
+    }
+
+    #[test]
+    fn mutated_json_never_panics(
+        which in 0..3_usize,
+        edits in prop::collection::vec((any::<prop::sample::Index>(), 0x20..0x7f_u8), 1..5),
+    ) {
+        let frame = opengl_matrix();
+        let mut text = match which {
+            0 => format!("[{}]", inria_entry("a")),
+            1 => format!(r#"{{"w": 9, "h": 9, "fl_x": 9, "frames": [{{"transform_matrix": {frame}}}]}}"#),
+            _ => single(),
+        }
+        .into_bytes();
+        for (at, byte) in edits {
+            let at = at.index(text.len());
+            text[at] = byte;
+        }
+        let _ = load_json(std::str::from_utf8(&text).unwrap());
+    }
+}
+
+#[test]
+fn collected_orbits() {
+    let root = std::env::var_os("RARA_SHARED").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"),
+        PathBuf::from,
+    );
+    let mut found = 0;
+    for folder in ["general", "hair", "medical"] {
+        let Ok(entries) = std::fs::read_dir(root.join("data").join(folder)) else {
+            eprintln!(
+                "SKIPPED: {} has no data/{folder} (set RARA_SHARED)",
+                root.display()
+            );
+            return;
+        };
+        for path in entries.map(|entry| entry.unwrap().path()) {
+            if path.to_string_lossy().ends_with(".cameras.json") {
+                assert_eq!(load_cameras(&path).unwrap().len(), 12);
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 0);
+}

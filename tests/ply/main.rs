@@ -1,0 +1,7 @@
+//! Reading and writing `.ply` scenes: what must load, what must be refused with a sentence, and that nothing panics.
+
+mod accepted;
+mod collected;
+mod made;
+mod mutated;
+mod refused;

@@ -11,6 +11,7 @@ pub mod exact;
 pub mod footprint;
 pub mod harmonics;
 pub mod project;
+pub mod quadrature;
 mod real;
 pub mod sort;
 pub mod splat;

@@ -2,7 +2,9 @@
 
 mod invariance;
 mod pictures;
+mod properties;
 mod shares;
+mod truth;
 mod weights;
 
 use glam::{DMat3, DVec3, Quat, Vec3 as Point};

@@ -4,6 +4,7 @@ mod invariance;
 mod pictures;
 mod properties;
 mod shares;
+mod single;
 mod truth;
 mod weights;
 

@@ -27,6 +27,8 @@ struct Study {
     op: ClipOp,
     form: ExactForm,
     bundle: Bundle,
+    /// X/Z of the splat's centre, if it is not to be in the picture.
+    aside: Option<[f64; 2]>,
     /// Depth of the splat's centre in deviations of its depth, for an eye within it.
     inside: Option<[f64; 2]>,
     cases: usize,
@@ -40,6 +42,7 @@ const STUDY: Study = Study {
     op: ClipOp::And,
     form: ExactForm::Beam,
     bundle: Bundle::Parallel,
+    aside: None,
     inside: None,
     cases: 60,
     steps: 64,
@@ -59,6 +62,9 @@ impl Study {
                 / 500.0
                 / f64::from(one.scale.into_iter().fold(0.0, f32::max));
             one.scale = one.scale.map(|s| (f64::from(s) * size) as f32);
+            if let Some([low, high]) = self.aside {
+                one.position[0] = (dice.between(low, high) * f64::from(one.position[2])) as f32;
+            }
             if let Some([low, high]) = self.inside {
                 let down = one.rotation.as_dquat().inverse()
                     * DVec3::Z
@@ -280,4 +286,22 @@ fn an_eye_within_the_splat_sees_its_front_part_only() {
             }
         }
     }
+}
+
+#[test]
+fn a_centre_far_outside_the_picture_gets_the_perspective_form() {
+    // The picture ends at X/Z = 0.64 and the clamp at 0.83.
+    let errors = Study {
+        pixels: [60.0, 600.0],
+        aside: Some([0.9, 1.5]),
+        form: ExactForm::Auto,
+        steps: 48,
+        ..STUDY
+    }
+    .run();
+    assert!(
+        errors.partial > 15,
+        "the test would say nothing: {errors:?}"
+    );
+    assert!(errors.mean < 1e-4 && errors.max < 1e-3, "{errors:?}");
 }

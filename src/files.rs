@@ -1,5 +1,7 @@
 //! Writing files so that nobody ever sees half of one.
 
+#![forbid(unsafe_code)]
+
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;

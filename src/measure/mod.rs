@@ -1,5 +1,7 @@
 //! How far apart two pictures are.
 
+#![forbid(unsafe_code)]
+
 mod ssim;
 
 use crate::{Error, Picture, Result};

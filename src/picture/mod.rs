@@ -1,5 +1,7 @@
 //! A picture in memory: 32-bit float RGBA, premultiplied, row by row from the top left.
 
+#![forbid(unsafe_code)]
+
 mod file;
 
 /// RGBA pixels, 32-bit float, premultiplied, blended values as they are (no transfer function).

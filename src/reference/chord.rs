@@ -70,7 +70,7 @@ impl<T: Real> Chord<T> {
             normal: self.rows[2],
             offset: self.depth,
         };
-        let (start, end) = on_ray(&front).clip((-half, half));
+        let (start, end) = on_ray(&front).visible((-half, half));
         let whole = end - start;
         if whole <= T::zero() {
             return self.missed(peak);
@@ -78,11 +78,10 @@ impl<T: Real> Chord<T> {
         let planes = self.planes.iter().map(on_ray);
         let part = |(start, end): (T, T)| ((end - start) / whole).max(T::zero());
         match self.op {
-            ClipOp::And => part(planes.fold((start, end), |kept, plane| plane.clip(kept))),
-            // What a union leaves out is what every plane's complement keeps.
+            ClipOp::And => part(planes.fold((start, end), |kept, plane| plane.visible(kept))),
+            // What a union leaves out is what every plane leaves out.
             ClipOp::Or => {
-                T::one()
-                    - part(planes.fold((start, end), |lost, plane| plane.complement().clip(lost)))
+                T::one() - part(planes.fold((start, end), |lost, plane| plane.invisible(lost)))
             }
         }
     }
@@ -105,7 +104,7 @@ impl<T: Real> Chord<T> {
 
 impl<T: Real> OnRay<T> {
     /// The part of an interval on which the function is not negative.
-    fn clip(&self, (start, end): (T, T)) -> (T, T) {
+    fn visible(&self, (start, end): (T, T)) -> (T, T) {
         let root = -self.at_peak / self.slope;
         if self.slope > T::zero() {
             (start.max(root), end)
@@ -118,11 +117,17 @@ impl<T: Real> OnRay<T> {
         }
     }
 
-    /// The other side.
-    fn complement(&self) -> Self {
-        Self {
-            at_peak: -self.at_peak,
-            slope: -self.slope,
+    /// The part of an interval on which it is negative.
+    fn invisible(&self, (start, end): (T, T)) -> (T, T) {
+        let root = -self.at_peak / self.slope;
+        if self.slope > T::zero() {
+            (start, end.min(root))
+        } else if self.slope < T::zero() {
+            (start.max(root), end)
+        } else if self.at_peak < T::zero() {
+            (start, end)
+        } else {
+            (end, end)
         }
     }
 }

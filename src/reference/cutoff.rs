@@ -74,7 +74,8 @@ pub fn cutoff<T: Real>(
     })
 }
 
-/// Whether a splat is too large, too far off the axis or too near for the affine form.
+/// Whether a splat is too large or too far off the axis for the affine form. An eye within the splat makes it too large:
+/// its depth is then less than K < 3.4 deviations.
 fn is_beam<T: Real>(
     scene: &Gaussians,
     index: usize,
@@ -86,9 +87,8 @@ fn is_beam<T: Real>(
         ExactForm::Affine => false,
         ExactForm::Auto => {
             let sigma_max = T::of(f64::from(scene.scales[index].max_element()));
-            sigma_max / footprint.centre.z > T::of(f64::from(BEAM_SWITCH))
-                || footprint.clamped
-                || super::exact::holds_the_eye(footprint)
+            let large = sigma_max / footprint.centre.z > T::of(f64::from(BEAM_SWITCH));
+            large || footprint.clamped
         }
     }
 }

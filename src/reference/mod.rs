@@ -3,6 +3,8 @@
 //! In f64 it is the truth that errors are measured against, in f32 the twin of the shaders: integers agree exactly and
 //! floats to a few units in the last place. Nothing in here knows about Vulkan.
 
+#![forbid(unsafe_code)]
+
 pub mod chord;
 pub mod classify;
 pub mod compact;
@@ -11,6 +13,7 @@ pub mod exact;
 pub mod footprint;
 pub mod harmonics;
 pub mod project;
+pub mod quadrature;
 mod real;
 pub mod sort;
 pub mod splat;

@@ -2,7 +2,10 @@
 
 mod invariance;
 mod pictures;
+mod properties;
 mod shares;
+mod single;
+mod truth;
 mod weights;
 
 use glam::{DMat3, DVec3, Quat, Vec3 as Point};

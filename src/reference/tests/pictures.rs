@@ -1,6 +1,7 @@
 //! Whole frames by closed forms: footprints, blending, order, colours.
 
 use super::*;
+use glam::Vec3 as Point;
 
 #[test]
 fn an_isotropic_splat_on_the_axis_is_a_round_gaussian() {
@@ -191,5 +192,85 @@ fn colours_see_from_the_eye_to_the_centre_and_are_not_negative() {
             .picture
             .at(0, 0),
         [0.25, 0.25, 0.25, 0.5],
+    );
+}
+
+#[test]
+fn the_footprint_is_the_published_ewa_projection_with_matrices() {
+    let mut dice = Dice(41);
+    let (mut clamped, mut compared) = (0, 0);
+    for _ in 0..2000 {
+        // A turned camera with a principal point off the middle; splats inside and outside the view.
+        let camera = Camera {
+            fx: 110.0,
+            fy: 90.0,
+            cx: 40.0,
+            cy: 60.0,
+            eye: dice.direction(),
+            rotation: DMat3::from_quat(dice.rotation().as_dquat().normalize()),
+            ..camera(100, 80, 1.0)
+        };
+        let one = dice.one(1.0, 10.0);
+        let depth = dice.between(1.0, 4.0);
+        let local = DVec3::new(
+            dice.between(-1.5, 1.5) * depth,
+            dice.between(-1.5, 1.5) * depth,
+            depth,
+        );
+        let world = (camera.rotation.transpose() * local + camera.eye).as_vec3();
+        let one = One {
+            position: world.to_array(),
+            ..one
+        };
+        let view = View::<f64>::new(&camera);
+        let Some(footprint) = Footprint::new(&scene(&[one]), 0, &view) else {
+            continue;
+        };
+
+        let t = camera.rotation * (world.as_dvec3() - camera.eye);
+        let axes = DMat3::from_quat(one.rotation.as_dquat());
+        let squares = DMat3::from_diagonal(Point::from(one.scale).as_dvec3().powf(2.0));
+        let covariance =
+            camera.rotation * axes * squares * axes.transpose() * camera.rotation.transpose();
+        let limits = [[-15.0 - 40.0, 115.0 - 40.0], [-12.0 - 60.0, 92.0 - 60.0]];
+        let tx = (t.x / t.z).clamp(limits[0][0] / 110.0, limits[0][1] / 110.0) * t.z;
+        let ty = (t.y / t.z).clamp(limits[1][0] / 90.0, limits[1][1] / 90.0) * t.z;
+        clamped += usize::from((tx - t.x).abs().max((ty - t.y).abs()) > 1e-9);
+        let rows = [
+            DVec3::new(110.0 / t.z, 0.0, -110.0 * tx / (t.z * t.z)),
+            DVec3::new(0.0, 90.0 / t.z, -90.0 * ty / (t.z * t.z)),
+        ];
+        let entry =
+            |i: usize, j: usize| rows[i].dot(covariance * rows[j]) + if i == j { 0.3 } else { 0.0 };
+        let (xx, xy, yy) = (entry(0, 0), entry(0, 1), entry(1, 1));
+        let (dx, dy) = (dice.normal() * xx.sqrt(), dice.normal() * yy.sqrt());
+        let expected = (yy * dx * dx - 2.0 * xy * dx * dy + xx * dy * dy) / (xx * yy - xy * xy);
+        let q = footprint.power(dx, dy);
+        assert!(
+            (q - expected).abs() < 1e-5 * (1.0 + expected),
+            "{one:?}: {q} is not {expected}"
+        );
+        let reach = (2.0 * (255.0 * f64::from(one.opacity)).ln()).sqrt();
+        let expected = [
+            110.0 * t.x / t.z + 40.0,
+            90.0 * t.y / t.z + 60.0,
+            reach * xx.sqrt(),
+            reach * yy.sqrt(),
+        ];
+        let [x, y] = footprint.pixel;
+        for (value, expected) in [x, y, footprint.half[0], footprint.half[1]]
+            .into_iter()
+            .zip(expected)
+        {
+            assert!(
+                (value - expected).abs() < 1e-5 * (1.0 + expected.abs()),
+                "{value} is not {expected}"
+            );
+        }
+        compared += 1;
+    }
+    assert!(
+        clamped > 100 && compared > 500,
+        "the test would say nothing: {clamped} of {compared}"
     );
 }

@@ -231,3 +231,39 @@ fn a_point_is_on_one_side_and_the_plane_itself_is_visible() {
         }
     }
 }
+
+#[test]
+fn auto_takes_the_perspective_form_for_what_is_large_or_outside_the_picture() {
+    let is_beam = |one: One, camera: &Camera, form| {
+        let cutter = plane_through(&one, DVec3::new(0.6, 0.0, 0.8), 0.1);
+        let record = cut(
+            &scene(&[one]),
+            camera,
+            &clip(ClipOp::And, &[cutter]),
+            &exact(form),
+        );
+        matches!(record, Some(Cut::Beam(_)))
+    };
+    let camera = camera(64, 64, 100.0);
+    let sized = |sigma: f32| One {
+        scale: [0.01, sigma, 0.01],
+        ..One::default()
+    };
+    assert!(is_beam(sized(0.081), &camera, ExactForm::Auto)); // 0.02 of the depth is 0.08
+    assert!(!is_beam(sized(0.079), &camera, ExactForm::Auto));
+    assert!(!is_beam(sized(1.0), &camera, ExactForm::Affine));
+    assert!(is_beam(sized(0.001), &camera, ExactForm::Beam));
+    // A long lens: the picture ends at X/Z = 0.004, the clamp at 0.0052, and 0.01 of the depth reaches far beyond.
+    let camera = Camera {
+        fx: 8000.0,
+        fy: 8000.0,
+        ..camera
+    };
+    let aside = |x: f32| One {
+        position: [4.0 * x, 0.0, 4.0],
+        scale: [0.04; 3],
+        ..One::default()
+    };
+    assert!(is_beam(aside(0.0053), &camera, ExactForm::Auto));
+    assert!(!is_beam(aside(0.0051), &camera, ExactForm::Auto));
+}

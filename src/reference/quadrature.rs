@@ -1,0 +1,288 @@
+//! The visible share of a cut splat in a pixel by brute numerical integration: a second opinion on the weights that
+//! uses none of the renderer's formulas.
+//!
+//! What is integrated is the density of the Gaussian at points of the world, from its inverse transform (the paper,
+//! section 3.3: `|M^-1 (x - mu)|^2`), along rays that start at the eye and only in front of it. 3DGS's low-pass means
+//! that a pixel sees a bundle of rays, weighted by a Gaussian of [`LOW_PASS`] px^2. There are two readings of that
+//! bundle, see [`Bundle`]; they differ by what the low-pass does at depths other than the splat's own.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use crate::limits::LOW_PASS;
+use crate::{Camera, Clip, ClipOp, Gaussians};
+
+/// Which rays a pixel's low-pass gathers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Bundle {
+    /// Rays parallel to the pixel's own, displaced by the low-pass as wide as it is at the depth of the splat's centre.
+    /// This is the measure that the perspective form of mode `exact` integrates in closed form: a standard normal u,
+    /// given that the two planes through the eye that meet in the pixel's ray are observed with noise.
+    Parallel,
+    /// Rays through the eye and a point of the screen near the pixel: the picture of the truncated Gaussian, blurred
+    /// on the screen. Wider than the other bundle behind the splat's centre, narrower before it.
+    Diverging,
+}
+
+/// Standard deviations after which densities are taken for nothing.
+const EXTENT: f64 = 6.5;
+/// Gauss-Legendre nodes on each stretch of a ray.
+const NODES: usize = 32;
+
+/// The share of Gaussian `index` that the clip leaves visible in the pixel at `position` (pixels from the picture's
+/// corner), by `steps` times `steps` rays. Not a number if the Gaussian is flat or wholly behind the eye.
+pub fn share(
+    scene: &Gaussians,
+    index: usize,
+    camera: &Camera,
+    clip: &Clip,
+    position: DVec2,
+    bundle: Bundle,
+    steps: u32,
+) -> f64 {
+    let pixel = Pixel::new(scene, index, camera, position, bundle);
+    let (middle, spread) = pixel.densest();
+    let planes: Vec<_> = clip
+        .planes
+        .iter()
+        .map(|p| (p.normal(), p.distance(pixel.centre)))
+        .collect();
+    let nodes = legendre();
+    let peak = pixel.exponent(middle);
+
+    // A grid over the offsets that matter, turned so that no plane's edge lies along its lines.
+    let step = 2.0 * EXTENT / f64::from(steps);
+    let turn = DVec2::from_angle(0.5);
+    let (mut visible, mut whole) = (0.0, 0.0);
+    for i in 0..steps {
+        for j in 0..steps {
+            let white = DVec2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) * step - EXTENT;
+            if white.length_squared() > EXTENT * EXTENT {
+                continue;
+            }
+            let white = turn.rotate(white);
+            let offset = middle + spread[0] * white.x + spread[1] * white.y;
+            let (part, all) = pixel.integrate(offset, peak, &planes, clip.op, &nodes);
+            visible += part;
+            whole += all;
+        }
+    }
+    visible / whole
+}
+
+/// One Gaussian and one pixel.
+struct Pixel {
+    /// Centre of the Gaussian, world units.
+    centre: DVec3,
+    /// The centre's depth.
+    depth: f64,
+    /// World to the Gaussian's unit space, `M^-1`.
+    inverse: DMat3,
+    /// Camera to world.
+    turn: DMat3,
+    /// The centre in camera axes.
+    view: DVec3,
+    focal: DVec2,
+    /// x/z and y/z of the pixel's own ray.
+    slope: DVec2,
+    bundle: Bundle,
+}
+
+/// A ray in the Gaussian's unit space and in the world, by the depth counted from the Gaussian's centre.
+struct Ray {
+    unit_start: DVec3,
+    unit_step: DVec3,
+    /// World positions relative to the Gaussian's centre.
+    start: DVec3,
+    step: DVec3,
+}
+
+impl Ray {
+    /// Depth of the densest point.
+    fn densest(&self) -> f64 {
+        -self.unit_start.dot(self.unit_step) / self.unit_step.length_squared()
+    }
+}
+
+impl Pixel {
+    fn new(
+        scene: &Gaussians,
+        index: usize,
+        camera: &Camera,
+        position: DVec2,
+        bundle: Bundle,
+    ) -> Self {
+        let centre = scene.positions[index].as_dvec3();
+        let view = camera.rotation * (centre - camera.eye);
+        let axes = DMat3::from_quat(scene.rotations[index].as_dquat().normalize());
+        let focal = DVec2::new(camera.fx, camera.fy);
+        Self {
+            centre,
+            depth: view.z,
+            inverse: DMat3::from_diagonal(1.0 / scene.scales[index].as_dvec3()) * axes.transpose(),
+            turn: camera.rotation.transpose(),
+            view,
+            focal,
+            slope: (position - DVec2::new(camera.cx, camera.cy)) / focal,
+            bundle,
+        }
+    }
+
+    /// The ray of the bundle at an offset in pixels.
+    fn ray(&self, offset: DVec2) -> Ray {
+        let aside = offset / self.focal;
+        let (slope, from) = match self.bundle {
+            Bundle::Parallel => (self.slope, aside * self.depth),
+            Bundle::Diverging => (self.slope + aside, DVec2::ZERO),
+        };
+        let start = self.turn * ((from + slope * self.depth).extend(self.depth) - self.view);
+        let step = self.turn * slope.extend(1.0);
+        Ray {
+            unit_start: self.inverse * start,
+            unit_step: self.inverse * step,
+            start,
+            step,
+        }
+    }
+
+    /// How far a ray is from the densest one of all: its offset in deviations of the low-pass and its densest point.
+    fn residual(&self, offset: DVec2) -> [f64; 5] {
+        let ray = self.ray(offset);
+        let nearest = ray.unit_start + ray.unit_step * ray.densest();
+        let filter = offset / f64::from(LOW_PASS).sqrt();
+        [filter.x, filter.y, nearest.x, nearest.y, nearest.z]
+    }
+
+    /// Logarithm of the density at a ray's densest point, negated.
+    fn exponent(&self, offset: DVec2) -> f64 {
+        0.5 * self.residual(offset).iter().map(|r| r * r).sum::<f64>()
+    }
+
+    /// The offset about which the bundle's rays carry most weight, and two offsets from there that make the weight a
+    /// standard normal one (nearly so if the bundle diverges): where the grid of rays belongs.
+    fn densest(&self) -> (DVec2, [DVec2; 2]) {
+        let mut middle = DVec2::ZERO;
+        let mut spread = [DVec2::X, DVec2::Y];
+        for _ in 0..4 {
+            // One step of Gauss and Newton, with derivatives by central differences.
+            let step = 1e-3;
+            let slopes = [DVec2::X, DVec2::Y].map(|axis| {
+                let (up, down) = (
+                    self.residual(middle + axis * step),
+                    self.residual(middle - axis * step),
+                );
+                [0, 1, 2, 3, 4].map(|i| (up[i] - down[i]) / (2.0 * step))
+            });
+            let dot = |a: &[f64; 5], b: &[f64; 5]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let here = self.residual(middle);
+            let (xx, xy, yy) = (
+                dot(&slopes[0], &slopes[0]),
+                dot(&slopes[0], &slopes[1]),
+                dot(&slopes[1], &slopes[1]),
+            );
+            // Factorise the matrix of products: [[xx, xy], [xy, yy]] = L L^T; the spread is L^-T.
+            let l0 = xx.sqrt();
+            let l1 = xy / l0;
+            let l2 = (yy - l1 * l1).sqrt();
+            spread = [
+                DVec2::new(1.0 / l0, 0.0),
+                DVec2::new(-l1 / (l0 * l2), 1.0 / l2),
+            ];
+            let gradient = DVec2::new(dot(&slopes[0], &here), dot(&slopes[1], &here));
+            middle -= spread[0] * spread[0].dot(gradient) + spread[1] * spread[1].dot(gradient);
+        }
+        (middle, spread)
+    }
+
+    /// Integral of the density along one ray of the bundle: the visible part and the whole.
+    fn integrate(
+        &self,
+        offset: DVec2,
+        peak: f64,
+        planes: &[(DVec3, f64)],
+        op: ClipOp,
+        nodes: &[(f64, f64); NODES],
+    ) -> (f64, f64) {
+        let ray = self.ray(offset);
+        let (middle, half) = (ray.densest(), EXTENT / ray.unit_step.length());
+        // Only what is in front of the eye.
+        let (start, end) = ((middle - half).max(-self.depth), middle + half);
+        if start >= end {
+            return (0.0, 0.0);
+        }
+        let on_ray = |(normal, distance): &(DVec3, f64)| {
+            (distance + normal.dot(ray.start), normal.dot(ray.step))
+        };
+        let planes: Vec<_> = planes.iter().map(on_ray).collect();
+        let crossings = planes.iter().map(|(at, slope)| -at / slope);
+        let mut ends: Vec<_> = crossings
+            .filter(|t| *t > start && *t < end)
+            .chain([start, end])
+            .collect();
+        ends.sort_by(f64::total_cmp);
+
+        let weight = 0.5 * offset.length_squared() / f64::from(LOW_PASS) - peak;
+        let (mut visible, mut whole) = (0.0, 0.0);
+        for stretch in ends.windows(2) {
+            let (centre, half) = (
+                0.5 * (stretch[0] + stretch[1]),
+                0.5 * (stretch[1] - stretch[0]),
+            );
+            let density = |t: f64| {
+                (-0.5 * (ray.unit_start + ray.unit_step * t).length_squared() - weight).exp()
+            };
+            let sum: f64 = nodes
+                .iter()
+                .map(|(node, weight)| weight * density(centre + half * node))
+                .sum();
+            let mut kept = planes.iter().map(|(at, slope)| at + slope * centre >= 0.0);
+            let seen = match op {
+                ClipOp::And => kept.all(|k| k),
+                ClipOp::Or => kept.any(|k| k),
+            };
+            whole += half * sum;
+            visible += if seen { half * sum } else { 0.0 };
+        }
+        (visible, whole)
+    }
+}
+
+/// Nodes and weights of Gauss-Legendre quadrature on [-1, 1]: the roots of the Legendre polynomial, by Newton's method.
+fn legendre() -> [(f64, f64); NODES] {
+    let n = NODES as f64;
+    std::array::from_fn(|i| {
+        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5)).cos();
+        let mut slope = 0.0;
+        for _ in 0..20 {
+            let (mut value, mut before) = (x, 1.0);
+            for k in 2..=NODES {
+                let k = k as f64;
+                (value, before) = (
+                    ((2.0 * k - 1.0) * x * value - (k - 1.0) * before) / k,
+                    value,
+                );
+            }
+            slope = n * (before - x * value) / (1.0 - x * x);
+            x -= value / slope;
+        }
+        (x, 2.0 / ((1.0 - x * x) * slope * slope))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rule_integrates_a_gaussian() {
+        let nodes = legendre();
+        assert!((nodes.iter().map(|(_, weight)| weight).sum::<f64>() - 2.0).abs() < 1e-13);
+        let integral: f64 = nodes
+            .iter()
+            .map(|(x, w)| w * EXTENT * (-0.5 * (EXTENT * x).powi(2)).exp())
+            .sum();
+        assert!(
+            (integral - std::f64::consts::TAU.sqrt()).abs() < 1e-8,
+            "{integral}"
+        );
+    }
+}

@@ -1,5 +1,34 @@
 //! Vulkan without a single Gaussian: device, memory, accesses and barriers, recording, pipelines, timing.
+//!
+//! Everything here records into a command buffer that somebody else submits, except [`Device::headless`],
+//! [`Device::submit_and_wait`] and the uploads and downloads built on it.
 
+mod access;
+mod device;
+mod draw;
+mod failure;
+mod image;
+mod instance;
+mod layout;
+mod memory;
+mod pipeline;
+mod recorder;
+mod requirements;
 mod shader;
+mod submit;
+mod timer;
+mod upload;
+mod validation;
 
+pub use access::{Access, Tracker};
+pub use device::{AdoptDesc, Device, DeviceDesc};
+pub use draw::Drawer;
+pub use image::{Image, ImageDesc};
+pub use instance::{DeviceInfo, list_devices};
+pub use layout::Bindings;
+pub use memory::{Buffer, BufferDesc, Location};
+pub use pipeline::{ComputeDesc, ComputePipeline, GraphicsDesc, GraphicsPipeline};
+pub use recorder::{GRID_COLUMNS, Groups, Recorder, group_grid};
+pub use requirements::{Features, Support, check};
 pub use shader::{BufferAccess, BufferUse, MAX_BUFFERS, MAX_PARAMS, Shader};
+pub use timer::Timer;

@@ -1,0 +1,277 @@
+//! A 2D colour target for headless use. A host draws into images of its own.
+
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+
+use super::failure::failed;
+use super::memory::bytes;
+use super::{Buffer, Device};
+use crate::{Error, Result};
+
+/// What an image is created with.
+#[derive(Debug, Clone, Copy)]
+pub struct ImageDesc<'a> {
+    /// For debuggers, validation messages and errors.
+    pub name: &'a str,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// A colour format that can be rendered to.
+    pub format: vk::Format,
+}
+
+/// A 2D image that is rendered to and copied from; dropping it frees it, when the device is done with it.
+pub struct Image {
+    device: Device,
+    handle: vk::Image,
+    view: vk::ImageView,
+    extent: vk::Extent2D,
+    format: vk::Format,
+    name: Box<str>,
+    allocation: Option<Allocation>,
+}
+
+/// Every image here has one level and one layer of colour.
+const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
+    aspect_mask: vk::ImageAspectFlags::COLOR,
+    base_mip_level: 0,
+    level_count: 1,
+    base_array_layer: 0,
+    layer_count: 1,
+};
+
+impl Image {
+    pub(crate) fn new(device: &Device, desc: &ImageDesc<'_>) -> Result<Self> {
+        let limit = device.support().max_image_size;
+        if desc.width == 0 || desc.height == 0 || desc.width.max(desc.height) > limit {
+            let size = format!("{} x {}", desc.width, desc.height);
+            return Err(Error::Invalid(format!(
+                "a picture of {size} pixels is not possible: each side is 1 to {limit} on this device"
+            )));
+        }
+        let extent = vk::Extent2D {
+            width: desc.width,
+            height: desc.height,
+        };
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(desc.format)
+            .extent(extent.into())
+            .mip_levels(1)
+            .array_layers(1)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC);
+        // SAFETY: the device is alive as long as `device`.
+        let handle =
+            unsafe { device.raw().create_image(&info, None) }.map_err(failed("vkCreateImage"))?;
+        // SAFETY: the image was created just now.
+        let requirements = unsafe { device.raw().get_image_memory_requirements(handle) };
+        let allocation = device.allocate(&AllocationCreateDesc {
+            name: desc.name,
+            requirements,
+            location: MemoryLocation::GpuOnly,
+            linear: false,
+            // Drivers compress render targets only in memory of their own.
+            allocation_scheme: AllocationScheme::DedicatedImage(handle),
+        });
+        let allocation = match allocation {
+            Ok(allocation) => allocation,
+            Err(error) => {
+                // SAFETY: created above, used by nothing.
+                unsafe { device.raw().destroy_image(handle, None) };
+                let size = format!(
+                    "{} x {} pixels ({})",
+                    desc.width,
+                    desc.height,
+                    bytes(requirements.size)
+                );
+                return Err(Error::Memory(format!(
+                    "image \"{}\" of {size} could not be allocated ({error})",
+                    desc.name
+                )));
+            }
+        };
+        // From here on dropping `image` cleans up.
+        let mut image = Self {
+            device: device.clone(),
+            handle,
+            view: vk::ImageView::null(),
+            extent,
+            format: desc.format,
+            name: desc.name.into(),
+            allocation: Some(allocation),
+        };
+        let allocation = image.allocation.as_ref().expect("set above");
+        // SAFETY: the memory fits the requirements it was allocated for, and the image is not bound yet.
+        unsafe {
+            device
+                .raw()
+                .bind_image_memory(handle, allocation.memory(), allocation.offset())
+        }
+        .map_err(failed("vkBindImageMemory"))?;
+        let info = vk::ImageViewCreateInfo::default()
+            .image(handle)
+            .view_type(vk::ImageViewType::TYPE_2D)
+            .format(desc.format)
+            .subresource_range(WHOLE);
+        // SAFETY: the image is bound and has the view's format.
+        image.view = unsafe { device.raw().create_image_view(&info, None) }
+            .map_err(failed("vkCreateImageView"))?;
+        device.set_name(handle, desc.name);
+        device.set_name(image.view, desc.name);
+        Ok(image)
+    }
+
+    /// The Vulkan handle.
+    pub fn handle(&self) -> vk::Image {
+        self.handle
+    }
+
+    /// The view of the whole image.
+    pub fn view(&self) -> vk::ImageView {
+        self.view
+    }
+
+    /// Its size in pixels.
+    pub fn extent(&self) -> vk::Extent2D {
+        self.extent
+    }
+
+    /// Its format.
+    pub fn format(&self) -> vk::Format {
+        self.format
+    }
+
+    /// Clears the image and begins rendering to all of it, whatever happened to it before.
+    ///
+    /// # Safety
+    ///
+    /// `cmd` must be recording on this image's device, outside rendering; the image must outlive its execution.
+    pub unsafe fn begin_rendering(&self, cmd: vk::CommandBuffer, clear: [f32; 4]) {
+        let to_draw = vk::ImageMemoryBarrier2::default()
+            .src_stage_mask(
+                vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT
+                    | vk::PipelineStageFlags2::ALL_TRANSFER,
+            )
+            .src_access_mask(vk::AccessFlags2::COLOR_ATTACHMENT_WRITE)
+            .dst_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)
+            .dst_access_mask(
+                vk::AccessFlags2::COLOR_ATTACHMENT_READ | vk::AccessFlags2::COLOR_ATTACHMENT_WRITE,
+            )
+            // Undefined forgets the old contents, which the clear would anyway.
+            .old_layout(vk::ImageLayout::UNDEFINED)
+            .new_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
+        let attachments = [vk::RenderingAttachmentInfo::default()
+            .image_view(self.view)
+            .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
+            .load_op(vk::AttachmentLoadOp::CLEAR)
+            .store_op(vk::AttachmentStoreOp::STORE)
+            .clear_value(vk::ClearValue {
+                color: vk::ClearColorValue { float32: clear },
+            })];
+        let info = vk::RenderingInfo::default()
+            .render_area(self.extent.into())
+            .layer_count(1)
+            .color_attachments(&attachments);
+        // SAFETY: the caller vouches for `cmd`; the view is the image's own and covers the render area.
+        unsafe {
+            self.barrier(cmd, to_draw);
+            self.device.raw().cmd_begin_rendering(cmd, &info);
+        }
+    }
+
+    /// Ends rendering and makes the picture ready to be copied.
+    ///
+    /// # Safety
+    ///
+    /// `cmd` must be the one of [`Image::begin_rendering`], still inside its rendering.
+    pub unsafe fn end_rendering(&self, cmd: vk::CommandBuffer) {
+        let to_copy = vk::ImageMemoryBarrier2::default()
+            .src_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)
+            .src_access_mask(vk::AccessFlags2::COLOR_ATTACHMENT_WRITE)
+            .dst_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
+            .dst_access_mask(vk::AccessFlags2::TRANSFER_READ)
+            .old_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
+            .new_layout(vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
+        // SAFETY: the caller vouches for `cmd`, and that the image is being rendered to.
+        unsafe {
+            self.device.raw().cmd_end_rendering(cmd);
+            self.barrier(cmd, to_copy);
+        }
+    }
+
+    /// Copies the rendered picture, rows from the top without gaps, to the beginning of `target`. The barrier between
+    /// the copy and `target`'s next use is included: the host may read it after the fence.
+    ///
+    /// # Safety
+    ///
+    /// `cmd` must be recording on this image's device after [`Image::end_rendering`], outside rendering; image and
+    /// buffer must outlive its execution, and nothing else may be using `target`.
+    pub unsafe fn copy_to(&self, cmd: vk::CommandBuffer, target: &Buffer) {
+        let region = vk::BufferImageCopy::default()
+            .image_subresource(
+                vk::ImageSubresourceLayers::default()
+                    .aspect_mask(vk::ImageAspectFlags::COLOR)
+                    .layer_count(1),
+            )
+            .image_extent(self.extent.into());
+        let visible = [vk::MemoryBarrier2::default()
+            .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
+            .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+            .dst_stage_mask(vk::PipelineStageFlags2::HOST | vk::PipelineStageFlags2::ALL_TRANSFER)
+            .dst_access_mask(vk::AccessFlags2::HOST_READ | vk::AccessFlags2::TRANSFER_READ)];
+        // SAFETY: the caller vouches for `cmd` and the image's layout.
+        unsafe {
+            let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+            self.device.raw().cmd_copy_image_to_buffer(
+                cmd,
+                self.handle,
+                layout,
+                target.handle(),
+                &[region],
+            );
+            let info = vk::DependencyInfo::default().memory_barriers(&visible);
+            self.device.raw().cmd_pipeline_barrier2(cmd, &info);
+        }
+    }
+
+    /// # Safety
+    ///
+    /// `cmd` must be recording on this image's device, outside rendering.
+    unsafe fn barrier(&self, cmd: vk::CommandBuffer, barrier: vk::ImageMemoryBarrier2<'_>) {
+        let barriers = [barrier
+            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .image(self.handle)
+            .subresource_range(WHOLE)];
+        let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
+        // SAFETY: the caller vouches for `cmd`.
+        unsafe { self.device.raw().cmd_pipeline_barrier2(cmd, &info) };
+    }
+}
+
+impl Drop for Image {
+    fn drop(&mut self) {
+        // SAFETY: whoever submitted work with the image waited for it; a null view is ignored.
+        unsafe {
+            self.device.raw().destroy_image_view(self.view, None);
+            self.device.raw().destroy_image(self.handle, None);
+        }
+        if let Some(allocation) = self.allocation.take() {
+            self.device.free(allocation);
+        }
+    }
+}
+
+impl std::fmt::Debug for Image {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Image")
+            .field("name", &self.name)
+            .field("extent", &self.extent)
+            .field("format", &self.format)
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,215 @@
+//! What pipelines and commands agree on: push constants, and the descriptor set of bound buffers.
+
+use ash::vk;
+
+use super::failure::failed;
+use super::{Buffer, BufferUse, Device, MAX_BUFFERS, MAX_PARAMS, Shader};
+use crate::{Error, Result};
+
+/// How shaders reach their buffers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Bindings {
+    /// By device address. Fast and without a size limit, but the validation layer cannot watch.
+    #[default]
+    Address,
+    /// As storage buffers of descriptor set 0, pushed with each command. The validation layer sees every hazard; a
+    /// buffer may not exceed [`Support::max_storage_buffer_range`](super::Support::max_storage_buffer_range).
+    Bound,
+}
+
+/// The block that `glsl/buffers.glsl` declares: 128 bytes, which every device has.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct PushConstants {
+    address: [u64; MAX_BUFFERS],
+    param: [u32; MAX_PARAMS],
+}
+
+const _: () = assert!(size_of::<PushConstants>() == 128);
+
+/// A pipeline layout for the buffers of one or several shaders.
+pub(crate) struct Layout {
+    device: Device,
+    pub(crate) raw: vk::PipelineLayout,
+    /// Null for [`Bindings::Address`].
+    set: vk::DescriptorSetLayout,
+    stages: vk::ShaderStageFlags,
+    /// The buffers of all stages, by ascending binding.
+    pub(crate) uses: Vec<BufferUse>,
+}
+
+impl Layout {
+    pub(crate) fn new(
+        device: &Device,
+        name: &str,
+        shaders: &[&Shader],
+        bindings: Bindings,
+    ) -> Result<Self> {
+        let mut uses: Vec<BufferUse> = Vec::new();
+        for buffer in shaders.iter().flat_map(|shader| shader.buffers) {
+            assert!(
+                (buffer.binding as usize) < MAX_BUFFERS,
+                "pipeline \"{name}\": binding {} is too high",
+                buffer.binding
+            );
+            match uses.iter().find(|known| known.binding == buffer.binding) {
+                None => uses.push(*buffer),
+                Some(known) => assert!(
+                    known.name == buffer.name && known.access == buffer.access,
+                    "pipeline \"{name}\": its shaders disagree about binding {}",
+                    buffer.binding
+                ),
+            }
+        }
+        uses.sort_by_key(|buffer| buffer.binding);
+        let stages = shaders
+            .iter()
+            .fold(vk::ShaderStageFlags::empty(), |stages, shader| {
+                stages | shader.stage
+            });
+        let mut this = Self {
+            device: device.clone(),
+            raw: vk::PipelineLayout::null(),
+            set: vk::DescriptorSetLayout::null(),
+            stages,
+            uses,
+        };
+        if bindings == Bindings::Bound {
+            this.set = this.create_set()?;
+        }
+        let ranges = [vk::PushConstantRange::default()
+            .stage_flags(stages)
+            .size(size_of::<PushConstants>() as u32)];
+        let sets = [this.set];
+        let info = vk::PipelineLayoutCreateInfo::default()
+            .push_constant_ranges(&ranges)
+            .set_layouts(if bindings == Bindings::Bound {
+                &sets
+            } else {
+                &[]
+            });
+        // SAFETY: the device is alive as long as `device`, and the set layout was made from it.
+        this.raw = unsafe { device.raw().create_pipeline_layout(&info, None) }
+            .map_err(failed("vkCreatePipelineLayout"))?;
+        device.set_name(this.raw, name);
+        Ok(this)
+    }
+
+    fn create_set(&self) -> Result<vk::DescriptorSetLayout> {
+        if self.device.push_descriptor().is_none() {
+            return Err(Error::Device(
+                "bound buffers need VK_KHR_push_descriptor, which this device lacks or was made without; use buffer \
+                 addresses instead"
+                    .into(),
+            ));
+        }
+        let slot = |buffer: &BufferUse| {
+            vk::DescriptorSetLayoutBinding::default()
+                .binding(buffer.binding)
+                .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
+                .descriptor_count(1)
+                .stage_flags(self.stages)
+        };
+        let slots: Vec<_> = self.uses.iter().map(slot).collect();
+        let info = vk::DescriptorSetLayoutCreateInfo::default()
+            .flags(vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR)
+            .bindings(&slots);
+        // SAFETY: the device is alive as long as `self.device`.
+        unsafe { self.device.raw().create_descriptor_set_layout(&info, None) }
+            .map_err(failed("vkCreateDescriptorSetLayout"))
+    }
+
+    /// Buffers that a command must be given: one for each binding up to the highest.
+    pub(crate) fn buffer_count(&self) -> usize {
+        self.uses
+            .last()
+            .map_or(0, |buffer| buffer.binding as usize + 1)
+    }
+
+    /// That a command has the right number of buffers and parameters; a sentence in the panic otherwise.
+    pub(crate) fn check(&self, name: &str, buffers: &[&Buffer], params: &[u32]) {
+        let wanted = self.buffer_count();
+        assert!(
+            buffers.len() == wanted,
+            "\"{name}\" was given {} buffers and its shaders declare {wanted}: {:?}",
+            buffers.len(),
+            self.uses
+                .iter()
+                .map(|buffer| buffer.name)
+                .collect::<Vec<_>>()
+        );
+        assert!(
+            params.len() <= MAX_PARAMS,
+            "\"{name}\" was given {} parameters and {MAX_PARAMS} are possible",
+            params.len()
+        );
+    }
+
+    /// Records push constants and, where bound, the buffers.
+    ///
+    /// # Safety
+    ///
+    /// `cmd` must be recording on this layout's device; the buffers must outlive its execution.
+    pub(crate) unsafe fn push(
+        &self,
+        cmd: vk::CommandBuffer,
+        point: vk::PipelineBindPoint,
+        buffers: &[&Buffer],
+        params: &[u32],
+    ) {
+        let mut block: PushConstants = bytemuck::Zeroable::zeroed();
+        for (address, buffer) in block.address.iter_mut().zip(buffers) {
+            *address = buffer.address();
+        }
+        block.param[..params.len()].copy_from_slice(params);
+        let raw = self.device.raw();
+        // SAFETY: the caller vouches for `cmd`; the layout has one range of this size for these stages.
+        unsafe {
+            raw.cmd_push_constants(cmd, self.raw, self.stages, 0, bytemuck::bytes_of(&block))
+        };
+        if self.set == vk::DescriptorSetLayout::null() || self.uses.is_empty() {
+            return;
+        }
+        let limit = self.device.support().max_storage_buffer_range;
+        let mut infos = [[vk::DescriptorBufferInfo::default()]; MAX_BUFFERS];
+        for (info, buffer) in infos.iter_mut().zip(&self.uses) {
+            let bound = buffers[buffer.binding as usize];
+            assert!(
+                bound.size() <= limit,
+                "buffer \"{}\" of {} bytes cannot be bound: this device binds at most {limit}; use buffer addresses",
+                bound.name(),
+                bound.size()
+            );
+            *info = [vk::DescriptorBufferInfo::default()
+                .buffer(bound.handle())
+                .range(vk::WHOLE_SIZE)];
+        }
+        let mut writes = [vk::WriteDescriptorSet::default(); MAX_BUFFERS];
+        for ((write, info), buffer) in writes.iter_mut().zip(&infos).zip(&self.uses) {
+            *write = vk::WriteDescriptorSet::default()
+                .dst_binding(buffer.binding)
+                .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
+                .buffer_info(info);
+        }
+        let push = self
+            .device
+            .push_descriptor()
+            .expect("a layout with a set was made with the extension");
+        // SAFETY: as above; set 0 of the layout is a push descriptor set with exactly these bindings.
+        unsafe {
+            push.cmd_push_descriptor_set(cmd, point, self.raw, 0, &writes[..self.uses.len()])
+        };
+    }
+}
+
+impl Drop for Layout {
+    fn drop(&mut self) {
+        // SAFETY: pipelines own their layout and go first; null handles are ignored.
+        unsafe {
+            self.device.raw().destroy_pipeline_layout(self.raw, None);
+            self.device
+                .raw()
+                .destroy_descriptor_set_layout(self.set, None);
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Buffers: storage that shaders reach by address or binding, mapped where the host writes or reads.
+
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+
+use super::Device;
+use super::failure::failed;
+use crate::{Error, Result};
+
+/// Allocations from this size get memory of their own; smaller ones share blocks. Lower, and small buffers waste pages
+/// and the driver's limited number of allocations; higher, and freed buffers leave large holes in blocks.
+const DEDICATED_FROM: u64 = 16 << 20;
+
+/// Who reaches a buffer's memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Location {
+    /// The device alone.
+    GpuOnly,
+    /// Mapped, for the host to write.
+    Upload,
+    /// Mapped, for the host to read.
+    Readback,
+}
+
+/// What a buffer is created with.
+#[derive(Debug, Clone, Copy)]
+pub struct BufferDesc<'a> {
+    /// For debuggers, validation messages and errors.
+    pub name: &'a str,
+    /// Bytes; at least 16 are allocated and a multiple of 16.
+    pub size: u64,
+    /// Who reaches it.
+    pub location: Location,
+}
+
+/// A buffer with every usage that a pass can ask of it; dropping it frees it.
+///
+/// The device must be done with it by then: whoever submits work waits for it first.
+pub struct Buffer {
+    device: Device,
+    handle: vk::Buffer,
+    address: u64,
+    size: u64,
+    name: Box<str>,
+    location: Location,
+    /// `None` only while being dropped.
+    allocation: Option<Allocation>,
+}
+
+impl Buffer {
+    pub(crate) fn new(device: &Device, desc: &BufferDesc<'_>) -> Result<Self> {
+        use vk::BufferUsageFlags as Usage;
+        let size = desc.size.max(1).next_multiple_of(16);
+        let full = |why: &str| {
+            let what = format!(
+                "buffer \"{}\" of {} could not be allocated",
+                desc.name,
+                bytes(size)
+            );
+            let used = bytes(device.device_bytes());
+            Error::Memory(format!(
+                "{what} ({why}); {used} are in use by this renderer"
+            ))
+        };
+        if size > device.support().max_buffer_size {
+            return Err(full(&format!(
+                "the device's largest is {}",
+                bytes(device.support().max_buffer_size)
+            )));
+        }
+        let info = vk::BufferCreateInfo::default().size(size).usage(
+            Usage::STORAGE_BUFFER
+                | Usage::SHADER_DEVICE_ADDRESS
+                | Usage::TRANSFER_SRC
+                | Usage::TRANSFER_DST
+                | Usage::INDIRECT_BUFFER
+                | Usage::INDEX_BUFFER,
+        );
+        // SAFETY: the device is alive as long as `device`.
+        let handle =
+            unsafe { device.raw().create_buffer(&info, None) }.map_err(failed("vkCreateBuffer"))?;
+        // SAFETY: the buffer was created just now.
+        let requirements = unsafe { device.raw().get_buffer_memory_requirements(handle) };
+        let allocation = device.allocate(&AllocationCreateDesc {
+            name: desc.name,
+            requirements,
+            location: match desc.location {
+                Location::GpuOnly => MemoryLocation::GpuOnly,
+                Location::Upload => MemoryLocation::CpuToGpu,
+                Location::Readback => MemoryLocation::GpuToCpu,
+            },
+            linear: true,
+            allocation_scheme: if requirements.size >= DEDICATED_FROM {
+                AllocationScheme::DedicatedBuffer(handle)
+            } else {
+                AllocationScheme::GpuAllocatorManaged
+            },
+        });
+        let allocation = match allocation {
+            Ok(allocation) => allocation,
+            Err(error) => {
+                // SAFETY: created above, used by nothing.
+                unsafe { device.raw().destroy_buffer(handle, None) };
+                return Err(full(&error.to_string()));
+            }
+        };
+        // From here on dropping `buffer` cleans up.
+        let mut buffer = Self {
+            device: device.clone(),
+            handle,
+            address: 0,
+            size,
+            name: desc.name.into(),
+            location: desc.location,
+            allocation: Some(allocation),
+        };
+        let allocation = buffer.allocation();
+        // SAFETY: the memory fits the requirements it was allocated for, and the buffer is not bound yet.
+        unsafe {
+            device
+                .raw()
+                .bind_buffer_memory(handle, allocation.memory(), allocation.offset())
+        }
+        .map_err(failed("vkBindBufferMemory"))?;
+        let info = vk::BufferDeviceAddressInfo::default().buffer(handle);
+        // SAFETY: the buffer is bound, has the address usage, and the feature is a requirement.
+        buffer.address = unsafe { device.raw().get_buffer_device_address(&info) };
+        device.set_name(handle, desc.name);
+        Ok(buffer)
+    }
+
+    /// The Vulkan handle.
+    pub fn handle(&self) -> vk::Buffer {
+        self.handle
+    }
+
+    /// The device address of its first byte.
+    pub fn address(&self) -> u64 {
+        self.address
+    }
+
+    /// Bytes it holds: what was asked for, rounded up to a multiple of 16.
+    pub fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Who reaches it.
+    pub fn location(&self) -> Location {
+        self.location
+    }
+
+    /// The bytes, for [`Location::Upload`] and [`Location::Readback`]. Read them when the device is done writing and
+    /// the recording ended with [`Recorder::ready_for_host`](super::Recorder::ready_for_host).
+    pub fn mapped(&self) -> &[u8] {
+        assert!(
+            self.location != Location::GpuOnly,
+            "buffer \"{}\" is not mapped: it is GpuOnly",
+            self.name
+        );
+        let bytes = self
+            .allocation()
+            .mapped_slice()
+            .expect("host-visible memory is mapped while it lives");
+        &bytes[..self.size as usize]
+    }
+
+    /// The bytes, to be written while the device does not use them.
+    pub fn mapped_mut(&mut self) -> &mut [u8] {
+        assert!(
+            self.location != Location::GpuOnly,
+            "buffer \"{}\" is not mapped: it is GpuOnly",
+            self.name
+        );
+        let allocation = self.allocation.as_mut().expect("taken only by drop");
+        &mut allocation
+            .mapped_slice_mut()
+            .expect("host-visible memory is mapped while it lives")[..self.size as usize]
+    }
+
+    /// That `size` bytes at `offset` lie inside; a sentence in the panic otherwise.
+    pub(crate) fn check_range(&self, offset: u64, size: u64) {
+        let inside = offset.checked_add(size).is_some_and(|end| end <= self.size);
+        assert!(
+            inside,
+            "{size} bytes at {offset} do not lie in buffer \"{}\" of {} bytes",
+            self.name, self.size
+        );
+    }
+
+    fn allocation(&self) -> &Allocation {
+        self.allocation.as_ref().expect("taken only by drop")
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        // SAFETY: whoever submitted work with the buffer waited for it, as the type's contract says.
+        unsafe { self.device.raw().destroy_buffer(self.handle, None) };
+        if let Some(allocation) = self.allocation.take() {
+            self.device.free(allocation);
+        }
+    }
+}
+
+impl std::fmt::Debug for Buffer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Buffer")
+            .field("name", &self.name)
+            .field("size", &self.size)
+            .field("location", &self.location)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A number of bytes for people.
+pub(crate) fn bytes(count: u64) -> String {
+    match count {
+        0..1024 => format!("{count} bytes"),
+        1024..0x10_0000 => format!("{:.1} KiB", count as f64 / 1024.0),
+        0x10_0000..0x4000_0000 => format!("{:.1} MiB", count as f64 / f64::from(1 << 20)),
+        _ => format!("{:.2} GiB", count as f64 / f64::from(1 << 30)),
+    }
+}

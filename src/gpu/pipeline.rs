@@ -1,0 +1,329 @@
+//! Compute and graphics pipelines from reflected shaders.
+
+use std::ffi::CStr;
+
+use ash::vk;
+
+use super::failure::failed;
+use super::layout::Layout;
+use super::{Access, Bindings, BufferAccess, Device, Shader};
+use crate::{Error, Result};
+
+/// Entry point of every shader.
+const MAIN: &CStr = c"main";
+
+/// What a compute pipeline is created with.
+#[derive(Debug, Clone, Copy)]
+pub struct ComputeDesc<'a> {
+    /// For debuggers, validation messages and errors.
+    pub name: &'static str,
+    /// The shader.
+    pub shader: &'a Shader,
+    /// Specialisation constants: id and value.
+    pub constants: &'a [(u32, u32)],
+    /// How the shader reaches its buffers.
+    pub bindings: Bindings,
+}
+
+/// A compute pipeline; dropping it frees it, when the device is done with it.
+pub struct ComputePipeline(Pipeline);
+
+impl ComputePipeline {
+    /// Compiles the shader.
+    pub fn new(device: &Device, desc: &ComputeDesc<'_>) -> Result<Self> {
+        let layout = Layout::new(device, desc.name, &[desc.shader], desc.bindings)?;
+        let constants = Constants::new(desc.constants);
+        let specialization = constants.info();
+        let module = Module::new(device, desc.shader, desc.bindings)?;
+        let info = [vk::ComputePipelineCreateInfo::default()
+            .stage(module.stage(&specialization))
+            .layout(layout.raw)];
+        // SAFETY: module and layout are the device's and alive; the constants outlive the call.
+        let made = unsafe {
+            device
+                .raw()
+                .create_compute_pipelines(device.pipeline_cache(), &info, None)
+        };
+        Pipeline::new(
+            device,
+            desc.name,
+            layout,
+            made.map_err(|(_, result)| result),
+            "vkCreateComputePipelines",
+        )
+        .map(Self)
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &'static str {
+        self.0.name
+    }
+
+    pub(crate) fn inner(&self) -> &Pipeline {
+        &self.0
+    }
+
+    /// What the shader does with each of its bindings, as it declares.
+    pub(crate) fn accesses(&self) -> impl Iterator<Item = (usize, Access)> {
+        self.0.layout.uses.iter().map(|buffer| {
+            let access = match buffer.access {
+                BufferAccess::Read => Access::ComputeRead,
+                BufferAccess::Write => Access::ComputeWrite,
+                BufferAccess::ReadWrite => Access::ComputeReadWrite,
+            };
+            (buffer.binding as usize, access)
+        })
+    }
+}
+
+/// What a graphics pipeline is created with.
+///
+/// Pipelines draw into one colour attachment of a dynamic rendering scope, with dynamic viewport and scissor, without
+/// vertex input, culling, depth or stencil. Their shaders only read buffers.
+#[derive(Debug, Clone, Copy)]
+pub struct GraphicsDesc<'a> {
+    /// For debuggers, validation messages and errors.
+    pub name: &'static str,
+    /// The vertex or mesh shader.
+    pub front: &'a Shader,
+    /// The fragment shader.
+    pub fragment: &'a Shader,
+    /// Specialisation constants of both stages: id and value.
+    pub constants: &'a [(u32, u32)],
+    /// The colour attachment's format.
+    pub color_format: vk::Format,
+    /// How fragments are blended; `None` overwrites.
+    pub blend: Option<vk::PipelineColorBlendAttachmentState>,
+    /// What vertices make; unused with a mesh shader.
+    pub topology: vk::PrimitiveTopology,
+    /// How the shaders reach their buffers.
+    pub bindings: Bindings,
+}
+
+/// A graphics pipeline; dropping it frees it, when the device is done with it.
+pub struct GraphicsPipeline {
+    inner: Pipeline,
+    mesh: bool,
+}
+
+impl GraphicsPipeline {
+    /// Compiles the shaders.
+    pub fn new(device: &Device, desc: &GraphicsDesc<'_>) -> Result<Self> {
+        let mesh = desc.front.stage == vk::ShaderStageFlags::MESH_EXT;
+        assert!(
+            mesh || desc.front.stage == vk::ShaderStageFlags::VERTEX,
+            "pipeline \"{}\": its front must be a vertex or mesh shader",
+            desc.name
+        );
+        if mesh && !device.support().mesh_shader {
+            return Err(Error::Device(format!(
+                "pipeline \"{}\" needs VK_EXT_mesh_shader, which this device lacks or was made without",
+                desc.name
+            )));
+        }
+        let layout = Layout::new(
+            device,
+            desc.name,
+            &[desc.front, desc.fragment],
+            desc.bindings,
+        )?;
+        if let Some(written) = layout
+            .uses
+            .iter()
+            .find(|buffer| buffer.access != BufferAccess::Read)
+        {
+            panic!(
+                "pipeline \"{}\": draws only read, declare buffer {} readonly",
+                desc.name, written.name
+            );
+        }
+        let constants = Constants::new(desc.constants);
+        let specialization = constants.info();
+        let front = Module::new(device, desc.front, desc.bindings)?;
+        let fragment = Module::new(device, desc.fragment, desc.bindings)?;
+        let stages = [
+            front.stage(&specialization),
+            fragment.stage(&specialization),
+        ];
+
+        let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(desc.topology);
+        let viewport = vk::PipelineViewportStateCreateInfo::default()
+            .viewport_count(1)
+            .scissor_count(1);
+        let rasterization = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
+        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
+            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let overwrite = vk::PipelineColorBlendAttachmentState::default()
+            .color_write_mask(vk::ColorComponentFlags::RGBA);
+        let attachments = [desc.blend.unwrap_or(overwrite)];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
+        let dynamic_states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);
+        let formats = [desc.color_format];
+        let mut rendering =
+            vk::PipelineRenderingCreateInfo::default().color_attachment_formats(&formats);
+        let mut info = vk::GraphicsPipelineCreateInfo::default()
+            .stages(&stages)
+            .viewport_state(&viewport)
+            .rasterization_state(&rasterization)
+            .multisample_state(&multisample)
+            .color_blend_state(&blend)
+            .dynamic_state(&dynamic)
+            .layout(layout.raw)
+            .push_next(&mut rendering);
+        if !mesh {
+            info = info
+                .vertex_input_state(&vertex_input)
+                .input_assembly_state(&assembly);
+        }
+        // SAFETY: modules and layout are the device's and alive; everything pointed to outlives the call.
+        let made = unsafe {
+            device
+                .raw()
+                .create_graphics_pipelines(device.pipeline_cache(), &[info], None)
+        };
+        let made = made.map_err(|(_, result)| result);
+        let inner = Pipeline::new(device, desc.name, layout, made, "vkCreateGraphicsPipelines")?;
+        Ok(Self { inner, mesh })
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &'static str {
+        self.inner.name
+    }
+
+    /// Whether its front is a mesh shader.
+    pub fn is_mesh(&self) -> bool {
+        self.mesh
+    }
+
+    pub(crate) fn inner(&self) -> &Pipeline {
+        &self.inner
+    }
+}
+
+/// What both kinds have in common.
+pub(crate) struct Pipeline {
+    pub(crate) name: &'static str,
+    pub(crate) raw: vk::Pipeline,
+    pub(crate) layout: Layout,
+    device: Device,
+}
+
+impl Pipeline {
+    fn new(
+        device: &Device,
+        name: &'static str,
+        layout: Layout,
+        made: std::result::Result<Vec<vk::Pipeline>, vk::Result>,
+        call: &'static str,
+    ) -> Result<Self> {
+        let raw = made.map_err(failed(call))?[0];
+        device.set_name(raw, name);
+        Ok(Self {
+            name,
+            raw,
+            layout,
+            device: device.clone(),
+        })
+    }
+}
+
+impl Drop for Pipeline {
+    fn drop(&mut self) {
+        // SAFETY: whoever submitted work with the pipeline waited for it.
+        unsafe { self.device.raw().destroy_pipeline(self.raw, None) };
+    }
+}
+
+impl std::fmt::Debug for ComputePipeline {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ComputePipeline")
+            .field("name", &self.0.name)
+            .finish_non_exhaustive()
+    }
+}
+
+impl std::fmt::Debug for GraphicsPipeline {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("GraphicsPipeline")
+            .field("name", &self.inner.name)
+            .field("mesh", &self.mesh)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A shader module, needed only until the pipeline is made.
+struct Module<'a> {
+    device: &'a Device,
+    shader: &'a Shader,
+    raw: vk::ShaderModule,
+}
+
+impl<'a> Module<'a> {
+    fn new(device: &'a Device, shader: &'a Shader, bindings: Bindings) -> Result<Self> {
+        let code = match bindings {
+            Bindings::Address => shader.address,
+            Bindings::Bound => shader.bound,
+        };
+        let info = vk::ShaderModuleCreateInfo::default().code(code);
+        // SAFETY: the device is alive, and the words are SPIR-V that this crate's build compiled and checked.
+        let raw = unsafe { device.raw().create_shader_module(&info, None) }
+            .map_err(failed("vkCreateShaderModule"))?;
+        device.set_name(raw, shader.name);
+        Ok(Self {
+            device,
+            shader,
+            raw,
+        })
+    }
+
+    fn stage<'b>(
+        &self,
+        specialization: &'b vk::SpecializationInfo<'b>,
+    ) -> vk::PipelineShaderStageCreateInfo<'b> {
+        vk::PipelineShaderStageCreateInfo::default()
+            .stage(self.shader.stage)
+            .module(self.raw)
+            .name(MAIN)
+            .specialization_info(specialization)
+    }
+}
+
+impl Drop for Module<'_> {
+    fn drop(&mut self) {
+        // SAFETY: modules are not needed once the pipeline is made, or failed to be.
+        unsafe { self.device.raw().destroy_shader_module(self.raw, None) };
+    }
+}
+
+/// Specialisation constants in Vulkan's form.
+struct Constants {
+    entries: Vec<vk::SpecializationMapEntry>,
+    data: Vec<u8>,
+}
+
+impl Constants {
+    fn new(constants: &[(u32, u32)]) -> Self {
+        let entry = |(at, (id, _)): (usize, &(u32, u32))| {
+            vk::SpecializationMapEntry::default()
+                .constant_id(*id)
+                .offset(4 * at as u32)
+                .size(4)
+        };
+        Self {
+            entries: constants.iter().enumerate().map(entry).collect(),
+            data: constants
+                .iter()
+                .flat_map(|(_, value)| value.to_ne_bytes())
+                .collect(),
+        }
+    }
+
+    fn info(&self) -> vk::SpecializationInfo<'_> {
+        vk::SpecializationInfo::default()
+            .map_entries(&self.entries)
+            .data(&self.data)
+    }
+}

@@ -1,0 +1,302 @@
+//! Passes into a host's command buffer: one name for label and timer, barriers derived from what the shaders declare.
+
+use std::ffi::CStr;
+
+use ash::vk;
+
+use super::{Access, Buffer, ComputePipeline, Device, MAX_BUFFERS, Timer, Tracker};
+
+/// How many workgroups a dispatch has.
+#[derive(Debug, Clone, Copy)]
+pub enum Groups<'a> {
+    /// A number, laid out as [`group_grid`] says; none is no dispatch at all.
+    Count(u32),
+    /// A `VkDispatchIndirectCommand` in the buffer at this offset, a multiple of 4.
+    Indirect(&'a Buffer, u64),
+}
+
+/// Columns of a grid of workgroups that does not fit in a row. A power of two, so that shaders that fill indirect
+/// arguments divide by shifting; more than 65535 would break devices with the least limit.
+pub const GRID_COLUMNS: u32 = 32_768;
+
+/// The grid for a linear number of workgroups: a row while `limit` allows, else rows of [`GRID_COLUMNS`], the last of
+/// which may be too long. Shaders compute `y * gl_NumWorkGroups.x + x` and leave if that is past the end.
+pub fn group_grid(count: u32, limit: u32) -> [u32; 3] {
+    if count <= limit {
+        return [count, 1, 1];
+    }
+    let rows = count.div_ceil(GRID_COLUMNS);
+    assert!(
+        rows <= limit,
+        "{count} workgroups are more than a dispatch can have on this device"
+    );
+    [GRID_COLUMNS, rows, 1]
+}
+
+/// Records compute passes, fills and copies. Neither allocates device memory, nor waits, nor submits.
+#[derive(Debug)]
+pub struct Recorder<'a> {
+    device: &'a Device,
+    cmd: vk::CommandBuffer,
+    tracker: Tracker,
+    timer: Option<&'a mut Timer>,
+}
+
+impl<'a> Recorder<'a> {
+    /// Begins with a barrier that orders the recording after everything earlier in the queue, and resets the timer.
+    ///
+    /// # Safety
+    ///
+    /// `cmd` must be recording on `device`, outside rendering, and stay so as long as the recorder lives; it must be
+    /// submitted to the device's queue. All buffers and pipelines given to the recorder must be this device's and
+    /// outlive the execution. Nobody else may record into `cmd` accesses to these buffers while the recorder lives.
+    pub unsafe fn begin(
+        device: &'a Device,
+        cmd: vk::CommandBuffer,
+        timer: Option<&'a mut Timer>,
+    ) -> Self {
+        let tracker = Tracker::new(device.support().mesh_shader);
+        let mut this = Self {
+            device,
+            cmd,
+            tracker,
+            timer,
+        };
+        this.barrier(&this.tracker.opening());
+        if let Some(timer) = &mut this.timer {
+            // SAFETY: the caller vouches for `cmd`; the timer's earlier recordings go to the same queue.
+            unsafe { timer.reset(cmd) };
+        }
+        this
+    }
+
+    /// The command buffer.
+    pub fn cmd(&self) -> vk::CommandBuffer {
+        self.cmd
+    }
+
+    /// The device.
+    pub fn device(&self) -> &'a Device {
+        self.device
+    }
+
+    /// Records `record` as a pass: its name is the debug label and the timer's entry. Passes may nest.
+    pub fn pass<R>(&mut self, name: &'static str, record: impl FnOnce(&mut Self) -> R) -> R {
+        begin_label(self.device, self.cmd, name);
+        // SAFETY: `begin`'s contract covers `cmd`, and it reset the timer.
+        let timed = self
+            .timer
+            .as_mut()
+            .map(|timer| unsafe { timer.begin(self.cmd, name) });
+        let result = record(self);
+        if let (Some(timer), Some(pass)) = (&mut self.timer, timed) {
+            // SAFETY: as above.
+            unsafe { timer.end(self.cmd, pass) };
+        }
+        end_label(self.device, self.cmd);
+        result
+    }
+
+    /// Dispatches a compute shader. `buffers[i]` is the buffer of binding `i`; what the shader declares of each decides
+    /// the barrier.
+    pub fn dispatch(
+        &mut self,
+        pipeline: &ComputePipeline,
+        buffers: &[&Buffer],
+        params: &[u32],
+        groups: Groups<'_>,
+    ) {
+        let inner = pipeline.inner();
+        inner.layout.check(pipeline.name(), buffers, params);
+        if matches!(groups, Groups::Count(0)) {
+            return;
+        }
+        let mut uses = [(vk::Buffer::null(), Access::ComputeRead); MAX_BUFFERS + 1];
+        let mut count = 0;
+        for (binding, access) in pipeline.accesses() {
+            uses[count] = (buffers[binding].handle(), access);
+            count += 1;
+        }
+        if let Groups::Indirect(args, offset) = groups {
+            assert!(
+                offset.is_multiple_of(4),
+                "dispatch \"{}\": offset {offset} is no multiple of 4",
+                pipeline.name()
+            );
+            args.check_range(offset, size_of::<vk::DispatchIndirectCommand>() as u64);
+            uses[count] = (args.handle(), Access::IndirectRead);
+            count += 1;
+        }
+        self.before(&uses[..count]);
+        let raw = self.device.raw();
+        // SAFETY: `begin`'s contract covers `cmd`, pipeline and buffers; the layout is the pipeline's, the grid is within
+        // the limits and the arguments lie inside their buffer.
+        unsafe {
+            raw.cmd_bind_pipeline(self.cmd, vk::PipelineBindPoint::COMPUTE, inner.raw);
+            inner
+                .layout
+                .push(self.cmd, vk::PipelineBindPoint::COMPUTE, buffers, params);
+            match groups {
+                Groups::Count(count) => {
+                    let [x, y, z] = group_grid(count, self.device.support().max_group_count);
+                    raw.cmd_dispatch(self.cmd, x, y, z);
+                }
+                Groups::Indirect(args, offset) => {
+                    raw.cmd_dispatch_indirect(self.cmd, args.handle(), offset)
+                }
+            }
+        }
+    }
+
+    /// Fills `size` bytes at `offset`, both multiples of 4, with a word.
+    pub fn fill(&mut self, buffer: &Buffer, offset: u64, size: u64, word: u32) {
+        aligned("fill", buffer, offset, size);
+        if size == 0 {
+            return;
+        }
+        self.before(&[(buffer.handle(), Access::TransferWrite)]);
+        // SAFETY: `begin`'s contract covers `cmd` and buffer; the range is inside and aligned.
+        unsafe {
+            self.device
+                .raw()
+                .cmd_fill_buffer(self.cmd, buffer.handle(), offset, size, word)
+        };
+    }
+
+    /// Writes bytes that travel in the command buffer, for small data: offset and length are multiples of 4.
+    pub fn update(&mut self, buffer: &Buffer, offset: u64, data: &[u8]) {
+        /// The most that one command can carry.
+        const CHUNK: usize = 65_536;
+        aligned("update", buffer, offset, data.len() as u64);
+        if data.is_empty() {
+            return;
+        }
+        self.before(&[(buffer.handle(), Access::TransferWrite)]);
+        for (at, chunk) in (offset..).step_by(CHUNK).zip(data.chunks(CHUNK)) {
+            // SAFETY: `begin`'s contract covers `cmd` and buffer; the range is inside, aligned and not too large.
+            unsafe {
+                self.device
+                    .raw()
+                    .cmd_update_buffer(self.cmd, buffer.handle(), at, chunk)
+            };
+        }
+    }
+
+    /// Copies regions, which must not overlap, from one buffer to another.
+    pub fn copy(&mut self, source: &Buffer, target: &Buffer, regions: &[vk::BufferCopy]) {
+        assert!(
+            source.handle() != target.handle(),
+            "buffer \"{}\" cannot be copied onto itself",
+            source.name()
+        );
+        for region in regions {
+            assert!(
+                region.size > 0,
+                "a copy from \"{}\" to \"{}\" has no bytes",
+                source.name(),
+                target.name()
+            );
+            source.check_range(region.src_offset, region.size);
+            target.check_range(region.dst_offset, region.size);
+        }
+        if regions.is_empty() {
+            return;
+        }
+        self.before(&[
+            (source.handle(), Access::TransferRead),
+            (target.handle(), Access::TransferWrite),
+        ]);
+        // SAFETY: `begin`'s contract covers `cmd` and buffers; the regions are inside.
+        unsafe {
+            self.device
+                .raw()
+                .cmd_copy_buffer(self.cmd, source.handle(), target.handle(), regions)
+        };
+    }
+
+    /// Makes buffers visible to draws later in the command buffer, as storage, arguments and indices, so that they need
+    /// no barrier inside a rendering scope.
+    pub fn ready_to_draw(&mut self, buffers: &[&Buffer]) {
+        self.ready(
+            buffers,
+            &[Access::DrawRead, Access::IndirectRead, Access::IndexRead],
+        );
+    }
+
+    /// Makes buffers visible to the host, once it has waited for the submission.
+    pub fn ready_for_host(&mut self, buffers: &[&Buffer]) {
+        self.ready(buffers, &[Access::HostRead]);
+    }
+
+    fn ready(&mut self, buffers: &[&Buffer], accesses: &[Access]) {
+        let uses: Vec<_> = buffers
+            .iter()
+            .flat_map(|buffer| accesses.iter().map(|access| (buffer.handle(), *access)))
+            .collect();
+        self.before(&uses);
+    }
+
+    fn before(&mut self, uses: &[(vk::Buffer, Access)]) {
+        if let Some(barrier) = self.tracker.pass(uses) {
+            self.barrier(&barrier);
+        }
+    }
+
+    fn barrier(&self, barrier: &vk::MemoryBarrier2<'_>) {
+        let info = vk::DependencyInfo::default().memory_barriers(std::slice::from_ref(barrier));
+        // SAFETY: `begin`'s contract covers `cmd`; the masks come from the table of accesses, for this device's stages.
+        unsafe { self.device.raw().cmd_pipeline_barrier2(self.cmd, &info) };
+    }
+}
+
+fn aligned(what: &str, buffer: &Buffer, offset: u64, size: u64) {
+    assert!(
+        offset.is_multiple_of(4) && size.is_multiple_of(4),
+        "{what} of buffer \"{}\": offset {offset} and size {size} must be multiples of 4",
+        buffer.name()
+    );
+    buffer.check_range(offset, size);
+}
+
+/// Opens a debug label on a command buffer that is recording on `device`, as whoever calls made sure.
+pub(super) fn begin_label(device: &Device, cmd: vk::CommandBuffer, name: &str) {
+    let Some(debug) = device.debug_utils() else {
+        return;
+    };
+    // On the stack, as recording does not allocate; a longer name is cut.
+    let mut text = [0_u8; 64];
+    let length = name.len().min(text.len() - 1);
+    text[..length].copy_from_slice(&name.as_bytes()[..length]);
+    let label = vk::DebugUtilsLabelEXT::default()
+        .label_name(CStr::from_bytes_until_nul(&text).expect("the last byte is always NUL"));
+    // SAFETY: recorder and drawer are made from a command buffer that is recording; the label outlives the call.
+    unsafe { debug.cmd_begin_debug_utils_label(cmd, &label) };
+}
+
+/// Closes the label that [`begin_label`] opened.
+pub(super) fn end_label(device: &Device, cmd: vk::CommandBuffer) {
+    if let Some(debug) = device.debug_utils() {
+        // SAFETY: as in `begin_label`, which callers call first.
+        unsafe { debug.cmd_end_debug_utils_label(cmd) };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grids_hold_every_group_within_the_limits() {
+        assert_eq!(group_grid(1, 65_535), [1, 1, 1]);
+        assert_eq!(group_grid(65_535, 65_535), [65_535, 1, 1]);
+        assert_eq!(group_grid(65_536, 65_535), [GRID_COLUMNS, 2, 1]);
+        assert_eq!(group_grid(65_537, 65_535), [GRID_COLUMNS, 3, 1]);
+        assert_eq!(group_grid(1 << 30, u32::MAX), [1 << 30, 1, 1]);
+    }
+
+    #[test]
+    #[should_panic(expected = "more than a dispatch can have")]
+    fn too_many_groups_are_refused() {
+        group_grid(u32::MAX, 65_535);
+    }
+}

@@ -1,0 +1,228 @@
+//! What a device must offer, askable before a device exists, and what a host enables when it creates its own.
+
+use std::ffi::CStr;
+
+use ash::{ext, khr, vk};
+
+use crate::{Error, Result};
+
+/// What a physical device that meets the requirements offers beyond them.
+///
+/// Required are Vulkan 1.3 with `bufferDeviceAddress`, `synchronization2` and `dynamicRendering`, and a queue family
+/// for graphics and compute. Everything else is optional and stands here.
+#[derive(Debug, Clone, Default)]
+pub struct Support {
+    /// The first queue family with graphics and compute.
+    pub queue_family: u32,
+    /// `VK_EXT_mesh_shader` with mesh and task shaders.
+    pub mesh_shader: bool,
+    /// `VK_KHR_push_descriptor`, which pipelines with [`Bindings::Bound`](super::Bindings::Bound) need.
+    pub push_descriptor: bool,
+    /// Nanoseconds a timestamp tick; 0 where [`Support::queue_family`] has no timestamps.
+    pub timestamp_period: f32,
+    /// Valid bits of a timestamp in [`Support::queue_family`].
+    pub timestamp_bits: u32,
+    /// Bytes of a buffer that a bound storage buffer can show; addresses have no such limit.
+    pub max_storage_buffer_range: u64,
+    /// Bytes that one buffer can have.
+    pub max_buffer_size: u64,
+    /// Workgroups along x or y of one dispatch.
+    pub max_group_count: u32,
+    /// Bytes of shared memory in a compute workgroup.
+    pub max_shared_memory: u32,
+    /// Invocations in a compute workgroup.
+    pub max_group_size: u32,
+    /// Invocations in a subgroup.
+    pub subgroup_size: u32,
+    /// Subgroup operations that compute shaders can use; empty where they can use none.
+    pub subgroup_operations: vk::SubgroupFeatureFlags,
+    /// Vertices a mesh workgroup can put out; 0 without mesh shaders, like the next two.
+    pub max_mesh_vertices: u32,
+    /// Primitives a mesh workgroup can put out.
+    pub max_mesh_primitives: u32,
+    /// Mesh workgroups along x or y of one draw.
+    pub max_mesh_group_count: u32,
+    /// Pixels along a side of a 2D image.
+    pub max_image_size: u32,
+    /// `VK_KHR_portability_subset`, which must then be enabled.
+    pub portability_subset: bool,
+}
+
+impl Support {
+    /// The device extensions to enable; each is optional except `VK_KHR_portability_subset` where it is listed.
+    pub fn extensions(&self) -> Vec<&'static CStr> {
+        let wanted = [
+            (self.mesh_shader, ext::mesh_shader::NAME),
+            (self.push_descriptor, khr::push_descriptor::NAME),
+            (self.portability_subset, khr::portability_subset::NAME),
+        ];
+        wanted
+            .into_iter()
+            .filter(|(has, _)| *has)
+            .map(|(_, name)| name)
+            .collect()
+    }
+
+    /// The features to enable, to be chained into the device's create info.
+    pub fn features(&self) -> Features {
+        Features {
+            vulkan12: vk::PhysicalDeviceVulkan12Features::default().buffer_device_address(true),
+            vulkan13: vk::PhysicalDeviceVulkan13Features::default()
+                .synchronization2(true)
+                .dynamic_rendering(true),
+            mesh: self.mesh_shader.then(|| {
+                vk::PhysicalDeviceMeshShaderFeaturesEXT::default()
+                    .mesh_shader(true)
+                    .task_shader(true)
+            }),
+        }
+    }
+}
+
+/// The feature structs that a device is created with. A host with structs of its own sets the same fields there.
+#[derive(Debug, Clone)]
+pub struct Features {
+    /// `bufferDeviceAddress`.
+    pub vulkan12: vk::PhysicalDeviceVulkan12Features<'static>,
+    /// `synchronization2` and `dynamicRendering`.
+    pub vulkan13: vk::PhysicalDeviceVulkan13Features<'static>,
+    /// `meshShader` and `taskShader`, where supported.
+    pub mesh: Option<vk::PhysicalDeviceMeshShaderFeaturesEXT<'static>>,
+}
+
+impl Features {
+    /// Chains the structs to `info`.
+    pub fn chain<'a>(&'a mut self, info: vk::DeviceCreateInfo<'a>) -> vk::DeviceCreateInfo<'a> {
+        let info = info
+            .push_next(&mut self.vulkan12)
+            .push_next(&mut self.vulkan13);
+        match &mut self.mesh {
+            Some(mesh) => info.push_next(mesh),
+            None => info,
+        }
+    }
+}
+
+/// Whether a physical device can run this library; the error says in a sentence what it lacks.
+///
+/// # Safety
+///
+/// `instance` must be alive and created for Vulkan 1.3, and `physical` must be one of its devices.
+pub unsafe fn check(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Result<Support> {
+    // SAFETY: the caller vouches for both handles.
+    let base = unsafe { instance.get_physical_device_properties(physical) };
+    let name = base
+        .device_name_as_c_str()
+        .unwrap_or(c"?")
+        .to_string_lossy();
+    let lacks = |what: String| Err(Error::Device(format!("{name} cannot be used: {what}")));
+    if base.api_version < vk::API_VERSION_1_3 {
+        return lacks(format!(
+            "it offers Vulkan {}.{} and 1.3 is needed; a newer driver may help",
+            vk::api_version_major(base.api_version),
+            vk::api_version_minor(base.api_version)
+        ));
+    }
+
+    // SAFETY: as above.
+    let extensions = unsafe { instance.enumerate_device_extension_properties(physical) }
+        .map_err(Error::vulkan("vkEnumerateDeviceExtensionProperties"))?;
+    let has = |wanted: &CStr| {
+        extensions
+            .iter()
+            .any(|e| e.extension_name_as_c_str() == Ok(wanted))
+    };
+    let has_mesh = has(ext::mesh_shader::NAME);
+
+    let mut v12 = vk::PhysicalDeviceVulkan12Features::default();
+    let mut v13 = vk::PhysicalDeviceVulkan13Features::default();
+    let mut mesh = vk::PhysicalDeviceMeshShaderFeaturesEXT::default();
+    let mut features = vk::PhysicalDeviceFeatures2::default()
+        .push_next(&mut v12)
+        .push_next(&mut v13);
+    if has_mesh {
+        features = features.push_next(&mut mesh);
+    }
+    // SAFETY: as above; every struct in the chain is known to a device of this version and these extensions.
+    unsafe { instance.get_physical_device_features2(physical, &mut features) };
+    for (offered, feature) in [
+        (v12.buffer_device_address, "bufferDeviceAddress"),
+        (v13.synchronization2, "synchronization2"),
+        (v13.dynamic_rendering, "dynamicRendering"),
+    ] {
+        if offered == vk::FALSE {
+            return lacks(format!("it lacks the feature {feature}"));
+        }
+    }
+
+    // SAFETY: as above.
+    let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
+    let both = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
+    let Some(family) = families.iter().position(|f| f.queue_flags.contains(both)) else {
+        return lacks("no queue family has both graphics and compute".into());
+    };
+
+    let mut v11 = vk::PhysicalDeviceVulkan11Properties::default();
+    let mut v13_limits = vk::PhysicalDeviceVulkan13Properties::default();
+    let mut mesh_limits = vk::PhysicalDeviceMeshShaderPropertiesEXT::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default()
+        .push_next(&mut v11)
+        .push_next(&mut v13_limits);
+    if has_mesh {
+        properties = properties.push_next(&mut mesh_limits);
+    }
+    // SAFETY: as above.
+    unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
+    let limits = base.limits;
+    let mesh_shader = mesh.mesh_shader == vk::TRUE && mesh.task_shader == vk::TRUE;
+    let in_compute = v11
+        .subgroup_supported_stages
+        .contains(vk::ShaderStageFlags::COMPUTE);
+    let mesh_groups = mesh_limits.max_mesh_work_group_count;
+    Ok(Support {
+        queue_family: family as u32,
+        mesh_shader,
+        push_descriptor: has(khr::push_descriptor::NAME),
+        timestamp_period: if families[family].timestamp_valid_bits > 0 {
+            limits.timestamp_period
+        } else {
+            0.0
+        },
+        timestamp_bits: families[family].timestamp_valid_bits,
+        max_storage_buffer_range: limits.max_storage_buffer_range.into(),
+        max_buffer_size: v11
+            .max_memory_allocation_size
+            .min(v13_limits.max_buffer_size),
+        max_group_count: limits.max_compute_work_group_count[0]
+            .min(limits.max_compute_work_group_count[1]),
+        max_shared_memory: limits.max_compute_shared_memory_size,
+        max_group_size: limits
+            .max_compute_work_group_invocations
+            .min(limits.max_compute_work_group_size[0]),
+        subgroup_size: v11.subgroup_size,
+        subgroup_operations: if in_compute {
+            v11.subgroup_supported_operations
+        } else {
+            vk::SubgroupFeatureFlags::empty()
+        },
+        max_mesh_vertices: if mesh_shader {
+            mesh_limits.max_mesh_output_vertices
+        } else {
+            0
+        },
+        max_mesh_primitives: if mesh_shader {
+            mesh_limits.max_mesh_output_primitives
+        } else {
+            0
+        },
+        max_mesh_group_count: if mesh_shader {
+            mesh_groups[0]
+                .min(mesh_groups[1])
+                .min(mesh_limits.max_mesh_work_group_total_count)
+        } else {
+            0
+        },
+        max_image_size: limits.max_image_dimension2_d,
+        portability_subset: has(khr::portability_subset::NAME),
+    })
+}

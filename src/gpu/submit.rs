@@ -1,0 +1,132 @@
+//! Record, submit, wait: for headless frames, uploads and downloads.
+
+use std::sync::PoisonError;
+
+use ash::vk;
+
+use super::Device;
+use super::failure::failed;
+use crate::Result;
+
+/// A command buffer for one submission at a time, with the fence that tells when it is done.
+pub(super) struct OneOff {
+    pool: vk::CommandPool,
+    cmd: vk::CommandBuffer,
+    fence: vk::Fence,
+}
+
+impl OneOff {
+    fn new(device: &Device) -> Result<Self> {
+        let raw = device.raw();
+        let info = vk::CommandPoolCreateInfo::default()
+            .flags(vk::CommandPoolCreateFlags::TRANSIENT)
+            .queue_family_index(device.queue_family());
+        // SAFETY: the device is alive as long as `device`, also for the calls below.
+        let pool = unsafe { raw.create_command_pool(&info, None) }
+            .map_err(failed("vkCreateCommandPool"))?;
+        let mut this = Self {
+            pool,
+            cmd: vk::CommandBuffer::null(),
+            fence: vk::Fence::null(),
+        };
+        let info = vk::CommandBufferAllocateInfo::default()
+            .command_pool(pool)
+            .command_buffer_count(1);
+        // SAFETY: the pool was created just now.
+        let made = unsafe { raw.allocate_command_buffers(&info) }
+            .map_err(failed("vkAllocateCommandBuffers"))
+            .and_then(|cmd| {
+                this.cmd = cmd[0];
+                // SAFETY: as above.
+                unsafe { raw.create_fence(&vk::FenceCreateInfo::default(), None) }
+                    .map_err(failed("vkCreateFence"))
+            });
+        match made {
+            Ok(fence) => {
+                this.fence = fence;
+                device.set_name(this.cmd, "one-off");
+                Ok(this)
+            }
+            Err(error) => {
+                this.destroy(raw);
+                Err(error)
+            }
+        }
+    }
+
+    pub(super) fn destroy(self, raw: &ash::Device) {
+        // SAFETY: a `OneOff` is destroyed only when idle; null handles are ignored.
+        unsafe {
+            raw.destroy_fence(self.fence, None);
+            raw.destroy_command_pool(self.pool, None);
+        }
+    }
+
+    fn run(
+        &self,
+        device: &Device,
+        record: impl FnOnce(vk::CommandBuffer) -> Result<()>,
+    ) -> Result<()> {
+        let raw = device.raw();
+        let begin = vk::CommandBufferBeginInfo::default()
+            .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        // SAFETY: the pool's last submission is over: a `OneOff` is taken from the idle ones.
+        unsafe { raw.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty()) }
+            .map_err(failed("vkResetCommandPool"))?;
+        // SAFETY: as above, the command buffer is initial.
+        unsafe { raw.begin_command_buffer(self.cmd, &begin) }
+            .map_err(failed("vkBeginCommandBuffer"))?;
+        let recorded = record(self.cmd);
+        // SAFETY: it is recording.
+        unsafe { raw.end_command_buffer(self.cmd) }.map_err(failed("vkEndCommandBuffer"))?;
+        recorded?;
+
+        let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(self.cmd)];
+        let submit = [vk::SubmitInfo2::default().command_buffer_infos(&commands)];
+        {
+            let queue = device
+                .inner
+                .queue
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
+            // SAFETY: the lock keeps our threads from the queue, the host keeps its own (see `Device::adopt`); the fence
+            // is unsignalled and the command buffer executable.
+            unsafe { raw.queue_submit2(*queue, &submit, self.fence) }
+                .map_err(failed("vkQueueSubmit2"))?;
+        }
+        // SAFETY: the fence belongs to the submission above.
+        unsafe { raw.wait_for_fences(&[self.fence], true, u64::MAX) }
+            .map_err(failed("vkWaitForFences"))?;
+        // SAFETY: it is signalled and nothing waits for it.
+        unsafe { raw.reset_fences(&[self.fence]) }.map_err(failed("vkResetFences"))
+    }
+}
+
+impl Device {
+    /// Records a command buffer with `record`, submits it and waits until the device is done. If `record` fails,
+    /// nothing is submitted. May be called by several threads, and from inside `record`.
+    pub fn submit_and_wait<R>(
+        &self,
+        record: impl FnOnce(vk::CommandBuffer) -> Result<R>,
+    ) -> Result<R> {
+        let idle = || {
+            self.inner
+                .idle
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+        };
+        let taken = idle().pop();
+        let one_off = match taken {
+            Some(one_off) => one_off,
+            None => OneOff::new(self)?,
+        };
+        let mut result = None;
+        let done = one_off.run(self, |cmd| {
+            result = Some(record(cmd)?);
+            Ok(())
+        });
+        // After a failed wait the submission may still run; every later use of the device fails alike.
+        idle().push(one_off);
+        done.map(|()| result.expect("run succeeds only after record did"))
+    }
+}

@@ -1,0 +1,133 @@
+//! The Khronos validation layer with synchronisation checks, and the messages it has sent.
+
+use std::ffi::{CStr, c_void};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use ash::{ext, vk};
+
+use super::failure::failed;
+use crate::{Error, Result};
+
+/// The layer's name.
+pub(crate) const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
+
+/// Synchronisation checks are off in the layer unless asked for.
+pub(crate) const CHECKS: [vk::ValidationFeatureEnableEXT; 1] =
+    [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
+
+/// Warnings and errors of the layer, in the order they came. Any thread that calls Vulkan may add to them.
+#[derive(Debug, Default)]
+pub(crate) struct Messages(Mutex<Vec<String>>);
+
+impl Messages {
+    fn push(&self, message: String) {
+        self.0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(message);
+    }
+
+    /// Takes everything that has been collected.
+    pub(crate) fn drain(&self) -> Vec<String> {
+        std::mem::take(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+/// What both the instance's creation and the messenger are given. It points into `messages`, which must live as long
+/// as whatever is created with it.
+pub(crate) fn messenger_info(
+    messages: &Arc<Messages>,
+) -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
+    use vk::DebugUtilsMessageSeverityFlagsEXT as Severity;
+    use vk::DebugUtilsMessageTypeFlagsEXT as Kind;
+    vk::DebugUtilsMessengerCreateInfoEXT::default()
+        .message_severity(Severity::WARNING | Severity::ERROR)
+        .message_type(Kind::GENERAL | Kind::VALIDATION | Kind::PERFORMANCE)
+        .pfn_user_callback(Some(collect))
+        .user_data(Arc::as_ptr(messages).cast_mut().cast())
+}
+
+/// The messenger of an instance and the messages it collects.
+pub(crate) struct Validation {
+    loader: ext::debug_utils::Instance,
+    messenger: vk::DebugUtilsMessengerEXT,
+    pub(crate) messages: Arc<Messages>,
+}
+
+impl Validation {
+    /// Attaches a messenger to an instance with `VK_EXT_debug_utils` enabled.
+    pub(crate) fn new(
+        entry: &ash::Entry,
+        instance: &ash::Instance,
+        messages: Arc<Messages>,
+    ) -> Result<Self> {
+        let loader = ext::debug_utils::Instance::new(entry, instance);
+        // SAFETY: the instance is alive, and `messages` is kept beside the messenger until `destroy`.
+        let messenger =
+            unsafe { loader.create_debug_utils_messenger(&messenger_info(&messages), None) }
+                .map_err(failed("vkCreateDebugUtilsMessengerEXT"))?;
+        Ok(Self {
+            loader,
+            messenger,
+            messages,
+        })
+    }
+
+    /// Detaches the messenger.
+    ///
+    /// # Safety
+    ///
+    /// Its instance must be alive, and this must be the only call.
+    pub(crate) unsafe fn destroy(&self) {
+        // SAFETY: the caller vouches for the instance and that the messenger was not destroyed before.
+        unsafe {
+            self.loader
+                .destroy_debug_utils_messenger(self.messenger, None)
+        };
+    }
+}
+
+/// Whether the layer is installed, and its own extension for switching checks on.
+pub(crate) fn find(entry: &ash::Entry) -> Result<bool> {
+    // SAFETY: the entry's loader is loaded, as for the call below.
+    let layers = unsafe { entry.enumerate_instance_layer_properties() }
+        .map_err(failed("vkEnumerateInstanceLayerProperties"))?;
+    if !layers
+        .iter()
+        .any(|layer| layer.layer_name_as_c_str() == Ok(LAYER))
+    {
+        return Err(Error::Device(
+            "validation was asked for but VK_LAYER_KHRONOS_validation is not installed; install the package \
+             vulkan-validationlayers (or the Vulkan SDK), or do without validation"
+                .into(),
+        ));
+    }
+    // SAFETY: as above.
+    let extensions = unsafe { entry.enumerate_instance_extension_properties(Some(LAYER)) }
+        .map_err(failed("vkEnumerateInstanceExtensionProperties"))?;
+    Ok(extensions
+        .iter()
+        .any(|e| e.extension_name_as_c_str() == Ok(ext::validation_features::NAME)))
+}
+
+/// The messenger's callback. General messages are the loader's talk about drivers and layers of the machine, no
+/// verdict on our calls: they go to the log. All others count.
+unsafe extern "system" fn collect(
+    severity: vk::DebugUtilsMessageSeverityFlagsEXT,
+    kind: vk::DebugUtilsMessageTypeFlagsEXT,
+    data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
+    user: *mut c_void,
+) -> vk::Bool32 {
+    // SAFETY: Vulkan passes a valid struct for the length of the call.
+    let text = unsafe { (*data).message_as_c_str() }
+        .unwrap_or(c"(no text)")
+        .to_string_lossy();
+    if kind == vk::DebugUtilsMessageTypeFlagsEXT::GENERAL {
+        log::debug!("Vulkan loader, {severity:?}: {text}");
+    } else {
+        log::error!("validation, {severity:?}: {text}");
+        // SAFETY: `user` is the `Messages` that `messenger_info` was given, kept alive beside the messenger.
+        unsafe { &*user.cast::<Messages>() }.push(text.into_owned());
+    }
+    vk::FALSE
+}

@@ -69,7 +69,19 @@ const FRAGMENT: Shader = Shader {
     bound: spirv!("square.frag.bound"),
     buffers: &[used("paint", 1, BufferAccess::Read)],
 };
-const BOTH: [Bindings; 2] = [Bindings::Address, Bindings::Bound];
+
+/// The ways to reach buffers on this device.
+fn all_bindings(device: &Device) -> &'static [Bindings] {
+    if device.support().push_descriptor {
+        &[Bindings::Address, Bindings::Bound]
+    } else {
+        eprintln!(
+            "{} has no push descriptors: bound buffers are not tested",
+            device.info().name
+        );
+        &[Bindings::Address]
+    }
+}
 
 /// The device under test: the best one, or what `RARA_DEVICE` says.
 fn open() -> Device {
@@ -287,7 +299,7 @@ fn fills_updates_and_copies_reach_mapped_memory() {
 fn dependent_dispatches_wait_for_each_other() {
     clean(|device| {
         let input: Vec<u32> = (0..1000).collect();
-        for bindings in BOTH {
+        for &bindings in all_bindings(device) {
             let pipeline = add(device, 3, bindings);
             let first = on_device(device, "first", &input);
             let second = buffer(device, "second", 4000, Location::GpuOnly);
@@ -319,7 +331,7 @@ fn dependent_dispatches_wait_for_each_other() {
 #[test]
 fn indirect_dispatches_read_what_was_written_before() {
     clean(|device| {
-        for bindings in BOTH {
+        for &bindings in all_bindings(device) {
             let pipeline = add(device, 1, bindings);
             let source = on_device(device, "source", &[5; 256]);
             let target = on_device(device, "target", &[0; 256]);
@@ -523,7 +535,7 @@ fn draw_half(device: &Device, front: &Shader, bindings: Bindings) {
 #[test]
 fn draws_read_what_the_same_command_buffer_wrote() {
     clean(|device| {
-        for bindings in BOTH {
+        for &bindings in all_bindings(device) {
             draw_half(device, &VERTEX, bindings);
         }
     });
@@ -533,7 +545,7 @@ fn draws_read_what_the_same_command_buffer_wrote() {
 fn mesh_shaders_draw_or_are_refused_with_a_reason() {
     clean(|device| {
         if device.support().mesh_shader {
-            for bindings in BOTH {
+            for &bindings in all_bindings(device) {
                 draw_half(device, &MESH, bindings);
             }
         } else {
@@ -565,6 +577,35 @@ fn several_threads_share_a_device() {
                 });
             }
         });
+    });
+}
+
+#[test]
+fn a_failed_or_panicking_recording_submits_nothing_and_leaves_the_device_usable() {
+    clean(|device| {
+        let refused: rara::Result<()> =
+            device.submit_and_wait(|_| Err(Error::Invalid("no".into())));
+        assert_eq!(refused.unwrap_err().to_string(), "no");
+        let panic = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+            device.submit_and_wait(|_| -> rara::Result<()> { panic!("on purpose") })
+        }));
+        assert!(panic.is_err());
+        let inner = device.submit_and_wait(|_| device.submit_and_wait(|_| Ok(7)));
+        assert_eq!(inner.unwrap(), 7);
+    });
+}
+
+#[test]
+fn formats_say_what_they_can_do() {
+    clean(|device| {
+        let wanted = vk::FormatFeatureFlags::COLOR_ATTACHMENT
+            | vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
+        assert!(
+            device
+                .format_features(vk::Format::R8G8B8A8_UNORM)
+                .contains(wanted)
+        );
+        assert!(device.format_features(vk::Format::UNDEFINED).is_empty());
     });
 }
 

@@ -1,73 +1,18 @@
-//! The device that everything else is made from: a host's own, adopted, or one that headless use opens and owns.
+//! The device that everything else is made from.
 
 use std::ffi::CString;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ash::{ext, khr, vk};
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, Allocator, AllocatorCreateDesc};
-use gpu_allocator::{AllocationError, AllocationSizes, AllocatorDebugSettings};
+use gpu_allocator::AllocationError;
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, Allocator};
 
-use super::failure::failed;
-use super::instance::{self, DeviceInfo, Instance};
-use super::requirements::{self, Support};
+use super::instance::Instance;
 use super::submit::OneOff;
 use super::validation::Messages;
-use super::{Buffer, BufferDesc, Image, ImageDesc};
-use crate::{Error, Result};
-
-/// What [`Device::headless`] opens.
-#[derive(Debug, Clone)]
-pub struct DeviceDesc {
-    /// A number from [`list_devices`](super::list_devices) or part of a name; `None` is the best device.
-    pub selector: Option<String>,
-    /// Load the Khronos validation layer with synchronisation checks.
-    pub validation: bool,
-    /// What drivers and capture tools are told.
-    pub application_name: String,
-}
-
-impl Default for DeviceDesc {
-    fn default() -> Self {
-        Self {
-            selector: None,
-            validation: false,
-            application_name: "rara".into(),
-        }
-    }
-}
-
-/// A host's own device, for [`Device::adopt`].
-#[derive(Clone)]
-pub struct AdoptDesc {
-    /// Created for Vulkan 1.3 or later.
-    pub instance: ash::Instance,
-    /// The device below was made from it.
-    pub physical_device: vk::PhysicalDevice,
-    /// Created with [`Support::features`], and as many of [`Support::extensions`] as the flags below say.
-    pub device: ash::Device,
-    /// Graphics and compute; everything that is recorded with this device goes to it.
-    pub queue: vk::Queue,
-    /// The queue's family.
-    pub queue_family: u32,
-    /// `VK_EXT_mesh_shader` and its features were enabled.
-    pub mesh_shader: bool,
-    /// `VK_KHR_push_descriptor` was enabled.
-    pub push_descriptor: bool,
-    /// `VK_EXT_debug_utils` was enabled on the instance.
-    pub debug_utils: bool,
-    /// Where compiled pipelines are looked up and kept; null for nowhere.
-    pub pipeline_cache: vk::PipelineCache,
-}
-
-impl std::fmt::Debug for AdoptDesc {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("AdoptDesc")
-            .field("physical_device", &self.physical_device)
-            .field("queue_family", &self.queue_family)
-            .finish_non_exhaustive()
-    }
-}
+use super::{AdoptDesc, Buffer, BufferDesc, DeviceInfo, Image, ImageDesc, Support};
+use crate::Result;
 
 /// A device, shared by everything made from it; clones are the same device.
 #[derive(Clone)]
@@ -76,6 +21,8 @@ pub struct Device {
 }
 
 pub(super) struct Inner {
+    instance: ash::Instance,
+    physical: vk::PhysicalDevice,
     raw: ash::Device,
     info: DeviceInfo,
     support: Support,
@@ -95,117 +42,27 @@ pub(super) struct Inner {
 }
 
 impl Device {
-    /// Opens a device of its own, without a window.
-    pub fn headless(desc: &DeviceDesc) -> Result<Self> {
-        let owned = Instance::new(&desc.application_name, desc.validation)?;
-        let (physical, infos): (Vec<_>, Vec<_>) = owned.devices()?.into_iter().unzip();
-        let chosen = instance::choose(&infos, desc.selector.as_deref())?;
-        let (physical, info) = (physical[chosen], infos[chosen].clone());
-        let support = info.support.clone().map_err(Error::Device)?;
-
-        let family = support.queue_family;
-        let queues = [vk::DeviceQueueCreateInfo::default()
-            .queue_family_index(family)
-            .queue_priorities(&[1.0])];
-        let extensions: Vec<_> = support
-            .extensions()
-            .iter()
-            .map(|name| name.as_ptr())
-            .collect();
-        let mut features = support.features();
-        let create = vk::DeviceCreateInfo::default()
-            .queue_create_infos(&queues)
-            .enabled_extension_names(&extensions);
-        let create = features.chain(create);
-        // SAFETY: instance and physical device are alive, and the device offers all that `create` asks for.
-        let raw = unsafe { owned.raw.create_device(physical, &create, None) }
-            .map_err(failed("vkCreateDevice"))?;
-        // SAFETY: the device was created with one queue of this family.
-        let queue = unsafe { raw.get_device_queue(family, 0) };
-        let adopt = AdoptDesc {
-            instance: owned.raw.clone(),
-            physical_device: physical,
-            device: raw.clone(),
-            queue,
-            queue_family: family,
-            mesh_shader: support.mesh_shader,
-            push_descriptor: support.push_descriptor,
-            debug_utils: owned.debug_utils,
-            pipeline_cache: vk::PipelineCache::null(),
-        };
-        let allocator = allocator(&adopt).inspect_err(|_| {
-            // SAFETY: nothing was made from the device, and nobody else knows it.
-            unsafe { raw.destroy_device(None) };
-        })?;
-        Ok(Self::new(adopt, info, support, allocator, Some(owned)))
-    }
-
-    /// Works with a host's device. The host keeps owning it: nothing of the description is ever destroyed here.
-    ///
-    /// # Safety
-    ///
-    /// All handles must belong together, be as the description says, and outlive this device, its clones and
-    /// everything made from them. While [`Device::submit_and_wait`] or an upload runs, the host must not use the queue.
-    pub unsafe fn adopt(desc: AdoptDesc) -> Result<Self> {
-        // SAFETY: the caller vouches for the handles.
-        let mut support = unsafe { requirements::check(&desc.instance, desc.physical_device) }?;
-        // SAFETY: as above.
-        let families = unsafe {
-            desc.instance
-                .get_physical_device_queue_family_properties(desc.physical_device)
-        };
-        let Some(family) = families.get(desc.queue_family as usize) else {
-            return Err(Error::Invalid(format!(
-                "the device has no queue family {}",
-                desc.queue_family
-            )));
-        };
-        if !family
-            .queue_flags
-            .contains(vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE)
-        {
-            return Err(Error::Invalid(format!(
-                "queue family {} lacks graphics or compute; family {} has both",
-                desc.queue_family, support.queue_family
-            )));
-        }
-        support.queue_family = desc.queue_family;
-        support.timestamp_bits = family.timestamp_valid_bits;
-        if support.timestamp_bits == 0 {
-            support.timestamp_period = 0.0;
-        }
-        support.mesh_shader &= desc.mesh_shader;
-        support.push_descriptor &= desc.push_descriptor;
-        // SAFETY: as above.
-        let info = unsafe { instance::describe(&desc.instance, desc.physical_device) };
-        let allocator = allocator(&desc)?;
-        Ok(Self::new(desc, info, support, allocator, None))
-    }
-
-    fn new(
+    /// The constructors are in `open.rs`.
+    pub(super) fn new(
         desc: AdoptDesc,
         info: DeviceInfo,
         support: Support,
         allocator: Allocator,
         owned: Option<Instance>,
     ) -> Self {
-        let AdoptDesc {
-            instance,
-            device: raw,
-            ..
-        } = &desc;
+        let (instance, raw) = (desc.instance, desc.device);
         Self {
             inner: Arc::new(Inner {
                 mesh_shader: support
                     .mesh_shader
-                    .then(|| ext::mesh_shader::Device::new(instance, raw)),
+                    .then(|| ext::mesh_shader::Device::new(&instance, &raw)),
                 push_descriptor: support
                     .push_descriptor
-                    .then(|| khr::push_descriptor::Device::new(instance, raw)),
+                    .then(|| khr::push_descriptor::Device::new(&instance, &raw)),
                 debug_utils: desc
                     .debug_utils
-                    .then(|| ext::debug_utils::Device::new(instance, raw)),
-                raw: raw.clone(),
+                    .then(|| ext::debug_utils::Device::new(&instance, &raw)),
+                physical: desc.physical_device,
                 info,
                 support,
                 queue: Mutex::new(desc.queue),
@@ -215,6 +72,8 @@ impl Device {
                 allocated: AtomicU64::new(0),
                 idle: Mutex::new(Vec::new()),
                 owned,
+                instance,
+                raw,
             }),
         }
     }
@@ -232,6 +91,14 @@ impl Device {
     /// The ash device.
     pub fn raw(&self) -> &ash::Device {
         &self.inner.raw
+    }
+
+    /// What optimally tiled images of a format can do.
+    pub fn format_features(&self, format: vk::Format) -> vk::FormatFeatureFlags {
+        let (instance, physical) = (&self.inner.instance, self.inner.physical);
+        // SAFETY: the instance is ours, or the host's and outlives this device.
+        unsafe { instance.get_physical_device_format_properties(physical, format) }
+            .optimal_tiling_features
     }
 
     /// The family of the queue.
@@ -342,19 +209,6 @@ impl Device {
             log::error!("device memory could not be freed: {error}");
         }
     }
-}
-
-fn allocator(desc: &AdoptDesc) -> Result<Allocator> {
-    Allocator::new(&AllocatorCreateDesc {
-        instance: desc.instance.clone(),
-        device: desc.device.clone(),
-        physical_device: desc.physical_device,
-        debug_settings: AllocatorDebugSettings::default(),
-        buffer_device_address: true,
-        // Shared blocks start small: large buffers have memory of their own.
-        allocation_sizes: AllocationSizes::new(32 << 20, 32 << 20),
-    })
-    .map_err(|error| Error::Memory(format!("the device's memory could not be set up: {error}")))
 }
 
 impl std::fmt::Debug for Device {

@@ -63,10 +63,10 @@ impl Buffer {
                 "{what} ({why}); {used} are in use by this renderer"
             ))
         };
-        if size > device.support().max_allocation {
+        if size > device.support().max_buffer_size {
             return Err(full(&format!(
                 "the device's largest is {}",
-                bytes(device.support().max_allocation)
+                bytes(device.support().max_buffer_size)
             )));
         }
         let info = vk::BufferCreateInfo::default().size(size).usage(

@@ -5,30 +5,35 @@
 
 mod access;
 mod device;
+mod devices;
 mod draw;
 mod failure;
 mod image;
 mod instance;
 mod layout;
 mod memory;
+mod open;
 mod pipeline;
 mod recorder;
 mod requirements;
 mod shader;
 mod submit;
 mod timer;
+mod tracker;
 mod upload;
 mod validation;
 
-pub use access::{Access, Tracker};
-pub use device::{AdoptDesc, Device, DeviceDesc};
+pub use access::Access;
+pub use device::Device;
+pub use devices::{DeviceInfo, list_devices};
 pub use draw::Drawer;
 pub use image::{Image, ImageDesc};
-pub use instance::{DeviceInfo, list_devices};
 pub use layout::Bindings;
 pub use memory::{Buffer, BufferDesc, Location};
+pub use open::{AdoptDesc, DeviceDesc};
 pub use pipeline::{ComputeDesc, ComputePipeline, GraphicsDesc, GraphicsPipeline};
 pub use recorder::{GRID_COLUMNS, Groups, Recorder, group_grid};
 pub use requirements::{Features, Support, check};
 pub use shader::{BufferAccess, BufferUse, MAX_BUFFERS, MAX_PARAMS, Shader};
 pub use timer::Timer;
+pub use tracker::Tracker;

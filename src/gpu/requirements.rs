@@ -24,8 +24,8 @@ pub struct Support {
     pub timestamp_bits: u32,
     /// Bytes of a buffer that a bound storage buffer can show; addresses have no such limit.
     pub max_storage_buffer_range: u64,
-    /// Bytes that one allocation, and so one buffer, can have.
-    pub max_allocation: u64,
+    /// Bytes that one buffer can have.
+    pub max_buffer_size: u64,
     /// Workgroups along x or y of one dispatch.
     pub max_group_count: u32,
     /// Bytes of shared memory in a compute workgroup.
@@ -163,8 +163,11 @@ pub unsafe fn check(instance: &ash::Instance, physical: vk::PhysicalDevice) -> R
     };
 
     let mut v11 = vk::PhysicalDeviceVulkan11Properties::default();
+    let mut v13_limits = vk::PhysicalDeviceVulkan13Properties::default();
     let mut mesh_limits = vk::PhysicalDeviceMeshShaderPropertiesEXT::default();
-    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut v11);
+    let mut properties = vk::PhysicalDeviceProperties2::default()
+        .push_next(&mut v11)
+        .push_next(&mut v13_limits);
     if has_mesh {
         properties = properties.push_next(&mut mesh_limits);
     }
@@ -187,7 +190,9 @@ pub unsafe fn check(instance: &ash::Instance, physical: vk::PhysicalDevice) -> R
         },
         timestamp_bits: families[family].timestamp_valid_bits,
         max_storage_buffer_range: limits.max_storage_buffer_range.into(),
-        max_allocation: v11.max_memory_allocation_size,
+        max_buffer_size: v11
+            .max_memory_allocation_size
+            .min(v13_limits.max_buffer_size),
         max_group_count: limits.max_compute_work_group_count[0]
             .min(limits.max_compute_work_group_count[1]),
         max_shared_memory: limits.max_compute_shared_memory_size,

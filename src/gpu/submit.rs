@@ -95,10 +95,52 @@ impl OneOff {
                 .map_err(failed("vkQueueSubmit2"))?;
         }
         // SAFETY: the fence belongs to the submission above.
-        unsafe { raw.wait_for_fences(&[self.fence], true, u64::MAX) }
-            .map_err(failed("vkWaitForFences"))?;
-        // SAFETY: it is signalled and nothing waits for it.
-        unsafe { raw.reset_fences(&[self.fence]) }.map_err(failed("vkResetFences"))
+        let waited = unsafe { raw.wait_for_fences(&[self.fence], true, u64::MAX) };
+        if waited.is_err() {
+            // The caller frees what the submission uses as soon as it hears of the failure.
+            // SAFETY: as above; whatever this returns, nothing more can be done.
+            let _ = unsafe { raw.device_wait_idle() };
+        }
+        // SAFETY: it is signalled, or the device is lost, and nothing waits for it.
+        let reset = unsafe { raw.reset_fences(&[self.fence]) };
+        waited.map_err(failed("vkWaitForFences"))?;
+        reset.map_err(failed("vkResetFences"))
+    }
+}
+
+/// A [`OneOff`] in use; it returns to the idle ones even if recording panics.
+struct Lease<'a> {
+    device: &'a Device,
+    one_off: Option<OneOff>,
+}
+
+impl<'a> Lease<'a> {
+    fn new(device: &'a Device) -> Result<Self> {
+        let idle = device
+            .inner
+            .idle
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .pop();
+        let one_off = match idle {
+            Some(one_off) => one_off,
+            None => OneOff::new(device)?,
+        };
+        Ok(Self {
+            device,
+            one_off: Some(one_off),
+        })
+    }
+}
+
+impl Drop for Lease<'_> {
+    fn drop(&mut self) {
+        self.device
+            .inner
+            .idle
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .extend(self.one_off.take());
     }
 }
 
@@ -109,24 +151,13 @@ impl Device {
         &self,
         record: impl FnOnce(vk::CommandBuffer) -> Result<R>,
     ) -> Result<R> {
-        let idle = || {
-            self.inner
-                .idle
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-        };
-        let taken = idle().pop();
-        let one_off = match taken {
-            Some(one_off) => one_off,
-            None => OneOff::new(self)?,
-        };
+        let lease = Lease::new(self)?;
+        let one_off = lease.one_off.as_ref().expect("taken only by drop");
         let mut result = None;
-        let done = one_off.run(self, |cmd| {
+        one_off.run(self, |cmd| {
             result = Some(record(cmd)?);
             Ok(())
-        });
-        // After a failed wait the submission may still run; every later use of the device fails alike.
-        idle().push(one_off);
-        done.map(|()| result.expect("run succeeds only after record did"))
+        })?;
+        Ok(result.expect("run succeeds only after record did"))
     }
 }

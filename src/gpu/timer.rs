@@ -96,7 +96,9 @@ impl Timer {
     }
 
     /// Milliseconds of each pass, in the order they began; passes of one name are added up. `None` where there are no
-    /// timestamps, nothing was recorded, or the device is not done yet.
+    /// timestamps, nothing was recorded, or the device is not done yet. Ask after waiting for the recording: before it
+    /// runs, the queries still hold what an earlier recording left. Hosts with several frames in flight have a timer
+    /// for each.
     pub fn read(&self) -> Option<Vec<(&'static str, f64)>> {
         if self.pool == vk::QueryPool::null() || self.names.is_empty() {
             return None;

@@ -1,0 +1,232 @@
+//! What devices there are, and the choice among them.
+
+use std::ffi::CStr;
+
+use ash::vk;
+
+use super::instance::Instance;
+use super::requirements::{self, Support};
+use crate::{Error, Result};
+
+/// A physical device as `rara devices` shows it; its number is its place in the list.
+#[derive(Debug, Clone)]
+pub struct DeviceInfo {
+    /// The device's name.
+    pub name: String,
+    /// The driver's name and version.
+    pub driver: String,
+    /// The kind of device.
+    pub kind: vk::PhysicalDeviceType,
+    /// The Vulkan version it offers.
+    pub api: (u32, u32, u32),
+    /// Bytes of its largest device-local heap.
+    pub memory: u64,
+    /// What it offers, or a sentence why it cannot be used.
+    pub support: std::result::Result<Support, String>,
+}
+
+impl DeviceInfo {
+    /// The kind in a word.
+    pub fn kind_name(&self) -> &'static str {
+        match self.kind {
+            vk::PhysicalDeviceType::DISCRETE_GPU => "discrete",
+            vk::PhysicalDeviceType::INTEGRATED_GPU => "integrated",
+            vk::PhysicalDeviceType::VIRTUAL_GPU => "virtual",
+            vk::PhysicalDeviceType::CPU => "cpu",
+            _ => "other",
+        }
+    }
+
+    /// Low is better.
+    fn rank(&self) -> u32 {
+        match self.kind {
+            vk::PhysicalDeviceType::DISCRETE_GPU => 0,
+            vk::PhysicalDeviceType::INTEGRATED_GPU => 1,
+            vk::PhysicalDeviceType::VIRTUAL_GPU => 2,
+            vk::PhysicalDeviceType::CPU => 3,
+            _ => 4,
+        }
+    }
+}
+
+/// Names, kind, memory and support of a device.
+///
+/// # Safety
+///
+/// `instance` must be alive and created for Vulkan 1.3, and `physical` must be one of its devices.
+pub(crate) unsafe fn describe(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+) -> DeviceInfo {
+    // SAFETY: the caller vouches for both handles.
+    let (base, memory, support) = unsafe {
+        (
+            instance.get_physical_device_properties(physical),
+            instance.get_physical_device_memory_properties(physical),
+            requirements::check(instance, physical),
+        )
+    };
+    let text =
+        |text: std::result::Result<&CStr, _>| text.unwrap_or(c"?").to_string_lossy().into_owned();
+    let version = base.api_version;
+    let driver = if version >= vk::API_VERSION_1_2 {
+        let mut driver = vk::PhysicalDeviceDriverProperties::default();
+        let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
+        // SAFETY: as above; the struct is core in this version.
+        unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
+        let name = text(driver.driver_name_as_c_str().map_err(drop));
+        let info = text(driver.driver_info_as_c_str().map_err(drop));
+        format!("{name} {info}").trim().to_owned()
+    } else {
+        format!("version {:#x}", base.driver_version)
+    };
+    let heaps = memory.memory_heaps_as_slice().iter();
+    let local = heaps.filter(|heap| heap.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL));
+    DeviceInfo {
+        name: text(base.device_name_as_c_str().map_err(drop)),
+        driver,
+        kind: base.device_type,
+        api: (
+            vk::api_version_major(version),
+            vk::api_version_minor(version),
+            vk::api_version_patch(version),
+        ),
+        memory: local.map(|heap| heap.size).max().unwrap_or(0),
+        support: support.map_err(|error| error.to_string()),
+    }
+}
+
+/// Every device that Vulkan finds on this machine, the unusable ones with the reason.
+pub fn list_devices() -> Result<Vec<DeviceInfo>> {
+    let instance = Instance::new("rara", false)?;
+    Ok(instance
+        .devices()?
+        .into_iter()
+        .map(|(_, info)| info)
+        .collect())
+}
+
+/// The place in `devices` of the one that is meant: by number, by part of the name (the best of those that match), or
+/// the best of all.
+pub(crate) fn choose(devices: &[DeviceInfo], selector: Option<&str>) -> Result<usize> {
+    if devices.is_empty() {
+        return Err(no_device());
+    }
+    let matching: Vec<usize> = match selector {
+        None => (0..devices.len()).collect(),
+        Some(selector) => match selector.parse::<usize>() {
+            Ok(number) if number < devices.len() => vec![number],
+            Ok(_) => Vec::new(),
+            Err(_) => {
+                let part = selector.to_lowercase();
+                (0..devices.len())
+                    .filter(|i| devices[*i].name.to_lowercase().contains(&part))
+                    .collect()
+            }
+        },
+    };
+    if matching.is_empty() {
+        let names: Vec<_> = devices
+            .iter()
+            .enumerate()
+            .map(|(i, d)| format!("{i} ({})", d.name))
+            .collect();
+        return Err(Error::Device(format!(
+            "no device is called \"{}\"; there is {}",
+            selector.unwrap_or_default(),
+            names.join(", ")
+        )));
+    }
+    let usable = matching.iter().filter(|i| devices[**i].support.is_ok());
+    usable
+        .copied()
+        .min_by_key(|i| devices[*i].rank())
+        .ok_or_else(|| {
+            let reasons: Vec<_> = matching
+                .iter()
+                .filter_map(|i| devices[*i].support.clone().err())
+                .collect();
+            Error::Device(reasons.join("; "))
+        })
+}
+
+/// The error where there is nothing to choose from.
+pub(crate) fn no_device() -> Error {
+    Error::Device(
+        "no Vulkan device was found; install the graphics card's Vulkan driver, or the software driver lavapipe \
+         (package mesa-vulkan-drivers)"
+            .into(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn device(name: &str, kind: vk::PhysicalDeviceType, usable: bool) -> DeviceInfo {
+        let support = if usable {
+            Ok(Support::default())
+        } else {
+            Err(format!("{name} is too old"))
+        };
+        DeviceInfo {
+            name: name.into(),
+            driver: String::new(),
+            kind,
+            api: (1, 3, 0),
+            memory: 0,
+            support,
+        }
+    }
+
+    fn machine() -> Vec<DeviceInfo> {
+        vec![
+            device("llvmpipe", vk::PhysicalDeviceType::CPU, true),
+            device("Old Radeon", vk::PhysicalDeviceType::DISCRETE_GPU, false),
+            device(
+                "Iris Graphics",
+                vk::PhysicalDeviceType::INTEGRATED_GPU,
+                true,
+            ),
+            device("New Radeon", vk::PhysicalDeviceType::DISCRETE_GPU, true),
+        ]
+    }
+
+    #[test]
+    fn the_best_usable_device_is_the_default() {
+        assert_eq!(choose(&machine(), None).unwrap(), 3);
+        assert_eq!(choose(&machine()[..3], None).unwrap(), 2);
+    }
+
+    #[test]
+    fn devices_go_by_number_or_part_of_the_name() {
+        assert_eq!(choose(&machine(), Some("0")).unwrap(), 0);
+        assert_eq!(choose(&machine(), Some("iris")).unwrap(), 2);
+        assert_eq!(choose(&machine(), Some("radeon")).unwrap(), 3);
+    }
+
+    #[test]
+    fn errors_say_what_there_is() {
+        let unknown = choose(&machine(), Some("voodoo")).unwrap_err().to_string();
+        assert!(
+            unknown.contains("voodoo") && unknown.contains("2 (Iris Graphics)"),
+            "{unknown}"
+        );
+        assert!(
+            choose(&machine(), Some("9"))
+                .unwrap_err()
+                .to_string()
+                .contains("0 (llvmpipe)")
+        );
+        assert_eq!(
+            choose(&machine(), Some("old")).unwrap_err().to_string(),
+            "Old Radeon is too old"
+        );
+        assert!(
+            choose(&[], None)
+                .unwrap_err()
+                .to_string()
+                .contains("no Vulkan device")
+        );
+    }
+}

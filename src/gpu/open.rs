@@ -1,0 +1,165 @@
+//! Two ways to a device: headless use opens one of its own, a host lends one.
+
+use ash::vk;
+use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use gpu_allocator::{AllocationSizes, AllocatorDebugSettings};
+
+use super::failure::failed;
+use super::instance::Instance;
+use super::{Device, devices, requirements};
+use crate::{Error, Result};
+
+/// What [`Device::headless`] opens.
+#[derive(Debug, Clone)]
+pub struct DeviceDesc {
+    /// A number from [`list_devices`](super::list_devices) or part of a name; `None` is the best device.
+    pub selector: Option<String>,
+    /// Load the Khronos validation layer with synchronisation checks.
+    pub validation: bool,
+    /// What drivers and capture tools are told.
+    pub application_name: String,
+}
+
+impl Default for DeviceDesc {
+    fn default() -> Self {
+        Self {
+            selector: None,
+            validation: false,
+            application_name: "rara".into(),
+        }
+    }
+}
+
+/// A host's own device, for [`Device::adopt`].
+#[derive(Clone)]
+pub struct AdoptDesc {
+    /// Created for Vulkan 1.3 or later.
+    pub instance: ash::Instance,
+    /// The device below was made from it.
+    pub physical_device: vk::PhysicalDevice,
+    /// Created with [`Support::features`](super::Support::features), and as many of [`Support::extensions`](super::Support::extensions) as the flags below say.
+    pub device: ash::Device,
+    /// Graphics and compute; everything that is recorded with this device goes to it.
+    pub queue: vk::Queue,
+    /// The queue's family.
+    pub queue_family: u32,
+    /// `VK_EXT_mesh_shader` and its features were enabled.
+    pub mesh_shader: bool,
+    /// `VK_KHR_push_descriptor` was enabled.
+    pub push_descriptor: bool,
+    /// `VK_EXT_debug_utils` was enabled on the instance.
+    pub debug_utils: bool,
+    /// Where compiled pipelines are looked up and kept; null for nowhere.
+    pub pipeline_cache: vk::PipelineCache,
+}
+
+impl std::fmt::Debug for AdoptDesc {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("AdoptDesc")
+            .field("physical_device", &self.physical_device)
+            .field("queue_family", &self.queue_family)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Device {
+    /// Opens a device of its own, without a window.
+    pub fn headless(desc: &DeviceDesc) -> Result<Self> {
+        let owned = Instance::new(&desc.application_name, desc.validation)?;
+        let (physical, infos): (Vec<_>, Vec<_>) = owned.devices()?.into_iter().unzip();
+        let chosen = devices::choose(&infos, desc.selector.as_deref())?;
+        let (physical, info) = (physical[chosen], infos[chosen].clone());
+        let support = info.support.clone().map_err(Error::Device)?;
+
+        let family = support.queue_family;
+        let queues = [vk::DeviceQueueCreateInfo::default()
+            .queue_family_index(family)
+            .queue_priorities(&[1.0])];
+        let extensions: Vec<_> = support
+            .extensions()
+            .iter()
+            .map(|name| name.as_ptr())
+            .collect();
+        let mut features = support.features();
+        let create = vk::DeviceCreateInfo::default()
+            .queue_create_infos(&queues)
+            .enabled_extension_names(&extensions);
+        let create = features.chain(create);
+        // SAFETY: instance and physical device are alive, and the device offers all that `create` asks for.
+        let raw = unsafe { owned.raw.create_device(physical, &create, None) }
+            .map_err(failed("vkCreateDevice"))?;
+        // SAFETY: the device was created with one queue of this family.
+        let queue = unsafe { raw.get_device_queue(family, 0) };
+        let adopt = AdoptDesc {
+            instance: owned.raw.clone(),
+            physical_device: physical,
+            device: raw.clone(),
+            queue,
+            queue_family: family,
+            mesh_shader: support.mesh_shader,
+            push_descriptor: support.push_descriptor,
+            debug_utils: owned.debug_utils,
+            pipeline_cache: vk::PipelineCache::null(),
+        };
+        let allocator = allocator(&adopt).inspect_err(|_| {
+            // SAFETY: nothing was made from the device, and nobody else knows it.
+            unsafe { raw.destroy_device(None) };
+        })?;
+        Ok(Self::new(adopt, info, support, allocator, Some(owned)))
+    }
+
+    /// Works with a host's device. The host keeps owning it: nothing of the description is ever destroyed here.
+    ///
+    /// # Safety
+    ///
+    /// All handles must belong together, be as the description says, and outlive this device, its clones and
+    /// everything made from them. While [`Device::submit_and_wait`] or an upload runs, the host must not use the queue.
+    pub unsafe fn adopt(desc: AdoptDesc) -> Result<Self> {
+        // SAFETY: the caller vouches for the handles.
+        let mut support = unsafe { requirements::check(&desc.instance, desc.physical_device) }?;
+        // SAFETY: as above.
+        let families = unsafe {
+            desc.instance
+                .get_physical_device_queue_family_properties(desc.physical_device)
+        };
+        let Some(family) = families.get(desc.queue_family as usize) else {
+            return Err(Error::Invalid(format!(
+                "the device has no queue family {}",
+                desc.queue_family
+            )));
+        };
+        if !family
+            .queue_flags
+            .contains(vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE)
+        {
+            return Err(Error::Invalid(format!(
+                "queue family {} lacks graphics or compute; family {} has both",
+                desc.queue_family, support.queue_family
+            )));
+        }
+        support.queue_family = desc.queue_family;
+        support.timestamp_bits = family.timestamp_valid_bits;
+        if support.timestamp_bits == 0 {
+            support.timestamp_period = 0.0;
+        }
+        support.mesh_shader &= desc.mesh_shader;
+        support.push_descriptor &= desc.push_descriptor;
+        // SAFETY: as above.
+        let info = unsafe { devices::describe(&desc.instance, desc.physical_device) };
+        let allocator = allocator(&desc)?;
+        Ok(Self::new(desc, info, support, allocator, None))
+    }
+}
+
+fn allocator(desc: &AdoptDesc) -> Result<Allocator> {
+    Allocator::new(&AllocatorCreateDesc {
+        instance: desc.instance.clone(),
+        device: desc.device.clone(),
+        physical_device: desc.physical_device,
+        debug_settings: AllocatorDebugSettings::default(),
+        buffer_device_address: true,
+        // Shared blocks start small: large buffers have memory of their own.
+        allocation_sizes: AllocationSizes::new(32 << 20, 32 << 20),
+    })
+    .map_err(|error| Error::Memory(format!("the device's memory could not be set up: {error}")))
+}

@@ -35,7 +35,9 @@ uint classify(uint index) {
     }
     Footprint f = footprint(gaussian);
     float extent = opacity_extent(opacity);
-    if (!covers_a_pixel(f.centre, box_extent(f, extent))) {
+    // Finite: deviations beyond the range of single precision have no footprint.
+    bool drawable = largest(cholesky(f)) < 3e38;
+    if (!drawable || !covers_a_pixel(f.centre, box_extent(f, extent))) {
         return SIDE_CULLED;
     }
     return CLIP ? clip_side(f, gaussian.position_opacity.xyz, extent) : SIDE_VISIBLE;

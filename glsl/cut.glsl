@@ -16,4 +16,12 @@ const uint CUT_RAY = 1u;
 const uint CUT_FRONT = 2u;
 const uint CUT_COUNT_SHIFT = 8u;
 
+// Whether a plane keeps the far part of a line of sight: by its normal's component along the line. Where that is zero
+// (a Gaussian without thickness) any fixed rule would do, if it told opposed planes apart: the normal's first non-zero
+// component does.
+bool keeps_far(float along, vec3 normal) {
+    float first = along != 0.0 ? along : normal.x != 0.0 ? normal.x : normal.y != 0.0 ? normal.y : normal.z;
+    return first >= 0.0;
+}
+
 #endif

@@ -29,7 +29,7 @@ vec4 affine_plane(Footprint f, vec4 plane) {
     float ac = dot(a, c);
     float variance = ac * ac + f.low_pass * (dot(a1, a1) + dot(a2, a2)) + f.low_pass * f.low_pass * dot(a, a);
     vec2 slope = vec2(dot(c, a2) + f.low_pass * dot(a, f.b1), -dot(c, a1) + f.low_pass * dot(a, f.b2));
-    float side = ac >= 0.0 ? 1.0 : -1.0;
+    float side = keeps_far(ac, a) ? 1.0 : -1.0;
     if (!(variance > 0.0)) {
         return vec4(plane.w >= 0.0 ? 40.0 : -40.0, 0.0, 0.0, side);
     }
@@ -77,7 +77,9 @@ void main() {
         vec3 e = f.m3 / f.view.z;
         // The gradients grow with the distance from the centre; scale for the farthest pixel of the splat.
         vec2 far = min(max(abs(f.centre), abs(FRAME.size.xy - f.centre)), box_extent(f, extent));
-        float scale = 1.0 / max(1.0, max(largest(b1) + far.x * largest(e), largest(b2) + far.y * largest(e)));
+        float size = max(largest(b1) + far.x * largest(e), largest(b2) + far.y * largest(e));
+        // Without the low-pass there is nothing to keep in proportion: rara also scales up what is tiny.
+        float scale = 1.0 / max(size, FRAME.mode == MODE_RARA ? 1e-30 : 1.0);
         if (front) {
             flags |= CUT_FRONT;
             cuts.at[at] = ray_plane(f.m3, f.view.z);

@@ -82,6 +82,13 @@ Footprint footprint(Gaussian gaussian) {
     return f;
 }
 
+// Cholesky factor k0 k1 k2 of the inverse 2D covariance, 1/px: q = (k0 dx)^2 + (k1 dx + k2 dy)^2. A sum of squares, so
+// alpha never exceeds the opacity, where the three coefficients of the inverse would cancel for needles.
+vec3 cholesky(Footprint f) {
+    float k2 = sqrt(f.xx / f.det);
+    return vec3(inversesqrt(f.xx), -k2 * (f.xy / f.xx), k2) * f.scale;
+}
+
 // Half the sides of the bounding box of the splat's contour at q = extent^2, px.
 vec2 box_extent(Footprint f, float extent) {
     return extent * sqrt(vec2(f.xx, f.yy)) / f.scale;

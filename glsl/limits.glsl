@@ -13,6 +13,8 @@ const float ALPHA_MAX = 0.99;
 const float ALPHA_MIN_INVERSE = 255.0;
 // A cut splat is weighted by the perspective-exact form where sigma_max / Z exceeds this, by the affine form below.
 const float BEAM_SWITCH = 0.02;
+// Share of a splat in front of the eye below which single precision cannot divide by it; the eye is then ignored.
+const float FRONT_MIN = 1e-4;
 // Most half-spaces in a clip. Raising it lengthens the frame's uniform block and the cutoff records of such clips.
 const uint MAX_CLIP_PLANES = 32u;
 // Degree 3: the most coefficients a colour channel has.

@@ -68,10 +68,8 @@ void main() {
         second = vec2(0.0, 0.5 * (high.y - low.y));
         middle = 0.5 * (low + high) - f.centre;
     }
-    // q = (k0 dx)^2 + (k1 dx + k2 dy)^2: a sum of squares, so alpha never exceeds the opacity.
-    float k2 = sqrt(f.xx / f.det);
     splat.centre_axis = vec4(f.centre, first);
-    splat.conic = vec4(inversesqrt(f.xx) * f.scale, -k2 * (f.xy / f.xx) * f.scale, k2 * f.scale, opacity);
+    splat.conic = vec4(cholesky(f), opacity);
     splat.colour_cut = vec4(colour(index, normalize(f.relative)), uintBitsToFloat(survivors.at[survivor].y));
     splat.middle_axis = vec4(middle, second);
     splats.at[survivor] = splat;

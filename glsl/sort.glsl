@@ -4,8 +4,6 @@
 #define RARA_SORT
 #include "frame.glsl"
 
-layout(local_size_x = SORT_GROUP_SIZE) in;
-
 const uint DIGITS = 1u << SORT_BITS;
 
 uint digit(uint key) {

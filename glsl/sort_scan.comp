@@ -1,33 +1,30 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Second step of a pass: one workgroup a digit turns the runs' counts into places among the keys of that digit.
+// Second step of a pass, one workgroup, a digit an invocation: the runs' counts become the places where each run's keys
+// of each digit begin.
 #include "sort.glsl"
 
-BUFFER(, 1, uint, histogram)
-BUFFER(writeonly, 2, uint, digit_totals)
+layout(local_size_x = DIGITS) in;
 
-shared uint part_totals[SORT_GROUP_SIZE];
+BUFFER(, 1, uint, histogram)
+
+shared uint totals[DIGITS];
 
 void main() {
-    uint base = gl_WorkGroupID.x * FRAME.sort_runs;
-    uint part = FRAME.sort_runs / SORT_GROUP_SIZE;
-    uint begin = base + gl_LocalInvocationIndex * part;
+    uint d = gl_LocalInvocationIndex;
     uint total = 0u;
-    for (uint i = begin; i < begin + part; i++) {
-        total += histogram.at[i];
+    for (uint run = 0u; run < FRAME.sort_runs; run++) {
+        total += histogram.at[run * DIGITS + d];
     }
-    part_totals[gl_LocalInvocationIndex] = total;
+    totals[d] = total;
     barrier();
-    uint before = 0u;
-    for (uint other = 0u; other < gl_LocalInvocationIndex; other++) {
-        before += part_totals[other];
+    uint place = 0u;
+    for (uint before = 0u; before < d; before++) {
+        place += totals[before];
     }
-    for (uint i = begin; i < begin + part; i++) {
-        uint count = histogram.at[i];
-        histogram.at[i] = before;
-        before += count;
-    }
-    if (gl_LocalInvocationIndex == SORT_GROUP_SIZE - 1u) {
-        digit_totals.at[gl_WorkGroupID.x] = before;
+    for (uint run = 0u; run < FRAME.sort_runs; run++) {
+        uint count = histogram.at[run * DIGITS + d];
+        histogram.at[run * DIGITS + d] = place;
+        place += count;
     }
 }

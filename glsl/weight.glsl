@@ -37,7 +37,8 @@ float affine_weight(uint at, uint count, vec2 delta) {
             near = min(near, kept);
         }
     }
-    return combined(max(0.0, far + near - 1.0));
+    // Not far + near - 1: where no near plane cuts, the share must stay as it is, to the bit.
+    return combined(max(0.0, far - (1.0 - near)));
 }
 
 // The line of sight of a pixel in the Gaussian's unit space: the points u with b1.u = delta.x and b2.u = delta.y.
@@ -62,12 +63,13 @@ Sight line_of_sight(uint base, vec2 delta) {
 }
 
 // `exact`, perspective included: the same update as the affine form with this pixel's own gradients.
-float ray_z(Sight s, float det, vec4 plane, out float depth_slope) {
+float ray_z(Sight s, float det, vec4 plane, out bool far) {
     vec3 a = plane.xyz;
     vec3 a1 = cross(a, s.b1);
     vec3 a2 = cross(a, s.b2);
-    depth_slope = dot(a, s.c);
-    float variance = depth_slope * depth_slope + s.low_pass * (dot(a1, a1) + dot(a2, a2))
+    float along = dot(a, s.c);
+    far = keeps_far(along, a);
+    float variance = along * along + s.low_pass * (dot(a1, a1) + dot(a2, a2))
         + s.low_pass * s.low_pass * dot(a, a);
     vec2 k = vec2(dot(s.c, a2) + s.low_pass * dot(a, s.b1), -dot(s.c, a1) + s.low_pass * dot(a, s.b2));
     float mean = plane.w + dot(k, s.delta) / det;
@@ -80,10 +82,10 @@ float beam_weight(uint base, uint count, bool has_front, vec2 delta) {
     float sign = complement_sign();
     float far = 1.0;
     float near = 1.0;
-    float depth_slope;
+    bool keeps;
     for (uint plane = 0u; plane < count; plane++) {
-        float kept = phi(sign * ray_z(s, det, cuts.at[base + CUT_HEADER + plane], depth_slope));
-        if (sign * depth_slope > 0.0) {
+        float kept = phi(sign * ray_z(s, det, cuts.at[base + CUT_HEADER + plane], keeps));
+        if (keeps == (FRAME.op == OP_AND)) {
             far = min(far, kept);
         } else {
             near = min(near, kept);
@@ -92,13 +94,13 @@ float beam_weight(uint base, uint count, bool has_front, vec2 delta) {
     float whole = 1.0;
     if (has_front) {
         // The camera is inside: only the part in front of the eye counts, as part and as whole.
-        float front = phi(ray_z(s, det, cuts.at[base + CUT_HEADER + count], depth_slope));
-        if (front >= 1e-4) {
+        float front = phi(ray_z(s, det, cuts.at[base + CUT_HEADER + count], keeps));
+        if (front >= FRONT_MIN) {
             whole = front;
             far = min(far, front);
         }
     }
-    return combined(max(0.0, far + near - 1.0) / whole);
+    return combined(max(0.0, far - (1.0 - near)) / whole);
 }
 
 // `rara`: the visible share of the chord that the ray cuts out of the ellipsoid (paper section 3.3 and eq. 11). The
@@ -132,7 +134,8 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta) {
         float value = form.w + dot(form.xyz, nearest);
         float slope = dot(form.xyz, direction);
         if (miss || slope == 0.0) {
-            inside = inside && value >= 0.0;
+            // The plane itself is visible, so it is no part of a complement.
+            inside = inside && (value > 0.0 || (value == 0.0 && FRAME.op == OP_AND));
         } else if (slope > 0.0) {
             low = max(low, -value / slope);
         } else {

@@ -7,7 +7,9 @@ use ash::vk;
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
-use crate::gpu::{Bindings, Buffer, BufferDesc, Device, DeviceDesc, Image, ImageDesc, Location};
+use crate::gpu::{
+    Bindings, Buffer, BufferDesc, Device, DeviceDesc, Drawer, Image, ImageDesc, Location,
+};
 use crate::passes::SceneBuffers;
 use crate::picture::Picture;
 use crate::renderer::{Renderer, RendererDesc};
@@ -47,14 +49,31 @@ impl Headless {
     /// Opens the device.
     pub fn new(desc: &HeadlessDesc) -> Result<Self> {
         let selector = desc.device.clone();
-        let device = Device::headless(&DeviceDesc { selector, validation: desc.validation, application_name: "rara".into() })?;
+        let device = Device::headless(&DeviceDesc {
+            selector,
+            validation: desc.validation,
+            application_name: "rara".into(),
+        })?;
         // Under validation, buffers are bound so that the layer's synchronisation checks can see them.
-        let bindings = if desc.validation { Bindings::Bound } else { Bindings::Address };
+        let bindings = if desc.validation {
+            Bindings::Bound
+        } else {
+            Bindings::Address
+        };
         let renderer = Renderer::new(
             &device,
-            RendererDesc { color_format: FORMAT, bindings, timing: true },
+            RendererDesc {
+                color_format: FORMAT,
+                bindings,
+                timing: true,
+            },
         )?;
-        Ok(Self { renderer, scene: None, target: None, device })
+        Ok(Self {
+            renderer,
+            scene: None,
+            target: None,
+            device,
+        })
     }
 
     /// The device's name, for people.
@@ -86,17 +105,44 @@ impl Headless {
     }
 
     /// Renders one frame of the scene; the picture stays on the device.
-    pub fn render(&mut self, camera: &Camera, clip: &Clip, settings: &Settings) -> Result<FrameStats> {
-        let scene = self.scene.as_ref().ok_or_else(|| Error::Invalid("there is no scene to render; load one first".into()))?;
+    pub fn render(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<FrameStats> {
+        let scene = self
+            .scene
+            .as_ref()
+            .ok_or_else(|| Error::Invalid("there is no scene to render; load one first".into()))?;
         self.renderer.configure(scene, camera, clip, settings)?;
-        let extent = vk::Extent2D { width: camera.width, height: camera.height };
-        if self.target.as_ref().is_none_or(|target| target.image.extent() != extent) {
+        let extent = vk::Extent2D {
+            width: camera.width,
+            height: camera.height,
+        };
+        if self
+            .target
+            .as_ref()
+            .is_none_or(|target| target.image.extent() != extent)
+        {
             self.target = None;
-            let image = self.device.create_image(&ImageDesc { name: "target", width: camera.width, height: camera.height, format: FORMAT })?;
-            self.target = Some(Target { image, readback: None });
+            let image = self.device.create_image(&ImageDesc {
+                name: "target",
+                width: camera.width,
+                height: camera.height,
+                format: FORMAT,
+            })?;
+            self.target = Some(Target {
+                image,
+                readback: None,
+            });
         }
-        let Some(target) = &self.target else { unreachable!("created above") };
-        let clear = settings.background.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
+        let Some(target) = &self.target else {
+            unreachable!("created above")
+        };
+        let clear = settings
+            .background
+            .map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
         let begin = Instant::now();
         self.device.submit_and_wait(|cmd| {
             // SAFETY: `cmd` is recording and `scene`, the target and the renderer outlive the wait for it; the
@@ -104,6 +150,11 @@ impl Headless {
             unsafe {
                 self.renderer.prepare(cmd, scene);
                 target.image.begin_rendering(cmd, clear);
+                let area = vk::Rect2D {
+                    offset: vk::Offset2D::default(),
+                    extent,
+                };
+                Drawer::new(&self.device, cmd, None).viewport(area);
                 self.renderer.draw(cmd, [0.0, 0.0]);
                 target.image.end_rendering(cmd);
             }
@@ -114,17 +165,31 @@ impl Headless {
         let passes = self.renderer.pass_times();
         let gpu_ms = passes.iter().map(|pass| pass.ms).sum();
         let skipped = self.renderer.skipped();
-        Ok(FrameStats { counts: self.renderer.counts(), passes, gpu_ms, wall_ms, skipped })
+        Ok(FrameStats {
+            counts: self.renderer.counts(),
+            passes,
+            gpu_ms,
+            wall_ms,
+            skipped,
+        })
     }
 
     /// Reads the picture of the last frame back.
     pub fn picture(&mut self) -> Result<Picture> {
-        let target = self.target.as_mut().ok_or_else(|| Error::Invalid("nothing has been rendered yet".into()))?;
+        let target = self
+            .target
+            .as_mut()
+            .ok_or_else(|| Error::Invalid("nothing has been rendered yet".into()))?;
         let extent = target.image.extent();
-        let size = u64::from(extent.width) * u64::from(extent.height) * size_of::<[f32; 4]>() as u64;
+        let size =
+            u64::from(extent.width) * u64::from(extent.height) * size_of::<[f32; 4]>() as u64;
         let readback = match target.readback.take() {
             Some(buffer) => buffer,
-            None => self.device.create_buffer(&BufferDesc { name: "readback", size, location: Location::Readback })?,
+            None => self.device.create_buffer(&BufferDesc {
+                name: "readback",
+                size,
+                location: Location::Readback,
+            })?,
         };
         self.device.submit_and_wait(|cmd| {
             // SAFETY: `cmd` is recording; the image was left ready to be copied from by the frame's end_rendering, and
@@ -135,11 +200,19 @@ impl Headless {
         let pixels = bytemuck::cast_slice(&readback.mapped()[..size as usize]).to_vec();
         target.readback = Some(readback);
         self.check_validation()?;
-        Ok(Picture { width: extent.width, height: extent.height, pixels })
+        Ok(Picture {
+            width: extent.width,
+            height: extent.height,
+            pixels,
+        })
     }
 
     fn check_validation(&self) -> Result<()> {
         let messages = self.device.validation_messages();
-        if messages.is_empty() { Ok(()) } else { Err(Error::Validation(messages)) }
+        if messages.is_empty() {
+            Ok(())
+        } else {
+            Err(Error::Validation(messages))
+        }
     }
 }

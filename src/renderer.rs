@@ -43,8 +43,20 @@ pub struct Renderer {
 impl Renderer {
     /// A renderer on a device. Pipelines and buffers come with the first frame that needs them.
     pub fn new(device: &Device, desc: RendererDesc) -> Result<Self> {
-        let timer = if desc.timing { Some(Timer::new(device, 16)?) } else { None };
-        Ok(Self { device: device.clone(), desc, stages: None, buffers: None, timer, plan: None, mesh: false })
+        let timer = if desc.timing {
+            Some(Timer::new(device, 16)?)
+        } else {
+            None
+        };
+        Ok(Self {
+            device: device.clone(),
+            desc,
+            stages: None,
+            buffers: None,
+            timer,
+            plan: None,
+            mesh: false,
+        })
     }
 
     /// Decides what the next frame needs, and allocates and compiles what is missing.
@@ -58,30 +70,53 @@ impl Renderer {
         let support = self.device.support();
         let is_cpu = self.device.info().kind == vk::PhysicalDeviceType::CPU;
         let sort_runs = if is_cpu { SORT_RUNS_CPU } else { SORT_RUNS_GPU };
-        let facts = SceneFacts { gaussians: scene.count, sh_degree: scene.sh_degree, sort_runs };
+        let facts = SceneFacts {
+            gaussians: scene.count,
+            sh_degree: scene.sh_degree,
+            sort_runs,
+        };
         let plan = Plan::new(facts, camera, clip, settings)?;
         self.mesh = match settings.raster {
             // On CPU drivers a mesh shader costs several times a quad's vertices; see the README's measurements.
             Raster::Auto => support.mesh_shader && !is_cpu,
             Raster::Mesh if !support.mesh_shader => {
-                return Err(Error::Device("this device has no mesh shaders (VK_EXT_mesh_shader); use --raster quad".into()));
+                return Err(Error::Device(
+                    "this device has no mesh shaders (VK_EXT_mesh_shader); use --raster quad"
+                        .into(),
+                ));
             }
             Raster::Mesh => true,
             Raster::Quad => false,
         };
         let largest = Buffers::largest(&plan).max(scene.largest());
         let bindings = match self.desc.bindings {
-            Bindings::Bound if support.push_descriptor && largest <= support.max_storage_buffer_range => Bindings::Bound,
+            Bindings::Bound
+                if support.push_descriptor && largest <= support.max_storage_buffer_range =>
+            {
+                Bindings::Bound
+            }
             Bindings::Bound | Bindings::Address => Bindings::Address,
         };
-        let context = Context { device: &self.device, bindings, color_format: self.desc.color_format };
-        if self.stages.as_ref().is_none_or(|(have, _)| *have != bindings) {
+        let context = Context {
+            device: &self.device,
+            bindings,
+            color_format: self.desc.color_format,
+        };
+        if self
+            .stages
+            .as_ref()
+            .is_none_or(|(have, _)| *have != bindings)
+        {
             self.stages = Some((bindings, Stages::new(&context)?));
         }
         if let Some((_, stages)) = &mut self.stages {
             stages.ensure(&context, &plan, self.mesh)?;
         }
-        if self.buffers.as_ref().is_none_or(|buffers| !buffers.fit(&plan)) {
+        if self
+            .buffers
+            .as_ref()
+            .is_none_or(|buffers| !buffers.fit(&plan))
+        {
             // Free first: both together may not fit.
             self.buffers = None;
             self.buffers = Some(Buffers::new(&self.device, &plan)?);
@@ -96,7 +131,9 @@ impl Renderer {
     /// `cmd` is in the recording state, outside a rendering scope, on a queue family with compute and graphics, and
     /// `scene` is the one given to [`configure`](Self::configure) and lives until the commands have executed.
     pub unsafe fn prepare(&mut self, cmd: vk::CommandBuffer, scene: &SceneBuffers) {
-        let (Some((_, stages)), Some(buffers), Some(plan)) = (&self.stages, &self.buffers, &self.plan) else {
+        let (Some((_, stages)), Some(buffers), Some(plan)) =
+            (&self.stages, &self.buffers, &self.plan)
+        else {
             panic!("Renderer::prepare needs a successful configure() before it");
         };
         if plan.gaussians == 0 {
@@ -114,7 +151,9 @@ impl Renderer {
     /// `cmd` is inside a rendering scope whose only colour attachment has the format given at creation, viewport and
     /// scissor are set, and [`prepare`](Self::prepare) was recorded for the same frame before it.
     pub unsafe fn draw(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) {
-        let (Some((_, stages)), Some(buffers), Some(plan)) = (&self.stages, &self.buffers, &self.plan) else {
+        let (Some((_, stages)), Some(buffers), Some(plan)) =
+            (&self.stages, &self.buffers, &self.plan)
+        else {
             panic!("Renderer::draw needs a successful configure() and prepare() before it");
         };
         if plan.gaussians == 0 {
@@ -139,19 +178,40 @@ impl Renderer {
         if plan.gaussians == 0 {
             return Counts::default();
         }
-        let counts: FrameCounts = bytemuck::pod_read_unaligned(&buffers.counts_readback.mapped()[..size_of::<FrameCounts>()]);
-        let FrameCounts { visible, cutoff, invisible, culled, .. } = counts;
-        Counts { visible, cutoff, invisible, culled, drawn: visible + cutoff }
+        let counts: FrameCounts = bytemuck::pod_read_unaligned(
+            &buffers.counts_readback.mapped()[..size_of::<FrameCounts>()],
+        );
+        let FrameCounts {
+            visible,
+            cutoff,
+            invisible,
+            culled,
+            ..
+        } = counts;
+        Counts {
+            visible,
+            cutoff,
+            invisible,
+            culled,
+            drawn: visible + cutoff,
+        }
     }
 
     /// GPU time of each stage, once the frame has executed; empty without timing.
     pub fn pass_times(&self) -> Vec<PassTime> {
-        let times = self.timer.as_ref().and_then(Timer::read).unwrap_or_default();
-        times.into_iter().map(|(name, ms)| PassTime { name, ms }).collect()
+        let times = self
+            .timer
+            .as_ref()
+            .and_then(Timer::read)
+            .unwrap_or_default();
+        times
+            .into_iter()
+            .map(|(name, ms)| PassTime { name, ms })
+            .collect()
     }
 }
 
 /// Runs of the sort on CPU drivers: few, because each costs a histogram; at least the lanes of all cores.
 const SORT_RUNS_CPU: u32 = 256;
 /// Runs of the sort on GPUs: enough invocations to hide the latency of their scattered writes.
-const SORT_RUNS_GPU: u32 = 8192;
+const SORT_RUNS_GPU: u32 = 2048;

@@ -13,20 +13,48 @@ const VIEWS: usize = 6;
 /// thousand further off than 2/255 (a splat that f32 puts on the other side of alpha = 1/255 or of a neighbour).
 fn assert_agrees(what: &str, ours: &Picture, truth: &Picture) {
     let float = compare(ours, truth).expect("the same size");
-    assert!(float.psnr >= 60.0, "{what}: {:.1} dB into a 32-bit target: {float:?}", float.psnr);
-    assert!(float.share_over_2 <= 0.001, "{what}: {:.3} % of pixels over 2/255", 100.0 * float.share_over_2);
+    assert!(
+        float.psnr >= 60.0,
+        "{what}: {:.1} dB into a 32-bit target: {float:?}",
+        float.psnr
+    );
+    assert!(
+        float.share_over_2 <= 0.001,
+        "{what}: {:.3} % of pixels over 2/255",
+        100.0 * float.share_over_2
+    );
     let png = compare(&ours.quantised(), truth).expect("the same size");
-    assert!(png.psnr >= 48.0, "{what}: {:.1} dB through 8 bits", png.psnr);
+    assert!(
+        png.psnr >= 48.0,
+        "{what}: {:.1} dB through 8 bits",
+        png.psnr
+    );
 }
 
-fn check(headless: &mut Headless, name: &str, scene: &Gaussians, camera: &Camera, clip: &Clip, settings: &Settings) {
+fn check(
+    headless: &mut Headless,
+    name: &str,
+    scene: &Gaussians,
+    camera: &Camera,
+    clip: &Clip,
+    settings: &Settings,
+) {
     let stats = headless.render(camera, clip, settings).expect("renders");
     let picture = headless.picture().expect("reads back");
     let truth = reference::render::<f64>(scene, camera, clip, settings);
-    let what = format!("{name}, {:?}, {} planes {:?}", settings.mode, clip.planes.len(), clip.op);
+    let what = format!(
+        "{name}, {:?}, {} planes {:?}",
+        settings.mode,
+        clip.planes.len(),
+        clip.op
+    );
     assert_agrees(&what, &picture, &truth.picture);
     let total = |c: rara::Counts| c.visible + c.cutoff + c.invisible + c.culled;
-    assert_eq!(total(stats.counts) as usize, scene.len(), "{what}: every Gaussian is counted once");
+    assert_eq!(
+        total(stats.counts) as usize,
+        scene.len(),
+        "{what}: every Gaussian is counted once"
+    );
     // f32 may put a splat that only just touches a pixel or a band on the other side: one in a thousand at most.
     let slack = 2 + scene.len() as u32 / 1000;
     for (ours, theirs) in [
@@ -35,7 +63,12 @@ fn check(headless: &mut Headless, name: &str, scene: &Gaussians, camera: &Camera
         (stats.counts.invisible, truth.counts.invisible),
         (stats.counts.culled, truth.counts.culled),
     ] {
-        assert!(ours.abs_diff(theirs) <= slack, "{what}: counts {:?} against {:?}", stats.counts, truth.counts);
+        assert!(
+            ours.abs_diff(theirs) <= slack,
+            "{what}: counts {:?} against {:?}",
+            stats.counts,
+            truth.counts
+        );
     }
 }
 
@@ -46,13 +79,28 @@ fn check_scenes(scenes: Vec<(String, Gaussians)>, mode: Mode, clips: &[(usize, C
         for camera in common::views(&scene, VIEWS, SIZE) {
             for (planes, op) in clips {
                 let clip = common::clip(&scene, *planes, *op);
-                check(&mut headless, &name, &scene, &camera, &clip, &Settings { mode, ..Settings::default() });
+                check(
+                    &mut headless,
+                    &name,
+                    &scene,
+                    &camera,
+                    &clip,
+                    &Settings {
+                        mode,
+                        ..Settings::default()
+                    },
+                );
             }
         }
     }
 }
 
-const CLIPS: [(usize, ClipOp); 4] = [(1, ClipOp::And), (2, ClipOp::And), (2, ClipOp::Or), (6, ClipOp::And)];
+const CLIPS: [(usize, ClipOp); 4] = [
+    (1, ClipOp::And),
+    (2, ClipOp::And),
+    (2, ClipOp::Or),
+    (6, ClipOp::And),
+];
 
 #[test]
 fn none_on_trained_scenes() {

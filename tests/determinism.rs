@@ -16,20 +16,41 @@ fn mesh_and_quad_paths_agree() {
         eprintln!("SKIPPED: this device has no mesh shaders");
         return;
     }
-    for (name, scene) in common::generated_scenes(4_000).into_iter().chain(common::trained_scenes()) {
+    for (name, scene) in common::generated_scenes(4_000)
+        .into_iter()
+        .chain(common::trained_scenes())
+    {
         headless.load(&scene).expect("uploads");
         for mode in [Mode::None, Mode::Rara, Mode::Exact] {
             let clip = common::clip(&scene, 2, ClipOp::And);
             let camera = common::views(&scene, 3, SIZE)[1];
             let mut picture = |raster| {
-                let settings = Settings { mode, raster, ..Settings::default() };
+                let settings = Settings {
+                    mode,
+                    raster,
+                    ..Settings::default()
+                };
                 headless.render(&camera, &clip, &settings).expect("renders");
                 headless.picture().expect("reads back")
             };
             let (mesh, quad) = (picture(Raster::Mesh), picture(Raster::Quad));
-            let apart = |(a, b): (&[f32; 4], &[f32; 4])| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-            let worst = mesh.pixels.iter().zip(&quad.pixels).map(apart).fold(0.0, f32::max);
-            assert!(worst <= 1.0 / 255.0, "{name}, {mode:?}: mesh and quad differ by {:.3}/255", worst * 255.0);
+            let apart = |(a, b): (&[f32; 4], &[f32; 4])| {
+                a.iter()
+                    .zip(b)
+                    .map(|(a, b)| (a - b).abs())
+                    .fold(0.0, f32::max)
+            };
+            let worst = mesh
+                .pixels
+                .iter()
+                .zip(&quad.pixels)
+                .map(apart)
+                .fold(0.0, f32::max);
+            assert!(
+                worst <= 1.0 / 255.0,
+                "{name}, {mode:?}: mesh and quad differ by {:.3}/255",
+                worst * 255.0
+            );
         }
     }
 }
@@ -39,18 +60,29 @@ fn every_run_with_any_number_of_driver_threads_gives_the_same_bytes() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     let scene = folder.join("determinism.ply");
     let rara = || Command::new(env!("CARGO_BIN_EXE_rara"));
-    let status = rara().args(["generate", "general", "-n", "20000", "--seed", "7", "-o"]).arg(&scene).status();
+    let status = rara()
+        .args(["generate", "general", "-n", "20000", "--seed", "7", "-o"])
+        .arg(&scene)
+        .status();
     assert!(status.expect("rara runs").success());
     let render = |run: usize, threads: &str| {
         let out = folder.join(format!("determinism-{run}.exr"));
         let mut command = rara();
-        command.env("LP_NUM_THREADS", threads).arg("render").arg(&scene).arg("-o").arg(&out);
+        command
+            .env("LP_NUM_THREADS", threads)
+            .arg("render")
+            .arg(&scene)
+            .arg("-o")
+            .arg(&out);
         command.args(["--size", "300x220", "--clip", "plane:1,0.2,0.1,0"]);
         assert!(command.status().expect("rara runs").success());
         std::fs::read(out).expect("the picture was written")
     };
     let first = render(0, "1");
     for (run, threads) in ["1", "2", "3", "8"].iter().enumerate() {
-        assert!(render(run + 1, threads) == first, "{threads} driver threads give other bytes than one");
+        assert!(
+            render(run + 1, threads) == first,
+            "{threads} driver threads give other bytes than one"
+        );
     }
 }

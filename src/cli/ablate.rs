@@ -12,11 +12,11 @@ use super::camera::CameraArgs;
 use super::compare::Measures;
 use super::failure::Failure;
 use super::output::{self, say};
-use rara::measure;
-use rara::scene::Bounds;
 use super::scenes;
 use super::session::Session;
 use super::settings::{DeviceArgs, LookArgs};
+use rara::measure;
+use rara::scene::Bounds;
 
 /// Repeat the paper's ablation with a plane at infinity
 #[derive(Debug, Args)]

@@ -7,8 +7,8 @@ use glam::DVec3;
 use rara::{Camera, Gaussians};
 
 use super::failure::Failure;
-use rara::{camera_files, scene::Bounds};
 use super::values;
+use rara::{camera_files, scene::Bounds};
 
 /// Where the camera stands. Without any of these it frames the scene.
 #[derive(Debug, Args)]

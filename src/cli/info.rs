@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::output::{self, grouped, say};
-use rara::scene::Bounds;
 use super::scenes;
+use rara::scene::Bounds;
 
 /// Tell what stands in a scene
 #[derive(Debug, Args)]

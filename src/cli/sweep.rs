@@ -9,11 +9,11 @@ use rara::{Clip, ClipOp, Plane};
 use super::camera::CameraArgs;
 use super::failure::Failure;
 use super::output::{self, Progress, say};
-use rara::scene::extent_along;
 use super::report::{self, Report};
 use super::session::Session;
 use super::settings::{DeviceArgs, SettingsArgs};
 use super::{scenes, values};
+use rara::scene::extent_along;
 
 /// Move a clip plane across the scene in equal steps
 #[derive(Debug, Args)]

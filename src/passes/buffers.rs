@@ -22,7 +22,6 @@ pub(crate) struct Buffers {
     pub(crate) keys: [Buffer; 2],
     pub(crate) order: [Buffer; 2],
     pub(crate) histogram: Buffer,
-    pub(crate) digit_totals: Buffer,
     /// A copy of `counts` for the host.
     pub(crate) counts_readback: Buffer,
     sized_for: Sizes,
@@ -39,8 +38,16 @@ struct Sizes {
 impl Sizes {
     fn of(plan: &Plan) -> Self {
         let gaussians = u64::from(plan.gaussians);
-        let cut_bytes = if plan.cutoff { gaussians * u64::from(plan.cut_stride) * 16 } else { 0 };
-        Self { gaussians, cut_bytes, sort_runs: u64::from(plan.sort_runs) }
+        let cut_bytes = if plan.cutoff {
+            gaussians * u64::from(plan.cut_stride) * 16
+        } else {
+            0
+        };
+        Self {
+            gaussians,
+            cut_bytes,
+            sort_runs: u64::from(plan.sort_runs),
+        }
     }
 }
 
@@ -48,7 +55,13 @@ impl Buffers {
     /// Allocates for a plan.
     pub(crate) fn new(device: &Device, plan: &Plan) -> Result<Self> {
         let sizes = Sizes::of(plan);
-        let gpu = |name, size| device.create_buffer(&BufferDesc { name, size, location: Location::GpuOnly });
+        let gpu = |name, size| {
+            device.create_buffer(&BufferDesc {
+                name,
+                size,
+                location: Location::GpuOnly,
+            })
+        };
         let n = sizes.gaussians;
         let groups = n.div_ceil(u64::from(limits::GROUP_SIZE));
         let digits = 1_u64 << limits::SORT_BITS;
@@ -66,7 +79,6 @@ impl Buffers {
             keys: [gpu("keys", n * 4)?, gpu("sorted_keys", n * 4)?],
             order: [gpu("order", n * 4)?, gpu("sorted_order", n * 4)?],
             histogram: gpu("histogram", digits * sizes.sort_runs * 4)?,
-            digit_totals: gpu("digit_totals", digits * 4)?,
             counts_readback: device.create_buffer(&BufferDesc {
                 name: "counts_readback",
                 size: counts_size,
@@ -79,12 +91,16 @@ impl Buffers {
     /// Whether a plan fits into what is allocated.
     pub(crate) fn fit(&self, plan: &Plan) -> bool {
         let (have, need) = (self.sized_for, Sizes::of(plan));
-        have.gaussians == need.gaussians && have.cut_bytes >= need.cut_bytes && have.sort_runs == need.sort_runs
+        have.gaussians == need.gaussians
+            && have.cut_bytes >= need.cut_bytes
+            && have.sort_runs == need.sort_runs
     }
 
     /// The largest buffer that a shader binds, bytes.
     pub(crate) fn largest(plan: &Plan) -> u64 {
         let sizes = Sizes::of(plan);
-        sizes.cut_bytes.max(sizes.gaussians * size_of::<Splat>() as u64)
+        sizes
+            .cut_bytes
+            .max(sizes.gaussians * size_of::<Splat>() as u64)
     }
 }

@@ -16,10 +16,18 @@ pub(crate) struct Classify {
 impl Classify {
     /// With `clip` false the shader holds no clip code.
     pub(crate) fn new(context: &Context<'_>, clip: bool) -> Result<Self> {
-        Ok(Self { pipeline: context.compute("classify", &shaders::CLASSIFY_COMP, &[(0, clip.into())])? })
+        Ok(Self {
+            pipeline: context.compute("classify", &shaders::CLASSIFY_COMP, &[(0, clip.into())])?,
+        })
     }
 
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, b: &Buffers, groups: u32) {
+    pub(crate) fn record(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneBuffers,
+        b: &Buffers,
+        groups: u32,
+    ) {
         let buffers = [&b.frame, &scene.gaussians, &b.masks, &b.group_counts];
         recorder.dispatch(&self.pipeline, &buffers, &[], Groups::Count(groups));
     }

@@ -24,7 +24,13 @@ impl Compact {
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, b: &Buffers, groups: u32) {
         let scan = [&b.frame, &b.group_counts, &b.group_offsets, &b.counts];
         recorder.dispatch(&self.scan, &scan, &[], Groups::Count(1));
-        let compact = [&b.frame, &b.masks, &b.group_offsets, &b.survivors, &b.cutoffs];
+        let compact = [
+            &b.frame,
+            &b.masks,
+            &b.group_offsets,
+            &b.survivors,
+            &b.cutoffs,
+        ];
         recorder.dispatch(&self.compact, &compact, &[], Groups::Count(groups));
     }
 }

@@ -3,7 +3,9 @@
 use ash::vk;
 
 use crate::error::Result;
-use crate::gpu::{Bindings, ComputeDesc, ComputePipeline, Device, GraphicsDesc, GraphicsPipeline, Shader};
+use crate::gpu::{
+    Bindings, ComputeDesc, ComputePipeline, Device, GraphicsDesc, GraphicsPipeline, Shader,
+};
 
 /// Device, bindings and formats that the stages' pipelines share.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +23,15 @@ impl Context<'_> {
         constants: &[(u32, u32)],
     ) -> Result<ComputePipeline> {
         let bindings = self.bindings;
-        ComputePipeline::new(self.device, &ComputeDesc { name, shader, constants, bindings })
+        ComputePipeline::new(
+            self.device,
+            &ComputeDesc {
+                name,
+                shader,
+                constants,
+                bindings,
+            },
+        )
     }
 
     pub(crate) fn graphics(
@@ -35,7 +45,16 @@ impl Context<'_> {
         let topology = vk::PrimitiveTopology::TRIANGLE_STRIP;
         let (bindings, color_format) = (self.bindings, self.color_format);
         let blend = Some(blend);
-        let desc = GraphicsDesc { name, front, fragment, constants, color_format, blend, topology, bindings };
+        let desc = GraphicsDesc {
+            name,
+            front,
+            fragment,
+            constants,
+            color_format,
+            blend,
+            topology,
+            bindings,
+        };
         GraphicsPipeline::new(self.device, &desc)
     }
 }

@@ -17,7 +17,9 @@ pub(crate) struct Cutoff {
 
 impl Cutoff {
     pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
-        Ok(Self { pipeline: context.compute("cutoff", &shaders::CUTOFF_COMP, &[])? })
+        Ok(Self {
+            pipeline: context.compute("cutoff", &shaders::CUTOFF_COMP, &[])?,
+        })
     }
 
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, b: &Buffers) {

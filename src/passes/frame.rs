@@ -8,12 +8,20 @@ use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::stages::Stages;
 
 /// Records everything up to the draw.
-pub(crate) fn record(recorder: &mut Recorder<'_>, stages: &Stages, scene: &SceneBuffers, b: &Buffers, plan: &Plan) {
+pub(crate) fn record(
+    recorder: &mut Recorder<'_>,
+    stages: &Stages,
+    scene: &SceneBuffers,
+    b: &Buffers,
+    plan: &Plan,
+) {
     let groups = plan.data.group_count;
     recorder.update(&b.frame, 0, bytemuck::bytes_of(&plan.data));
 
     // Which Gaussians are in view, and on which side of the clip.
-    recorder.pass("classify", |r| stages.classify(plan).record(r, scene, b, groups));
+    recorder.pass("classify", |r| {
+        stages.classify(plan).record(r, scene, b, groups)
+    });
     // Their numbers, in order, and the sizes of all that follows.
     recorder.pass("compact", |r| stages.compact.record(r, b, groups));
     // What the fragment stage needs of the cut ones.
@@ -27,7 +35,11 @@ pub(crate) fn record(recorder: &mut Recorder<'_>, stages: &Stages, scene: &Scene
         recorder.pass("sort", |r| stages.sort.record(r, b));
     }
 
-    recorder.copy(&b.counts, &b.counts_readback, &[ash::vk::BufferCopy::default().size(b.counts.size())]);
+    recorder.copy(
+        &b.counts,
+        &b.counts_readback,
+        &[ash::vk::BufferCopy::default().size(b.counts.size())],
+    );
     recorder.ready_for_host(&[&b.counts_readback]);
     recorder.ready_to_draw(&[&b.frame, &b.counts, &b.splats, &b.order[0], &b.cuts]);
 }

@@ -36,13 +36,23 @@ pub(crate) struct SceneFacts {
 
 impl Plan {
     /// Decides what a frame needs.
-    pub(crate) fn new(scene: SceneFacts, camera: &Camera, clip: &Clip, settings: &Settings) -> Result<Self> {
+    pub(crate) fn new(
+        scene: SceneFacts,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<Self> {
         if clip.planes.len() > limits::MAX_CLIP_PLANES as usize {
             let (have, most) = (clip.planes.len(), limits::MAX_CLIP_PLANES);
-            return Err(Error::Invalid(format!("a clip of {have} half-spaces is beyond the {most} supported; use fewer")));
+            return Err(Error::Invalid(format!(
+                "a clip of {have} half-spaces is beyond the {most} supported; use fewer"
+            )));
         }
         if !(settings.sigma.is_finite() && settings.sigma > 0.0) {
-            return Err(Error::Invalid(format!("an ellipsoid of {} standard deviations cannot be traced", settings.sigma)));
+            return Err(Error::Invalid(format!(
+                "an ellipsoid of {} standard deviations cannot be traced",
+                settings.sigma
+            )));
         }
         let clipping = settings.mode != Mode::None && !clip.planes.is_empty();
         let mode = match settings.mode {
@@ -51,19 +61,33 @@ impl Plan {
             Mode::Exact if clipping => types::MODE_EXACT,
             _ => types::MODE_NONE,
         };
-        let planes = if clipping { clip.planes.as_slice() } else { &[] };
+        let planes = if clipping {
+            clip.planes.as_slice()
+        } else {
+            &[]
+        };
         let cutoff = mode == types::MODE_RARA || mode == types::MODE_EXACT;
         // A header of three, the planes, and the eye's own plane where the camera may be inside a splat.
-        let cut_stride = if cutoff { 3 + planes.len() as u32 + 1 } else { 0 };
+        let cut_stride = if cutoff {
+            3 + planes.len() as u32 + 1
+        } else {
+            0
+        };
 
         let mut data: FrameData = bytemuck::Zeroable::zeroed();
         camera_constants(&mut data, camera);
         data.gaussian_count = scene.gaussians;
         data.sh_coefficients = (scene.sh_degree + 1) * (scene.sh_degree + 1);
-        data.sh_degree = settings.sh_degree.map_or(scene.sh_degree, |cap| cap.min(scene.sh_degree));
+        data.sh_degree = settings
+            .sh_degree
+            .map_or(scene.sh_degree, |cap| cap.min(scene.sh_degree));
         data.plane_count = planes.len() as u32;
         data.mode = mode;
-        data.op = if clipping && clip.op == ClipOp::Or { types::OP_OR } else { types::OP_AND };
+        data.op = if clipping && clip.op == ClipOp::Or {
+            types::OP_OR
+        } else {
+            types::OP_AND
+        };
         data.decay = match settings.decay_law() {
             Decay::Linear => types::DECAY_LINEAR,
             Decay::Depth => types::DECAY_DEPTH,
@@ -91,7 +115,14 @@ impl Plan {
             data.plane_high[index] = [high[0], high[1], high[2], offset_high];
             data.plane_low[index] = [low[0], low[1], low[2], offset_low];
         }
-        Ok(Self { gaussians: scene.gaussians, mode, cutoff, cut_stride, sort_runs: scene.sort_runs, data })
+        Ok(Self {
+            gaussians: scene.gaussians,
+            mode,
+            cutoff,
+            cut_stride,
+            sort_runs: scene.sort_runs,
+            data,
+        })
     }
 
     /// The stages that this frame does not need.
@@ -119,7 +150,10 @@ fn camera_constants(data: &mut FrameData, camera: &Camera) {
     let (width, height) = (f64::from(camera.width), f64::from(camera.height));
     let margin = f64::from(limits::CLAMP_MARGIN);
     let bounds = |size: f64, centre: f64, focal: f64| {
-        ((-margin * size - centre) / focal, ((1.0 + margin) * size - centre) / focal)
+        (
+            (-margin * size - centre) / focal,
+            ((1.0 + margin) * size - centre) / focal,
+        )
     };
     let (x_low, x_high) = bounds(width, camera.cx, camera.fx);
     let (y_low, y_high) = bounds(height, camera.cy, camera.fy);

@@ -17,12 +17,23 @@ pub(crate) struct Project {
 
 impl Project {
     pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
-        Ok(Self { pipeline: context.compute("project", &shaders::PROJECT_COMP, &[])? })
+        Ok(Self {
+            pipeline: context.compute("project", &shaders::PROJECT_COMP, &[])?,
+        })
     }
 
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, b: &Buffers) {
         let (keys, order) = (&b.keys[0], &b.order[0]);
-        let buffers = [&b.frame, &scene.gaussians, &scene.sh, &b.survivors, &b.counts, &b.splats, keys, order];
+        let buffers = [
+            &b.frame,
+            &scene.gaussians,
+            &scene.sh,
+            &b.survivors,
+            &b.counts,
+            &b.splats,
+            keys,
+            order,
+        ];
         let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, project_groups) as u64);
         recorder.dispatch(&self.pipeline, &buffers, &[], groups);
     }

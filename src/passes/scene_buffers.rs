@@ -22,7 +22,12 @@ const UPLOAD_CHUNK: usize = 1 << 16;
 impl SceneBuffers {
     /// Uploads a scene and waits for it.
     pub fn upload(device: &Device, scene: &Gaussians) -> Result<Self> {
-        let too_many = |_| Error::Invalid(format!("a scene of {} Gaussians is beyond the 2^32 of an index", scene.len()));
+        let too_many = |_| {
+            Error::Invalid(format!(
+                "a scene of {} Gaussians is beyond the 2^32 of an index",
+                scene.len()
+            ))
+        };
         let count = u32::try_from(scene.len()).map_err(too_many)?;
         if scene.sh.len() > u32::MAX as usize {
             return Err(Error::Invalid(format!(
@@ -31,7 +36,13 @@ impl SceneBuffers {
                 scene.sh_degree
             )));
         }
-        let gpu = |name, size| device.create_buffer(&BufferDesc { name, size, location: Location::GpuOnly });
+        let gpu = |name, size| {
+            device.create_buffer(&BufferDesc {
+                name,
+                size,
+                location: Location::GpuOnly,
+            })
+        };
         let gaussians = gpu("gaussians", u64::from(count) * size_of::<Gaussian>() as u64)?;
         let mut offset = 0;
         for begin in (0..scene.len()).step_by(UPLOAD_CHUNK) {
@@ -42,7 +53,12 @@ impl SceneBuffers {
         }
         let sh = gpu("sh", size_of_val(scene.sh.as_slice()) as u64)?;
         device.upload(&sh, 0, cast_slice(&scene.sh))?;
-        Ok(Self { gaussians, sh, count, sh_degree: scene.sh_degree })
+        Ok(Self {
+            gaussians,
+            sh,
+            count,
+            sh_degree: scene.sh_degree,
+        })
     }
 
     /// The larger of the two buffers, bytes.

@@ -37,11 +37,19 @@ impl Sort {
             let first_bit = [pass * limits::SORT_BITS];
             let count = [&b.frame, &b.counts, &b.keys[from], &b.histogram];
             recorder.dispatch(&self.count, &count, &first_bit, runs);
-            let scan = [&b.frame, &b.histogram, &b.digit_totals];
-            recorder.dispatch(&self.scan, &scan, &first_bit, Groups::Count(1 << limits::SORT_BITS));
+            let scan = [&b.frame, &b.histogram];
+            recorder.dispatch(&self.scan, &scan, &first_bit, Groups::Count(1));
             let (sorted_keys, sorted_order) = (&b.keys[to], &b.order[to]);
             let (keys, order) = (&b.keys[from], &b.order[from]);
-            let scatter = [&b.frame, &b.counts, keys, order, &b.histogram, &b.digit_totals, sorted_keys, sorted_order];
+            let scatter = [
+                &b.frame,
+                &b.counts,
+                keys,
+                order,
+                &b.histogram,
+                sorted_keys,
+                sorted_order,
+            ];
             recorder.dispatch(&self.scatter, &scatter, &first_bit, runs);
         }
     }

@@ -33,8 +33,13 @@ const OVER: vk::PipelineColorBlendAttachmentState = vk::PipelineColorBlendAttach
 impl Splat {
     /// `mode` is `MODE_*`: without a clip the fragment shader holds no clip code.
     pub(crate) fn new(context: &Context<'_>, mesh: bool, mode: u32) -> Result<Self> {
-        let front = if mesh { &shaders::SPLAT_MESH } else { &shaders::SPLAT_VERT };
-        let pipeline = context.graphics("splat", front, &shaders::SPLAT_FRAG, &[(0, mode)], OVER)?;
+        let front = if mesh {
+            &shaders::SPLAT_MESH
+        } else {
+            &shaders::SPLAT_VERT
+        };
+        let pipeline =
+            context.graphics("splat", front, &shaders::SPLAT_FRAG, &[(0, mode)], OVER)?;
         Ok(Self { pipeline, mesh })
     }
 

@@ -53,16 +53,24 @@ impl Stages {
 
     /// The classification for a plan, once [`ensure`](Self::ensure) has seen it.
     pub(crate) fn classify(&self, plan: &Plan) -> &Classify {
-        self.classify[usize::from(plan.mode != types::MODE_NONE)].as_ref().expect("ensure() creates it")
+        self.classify[usize::from(plan.mode != types::MODE_NONE)]
+            .as_ref()
+            .expect("ensure() creates it")
     }
 
     /// The rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.
     pub(crate) fn splat(&self, plan: &Plan, mesh: bool) -> &Splat {
-        self.splat[usize::from(mesh)][splat_variant(plan)].as_ref().expect("ensure() creates it")
+        self.splat[usize::from(mesh)][splat_variant(plan)]
+            .as_ref()
+            .expect("ensure() creates it")
     }
 }
 
 /// The fragment stage's `CLIP_MODE`: after a hard clip nothing is left for it to do.
 fn splat_variant(plan: &Plan) -> usize {
-    if plan.cutoff { plan.mode as usize } else { types::MODE_NONE as usize }
+    if plan.cutoff {
+        plan.mode as usize
+    } else {
+        types::MODE_NONE as usize
+    }
 }

@@ -13,6 +13,7 @@ use super::footprint::{Footprint, determinant, scaled};
 use super::real::{Real, Vec3};
 use super::view::View;
 use crate::ClipOp;
+use crate::limits::FRONT_MIN;
 
 /// The part of a splat that one plane keeps in a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -133,9 +134,6 @@ pub struct Beam<T> {
     pub front: Option<UnitPlane<T>>,
 }
 
-/// A front part smaller than this is not divided by: the splat is then weighted as if the eye were outside of it.
-pub const FRONT_MIN: f64 = 1e-4;
-
 impl<T: Real> Beam<T> {
     /// The form for a splat and the planes that cut it.
     pub fn new(
@@ -163,7 +161,7 @@ impl<T: Real> Beam<T> {
         let ray = [b1 - self.lean * dx, b2 - self.lean * dy];
         let share = |plane: &UnitPlane<T>| AffinePlane::new(ray, plane).share(dx, dy);
         let front = self.front.as_ref().map(|plane| share(plane).weight);
-        let front = front.filter(|&front| front >= T::of(FRONT_MIN));
+        let front = front.filter(|&front| front >= T::of(f64::from(FRONT_MIN)));
         combine(self.op, self.planes.iter().map(share), front)
     }
 }

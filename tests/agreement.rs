@@ -23,7 +23,7 @@ fn assert_agrees(what: &str, ours: &Picture, truth: &Picture) {
         "{what}: {:.3} % of pixels over 2/255",
         100.0 * float.share_over_2
     );
-    let png = compare(&ours.quantised(), truth).expect("the same size");
+    let png = compare(&ours.quantised(), &displayable(truth)).expect("the same size");
     assert!(
         png.psnr >= 48.0,
         "{what}: {:.1} dB through 8 bits",

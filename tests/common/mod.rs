@@ -1,5 +1,5 @@
 //! What the tests share: scenes, views around them, planes through them, and a renderer under validation.
-#![allow(dead_code, reason = "each test binary uses a part")]
+#![allow(dead_code, unreachable_pub, reason = "each test binary uses a part")]
 
 use std::path::PathBuf;
 

@@ -31,6 +31,18 @@ fn assert_agrees(what: &str, ours: &Picture, truth: &Picture) {
     );
 }
 
+/// What 8 bits could show of a picture without rounding: colours beyond white are white.
+fn displayable(picture: &Picture) -> Picture {
+    let pixels = picture
+        .pixels
+        .iter()
+        .map(|&[r, g, b, a]| [r.min(a), g.min(a), b.min(a), a]);
+    Picture {
+        pixels: pixels.collect(),
+        ..*picture
+    }
+}
+
 fn check(
     headless: &mut Headless,
     name: &str,

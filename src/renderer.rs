@@ -162,7 +162,9 @@ impl Renderer {
         let splat = stages.splat(plan, self.mesh);
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
         let mut drawer = unsafe { Drawer::new(&self.device, cmd, self.timer.as_mut()) };
-        drawer.pass("splat", |drawer| splat.record(drawer, buffers, origin));
+        drawer.pass("splat", |drawer| {
+            splat.record(drawer, buffers, plan, origin)
+        });
     }
 
     /// The stages that the configured frame does not need.

@@ -75,6 +75,9 @@ fn every_run_with_any_number_of_driver_threads_gives_the_same_bytes() {
             .arg("-o")
             .arg(&out);
         command.args(["--size", "300x220", "--clip", "plane:1,0.2,0.1,0"]);
+        if let Ok(device) = std::env::var("RARA_TEST_DEVICE") {
+            command.args(["--device", &device]);
+        }
         assert!(command.status().expect("rara runs").success());
         std::fs::read(out).expect("the picture was written")
     };

@@ -4,8 +4,12 @@
 use std::path::PathBuf;
 
 use glam::DVec3;
+use rara::measure::compare;
 use rara::scene::{Bounds, Kind, generate, load};
-use rara::{Camera, Clip, ClipOp, Gaussians, Headless, HeadlessDesc, Plane};
+use rara::{
+    Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, HeadlessDesc, Picture, Plane, Settings,
+    reference,
+};
 
 /// A renderer whose every validation message is an error.
 pub fn headless() -> Headless {
@@ -122,4 +126,81 @@ pub fn clip(scene: &Gaussians, count: usize, op: ClipOp) -> Clip {
         planes: normals.iter().take(count).enumerate().map(plane).collect(),
         op,
     }
+}
+
+/// The bounds of the project's promise: 60 dB into a 32-bit target, 48 dB through 8 bits, and at most one pixel in a
+/// thousand further off than 2/255 (a splat that f32 puts on the other side of alpha = 1/255 or of a neighbour).
+pub fn assert_agrees(what: &str, ours: &Picture, truth: &Picture) {
+    let float = compare(ours, truth).expect("the same size");
+    assert!(
+        float.psnr >= 60.0,
+        "{what}: {:.1} dB into a 32-bit target: {float:?}",
+        float.psnr
+    );
+    assert!(
+        float.share_over_2 <= 0.001,
+        "{what}: {:.3} % of pixels over 2/255",
+        100.0 * float.share_over_2
+    );
+    let png = compare(&ours.quantised(), &displayable(truth)).expect("the same size");
+    assert!(
+        png.psnr >= 48.0,
+        "{what}: {:.1} dB through 8 bits",
+        png.psnr
+    );
+}
+
+/// What 8 bits could show of a picture without rounding: colours beyond white are white.
+fn displayable(picture: &Picture) -> Picture {
+    let pixels = picture
+        .pixels
+        .iter()
+        .map(|&[r, g, b, a]| [r.min(a), g.min(a), b.min(a), a]);
+    Picture {
+        pixels: pixels.collect(),
+        ..*picture
+    }
+}
+
+/// That a frame is the reference's: the picture within the bounds above, the counts but for a few; its statistics.
+pub fn check(
+    headless: &mut Headless,
+    name: &str,
+    scene: &Gaussians,
+    camera: &Camera,
+    clip: &Clip,
+    settings: &Settings,
+) -> FrameStats {
+    let stats = headless.render(camera, clip, settings).expect("renders");
+    let picture = headless.picture().expect("reads back");
+    let truth = reference::render::<f64>(scene, camera, clip, settings);
+    let what = format!(
+        "{name}, {:?}, {} planes {:?}",
+        settings.mode,
+        clip.planes.len(),
+        clip.op
+    );
+    assert_agrees(&what, &picture, &truth.picture);
+    let total = |c: rara::Counts| c.visible + c.cutoff + c.invisible + c.culled;
+    assert_eq!(
+        total(stats.counts) as usize,
+        scene.len(),
+        "{what}: every Gaussian is counted once"
+    );
+    // f32 may put a splat that only just touches a pixel or a band on the other side: one in a thousand at most.
+    let slack = 2 + scene.len() as u32 / 1000;
+    for (ours, theirs) in [
+        (stats.counts.visible, truth.counts.visible),
+        (stats.counts.cutoff, truth.counts.cutoff),
+        (stats.counts.invisible, truth.counts.invisible),
+        (stats.counts.culled, truth.counts.culled),
+    ] {
+        assert!(
+            ours.abs_diff(theirs) <= slack,
+            "{what}: counts {:?} against {:?}",
+            stats.counts,
+            truth.counts
+        );
+    }
+    stats
 }

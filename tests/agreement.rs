@@ -12,7 +12,7 @@ fn check_scenes(scenes: Vec<(String, Gaussians)>, mode: Mode, clips: &[(usize, C
     let mut headless = common::headless();
     for (name, scene) in scenes {
         headless.load(&scene).expect("uploads");
-        for camera in common::views(&scene, VIEWS, SIZE) {
+        for camera in common::views(&scene, VIEWS, common::scaled(SIZE)) {
             for (planes, op) in clips {
                 let clip = common::clip(&scene, *planes, *op);
                 common::check(

@@ -23,7 +23,7 @@ fn mesh_and_quad_paths_agree() {
         headless.load(&scene).expect("uploads");
         for mode in [Mode::None, Mode::Rara, Mode::Exact] {
             let clip = common::clip(&scene, 2, ClipOp::And);
-            let camera = common::views(&scene, 3, SIZE)[1];
+            let camera = common::views(&scene, 3, common::scaled(SIZE))[1];
             let mut picture = |raster| {
                 let settings = Settings {
                     mode,

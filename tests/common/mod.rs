@@ -11,6 +11,21 @@ use rara::{
     reference,
 };
 
+/// How large generated scenes and pictures are, against the usual: `RARA_TEST_SCALE`, for slow drivers. The bounds of the
+/// tests are the same at every scale.
+pub fn scale() -> f64 {
+    let text = std::env::var("RARA_TEST_SCALE").unwrap_or("1".into());
+    let scale: f64 = text.parse().expect("RARA_TEST_SCALE is a number");
+    assert!((0.1..=1.0).contains(&scale), "RARA_TEST_SCALE is 0.1 to 1");
+    scale
+}
+
+/// A picture's size at that scale.
+pub fn scaled((width, height): (u32, u32)) -> (u32, u32) {
+    let scaled = |pixels| (f64::from(pixels) * scale().sqrt()) as u32;
+    (scaled(width), scaled(height))
+}
+
 /// A renderer whose every validation message is an error.
 pub fn headless() -> Headless {
     let desc = HeadlessDesc {
@@ -28,7 +43,8 @@ fn decoded_scenes() -> Option<PathBuf> {
         .filter(|folder| folder.is_dir())
 }
 
-/// The trained scenes, each under its name; says so loudly where they are absent.
+/// The trained scenes, each under its name; says so loudly where they are absent. `RARA_TEST_SCENES` names those to
+/// take, for slow drivers.
 pub fn trained_scenes() -> Vec<(String, Gaussians)> {
     let Some(folder) = decoded_scenes() else {
         eprintln!(
@@ -52,8 +68,14 @@ pub fn trained_scenes() -> Vec<(String, Gaussians)> {
     ] {
         scenes.push((name, vec![name]));
     }
+    let wanted = std::env::var("RARA_TEST_SCENES").ok();
+    let is_wanted = |name: &str| {
+        let wanted = wanted.as_deref();
+        wanted.is_none_or(|wanted| wanted.split(',').any(|part| part == name))
+    };
     scenes
         .iter()
+        .filter(|(name, _)| is_wanted(name))
         .map(|(name, files)| (name.to_string(), merged(&folder, files)))
         .collect()
 }
@@ -73,6 +95,7 @@ fn merged(folder: &std::path::Path, files: &[&str]) -> Gaussians {
 
 /// One generated scene of each kind.
 pub fn generated_scenes(count: usize) -> Vec<(String, Gaussians)> {
+    let count = (count as f64 * scale()) as usize;
     let kinds = [
         ("general", Kind::General),
         ("strands", Kind::Strands),

@@ -3,8 +3,10 @@
 // One invocation a survivor: conic, quad and colour for the rasteriser, and the key that orders it.
 #include "footprint.glsl"
 #include "spherical_harmonics.glsl"
+#include "cut.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
+layout(constant_id = 0) const bool CUT = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, float, sh)
@@ -13,6 +15,17 @@ BUFFER(readonly, 4, FrameCounts, counts)
 BUFFER(writeonly, 5, Splat, splats)
 BUFFER(writeonly, 6, uint, keys)
 BUFFER(writeonly, 7, uint, order)
+BUFFER(readonly, 8, vec4, cuts)
+
+// What the rasteriser carries of the weight: see cut.glsl.
+vec3 carried_weight(uint cut) {
+    if (!CUT || cut == NOT_CUT) {
+        return vec3(CUT_WHOLE, 0.0, 0.0);
+    }
+    uint base = cut * FRAME.cut_stride;
+    bool single = cuts.at[base].w == float(1u << CUT_COUNT_SHIFT);
+    return single ? cuts.at[base + CUT_HEADER].xyz : vec3(CUT_RECORD, float(cut & 0xffffu), float(cut >> 16));
+}
 
 vec3 colour(uint index, vec3 direction) {
     float basis[MAX_SH_COEFFICIENTS];
@@ -68,10 +81,13 @@ void main() {
         second = vec2(0.0, 0.5 * (high.y - low.y));
         middle = 0.5 * (low + high) - f.centre;
     }
-    splat.centre_axis = vec4(f.centre, first);
-    splat.conic = vec4(cholesky(f), opacity);
-    splat.colour_cut = vec4(colour(index, normalize(f.relative)), uintBitsToFloat(survivors.at[survivor].y));
-    splat.middle_axis = vec4(middle, second);
+    vec3 conic = cholesky(f);
+    vec3 weight = carried_weight(survivors.at[survivor].y);
+    splat.centre_conic = vec4(f.centre, conic.xy);
+    splat.conic_cut = vec4(conic.z, opacity, weight.xy);
+    splat.colour_cut = vec4(colour(index, normalize(f.relative)), weight.z);
+    splat.axes = vec4(first, second);
+    splat.middle = vec4(middle, 0.0, 0.0);
     splats.at[survivor] = splat;
     // Positive floats order like their bits.
     keys.at[survivor] = floatBitsToUint(f.view.z);

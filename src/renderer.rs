@@ -264,7 +264,9 @@ impl Renderer {
         let splat = stages.splat(plan, self.mesh);
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
         let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
-        drawer.pass("splat", |drawer| splat.record(drawer, buffers, origin));
+        drawer.pass("splat", |drawer| {
+            splat.record(drawer, buffers, plan, origin)
+        });
     }
 
     /// The stages that the configured frame does not need.

@@ -30,7 +30,7 @@ pub(crate) fn record(
         recorder.pass("cutoff", |r| cutoff.record(r, scene, b));
     }
     // Conic, quad, colour and depth key of the survivors.
-    recorder.pass("project", |r| stages.project.record(r, scene, b));
+    recorder.pass("project", |r| stages.project(plan).record(r, scene, b));
     // Their order.
     if plan.gaussians > 1 {
         recorder.pass("sort", |r| stages.sort.record(r, b));

@@ -61,16 +61,19 @@ void main() {
     vec2 middle = vec2(0.0);
     quad_axes(f, extent, first, second);
     if (max(largest(vec3(first, 0.0)), largest(vec3(second, 0.0))) > QUAD_MAX_EXTENT) {
+        // A centre far outside the picture is known to a few units in its last place only, and the corners are
+        // sums with it.
         vec2 box = 1.001 * box_extent(f, extent) + 0.01;
-        vec2 low = max(f.centre - box, vec2(-1.0));
-        vec2 high = min(f.centre + box, FRAME.size.xy + 1.0);
-        first = vec2(0.5 * (high.x - low.x), 0.0);
-        second = vec2(0.0, 0.5 * (high.y - low.y));
+        vec2 slack = 1.0 + 1e-6 * abs(f.centre);
+        vec2 low = max(f.centre - box, vec2(0.0));
+        vec2 high = min(f.centre + box, FRAME.size.xy);
+        first = vec2(0.5 * (high.x - low.x) + slack.x, 0.0);
+        second = vec2(0.0, 0.5 * (high.y - low.y) + slack.y);
         middle = 0.5 * (low + high) - f.centre;
     }
     splat.centre_axis = vec4(f.centre, first);
     splat.conic = vec4(cholesky(f), opacity);
-    splat.colour_cut = vec4(colour(index, normalize(f.relative)), uintBitsToFloat(survivors.at[survivor].y));
+    splat.colour_cut = vec4(colour(index, normalize(f.relative / largest(f.relative))), uintBitsToFloat(survivors.at[survivor].y));
     splat.middle_axis = vec4(middle, second);
     splats.at[survivor] = splat;
     // Positive floats order like their bits.

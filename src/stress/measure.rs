@@ -106,9 +106,11 @@ fn measure(headless: &mut Headless, case: &Case, row: &mut Row) -> Result<()> {
     };
     let (ours, whole) = both(headless, case, &Clip::default(), &uncut)?;
     row.not_finite += not_finite(&ours);
-    row.missed += missed(&ours, &whole);
+    let pixels = ours.pixels.iter().zip(&whole.pixels);
+    let decided: Vec<_> = pixels.map(|(a, b)| !undecided(a[3]) && !undecided(b[3])).collect();
+    row.missed += missed(&ours, &whole, &decided);
     if case.apart {
-        row.alpha = row.alpha.max(worst(&ours, &whole, &whole));
+        row.alpha = row.alpha.max(worst(&ours, &whole, &decided));
     }
 
     let mut beam = None;
@@ -128,7 +130,7 @@ fn measure(headless: &mut Headless, case: &Case, row: &mut Row) -> Result<()> {
             to.add(compare(&scaled(&ours, &truth), &scaled(&truth, &truth))?);
         }
         if case.apart {
-            to.weight = to.weight.max(worst(&ours, &truth, &whole));
+            to.weight = to.weight.max(worst(&ours, &truth, &decided));
             let beam = beam.get_or_insert_with(|| {
                 let settings = Settings {
                     form: ExactForm::Beam,
@@ -176,20 +178,19 @@ fn undecided(whole: f32) -> bool {
 }
 
 /// Largest difference of alpha, where there is no doubt whether the pixel counts at all.
-fn worst(ours: &Picture, truth: &Picture, whole: &Picture) -> f64 {
-    let pixels = ours.pixels.iter().zip(&truth.pixels).zip(&whole.pixels);
-    let errors = pixels
-        // A pixel that counts here but not in the truth is one whose true alpha is just below.
-        .filter(|((ours, _), whole)| !undecided(whole[3]) && !(whole[3] == 0.0 && undecided(ours[3])))
-        .map(|((ours, truth), _)| f64::from((ours[3] - truth[3]).abs()));
-    errors.fold(0.0, f64::max)
+fn worst(ours: &Picture, truth: &Picture, decided: &[bool]) -> f64 {
+    let pixels = ours.pixels.iter().zip(&truth.pixels).zip(decided);
+    pixels
+        .filter(|(_, decided)| **decided)
+        .map(|((ours, truth), _)| f64::from((ours[3] - truth[3]).abs()))
+        .fold(0.0, f64::max)
 }
 
 /// Pixels that the truth covers beyond doubt and our picture does not.
-fn missed(ours: &Picture, whole: &Picture) -> usize {
-    let pixels = ours.pixels.iter().zip(&whole.pixels);
+fn missed(ours: &Picture, whole: &Picture, decided: &[bool]) -> usize {
+    let pixels = ours.pixels.iter().zip(&whole.pixels).zip(decided);
     pixels
-        .filter(|(ours, whole)| whole[3] > 0.0 && !undecided(whole[3]) && ours[3] == 0.0)
+        .filter(|((ours, whole), decided)| **decided && whole[3] > 0.0 && ours[3] == 0.0)
         .count()
 }
 

@@ -9,11 +9,13 @@ use super::{Case, Regime};
 use crate::scene::{Random, load};
 use crate::{Clip, ClipOp, Gaussians, Plane};
 
-pub(super) fn regimes() -> Vec<Regime> {
+/// Files with numbers that no trainer should write.
+pub fn regimes() -> Vec<Regime> {
     vec![
-        Regime::new("file: logits of +-1000, quaternions of 1e-25 to 1e25", || {
-            vec![from_file(&extreme_rows())]
-        }),
+        Regime::new(
+            "file: logits of +-1000, quaternions of 1e-25 to 1e25",
+            || vec![from_file(&extreme_rows())],
+        ),
         Regime::new("file: NaN and infinities in every field", || {
             vec![from_file(&broken_rows())]
         }),
@@ -22,8 +24,8 @@ pub(super) fn regimes() -> Vec<Regime> {
 
 /// Numbers of one splat in the file's order.
 const FIELDS: [&str; 14] = [
-    "x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "rot_0",
-    "rot_1", "rot_2", "rot_3",
+    "x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2",
+    "rot_0", "rot_1", "rot_2", "rot_3",
 ];
 type Row = [f32; FIELDS.len()];
 

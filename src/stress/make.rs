@@ -20,12 +20,12 @@ pub(super) struct Stage {
     pub(super) size: (u32, u32),
 }
 
-/// A view of 46 degrees from five units away.
+/// A view of 36 degrees from five units away.
 pub(super) const PLAIN: Stage = Stage {
     centre: DVec3::ZERO,
     distance: 5.0,
     focal: 300.0,
-    size: (256, 256),
+    size: (192, 192),
 };
 
 impl Stage {
@@ -66,21 +66,18 @@ pub(super) fn between(random: &mut Random, low: f64, high: f64) -> f64 {
 
 /// An orientation, every one as likely.
 pub(super) fn orientation(random: &mut Random) -> Quat {
-    let turn = DQuat::from_axis_angle(
-        random.direction(),
-        random.range(0.0, std::f64::consts::TAU),
-    );
+    let turn = DQuat::from_axis_angle(random.direction(), random.range(0.0, std::f64::consts::TAU));
     (turn * DQuat::from_rotation_arc(DVec3::Z, random.direction()))
         .normalize()
         .as_quat()
 }
 
-/// Six cases of single splats and one crowd: what a regime of one plane consists of.
+/// Four cases of single splats and one crowd: what a regime of one plane consists of.
 pub(super) fn cases(seed: u64, stage: Stage, normal: Normal<'_>, shape: Shape<'_>) -> Vec<Case> {
     let mut random = Random::new(seed);
     let mut single = |_| strewn(&mut random, stage, normal, shape, 40, true);
-    let mut cases: Vec<_> = (0..6).map(&mut single).collect();
-    cases.push(strewn(&mut random, stage, normal, shape, 300, false));
+    let mut cases: Vec<_> = (0..4).map(&mut single).collect();
+    cases.push(strewn(&mut random, stage, normal, shape, 100, false));
     cases
 }
 
@@ -136,8 +133,10 @@ pub(super) fn on_plane(
         let scales = shape(random, pixel);
         // Standard deviation along the normal: the plane passes within two of the centre.
         let deviation = (rotation.as_dquat().inverse() * normal * scales).length();
-        let position = (on_plane + normal * deviation * random.range(-2.0, 2.0)).as_vec3();
-        if plane.distance(position.as_dvec3()).abs() > 2.5 * deviation {
+        // A point is not cut, but kept or dropped; it stands within two pixels then.
+        let near = if deviation > 0.0 { deviation } else { pixel };
+        let position = (on_plane + normal * near * random.range(-2.0, 2.0)).as_vec3();
+        if plane.distance(position.as_dvec3()).abs() > 2.5 * near {
             continue; // the nearest single-precision position is elsewhere
         }
         let opacity = random.range(0.3, 1.0) as f32;
@@ -147,9 +146,8 @@ pub(super) fn on_plane(
             let at = |i: usize, sign: f64| f.pixel[i] + sign * (f.half[i] + 1.0);
             [at(0, -1.0), at(1, -1.0), at(0, 1.0), at(1, 1.0)]
         });
-        let apart_from = |a: &[f64; 4], b: &[f64; 4]| {
-            a[2] < b[0] || b[2] < a[0] || a[3] < b[1] || b[3] < a[1]
-        };
+        let apart_from =
+            |a: &[f64; 4], b: &[f64; 4]| a[2] < b[0] || b[2] < a[0] || a[3] < b[1] || b[3] < a[1];
         match taken {
             Some(taken) if !apart || boxes.iter().all(|other| apart_from(other, &taken)) => {
                 boxes.push(taken);

@@ -16,7 +16,12 @@ mod shapes;
 
 use crate::{Camera, Clip, Gaussians};
 
+pub use files::regimes as files;
+pub use frames::regimes as frames;
 pub use measure::{FormRow, Row, run};
+pub use places::regimes as places;
+pub use planes::regimes as planes;
+pub use shapes::regimes as shapes;
 
 /// Largest error of alpha times weight in a pixel that a regime may show, unless it states its own limit.
 pub const TARGET: f64 = 2e-4;
@@ -39,6 +44,8 @@ pub struct Case {
 pub struct Limit {
     /// Largest error of alpha times weight.
     pub weight: f64,
+    /// Least peak signal to noise ratio of a picture, decibels.
+    pub psnr: f64,
     /// What sets it.
     pub reason: &'static str,
 }
@@ -53,6 +60,8 @@ pub struct Regime {
     /// Largest error of a colour in any pixel, where that must be smaller than two levels of 255 in a thousandth of
     /// the pixels: an order of splats is wrong or right.
     pub exact: Option<f64>,
+    /// Whether there is nothing to draw.
+    pub empty: bool,
     /// Builds the cases.
     pub cases: fn() -> Vec<Case>,
 }
@@ -64,14 +73,19 @@ impl Regime {
             name,
             limit: None,
             exact: None,
+            empty: false,
             cases,
         }
     }
 
     /// The same with a limit of its own.
-    const fn limited(self, weight: f64, reason: &'static str) -> Self {
+    const fn limited(self, weight: f64, psnr: f64, reason: &'static str) -> Self {
         Self {
-            limit: Some(Limit { weight, reason }),
+            limit: Some(Limit {
+                weight,
+                psnr,
+                reason,
+            }),
             ..self
         }
     }
@@ -87,12 +101,5 @@ impl Regime {
 
 /// All regimes, in the table's order.
 pub fn regimes() -> Vec<Regime> {
-    [
-        shapes::regimes(),
-        places::regimes(),
-        planes::regimes(),
-        frames::regimes(),
-        files::regimes(),
-    ]
-    .concat()
+    [shapes(), places(), planes(), frames(), files()].concat()
 }

@@ -2,11 +2,14 @@
 
 use glam::DVec3;
 
-use super::make::{PLAIN, Stage, any_normal, between, cases};
+use super::make::{
+    PLAIN, Stage, any_normal, axes, between, cases, orientation, push, set_colour, strewn,
+};
 use super::{Case, Regime};
 use crate::scene::Random;
 
-pub(super) fn regimes() -> Vec<Regime> {
+/// Cameras and worlds at extreme places.
+pub fn regimes() -> Vec<Regime> {
     vec![
         Regime::new("camera 1e4 away, focal length 2e6 px", || {
             mixed(Stage {
@@ -32,7 +35,12 @@ pub(super) fn regimes() -> Vec<Regime> {
             cases(11, PLAIN, &any_normal, &|r, _| {
                 DVec3::from_array([(); 3].map(|()| PLAIN.distance * between(r, 0.1, 2.0)))
             })
-        }),
+        })
+        .limited(
+            5e-4,
+            60.0,
+            "the error of Phi, 1.9e-5, is divided by the share of the splat in front of the eye",
+        ),
         Regime::new("straddling the near plane", || {
             let near = Stage {
                 distance: 0.3,
@@ -42,6 +50,7 @@ pub(super) fn regimes() -> Vec<Regime> {
                 DVec3::from_array([(); 3].map(|()| between(r, 0.002, 0.3)))
             })
         }),
+        Regime::new("centres far beside the picture", beside),
         Regime::new("150 degree view", || {
             mixed(Stage {
                 distance: 2.0,
@@ -59,6 +68,32 @@ pub(super) fn regimes() -> Vec<Regime> {
             cases
         }),
     ]
+}
+
+/// Centres up to 3e6 px beside the picture, and splats so large that they reach into it.
+fn beside() -> Vec<Case> {
+    let mut random = Random::new(13);
+    let mut one = |index: usize| {
+        let mut case = strewn(&mut random, PLAIN, &any_normal, &mix, 0, true);
+        let count = if index == 0 { 60 } else { 1 };
+        while case.scene.len() < count {
+            let depth = random.range(0.3, 8.0);
+            let aside = depth * between(&mut random, 0.5, 1e4);
+            let turn = random.range(0.0, std::f64::consts::TAU);
+            let at = DVec3::new(aside * turn.cos(), aside * turn.sin(), depth);
+            let at = case.camera.eye + axes(&case.camera) * at;
+            let scales =
+                DVec3::from_array([(); 3].map(|()| aside * between(&mut random, 0.3, 1.0)));
+            let turned = orientation(&mut random);
+            push(&mut case.scene, at.as_vec3(), scales, turned, 0.7);
+            set_colour(&mut case.scene, &mut random);
+        }
+        Case {
+            apart: index > 0,
+            ..case
+        }
+    };
+    (0..25).map(&mut one).collect()
 }
 
 /// Ordinary splats, needles and pancakes.

@@ -8,7 +8,8 @@ use super::{Case, Regime};
 use crate::scene::Random;
 use crate::{Camera, Clip, ClipOp, Plane};
 
-pub(super) fn regimes() -> Vec<Regime> {
+/// Planes at extreme angles and in extreme company.
+pub fn regimes() -> Vec<Regime> {
     vec![
         Regime::new("grazing plane, n.d = 1e-2", || grazing(1e-2)),
         Regime::new("grazing plane, n.d = 1e-4", || grazing(1e-4)),
@@ -72,7 +73,7 @@ fn together(op: ClipOp, planes: fn(Plane) -> Vec<Plane>) -> Vec<Case> {
         let camera = PLAIN.camera(&mut random);
         let apart = index > 0;
         let first = plane(any_normal(&mut random, &camera), 0.0);
-        let count = if apart { 40 } else { 300 };
+        let count = if apart { 40 } else { 100 };
         let scene = on_plane(&mut random, PLAIN, &camera, &first, &mix, count, apart);
         Case {
             scene,

@@ -44,10 +44,11 @@ struct Gaussian {
 
 // A survivor on the screen: what the rasteriser needs.
 struct Splat {
-    vec4 centre_axis; // centre, px; the quad's first half axis, px
-    vec4 conic; // Cholesky factor k0 k1 k2 of the inverse 2D covariance, 1/px; opacity
-    vec4 colour_cut; // colour; w: bits of the cutoff record's number, or NOT_CUT
-    vec4 middle_axis; // middle of the quad relative to the centre, px; the quad's second half axis, px
+    vec4 centre_conic; // centre, px; k0 k1 of the inverse 2D covariance's Cholesky factor, 1/px
+    vec4 conic_cut; // k2; opacity; the weight's z at the centre and dz/dx, as cut.glsl says
+    vec4 colour_cut; // colour; dz/dy
+    vec4 axes; // the quad's two half axes, px
+    vec4 middle; // middle of the quad relative to the centre, px; zw unused
 };
 
 // How many Gaussians ended where, and the indirect commands that follow from it.
@@ -67,7 +68,6 @@ const uint MODE_NONE = 0u;
 const uint MODE_HARD = 1u;
 const uint MODE_RARA = 2u;
 const uint MODE_EXACT = 3u;
-const uint MODE_COUNT = 4u;
 const uint OP_AND = 0u;
 const uint OP_OR = 1u;
 const uint DECAY_LINEAR = 0u;

@@ -1,4 +1,4 @@
-//! rara draws 3D Gaussian Splatting scenes with Vulkan and cuts them exactly.
+#![doc = include_str!("../README.md")]
 
 pub mod camera;
 pub mod camera_files;
@@ -19,6 +19,9 @@ pub mod settings;
 pub mod stats;
 pub mod stress;
 pub mod types;
+
+/// The versions that this crate's interface is made of.
+pub use {ash, glam};
 
 pub use camera::Camera;
 pub use clip::{Clip, ClipOp, Plane};

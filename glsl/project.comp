@@ -58,7 +58,7 @@ void main() {
     Quad quad = quad_around(f, extent, weight);
     splat.centre_conic = vec4(f.centre, conic.xy);
     splat.conic_cut = vec4(conic.z, opacity, weight.xy);
-    splat.colour_cut = vec4(colour(index, normalize(f.relative)), weight.z);
+    splat.colour_cut = vec4(colour(index, normalize(f.relative / largest(f.relative))), weight.z);
     splat.axes = vec4(quad.first, quad.second);
     splat.middle = vec4(quad.middle, 0.0, 0.0);
     splats.at[survivor] = splat;

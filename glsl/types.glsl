@@ -9,6 +9,7 @@ struct FrameData {
     vec4 rotation_x; // world to camera, first row; w unused
     vec4 rotation_y; // second row
     vec4 rotation_z; // third row: the view direction
+    vec4 rotation_low[3]; // what rounding the rows lost, for views of long focal length
     vec4 eye_high; // the eye, rounded to single precision; w unused
     vec4 eye_low; // what the rounding lost
     vec4 focal; // fx, fy, cx, cy, px
@@ -29,7 +30,7 @@ struct FrameData {
     uint sort_runs; // invocations of the sort
     uint group_count; // workgroups of classify
     uint form; // FORM_*
-    uint pad_0; // unused
+    uint precise_view; // 1: positions in the camera's frame are computed in two floats
     vec4 plane_high[MAX_CLIP_PLANES]; // unit normal and distance, rounded to single precision
     vec4 plane_low[MAX_CLIP_PLANES]; // what the rounding lost
 };

@@ -17,6 +17,7 @@ pub mod renderer;
 pub mod scene;
 pub mod settings;
 pub mod stats;
+pub mod stress;
 pub mod types;
 
 /// The versions that this crate's interface is made of.

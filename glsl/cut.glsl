@@ -1,7 +1,7 @@
 // The cutoff record: what the fragment stage needs to weight a cut splat, computed once a splat by cutoff.comp.
 // vec4s of a record (FRAME.cut_stride of them):
-//   0      b1, screen gradient along x, times scale; the sum of CUT_RAY, CUT_FRONT and 256 times the number of planes
-//   1      b2, screen gradient along y, times scale; scale
+//   0      fx / Z m1, the screen gradient along x for a pixel on the principal axis, times scale; the sum of CUT_RAY, CUT_FRONT and 256 times the number of planes
+//   1      fy / Z m2, the same along y, times scale; scale
 //   2      e = m3 / Z, how the gradients change with the pixel, times scale; low-pass times scale^2
 //   3...   a plane each. Affine: z at the centre, dz/dx, dz/dy, and 1 where the far side is kept, -1 the near side.
 //          Ray: normal in unit space, and the centre's distance, both divided by the normal's largest component.

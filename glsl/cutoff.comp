@@ -70,13 +70,12 @@ void main() {
     uint flags = (at - base - CUT_HEADER) << CUT_COUNT_SHIFT;
     if (ray) {
         flags |= CUT_RAY;
-        // True rays: gradients at the centre's own slope, not the clamped one.
-        vec3 b1;
-        vec3 b2;
-        screen_gradients(f, f.view.xy / f.view.z, b1, b2);
+        // True rays. The gradients at a pixel are these less its place times e.
+        vec3 b1 = FRAME.focal.x / f.view.z * f.m1;
+        vec3 b2 = FRAME.focal.y / f.view.z * f.m2;
         vec3 e = f.m3 / f.view.z;
-        // The gradients grow with the distance from the centre; scale for the farthest pixel of the splat.
-        vec2 far = min(max(abs(f.centre), abs(FRAME.size.xy - f.centre)), box_extent(f, extent));
+        // They grow with the distance from the principal point: scale for the farthest pixel.
+        vec2 far = max(abs(FRAME.focal.zw), abs(FRAME.size.xy - FRAME.focal.zw));
         float size = max(largest(b1) + far.x * largest(e), largest(b2) + far.y * largest(e));
         // Without the low-pass there is nothing to keep in proportion: rara also scales up what is tiny.
         float scale = 1.0 / max(size, FRAME.mode == MODE_RARA ? 1e-30 : 1.0);

@@ -33,9 +33,10 @@ Quad along_axes(Footprint f, float extent) {
 // The rectangle around the same contour with a side along a direction.
 Quad along_direction(Footprint f, float extent, vec2 direction) {
     vec2 across = vec2(-direction.y, direction.x);
-    vec2 variance = vec2(f.xx * direction.x * direction.x + 2.0 * f.xy * direction.x * direction.y + f.yy * direction.y * direction.y,
-                         f.xx * across.x * across.x + 2.0 * f.xy * across.x * across.y + f.yy * across.y * across.y);
-    vec2 half_sides = extent * sqrt(max(variance, vec2(0.0))) / f.scale;
+    // |B^T d|^2 + L for each side: sums of squares, where d^T (B B^T) d would cancel for needles.
+    vec3 along = f.b1 * direction.x + f.b2 * direction.y;
+    vec3 aside = f.b1 * across.x + f.b2 * across.y;
+    vec2 half_sides = extent * sqrt(vec2(dot(along, along), dot(aside, aside)) + f.low_pass) / f.scale;
     return Quad(vec2(0.0), widened(half_sides.x) * direction, widened(half_sides.y) * across);
 }
 

@@ -92,7 +92,10 @@ impl Splat {
     ) {
         let buffers = [&b.frame, &b.counts, &b.splats, &b.order[0], &b.cuts];
         let [x, y] = origin.map(f32::to_bits);
-        let params = [x, y, plan.data.sigma.to_bits(), plan.cut_stride];
+        let [_, _, cx, cy] = plan.data.focal;
+        let principal = [cx + origin[0], cy + origin[1]].map(f32::to_bits);
+        let sigma = plan.data.sigma.to_bits();
+        let params = [x, y, sigma, plan.cut_stride, principal[0], principal[1]];
         if self.mesh {
             let at = offset_of!(FrameCounts, mesh_groups) as u64;
             drawer.draw_mesh_tasks_indirect(&self.pipeline, &buffers, &params, &b.counts, at);

@@ -12,6 +12,6 @@ mod save;
 pub use bounds::{Bounds, extent_along};
 pub use gaussians::{Gaussians, sh_coefficients};
 pub use generate::{Kind, generate};
-pub use ply::{Loaded, load};
+pub use ply::{Loaded, load, load_from};
 pub use report::{LoadReport, Remark};
 pub use save::save_ply;

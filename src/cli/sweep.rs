@@ -25,7 +25,8 @@ Examples:
   rara sweep scene.ply --clip-normal 0,0,1 --clip-file planes.json:skin -o frames
 
 The first frame keeps the whole of the scene's robust bounds, the last one nothing of them. Pictures are
-frame_000.png and so on. Other clip shapes stand still; --clip-op joins the moving plane to them too. The JSON has the frames, their medians on top and their means under \"mean\".")]
+frame_000.png and so on. Other clip shapes stand still; --clip-op joins the moving plane to them too. The
+JSON has the frames, their medians on top and their means under \"mean\".")]
 pub(super) struct Sweep {
     /// Scene files (3DGS .ply); several are merged
     #[arg(value_name = "SCENE", required = true)]

@@ -47,7 +47,11 @@ pub fn within<T>(base: usize, each: usize, input: &[u8], work: impl FnOnce() -> 
 /// Everything finite, rotations unit, scales not negative, opacities shares, arrays of one length.
 pub fn assert_sound(scene: &Gaussians) {
     let n = scene.len();
-    let lengths = [scene.scales.len(), scene.rotations.len(), scene.opacities.len()];
+    let lengths = [
+        scene.scales.len(),
+        scene.rotations.len(),
+        scene.opacities.len(),
+    ];
     assert_eq!(lengths, [n; 3]);
     assert!(scene.sh_degree <= 3);
     assert_eq!(scene.sh.len(), 3 * n * scene.sh_coefficients());
@@ -64,11 +68,18 @@ pub fn assert_sound(scene: &Gaussians) {
 pub fn assert_camera(camera: &Camera) {
     let sides = [camera.width, camera.height];
     assert!(sides.iter().all(|side| (1..=MAX_SIZE).contains(side)));
-    assert!([camera.fx, camera.fy].iter().all(|f| f.is_finite() && *f > 0.0));
+    assert!(
+        [camera.fx, camera.fy]
+            .iter()
+            .all(|f| f.is_finite() && *f > 0.0)
+    );
     assert!(camera.cx.is_finite() && camera.cy.is_finite());
     assert!(camera.eye.is_finite(), "{camera:?}");
     let turned_back = camera.rotation * camera.rotation.transpose();
-    assert!(turned_back.abs_diff_eq(glam::DMat3::IDENTITY, 1e-12), "{camera:?}");
+    assert!(
+        turned_back.abs_diff_eq(glam::DMat3::IDENTITY, 1e-12),
+        "{camera:?}"
+    );
     assert!(camera.rotation.determinant() > 0.0, "{camera:?}");
 }
 

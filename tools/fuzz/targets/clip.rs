@@ -7,8 +7,14 @@ use rara::{Clip, ClipOp};
 use rara_fuzz::{assert_plane, assert_readable, within};
 
 fuzz_target!(|bytes: &[u8]| {
-    let Ok(text) = std::str::from_utf8(bytes) else { return };
-    let op = if text.ends_with("or") { ClipOp::Or } else { ClipOp::And };
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return;
+    };
+    let op = if text.ends_with("or") {
+        ClipOp::Or
+    } else {
+        ClipOp::And
+    };
     // A plane of twelve bytes is four f64; a box of seventeen is six planes.
     let shapes: Vec<Shape> = within(4 << 10, 64, bytes, || {
         text.lines().filter_map(|line| line.parse().ok()).collect()

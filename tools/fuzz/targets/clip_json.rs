@@ -9,7 +9,9 @@ use rara_fuzz::{assert_plane, assert_readable, within};
 
 fuzz_target!(|bytes: &[u8]| {
     // A plane of some thirty bytes takes about a hundred, twice that while its list grows.
-    match within(4 << 10, 16, bytes, || planes_from_json(bytes, Path::new("fuzz.json"))) {
+    match within(4 << 10, 16, bytes, || {
+        planes_from_json(bytes, Path::new("fuzz.json"))
+    }) {
         Ok(planes) => {
             assert!(!planes.is_empty());
             planes.iter().for_each(|named| assert_plane(&named.plane));

@@ -10,8 +10,14 @@ use rara_fuzz::{assert_camera, assert_readable, within};
 const SPLIT: &[u8] = b"SPLIT";
 
 fuzz_target!(|bytes: &[u8]| {
-    let Some((kind, rest)) = bytes.split_first() else { return };
-    let format = if *kind == b'b' { ColmapFormat::Binary } else { ColmapFormat::Text };
+    let Some((kind, rest)) = bytes.split_first() else {
+        return;
+    };
+    let format = if *kind == b'b' {
+        ColmapFormat::Binary
+    } else {
+        ColmapFormat::Text
+    };
     let at = rest.windows(SPLIT.len()).position(|window| window == SPLIT);
     let (cameras, images) = match at {
         Some(at) => (&rest[..at], &rest[at + SPLIT.len()..]),
@@ -22,7 +28,9 @@ fuzz_target!(|bytes: &[u8]| {
     match within(64 << 10, 40, bytes, load) {
         Ok(cameras) => {
             assert!(!cameras.is_empty() && cameras.is_sorted_by_key(|named| &named.name));
-            cameras.iter().for_each(|named| assert_camera(&named.camera));
+            cameras
+                .iter()
+                .for_each(|named| assert_camera(&named.camera));
         }
         Err(error) => assert_readable(&error),
     }

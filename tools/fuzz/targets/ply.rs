@@ -13,10 +13,14 @@ fuzz_target!(|bytes: &[u8]| {
     // cost 24 bytes each and as much again while their list grows. The readers' buffers are 1 MiB.
     let loaded = within(4 << 20, 100, bytes, || {
         let mut before = 0;
-        load_from(Cursor::new(bytes), Path::new("fuzz.ply"), &mut |done, total| {
-            assert!(before <= done && done <= total && total == bytes.len() as u64);
-            before = done;
-        })
+        load_from(
+            Cursor::new(bytes),
+            Path::new("fuzz.ply"),
+            &mut |done, total| {
+                assert!(before <= done && done <= total && total == bytes.len() as u64);
+                before = done;
+            },
+        )
     });
     match loaded {
         Ok(loaded) => {

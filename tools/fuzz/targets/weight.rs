@@ -56,10 +56,15 @@ fn camera(numbers: &mut Numbers) -> Option<Camera> {
 }
 
 fn settings(choice: u8) -> Settings {
-    let form = [ExactForm::Auto, ExactForm::Beam, ExactForm::Affine][usize::from(choice & 3).min(2)];
+    let form =
+        [ExactForm::Auto, ExactForm::Beam, ExactForm::Affine][usize::from(choice & 3).min(2)];
     let miss = [Miss::Keep, Miss::Drop, Miss::Peak][usize::from((choice >> 2) & 3).min(2)];
     Settings {
-        mode: if choice & 16 == 0 { Mode::Exact } else { Mode::Rara },
+        mode: if choice & 16 == 0 {
+            Mode::Exact
+        } else {
+            Mode::Rara
+        },
         form,
         miss,
         trace_all: choice & 32 != 0,
@@ -69,19 +74,32 @@ fn settings(choice: u8) -> Settings {
 
 fn check<T: Real>(scene: &Gaussians, camera: &Camera, clip: &Clip, settings: &Settings) {
     let view = View::<T>::new(camera);
-    let Some(mut splat) = project::project(scene, 0, &view, settings) else { return };
+    let Some(mut splat) = project::project(scene, 0, &view, settings) else {
+        return;
+    };
     splat.cut = cutoff::cutoff(scene, 0, &splat.footprint, &view, clip, settings);
     let footprint: &Footprint<T> = &splat.footprint;
     assert!(footprint.factors.iter().all(|k| k.is_finite()));
     let [x, y] = footprint.pixel.map(T::wide);
     // The pixel nearest to the centre, and one some way off.
-    let nearest = [x.clamp(0.0, 63.0).floor() + 0.5, y.clamp(0.0, 47.0).floor() + 0.5];
+    let nearest = [
+        x.clamp(0.0, 63.0).floor() + 0.5,
+        y.clamp(0.0, 47.0).floor() + 0.5,
+    ];
     for pixel in [nearest, [0.5, 0.5], [40.5, 30.5]] {
-        let (dx, dy) = (T::of(pixel[0]) - footprint.pixel[0], T::of(pixel[1]) - footprint.pixel[1]);
+        let (dx, dy) = (
+            T::of(pixel[0]) - footprint.pixel[0],
+            T::of(pixel[1]) - footprint.pixel[1],
+        );
         let falloff = footprint.power(dx, dy).wide();
-        let Some(alpha) = splat::alpha(&splat, dx, dy, settings.decay_law()) else { continue };
+        let Some(alpha) = splat::alpha(&splat, dx, dy, settings.decay_law()) else {
+            continue;
+        };
         let alpha = alpha.wide();
-        assert!((0.0..=0.990_001).contains(&alpha), "{alpha} at {pixel:?}, {falloff}: {splat:?}");
+        assert!(
+            (0.0..=0.990_001).contains(&alpha),
+            "{alpha} at {pixel:?}, {falloff}: {splat:?}"
+        );
         if let Some(cut) = &splat.cut {
             let w = cut.weight(dx, dy).wide();
             assert!((0.0..=1.0).contains(&w), "{w} at {pixel:?}: {splat:?}");
@@ -92,14 +110,22 @@ fn check<T: Real>(scene: &Gaussians, camera: &Camera, clip: &Clip, settings: &Se
 fuzz_target!(|bytes: &[u8]| {
     let mut numbers = Numbers(bytes);
     let choice = numbers.byte();
-    let Some(scene) = scene(&mut numbers) else { return };
-    let Some(camera) = camera(&mut numbers) else { return };
+    let Some(scene) = scene(&mut numbers) else {
+        return;
+    };
+    let Some(camera) = camera(&mut numbers) else {
+        return;
+    };
     let mut planes = Vec::new();
     while planes.len() < 4 && !numbers.0.is_empty() {
         let (normal, offset): (DVec3, f64) = (numbers.vec3().as_dvec3(), numbers.f32().into());
         planes.extend(Plane::new(normal, offset));
     }
-    let op = if choice & 64 == 0 { ClipOp::And } else { ClipOp::Or };
+    let op = if choice & 64 == 0 {
+        ClipOp::And
+    } else {
+        ClipOp::Or
+    };
     let (clip, settings) = (Clip { planes, op }, settings(choice));
     check::<f64>(&scene, &camera, &clip, &settings);
     check::<f32>(&scene, &camera, &clip, &settings);

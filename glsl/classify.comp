@@ -35,8 +35,9 @@ uint classify(uint index) {
     }
     Footprint f = footprint(gaussian);
     float extent = opacity_extent(opacity);
-    // Finite: deviations beyond the range of single precision have no footprint.
-    bool drawable = largest(cholesky(f)) < 3e38;
+    // Finite, each for itself, since max() may drop a NaN: deviations beyond the range of single precision have no
+    // footprint.
+    bool drawable = all(lessThan(abs(cholesky(f)), vec3(3e38))) && all(lessThan(abs(f.centre), vec2(3e38)));
     if (!drawable || !covers_a_pixel(f.centre, box_extent(f, extent))) {
         return SIDE_CULLED;
     }

@@ -1,6 +1,6 @@
 // The cutoff record: what the fragment stage needs to weight a cut splat, computed once a splat by cutoff.comp.
 // vec4s of a record (FRAME.cut_stride of them):
-//   0      b1, screen gradient along x, times scale; bits: CUT_RAY, CUT_FRONT, number of planes from bit 8 up
+//   0      b1, screen gradient along x, times scale; the sum of CUT_RAY, CUT_FRONT and 256 times the number of planes
 //   1      b2, screen gradient along y, times scale; scale
 //   2      e = m3 / Z, how the gradients change with the pixel, times scale; low-pass times scale^2
 //   3...   a plane each. Affine: z at the centre, dz/dx, dz/dy, and 1 where the far side is kept, -1 the near side.
@@ -15,6 +15,14 @@ const uint CUT_RAY = 1u;
 // The splat reaches behind the eye.
 const uint CUT_FRONT = 2u;
 const uint CUT_COUNT_SHIFT = 8u;
+
+// What the rasteriser carries for a splat: z at its centre, dz/dx, dz/dy, so that the usual case, one plane in the affine
+// form, needs no record in the fragment stage. Beyond CUT_RANGE, z says that the splat is whole; below -CUT_RANGE that
+// the slopes hold the lower and upper 16 bits of its record's number, as numbers: the bits of a small integer are those
+// of a denormal float, which a rasteriser may flush.
+const float CUT_RANGE = 1e30;
+const float CUT_WHOLE = 2e30;
+const float CUT_RECORD = -2e30;
 
 // Whether a plane keeps the far part of a line of sight: by its normal's component along the line. Where that is zero
 // (a Gaussian without thickness) any fixed rule would do, if it told opposed planes apart: the normal's first non-zero

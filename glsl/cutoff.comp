@@ -86,8 +86,8 @@ void main() {
         }
         cuts.at[base + 1u] = vec4(b2 * scale, scale);
         cuts.at[base + 2u] = vec4(e * scale, LOW_PASS * scale * scale);
-        cuts.at[base] = vec4(b1 * scale, uintBitsToFloat(flags));
+        cuts.at[base] = vec4(b1 * scale, float(flags));
     } else {
-        cuts.at[base] = vec4(vec3(0.0), uintBitsToFloat(flags));
+        cuts.at[base] = vec4(vec3(0.0), float(flags));
     }
 }

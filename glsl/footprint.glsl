@@ -44,6 +44,18 @@ vec3 to_view(vec3 relative) {
                 dot(FRAME.rotation_z.xyz, relative));
 }
 
+// The centre in the camera's frame.
+vec3 view_position(vec3 position, vec3 relative) {
+    if (FRAME.precise_view == 0u) {
+        return to_view(relative);
+    }
+    vec3 high = FRAME.eye_high.xyz;
+    vec3 low = FRAME.eye_low.xyz;
+    return vec3(two_float_view(FRAME.rotation_x.xyz, FRAME.rotation_low[0].xyz, position, high, low),
+                two_float_view(FRAME.rotation_y.xyz, FRAME.rotation_low[1].xyz, position, high, low),
+                two_float_view(FRAME.rotation_z.xyz, FRAME.rotation_low[2].xyz, position, high, low));
+}
+
 float largest(vec3 v) {
     return max(abs(v.x), max(abs(v.y), abs(v.z)));
 }
@@ -57,7 +69,7 @@ void screen_gradients(Footprint f, vec2 slope, out vec3 b1, out vec3 b2) {
 Footprint footprint(Gaussian gaussian) {
     Footprint f;
     f.relative = eye_relative(gaussian.position_opacity.xyz);
-    f.view = to_view(f.relative);
+    f.view = view_position(gaussian.position_opacity.xyz, f.relative);
     mat3 axes = rotation_matrix(gaussian.rotation);
     f.world_factor = mat3(axes[0] * gaussian.scale.x, axes[1] * gaussian.scale.y, axes[2] * gaussian.scale.z);
     f.m1 = FRAME.rotation_x.xyz * f.world_factor;

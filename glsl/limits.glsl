@@ -33,6 +33,9 @@ const uint SORT_BITS = 8u;
 const uint SORT_GROUP_SIZE = 64u;
 // Indirect dispatches are folded into rows of this many workgroups, so that no dimension exceeds 65535.
 const uint GROUP_COLUMNS = 32768u;
+// Focal length beyond which positions in the camera's frame are computed in two floats, px. Single precision is off by
+// about 2e-7 of the distance, which is this times the focal length in pixels: 4e-4 px at this one.
+const float PRECISE_FOCAL = 2048.0;
 // Half side of the largest quad drawn along a splat's own axes, px. Beyond it the corners' f32 error reaches pixels,
 // and the quad becomes the splat's bounding box inside the picture.
 const float QUAD_MAX_EXTENT = 4096.0;

@@ -3,8 +3,11 @@
 // One invocation a survivor: conic, quad and colour for the rasteriser, and the key that orders it.
 #include "footprint.glsl"
 #include "spherical_harmonics.glsl"
+#include "cut.glsl"
+#include "extent.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
+layout(constant_id = 0) const bool CUT = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, float, sh)
@@ -13,6 +16,17 @@ BUFFER(readonly, 4, FrameCounts, counts)
 BUFFER(writeonly, 5, Splat, splats)
 BUFFER(writeonly, 6, uint, keys)
 BUFFER(writeonly, 7, uint, order)
+BUFFER(readonly, 8, vec4, cuts)
+
+// What the rasteriser carries of the weight: see cut.glsl.
+vec3 carried_weight(uint cut) {
+    if (!CUT || cut == NOT_CUT) {
+        return vec3(CUT_WHOLE, 0.0, 0.0);
+    }
+    uint base = cut * FRAME.cut_stride;
+    bool single = cuts.at[base].w == float(1u << CUT_COUNT_SHIFT);
+    return single ? cuts.at[base + CUT_HEADER].xyz : vec3(CUT_RECORD, float(cut & 0xffffu), float(cut >> 16));
+}
 
 vec3 colour(uint index, vec3 direction) {
     float basis[MAX_SH_COEFFICIENTS];
@@ -27,23 +41,6 @@ vec3 colour(uint index, vec3 direction) {
     return max(sum, vec3(0.0));
 }
 
-// Half axes of the smallest rectangle around the contour q = extent^2, px; det comes as a sum of squares, so the
-// thin axis of a needle is right where a difference of eigenvalues would be noise.
-void quad_axes(Footprint f, float extent, out vec2 first, out vec2 second) {
-    float mean = 0.5 * (f.xx + f.yy);
-    float radius = length(vec2(0.5 * (f.xx - f.yy), f.xy));
-    float long_variance = mean + radius;
-    float short_variance = f.det / long_variance;
-    vec2 direction = f.xx > f.yy ? vec2(long_variance - f.yy, f.xy) : vec2(f.xy, long_variance - f.xx);
-    float size = length(direction);
-    direction = size > 0.0 ? direction / size : vec2(1.0, 0.0);
-    // A little wider than exact: the fragment stage decides what is inside, the quad must only not be too small.
-    float long_half = 1.001 * extent * sqrt(long_variance) / f.scale + 0.01;
-    float short_half = 1.001 * extent * sqrt(short_variance) / f.scale + 0.01;
-    first = long_half * direction;
-    second = short_half * vec2(-direction.y, direction.x);
-}
-
 void main() {
     uint survivor = LINEAR_GROUP * SURVIVOR_GROUP_SIZE + gl_LocalInvocationIndex;
     if (survivor >= counts.at[0].visible + counts.at[0].cutoff) {
@@ -56,22 +53,14 @@ void main() {
     float extent = opacity_extent(opacity);
 
     Splat splat;
-    vec2 first;
-    vec2 second;
-    vec2 middle = vec2(0.0);
-    quad_axes(f, extent, first, second);
-    if (max(largest(vec3(first, 0.0)), largest(vec3(second, 0.0))) > QUAD_MAX_EXTENT) {
-        vec2 box = 1.001 * box_extent(f, extent) + 0.01;
-        vec2 low = max(f.centre - box, vec2(-1.0));
-        vec2 high = min(f.centre + box, FRAME.size.xy + 1.0);
-        first = vec2(0.5 * (high.x - low.x), 0.0);
-        second = vec2(0.0, 0.5 * (high.y - low.y));
-        middle = 0.5 * (low + high) - f.centre;
-    }
-    splat.centre_axis = vec4(f.centre, first);
-    splat.conic = vec4(cholesky(f), opacity);
-    splat.colour_cut = vec4(colour(index, normalize(f.relative)), uintBitsToFloat(survivors.at[survivor].y));
-    splat.middle_axis = vec4(middle, second);
+    vec3 conic = cholesky(f);
+    vec3 weight = carried_weight(survivors.at[survivor].y);
+    Quad quad = quad_around(f, extent, weight);
+    splat.centre_conic = vec4(f.centre, conic.xy);
+    splat.conic_cut = vec4(conic.z, opacity, weight.xy);
+    splat.colour_cut = vec4(colour(index, normalize(f.relative / largest(f.relative))), weight.z);
+    splat.axes = vec4(quad.first, quad.second);
+    splat.middle = vec4(quad.middle, 0.0, 0.0);
     splats.at[survivor] = splat;
     // Positive floats order like their bits.
     keys.at[survivor] = floatBitsToUint(f.view.z);

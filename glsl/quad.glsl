@@ -12,17 +12,18 @@ Splat splat_at(uint number) {
     return splats.at[order.at[counts.at[0].mesh_groups.w - 1u - number]];
 }
 
-// Corner 0 to 3 of a strip. Parameters 0 and 1 are where the viewport begins, px.
+// Corner 0 to 3 of a strip.
 vec4 corner(Splat splat, uint number) {
     float first = (number & 1u) == 0u ? -1.0 : 1.0;
     float second = (number & 2u) == 0u ? -1.0 : 1.0;
-    vec2 at = splat.centre_axis.xy + splat.middle_axis.xy + first * splat.centre_axis.zw + second * splat.middle_axis.zw;
+    vec2 at = splat.centre_conic.xy + splat.middle.xy + first * splat.axes.xy + second * splat.axes.zw;
     return vec4(2.0 * at * FRAME.size.zw - 1.0, 0.0, 1.0);
 }
 
-// The centre in the coordinates of gl_FragCoord.
-vec2 fragment_centre(Splat splat) {
-    return splat.centre_axis.xy + vec2(uintBitsToFloat(push.param[0]), uintBitsToFloat(push.param[1]));
+// The centre in the coordinates of gl_FragCoord, and k0 k1. Parameters 0 and 1 are where the viewport begins, px.
+vec4 fragment_centre(Splat splat) {
+    vec2 origin = vec2(uintBitsToFloat(push.param[0]), uintBitsToFloat(push.param[1]));
+    return vec4(splat.centre_conic.xy + origin, splat.centre_conic.zw);
 }
 
 #endif

@@ -3,14 +3,14 @@
 // One instance a splat, a strip of four corners.
 #include "quad.glsl"
 
-layout(location = 0) flat out vec2 centre;
-layout(location = 1) flat out vec4 conic;
+layout(location = 0) flat out vec4 centre_conic;
+layout(location = 1) flat out vec4 conic_cut;
 layout(location = 2) flat out vec4 colour_cut;
 
 void main() {
     Splat splat = splat_at(gl_InstanceIndex);
     gl_Position = corner(splat, gl_VertexIndex);
-    centre = fragment_centre(splat);
-    conic = splat.conic;
+    centre_conic = fragment_centre(splat);
+    conic_cut = splat.conic_cut;
     colour_cut = splat.colour_cut;
 }

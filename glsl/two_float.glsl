@@ -32,16 +32,24 @@ vec2 two_add(vec2 a, vec2 b) {
     return two_sum(s.x, low);
 }
 
-// (high + low) . x + the fourth component, rounded once: a plane's signed distance, right at coordinates of 1e6,
-// where plain single precision is off by 0.3.
-float two_float_plane(vec4 high, vec4 low, vec3 x) {
-    vec2 sum = vec2(high.w, low.w);
+// start + (high + low) . x in two floats.
+vec2 two_float_dot(vec2 start, vec3 high, vec3 low, vec3 x) {
+    vec2 sum = start;
     for (int i = 0; i < 3; i++) {
         vec2 term = two_product(high[i], x[i]);
         precise float correction = term.y + low[i] * x[i];
         sum = two_add(sum, vec2(term.x, correction));
     }
-    return sum.x + sum.y;
+    return sum;
+}
+
+// (high + low) . x + the fourth component, rounded once: a plane's signed distance, right at coordinates of 1e6,
+// where plain single precision is off by 0.3. Coordinates that Veltkamp's split would take beyond the range (no scene
+// has them, but a file can) are scaled down before and up again after; what is lost of the offset then is nothing.
+float two_float_plane(vec4 high, vec4 low, vec3 x) {
+    float unit = max(abs(x.x), max(abs(x.y), abs(x.z))) > 1e30 ? exp2(-40.0) : 1.0;
+    vec2 sum = two_float_dot(unit * vec2(high.w, low.w), high.xyz, low.xyz, unit * x);
+    return (sum.x + sum.y) / unit;
 }
 
 // a - (high + low) with one rounding of the result's own size: camera-relative positions far from the origin.
@@ -49,6 +57,22 @@ vec3 two_float_difference(vec3 a, vec3 high, vec3 low) {
     precise vec3 coarse = a - high;
     precise vec3 fine = coarse - low;
     return fine;
+}
+
+// The rotation's rows (high + low) times a - (eye_high + eye_low), rounded once: at a distance of 1e4 and a focal length
+// of 2e6 px single precision alone would put the picture's pixels a fifth of a pixel off.
+float two_float_view(vec3 row_high, vec3 row_low, vec3 a, vec3 eye_high, vec3 eye_low) {
+    vec3 high;
+    vec3 low;
+    for (int i = 0; i < 3; i++) {
+        vec2 difference = two_add(two_sum(a[i], -eye_high[i]), vec2(-eye_low[i], 0.0));
+        high[i] = difference.x;
+        low[i] = difference.y;
+    }
+    precise float small = row_high.x * low.x + row_high.y * low.y + row_high.z * low.z;
+    vec2 sum = two_float_dot(vec2(0.0), row_high, row_low, high);
+    precise float rounded = sum.x + (sum.y + small);
+    return rounded;
 }
 
 #endif

@@ -9,6 +9,7 @@ struct FrameData {
     vec4 rotation_x; // world to camera, first row; w unused
     vec4 rotation_y; // second row
     vec4 rotation_z; // third row: the view direction
+    vec4 rotation_low[3]; // what rounding the rows lost, for views of long focal length
     vec4 eye_high; // the eye, rounded to single precision; w unused
     vec4 eye_low; // what the rounding lost
     vec4 focal; // fx, fy, cx, cy, px
@@ -29,7 +30,7 @@ struct FrameData {
     uint sort_runs; // invocations of the sort
     uint group_count; // workgroups of classify
     uint form; // FORM_*
-    uint pad_0; // unused
+    uint precise_view; // 1: positions in the camera's frame are computed in two floats
     vec4 plane_high[MAX_CLIP_PLANES]; // unit normal and distance, rounded to single precision
     vec4 plane_low[MAX_CLIP_PLANES]; // what the rounding lost
 };
@@ -43,10 +44,11 @@ struct Gaussian {
 
 // A survivor on the screen: what the rasteriser needs.
 struct Splat {
-    vec4 centre_axis; // centre, px; the quad's first half axis, px
-    vec4 conic; // Cholesky factor k0 k1 k2 of the inverse 2D covariance, 1/px; opacity
-    vec4 colour_cut; // colour; w: bits of the cutoff record's number, or NOT_CUT
-    vec4 middle_axis; // middle of the quad relative to the centre, px; the quad's second half axis, px
+    vec4 centre_conic; // centre, px; k0 k1 of the inverse 2D covariance's Cholesky factor, 1/px
+    vec4 conic_cut; // k2; opacity; the weight's z at the centre and dz/dx, as cut.glsl says
+    vec4 colour_cut; // colour; dz/dy
+    vec4 axes; // the quad's two half axes, px
+    vec4 middle; // middle of the quad relative to the centre, px; zw unused
 };
 
 // How many Gaussians ended where, and the indirect commands that follow from it.
@@ -66,7 +68,6 @@ const uint MODE_NONE = 0u;
 const uint MODE_HARD = 1u;
 const uint MODE_RARA = 2u;
 const uint MODE_EXACT = 3u;
-const uint MODE_COUNT = 4u;
 const uint OP_AND = 0u;
 const uint OP_OR = 1u;
 const uint DECAY_LINEAR = 0u;

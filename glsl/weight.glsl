@@ -1,5 +1,5 @@
 // The weight w of a cut splat in a pixel, and what it does to alpha. Included by the fragment stage only, after it has
-// declared the buffers `frame` and `cuts`.
+// declared the buffer `cuts` and the constants CLIP_MODE, CLIP_OP, DECAY and MISS.
 #ifndef RARA_WEIGHT
 #define RARA_WEIGHT
 #include "cut.glsl"
@@ -16,11 +16,11 @@ float phi(float z) {
 // the others from above. An intersection is what both leave; a union is the rest of the complements' intersection,
 // which is why every plane is negated (`sign`) under OP_OR.
 float complement_sign() {
-    return FRAME.op == OP_OR ? -1.0 : 1.0;
+    return CLIP_OP == OP_OR ? -1.0 : 1.0;
 }
 
 float combined(float share) {
-    return FRAME.op == OP_OR ? 1.0 - share : share;
+    return CLIP_OP == OP_OR ? 1.0 - share : share;
 }
 
 // `exact`, affine in the pixel.
@@ -85,7 +85,7 @@ float beam_weight(uint base, uint count, bool has_front, vec2 delta) {
     bool keeps;
     for (uint plane = 0u; plane < count; plane++) {
         float kept = phi(sign * ray_z(s, det, cuts.at[base + CUT_HEADER + plane], keeps));
-        if (keeps == (FRAME.op == OP_AND)) {
+        if (keeps == (CLIP_OP == OP_AND)) {
             far = min(far, kept);
         } else {
             near = min(near, kept);
@@ -109,12 +109,13 @@ float beam_weight(uint base, uint count, bool has_front, vec2 delta) {
 float chord_weight(uint base, uint count, bool has_front, vec2 delta) {
     Sight s = line_of_sight(base, delta);
     float cc = dot(s.c, s.c);
+    float sigma = uintBitsToFloat(push.param[2]);
     bool degenerate = !(cc > 0.0);
     float inverse = degenerate ? 0.0 : 1.0 / cc;
     vec3 nearest = (s.delta.x * cross(s.b2, s.c) + s.delta.y * cross(s.c, s.b1)) * inverse;
     vec3 direction = s.c * sqrt(inverse);
     vec3 offset = s.delta.x * s.b2 - s.delta.y * s.b1;
-    float half_square = degenerate ? -1.0 : FRAME.sigma * FRAME.sigma - dot(offset, offset) * inverse;
+    float half_square = degenerate ? -1.0 : sigma * sigma - dot(offset, offset) * inverse;
     float high = half_square > 0.0 ? sqrt(half_square) : 0.0;
     float low = -high;
     if (has_front) {
@@ -124,8 +125,8 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta) {
     }
     float whole = high - low;
     bool miss = !(half_square > 0.0) || !(whole > 0.0);
-    if (miss && FRAME.miss != MISS_PEAK) {
-        return FRAME.miss == MISS_KEEP ? 1.0 : 0.0;
+    if (miss && MISS != MISS_PEAK) {
+        return MISS == MISS_KEEP ? 1.0 : 0.0;
     }
     float sign = complement_sign();
     bool inside = true;
@@ -135,7 +136,7 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta) {
         float slope = dot(form.xyz, direction);
         if (miss || slope == 0.0) {
             // The plane itself is visible, so it is no part of a complement.
-            inside = inside && (value > 0.0 || (value == 0.0 && FRAME.op == OP_AND));
+            inside = inside && (value > 0.0 || (value == 0.0 && CLIP_OP == OP_AND));
         } else if (slope > 0.0) {
             low = max(low, -value / slope);
         } else {
@@ -146,12 +147,13 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta) {
     return combined(share);
 }
 
-// Which of the three by the frame's mode and the record's form.
-float cut_weight(uint mode, uint cut, vec2 delta) {
-    uint base = cut * FRAME.cut_stride;
-    uint flags = floatBitsToUint(cuts.at[base].w);
+// Which of the three by the frame's mode and the record's form. Parameter 2 is the traced ellipsoid's sigma, 3 the
+// records' stride.
+float cut_weight(uint cut, vec2 delta) {
+    uint base = cut * push.param[3];
+    uint flags = uint(cuts.at[base].w);
     uint count = flags >> CUT_COUNT_SHIFT;
-    if (mode == MODE_RARA) {
+    if (CLIP_MODE == MODE_RARA) {
         return chord_weight(base, count, (flags & CUT_FRONT) != 0u, delta);
     }
     if ((flags & CUT_RAY) != 0u) {
@@ -166,7 +168,7 @@ float decayed(float alpha, float weight) {
     if (weight >= 1.0) {
         return alpha;
     }
-    return FRAME.decay == DECAY_LINEAR ? alpha * weight : 1.0 - exp2(weight * log2(1.0 - alpha));
+    return DECAY == DECAY_LINEAR ? alpha * weight : 1.0 - exp2(weight * log2(1.0 - alpha));
 }
 
 #endif

@@ -63,9 +63,9 @@ impl Headless {
         let renderer = Renderer::new(
             &device,
             RendererDesc {
-                color_format: FORMAT,
                 bindings,
                 timing: true,
+                ..RendererDesc::new(FORMAT)
             },
         )?;
         Ok(Self {

@@ -1,4 +1,4 @@
-//! rara draws 3D Gaussian Splatting scenes with Vulkan and cuts them exactly.
+#![doc = include_str!("../README.md")]
 
 pub mod camera;
 pub mod camera_files;
@@ -18,7 +18,11 @@ pub mod renderer;
 pub mod scene;
 pub mod settings;
 pub mod stats;
+pub mod stress;
 pub mod types;
+
+/// The versions that this crate's interface is made of.
+pub use {ash, glam};
 
 pub use camera::Camera;
 pub use clip::{Clip, ClipOp, Plane};

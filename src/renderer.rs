@@ -1,65 +1,140 @@
 //! The renderer an engine embeds: it records into the host's command buffer and never submits or waits.
+//! `tools/examples/embed.rs` is a whole host.
 
 use ash::vk;
 
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
-use crate::gpu::{Bindings, Device, Drawer, Recorder, Timer};
+use crate::gpu::{Bindings, Buffer, BufferDesc, Device, Drawer, Location, Recorder, Timer};
 use crate::passes::{self, Buffers, Context, Plan, SceneBuffers, SceneFacts, Stages};
 use crate::settings::{Raster, Settings};
 use crate::stats::{Counts, PassTime};
 use crate::types::FrameCounts;
 
-/// What a renderer is created with.
+/// What a renderer is created with: [`RendererDesc::new`] for the usual, fields changed where a host wants otherwise.
 #[derive(Debug, Clone, Copy)]
 pub struct RendererDesc {
-    /// Format of the colour attachment that [`Renderer::draw`] draws into.
+    /// Format of the colour attachment that [`Renderer::draw`] draws into. It must be blendable; splats are trained to
+    /// be blended as stored, so sRGB formats, which blend in linear light, give another picture.
     pub color_format: vk::Format,
     /// Whether buffers are reached by address (fast) or bound (the validation layer can watch them). With
     /// [`Bindings::Bound`] a frame whose buffers exceed the device's binding size still uses addresses.
     pub bindings: Bindings,
     /// Whether to take timestamps around the stages.
     pub timing: bool,
+    /// How many recorded frames may be unfinished at once, 1 or more; [`Renderer`] says what the host promises.
+    pub frames_in_flight: u32,
+}
+
+impl RendererDesc {
+    /// Buffers by address, no timestamps, one frame in flight.
+    pub const fn new(color_format: vk::Format) -> Self {
+        Self {
+            color_format,
+            bindings: Bindings::Address,
+            timing: false,
+            frames_in_flight: 1,
+        }
+    }
 }
 
 /// Draws a scene into the host's rendering scope.
 ///
 /// A frame is three calls: [`configure`](Self::configure) allocates and compiles what the frame needs and has not
 /// been needed before; [`prepare`](Self::prepare) records the compute stages outside any rendering scope;
-/// [`draw`](Self::draw) records the splats inside one. The host submits both in this order, to one queue, and may not
-/// call `configure` while a frame recorded before is still executing.
+/// [`draw`](Self::draw) records the splats inside one. The host submits both in this order, to the device's queue.
+///
+/// **Frames in flight.** Before it configures frame `n`, the host has waited for frame `n - frames_in_flight` (each
+/// `prepare` is a frame, also where two of them are views of one picture). Frames share their working memory: each
+/// begins with a barrier behind everything earlier in the queue, so that none can overwrite what the one before still
+/// reads. Memory that a frame outgrows is freed `frames_in_flight` frames later. Before dropping the renderer, the host
+/// waits for all of its frames.
+///
+/// **What recording leaves behind.** `prepare` binds a compute pipeline, `draw` a graphics pipeline; both write push
+/// constants and, with [`Bindings::Bound`], push descriptor set 0. The host binds its own again. Nothing else is touched:
+/// no image, no layout, no dynamic state.
 #[derive(Debug)]
 pub struct Renderer {
     device: Device,
     desc: RendererDesc,
-    stages: Option<(Bindings, Stages)>,
+    /// For addresses and for bound buffers; never replaced, so frames in flight keep their pipelines.
+    stages: [Option<Stages>; 2],
     buffers: Option<Buffers>,
-    timer: Option<Timer>,
+    /// What frames in flight may still use, with the number of frames prepared when it was replaced.
+    retired: Vec<(u64, Buffers)>,
+    /// One for each frame in flight.
+    slots: Box<[Slot]>,
+    /// Frames prepared so far.
+    prepared: u64,
     plan: Option<Plan>,
+    bindings: Bindings,
     mesh: bool,
+    /// Whether the configured frame has been prepared.
+    ready: bool,
+}
+
+/// What a frame tells about itself, kept until its slot's next frame.
+#[derive(Debug)]
+struct Slot {
+    timer: Option<Timer>,
+    counts: Buffer,
+    /// There was nothing to record, so that nothing was counted.
+    empty: bool,
+}
+
+impl Slot {
+    fn new(device: &Device, timing: bool) -> Result<Self> {
+        Ok(Self {
+            // The stages of a frame, with room for several draws.
+            timer: timing.then(|| Timer::new(device, 16)).transpose()?,
+            counts: device.create_buffer(&BufferDesc {
+                name: "counts_readback",
+                size: size_of::<FrameCounts>() as u64,
+                location: Location::Readback,
+            })?,
+            empty: true,
+        })
+    }
 }
 
 impl Renderer {
     /// A renderer on a device. Pipelines and buffers come with the first frame that needs them.
     pub fn new(device: &Device, desc: RendererDesc) -> Result<Self> {
-        let timer = if desc.timing {
-            Some(Timer::new(device, 16)?)
-        } else {
-            None
-        };
+        assert!(
+            desc.frames_in_flight > 0,
+            "a renderer needs at least one frame in flight"
+        );
+        let wanted = vk::FormatFeatureFlags::COLOR_ATTACHMENT
+            | vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
+        if !device.format_features(desc.color_format).contains(wanted) {
+            return Err(Error::Device(format!(
+                "{} cannot blend into {:?}; every device can into R8G8B8A8_UNORM and R16G16B16A16_SFLOAT",
+                device.info().name,
+                desc.color_format
+            )));
+        }
+        let slots = (0..desc.frames_in_flight).map(|_| Slot::new(device, desc.timing));
         Ok(Self {
             device: device.clone(),
             desc,
-            stages: None,
+            stages: [None, None],
             buffers: None,
-            timer,
+            retired: Vec::new(),
+            slots: slots.collect::<Result<_>>()?,
+            prepared: 0,
             plan: None,
+            bindings: desc.bindings,
             mesh: false,
+            ready: false,
         })
     }
 
-    /// Decides what the next frame needs, and allocates and compiles what is missing.
+    /// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the
+    /// viewport of [`draw`](Self::draw). [`Settings::background`] is the host's business and ignored here.
+    ///
+    /// Where a frame needs more memory than the one before, old and new exist side by side while frames are in flight;
+    /// with one frame in flight the old goes first. After an error nothing can be recorded until a call succeeds.
     pub fn configure(
         &mut self,
         scene: &SceneBuffers,
@@ -67,6 +142,9 @@ impl Renderer {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<()> {
+        self.plan = None;
+        self.ready = false;
+        self.free_finished();
         let support = self.device.support();
         let is_cpu = self.device.info().kind == vk::PhysicalDeviceType::CPU;
         let sort_runs = if is_cpu { SORT_RUNS_CPU } else { SORT_RUNS_GPU };
@@ -89,7 +167,7 @@ impl Renderer {
             Raster::Quad => false,
         };
         let largest = Buffers::largest(&plan).max(scene.largest());
-        let bindings = match self.desc.bindings {
+        self.bindings = match self.desc.bindings {
             Bindings::Bound
                 if support.push_descriptor && largest <= support.max_storage_buffer_range =>
             {
@@ -99,70 +177,96 @@ impl Renderer {
         };
         let context = Context {
             device: &self.device,
-            bindings,
+            bindings: self.bindings,
             color_format: self.desc.color_format,
         };
-        if self
-            .stages
-            .as_ref()
-            .is_none_or(|(have, _)| *have != bindings)
-        {
-            self.stages = Some((bindings, Stages::new(&context)?));
-        }
-        if let Some((_, stages)) = &mut self.stages {
-            stages.ensure(&context, &plan, self.mesh)?;
-        }
+        let stages = &mut self.stages[self.bindings as usize];
+        let stages = match stages {
+            Some(stages) => stages,
+            None => stages.insert(Stages::new(&context)?),
+        };
+        stages.ensure(&context, &plan, self.mesh)?;
         if self
             .buffers
             .as_ref()
             .is_none_or(|buffers| !buffers.fit(&plan))
         {
             // Free first: both together may not fit.
-            self.buffers = None;
+            let outgrown = self.buffers.take();
+            self.retired.extend(outgrown.map(|b| (self.prepared, b)));
+            self.free_finished();
             self.buffers = Some(Buffers::new(&self.device, &plan)?);
         }
         self.plan = Some(plan);
         Ok(())
     }
 
+    /// Frees what only frames used that the host has waited for.
+    fn free_finished(&mut self) {
+        let finished = (self.prepared + 1).saturating_sub(self.slots.len() as u64);
+        self.retired.retain(|(prepared, _)| *prepared > finished);
+    }
+
     /// Records the stages up to the draw, outside any rendering scope.
     ///
     /// # Safety
     /// `cmd` is in the recording state, outside a rendering scope, on a queue family with compute and graphics, and
-    /// `scene` is the one given to [`configure`](Self::configure) and lives until the commands have executed.
+    /// will be submitted to the device's queue, or never. `scene` is the one given to [`configure`](Self::configure)
+    /// and lives until the commands have executed. The host has waited for the frames that [`Renderer`] says.
     pub unsafe fn prepare(&mut self, cmd: vk::CommandBuffer, scene: &SceneBuffers) {
-        let (Some((_, stages)), Some(buffers), Some(plan)) =
-            (&self.stages, &self.buffers, &self.plan)
-        else {
+        let (Some(stages), Some(buffers), Some(plan)) = (
+            &self.stages[self.bindings as usize],
+            &self.buffers,
+            &self.plan,
+        ) else {
             panic!("Renderer::prepare needs a successful configure() before it");
         };
-        if plan.gaussians == 0 {
+        assert!(
+            plan.gaussians == scene.count
+                && plan.data.sh_coefficients == (scene.sh_degree + 1).pow(2),
+            "Renderer::prepare was given another scene than configure()"
+        );
+        let at = (self.prepared % self.slots.len() as u64) as usize;
+        let slot = &mut self.slots[at];
+        slot.empty = plan.gaussians == 0;
+        self.prepared += 1;
+        self.ready = true;
+        if slot.empty {
             return;
         }
         // SAFETY: the caller promises that `cmd` is recording, outside a rendering scope.
-        let mut recorder = unsafe { Recorder::begin(&self.device, cmd, self.timer.as_mut()) };
-        passes::record(&mut recorder, stages, scene, buffers, plan);
+        let mut recorder = unsafe { Recorder::begin(&self.device, cmd, slot.timer.as_mut()) };
+        passes::record(&mut recorder, stages, scene, buffers, plan, &slot.counts);
     }
 
-    /// Records the splats inside the host's rendering scope, blended `over` what is there. The viewport and scissor are
-    /// the host's; `origin` is the viewport's upper left corner in the attachment, px.
+    /// Records the splats inside the host's rendering scope, blended `over` what is there: premultiplied colours, one
+    /// sample a pixel. `origin` is the viewport's upper left corner in the attachment, px; the viewport has the camera's
+    /// size. May be recorded more than once for a prepared frame.
     ///
     /// # Safety
-    /// `cmd` is inside a rendering scope whose only colour attachment has the format given at creation, viewport and
-    /// scissor are set, and [`prepare`](Self::prepare) was recorded for the same frame before it.
+    /// `cmd` is inside a rendering scope whose only attachment is a colour one of the format given at creation, with one
+    /// layer and no view mask; viewport and scissor are set; [`prepare`](Self::prepare) was recorded for the same frame
+    /// before it.
     pub unsafe fn draw(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) {
-        let (Some((_, stages)), Some(buffers), Some(plan)) =
-            (&self.stages, &self.buffers, &self.plan)
-        else {
+        let (Some(stages), Some(buffers), Some(plan), true) = (
+            &self.stages[self.bindings as usize],
+            &self.buffers,
+            &self.plan,
+            self.ready,
+        ) else {
             panic!("Renderer::draw needs a successful configure() and prepare() before it");
         };
         if plan.gaussians == 0 {
             return;
         }
+        let at = ((self.prepared - 1) % self.slots.len() as u64) as usize;
+        let timer = self.slots[at].timer.as_mut();
         let splat = stages.splat(plan, self.mesh);
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
-        let mut drawer = unsafe { Drawer::new(&self.device, cmd, self.timer.as_mut()) };
-        drawer.pass("splat", |drawer| splat.record(drawer, buffers, origin));
+        let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
+        drawer.pass("splat", |drawer| {
+            splat.record(drawer, buffers, plan, origin)
+        });
     }
 
     /// The stages that the configured frame does not need.
@@ -170,24 +274,19 @@ impl Renderer {
         self.plan.as_ref().map(Plan::skipped).unwrap_or_default()
     }
 
-    /// How many Gaussians ended where, once the frame has executed.
+    /// How many Gaussians ended where in the oldest frame that is kept: the last one, with one frame in flight. Ask
+    /// after waiting for it, before the next [`prepare`](Self::prepare). All zero where no frame is that old.
     pub fn counts(&self) -> Counts {
-        let (Some(buffers), Some(plan)) = (&self.buffers, &self.plan) else {
+        let Some(slot) = self.oldest().filter(|slot| !slot.empty) else {
             return Counts::default();
         };
-        if plan.gaussians == 0 {
-            return Counts::default();
-        }
-        let counts: FrameCounts = bytemuck::pod_read_unaligned(
-            &buffers.counts_readback.mapped()[..size_of::<FrameCounts>()],
-        );
         let FrameCounts {
             visible,
             cutoff,
             invisible,
             culled,
             ..
-        } = counts;
+        } = bytemuck::pod_read_unaligned(&slot.counts.mapped()[..size_of::<FrameCounts>()]);
         Counts {
             visible,
             cutoff,
@@ -197,17 +296,23 @@ impl Renderer {
         }
     }
 
-    /// GPU time of each stage, once the frame has executed; empty without timing.
+    /// GPU time of each stage of the same frame as [`counts`](Self::counts); empty without timing.
     pub fn pass_times(&self) -> Vec<PassTime> {
-        let times = self
-            .timer
-            .as_ref()
-            .and_then(Timer::read)
-            .unwrap_or_default();
+        let timer = self
+            .oldest()
+            .filter(|slot| !slot.empty)
+            .and_then(|slot| slot.timer.as_ref());
+        let times = timer.and_then(Timer::read).unwrap_or_default();
         times
             .into_iter()
             .map(|(name, ms)| PassTime { name, ms })
             .collect()
+    }
+
+    /// The slot of the frame before which the host waits next: the one that the next frame will take over.
+    fn oldest(&self) -> Option<&Slot> {
+        let count = self.slots.len() as u64;
+        (self.prepared >= count).then(|| &self.slots[(self.prepared % count) as usize])
     }
 }
 

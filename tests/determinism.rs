@@ -23,7 +23,7 @@ fn mesh_and_quad_paths_agree() {
         headless.load(&scene).expect("uploads");
         for mode in [Mode::None, Mode::Rara, Mode::Exact] {
             let clip = common::clip(&scene, 2, ClipOp::And);
-            let camera = common::views(&scene, 3, SIZE)[1];
+            let camera = common::views(&scene, 3, common::scaled(SIZE))[1];
             let mut picture = |raster| {
                 let settings = Settings {
                     mode,
@@ -75,6 +75,9 @@ fn every_run_with_any_number_of_driver_threads_gives_the_same_bytes() {
             .arg("-o")
             .arg(&out);
         command.args(["--size", "300x220", "--clip", "plane:1,0.2,0.1,0"]);
+        if let Ok(device) = std::env::var("RARA_TEST_DEVICE") {
+            command.args(["--device", &device]);
+        }
         assert!(command.status().expect("rara runs").success());
         std::fs::read(out).expect("the picture was written")
     };

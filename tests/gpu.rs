@@ -83,9 +83,9 @@ fn all_bindings(device: &Device) -> &'static [Bindings] {
     }
 }
 
-/// The device under test: the best one, or what `RARA_DEVICE` says.
+/// The device under test: the best one, or what `RARA_TEST_DEVICE` says.
 fn open() -> Device {
-    let selector = std::env::var("RARA_DEVICE").ok();
+    let selector = std::env::var("RARA_TEST_DEVICE").ok();
     Device::headless(&DeviceDesc {
         selector,
         validation: true,

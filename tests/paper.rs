@@ -27,7 +27,7 @@ fn a_plane_at_infinity_gives_the_bytes_of_none_in_every_mode() {
         .chain(common::trained_scenes())
     {
         headless.load(&scene).expect("uploads");
-        let camera = common::views(&scene, 1, SIZE)[0];
+        let camera = common::views(&scene, 1, common::scaled(SIZE))[0];
         let none = Settings {
             mode: Mode::None,
             ..Settings::default()
@@ -56,7 +56,7 @@ fn tracing_every_gaussian_degrades_the_picture_as_the_paper_reports() {
     let mut headless = common::headless();
     for (name, scene) in common::generated_scenes(3_000).into_iter().take(2) {
         headless.load(&scene).expect("uploads");
-        let camera = common::views(&scene, 1, SIZE)[0];
+        let camera = common::views(&scene, 1, common::scaled(SIZE))[0];
         let none = Settings {
             mode: Mode::None,
             ..Settings::default()

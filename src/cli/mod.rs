@@ -20,6 +20,7 @@ mod scenes;
 mod session;
 mod settings;
 mod sheet;
+mod stress;
 mod sweep;
 mod values;
 
@@ -60,6 +61,7 @@ enum Command {
     Compare(compare::Compare),
     Generate(generate::Generate),
     Info(info::Info),
+    Stress(stress::Stress),
     Devices(devices::Devices),
 }
 
@@ -73,6 +75,7 @@ impl Command {
             Self::Compare(command) => command.run(),
             Self::Generate(command) => command.run(),
             Self::Info(command) => command.run(),
+            Self::Stress(command) => command.run(),
             Self::Devices(command) => command.run(),
         }
     }

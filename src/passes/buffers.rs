@@ -22,8 +22,6 @@ pub(crate) struct Buffers {
     pub(crate) keys: [Buffer; 2],
     pub(crate) order: [Buffer; 2],
     pub(crate) histogram: Buffer,
-    /// A copy of `counts` for the host.
-    pub(crate) counts_readback: Buffer,
     sized_for: Sizes,
 }
 
@@ -65,13 +63,12 @@ impl Buffers {
         let n = sizes.gaussians;
         let groups = n.div_ceil(u64::from(limits::GROUP_SIZE));
         let digits = 1_u64 << limits::SORT_BITS;
-        let counts_size = size_of::<FrameCounts>() as u64;
         Ok(Self {
             frame: gpu("frame", size_of::<FrameData>() as u64)?,
             masks: gpu("masks", groups * u64::from(limits::GROUP_SIZE) / 4)?,
             group_counts: gpu("group_counts", groups * 16)?,
             group_offsets: gpu("group_offsets", groups * 8)?,
-            counts: gpu("counts", counts_size)?,
+            counts: gpu("counts", size_of::<FrameCounts>() as u64)?,
             survivors: gpu("survivors", n * 8)?,
             cutoffs: gpu("cutoffs", n * 4)?,
             cuts: gpu("cuts", sizes.cut_bytes)?,
@@ -79,11 +76,6 @@ impl Buffers {
             keys: [gpu("keys", n * 4)?, gpu("sorted_keys", n * 4)?],
             order: [gpu("order", n * 4)?, gpu("sorted_order", n * 4)?],
             histogram: gpu("histogram", digits * sizes.sort_runs * 4)?,
-            counts_readback: device.create_buffer(&BufferDesc {
-                name: "counts_readback",
-                size: counts_size,
-                location: Location::Readback,
-            })?,
             sized_for: sizes,
         })
     }

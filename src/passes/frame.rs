@@ -1,19 +1,20 @@
 //! The frame: every stage in order. Nothing waits or is read back in between; each stage's work follows from what the
 //! one before left on the device.
 
-use crate::gpu::Recorder;
+use crate::gpu::{Buffer, Recorder};
 use crate::passes::buffers::Buffers;
 use crate::passes::plan::Plan;
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::stages::Stages;
 
-/// Records everything up to the draw.
+/// Records everything up to the draw. `readback` gets a copy of the counts for the host.
 pub(crate) fn record(
     recorder: &mut Recorder<'_>,
     stages: &Stages,
     scene: &SceneBuffers,
     b: &Buffers,
     plan: &Plan,
+    readback: &Buffer,
 ) {
     let groups = plan.data.group_count;
     recorder.update(&b.frame, 0, bytemuck::bytes_of(&plan.data));
@@ -29,7 +30,7 @@ pub(crate) fn record(
         recorder.pass("cutoff", |r| cutoff.record(r, scene, b));
     }
     // Conic, quad, colour and depth key of the survivors.
-    recorder.pass("project", |r| stages.project.record(r, scene, b));
+    recorder.pass("project", |r| stages.project(plan).record(r, scene, b));
     // Their order.
     if plan.gaussians > 1 {
         recorder.pass("sort", |r| stages.sort.record(r, b));
@@ -37,9 +38,9 @@ pub(crate) fn record(
 
     recorder.copy(
         &b.counts,
-        &b.counts_readback,
+        readback,
         &[ash::vk::BufferCopy::default().size(b.counts.size())],
     );
-    recorder.ready_for_host(&[&b.counts_readback]);
+    recorder.ready_for_host(&[readback]);
     recorder.ready_to_draw(&[&b.frame, &b.counts, &b.splats, &b.order[0], &b.cuts]);
 }

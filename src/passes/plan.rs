@@ -110,8 +110,10 @@ impl Plan {
         data.group_count = scene.gaussians.div_ceil(limits::GROUP_SIZE);
         for (index, plane) in planes.iter().enumerate() {
             let (high, low) = two_float(plane.normal());
-            let offset_high = plane.offset() as f32;
-            let offset_low = (plane.offset() - f64::from(offset_high)) as f32;
+            // Farther away than single precision reaches: beyond every splat.
+            let offset = plane.offset().clamp(-FARTHEST, FARTHEST);
+            let offset_high = offset as f32;
+            let offset_low = (offset - f64::from(offset_high)) as f32;
             data.plane_high[index] = [high[0], high[1], high[2], offset_high];
             data.plane_low[index] = [low[0], low[1], low[2], offset_low];
         }
@@ -139,10 +141,14 @@ impl Plan {
 
 fn camera_constants(data: &mut FrameData, camera: &Camera) {
     let rows = camera.rotation.transpose();
-    let row = |axis: DVec3| axis.extend(0.0).as_vec4().into();
-    data.rotation_x = row(rows.x_axis);
-    data.rotation_y = row(rows.y_axis);
-    data.rotation_z = row(rows.z_axis);
+    let row = |axis: DVec3| {
+        let ([x, y, z], [low_x, low_y, low_z]) = two_float(axis);
+        ([x, y, z, 0.0], [low_x, low_y, low_z, 0.0])
+    };
+    (data.rotation_x, data.rotation_low[0]) = row(rows.x_axis);
+    (data.rotation_y, data.rotation_low[1]) = row(rows.y_axis);
+    (data.rotation_z, data.rotation_low[2]) = row(rows.z_axis);
+    data.precise_view = (camera.fx.max(camera.fy) > f64::from(limits::PRECISE_FOCAL)).into();
     let (high, low) = two_float(camera.eye);
     data.eye_high = [high[0], high[1], high[2], 0.0];
     data.eye_low = [low[0], low[1], low[2], 0.0];
@@ -160,6 +166,10 @@ fn camera_constants(data: &mut FrameData, camera: &Camera) {
     data.slope_bounds = [x_low, x_high, y_low, y_high].map(|x| x as f32);
     data.size = [width, height, 1.0 / width, 1.0 / height].map(|x| x as f32);
 }
+
+/// Largest offset of a plane that is told from infinity, world units: a power of two below the end of single
+/// precision's range.
+const FARTHEST: f64 = (1_u128 << 126) as f64;
 
 /// A vector as the sum of two single-precision ones.
 fn two_float(v: DVec3) -> ([f32; 3], [f32; 3]) {

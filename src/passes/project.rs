@@ -16,9 +16,10 @@ pub(crate) struct Project {
 }
 
 impl Project {
-    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
+    /// With `cut` false the shader knows no cutoff records.
+    pub(crate) fn new(context: &Context<'_>, cut: bool) -> Result<Self> {
         Ok(Self {
-            pipeline: context.compute("project", &shaders::PROJECT_COMP, &[])?,
+            pipeline: context.compute("project", &shaders::PROJECT_COMP, &[(0, cut.into())])?,
         })
     }
 
@@ -33,6 +34,7 @@ impl Project {
             &b.splats,
             keys,
             order,
+            &b.cuts,
         ];
         let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, project_groups) as u64);
         recorder.dispatch(&self.pipeline, &buffers, &[], groups);

@@ -1,5 +1,8 @@
 //! The stages' pipelines, each created when a frame first needs it.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
 use crate::error::Result;
 use crate::passes::classify::Classify;
 use crate::passes::compact::Compact;
@@ -8,7 +11,7 @@ use crate::passes::cutoff::Cutoff;
 use crate::passes::plan::Plan;
 use crate::passes::project::Project;
 use crate::passes::sort::Sort;
-use crate::passes::splat::Splat;
+use crate::passes::splat::{Splat, SplatKey};
 use crate::types;
 
 /// All stages for one way of binding. Variants that no frame has asked for do not exist.
@@ -17,9 +20,9 @@ pub(crate) struct Stages {
     classify: [Option<Classify>; 2],
     pub(crate) compact: Compact,
     pub(crate) cutoff: Option<Cutoff>,
-    pub(crate) project: Project,
+    project: [Option<Project>; 2],
     pub(crate) sort: Sort,
-    splat: [[Option<Splat>; types::MODE_COUNT as usize]; 2],
+    splat: HashMap<SplatKey, Splat>,
 }
 
 impl Stages {
@@ -28,9 +31,9 @@ impl Stages {
             classify: [None, None],
             compact: Compact::new(context)?,
             cutoff: None,
-            project: Project::new(context)?,
+            project: [None, None],
             sort: Sort::new(context)?,
-            splat: Default::default(),
+            splat: HashMap::new(),
         })
     }
 
@@ -44,9 +47,12 @@ impl Stages {
         if plan.cutoff && self.cutoff.is_none() {
             self.cutoff = Some(Cutoff::new(context)?);
         }
-        let splat = &mut self.splat[usize::from(mesh)][splat_variant(plan)];
-        if splat.is_none() {
-            *splat = Some(Splat::new(context, mesh, splat_variant(plan) as u32)?);
+        let project = &mut self.project[usize::from(plan.cutoff)];
+        if project.is_none() {
+            *project = Some(Project::new(context, plan.cutoff)?);
+        }
+        if let Entry::Vacant(missing) = self.splat.entry(SplatKey::new(plan, mesh)) {
+            missing.insert(Splat::new(context, SplatKey::new(plan, mesh))?);
         }
         Ok(())
     }
@@ -58,19 +64,15 @@ impl Stages {
             .expect("ensure() creates it")
     }
 
-    /// The rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.
-    pub(crate) fn splat(&self, plan: &Plan, mesh: bool) -> &Splat {
-        self.splat[usize::from(mesh)][splat_variant(plan)]
+    /// The projection for a plan, once [`ensure`](Self::ensure) has seen it.
+    pub(crate) fn project(&self, plan: &Plan) -> &Project {
+        self.project[usize::from(plan.cutoff)]
             .as_ref()
             .expect("ensure() creates it")
     }
-}
 
-/// The fragment stage's `CLIP_MODE`: after a hard clip nothing is left for it to do.
-fn splat_variant(plan: &Plan) -> usize {
-    if plan.cutoff {
-        plan.mode as usize
-    } else {
-        types::MODE_NONE as usize
+    /// The rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.
+    pub(crate) fn splat(&self, plan: &Plan, mesh: bool) -> &Splat {
+        &self.splat[&SplatKey::new(plan, mesh)]
     }
 }

@@ -11,6 +11,7 @@ mod save;
 
 pub use bounds::{Bounds, extent_along};
 pub use gaussians::{Gaussians, sh_coefficients};
+pub(crate) use generate::random::Random;
 pub use generate::{Kind, generate};
 pub use ply::{Loaded, load, load_from};
 pub use report::{LoadReport, Remark};

@@ -4,8 +4,27 @@
 use std::path::PathBuf;
 
 use glam::DVec3;
+use rara::measure::compare;
 use rara::scene::{Bounds, Kind, generate, load};
-use rara::{Camera, Clip, ClipOp, Gaussians, Headless, HeadlessDesc, Plane};
+use rara::{
+    Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, HeadlessDesc, Picture, Plane, Settings,
+    reference,
+};
+
+/// How large generated scenes and pictures are, against the usual: `RARA_TEST_SCALE`, for slow drivers. The bounds of the
+/// tests are the same at every scale.
+pub fn scale() -> f64 {
+    let text = std::env::var("RARA_TEST_SCALE").unwrap_or("1".into());
+    let scale: f64 = text.parse().expect("RARA_TEST_SCALE is a number");
+    assert!((0.1..=1.0).contains(&scale), "RARA_TEST_SCALE is 0.1 to 1");
+    scale
+}
+
+/// A picture's size at that scale.
+pub fn scaled((width, height): (u32, u32)) -> (u32, u32) {
+    let scaled = |pixels| (f64::from(pixels) * scale().sqrt()) as u32;
+    (scaled(width), scaled(height))
+}
 
 /// A renderer whose every validation message is an error.
 pub fn headless() -> Headless {
@@ -24,7 +43,8 @@ fn decoded_scenes() -> Option<PathBuf> {
         .filter(|folder| folder.is_dir())
 }
 
-/// The trained scenes, each under its name; says so loudly where they are absent.
+/// The trained scenes, each under its name; says so loudly where they are absent. `RARA_TEST_SCENES` names those to
+/// take, for slow drivers.
 pub fn trained_scenes() -> Vec<(String, Gaussians)> {
     let Some(folder) = decoded_scenes() else {
         eprintln!(
@@ -48,8 +68,14 @@ pub fn trained_scenes() -> Vec<(String, Gaussians)> {
     ] {
         scenes.push((name, vec![name]));
     }
+    let wanted = std::env::var("RARA_TEST_SCENES").ok();
+    let is_wanted = |name: &str| {
+        let wanted = wanted.as_deref();
+        wanted.is_none_or(|wanted| wanted.split(',').any(|part| part == name))
+    };
     scenes
         .iter()
+        .filter(|(name, _)| is_wanted(name))
         .map(|(name, files)| (name.to_string(), merged(&folder, files)))
         .collect()
 }
@@ -69,6 +95,7 @@ fn merged(folder: &std::path::Path, files: &[&str]) -> Gaussians {
 
 /// One generated scene of each kind.
 pub fn generated_scenes(count: usize) -> Vec<(String, Gaussians)> {
+    let count = (count as f64 * scale()) as usize;
     let kinds = [
         ("general", Kind::General),
         ("strands", Kind::Strands),
@@ -122,4 +149,81 @@ pub fn clip(scene: &Gaussians, count: usize, op: ClipOp) -> Clip {
         planes: normals.iter().take(count).enumerate().map(plane).collect(),
         op,
     }
+}
+
+/// The bounds of the project's promise: 60 dB into a 32-bit target, 48 dB through 8 bits, and at most one pixel in a
+/// thousand further off than 2/255 (a splat that f32 puts on the other side of alpha = 1/255 or of a neighbour).
+pub fn assert_agrees(what: &str, ours: &Picture, truth: &Picture) {
+    let float = compare(ours, truth).expect("the same size");
+    assert!(
+        float.psnr >= 60.0,
+        "{what}: {:.1} dB into a 32-bit target: {float:?}",
+        float.psnr
+    );
+    assert!(
+        float.share_over_2 <= 0.001,
+        "{what}: {:.3} % of pixels over 2/255",
+        100.0 * float.share_over_2
+    );
+    let png = compare(&ours.quantised(), &displayable(truth)).expect("the same size");
+    assert!(
+        png.psnr >= 48.0,
+        "{what}: {:.1} dB through 8 bits",
+        png.psnr
+    );
+}
+
+/// What 8 bits could show of a picture without rounding: colours beyond white are white.
+fn displayable(picture: &Picture) -> Picture {
+    let pixels = picture
+        .pixels
+        .iter()
+        .map(|&[r, g, b, a]| [r.min(a), g.min(a), b.min(a), a]);
+    Picture {
+        pixels: pixels.collect(),
+        ..*picture
+    }
+}
+
+/// That a frame is the reference's: the picture within the bounds above, the counts but for a few; its statistics.
+pub fn check(
+    headless: &mut Headless,
+    name: &str,
+    scene: &Gaussians,
+    camera: &Camera,
+    clip: &Clip,
+    settings: &Settings,
+) -> FrameStats {
+    let stats = headless.render(camera, clip, settings).expect("renders");
+    let picture = headless.picture().expect("reads back");
+    let truth = reference::render::<f64>(scene, camera, clip, settings);
+    let what = format!(
+        "{name}, {:?}, {} planes {:?}",
+        settings.mode,
+        clip.planes.len(),
+        clip.op
+    );
+    assert_agrees(&what, &picture, &truth.picture);
+    let total = |c: rara::Counts| c.visible + c.cutoff + c.invisible + c.culled;
+    assert_eq!(
+        total(stats.counts) as usize,
+        scene.len(),
+        "{what}: every Gaussian is counted once"
+    );
+    // f32 may put a splat that only just touches a pixel or a band on the other side: one in a thousand at most.
+    let slack = 2 + scene.len() as u32 / 1000;
+    for (ours, theirs) in [
+        (stats.counts.visible, truth.counts.visible),
+        (stats.counts.cutoff, truth.counts.cutoff),
+        (stats.counts.invisible, truth.counts.invisible),
+        (stats.counts.culled, truth.counts.culled),
+    ] {
+        assert!(
+            ours.abs_diff(theirs) <= slack,
+            "{what}: counts {:?} against {:?}",
+            stats.counts,
+            truth.counts
+        );
+    }
+    stats
 }

@@ -5,7 +5,7 @@
 
 mod general;
 mod layers;
-mod random;
+pub(crate) mod random;
 mod spherical;
 mod strands;
 

@@ -1,0 +1,87 @@
+// The quad a splat is drawn with: a parallelogram that covers every pixel in which it contributes, and few others.
+#ifndef RARA_EXTENT
+#define RARA_EXTENT
+#include "footprint.glsl"
+#include "cut.glsl"
+
+// Relative to the splat's centre, px: the points middle + s first + t second with s and t in [-1, 1].
+struct Quad {
+    vec2 middle;
+    vec2 first;
+    vec2 second;
+};
+
+// A little wider than exact: the fragment stage decides what is inside, the quad must only not be too small.
+float widened(float half_side) {
+    return 1.001 * half_side + 0.01;
+}
+
+// The smallest rectangle around the contour q = extent^2. det comes as a sum of squares, so the thin axis of a needle
+// is right where a difference of eigenvalues would be noise.
+Quad along_axes(Footprint f, float extent) {
+    float mean = 0.5 * (f.xx + f.yy);
+    float radius = length(vec2(0.5 * (f.xx - f.yy), f.xy));
+    float long_variance = mean + radius;
+    float short_variance = f.det / long_variance;
+    vec2 direction = f.xx > f.yy ? vec2(long_variance - f.yy, f.xy) : vec2(f.xy, long_variance - f.xx);
+    float size = length(direction);
+    direction = size > 0.0 ? direction / size : vec2(1.0, 0.0);
+    return Quad(vec2(0.0), widened(extent * sqrt(long_variance) / f.scale) * direction,
+                widened(extent * sqrt(short_variance) / f.scale) * vec2(-direction.y, direction.x));
+}
+
+// The rectangle around the same contour with a side along a direction.
+Quad along_direction(Footprint f, float extent, vec2 direction) {
+    vec2 across = vec2(-direction.y, direction.x);
+    vec2 variance = vec2(f.xx * direction.x * direction.x + 2.0 * f.xy * direction.x * direction.y + f.yy * direction.y * direction.y,
+                         f.xx * across.x * across.x + 2.0 * f.xy * across.x * across.y + f.yy * across.y * across.y);
+    vec2 half_sides = extent * sqrt(max(variance, vec2(0.0))) / f.scale;
+    return Quad(vec2(0.0), widened(half_sides.x) * direction, widened(half_sides.y) * across);
+}
+
+// The part of [-1, 1] in which slope s + offset can be positive, as middle and half length.
+vec2 kept_interval(float slope, float offset) {
+    float low = slope > 0.0 ? clamp(-offset / slope, -1.0, 1.0) : -1.0;
+    float high = slope < 0.0 ? clamp(-offset / slope, -1.0, 1.0) : 1.0;
+    return vec2(0.5 * (low + high), 0.5 * (high - low));
+}
+
+// Cuts off what lies wholly behind the line plane.x + plane.yz . delta = 0.
+Quad trimmed(Quad quad, vec3 plane) {
+    float a = dot(plane.yz, quad.first);
+    float b = dot(plane.yz, quad.second);
+    vec2 s = kept_interval(a, plane.x + abs(b));
+    vec2 t = kept_interval(b, plane.x + abs(a));
+    return Quad(quad.middle + s.x * quad.first + t.x * quad.second, s.y * quad.first, t.y * quad.second);
+}
+
+float area(Quad quad) {
+    return length(quad.first) * length(quad.second);
+}
+
+// Beyond this many deviations behind the plane a weight is below 4e-5 and changes no pixel by more than 0.05/255.
+const float TRIM_DEVIATIONS = 4.0;
+
+// `weight` is what the rasteriser carries of the clip's weight (cut.glsl).
+Quad quad_around(Footprint f, float extent, vec3 weight) {
+    Quad quad = along_axes(f, extent);
+    if (max(largest(vec3(quad.first, 0.0)), largest(vec3(quad.second, 0.0))) > QUAD_MAX_EXTENT) {
+        vec2 box = box_extent(f, extent);
+        vec2 low = max(f.centre - vec2(widened(box.x), widened(box.y)), vec2(0.0));
+        vec2 high = min(f.centre + vec2(widened(box.x), widened(box.y)), FRAME.size.xy);
+        // A centre far outside the picture is known to a few units in its last place only, and the corners are sums
+        // with it.
+        vec2 half_sides = 0.5 * (high - low) + 1.0 + 1e-6 * abs(f.centre);
+        return Quad(0.5 * (low + high) - f.centre, vec2(half_sides.x, 0.0), vec2(0.0, half_sides.y));
+    }
+    float steepness = length(weight.yz);
+    if (abs(weight.x) < CUT_RANGE && steepness > 0.0) {
+        vec3 line = vec3(weight.x + TRIM_DEVIATIONS, weight.yz);
+        Quad straight = trimmed(quad, line);
+        Quad turned = trimmed(along_direction(f, extent, weight.yz / steepness), line);
+        return area(turned) < area(straight) ? turned : straight;
+    }
+    return quad;
+}
+
+#endif

@@ -1,0 +1,100 @@
+//! `rara stress`: the stress suite's table on this device.
+
+use clap::Args;
+use rara::stress::{self, FormRow, Row};
+use rara::{Headless, stress::regimes};
+use serde::Serialize;
+
+use super::failure::Failure;
+use super::output::{self, say};
+use super::settings::DeviceArgs;
+
+/// Draw what is hard to draw, and compare it with the reference in double precision
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  rara stress --validation
+  rara stress needles sigma
+
+Single cut splats, a row a regime. alpha: largest error of a pixel's uncut alpha. affine, beam, auto, rara: largest
+error of alpha times weight in that form against the same form in f64. dB: worst picture of all. missed: pixels that
+the drawn quads leave out. A row that misses its target is marked, and the exit status is 1.")]
+pub(super) struct Stress {
+    /// Only regimes whose name contains one of these
+    #[arg(value_name = "NAME-PART")]
+    names: Vec<String>,
+    /// Print the table as JSON to stdout
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+#[derive(Debug, Serialize)]
+struct Document {
+    device: String,
+    driver: String,
+    rows: Vec<Row>,
+}
+
+impl Stress {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let chosen = |name: &str| {
+            self.names.is_empty() || self.names.iter().any(|part| name.contains(part.as_str()))
+        };
+        let regimes: Vec<_> = regimes().into_iter().filter(|r| chosen(r.name)).collect();
+        if regimes.is_empty() {
+            return Err(Failure::Usage(
+                "no regime has such a name; run without names to see all".into(),
+            ));
+        }
+        let mut headless = Headless::new(&self.device.meant())?;
+        if !self.json {
+            say(format_args!(
+                "{:<52} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6}",
+                "regime", "alpha", "affine", "beam", "auto", "rara", "dB", "missed"
+            ));
+        }
+        let mut rows = Vec::new();
+        for regime in regimes {
+            let row = stress::run(&mut headless, &regime)?;
+            if !self.json {
+                print(&row);
+            }
+            rows.push(row);
+        }
+        let failed = rows.iter().filter(|row| !row.ok).count();
+        if self.json {
+            output::json(&Document {
+                device: headless.device_name().to_owned(),
+                driver: headless.driver().to_owned(),
+                rows,
+            })?;
+        }
+        if failed > 0 {
+            let message = format!("{failed} regime(s) of the stress suite miss their target");
+            return Err(rara::Error::Invalid(message).into());
+        }
+        Ok(())
+    }
+}
+
+fn print(row: &Row) {
+    let weight = |form: &FormRow| format!("{:>8.1e}", form.weight);
+    let weights: Vec<_> = row.forms.iter().map(weight).collect();
+    let psnr = row.forms.iter().fold(f64::INFINITY, |a, f| a.min(f.psnr));
+    say(format_args!(
+        "{:<52} {:>8.1e} {} {psnr:>6.1} {:>6}{}",
+        row.regime,
+        row.alpha,
+        weights.join(" "),
+        row.missed,
+        if row.ok { "" } else { "  <- misses its target" }
+    ));
+    if row.not_finite > 0 {
+        say(format_args!("  {} values are not finite", row.not_finite));
+    }
+    if let Some(reason) = row.reason {
+        say(format_args!("  target {:.0e}: {reason}", row.target));
+    }
+}

@@ -1,0 +1,190 @@
+//! How cases are made: splats strewn over a plane so that it cuts all of them, apart from each other or in a crowd.
+
+use glam::{DMat3, DQuat, DVec3, Quat};
+
+use super::Case;
+use crate::reference::{Footprint, View};
+use crate::scene::Random;
+use crate::{Camera, Clip, ClipOp, Gaussians, Plane};
+
+/// Where a case takes place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stage {
+    /// What the camera looks at, world units.
+    pub(super) centre: DVec3,
+    /// How far it stands from there.
+    pub(super) distance: f64,
+    /// Focal length, px.
+    pub(super) focal: f64,
+    /// Picture size, px.
+    pub(super) size: (u32, u32),
+}
+
+/// A view of 36 degrees from five units away.
+pub(super) const PLAIN: Stage = Stage {
+    centre: DVec3::ZERO,
+    distance: 5.0,
+    focal: 300.0,
+    size: (192, 192),
+};
+
+impl Stage {
+    /// The camera, from a random direction.
+    pub(super) fn camera(&self, random: &mut Random) -> Camera {
+        let eye = self.centre - random.direction() * self.distance;
+        let fov = 2.0 * (f64::from(self.size.1) / 2.0 / self.focal).atan();
+        let up = random.direction();
+        Camera::look_at(eye, self.centre, up, fov.to_degrees(), self.size)
+            .expect("two random directions are not parallel")
+    }
+
+    /// Radius of the picture at the stage's distance, world units.
+    pub(super) fn radius(&self) -> f64 {
+        0.6 * f64::from(self.size.0.max(self.size.1)) * self.distance / self.focal
+    }
+}
+
+/// The camera's right, down and forward axes in the world.
+pub(super) fn axes(camera: &Camera) -> DMat3 {
+    camera.rotation.transpose()
+}
+
+/// Standard deviations of a splat, given the world size of a pixel where it stands.
+pub(super) type Shape<'a> = &'a dyn Fn(&mut Random, f64) -> DVec3;
+/// The normal of the plane through the stage's centre.
+pub(super) type Normal<'a> = &'a dyn Fn(&mut Random, &Camera) -> DVec3;
+
+/// A normal that has nothing to do with the view.
+pub(super) fn any_normal(random: &mut Random, _: &Camera) -> DVec3 {
+    random.direction()
+}
+
+/// From `low` to `high`, every factor as likely as the next.
+pub(super) fn between(random: &mut Random, low: f64, high: f64) -> f64 {
+    low * (high / low).powf(random.unit())
+}
+
+/// An orientation, every one as likely.
+pub(super) fn orientation(random: &mut Random) -> Quat {
+    let turn = DQuat::from_axis_angle(random.direction(), random.range(0.0, std::f64::consts::TAU));
+    (turn * DQuat::from_rotation_arc(DVec3::Z, random.direction()))
+        .normalize()
+        .as_quat()
+}
+
+/// Four cases of single splats and one crowd: what a regime of one plane consists of.
+pub(super) fn cases(seed: u64, stage: Stage, normal: Normal<'_>, shape: Shape<'_>) -> Vec<Case> {
+    let mut random = Random::new(seed);
+    let mut single = |_| strewn(&mut random, stage, normal, shape, 40, true);
+    let mut cases: Vec<_> = (0..4).map(&mut single).collect();
+    cases.push(strewn(&mut random, stage, normal, shape, 100, false));
+    cases
+}
+
+/// Up to `count` splats on one plane through the stage's centre. Fewer where they do not fit beside each other or the
+/// plane is hardly in view.
+pub(super) fn strewn(
+    random: &mut Random,
+    stage: Stage,
+    normal: Normal<'_>,
+    shape: Shape<'_>,
+    count: usize,
+    apart: bool,
+) -> Case {
+    let camera = stage.camera(random);
+    let normal = normal(random, &camera);
+    let plane = Plane::new(normal, -normal.dot(stage.centre)).expect("a finite normal");
+    let scene = on_plane(random, stage, &camera, &plane, shape, count, apart);
+    let clip = Clip {
+        planes: vec![plane],
+        op: ClipOp::And,
+    };
+    Case {
+        scene,
+        camera,
+        clip,
+        apart,
+    }
+}
+
+/// The splats of [`strewn`].
+pub(super) fn on_plane(
+    random: &mut Random,
+    stage: Stage,
+    camera: &Camera,
+    plane: &Plane,
+    shape: Shape<'_>,
+    count: usize,
+    apart: bool,
+) -> Gaussians {
+    let normal = plane.normal();
+    let (across, along) = normal.any_orthonormal_pair();
+    let view = View::<f64>::new(camera);
+    let mut scene = Gaussians::default();
+    let mut boxes: Vec<[f64; 4]> = Vec::new();
+    for _ in 0..100 * count {
+        if scene.len() == count {
+            break;
+        }
+        let (u, v) = (random.range(-1.0, 1.0), random.range(-1.0, 1.0));
+        let on_plane = stage.centre + (across * u + along * v) * stage.radius();
+        let pixel = (camera.rotation * (on_plane - camera.eye)).z.max(1e-3) / camera.fx;
+        let rotation = orientation(random);
+        let scales = shape(random, pixel);
+        // Standard deviation along the normal: the plane passes within two of the centre.
+        let deviation = (rotation.as_dquat().inverse() * normal * scales).length();
+        // A point is not cut, but kept or dropped; it stands within two pixels then.
+        let near = if deviation > 0.0 { deviation } else { pixel };
+        let position = (on_plane + normal * near * random.range(-2.0, 2.0)).as_vec3();
+        if plane.distance(position.as_dvec3()).abs() > 2.5 * near {
+            continue; // the nearest single-precision position is elsewhere
+        }
+        let opacity = random.range(0.3, 1.0) as f32;
+        push(&mut scene, position, scales, rotation, opacity);
+        set_colour(&mut scene, random);
+        let taken = Footprint::new(&scene, scene.len() - 1, &view).map(|f| {
+            let at = |i: usize, sign: f64| f.pixel[i] + sign * (f.half[i] + 1.0);
+            [at(0, -1.0), at(1, -1.0), at(0, 1.0), at(1, 1.0)]
+        });
+        let apart_from =
+            |a: &[f64; 4], b: &[f64; 4]| a[2] < b[0] || b[2] < a[0] || a[3] < b[1] || b[3] < a[1];
+        match taken {
+            Some(taken) if !apart || boxes.iter().all(|other| apart_from(other, &taken)) => {
+                boxes.push(taken);
+            }
+            _ => pop(&mut scene),
+        }
+    }
+    scene
+}
+
+/// Appends a grey splat.
+pub(super) fn push(
+    scene: &mut Gaussians,
+    position: glam::Vec3,
+    scales: DVec3,
+    rotation: Quat,
+    opacity: f32,
+) {
+    scene.positions.push(position);
+    scene.scales.push(scales.as_vec3());
+    scene.rotations.push(rotation);
+    scene.opacities.push(opacity);
+    scene.sh.extend([0.0; 3]);
+}
+
+/// Gives the last splat of a scene without directions a random colour.
+pub(super) fn set_colour(scene: &mut Gaussians, random: &mut Random) {
+    let at = scene.sh.len() - 3;
+    for value in &mut scene.sh[at..] {
+        *value = random.range(-1.7, 1.7) as f32; // 0.5 + 0.28 of it is a colour from 0 to 1
+    }
+}
+
+fn pop(scene: &mut Gaussians) {
+    scene.positions.pop();
+    scene.scales.pop();
+    scene.rotations.pop();
+    scene.opacities.pop();
+    scene.sh.truncate(scene.sh.len() - 3);
+}

@@ -1,0 +1,234 @@
+//! What a regime is measured by: pictures of the GPU against pictures of the reference in double precision.
+
+use serde::Serialize;
+
+use super::{Case, Limit, Regime, TARGET};
+use crate::limits::ALPHA_MIN_INVERSE;
+use crate::measure::{Comparison, compare};
+use crate::reference;
+use crate::{Clip, Decay, ExactForm, Headless, Mode, Picture, Result, Settings};
+
+/// The forms of the cut that are measured. Mode `rara` only has to be finite and right in the picture: its length
+/// ratio jumps where a ray leaves the ellipsoid.
+const FORMS: [(&str, Mode, ExactForm); 4] = [
+    ("affine", Mode::Exact, ExactForm::Affine),
+    ("beam", Mode::Exact, ExactForm::Beam),
+    ("auto", Mode::Exact, ExactForm::Auto),
+    ("rara", Mode::Rara, ExactForm::Auto),
+];
+/// Pixels whose uncut alpha is this near to 1/255, relatively, may count on one side and not on the other.
+const THRESHOLD_BAND: f64 = 2e-3;
+/// What pictures are held to: in decibels, and the share of pixels more than 2/255 off.
+const PICTURE_PSNR: f64 = 60.0;
+const PICTURE_SHARE: f64 = 1e-3;
+
+/// One form of the cut in one regime: the worst of all cases.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct FormRow {
+    /// `affine`, `beam`, `auto` or `rara`.
+    pub form: &'static str,
+    /// Largest `|alpha w - alpha w|` of a pixel, GPU against the same form in f64, single splats only.
+    pub weight: f64,
+    /// Worst picture of crowds and single splats: mean difference, units of 1/255.
+    pub l1: f64,
+    /// Peak signal to noise ratio of the worst picture, decibels; infinite (null in JSON) where equal.
+    pub psnr: f64,
+    /// Largest difference of a channel in any picture, units of 1/255, relative to the picture's largest value.
+    pub max: f64,
+    /// Largest share of a picture's pixels that are more than 2/255 off.
+    pub share_over_2: f64,
+    /// For information: how far the form itself is from the perspective-exact one, both in f64: the sum of
+    /// `|alpha w - alpha w|` over the sum of alpha.
+    pub model: f64,
+}
+
+/// A row of the table.
+#[derive(Debug, Clone, Serialize)]
+pub struct Row {
+    /// The regime.
+    pub regime: &'static str,
+    /// Splats drawn, in all cases together.
+    pub splats: usize,
+    /// Largest error of the uncut alpha in a pixel, single splats only: what no form of the cut can be better than.
+    pub alpha: f64,
+    /// Pixels whose alpha is at least 1/255 but that the drawn quads miss.
+    pub missed: usize,
+    /// Values of pictures that are not finite.
+    pub not_finite: usize,
+    /// A row a form.
+    pub forms: Vec<FormRow>,
+    /// What the weight's error is held to.
+    pub target: f64,
+    /// What pictures are held to, decibels.
+    pub least_psnr: f64,
+    /// Why these are not the suite's targets.
+    pub reason: Option<&'static str>,
+    /// Whether everything is as it must be.
+    pub ok: bool,
+}
+
+impl Row {
+    fn judge(&self, exact: Option<f64>) -> bool {
+        let good = |form: &FormRow| {
+            let weight = form.form == "rara" || form.weight <= self.target;
+            let order = exact.is_none_or(|most| form.max <= 255.0 * most);
+            let share = form.share_over_2 <= PICTURE_SHARE || self.least_psnr < PICTURE_PSNR;
+            weight && order && form.psnr >= self.least_psnr && share
+        };
+        self.missed == 0 && self.not_finite == 0 && self.forms.iter().all(good)
+    }
+}
+
+/// Draws a regime's cases in every form and measures. Any message of the validation layer is an error.
+pub fn run(headless: &mut Headless, regime: &Regime) -> Result<Row> {
+    let limit = regime.limit;
+    let mut row = Row {
+        regime: regime.name,
+        splats: 0,
+        alpha: 0.0,
+        missed: 0,
+        not_finite: 0,
+        forms: FORMS.map(|(form, ..)| FormRow::of(form)).to_vec(),
+        target: limit.map_or(TARGET, |limit: Limit| limit.weight),
+        least_psnr: limit.map_or(PICTURE_PSNR, |limit| limit.psnr),
+        reason: limit.map(|limit| limit.reason),
+        ok: false,
+    };
+    for case in (regime.cases)() {
+        headless.load(&case.scene)?;
+        row.splats += case.scene.len();
+        measure(headless, &case, &mut row)?;
+    }
+    row.ok = row.judge(regime.exact);
+    Ok(row)
+}
+
+fn measure(headless: &mut Headless, case: &Case, row: &mut Row) -> Result<()> {
+    let uncut = Settings {
+        mode: Mode::None,
+        ..Settings::default()
+    };
+    let (ours, whole) = both(headless, case, &Clip::default(), &uncut)?;
+    row.not_finite += not_finite(&ours);
+    let pixels = ours.pixels.iter().zip(&whole.pixels);
+    let decided: Vec<_> = pixels
+        .map(|(a, b)| !undecided(a[3]) && !undecided(b[3]))
+        .collect();
+    row.missed += missed(&ours, &whole, &decided);
+    if case.apart {
+        row.alpha = row.alpha.max(worst(&ours, &whole, &decided));
+    }
+
+    let mut beam = None;
+    for (at, (_, mode, form)) in FORMS.into_iter().enumerate() {
+        let settings = Settings {
+            mode,
+            form,
+            // Linear, so that a pixel's alpha is alpha times weight.
+            decay: case.apart.then_some(Decay::Linear),
+            ..Settings::default()
+        };
+        let (ours, truth) = both(headless, case, &case.clip, &settings)?;
+        let bad = not_finite(&ours);
+        row.not_finite += bad;
+        let to = &mut row.forms[at];
+        if bad == 0 {
+            to.add(compare(&scaled(&ours, &truth), &scaled(&truth, &truth))?);
+        }
+        if case.apart {
+            to.weight = to.weight.max(worst(&ours, &truth, &decided));
+            let beam = beam.get_or_insert_with(|| {
+                let settings = Settings {
+                    form: ExactForm::Beam,
+                    mode: Mode::Exact,
+                    ..settings
+                };
+                reference::render::<f64>(&case.scene, &case.camera, &case.clip, &settings).picture
+            });
+            to.model = to.model.max(apart(&truth, beam, &whole));
+        }
+    }
+    Ok(())
+}
+
+/// The GPU's picture and the truth.
+fn both(
+    headless: &mut Headless,
+    case: &Case,
+    clip: &Clip,
+    settings: &Settings,
+) -> Result<(Picture, Picture)> {
+    headless.render(&case.camera, clip, settings)?;
+    let truth = reference::render::<f64>(&case.scene, &case.camera, clip, settings);
+    Ok((headless.picture()?, truth.picture))
+}
+
+fn not_finite(picture: &Picture) -> usize {
+    let values = picture.pixels.iter().flatten();
+    values.filter(|value| !value.is_finite()).count()
+}
+
+/// A picture in units of the truth's largest value, where that is beyond 1.
+fn scaled(picture: &Picture, truth: &Picture) -> Picture {
+    let largest = truth
+        .pixels
+        .iter()
+        .flatten()
+        .fold(1.0_f32, |a, b| a.max(*b));
+    let pixels = picture.pixels.iter();
+    Picture {
+        pixels: pixels.map(|pixel| pixel.map(|v| v / largest)).collect(),
+        ..*picture
+    }
+}
+
+/// Whether a splat's alpha is so near to 1/255 that single precision may count it on either side.
+fn undecided(whole: f32) -> bool {
+    (f64::from(whole) * f64::from(ALPHA_MIN_INVERSE) - 1.0).abs() < THRESHOLD_BAND
+}
+
+/// Largest difference of alpha, where there is no doubt whether the pixel counts at all.
+fn worst(ours: &Picture, truth: &Picture, decided: &[bool]) -> f64 {
+    let pixels = ours.pixels.iter().zip(&truth.pixels).zip(decided);
+    pixels
+        .filter(|(_, decided)| **decided)
+        .map(|((ours, truth), _)| f64::from((ours[3] - truth[3]).abs()))
+        .fold(0.0, f64::max)
+}
+
+/// Pixels that the truth covers beyond doubt and our picture does not.
+fn missed(ours: &Picture, whole: &Picture, decided: &[bool]) -> usize {
+    let pixels = ours.pixels.iter().zip(&whole.pixels).zip(decided);
+    pixels
+        .filter(|((ours, whole), decided)| **decided && whole[3] > 0.0 && ours[3] == 0.0)
+        .count()
+}
+
+/// Sum of differences of alpha over the sum of the uncut alpha.
+fn apart(a: &Picture, b: &Picture, whole: &Picture) -> f64 {
+    let pixels = a.pixels.iter().zip(&b.pixels);
+    let sum: f64 = pixels.map(|(a, b)| f64::from((a[3] - b[3]).abs())).sum();
+    let all: f64 = whole.pixels.iter().map(|pixel| f64::from(pixel[3])).sum();
+    sum / all.max(1e-30)
+}
+
+impl FormRow {
+    fn of(form: &'static str) -> Self {
+        Self {
+            form,
+            weight: 0.0,
+            l1: 0.0,
+            psnr: f64::INFINITY,
+            max: 0.0,
+            share_over_2: 0.0,
+            model: 0.0,
+        }
+    }
+
+    fn add(&mut self, other: Comparison) {
+        self.l1 = self.l1.max(other.l1);
+        self.psnr = self.psnr.min(other.psnr);
+        self.max = self.max.max(other.max);
+        self.share_over_2 = self.share_over_2.max(other.share_over_2);
+    }
+}

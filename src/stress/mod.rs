@@ -1,0 +1,105 @@
+//! The stress suite: scenes and cuts at the edges of what single precision can hold, each drawn on the GPU and
+//! compared with the reference in double precision.
+//!
+//! A [`Regime`] is a kind of difficulty and builds [`Case`]s: a scene, a camera and a clip. [`run`] draws them in every
+//! form of the cut and measures. `rara stress` prints the table, `tests/stress.rs` holds it to the targets.
+
+#![forbid(unsafe_code)]
+
+mod files;
+mod frames;
+mod make;
+mod measure;
+mod places;
+mod planes;
+mod shapes;
+
+use crate::{Camera, Clip, Gaussians};
+
+pub use files::regimes as files;
+pub use frames::regimes as frames;
+pub use measure::{FormRow, Row, run};
+pub use places::regimes as places;
+pub use planes::regimes as planes;
+pub use shapes::regimes as shapes;
+
+/// Largest error of alpha times weight in a pixel that a regime may show, unless it states its own limit.
+pub const TARGET: f64 = 2e-4;
+
+/// A scene, a view of it and a cut.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// The splats.
+    pub scene: Gaussians,
+    /// Where they are seen from.
+    pub camera: Camera,
+    /// What cuts them.
+    pub clip: Clip,
+    /// The footprints do not touch: a pixel's alpha is that of one splat, and so tells its weight.
+    pub apart: bool,
+}
+
+/// Where single precision ends: what a regime is allowed instead of the target, and why.
+#[derive(Debug, Clone, Copy)]
+pub struct Limit {
+    /// Largest error of alpha times weight.
+    pub weight: f64,
+    /// Least peak signal to noise ratio of a picture, decibels.
+    pub psnr: f64,
+    /// What sets it.
+    pub reason: &'static str,
+}
+
+/// A kind of difficulty.
+#[derive(Debug, Clone)]
+pub struct Regime {
+    /// What is difficult.
+    pub name: &'static str,
+    /// Where the target cannot be met.
+    pub limit: Option<Limit>,
+    /// Largest error of a colour in any pixel, where that must be smaller than two levels of 255 in a thousandth of
+    /// the pixels: an order of splats is wrong or right.
+    pub exact: Option<f64>,
+    /// Whether there is nothing to draw.
+    pub empty: bool,
+    /// Builds the cases.
+    pub cases: fn() -> Vec<Case>,
+}
+
+impl Regime {
+    /// A regime that has to meet the target.
+    const fn new(name: &'static str, cases: fn() -> Vec<Case>) -> Self {
+        Self {
+            name,
+            limit: None,
+            exact: None,
+            empty: false,
+            cases,
+        }
+    }
+
+    /// The same with a limit of its own.
+    const fn limited(self, weight: f64, psnr: f64, reason: &'static str) -> Self {
+        Self {
+            limit: Some(Limit {
+                weight,
+                psnr,
+                reason,
+            }),
+            ..self
+        }
+    }
+
+    /// The same with every pixel's colour held to `error`.
+    const fn exact(self, error: f64) -> Self {
+        Self {
+            exact: Some(error),
+            ..self
+        }
+    }
+}
+
+/// All regimes, in the table's order.
+pub fn regimes() -> Vec<Regime> {
+    [shapes(), places(), planes(), frames(), files()].concat()
+}

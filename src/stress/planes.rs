@@ -1,0 +1,98 @@
+//! Planes at extreme angles and in extreme company.
+
+use glam::DVec3;
+
+use super::make::{PLAIN, any_normal, axes, cases, on_plane};
+use super::places::mix;
+use super::{Case, Regime};
+use crate::scene::Random;
+use crate::{Camera, Clip, ClipOp, Plane};
+
+/// Planes at extreme angles and in extreme company.
+pub fn regimes() -> Vec<Regime> {
+    vec![
+        Regime::new("grazing plane, n.d = 1e-2", || grazing(1e-2)),
+        Regime::new("grazing plane, n.d = 1e-4", || grazing(1e-4)),
+        Regime::new("grazing plane, n.d = 1e-6", || grazing(1e-6)),
+        Regime::new("grazing plane, n.d = 1e-9", || grazing(1e-9)),
+        Regime::new("plane through the eye", || grazing(0.0)),
+        Regime::new("plane parallel to the view direction", parallel),
+        Regime::new("plane facing the camera", || {
+            cases(22, PLAIN, &|_, camera| axes(camera).z_axis, &mix)
+        }),
+        Regime::new("opposed planes", || {
+            together(ClipOp::And, |p| vec![p, back(p, 0.0)])
+        }),
+        Regime::new("opposed planes, either", || {
+            together(ClipOp::Or, |p| vec![p, back(p, 0.0)])
+        }),
+        Regime::new("a slab", || {
+            together(ClipOp::And, |p| vec![p, back(p, 0.02)])
+        }),
+        Regime::new("duplicate planes", || together(ClipOp::And, |p| vec![p; 3])),
+        Regime::new("duplicate planes, either", || {
+            together(ClipOp::Or, |p| vec![p; 3])
+        }),
+        Regime::new("32 planes", || {
+            together(ClipOp::And, |p| {
+                let turn = |i: u32| {
+                    let tilt = DVec3::new(f64::from(i).sin(), f64::from(i).cos(), 0.3) * 0.02;
+                    plane(p.normal() + tilt, p.offset() + 0.01 * f64::from(i % 5))
+                };
+                (0..32).map(turn).collect()
+            })
+        }),
+    ]
+}
+
+/// A plane that holds the middle of the picture almost (or wholly) along the line of sight: through the eye at 0.
+fn grazing(tilt: f64) -> Vec<Case> {
+    let normal = move |random: &mut Random, camera: &Camera| {
+        let axes = axes(camera);
+        let turn = random.range(0.0, std::f64::consts::TAU);
+        let across = axes.x_axis * turn.cos() + axes.y_axis * turn.sin();
+        across * (1.0 - tilt * tilt).sqrt() + axes.z_axis * tilt
+    };
+    cases(20, PLAIN, &normal, &mix)
+}
+
+/// Parallel to the view direction, but beside the eye.
+fn parallel() -> Vec<Case> {
+    let mut cases = grazing(0.0);
+    for case in &mut cases {
+        let shift = case.clip.planes[0].normal() * 0.4;
+        case.camera.eye -= shift;
+    }
+    cases
+}
+
+/// Cuts by several planes that follow from one.
+fn together(op: ClipOp, planes: fn(Plane) -> Vec<Plane>) -> Vec<Case> {
+    let mut random = Random::new(23);
+    let mut one = |index: usize| {
+        let camera = PLAIN.camera(&mut random);
+        let apart = index > 0;
+        let first = plane(any_normal(&mut random, &camera), 0.0);
+        let count = if apart { 40 } else { 100 };
+        let scene = on_plane(&mut random, PLAIN, &camera, &first, &mix, count, apart);
+        Case {
+            scene,
+            camera,
+            clip: Clip {
+                planes: planes(first),
+                op,
+            },
+            apart,
+        }
+    };
+    (0..4).map(&mut one).collect()
+}
+
+fn plane(normal: DVec3, offset: f64) -> Plane {
+    Plane::new(normal, offset).expect("a finite normal")
+}
+
+/// The other side of a plane, moved so that both keep a slab of this thickness.
+fn back(p: Plane, thickness: f64) -> Plane {
+    plane(-p.normal(), thickness - p.offset())
+}

@@ -116,6 +116,10 @@ impl Camera {
                 "the camera's focal lengths must be positive and its principal point finite".into(),
             ));
         }
+        // Finite numbers of a file can still sum up beyond the range.
+        if !self.eye.is_finite() {
+            return Err(Error::Invalid("the camera's position is not finite".into()));
+        }
         Ok(self)
     }
 

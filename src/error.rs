@@ -70,3 +70,12 @@ impl Error {
 
 /// The crate's result type.
 pub type Result<T> = std::result::Result<T, Error>;
+
+/// At most the first 60 characters of what a file says, control characters escaped, to quote in a message.
+pub(crate) fn shortened(text: &str) -> String {
+    let mut quoted: String = text.chars().take(60).flat_map(char::escape_debug).collect();
+    if text.chars().nth(60).is_some() {
+        quoted.push_str("...");
+    }
+    quoted
+}

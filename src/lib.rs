@@ -8,6 +8,7 @@ mod files;
 mod framing;
 pub mod gpu;
 pub mod headless;
+mod json;
 pub mod limits;
 pub mod measure;
 mod passes;

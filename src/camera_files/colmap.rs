@@ -1,12 +1,14 @@
 //! COLMAP sparse models: intrinsics by camera, poses by picture, in `.bin` or `.txt`.
 
 use std::collections::HashMap;
+use std::fs::File;
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DQuat, DVec3};
 
-use super::{NamedCamera, Parts, Pose, colmap_binary, colmap_text};
-use crate::error::{Error, Result};
+use super::{ColmapFormat, NamedCamera, Parts, Pose, colmap_binary, colmap_text};
+use crate::error::{Error, Result, shortened};
 
 /// A line or record of `cameras`.
 pub(super) struct Lens {
@@ -63,33 +65,61 @@ pub(super) const MODELS: [Model; 12] = [
 
 pub(super) fn load(folder: &Path) -> Result<Vec<NamedCamera>> {
     let folder = model_folder(folder)?;
-    let (lenses_at, lenses) = read(
-        &folder,
-        "cameras",
-        colmap_binary::lenses,
-        colmap_text::lenses,
-    )?;
-    let (images_at, mut images) = read(
-        &folder,
-        "images",
-        colmap_binary::images,
-        colmap_text::images,
-    )?;
+    let (lenses_at, images_at) = (file(&folder, "cameras"), file(&folder, "images"));
+    let lenses = read(&lenses_at, colmap_binary::lenses, colmap_text::lenses)?;
+    let images = read(&images_at, colmap_binary::images, colmap_text::images)?;
+    joined(lenses, &lenses_at, images, &images_at)
+}
+
+/// The cameras of a model in memory; `name` stands for its folder in messages.
+pub(super) fn parse(
+    format: ColmapFormat,
+    lenses: &[u8],
+    images: &[u8],
+    name: &Path,
+) -> Result<Vec<NamedCamera>> {
+    let (lenses, images) = (Cursor::new(lenses), Cursor::new(images));
+    let extension = match format {
+        ColmapFormat::Binary => "bin",
+        ColmapFormat::Text => "txt",
+    };
+    let at = |file: &str| name.join(file).with_extension(extension);
+    let (lenses_at, images_at) = (at("cameras"), at("images"));
+    let (lenses, images) = match format {
+        ColmapFormat::Binary => (
+            colmap_binary::lenses(lenses, &lenses_at)?,
+            colmap_binary::images(images, &images_at)?,
+        ),
+        ColmapFormat::Text => (
+            colmap_text::lenses(lenses, &lenses_at)?,
+            colmap_text::images(images, &images_at)?,
+        ),
+    };
+    joined(lenses, &lenses_at, images, &images_at)
+}
+
+/// Each picture with its camera, by name.
+fn joined(
+    lenses: Vec<Lens>,
+    lenses_at: &Path,
+    mut images: Vec<Image>,
+    images_at: &Path,
+) -> Result<Vec<NamedCamera>> {
     let lenses: HashMap<u32, Lens> = lenses.into_iter().map(|lens| (lens.id, lens)).collect();
     images.sort_by(|a, b| a.name.cmp(&b.name));
     let named = |image: Image| {
         let lens = lenses.get(&image.lens).ok_or_else(|| {
             let message = format!(
                 "the picture `{}` was taken with camera {}, which {} does not list; export the model again",
-                image.name,
+                shortened(&image.name),
                 image.lens,
                 lenses_at.display()
             );
-            Error::format(&images_at, message)
+            Error::format(images_at, message)
         })?;
         let camera = parts(lens, &image)
-            .and_then(|parts| parts.camera(&format!("the picture `{}`", image.name)));
-        let camera = camera.map_err(|message| Error::format(&folder, message))?;
+            .and_then(|parts| parts.camera(&format!("the picture `{}`", shortened(&image.name))));
+        let camera = camera.map_err(|message| Error::format(images_at, message))?;
         Ok(NamedCamera {
             name: image.name,
             camera,
@@ -119,20 +149,25 @@ fn model_folder(folder: &Path) -> Result<PathBuf> {
     })
 }
 
-fn read<T>(
-    folder: &Path,
-    name: &str,
-    binary: fn(&Path) -> Result<Vec<T>>,
-    text: fn(&Path) -> Result<Vec<T>>,
-) -> Result<(PathBuf, Vec<T>)> {
-    let path = folder.join(name).with_extension("bin");
-    if path.is_file() {
-        let items = binary(&path)?;
-        return Ok((path, items));
+/// The binary file if there is one, else the text.
+fn file(folder: &Path, name: &str) -> PathBuf {
+    let binary = folder.join(name).with_extension("bin");
+    if binary.is_file() {
+        binary
+    } else {
+        binary.with_extension("txt")
     }
-    let path = path.with_extension("txt");
-    let items = text(&path)?;
-    Ok((path, items))
+}
+
+type Read<T> = fn(File, &Path) -> Result<Vec<T>>;
+
+fn read<T>(path: &Path, binary: Read<T>, text: Read<T>) -> Result<Vec<T>> {
+    let file = File::open(path).map_err(Error::io(path))?;
+    if path.extension().is_some_and(|e| e == "bin") {
+        binary(file, path)
+    } else {
+        text(file, path)
+    }
 }
 
 fn parts(lens: &Lens, image: &Image) -> std::result::Result<Parts, String> {
@@ -160,7 +195,7 @@ fn parts(lens: &Lens, image: &Image) -> std::result::Result<Parts, String> {
     if !(length.is_finite() && length > 1e-6) {
         return Err(format!(
             "the picture `{}` has no valid rotation; export the model again",
-            image.name
+            shortened(&image.name)
         ));
     }
     Ok(Parts {

@@ -1,7 +1,6 @@
 //! `cameras.bin` and `images.bin`: little endian, each count checked against the file's size before it is believed.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use glam::{DQuat, DVec3};
@@ -14,15 +13,15 @@ const MAX_NAME: u64 = 4096;
 /// A 2D point of a picture: x, y and the 3D point's number. We skip them.
 const POINT_SIZE: u64 = 24;
 
-struct Records<'a> {
+struct Records<'a, R> {
     path: &'a Path,
-    reader: BufReader<File>,
+    reader: BufReader<R>,
     size: u64,
     left: u64,
 }
 
-pub(super) fn lenses(path: &Path) -> Result<Vec<Lens>> {
-    let mut records = Records::open(path)?;
+pub(super) fn lenses<R: Read + Seek>(source: R, path: &Path) -> Result<Vec<Lens>> {
+    let mut records = Records::new(source, path)?;
     let count = records.count("cameras", 24 + 3 * 8)?;
     let mut lenses = Vec::with_capacity(count);
     for _ in 0..count {
@@ -52,8 +51,8 @@ pub(super) fn lenses(path: &Path) -> Result<Vec<Lens>> {
     Ok(lenses)
 }
 
-pub(super) fn images(path: &Path) -> Result<Vec<Image>> {
-    let mut records = Records::open(path)?;
+pub(super) fn images<R: Read + Seek>(source: R, path: &Path) -> Result<Vec<Image>> {
+    let mut records = Records::new(source, path)?;
     let count = records.count("pictures", 4 + 7 * 8 + 4 + 1 + 8)?;
     let mut images = Vec::with_capacity(count);
     for _ in 0..count {
@@ -74,13 +73,13 @@ pub(super) fn images(path: &Path) -> Result<Vec<Image>> {
     Ok(images)
 }
 
-impl<'a> Records<'a> {
-    fn open(path: &'a Path) -> Result<Self> {
-        let file = File::open(path).map_err(Error::io(path))?;
-        let size = file.metadata().map_err(Error::io(path))?.len();
+impl<'a, R: Read + Seek> Records<'a, R> {
+    fn new(mut source: R, path: &'a Path) -> Result<Self> {
+        let size = source.seek(SeekFrom::End(0)).map_err(Error::io(path))?;
+        source.rewind().map_err(Error::io(path))?;
         Ok(Self {
             path,
-            reader: BufReader::new(file),
+            reader: BufReader::new(source),
             size,
             left: size,
         })

@@ -1,6 +1,5 @@
 //! `cameras.txt` and `images.txt`.
 
-use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::str::SplitAsciiWhitespace;
@@ -13,15 +12,15 @@ use crate::error::{Error, Result};
 /// A picture's line of points has some 30 bytes each, and never this many points.
 const MAX_LINE: u64 = 64 << 20;
 
-struct Lines<'a> {
+struct Lines<'a, R> {
     path: &'a Path,
-    reader: BufReader<File>,
+    reader: BufReader<R>,
     number: u64,
     line: Vec<u8>,
 }
 
-pub(super) fn lenses(path: &Path) -> Result<Vec<Lens>> {
-    let mut lines = Lines::open(path)?;
+pub(super) fn lenses<R: Read>(source: R, path: &Path) -> Result<Vec<Lens>> {
+    let mut lines = Lines::new(source, path);
     let mut lenses = Vec::new();
     while lines.next_data()? {
         let lens = lines.parse(|words| {
@@ -47,8 +46,8 @@ pub(super) fn lenses(path: &Path) -> Result<Vec<Lens>> {
     Ok(lenses)
 }
 
-pub(super) fn images(path: &Path) -> Result<Vec<Image>> {
-    let mut lines = Lines::open(path)?;
+pub(super) fn images<R: Read>(source: R, path: &Path) -> Result<Vec<Image>> {
+    let mut lines = Lines::new(source, path);
     let mut images = Vec::new();
     while lines.next_data()? {
         let image = lines.parse(|words| {
@@ -78,15 +77,14 @@ fn word<T: std::str::FromStr>(words: &mut SplitAsciiWhitespace<'_>) -> Option<T>
     words.next()?.parse().ok()
 }
 
-impl<'a> Lines<'a> {
-    fn open(path: &'a Path) -> Result<Self> {
-        let file = File::open(path).map_err(Error::io(path))?;
-        Ok(Self {
+impl<'a, R: Read> Lines<'a, R> {
+    fn new(source: R, path: &'a Path) -> Self {
+        Self {
             path,
-            reader: BufReader::new(file),
+            reader: BufReader::new(source),
             number: 0,
             line: Vec::new(),
-        })
+        }
     }
 
     fn error(&self, message: &str) -> Error {

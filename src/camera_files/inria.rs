@@ -3,7 +3,9 @@
 use glam::{DMat3, DVec3};
 use serde::Deserialize;
 
-use super::{NamedCamera, Parts, Pose, json_error};
+use super::{NamedCamera, Parts, Pose};
+use crate::error::shortened;
+use crate::json;
 
 #[derive(Deserialize)]
 struct Entry {
@@ -25,7 +27,8 @@ struct Entry {
 type DVec3Json = [f64; 3];
 
 pub(super) fn parse(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
-    let entries: Vec<Entry> = serde_json::from_slice(json).map_err(|error| json_error(&error))?;
+    let entries: Vec<Entry> =
+        serde_json::from_slice(json).map_err(|error| json::explain(&error))?;
     let named = |(number, entry): (usize, Entry)| {
         let name = entry.img_name.unwrap_or_else(|| match &entry.id {
             serde_json::Value::Null => number.to_string(),
@@ -42,7 +45,7 @@ pub(super) fn parse(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
                 eye: entry.position.into(),
             },
         };
-        let camera = parts.camera(&format!("camera {number} (`{name}`)"))?;
+        let camera = parts.camera(&format!("camera {number} (`{}`)", shortened(&name)))?;
         Ok(NamedCamera { name, camera })
     };
     entries.into_iter().enumerate().map(named).collect()

@@ -9,14 +9,13 @@ mod inria;
 mod nerfstudio;
 mod single;
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use glam::{DMat3, DMat4, DVec3};
 
 use crate::camera::{Camera, MAX_SIZE};
 use crate::error::{Error, Result};
+use crate::json;
 
 /// A camera and what its file calls it.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,8 +26,14 @@ pub struct NamedCamera {
     pub camera: Camera,
 }
 
-/// More than any file of cameras; keeps a wrong path (a video, a scene) from filling the memory.
-const MAX_JSON: u64 = 256 << 20;
+/// How the files of a COLMAP model are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColmapFormat {
+    /// `cameras.bin` and `images.bin`.
+    Binary,
+    /// `cameras.txt` and `images.txt`.
+    Text,
+}
 
 /// Loads every camera of a 3DGS `cameras.json`, a nerfstudio `transforms.json` or a COLMAP sparse folder (with
 /// `cameras` and `images`, each `.bin` or `.txt`; a folder that has `sparse/0` does too). JSON files keep their order,
@@ -51,17 +56,46 @@ pub fn load_cameras(path: &Path) -> Result<Vec<NamedCamera>> {
             folder
         })?
     } else {
-        let json = read_json(path)?;
-        let cameras = match json.first() {
-            Some(b'[') => inria::parse(&json),
-            Some(b'{') => nerfstudio::parse(&json).or_else(|error| match single::parse(&json) {
-                Ok(camera) => Ok(vec![NamedCamera { name: "0".into(), camera }]),
-                Err(_) => Err(error),
-            }),
-            _ => Err("this is neither a cameras.json, a transforms.json nor a COLMAP folder; give one of these".into()),
-        };
-        cameras.map_err(|message| Error::format(path, message))?
+        return cameras_from_json(&json::read(path, "cameras")?, path);
     };
+    not_empty(cameras, path)
+}
+
+/// Like [`load_cameras`] for the text of a `cameras.json`, a `transforms.json` or a single camera in memory; `name`
+/// stands for it in messages.
+///
+/// # Errors
+/// [`Error::Format`] if it is none of these or has unusable cameras in it.
+pub fn cameras_from_json(json: &[u8], name: &Path) -> Result<Vec<NamedCamera>> {
+    let json = json::bare(json);
+    let cameras = match json.first() {
+        Some(b'[') => inria::parse(json),
+        Some(b'{') => nerfstudio::parse(json).or_else(|error| match single::parse(json) {
+            Ok(camera) => Ok(vec![NamedCamera { name: "0".into(), camera }]),
+            Err(_) => Err(error),
+        }),
+        _ => Err("this is neither a cameras.json, a transforms.json nor a COLMAP folder; give one of these".into()),
+    };
+    not_empty(
+        cameras.map_err(|message| Error::format(name, message))?,
+        name,
+    )
+}
+
+/// Like [`load_cameras`] for the two files of a COLMAP model in memory; `name` stands for its folder in messages.
+///
+/// # Errors
+/// [`Error::Format`] if they are no model or have unusable cameras in them.
+pub fn cameras_from_colmap(
+    format: ColmapFormat,
+    cameras: &[u8],
+    images: &[u8],
+    name: &Path,
+) -> Result<Vec<NamedCamera>> {
+    not_empty(colmap::parse(format, cameras, images, name)?, name)
+}
+
+fn not_empty(cameras: Vec<NamedCamera>, path: &Path) -> Result<Vec<NamedCamera>> {
     if cameras.is_empty() {
         return Err(Error::format(
             path,
@@ -77,29 +111,15 @@ pub fn load_cameras(path: &Path) -> Result<Vec<NamedCamera>> {
 /// # Errors
 /// [`Error::Io`] if the file can't be read, [`Error::Format`] if it has no usable camera.
 pub fn load_camera(path: &Path) -> Result<Camera> {
-    single::parse(&read_json(path)?).map_err(|message| Error::format(path, message))
+    camera_from_json(&json::read(path, "cameras")?, path)
 }
 
-/// The text of a JSON file without byte-order mark and leading blanks.
-fn read_json(path: &Path) -> Result<Vec<u8>> {
-    let file = File::open(path).map_err(Error::io(path))?;
-    let mut bytes = Vec::new();
-    file.take(MAX_JSON + 1)
-        .read_to_end(&mut bytes)
-        .map_err(Error::io(path))?;
-    if bytes.len() as u64 > MAX_JSON {
-        return Err(Error::format(
-            path,
-            "this is too large to be a file of cameras; give a cameras.json or similar",
-        ));
-    }
-    let text = bytes
-        .strip_prefix(b"\xef\xbb\xbf")
-        .unwrap_or(&bytes)
-        .trim_ascii_start();
-    let blanks = bytes.len() - text.len();
-    bytes.drain(..blanks);
-    Ok(bytes)
+/// Like [`load_camera`] for text in memory; `name` stands for it in messages.
+///
+/// # Errors
+/// [`Error::Format`] if it has no usable camera.
+pub fn camera_from_json(json: &[u8], name: &Path) -> Result<Camera> {
+    single::parse(json::bare(json)).map_err(|message| Error::format(name, message))
 }
 
 /// What each format comes down to. `pose` takes camera coordinates (right, down, forward) to the world.
@@ -145,13 +165,4 @@ impl Parts {
         Camera::from_world_to_camera(world_to_camera, intrinsics, size)
             .map_err(|error| format!("{what}: {error}"))
     }
-}
-
-/// A JSON error in our words: the line is what helps.
-fn json_error(error: &serde_json::Error) -> String {
-    format!(
-        "line {} column {}: this is not the JSON expected here ({error})",
-        error.line(),
-        error.column()
-    )
 }

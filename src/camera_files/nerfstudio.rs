@@ -3,7 +3,9 @@
 use glam::{DMat3, DVec3};
 use serde::Deserialize;
 
-use super::{NamedCamera, Parts, Pose, json_error};
+use super::{NamedCamera, Parts, Pose};
+use crate::error::shortened;
+use crate::json;
 
 /// Picture side where a file gives the angle of view alone, as the synthetic NeRF scenes do: their pictures are square.
 const DEFAULT_SIDE: f64 = 1024.0;
@@ -79,8 +81,9 @@ impl Intrinsics {
             return Ok(());
         }
         Err(format!(
-            "{what} is a {model} camera with lens distortion, which a splat renderer has not; undistort the pictures \
-             and export their cameras"
+            "{what} is a {} camera with lens distortion, which a splat renderer has not; undistort the pictures \
+             and export their cameras",
+            shortened(model)
         ))
     }
 
@@ -112,11 +115,11 @@ impl Intrinsics {
 }
 
 pub(super) fn parse(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
-    let file: Transforms = serde_json::from_slice(json).map_err(|error| json_error(&error))?;
+    let file: Transforms = serde_json::from_slice(json).map_err(|error| json::explain(&error))?;
     let shared = file.shared;
     let named = |(number, frame): (usize, Frame)| {
         let name = frame.file_path.unwrap_or_else(|| number.to_string());
-        let what = format!("frame {number} (`{name}`)");
+        let what = format!("frame {number} (`{}`)", shortened(&name));
         let intrinsics = frame.own.or(&shared);
         intrinsics.check_undistorted(&what)?;
         let (size, focal) = intrinsics.size_and_focal(&what)?;

@@ -3,8 +3,9 @@
 use glam::{DMat4, DVec4};
 use serde::Deserialize;
 
-use super::{Parts, Pose, json_error};
+use super::{Parts, Pose};
 use crate::camera::Camera;
+use crate::json;
 
 #[derive(Deserialize)]
 struct Single {
@@ -19,7 +20,7 @@ struct Single {
 }
 
 pub(super) fn parse(json: &[u8]) -> Result<Camera, String> {
-    let single: Single = serde_json::from_slice(json).map_err(|error| json_error(&error))?;
+    let single: Single = serde_json::from_slice(json).map_err(|error| json::explain(&error))?;
     let matrix = DMat4::from_cols_array(&single.world_to_camera).transpose();
     if matrix.row(3) != DVec4::W {
         return Err(

@@ -1,12 +1,12 @@
-//! `--clip` and `--clip-op`: shapes to half-spaces.
+//! `--clip`, `--clip-file` and `--clip-op`: what was typed to half-spaces.
+
+use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use glam::{DQuat, DVec3};
-use rara::limits::MAX_CLIP_PLANES;
-use rara::{Clip, ClipOp, Plane};
+use rara::clip::{Shape, load_planes};
+use rara::{Clip, ClipOp};
 
 use super::failure::Failure;
-use super::values;
 
 /// What to cut away.
 #[derive(Debug, Args)]
@@ -16,6 +16,10 @@ pub(super) struct ClipArgs {
     /// box:cx,cy,cz,hx,hy,hz[,qw,qx,qy,qz] has a centre, half sizes and a rotation. A leading ! keeps the outside
     #[arg(long, value_name = "SHAPE", value_parser = shape, allow_hyphen_values = true)]
     clip: Vec<Shape>,
+    /// The planes of a JSON file (repeatable): a list of {"normal":[x,y,z],"d":d}, each with a "name" or without.
+    /// :NAME takes only those of that name, or the one of that number (from 0)
+    #[arg(long, value_name = "FILE[:NAME]")]
+    clip_file: Vec<String>,
     /// How several shapes combine: visible in all of them, or in any
     #[arg(long, value_name = "OP", default_value = "and")]
     clip_op: Op,
@@ -27,124 +31,85 @@ enum Op {
     Or,
 }
 
-/// A shape as the half-spaces that bound what it keeps.
-#[derive(Debug, Clone, PartialEq)]
-struct Shape {
-    planes: Vec<Plane>,
-    /// How the shape's own planes combine; a single plane fits either way.
-    op: ClipOp,
-}
-
 impl ClipArgs {
-    /// The clip that was meant. All shapes have to fit one list of half-spaces with one operation.
+    /// The clip that was meant; reads its files. All shapes have to fit one list of half-spaces with one operation.
     pub(super) fn meant(&self) -> Result<Clip, Failure> {
-        let asked = match self.clip_op {
+        Clip::of_shapes(&self.shapes()?, self.op()).map_err(Failure::usage)
+    }
+
+    /// The shapes that were meant; reads their files.
+    pub(super) fn shapes(&self) -> Result<Vec<Shape>, Failure> {
+        let mut shapes = self.clip.clone();
+        for text in &self.clip_file {
+            shapes.extend(from_file(text)?);
+        }
+        Ok(shapes)
+    }
+
+    /// How they combine.
+    pub(super) fn op(&self) -> ClipOp {
+        match self.clip_op {
             Op::And => ClipOp::And,
             Op::Or => ClipOp::Or,
-        };
-        // One shape alone has nothing to combine with, so its own operation holds.
-        let op = match self.clip.as_slice() {
-            [only] if only.planes.len() > 1 => only.op,
-            _ => asked,
-        };
-        if let Some(misfit) = self.clip.iter().find(|s| s.planes.len() > 1 && s.op != op) {
-            let (what, other) = match misfit.op {
-                ClipOp::And => ("the inside of a box", "and"),
-                ClipOp::Or => ("the outside of a box (!box)", "or"),
-            };
-            return Err(Failure::Usage(format!(
-                "{what} cannot be combined with other shapes by --clip-op {}: a clip is half-spaces joined either all by 'and' or all by 'or', and {what} needs '{other}'",
-                if op == ClipOp::And { "and" } else { "or" },
-            )));
         }
-        let planes: Vec<Plane> = self.clip.iter().flat_map(|s| s.planes.clone()).collect();
-        if planes.len() > MAX_CLIP_PLANES as usize {
-            return Err(Failure::Usage(format!(
-                "the --clip shapes make {} half-spaces (a box makes six), and a clip has at most {MAX_CLIP_PLANES}",
-                planes.len()
-            )));
-        }
-        Ok(Clip { planes, op })
     }
 }
 
 fn shape(text: &str) -> Result<Shape, String> {
-    let (outside, shape) = match text.strip_prefix('!') {
-        Some(rest) => (true, rest),
-        None => (false, text),
-    };
-    let (kind, numbers) = shape
-        .split_once(':')
-        .ok_or("expected a shape like plane:1,0,0,-0.5 or box:0,0,0,1,1,1")?;
-    let planes = match kind {
-        "plane" => vec![plane(values::numbers::<4>(numbers)?)?],
-        "box" => sides(&values::number_list(numbers)?)?.to_vec(),
-        "sphere" | "cylinder" => {
-            return Err(format!("a {kind} is not implemented yet; use plane or box"));
-        }
-        _ => return Err(format!("'{kind}' is not a shape; use plane or box")),
-    };
-    if !outside {
-        return Ok(Shape {
-            planes,
-            op: ClipOp::And,
-        });
-    }
-    let flipped = planes.iter().map(|p| Plane::new(-p.normal(), -p.offset()));
-    let planes = flipped
-        .collect::<rara::Result<_>>()
-        .map_err(|e| e.to_string())?;
-    Ok(Shape {
-        planes,
-        op: ClipOp::Or,
-    })
+    text.parse().map_err(|error: rara::Error| error.to_string())
 }
 
-fn plane([x, y, z, offset]: [f64; 4]) -> Result<Plane, String> {
-    Plane::new(DVec3::new(x, y, z), offset).map_err(|e| e.to_string())
-}
-
-/// A box's six half-spaces, their normals pointing inwards.
-fn sides(numbers: &[f64]) -> Result<[Plane; 6], String> {
-    if numbers.len() != 6 && numbers.len() != 10 {
-        return Err(format!(
-            "a box has 6 numbers (centre, half sizes) or 10 (and a quaternion w,x,y,z), not {}",
-            numbers.len()
-        ));
-    }
-    let centre = DVec3::from_slice(numbers);
-    let half = &numbers[3..6];
-    if half.iter().any(|h| *h <= 0.0) {
-        return Err("a box's half sizes are above zero".into());
-    }
-    let turn = match numbers.get(6..10) {
-        None => DQuat::IDENTITY,
-        Some(&[w, x, y, z]) => {
-            let largest = [w, x, y, z]
-                .into_iter()
-                .fold(0.0_f64, |a, b| a.max(b.abs()));
-            if largest == 0.0 {
-                return Err("a box's quaternion cannot be zero".into());
-            }
-            DQuat::from_xyzw(x / largest, y / largest, z / largest, w / largest).normalize()
-        }
-        Some(_) => unreachable!("the range has four elements"),
+/// The planes of `FILE` or `FILE:NAME`. Names and paths may hold colons: a file that is there goes before a name.
+fn from_file(text: &str) -> Result<Vec<Shape>, Failure> {
+    let is_file = |at: usize| Path::new(&text[..at]).is_file();
+    let named = if is_file(text.len()) {
+        None
+    } else {
+        let mut colons = text.match_indices(':').map(|(at, _)| at);
+        colons.find(|at| is_file(*at))
     };
-    let side = |index: usize| {
-        let inward = if index < 3 { -1.0 } else { 1.0 };
-        let normal = turn * (DVec3::AXES[index % 3] * inward);
-        Plane::new(normal, half[index % 3] - normal.dot(centre)).map_err(|e| e.to_string())
+    let (path, name) = match named {
+        Some(at) => (Path::new(&text[..at]), Some(&text[at + 1..])),
+        None => (Path::new(text), None),
     };
-    Ok([side(0)?, side(1)?, side(2)?, side(3)?, side(4)?, side(5)?])
+    let planes = load_planes(path)?;
+    let Some(name) = name else {
+        return Ok(planes.into_iter().map(|p| p.plane.into()).collect());
+    };
+    let mut found: Vec<Shape> = planes
+        .iter()
+        .filter(|p| p.name == name)
+        .map(|p| p.plane.into())
+        .collect();
+    if found.is_empty() {
+        let numbered = name.parse().ok().and_then(|n: usize| planes.get(n));
+        found.extend(numbered.map(|p| p.plane.into()));
+    }
+    if found.is_empty() {
+        return Err(Failure::Usage(format!(
+            "--clip-file {text}: {} has {} planes, and none of that name or number (from 0)",
+            path.display(),
+            planes.len()
+        )));
+    }
+    Ok(found)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
+    use rara::limits::MAX_CLIP_PLANES;
 
     fn clip(shapes: &[&str], clip_op: Op) -> Result<Clip, Failure> {
         let clip = shapes.iter().map(|s| shape(s).unwrap()).collect();
-        ClipArgs { clip, clip_op }.meant()
+        let clip_file = Vec::new();
+        ClipArgs {
+            clip,
+            clip_file,
+            clip_op,
+        }
+        .meant()
     }
 
     fn keeps(clip: &Clip, x: f64, y: f64, z: f64) -> bool {

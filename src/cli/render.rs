@@ -20,6 +20,7 @@ Examples:
   rara render scene.ply -o picture.png
   rara render scene.ply -o cut.png --clip plane:0,0,1,-2 --mode exact
   rara render scene.ply -o box.exr --clip box:0,0,0,1,1,2 --eye 3,-1,-4 --target 0,0,0
+  rara render scene.ply -o cut.png --clip-file planes.json:axial
   rara render body.ply organ.ply -o both.png --background 1,1,1
   rara render scene.ply -o view_{}.png --cameras cameras.json --view all
   rara render scene.ply --repeat 20 --json

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
-use rara::{Clip, ClipOp, Plane};
+use rara::{Clip, Plane};
 
 use super::camera::CameraArgs;
+use super::clip::ClipArgs;
 use super::failure::Failure;
 use super::output::{self, Progress, say};
 use super::report::{self, Report};
@@ -21,9 +22,11 @@ use rara::scene::extent_along;
 Examples:
   rara sweep scene.ply --clip-normal 0,0,1 -o frames
   rara sweep scene.ply --clip-normal 1,0,0 --frames 30 --mode hard --json
+  rara sweep scene.ply --clip-normal 0,0,1 --clip-file planes.json:skin -o frames
 
 The first frame keeps the whole of the scene's robust bounds, the last one nothing of them. Pictures are
-frame_000.png and so on. The JSON has the frames, their medians on top and their means under \"mean\".")]
+frame_000.png and so on. Other clip shapes stand still; --clip-op joins the moving plane to them too. The
+JSON has the frames, their medians on top and their means under \"mean\".")]
 pub(super) struct Sweep {
     /// Scene files (3DGS .ply); several are merged
     #[arg(value_name = "SCENE", required = true)]
@@ -46,6 +49,8 @@ pub(super) struct Sweep {
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
+    clip: ClipArgs,
+    #[command(flatten)]
     settings: SettingsArgs,
     #[command(flatten)]
     device: DeviceArgs,
@@ -54,9 +59,12 @@ pub(super) struct Sweep {
 impl Sweep {
     pub(super) fn run(self) -> Result<(), Failure> {
         let settings = self.settings.meant()?;
-        let normal = Plane::new(self.clip_normal, 0.0)
-            .map_err(Failure::usage)?
-            .normal();
+        let plane = Plane::new(self.clip_normal, 0.0).map_err(Failure::usage)?;
+        let (normal, op) = (plane.normal(), self.clip.op());
+        // The shapes that stand still, and the one that moves.
+        let mut shapes = self.clip.shapes()?;
+        shapes.push(plane.into());
+        Clip::of_shapes(&shapes, op).map_err(Failure::usage)?;
         if self.camera.all() {
             return Err(Failure::Usage(
                 "a sweep has one camera: give --view a number or a name".into(),
@@ -77,10 +85,9 @@ impl Sweep {
         for index in 0..self.frames {
             progress.update(index.into(), self.frames.into());
             let plane = Plane::new(normal, -position(range, index, self.frames))?;
-            let clip = Clip {
-                planes: vec![plane],
-                op: ClipOp::And,
-            };
+            shapes.pop();
+            shapes.push(plane.into());
+            let clip = Clip::of_shapes(&shapes, op)?;
             frames.push(session.frame(&camera, &clip, &settings, self.repeat)?);
             if let Some(folder) = &self.output {
                 let path = folder.join(format!("frame_{index:03}.png"));

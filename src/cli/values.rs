@@ -6,20 +6,10 @@ use glam::DVec3;
 
 /// `COUNT` numbers between commas, all finite.
 pub(super) fn numbers<const COUNT: usize>(text: &str) -> Result<[f64; COUNT], String> {
-    let list = number_list(text)?;
+    let list = rara::clip::numbers(text).map_err(|error| error.to_string())?;
     let found = list.len();
     list.try_into()
         .map_err(|_| format!("expected {COUNT} numbers with commas between them, found {found}"))
-}
-
-/// Any number of numbers between commas, all finite.
-pub(super) fn number_list(text: &str) -> Result<Vec<f64>, String> {
-    text.split(',')
-        .map(|part| match part.trim().parse::<f64>() {
-            Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(format!("'{part}' is not a finite number")),
-        })
-        .collect()
 }
 
 /// `x,y,z`.

@@ -13,6 +13,6 @@ pub use bounds::{Bounds, extent_along};
 pub use gaussians::{Gaussians, sh_coefficients};
 pub(crate) use generate::random::Random;
 pub use generate::{Kind, generate};
-pub use ply::{Loaded, load};
+pub use ply::{Loaded, load, load_from};
 pub use report::{LoadReport, Remark};
 pub use save::save_ply;

@@ -39,6 +39,7 @@ fn render_takes_the_flags_that_scripts_rely_on() {
         "--camera",
         "--size",
         "--clip",
+        "--clip-file",
         "--clip-op",
         "--mode",
         "--decay",

@@ -114,6 +114,61 @@ fn what_a_clip_keeps_and_what_it_cuts_away_differ() {
 }
 
 #[test]
+fn clip_files_are_the_same_planes() {
+    let here = folder("clip_file");
+    scene(&here);
+    let planes = r#"[{"name": "a", "normal": [2, 0, 0], "d": 0}, {"name": "b:c", "normal": [0, 1, 0], "d": 0.25},
+        {"name": "a", "normal": [0, 0, 1], "d": 0.5}]"#;
+    fs::write(here.join("planes.json"), planes).unwrap();
+    let render = |name: &str, flags: &str| {
+        let words = format!("render @/scene.ply -o @/{name}.exr --size 48x48 {flags}");
+        done(line(&here, &words));
+        fs::read(here.join(format!("{name}.exr"))).unwrap()
+    };
+    let (a, b, c) = ("plane:1,0,0,0", "plane:0,1,0,0.25", "plane:0,0,1,0.5");
+    for (file, typed) in [
+        ("planes.json", format!("--clip {a} --clip {b} --clip {c}")),
+        ("planes.json:a", format!("--clip {a} --clip {c}")),
+        ("planes.json:b:c", format!("--clip {b}")),
+        ("planes.json:1 --clip-op or", format!("--clip {b}")),
+    ] {
+        let from_file = render("file", &format!("--clip-file @/{file}"));
+        assert!(from_file == render("typed", &typed), "{file}");
+    }
+    refused(
+        &line(
+            &here,
+            "render @/scene.ply --json --clip-file @/planes.json:d",
+        ),
+        2,
+        "3 planes, and none of that name",
+    );
+    refused(
+        &line(&here, "render @/scene.ply --json --clip-file @/none.json:a"),
+        1,
+        "none.json",
+    );
+    refused(
+        &line(
+            &here,
+            "sweep @/scene.ply --clip-normal 0,0,1 --clip !box:0,0,0,1,1,1 --json",
+        ),
+        2,
+        "cannot be combined",
+    );
+    // A plane that stands still takes its part of what the moving one leaves.
+    let sweep = |flags: &str| {
+        let words =
+            format!("sweep @/scene.ply --clip-normal 1,0,0 --frames 2 --size 32x32 --json {flags}");
+        let sweep = document(line(&here, &words));
+        sweep["frames"][0]["counts"]["drawn"].as_u64().unwrap()
+    };
+    let (alone, joined) = (sweep(""), sweep("--clip-file @/planes.json:2"));
+    assert!(0 < joined && joined < alone, "{joined} of {alone}");
+    assert_eq!(sweep("--clip-file @/planes.json:2 --clip-op or"), alone);
+}
+
+#[test]
 fn repeats_and_views_make_frames() {
     let here = folder("frames");
     scene(&here);

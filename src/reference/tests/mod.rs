@@ -1,6 +1,7 @@
 //! Tests of the reference by closed forms: nothing in here repeats a formula of the renderer.
 
 mod invariance;
+mod laws;
 mod pictures;
 mod properties;
 mod shares;

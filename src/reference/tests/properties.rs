@@ -6,17 +6,17 @@ use proptest::prelude::*;
 
 /// A cut splat, a pixel and the way it is weighted.
 #[derive(Debug, Clone)]
-struct Case {
-    one: One,
+pub(super) struct Case {
+    pub(super) one: One,
     /// Normals and distances from the centre in deviations of the splat along them.
-    planes: Vec<(DVec3, f64)>,
-    op: ClipOp,
-    settings: Settings,
+    pub(super) planes: Vec<(DVec3, f64)>,
+    pub(super) op: ClipOp,
+    pub(super) settings: Settings,
     /// The pixel's offset from the centre, deviations of the footprint.
-    offset: [f64; 2],
+    pub(super) offset: [f64; 2],
 }
 
-fn directions() -> impl Strategy<Value = DVec3> {
+pub(super) fn directions() -> impl Strategy<Value = DVec3> {
     let axis = (0..3_usize, any::<bool>())
         .prop_map(|(i, up)| DVec3::AXES[i] * if up { 1.0 } else { -1.0 });
     let any = [-1.0..1.0, -1.0..1.0, -1.0..1.0_f64];
@@ -26,7 +26,7 @@ fn directions() -> impl Strategy<Value = DVec3> {
     prop_oneof![1 => axis, 3 => any]
 }
 
-fn splats() -> impl Strategy<Value = One> {
+pub(super) fn splats() -> impl Strategy<Value = One> {
     // Needles, pancakes, points; on the axis, at the edge of the view, about the eye.
     let scale =
         prop_oneof![1 => Just(0.0_f32), 9 => (-6.0..2.0_f32).prop_map(|e| 10.0_f32.powf(e))];
@@ -69,7 +69,7 @@ fn settings() -> impl Strategy<Value = Settings> {
     })
 }
 
-fn cases(planes: impl Into<prop::collection::SizeRange>) -> impl Strategy<Value = Case> {
+pub(super) fn cases(planes: impl Into<prop::collection::SizeRange>) -> impl Strategy<Value = Case> {
     let planes = prop::collection::vec((directions(), -4.0..4.0_f64), planes);
     let op = prop::sample::select(vec![ClipOp::And, ClipOp::Or]);
     let offset = [-3.0..3.0_f64, -3.0..3.0_f64];
@@ -85,7 +85,7 @@ fn cases(planes: impl Into<prop::collection::SizeRange>) -> impl Strategy<Value 
 }
 
 impl Case {
-    fn planes(&self) -> Vec<Plane> {
+    pub(super) fn planes(&self) -> Vec<Plane> {
         let through = |(normal, deviations): &(DVec3, f64)| {
             let normal = *normal;
             let plane = plane_through(&self.one, normal, *deviations);
@@ -100,17 +100,35 @@ impl Case {
     }
 
     /// The weight under other planes; nothing if the splat is out of view.
-    fn weight<T: Real>(&self, planes: &[Plane]) -> Option<f64> {
+    pub(super) fn weight<T: Real>(&self, planes: &[Plane]) -> Option<f64> {
+        self.cut::<T>(planes).map(|(weight, _)| weight)
+    }
+
+    /// The same, and the record that it came from.
+    pub(super) fn cut<T: Real>(&self, planes: &[Plane]) -> Option<(f64, Cut<T>)> {
+        self.seen(&self.view(), planes)
+    }
+
+    /// The same for another view.
+    pub(super) fn seen<T: Real>(&self, view: &View<T>, planes: &[Plane]) -> Option<(f64, Cut<T>)> {
         let scene = scene(&[self.one]);
-        let view = View::<T>::new(&camera(640, 480, 500.0));
-        let footprint = Footprint::new(&scene, 0, &view)?;
+        let footprint = Footprint::new(&scene, 0, view)?;
         let clip = clip(self.op, planes);
         let cut =
-            cutoff::cutoff(&scene, 0, &footprint, &view, &clip, &self.settings).expect("traced");
+            cutoff::cutoff(&scene, 0, &footprint, view, &clip, &self.settings).expect("traced");
+        let (dx, dy) = self.pixel(&footprint);
+        Some((cut.weight(dx, dy).wide(), cut))
+    }
+
+    pub(super) fn view<T: Real>(&self) -> View<T> {
+        View::new(&camera(640, 480, 500.0))
+    }
+
+    /// The pixel's offset from the centre in pixels.
+    pub(super) fn pixel<T: Real>(&self, footprint: &Footprint<T>) -> (T, T) {
         let [k0, k1, k2] = footprint.factors;
         let dx = T::of(self.offset[0]) / k0;
-        let dy = (T::of(self.offset[1]) - k1 * dx) / k2;
-        Some(cut.weight(dx, dy).wide())
+        (dx, (T::of(self.offset[1]) - k1 * dx) / k2)
     }
 }
 

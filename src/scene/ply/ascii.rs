@@ -1,19 +1,19 @@
 //! The ascii payload: one element a line, blank lines skipped, every complaint with its line's number.
 
-use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 
 use super::Progress;
 use super::assemble::{Assembler, Row};
 use super::binary::Failure;
-use super::header::{Header, shortened};
+use super::header::Header;
 use super::layout::{Field, Layout, SLOTS};
+use crate::error::shortened;
 
 /// A Gaussian takes about 1 kB; a longer line than this is not text at all.
 const MAX_LINE: u64 = 4 << 20;
 
-struct Lines {
-    reader: BufReader<File>,
+struct Lines<R> {
+    reader: BufReader<R>,
     line: Vec<u8>,
     /// Number of the line in `line`, counted from 1 at the top of the file.
     number: u64,
@@ -21,9 +21,9 @@ struct Lines {
     end: u8,
 }
 
-/// Reads the payload that begins at `file`'s position into `assembler`; `left` bytes remain of the file there.
-pub(super) fn read(
-    file: File,
+/// Reads the payload that begins at `source`'s position into `assembler`; `left` bytes remain of it there.
+pub(super) fn read<R: Read>(
+    source: R,
     left: u64,
     header: &Header,
     layout: &Layout<'_>,
@@ -31,7 +31,7 @@ pub(super) fn read(
     progress: &mut Progress<'_>,
 ) -> Result<(), Failure> {
     let mut lines = Lines {
-        reader: BufReader::with_capacity(1 << 20, file),
+        reader: BufReader::with_capacity(1 << 20, source),
         line: Vec::new(),
         number: header.lines,
         left,
@@ -62,7 +62,7 @@ pub(super) fn read(
     Ok(())
 }
 
-impl Lines {
+impl<R: Read> Lines<R> {
     /// The next line that is not blank, into `self.line`; `what` names the thing it must hold.
     fn next(&mut self, what: impl Fn() -> String) -> Result<(), Failure> {
         loop {

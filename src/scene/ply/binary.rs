@@ -1,7 +1,6 @@
 //! The binary payload, read a few MiB at a time by offsets computed from the header.
 
-use std::io::{BufRead, BufReader, ErrorKind, Read};
-use std::{fs::File, io};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek};
 
 use ply_rs::ply::{ElementDef, Encoding};
 
@@ -26,16 +25,16 @@ impl From<io::Error> for Failure {
     }
 }
 
-struct Payload {
-    reader: BufReader<File>,
+struct Payload<R> {
+    reader: BufReader<R>,
     /// Bytes of the file not yet read.
     left: u64,
     big_endian: bool,
 }
 
-/// Reads the payload that begins at `file`'s position into `assembler`; `left` bytes remain of the file there.
-pub(super) fn read(
-    file: File,
+/// Reads the payload that begins at `source`'s position into `assembler`; `left` bytes remain of it there.
+pub(super) fn read<R: Read + Seek>(
+    source: R,
     left: u64,
     header: &Header,
     layout: &Layout<'_>,
@@ -43,7 +42,7 @@ pub(super) fn read(
     progress: &mut Progress<'_>,
 ) -> Result<(), Failure> {
     let mut payload = Payload {
-        reader: BufReader::with_capacity(1 << 18, file),
+        reader: BufReader::with_capacity(1 << 18, source),
         left,
         big_endian: header.encoding == Encoding::BinaryBigEndian,
     };
@@ -62,7 +61,7 @@ pub(super) fn read(
     Ok(())
 }
 
-impl Payload {
+impl<R: Read + Seek> Payload<R> {
     /// Gaussians without lists: whole rows of equal size, the used numbers at fixed offsets.
     fn read_fixed(
         &mut self,

@@ -8,6 +8,8 @@ use std::collections::HashSet;
 use ply_rs::parser::{Parser, Reader};
 use ply_rs::ply::{DefaultElement, ElementDef, Encoding, PropertyType, ScalarType};
 
+use crate::error::shortened;
+
 /// Headers of real files are below 5 kB; this leaves room for long comments, and is all we read before we know more.
 pub(super) const MAX_BYTES: usize = 1 << 20;
 /// Elements and properties beyond these are not scenes; the caps keep each row's bookkeeping small.
@@ -162,13 +164,4 @@ fn check(element: &ElementDef) -> Result<(), String> {
         }
     }
     Ok(())
-}
-
-/// At most the first 60 characters, control characters escaped, to quote in a message.
-pub(super) fn shortened(text: &str) -> String {
-    let mut quoted: String = text.chars().take(60).flat_map(char::escape_debug).collect();
-    if text.chars().nth(60).is_some() {
-        quoted.push_str("...");
-    }
-    quoted
 }

@@ -2,8 +2,9 @@
 
 use ply_rs::ply::{ElementDef, Encoding, PropertyType};
 
-use super::header::{Header, shortened};
+use super::header::Header;
 use super::number::Number;
+use crate::error::shortened;
 use crate::scene::sh_coefficients;
 
 /// Slots of a row, see [`FIXED`]: logarithms of the scales.

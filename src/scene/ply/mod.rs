@@ -39,7 +39,7 @@ pub struct Loaded {
 /// [`Error::Io`] if the file can't be read, [`Error::Format`] if it is not a scene or is cut off, [`Error::Memory`] if
 /// it doesn't fit. Single bad elements are no error: see [`LoadReport`].
 pub fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<Loaded> {
-    let mut file = File::open(path).map_err(Error::io(path))?;
+    let file = File::open(path).map_err(Error::io(path))?;
     let metadata = file.metadata().map_err(Error::io(path))?;
     if !metadata.is_file() {
         return Err(Error::format(
@@ -47,15 +47,29 @@ pub fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<Loaded> {
             "this is a folder or a device, not a file; give a .ply file",
         ));
     }
-    let total = metadata.len();
-    let format = |message: String| Error::format(path, message);
+    load_from(file, path, progress)
+}
+
+/// Loads a 3DGS `.ply` from anything that can be read and sought in, such as an archive's entry in a
+/// [`Cursor`](std::io::Cursor). `name` stands for it in messages. Otherwise like [`load`].
+///
+/// # Errors
+/// As [`load`].
+pub fn load_from<R: Read + Seek>(
+    mut source: R,
+    name: &Path,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Loaded> {
+    let format = |message: String| Error::format(name, message);
+    let total = source.seek(SeekFrom::End(0)).map_err(Error::io(name))?;
+    source.rewind().map_err(Error::io(name))?;
 
     let mut start = Vec::new();
     let limit = header::MAX_BYTES as u64;
-    (&mut file)
+    (&mut source)
         .take(limit)
         .read_to_end(&mut start)
-        .map_err(Error::io(path))?;
+        .map_err(Error::io(name))?;
     let header = Header::parse(&start).map_err(format)?;
     drop(start);
 
@@ -65,26 +79,33 @@ pub fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<Loaded> {
     let mut assembler = Assembler::with_room(layout.count, layout.sh_degree).ok_or_else(|| {
         Error::Memory(format!(
             "{}: no memory for {} Gaussians; free some or split the file",
-            path.display(),
+            name.display(),
             layout.count
         ))
     })?;
 
-    file.seek(SeekFrom::Start(header.size))
-        .map_err(Error::io(path))?;
+    source
+        .seek(SeekFrom::Start(header.size))
+        .map_err(Error::io(name))?;
     let read = match header.encoding {
-        Encoding::Ascii => ascii::read,
-        Encoding::BinaryLittleEndian | Encoding::BinaryBigEndian => binary::read,
+        Encoding::Ascii => ascii::read::<R>,
+        Encoding::BinaryLittleEndian | Encoding::BinaryBigEndian => binary::read::<R>,
     };
     let mut progress = Progress {
         total,
         call: progress,
     };
-    read(file, left, &header, &layout, &mut assembler, &mut progress).map_err(|failure| {
-        match failure {
-            Failure::Io(error) => Error::io(path)(error),
-            Failure::Format(message) => format(message),
-        }
+    read(
+        source,
+        left,
+        &header,
+        &layout,
+        &mut assembler,
+        &mut progress,
+    )
+    .map_err(|failure| match failure {
+        Failure::Io(error) => Error::io(name)(error),
+        Failure::Format(message) => format(message),
     })?;
     progress.left(0);
     let (gaussians, report) = assembler.finish();

@@ -1,5 +1,13 @@
 //! What a clip keeps: half-spaces and how they combine.
 
+#![forbid(unsafe_code)]
+
+mod file;
+mod shape;
+
+pub use file::{NamedPlane, load_planes, planes_from_json};
+pub use shape::{Shape, numbers};
+
 use glam::DVec3;
 
 use crate::error::{Error, Result};
@@ -46,6 +54,15 @@ impl Plane {
         self.offset
     }
 
+    /// The plane that keeps the other side.
+    #[must_use]
+    pub fn flipped(&self) -> Self {
+        Self {
+            normal: -self.normal,
+            offset: -self.offset,
+        }
+    }
+
     /// Signed distance of a point, positive on the visible side, world units.
     pub fn distance(&self, point: DVec3) -> f64 {
         self.normal.dot(point) + self.offset
@@ -60,6 +77,17 @@ pub enum ClipOp {
     And,
     /// Visible where any plane keeps it (a union).
     Or,
+}
+
+impl ClipOp {
+    /// The operation that joins complements: what a union leaves out is what all of its parts leave out.
+    #[must_use]
+    pub fn dual(self) -> Self {
+        match self {
+            Self::And => Self::Or,
+            Self::Or => Self::And,
+        }
+    }
 }
 
 /// The region that stays visible. No planes means that everything does.

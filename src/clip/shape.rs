@@ -1,0 +1,184 @@
+//! Shapes as half-spaces, and their textual form: `plane:nx,ny,nz,d`, `box:cx,cy,cz,hx,hy,hz[,qw,qx,qy,qz]`.
+
+use std::str::FromStr;
+
+use glam::{DQuat, DVec3};
+
+use super::{Clip, ClipOp, Plane};
+use crate::error::{Error, Result, shortened};
+use crate::limits::MAX_CLIP_PLANES;
+
+/// A shape as the half-spaces that bound what it keeps. Parses from text; a leading `!` keeps the outside.
+///
+/// ```
+/// use rara::{Clip, ClipOp, clip::Shape};
+///
+/// let shapes: Vec<Shape> = vec!["plane:0,0,1,-2".parse()?, "box:0,0,3,1,1,1".parse()?];
+/// let clip = Clip::of_shapes(&shapes, ClipOp::And)?;
+/// assert_eq!(clip.planes.len(), 7);
+/// # Ok::<(), rara::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shape {
+    planes: Vec<Plane>,
+    /// How the shape's own planes combine; a single plane fits either way, and has `And`.
+    op: ClipOp,
+}
+
+impl Shape {
+    /// The inside of a box: its centre, half its sizes along its own axes, and its rotation.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a size that is not above zero, a rotation that is zero and numbers that are not finite.
+    pub fn cuboid(centre: DVec3, half: DVec3, rotation: DQuat) -> Result<Self> {
+        if half.min_element() <= 0.0 {
+            return Err(Error::Invalid("a box's half sizes are above zero".into()));
+        }
+        let largest = rotation.to_array().into_iter().map(f64::abs);
+        let largest = largest.fold(0.0, f64::max);
+        if largest == 0.0 {
+            return Err(Error::Invalid("a box's quaternion cannot be zero".into()));
+        }
+        // By the largest component first, so that tiny and huge ones keep their squares.
+        let turn = DQuat::from_array(rotation.to_array().map(|v| v / largest)).normalize();
+        let side = |index: usize| {
+            let inward = if index < 3 { -1.0 } else { 1.0 };
+            let normal = turn * (DVec3::AXES[index % 3] * inward);
+            Plane::new(normal, half[index % 3] - normal.dot(centre))
+        };
+        Ok(Self {
+            planes: (0..6).map(side).collect::<Result<_>>()?,
+            op: ClipOp::And,
+        })
+    }
+
+    /// The half-spaces that bound the shape.
+    pub fn planes(&self) -> &[Plane] {
+        &self.planes
+    }
+
+    /// How they combine: the inside of a box is where all of them keep a point, its outside is where any does.
+    pub fn op(&self) -> ClipOp {
+        self.op
+    }
+
+    /// The shape that keeps what this one does not.
+    #[must_use]
+    pub fn complement(mut self) -> Self {
+        for plane in &mut self.planes {
+            *plane = plane.flipped();
+        }
+        if self.planes.len() > 1 {
+            self.op = self.op.dual();
+        }
+        self
+    }
+}
+
+impl From<Plane> for Shape {
+    fn from(plane: Plane) -> Self {
+        Self {
+            planes: vec![plane],
+            op: ClipOp::And,
+        }
+    }
+}
+
+impl FromStr for Shape {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        match text.strip_prefix('!') {
+            Some(shape) => inside(shape).map(Self::complement),
+            None => inside(text),
+        }
+    }
+}
+
+fn inside(text: &str) -> Result<Shape> {
+    let invalid = |message: String| Err(Error::Invalid(message));
+    let Some((kind, numbers)) = text.split_once(':') else {
+        return invalid("expected a shape like plane:1,0,0,-0.5 or box:0,0,0,1,1,1".into());
+    };
+    match kind {
+        "plane" => match *self::numbers(numbers)? {
+            [x, y, z, offset] => Ok(Plane::new(DVec3::new(x, y, z), offset)?.into()),
+            ref list => invalid(format!(
+                "expected 4 numbers with commas between them, found {}",
+                list.len()
+            )),
+        },
+        "box" => {
+            let list = self::numbers(numbers)?;
+            let rotation = match list[..] {
+                [_, _, _, _, _, _] => DQuat::IDENTITY,
+                [_, _, _, _, _, _, w, x, y, z] => DQuat::from_xyzw(x, y, z, w),
+                _ => {
+                    return invalid(format!(
+                        "a box has 6 numbers (centre, half sizes) or 10 (and a quaternion w,x,y,z), not {}",
+                        list.len()
+                    ));
+                }
+            };
+            let (centre, half) = (DVec3::from_slice(&list), DVec3::from_slice(&list[3..]));
+            Shape::cuboid(centre, half, rotation)
+        }
+        "sphere" | "cylinder" => {
+            invalid(format!("a {kind} is not implemented yet; use plane or box"))
+        }
+        _ => invalid(format!(
+            "'{}' is not a shape; use plane or box",
+            shortened(kind)
+        )),
+    }
+}
+
+/// Numbers between commas, all finite; blanks around them are allowed.
+///
+/// # Errors
+/// [`Error::Invalid`] for anything else.
+pub fn numbers(text: &str) -> Result<Vec<f64>> {
+    text.split(',')
+        .map(|part| match part.trim().parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => Err(Error::Invalid(format!(
+                "'{}' is not a finite number",
+                shortened(part)
+            ))),
+        })
+        .collect()
+}
+
+impl Clip {
+    /// The clip that shapes make together: visible in all of them, or in any. One shape alone has nothing to combine
+    /// with, so its own operation holds.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if they do not fit one list of half-spaces that one operation joins, or make more than
+    /// [`MAX_CLIP_PLANES`].
+    pub fn of_shapes(shapes: &[Shape], op: ClipOp) -> Result<Self> {
+        let op = match shapes {
+            [only] => only.op,
+            _ => op,
+        };
+        if let Some(misfit) = shapes.iter().find(|s| s.planes.len() > 1 && s.op != op) {
+            let (what, other) = match misfit.op {
+                ClipOp::And => ("the inside of a box", "and"),
+                ClipOp::Or => ("the outside of a box (!box)", "or"),
+            };
+            return Err(Error::Invalid(format!(
+                "{what} cannot be combined with other shapes by '{}': a clip is half-spaces joined either all by 'and' \
+                 or all by 'or', and {what} needs '{other}'",
+                if op == ClipOp::And { "and" } else { "or" },
+            )));
+        }
+        let planes: Vec<Plane> = shapes.iter().flat_map(|s| s.planes.clone()).collect();
+        if planes.len() > MAX_CLIP_PLANES as usize {
+            return Err(Error::Invalid(format!(
+                "the clip shapes make {} half-spaces (a box makes six), and a clip has at most {MAX_CLIP_PLANES}",
+                planes.len()
+            )));
+        }
+        Ok(Self { planes, op })
+    }
+}

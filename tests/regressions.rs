@@ -1,0 +1,49 @@
+//! Defects that were found once, each by the smallest input that shows it.
+
+use std::path::Path;
+
+use rara::camera_files::{ColmapFormat, camera_from_json, cameras_from_colmap, cameras_from_json};
+
+/// An error is one line whatever the file calls things.
+fn assert_one_line<T: std::fmt::Debug>(result: rara::Result<T>) {
+    let text = result.expect_err("nothing usable in it").to_string();
+    assert!(!text.chars().any(char::is_control), "{text:?}");
+    assert!(text.len() < 400, "{text:?}");
+}
+
+#[test]
+fn names_with_control_characters_in_errors() {
+    let name = Path::new("file");
+    let colmap = |cameras: &str, images: &str| {
+        let (cameras, images) = (cameras.as_bytes(), images.as_bytes());
+        cameras_from_colmap(ColmapFormat::Text, cameras, images, name)
+    };
+    assert_one_line(colmap("", "1 1 0 0 0 0 0 0 1 a\u{1b}[31mb\n\n"));
+    let lens = "1 PINHOLE 9 9 9 9 4 4\n";
+    assert_one_line(colmap(lens, "1 0 0 0 0 0 0 0 1 a\u{8}\n\n"));
+    let long = format!("1 0 0 0 0 0 0 0 1 {}\n\n", "a".repeat(4000));
+    assert_one_line(colmap(lens, &long));
+    let matrix = "[[0,0,0,0],[0,0,0,0],[0,0,0,0]]";
+    for json in [
+        r#"[{"img_name": "a\nb\u0007", "width": 0, "height": 9, "fx": 9, "fy": 9, "position": [0,0,0],
+           "rotation": [[1,0,0],[0,1,0],[0,0,1]]}]"#
+            .into(),
+        format!(
+            r#"{{"w": 9, "h": 9, "fl_x": 9, "frames": [{{"file_path": "a\nb", "transform_matrix": {matrix}}}]}}"#
+        ),
+        format!(
+            r#"{{"w": 9, "h": 9, "fl_x": 9, "camera_model": "\u001b[0m", "frames": [{{"transform_matrix": {matrix}}}]}}"#
+        ),
+    ] {
+        assert_one_line(cameras_from_json(String::as_bytes(&json), name));
+    }
+}
+
+#[test]
+fn a_camera_whose_position_overflows_is_refused() {
+    // Each number is finite, but what a rotation makes of them is not.
+    let json = r#"{"width": 9, "height": 9, "fx": 9, "fy": 9, "world_to_camera":
+        [0.6, 0.8, 0, 1.7e308,  -0.8, 0.6, 0, 1.7e308,  0, 0, 1, 1.7e308,  0, 0, 0, 1]}"#;
+    let error = camera_from_json(json.as_bytes(), Path::new("file")).unwrap_err();
+    assert!(error.to_string().contains("not finite"), "{error}");
+}

@@ -1,0 +1,32 @@
+//! The text of `--clip`: shapes by line, joined by the last line's `and` or `or`.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use rara::clip::Shape;
+use rara::{Clip, ClipOp};
+use rara_fuzz::{assert_plane, assert_readable, within};
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return;
+    };
+    let op = if text.ends_with("or") {
+        ClipOp::Or
+    } else {
+        ClipOp::And
+    };
+    // A plane of twelve bytes is four f64; a box of seventeen is six planes.
+    let shapes: Vec<Shape> = within(4 << 10, 64, bytes, || {
+        text.lines().filter_map(|line| line.parse().ok()).collect()
+    });
+    for shape in &shapes {
+        shape.planes().iter().for_each(assert_plane);
+        // Twice outside is inside, to the bit; a plane alone has no operation to come back to.
+        let back = shape.clone().complement().complement();
+        assert_eq!((back.planes(), back.op()), (shape.planes(), shape.op()));
+    }
+    match Clip::of_shapes(&shapes, op) {
+        Ok(clip) => assert!(clip.planes.len() <= rara::limits::MAX_CLIP_PLANES as usize),
+        Err(error) => assert_readable(&error),
+    }
+});

@@ -59,6 +59,14 @@ impl Renderer {
         })
     }
 
+    /// Changes the format of the attachment that the next [`configure`](Self::configure) is for.
+    pub fn set_color_format(&mut self, format: vk::Format) {
+        if self.desc.color_format != format {
+            self.desc.color_format = format;
+            self.plan = None; // what is configured would draw into the old one
+        }
+    }
+
     /// Decides what the next frame needs, and allocates and compiles what is missing.
     pub fn configure(
         &mut self,
@@ -73,6 +81,8 @@ impl Renderer {
         let facts = SceneFacts {
             gaussians: scene.count,
             sh_degree: scene.sh_degree,
+            sh_format: scene.sh_format,
+            bounds: scene.bounds,
             sort_runs,
         };
         let plan = Plan::new(facts, camera, clip, settings)?;
@@ -159,10 +169,12 @@ impl Renderer {
         if plan.gaussians == 0 {
             return;
         }
-        let splat = stages.splat(plan, self.mesh);
+        let splat = stages.splat(plan, self.mesh, self.desc.color_format);
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
         let mut drawer = unsafe { Drawer::new(&self.device, cmd, self.timer.as_mut()) };
-        drawer.pass("splat", |drawer| splat.record(drawer, buffers, origin));
+        drawer.pass("splat", |drawer| {
+            splat.record(drawer, buffers, plan.sorted(), origin);
+        });
     }
 
     /// The stages that the configured frame does not need.

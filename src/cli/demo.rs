@@ -72,7 +72,7 @@ impl Demo {
             op: ClipOp::And,
         };
 
-        let mut session = Session::open(&self.device.meant(), &scene.gaussians)?;
+        let mut session = Session::open(&self.device.meant(), &scene.gaussians, look.precision.sh)?;
         let (device, driver, _) = session.about();
         let count = grouped(scene.gaussians.len() as u64);
         say(format_args!(
@@ -121,7 +121,7 @@ fn made_up() -> Scene {
 }
 
 /// A plane that shows the camera the cut: what is near and to the left goes, and that is half of the Gaussians.
-fn middle(scene: &Scene, camera: &Camera) -> rara::Result<Plane> {
+pub(super) fn middle(scene: &Scene, camera: &Camera) -> rara::Result<Plane> {
     let normal = camera.rotation.row(0) * 0.8 + camera.rotation.row(2) * 0.6;
     let centres = scene.gaussians.positions.iter();
     let mut along: Vec<f64> = centres.map(|p| normal.dot(p.as_dvec3())).collect();

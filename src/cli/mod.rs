@@ -14,6 +14,7 @@ mod failure;
 mod generate;
 mod info;
 mod output;
+mod precision;
 mod render;
 mod report;
 mod scenes;

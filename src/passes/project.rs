@@ -8,6 +8,7 @@ use crate::passes::buffers::Buffers;
 use crate::passes::context::Context;
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::shaders;
+use crate::precision::ShFormat;
 use crate::types::FrameCounts;
 
 #[derive(Debug)]
@@ -16,9 +17,11 @@ pub(crate) struct Project {
 }
 
 impl Project {
-    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
+    /// For spherical harmonics stored in one way.
+    pub(crate) fn new(context: &Context<'_>, sh: ShFormat) -> Result<Self> {
+        let constants = [(0, sh.code())];
         Ok(Self {
-            pipeline: context.compute("project", &shaders::PROJECT_COMP, &[])?,
+            pipeline: context.compute("project", &shaders::PROJECT_COMP, &constants)?,
         })
     }
 

@@ -18,6 +18,19 @@ pub(crate) struct Splat {
     mesh: bool,
 }
 
+/// What distinguishes one pipeline of the splats from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct SplatVariant {
+    /// Mesh shader or instanced quads.
+    pub(crate) mesh: bool,
+    /// `MODE_*`: without a clip the fragment shader holds no clip code.
+    pub(crate) mode: u32,
+    /// `PHI_*`.
+    pub(crate) phi: u32,
+    /// Of the colour attachment.
+    pub(crate) format: vk::Format,
+}
+
 /// Premultiplied `over`.
 const OVER: vk::PipelineColorBlendAttachmentState = vk::PipelineColorBlendAttachmentState {
     blend_enable: vk::TRUE,
@@ -31,21 +44,31 @@ const OVER: vk::PipelineColorBlendAttachmentState = vk::PipelineColorBlendAttach
 };
 
 impl Splat {
-    /// `mode` is `MODE_*`: without a clip the fragment shader holds no clip code.
-    pub(crate) fn new(context: &Context<'_>, mesh: bool, mode: u32) -> Result<Self> {
+    pub(crate) fn new(context: &Context<'_>, variant: SplatVariant) -> Result<Self> {
+        let SplatVariant {
+            mesh, mode, phi, ..
+        } = variant;
         let front = if mesh {
             &shaders::SPLAT_MESH
         } else {
             &shaders::SPLAT_VERT
         };
-        let pipeline =
-            context.graphics("splat", front, &shaders::SPLAT_FRAG, &[(0, mode)], OVER)?;
+        let constants = [(0, mode), (1, phi)];
+        let pipeline = context.graphics("splat", front, &shaders::SPLAT_FRAG, &constants, OVER)?;
         Ok(Self { pipeline, mesh })
     }
 
-    /// Draws inside the host's rendering scope; `origin` is where its viewport begins, px.
-    pub(crate) fn record(&self, drawer: &mut Drawer<'_>, b: &Buffers, origin: [f32; 2]) {
-        let buffers = [&b.frame, &b.counts, &b.splats, &b.order[0], &b.cuts];
+    /// Draws inside the host's rendering scope, in the order of `b.order[sorted]`; `origin` is where its viewport
+    /// begins, px.
+    pub(crate) fn record(
+        &self,
+        drawer: &mut Drawer<'_>,
+        b: &Buffers,
+        sorted: usize,
+        origin: [f32; 2],
+    ) {
+        let order = &b.order[sorted];
+        let buffers = [&b.frame, &b.counts, &b.splats, order, &b.cuts];
         let params = origin.map(f32::to_bits);
         if self.mesh {
             let at = offset_of!(FrameCounts, mesh_groups) as u64;

@@ -1,5 +1,7 @@
 //! The stages' pipelines, each created when a frame first needs it.
 
+use ash::vk;
+
 use crate::error::Result;
 use crate::passes::classify::Classify;
 use crate::passes::compact::Compact;
@@ -8,7 +10,8 @@ use crate::passes::cutoff::Cutoff;
 use crate::passes::plan::Plan;
 use crate::passes::project::Project;
 use crate::passes::sort::Sort;
-use crate::passes::splat::Splat;
+use crate::passes::splat::{Splat, SplatVariant};
+use crate::precision::ShFormat;
 use crate::types;
 
 /// All stages for one way of binding. Variants that no frame has asked for do not exist.
@@ -17,9 +20,9 @@ pub(crate) struct Stages {
     classify: [Option<Classify>; 2],
     pub(crate) compact: Compact,
     pub(crate) cutoff: Option<Cutoff>,
-    pub(crate) project: Project,
     pub(crate) sort: Sort,
-    splat: [[Option<Splat>; types::MODE_COUNT as usize]; 2],
+    project: Vec<(ShFormat, Project)>,
+    splat: Vec<(SplatVariant, Splat)>,
 }
 
 impl Stages {
@@ -28,9 +31,9 @@ impl Stages {
             classify: [None, None],
             compact: Compact::new(context)?,
             cutoff: None,
-            project: Project::new(context)?,
+            project: Vec::new(),
             sort: Sort::new(context)?,
-            splat: Default::default(),
+            splat: Vec::new(),
         })
     }
 
@@ -44,9 +47,13 @@ impl Stages {
         if plan.cutoff && self.cutoff.is_none() {
             self.cutoff = Some(Cutoff::new(context)?);
         }
-        let splat = &mut self.splat[usize::from(mesh)][splat_variant(plan)];
-        if splat.is_none() {
-            *splat = Some(Splat::new(context, mesh, splat_variant(plan) as u32)?);
+        let sh = plan.sh_format;
+        if self.project.iter().all(|(have, _)| *have != sh) {
+            self.project.push((sh, Project::new(context, sh)?));
+        }
+        let variant = splat_variant(plan, mesh, context.color_format);
+        if self.splat.iter().all(|(have, _)| *have != variant) {
+            self.splat.push((variant, Splat::new(context, variant)?));
         }
         Ok(())
     }
@@ -59,18 +66,38 @@ impl Stages {
     }
 
     /// The rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.
-    pub(crate) fn splat(&self, plan: &Plan, mesh: bool) -> &Splat {
-        self.splat[usize::from(mesh)][splat_variant(plan)]
-            .as_ref()
-            .expect("ensure() creates it")
+    pub(crate) fn splat(&self, plan: &Plan, mesh: bool, format: vk::Format) -> &Splat {
+        let variant = splat_variant(plan, mesh, format);
+        find(&self.splat, variant)
+    }
+
+    /// The projection for a plan, once [`ensure`](Self::ensure) has seen it.
+    pub(crate) fn project(&self, plan: &Plan) -> &Project {
+        find(&self.project, plan.sh_format)
     }
 }
 
-/// The fragment stage's `CLIP_MODE`: after a hard clip nothing is left for it to do.
-fn splat_variant(plan: &Plan) -> usize {
-    if plan.cutoff {
-        plan.mode as usize
+fn find<K: PartialEq, V>(pairs: &[(K, V)], key: K) -> &V {
+    let pair = pairs.iter().find(|(have, _)| *have == key);
+    pair.map(|(_, value)| value).expect("ensure() creates it")
+}
+
+/// After a hard clip nothing is left for the fragment stage to do, and only the exact mode has a use for Phi.
+fn splat_variant(plan: &Plan, mesh: bool, format: vk::Format) -> SplatVariant {
+    let mode = if plan.cutoff {
+        plan.mode
     } else {
-        types::MODE_NONE as usize
+        types::MODE_NONE
+    };
+    let phi = if mode == types::MODE_EXACT {
+        plan.phi
+    } else {
+        types::PHI_QUINTIC
+    };
+    SplatVariant {
+        mesh,
+        mode,
+        phi,
+        format,
     }
 }

@@ -5,6 +5,8 @@
 
 // MODE_* of the frame: without a clip none of its code is in the pipeline.
 layout(constant_id = 0) const uint CLIP_MODE = 0u;
+// PHI_*: which approximation of Phi.
+layout(constant_id = 1) const uint PHI_FORM = 0u;
 
 BUFFER(readonly, 4, vec4, cuts)
 #include "weight.glsl"

@@ -179,11 +179,11 @@ impl Preset {
             },
             Self::Balanced => balanced,
             Self::Fast => Precision {
-                target: TargetFormat::Half,
                 sh: ShFormat::Half,
                 phi: PhiForm::Cubic,
-                key_bits: 16,
+                key_bits: 24,
                 beam_switch: 0.05,
+                ..balanced
             },
         }
     }

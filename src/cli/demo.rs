@@ -86,7 +86,7 @@ impl Demo {
                 ..look
             };
             let (picture, stats) = session.picture(&camera, &clip, &settings)?;
-            picture.save(&self.output.join(format!("{}.png", mode.name())))?;
+            picture.save(self.output.join(format!("{}.png", mode.name())))?;
             shots.push(Shot {
                 mode,
                 settings,
@@ -100,7 +100,7 @@ impl Demo {
             .collect();
         let [_, hard, _, exact] = [0, 1, 2, 3].map(|index| &shots[index].picture);
         let corner = sheet::where_they_differ(hard, exact);
-        sheet::sheet(&labelled, corner).save(&self.output.join("sheet.png"))?;
+        sheet::sheet(&labelled, corner).save(self.output.join("sheet.png"))?;
         print_frames(&shots);
         if !self.no_reference {
             print_errors(&shots, &scene, &camera, &clip)?;

@@ -55,6 +55,11 @@ impl Session {
         self.headless.picture()
     }
 
+    /// Whether the device is this machine's processor.
+    pub(super) fn is_cpu(&self) -> bool {
+        self.headless.device().info().kind_name() == "cpu"
+    }
+
     /// Device name, driver, and device memory in use.
     pub(super) fn about(&self) -> (String, String, u64) {
         let headless = &self.headless;

@@ -126,7 +126,12 @@ pub(super) fn middle(scene: &Scene, camera: &Camera) -> rara::Result<Plane> {
     let centres = scene.gaussians.positions.iter();
     let mut along: Vec<f64> = centres.map(|p| normal.dot(p.as_dvec3())).collect();
     along.sort_unstable_by(f64::total_cmp);
-    Plane::new(normal, -along.get(along.len() / 2).unwrap_or(&0.0))
+    // Between two centres: through one, rounding would decide whether a hard clip keeps it.
+    let upper = along.get(along.len() / 2).unwrap_or(&0.0);
+    let lower = along
+        .get((along.len() / 2).saturating_sub(1))
+        .unwrap_or(upper);
+    Plane::new(normal, -(lower + upper) / 2.0)
 }
 
 fn print_frames(shots: &[Shot]) {

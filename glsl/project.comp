@@ -10,12 +10,13 @@ layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 layout(constant_id = 0) const bool CUT = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
-BUFFER(readonly, 2, float, sh)
+BUFFER(readonly, 2, uint, sh)
 BUFFER(readonly, 3, uvec2, survivors)
 BUFFER(readonly, 4, FrameCounts, counts)
 BUFFER(writeonly, 5, Splat, splats)
 BUFFER(writeonly, 6, uint, keys)
 BUFFER(writeonly, 7, uint, order)
+#include "sh_storage.glsl"
 BUFFER(readonly, 8, vec4, cuts)
 
 // What the rasteriser carries of the weight: see cut.glsl.
@@ -31,12 +32,13 @@ vec3 carried_weight(uint cut) {
 vec3 colour(uint index, vec3 direction) {
     float basis[MAX_SH_COEFFICIENTS];
     sh_basis(direction, FRAME.sh_degree, basis);
-    uint base = index * FRAME.sh_coefficients * 3u;
+    uint base = index * sh_words(FRAME.sh_coefficients * 3u);
+    float unit = sh_unit(base);
     uint used = (FRAME.sh_degree + 1u) * (FRAME.sh_degree + 1u);
     vec3 sum = vec3(0.5);
     for (uint i = 0u; i < used; i++) {
-        uint at = base + 3u * i;
-        sum += basis[i] * vec3(sh.at[at], sh.at[at + 1u], sh.at[at + 2u]);
+        uint k = 3u * i;
+        sum += basis[i] * vec3(sh_number(base, unit, k), sh_number(base, unit, k + 1u), sh_number(base, unit, k + 2u));
     }
     return max(sum, vec3(0.0));
 }
@@ -62,7 +64,9 @@ void main() {
     splat.axes = vec4(quad.first, quad.second);
     splat.middle = vec4(quad.middle, 0.0, 0.0);
     splats.at[survivor] = splat;
-    // Positive floats order like their bits.
-    keys.at[survivor] = floatBitsToUint(f.view.z);
+    // Positive floats order like their bits. Counted from the nearest depth that the scene's bounds allow they need
+    // fewer of them, and fewer passes of the sort; dropping low bits never turns an order round.
+    uint depth = max(floatBitsToUint(f.view.z), FRAME.key_near) - FRAME.key_near;
+    keys.at[survivor] = min(depth, FRAME.key_span) >> FRAME.key_shift;
     order.at[survivor] = survivor;
 }

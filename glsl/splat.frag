@@ -9,6 +9,8 @@ layout(constant_id = 0) const uint CLIP_MODE = MODE_NONE;
 layout(constant_id = 1) const uint CLIP_OP = OP_AND;
 layout(constant_id = 2) const uint DECAY = DECAY_DEPTH;
 layout(constant_id = 3) const uint MISS = MISS_PEAK;
+// PHI_*: which approximation of Phi.
+layout(constant_id = 4) const uint PHI_FORM = 0u;
 
 BUFFER(readonly, 4, vec4, cuts)
 #include "weight.glsl"

@@ -31,6 +31,10 @@ struct FrameData {
     uint group_count; // workgroups of classify
     uint form; // FORM_*
     uint precise_view; // 1: positions in the camera's frame are computed in two floats
+    uint key_near; // bits of the nearest depth a centre can have
+    uint key_span; // by how much the farthest depth's bits exceed them
+    uint key_shift; // low bits of the difference that the sort does without
+    uint pad_0; // unused
     vec4 plane_high[MAX_CLIP_PLANES]; // unit normal and distance, rounded to single precision
     vec4 plane_low[MAX_CLIP_PLANES]; // what the rounding lost
 };
@@ -78,6 +82,12 @@ const uint MISS_PEAK = 2u;
 const uint FORM_AUTO = 0u;
 const uint FORM_BEAM = 1u;
 const uint FORM_AFFINE = 2u;
+const uint SH_FLOAT = 0u;
+const uint SH_HALF = 1u;
+const uint SH_BYTE = 2u;
+const uint PHI_QUINTIC = 0u;
+const uint PHI_CUBIC = 1u;
+const uint PHI_LOGISTIC = 2u;
 const uint NOT_CUT = 0xffffffffu;
 
 #endif

@@ -9,6 +9,12 @@
 float phi(float z) {
     float x = clamp(z, -8.0, 8.0);
     float s = x * x;
+    if (PHI_FORM == PHI_LOGISTIC) {
+        return 1.0 / (1.0 + exp2(-2.4550345 * x)); // 9.5e-3
+    }
+    if (PHI_FORM == PHI_CUBIC) {
+        return 1.0 / (1.0 + exp2(-x * (2.3048539 + s * 0.1018025))); // 1.4e-4
+    }
     return 1.0 / (1.0 + exp2(-x * (2.3017272 + s * (0.10617733 - 9.1122696e-4 * s))));
 }
 

@@ -12,6 +12,7 @@ use crate::gpu::{
 };
 use crate::passes::SceneBuffers;
 use crate::picture::Picture;
+use crate::precision::{ShFormat, TargetFormat};
 use crate::renderer::{Renderer, RendererDesc};
 use crate::scene::Gaussians;
 use crate::settings::Settings;
@@ -26,7 +27,8 @@ pub struct HeadlessDesc {
     pub validation: bool,
 }
 
-/// A renderer that owns its device and draws into an offscreen 32-bit float picture.
+/// A renderer that owns its device and draws into an offscreen picture, of 32-bit floats unless the settings say
+/// otherwise.
 #[derive(Debug)]
 pub struct Headless {
     renderer: Renderer,
@@ -39,11 +41,9 @@ pub struct Headless {
 #[derive(Debug)]
 struct Target {
     image: Image,
+    format: TargetFormat,
     readback: Option<Buffer>,
 }
-
-/// Blending in 32-bit float costs what 16-bit does on lavapipe, and keeps thousands of thin layers exact.
-const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 impl Headless {
     /// Opens the device.
@@ -65,7 +65,7 @@ impl Headless {
             RendererDesc {
                 bindings,
                 timing: true,
-                ..RendererDesc::new(FORMAT)
+                ..RendererDesc::new(TargetFormat::default().vulkan())
             },
         )?;
         Ok(Self {
@@ -96,11 +96,16 @@ impl Headless {
         self.device.device_bytes()
     }
 
-    /// Uploads a scene in place of the one before.
+    /// Uploads a scene in place of the one before, its spherical harmonics as they are.
     pub fn load(&mut self, scene: &Gaussians) -> Result<()> {
+        self.load_as(scene, ShFormat::Float)
+    }
+
+    /// Uploads a scene in place of the one before, its spherical harmonics stored as `format` says.
+    pub fn load_as(&mut self, scene: &Gaussians, format: ShFormat) -> Result<()> {
         // Free first: both together may not fit.
         self.scene = None;
-        self.scene = Some(SceneBuffers::upload(&self.device, scene)?);
+        self.scene = Some(SceneBuffers::upload(&self.device, scene, format)?);
         Ok(())
     }
 
@@ -115,6 +120,8 @@ impl Headless {
             .scene
             .as_ref()
             .ok_or_else(|| Error::Invalid("there is no scene to render; load one first".into()))?;
+        let format = settings.precision.target;
+        self.renderer.set_color_format(format.vulkan());
         self.renderer.configure(scene, camera, clip, settings)?;
         let extent = vk::Extent2D {
             width: camera.width,
@@ -123,17 +130,19 @@ impl Headless {
         if self
             .target
             .as_ref()
-            .is_none_or(|target| target.image.extent() != extent)
+            .is_none_or(|target| target.image.extent() != extent || target.format != format)
         {
             self.target = None;
+            check_blending(&self.device, format)?;
             let image = self.device.create_image(&ImageDesc {
                 name: "target",
                 width: camera.width,
                 height: camera.height,
-                format: FORMAT,
+                format: format.vulkan(),
             })?;
             self.target = Some(Target {
                 image,
+                format,
                 readback: None,
             });
         }
@@ -181,8 +190,7 @@ impl Headless {
             .as_mut()
             .ok_or_else(|| Error::Invalid("nothing has been rendered yet".into()))?;
         let extent = target.image.extent();
-        let size =
-            u64::from(extent.width) * u64::from(extent.height) * size_of::<[f32; 4]>() as u64;
+        let size = u64::from(extent.width) * u64::from(extent.height) * target.format.pixel_bytes();
         let readback = match target.readback.take() {
             Some(buffer) => buffer,
             None => self.device.create_buffer(&BufferDesc {
@@ -197,7 +205,7 @@ impl Headless {
             unsafe { target.image.copy_to(cmd, &readback) };
             Ok(())
         })?;
-        let pixels = bytemuck::cast_slice(&readback.mapped()[..size as usize]).to_vec();
+        let pixels = target.format.decode(&readback.mapped()[..size as usize]);
         target.readback = Some(readback);
         self.check_validation()?;
         Ok(Picture {
@@ -215,4 +223,17 @@ impl Headless {
             Err(Error::Validation(messages))
         }
     }
+}
+
+/// Vulkan promises blending into every format here but 32-bit floats.
+fn check_blending(device: &Device, format: TargetFormat) -> Result<()> {
+    let features = device.format_features(format.vulkan());
+    let blends = vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
+    if features.contains(blends) {
+        return Ok(());
+    }
+    Err(Error::Device(format!(
+        "this device cannot blend into pictures of {} bits a channel; choose another target format",
+        2 * format.pixel_bytes()
+    )))
 }

@@ -130,6 +130,14 @@ impl Renderer {
         })
     }
 
+    /// Changes the format of the attachment that the next [`configure`](Self::configure) is for.
+    pub fn set_color_format(&mut self, format: vk::Format) {
+        if self.desc.color_format != format {
+            self.desc.color_format = format;
+            self.plan = None; // what is configured would draw into the old one
+        }
+    }
+
     /// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the
     /// viewport of [`draw`](Self::draw). [`Settings::background`] is the host's business and ignored here.
     ///
@@ -151,6 +159,8 @@ impl Renderer {
         let facts = SceneFacts {
             gaussians: scene.count,
             sh_degree: scene.sh_degree,
+            sh_format: scene.sh_format,
+            bounds: scene.bounds,
             sort_runs,
         };
         let plan = Plan::new(facts, camera, clip, settings)?;
@@ -261,7 +271,7 @@ impl Renderer {
         }
         let at = ((self.prepared - 1) % self.slots.len() as u64) as usize;
         let timer = self.slots[at].timer.as_mut();
-        let splat = stages.splat(plan, self.mesh);
+        let splat = stages.splat(plan, self.mesh, self.desc.color_format);
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
         let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
         drawer.pass("splat", |drawer| {

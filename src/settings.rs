@@ -1,5 +1,7 @@
 //! What a frame is asked to be, apart from scene, camera and clip.
 
+use crate::precision::Precision;
+
 /// How a clip treats the Gaussians that it cuts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Mode {
@@ -50,7 +52,7 @@ pub enum Raster {
 /// Which form of the exact weight a cut splat gets.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum ExactForm {
-    /// Affine in the pixel for small splats, perspective-exact for large ones (the switch is in `limits.glsl`).
+    /// Affine in the pixel for small splats, perspective-exact for large ones ([`Precision::beam_switch`]).
     #[default]
     Auto,
     /// Perspective-exact for every cut splat: the truth that errors are measured against.
@@ -80,6 +82,8 @@ pub struct Settings {
     pub sh_degree: Option<u32>,
     /// How splats become pixels.
     pub raster: Raster,
+    /// What is given up for time.
+    pub precision: Precision,
 }
 
 impl Default for Settings {
@@ -94,6 +98,7 @@ impl Default for Settings {
             background: None,
             sh_degree: None,
             raster: Raster::default(),
+            precision: Precision::default(),
         }
     }
 }

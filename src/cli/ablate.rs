@@ -72,7 +72,7 @@ impl Ablate {
             op: ClipOp::And,
         };
 
-        let mut session = Session::open(&self.device.meant(), &scene.gaussians)?;
+        let mut session = Session::open(&self.device.meant(), &scene.gaussians, look.precision.sh)?;
         let unclipped = Settings {
             mode: Mode::None,
             ..look

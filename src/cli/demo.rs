@@ -72,7 +72,7 @@ impl Demo {
             op: ClipOp::And,
         };
 
-        let mut session = Session::open(&self.device.meant(), &scene.gaussians)?;
+        let mut session = Session::open(&self.device.meant(), &scene.gaussians, look.precision.sh)?;
         let (device, driver, _) = session.about();
         let count = grouped(scene.gaussians.len() as u64);
         say(format_args!(
@@ -121,12 +121,17 @@ fn made_up() -> Scene {
 }
 
 /// A plane that shows the camera the cut: what is near and to the left goes, and that is half of the Gaussians.
-fn middle(scene: &Scene, camera: &Camera) -> rara::Result<Plane> {
+pub(super) fn middle(scene: &Scene, camera: &Camera) -> rara::Result<Plane> {
     let normal = camera.rotation.row(0) * 0.8 + camera.rotation.row(2) * 0.6;
     let centres = scene.gaussians.positions.iter();
     let mut along: Vec<f64> = centres.map(|p| normal.dot(p.as_dvec3())).collect();
     along.sort_unstable_by(f64::total_cmp);
-    Plane::new(normal, -along.get(along.len() / 2).unwrap_or(&0.0))
+    // Between two centres: through one, rounding would decide whether a hard clip keeps it.
+    let upper = along.get(along.len() / 2).unwrap_or(&0.0);
+    let lower = along
+        .get((along.len() / 2).saturating_sub(1))
+        .unwrap_or(upper);
+    Plane::new(normal, -(lower + upper) / 2.0)
 }
 
 fn print_frames(shots: &[Shot]) {

@@ -4,6 +4,7 @@
 //! done. Only [`output::json`] writes to stdout; everything for people goes to stderr.
 
 mod ablate;
+mod bench;
 mod camera;
 mod clip;
 mod combine;
@@ -13,7 +14,9 @@ mod devices;
 mod failure;
 mod generate;
 mod info;
+mod ink;
 mod output;
+mod precision;
 mod render;
 mod report;
 mod scenes;
@@ -57,6 +60,7 @@ enum Command {
     Render(render::Render),
     Sweep(sweep::Sweep),
     Ablate(ablate::Ablate),
+    Bench(bench::Bench),
     Demo(demo::Demo),
     Compare(compare::Compare),
     Generate(generate::Generate),
@@ -71,6 +75,7 @@ impl Command {
             Self::Render(command) => command.run(),
             Self::Sweep(command) => command.run(),
             Self::Ablate(command) => command.run(),
+            Self::Bench(command) => command.run(),
             Self::Demo(command) => command.run(),
             Self::Compare(command) => command.run(),
             Self::Generate(command) => command.run(),

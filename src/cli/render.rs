@@ -58,7 +58,11 @@ impl Render {
 
         let scene = scenes::load(&self.scenes)?;
         let views = views.of(&scene.gaussians)?;
-        let mut session = Session::open(&self.device.meant(), &scene.gaussians)?;
+        let mut session = Session::open(
+            &self.device.meant(),
+            &scene.gaussians,
+            settings.precision.sh,
+        )?;
         let mut frames = Vec::new();
         let mut written = Vec::new();
         let mut progress = Progress::new("rendering");

@@ -2,6 +2,7 @@
 
 use rara::{
     Camera, Clip, FrameStats, Gaussians, Headless, HeadlessDesc, Picture, Result, Settings,
+    ShFormat,
 };
 
 use super::combine::{Combine, combine};
@@ -12,10 +13,15 @@ pub(super) struct Session {
 }
 
 impl Session {
-    pub(super) fn open(desc: &HeadlessDesc, scene: &Gaussians) -> Result<Self> {
+    pub(super) fn open(desc: &HeadlessDesc, scene: &Gaussians, sh: ShFormat) -> Result<Self> {
         let mut headless = Headless::new(desc)?;
-        headless.load(scene)?;
+        headless.load_as(scene, sh)?;
         Ok(Self { headless })
+    }
+
+    /// Uploads the scene once more, its spherical harmonics stored in another way.
+    pub(super) fn reload(&mut self, scene: &Gaussians, sh: ShFormat) -> Result<()> {
+        self.headless.load_as(scene, sh)
     }
 
     /// Renders the frame `repeat` times; the statistics are the medians.
@@ -47,6 +53,11 @@ impl Session {
     /// The picture of the last frame.
     pub(super) fn last_picture(&mut self) -> Result<Picture> {
         self.headless.picture()
+    }
+
+    /// Whether the device is this machine's processor.
+    pub(super) fn is_cpu(&self) -> bool {
+        self.headless.device().info().kind_name() == "cpu"
     }
 
     /// Device name, driver, and device memory in use.

@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 use rara::{Decay, HeadlessDesc, Miss, Mode, Raster, Settings};
 
 use super::failure::Failure;
+use super::precision::PrecisionArgs;
 use super::{output, values};
 
 /// How to draw.
@@ -42,6 +43,8 @@ pub(super) struct LookArgs {
     /// How splats become pixels; the picture is the same
     #[arg(long, value_name = "HOW", default_value = "auto")]
     raster: RasterArg,
+    #[command(flatten)]
+    precision: PrecisionArgs,
 }
 
 /// Which device, and how closely it is watched.
@@ -166,6 +169,7 @@ impl LookArgs {
             background: self.background,
             sh_degree: self.sh_degree,
             raster,
+            precision: self.precision.meant(),
             ..Settings::default()
         })
     }

@@ -2,11 +2,13 @@
 
 use rara::Picture;
 
+use super::ink;
+
 /// Pixels between two pictures.
 const GAP: u32 = 4;
 /// Colour of what is between the pictures.
 const MARGIN: [f32; 4] = [0.25, 0.25, 0.25, 1.0];
-const INK: [f32; 4] = [1.0; 4];
+const INK: [u8; 3] = [255; 3];
 /// How far the lower row is magnified.
 const ZOOM: u32 = 6;
 
@@ -23,7 +25,8 @@ pub(super) fn sheet(pictures: &[(&str, Picture)], corner: (u32, u32)) -> Picture
     let mut sheet = Picture::filled(count * (width + GAP) - GAP, band + 2 * height + GAP, MARGIN);
     for (column, (label, picture)) in (0..).zip(pictures) {
         let left = column * (width + GAP);
-        write(&mut sheet, label, left + 2 * scale, 2 * scale, scale);
+        let at = [left + 2 * scale, 2 * scale].map(f64::from);
+        ink::text(&mut sheet, at, label, scale.into(), INK);
         for y in 0..height {
             for x in 0..width {
                 set(&mut sheet, left + x, band + y, picture.at(x, y));
@@ -61,48 +64,6 @@ fn set(picture: &mut Picture, x: u32, y: u32, pixel: [f32; 4]) {
     }
 }
 
-/// Writes `text` with its top left corner at (x, y); each dot is `scale` pixels wide.
-fn write(picture: &mut Picture, text: &str, x: u32, y: u32, scale: u32) {
-    for (place, letter) in (0..).zip(text.chars()) {
-        for (row, dots) in (0..).zip(glyph(letter)) {
-            for column in (0..5).filter(|column| dots >> (4 - column) & 1 == 1) {
-                for dot in 0..scale * scale {
-                    let (dx, dy) = (dot % scale, dot / scale);
-                    set(
-                        picture,
-                        x + (6 * place + column) * scale + dx,
-                        y + row * scale + dy,
-                        INK,
-                    );
-                }
-            }
-        }
-    }
-}
-
-/// A letter's rows from the top, five dots each; the letters that the names of the modes need.
-fn glyph(letter: char) -> [u8; 7] {
-    match letter {
-        'a' => [0, 0, 0b01110, 0b00001, 0b01111, 0b10001, 0b01111],
-        'c' => [0, 0, 0b01110, 0b10001, 0b10000, 0b10001, 0b01110],
-        'd' => [
-            0b00001, 0b00001, 0b01101, 0b10011, 0b10001, 0b10011, 0b01101,
-        ],
-        'e' => [0, 0, 0b01110, 0b10001, 0b11111, 0b10000, 0b01110],
-        'h' => [
-            0b10000, 0b10000, 0b10110, 0b11001, 0b10001, 0b10001, 0b10001,
-        ],
-        'n' => [0, 0, 0b10110, 0b11001, 0b10001, 0b10001, 0b10001],
-        'o' => [0, 0, 0b01110, 0b10001, 0b10001, 0b10001, 0b01110],
-        'r' => [0, 0, 0b10110, 0b11001, 0b10000, 0b10000, 0b10000],
-        't' => [
-            0b01000, 0b01000, 0b11110, 0b01000, 0b01000, 0b01001, 0b00110,
-        ],
-        'x' => [0, 0, 0b10001, 0b01010, 0b00100, 0b01010, 0b10001],
-        _ => [0; 7],
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::settings::ModeArg;
@@ -112,7 +73,7 @@ mod tests {
     fn every_mode_can_be_labelled() {
         let letters = ModeArg::ALL.iter().flat_map(|mode| mode.name().chars());
         for letter in letters {
-            assert_ne!(glyph(letter), [0; 7], "{letter}");
+            assert_ne!(ink::glyph(letter), [0; 7], "{letter}");
         }
     }
 

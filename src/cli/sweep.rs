@@ -78,7 +78,11 @@ impl Sweep {
         let scene = scenes::load(&self.scenes)?;
         let camera = views.of(&scene.gaussians)?.remove(0).camera;
         let range = extent_along(&scene.gaussians, normal);
-        let mut session = Session::open(&self.device.meant(), &scene.gaussians)?;
+        let mut session = Session::open(
+            &self.device.meant(),
+            &scene.gaussians,
+            settings.precision.sh,
+        )?;
         let mut frames = Vec::new();
         let mut written = Vec::new();
         let mut progress = Progress::new("sweeping");

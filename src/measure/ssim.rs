@@ -9,9 +9,10 @@ const SIGMA: f64 = 1.5;
 /// (0.01)^2 and (0.03)^2: what keeps the two quotients finite where nothing is to be seen.
 const STABILISERS: [f64; 2] = [1e-4, 9e-4];
 
-/// Mean over the pixels of the structural similarity of one channel of two pictures of the same size.
-pub(super) fn channel(a: &Picture, b: &Picture, channel: usize) -> f64 {
+/// Adds the structural similarity of one channel of two pictures of the same size to each pixel's sum.
+pub(super) fn add_channel(a: &Picture, b: &Picture, channel: usize, sums: &mut [f64]) {
     let (width, height) = (a.width as usize, a.height as usize);
+    assert_eq!(sums.len(), width * height);
     let (across, down) = (windows(width), windows(height));
     // The window is a product of two one-dimensional ones: blur each row's moments, then down the columns.
     let mut rows = Vec::with_capacity(width * height);
@@ -27,12 +28,11 @@ pub(super) fn channel(a: &Picture, b: &Picture, channel: usize) -> f64 {
         let moments: Vec<_> = moments.collect();
         rows.extend(across.iter().map(|window| window.mean(|x| moments[x])));
     }
-    let column = |x: usize| {
-        down.iter()
-            .map(|window| similarity(window.mean(|y| rows[y * width + x])))
-            .sum::<f64>()
-    };
-    (0..width).map(column).sum::<f64>() / (width * height) as f64
+    for (window, sums) in down.iter().zip(sums.chunks_exact_mut(width)) {
+        for (x, sum) in sums.iter_mut().enumerate() {
+            *sum += similarity(window.mean(|y| rows[y * width + x]));
+        }
+    }
 }
 
 /// Positions and weights of the window about one position of an axis; the weights add up to 1 at the edges too.

@@ -32,8 +32,8 @@ pub(crate) fn record(
     // Conic, quad, colour and depth key of the survivors.
     recorder.pass("project", |r| stages.project(plan).record(r, scene, b));
     // Their order.
-    if plan.gaussians > 1 {
-        recorder.pass("sort", |r| stages.sort.record(r, b));
+    if plan.sort_passes > 0 {
+        recorder.pass("sort", |r| stages.sort.record(r, b, plan.sort_passes));
     }
 
     recorder.copy(
@@ -42,5 +42,6 @@ pub(crate) fn record(
         &[ash::vk::BufferCopy::default().size(b.counts.size())],
     );
     recorder.ready_for_host(&[readback]);
-    recorder.ready_to_draw(&[&b.frame, &b.counts, &b.splats, &b.order[0], &b.cuts]);
+    let order = &b.order[plan.sorted()];
+    recorder.ready_to_draw(&[&b.frame, &b.counts, &b.splats, order, &b.cuts]);
 }

@@ -1,11 +1,13 @@
 //! What a frame needs, decided on the CPU before anything is recorded: which stages run, and the frame's constants.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use crate::camera::Camera;
 use crate::clip::{Clip, ClipOp};
 use crate::error::{Error, Result};
 use crate::limits;
+use crate::passes::depth_keys::DepthKeys;
+use crate::precision::ShFormat;
 use crate::settings::{Decay, ExactForm, Miss, Mode, Settings};
 use crate::types::{self, FrameData};
 
@@ -20,6 +22,12 @@ pub(crate) struct Plan {
     pub(crate) cutoff: bool,
     /// vec4s of a cutoff record.
     pub(crate) cut_stride: u32,
+    /// How the scene's spherical harmonics are stored.
+    pub(crate) sh_format: ShFormat,
+    /// `PHI_*`.
+    pub(crate) phi: u32,
+    /// Passes of the sort.
+    pub(crate) sort_passes: u32,
     /// Invocations of the sort.
     pub(crate) sort_runs: u32,
     /// The frame's constants.
@@ -31,6 +39,9 @@ pub(crate) struct Plan {
 pub(crate) struct SceneFacts {
     pub(crate) gaussians: u32,
     pub(crate) sh_degree: u32,
+    pub(crate) sh_format: ShFormat,
+    /// The corners of the box around the centres.
+    pub(crate) bounds: [Vec3; 2],
     pub(crate) sort_runs: u32,
 }
 
@@ -52,6 +63,12 @@ impl Plan {
             return Err(Error::Invalid(format!(
                 "an ellipsoid of {} standard deviations cannot be traced",
                 settings.sigma
+            )));
+        }
+        let switch = settings.precision.beam_switch;
+        if switch.is_nan() || switch < 0.0 {
+            return Err(Error::Invalid(format!(
+                "a beam switch of {switch} is not a size; give zero or more"
             )));
         }
         let clipping = settings.mode != Mode::None && !clip.planes.is_empty();
@@ -103,7 +120,11 @@ impl Plan {
             ExactForm::Affine => types::FORM_AFFINE,
         };
         data.sigma = settings.sigma;
-        data.beam_switch = limits::BEAM_SWITCH;
+        data.beam_switch = settings.precision.beam_switch;
+        let keys = DepthKeys::new(scene.bounds, camera, settings.precision.key_bits)?;
+        data.key_near = keys.near;
+        data.key_span = keys.span;
+        data.key_shift = keys.shift;
         data.trace_all = settings.trace_all.into();
         data.cut_stride = cut_stride;
         data.sort_runs = scene.sort_runs;
@@ -122,9 +143,21 @@ impl Plan {
             mode,
             cutoff,
             cut_stride,
+            sh_format: scene.sh_format,
+            phi: settings.precision.phi.code(),
+            sort_passes: if scene.gaussians > 1 {
+                keys.passes()
+            } else {
+                0
+            },
             sort_runs: scene.sort_runs,
             data,
         })
+    }
+
+    /// Which of the two pairs of key and order buffers holds the sorted ones: each pass carries them to the other.
+    pub(crate) fn sorted(&self) -> usize {
+        (self.sort_passes % 2) as usize
     }
 
     /// The stages that this frame does not need.

@@ -6,8 +6,10 @@ use crate::error::Result;
 use crate::gpu::{ComputePipeline, Groups, Recorder};
 use crate::passes::buffers::Buffers;
 use crate::passes::context::Context;
+use crate::passes::plan::Plan;
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::shaders;
+use crate::precision::ShFormat;
 use crate::types::FrameCounts;
 
 #[derive(Debug)]
@@ -15,11 +17,29 @@ pub(crate) struct Project {
     pipeline: ComputePipeline,
 }
 
+/// What tells one pipeline from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct ProjectKey {
+    cut: bool,
+    sh: ShFormat,
+}
+
+impl ProjectKey {
+    /// The pipeline a plan needs.
+    pub(crate) fn new(plan: &Plan) -> Self {
+        Self {
+            cut: plan.cutoff,
+            sh: plan.sh_format,
+        }
+    }
+}
+
 impl Project {
-    /// With `cut` false the shader knows no cutoff records.
-    pub(crate) fn new(context: &Context<'_>, cut: bool) -> Result<Self> {
+    /// For spherical harmonics stored in one way; with `cut` false the shader knows no cutoff records.
+    pub(crate) fn new(context: &Context<'_>, key: ProjectKey) -> Result<Self> {
+        let constants = [(0, key.cut.into()), (1, key.sh.code())];
         Ok(Self {
-            pipeline: context.compute("project", &shaders::PROJECT_COMP, &[(0, cut.into())])?,
+            pipeline: context.compute("project", &shaders::PROJECT_COMP, &constants)?,
         })
     }
 

@@ -1,9 +1,12 @@
 //! The scene on the device: geometry and spherical harmonics, uploaded once.
 
 use bytemuck::cast_slice;
+use glam::Vec3;
 
 use crate::error::{Error, Result};
 use crate::gpu::{Buffer, BufferDesc, Device, Location};
+use crate::passes::sh_storage;
+use crate::precision::ShFormat;
 use crate::scene::Gaussians;
 use crate::types::Gaussian;
 
@@ -14,14 +17,17 @@ pub struct SceneBuffers {
     pub(crate) sh: Buffer,
     pub(crate) count: u32,
     pub(crate) sh_degree: u32,
+    pub(crate) sh_format: ShFormat,
+    /// The corners of the box around all centres.
+    pub(crate) bounds: [Vec3; 2],
 }
 
 /// Gaussians converted at a time while uploading, so that the scene is never in memory a third time.
 const UPLOAD_CHUNK: usize = 1 << 16;
 
 impl SceneBuffers {
-    /// Uploads a scene and waits for it.
-    pub fn upload(device: &Device, scene: &Gaussians) -> Result<Self> {
+    /// Uploads a scene, its spherical harmonics stored as `format` says, and waits for it.
+    pub fn upload(device: &Device, scene: &Gaussians, format: ShFormat) -> Result<Self> {
         let too_many = |_| {
             Error::Invalid(format!(
                 "a scene of {} Gaussians is beyond the 2^32 of an index",
@@ -29,9 +35,10 @@ impl SceneBuffers {
             ))
         };
         let count = u32::try_from(scene.len()).map_err(too_many)?;
-        if scene.sh.len() > u32::MAX as usize {
+        let words = sh_storage::words(format, 3 * scene.sh_coefficients());
+        if scene.len() * words > u32::MAX as usize {
             return Err(Error::Invalid(format!(
-                "{} Gaussians of spherical-harmonics degree {} need more than 2^32 numbers; lower the degree",
+                "{} Gaussians of spherical-harmonics degree {} need more than 2^32 numbers; lower the degree or store them in fewer bits",
                 scene.len(),
                 scene.sh_degree
             )));
@@ -51,13 +58,23 @@ impl SceneBuffers {
             device.upload(&gaussians, offset, cast_slice(&packed))?;
             offset += size_of_val(packed.as_slice()) as u64;
         }
-        let sh = gpu("sh", size_of_val(scene.sh.as_slice()) as u64)?;
-        device.upload(&sh, 0, cast_slice(&scene.sh))?;
+        let sh = gpu("sh", (scene.len() * words * size_of::<u32>()) as u64)?;
+        if format == ShFormat::Float {
+            device.upload(&sh, 0, cast_slice(&scene.sh))?;
+        } else {
+            upload_packed(device, &sh, scene, format)?;
+        }
+        let centres = scene.positions.iter();
+        let bounds = centres.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], &x| {
+            [low.min(x), high.max(x)]
+        });
         Ok(Self {
             gaussians,
             sh,
             count,
             sh_degree: scene.sh_degree,
+            sh_format: format,
+            bounds,
         })
     }
 
@@ -65,6 +82,20 @@ impl SceneBuffers {
     pub(crate) fn largest(&self) -> u64 {
         self.gaussians.size().max(self.sh.size())
     }
+}
+
+fn upload_packed(device: &Device, sh: &Buffer, scene: &Gaussians, format: ShFormat) -> Result<()> {
+    let mut offset = 0;
+    let mut packed = Vec::new();
+    for begin in (0..scene.len()).step_by(UPLOAD_CHUNK) {
+        packed.clear();
+        for index in begin..scene.len().min(begin + UPLOAD_CHUNK) {
+            sh_storage::pack(format, scene.sh_of(index), &mut packed);
+        }
+        device.upload(sh, offset, cast_slice(&packed))?;
+        offset += size_of_val(packed.as_slice()) as u64;
+    }
+    Ok(())
 }
 
 fn pack(scene: &Gaussians, index: usize) -> Gaussian {

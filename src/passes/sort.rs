@@ -10,10 +10,6 @@ use crate::passes::context::Context;
 use crate::passes::shaders;
 use crate::types::FrameCounts;
 
-/// Passes over a 32-bit key: an even number, so that the result ends where it began, in `keys[0]` and `order[0]`.
-const PASSES: u32 = u32::BITS / limits::SORT_BITS;
-const _: () = assert!(PASSES.is_multiple_of(2) && u32::BITS.is_multiple_of(limits::SORT_BITS));
-
 #[derive(Debug)]
 pub(crate) struct Sort {
     count: ComputePipeline,
@@ -30,9 +26,10 @@ impl Sort {
         })
     }
 
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, b: &Buffers) {
+    /// Sorts by the lowest `passes` digits of the keys; the result is in `keys[passes % 2]` and `order[passes % 2]`.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, b: &Buffers, passes: u32) {
         let runs = Groups::Indirect(&b.counts, offset_of!(FrameCounts, sort_groups) as u64);
-        for pass in 0..PASSES {
+        for pass in 0..passes {
             let (from, to) = ((pass % 2) as usize, (pass % 2) as usize ^ 1);
             let first_bit = [pass * limits::SORT_BITS];
             let count = [&b.frame, &b.counts, &b.keys[from], &b.histogram];

@@ -35,35 +35,27 @@ const OVER: vk::PipelineColorBlendAttachmentState = vk::PipelineColorBlendAttach
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct SplatKey {
     mesh: bool,
+    format: vk::Format,
     mode: u32,
     op: u32,
     decay: u32,
     miss: u32,
+    phi: u32,
 }
 
 impl SplatKey {
-    /// The pipeline a plan needs: after a hard clip nothing is left for the fragment stage to do.
-    pub(crate) fn new(plan: &Plan, mesh: bool) -> Self {
-        if !plan.cutoff {
-            return Self {
-                mesh,
-                mode: types::MODE_NONE,
-                op: 0,
-                decay: 0,
-                miss: 0,
-            };
-        }
-        let miss = if plan.mode == types::MODE_RARA {
-            plan.data.miss
-        } else {
-            0
-        };
+    /// The pipeline a plan needs: after a hard clip nothing is left for the fragment stage to do, and what a mode does
+    /// not ask for does not tell its pipelines apart.
+    pub(crate) fn new(plan: &Plan, mesh: bool, format: vk::Format) -> Self {
+        let when = |needed: bool, value: u32| if needed { value } else { 0 };
         Self {
             mesh,
-            mode: plan.mode,
-            op: plan.data.op,
-            decay: plan.data.decay,
-            miss,
+            format,
+            mode: when(plan.cutoff, plan.mode),
+            op: when(plan.cutoff, plan.data.op),
+            decay: when(plan.cutoff, plan.data.decay),
+            miss: when(plan.cutoff && plan.mode == types::MODE_RARA, plan.data.miss),
+            phi: when(plan.cutoff && plan.mode == types::MODE_EXACT, plan.phi),
         }
     }
 }
@@ -77,7 +69,13 @@ impl Splat {
         } else {
             &shaders::SPLAT_VERT
         };
-        let constants = [(0, key.mode), (1, key.op), (2, key.decay), (3, key.miss)];
+        let constants = [
+            (0, key.mode),
+            (1, key.op),
+            (2, key.decay),
+            (3, key.miss),
+            (4, key.phi),
+        ];
         let pipeline = context.graphics("splat", front, &shaders::SPLAT_FRAG, &constants, OVER)?;
         Ok(Self { pipeline, mesh })
     }
@@ -90,7 +88,13 @@ impl Splat {
         plan: &Plan,
         origin: [f32; 2],
     ) {
-        let buffers = [&b.frame, &b.counts, &b.splats, &b.order[0], &b.cuts];
+        let buffers = [
+            &b.frame,
+            &b.counts,
+            &b.splats,
+            &b.order[plan.sorted()],
+            &b.cuts,
+        ];
         let [x, y] = origin.map(f32::to_bits);
         let [_, _, cx, cy] = plan.data.focal;
         let principal = [cx + origin[0], cy + origin[1]].map(f32::to_bits);

@@ -3,13 +3,15 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
+use ash::vk;
+
 use crate::error::Result;
 use crate::passes::classify::Classify;
 use crate::passes::compact::Compact;
 use crate::passes::context::Context;
 use crate::passes::cutoff::Cutoff;
 use crate::passes::plan::Plan;
-use crate::passes::project::Project;
+use crate::passes::project::{Project, ProjectKey};
 use crate::passes::sort::Sort;
 use crate::passes::splat::{Splat, SplatKey};
 use crate::types;
@@ -20,7 +22,7 @@ pub(crate) struct Stages {
     classify: [Option<Classify>; 2],
     pub(crate) compact: Compact,
     pub(crate) cutoff: Option<Cutoff>,
-    project: [Option<Project>; 2],
+    project: HashMap<ProjectKey, Project>,
     pub(crate) sort: Sort,
     splat: HashMap<SplatKey, Splat>,
 }
@@ -31,7 +33,7 @@ impl Stages {
             classify: [None, None],
             compact: Compact::new(context)?,
             cutoff: None,
-            project: [None, None],
+            project: HashMap::new(),
             sort: Sort::new(context)?,
             splat: HashMap::new(),
         })
@@ -47,12 +49,12 @@ impl Stages {
         if plan.cutoff && self.cutoff.is_none() {
             self.cutoff = Some(Cutoff::new(context)?);
         }
-        let project = &mut self.project[usize::from(plan.cutoff)];
-        if project.is_none() {
-            *project = Some(Project::new(context, plan.cutoff)?);
+        if let Entry::Vacant(missing) = self.project.entry(ProjectKey::new(plan)) {
+            missing.insert(Project::new(context, ProjectKey::new(plan))?);
         }
-        if let Entry::Vacant(missing) = self.splat.entry(SplatKey::new(plan, mesh)) {
-            missing.insert(Splat::new(context, SplatKey::new(plan, mesh))?);
+        let key = SplatKey::new(plan, mesh, context.color_format);
+        if let Entry::Vacant(missing) = self.splat.entry(key) {
+            missing.insert(Splat::new(context, key)?);
         }
         Ok(())
     }
@@ -66,13 +68,11 @@ impl Stages {
 
     /// The projection for a plan, once [`ensure`](Self::ensure) has seen it.
     pub(crate) fn project(&self, plan: &Plan) -> &Project {
-        self.project[usize::from(plan.cutoff)]
-            .as_ref()
-            .expect("ensure() creates it")
+        &self.project[&ProjectKey::new(plan)]
     }
 
     /// The rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.
-    pub(crate) fn splat(&self, plan: &Plan, mesh: bool) -> &Splat {
-        &self.splat[&SplatKey::new(plan, mesh)]
+    pub(crate) fn splat(&self, plan: &Plan, mesh: bool, format: vk::Format) -> &Splat {
+        &self.splat[&SplatKey::new(plan, mesh, format)]
     }
 }

@@ -6,7 +6,6 @@ use super::exact::{AffinePlane, Beam};
 use super::footprint::Footprint;
 use super::real::Real;
 use super::view::View;
-use crate::limits::BEAM_SWITCH;
 use crate::{Clip, ClipOp, ExactForm, Gaussians, Mode, Settings};
 
 /// The record of a cut splat: everything that its weight in a pixel depends on.
@@ -61,7 +60,7 @@ pub fn cutoff<T: Real>(
             sigma: T::of(f64::from(settings.sigma)),
             miss: settings.miss,
         }),
-        _ if is_beam(scene, index, footprint, settings.form) => {
+        _ if is_beam(scene, index, footprint, settings) => {
             Cut::Beam(Beam::new(footprint, view, planes, clip.op))
         }
         _ => Cut::Affine {
@@ -80,14 +79,15 @@ fn is_beam<T: Real>(
     scene: &Gaussians,
     index: usize,
     footprint: &Footprint<T>,
-    form: ExactForm,
+    settings: &Settings,
 ) -> bool {
-    match form {
+    match settings.form {
         ExactForm::Beam => true,
         ExactForm::Affine => false,
         ExactForm::Auto => {
             let sigma_max = T::of(f64::from(scene.scales[index].max_element()));
-            let large = sigma_max / footprint.centre.z > T::of(f64::from(BEAM_SWITCH));
+            let large =
+                sigma_max / footprint.centre.z > T::of(f64::from(settings.precision.beam_switch));
             large || footprint.clamped
         }
     }

@@ -25,7 +25,7 @@ fn line(folder: &Path, words: &str) -> Output {
         .split_whitespace()
         .map(|word| word.replace('@', folder))
         .collect();
-    let draws = ["render", "sweep", "ablate", "demo"].contains(&words[0].as_str());
+    let draws = ["render", "sweep", "ablate", "demo", "bench"].contains(&words[0].as_str());
     if let Ok(device) = std::env::var("RARA_TEST_DEVICE")
         && draws
         && !words.iter().any(|word| word == "--device")

@@ -287,3 +287,27 @@ fn the_demo_leaves_five_pictures() {
     }
     assert!(told.stdout.is_empty() && stderr(&told).contains("exact"));
 }
+
+#[test]
+fn a_bench_measures_every_choice_and_writes_its_tables() {
+    let folder = folder("bench");
+    scene(&folder);
+    let words = "bench @/scene.ply --size 48x40 --frames 1 --steps 1 -o @/out --json";
+    let report = document(line(&folder, words));
+    let rows = report["rows"].as_array().expect("rows");
+    assert!(rows.len() > 20 && report["refused"].as_array().is_some_and(Vec::is_empty));
+    let of = |name: &str| rows.iter().find(|row| row["name"] == name).expect("a row");
+    assert!(of("exact")["l1"].as_f64() < of("hard")["l1"].as_f64());
+    assert!(rows.iter().any(|row| row["undominated"] == true));
+    for row in rows {
+        let [l1, leak, loss] = ["l1", "leak", "loss"].map(|key| row[key].as_f64().unwrap());
+        assert!((l1 - leak - loss).abs() <= 1e-9 * l1.max(1.0), "{row}");
+    }
+    // Four ways of cutting, at 256 and at the size asked for.
+    assert_eq!(report["paper"].as_array().map(Vec::len), Some(8));
+    for name in ["bench.md", "bench.csv", "bench.json", "pareto.svg"] {
+        let text = fs::read_to_string(folder.join("out").join(name)).expect(name);
+        assert!(text.contains("preset fast"), "{name}");
+    }
+    assert!(rara::Picture::load(folder.join("out/pareto.png")).is_ok());
+}

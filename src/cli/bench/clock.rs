@@ -1,0 +1,167 @@
+//! Times of several choices, taken in turn so that their ratios hold on a machine that does other things too.
+
+use rara::{Camera, Clip, Gaussians, PassTime, Result, Settings};
+use serde::Serialize;
+
+use super::Session;
+
+/// What one choice takes, milliseconds.
+#[derive(Debug, Clone, Default, Serialize)]
+pub(super) struct Times {
+    /// On the device, the median frame.
+    pub(super) ms: f64,
+    /// On the device, each stage at its quickest: what is least disturbed by what else the machine does.
+    pub(super) ms_min: f64,
+    /// From recording to the picture, the median frame.
+    pub(super) wall_ms: f64,
+    /// Of this process on all cores, the median frame; 0 where the system does not tell.
+    pub(super) cpu_ms: f64,
+    /// The same, the least frame.
+    pub(super) cpu_ms_min: f64,
+    /// What a choice costs: on the device `ms_min`. Where the device is this machine's processor, and the system
+    /// tells, `cpu_ms_min`, which other work on the machine hardly disturbs.
+    pub(super) cost: f64,
+    /// Each stage's median and minimum.
+    pub(super) passes: Vec<Pass>,
+}
+
+/// What one stage takes, milliseconds.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Pass {
+    pub(super) name: &'static str,
+    pub(super) ms: f64,
+    pub(super) ms_min: f64,
+}
+
+/// Times each of the settings: a round is one frame of each, and there are `rounds`, the first one on top and unused.
+pub(super) fn time(
+    session: &mut Session,
+    scene: &Gaussians,
+    (camera, clip): (&Camera, &Clip),
+    all: &[Settings],
+    rounds: u32,
+) -> Result<Vec<Times>> {
+    let mut samples = vec![Samples::default(); all.len()];
+    let mut loaded = None;
+    for round in 0..=rounds {
+        // There and back, so that none always follows the same one or comes at the same time in a round.
+        let mut order: Vec<usize> = (0..all.len()).collect();
+        if round % 2 == 1 {
+            order.reverse();
+        }
+        for index in order {
+            let (settings, samples) = (&all[index], &mut samples[index]);
+            let sh = settings.precision.sh;
+            if loaded != Some(sh) {
+                session.reload(scene, sh)?;
+                // What follows an upload finds other things in the caches.
+                session.frame(camera, clip, settings, 1)?;
+                loaded = Some(sh);
+            }
+            let before = process_cpu_ms();
+            let frame = session.frame(camera, clip, settings, 1)?;
+            let after = process_cpu_ms();
+            if round > 0 {
+                samples.ms.push(frame.gpu_ms);
+                samples.wall.push(frame.wall_ms);
+                samples.cpu.push(after - before);
+                samples.passes.push(frame.passes);
+            }
+        }
+    }
+    let on_cpu = session.is_cpu();
+    Ok(samples.iter().map(|s| s.times(on_cpu)).collect())
+}
+
+#[derive(Debug, Clone, Default)]
+struct Samples {
+    ms: Vec<f64>,
+    wall: Vec<f64>,
+    cpu: Vec<f64>,
+    passes: Vec<Vec<PassTime>>,
+}
+
+impl Samples {
+    fn times(&self, on_cpu: bool) -> Times {
+        let names = self.passes.first().into_iter().flatten();
+        let pass = |name| {
+            let ms = self.passes.iter().flatten().filter(|p| p.name == name);
+            let ms: Vec<f64> = ms.map(|p| p.ms).collect();
+            Pass {
+                name,
+                ms: median(&ms),
+                ms_min: least(&ms),
+            }
+        };
+        let passes: Vec<Pass> = names.map(|p| pass(p.name)).collect();
+        let (ms_min, cpu_ms_min) = (passes.iter().map(|p| p.ms_min).sum(), least(&self.cpu));
+        let told = on_cpu && cpu_ms_min.is_finite() && cpu_ms_min > 0.0;
+        Times {
+            ms: median(&self.ms),
+            ms_min,
+            cpu_ms_min: if told { cpu_ms_min } else { 0.0 },
+            cost: if told { cpu_ms_min } else { ms_min },
+            wall_ms: median(&self.wall),
+            cpu_ms: median(&self.cpu),
+            passes,
+        }
+    }
+}
+
+fn least(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    match sorted.len() {
+        0 => 0.0,
+        n => (sorted[(n - 1) / 2] + sorted[n / 2]) / 2.0,
+    }
+}
+
+/// Time that all threads of this process have spent on a processor: what Linux's scheduler has counted.
+fn process_cpu_ms() -> f64 {
+    let Ok(threads) = std::fs::read_dir("/proc/self/task") else {
+        return 0.0;
+    };
+    let spent = |thread: std::fs::DirEntry| -> Option<f64> {
+        let text = std::fs::read_to_string(thread.path().join("schedstat")).ok()?;
+        text.split_whitespace().next()?.parse().ok()
+    };
+    threads.flatten().filter_map(spent).sum::<f64>() / 1e6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians_and_minima() {
+        let pass = |ms| vec![PassTime { name: "sort", ms }];
+        let samples = Samples {
+            ms: vec![4.0, 1.0, 9.0, 2.0],
+            wall: vec![5.0],
+            cpu: vec![],
+            passes: vec![pass(3.0), pass(1.0), pass(2.0)],
+        };
+        let times = samples.times(true);
+        assert_eq!((times.ms, times.ms_min, times.wall_ms), (3.0, 1.0, 5.0));
+        assert_eq!((times.passes[0].ms, times.passes[0].ms_min), (2.0, 1.0));
+        assert_eq!(
+            (times.cpu_ms, times.cpu_ms_min, times.cost),
+            (0.0, 0.0, 1.0)
+        );
+        let told = Samples {
+            cpu: vec![9.0, 8.0],
+            ..samples
+        };
+        assert_eq!(told.times(true).cost, 8.0);
+        assert_eq!(
+            told.times(false).cost,
+            1.0,
+            "a processor's time is not a GPU's"
+        );
+    }
+}

@@ -1,0 +1,153 @@
+//! How far a choice's picture is from the exact cut, and from its own picture in double precision.
+
+use std::cell::RefCell;
+
+use glam::DVec3;
+use rara::measure::{self, Popping, Region};
+use rara::scene::extent_along;
+use rara::{
+    Camera, Clip, Decay, ExactForm, Gaussians, Mode, Picture, Plane, Precision, Result, Settings,
+    reference,
+};
+use serde::Serialize;
+
+use super::Session;
+
+/// A step of the slow sweep as a share of the scene: ten seconds across it at 30 pictures a second.
+const STEP: f64 = 1.0 / 300.0;
+/// Pixels around those in which cuts differ: as far as SSIM's window reaches.
+const BAND: usize = 5;
+
+/// Errors against the truth, in units of 1/255 but for SSIM, which is 1 at best.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Measures {
+    pub(super) l1: f64,
+    pub(super) ssim: f64,
+    /// SSIM where the way of cutting shows; none where it shows nowhere.
+    pub(super) band_ssim: Option<f64>,
+    pub(super) max: f64,
+    pub(super) leak: f64,
+    pub(super) loss: f64,
+    pub(super) popping: Popping,
+    /// Against the same choice in double precision, decibels.
+    #[serde(serialize_with = "finite")]
+    pub(super) twin_psnr: f64,
+}
+
+/// JSON has no infinity; pictures that are equal are 999 dB apart.
+fn finite<S: serde::Serializer>(psnr: &f64, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    serializer.serialize_f64(psnr.min(999.0))
+}
+
+/// The truth about one view of one cut scene.
+pub(super) struct Judge<'a> {
+    scene: &'a Gaussians,
+    camera: &'a Camera,
+    /// The clip, and where it stands in each step of the sweep; the first is where it stands in all else.
+    clips: Vec<Clip>,
+    truths: Vec<Picture>,
+    band: Region,
+    /// Pictures in double precision that were drawn already, by what they depend on.
+    twins: RefCell<Vec<(Settings, Picture)>>,
+}
+
+/// The truth: exact in perspective for every splat, by optical depth.
+pub(super) fn truth_settings(look: &Settings) -> Settings {
+    Settings {
+        mode: Mode::Exact,
+        decay: Some(Decay::Depth),
+        form: ExactForm::Beam,
+        ..*look
+    }
+}
+
+impl<'a> Judge<'a> {
+    pub(super) fn new(
+        scene: &'a Gaussians,
+        camera: &'a Camera,
+        clip: &Clip,
+        look: &Settings,
+        steps: u32,
+    ) -> Result<Self> {
+        let clips = sweep(scene, clip, steps)?;
+        let truth = truth_settings(look);
+        let draw = |clip: &Clip| reference::render::<f64>(scene, camera, clip, &truth).picture;
+        let truths: Vec<_> = clips.iter().map(draw).collect();
+        let hard = Settings {
+            mode: Mode::Hard,
+            ..*look
+        };
+        let hard = reference::render::<f64>(scene, camera, &clips[0], &hard).picture;
+        let band = Region::where_different(&hard, &truths[0], 1.0 / 255.0)?.dilated(BAND);
+        Ok(Self {
+            scene,
+            camera,
+            clips,
+            truths,
+            band,
+            twins: RefCell::default(),
+        })
+    }
+
+    /// Share of the picture in which the way of cutting shows.
+    pub(super) fn band_share(&self) -> f64 {
+        self.band.share()
+    }
+
+    /// What there is to say about one choice; the session holds the scene as the choice wants it stored.
+    pub(super) fn measure(&self, session: &mut Session, settings: &Settings) -> Result<Measures> {
+        let draw = |clip| Ok(session.picture(self.camera, clip, settings)?.0);
+        let pictures = self.clips.iter().map(draw).collect::<Result<Vec<_>>>()?;
+        let (own, band_ssim) =
+            measure::compare_within(&pictures[0], &self.truths[0], Some(&self.band))?;
+        Ok(Measures {
+            l1: own.l1,
+            ssim: own.ssim,
+            band_ssim,
+            max: own.max,
+            leak: own.leak,
+            loss: own.loss,
+            popping: measure::popping(&pictures, &self.truths)?,
+            twin_psnr: self.twin_psnr(&pictures[0], settings)?,
+        })
+    }
+
+    fn twin_psnr(&self, picture: &Picture, settings: &Settings) -> Result<f64> {
+        // The reference knows of a precision only where the forms of the weight change.
+        let key = Settings {
+            precision: Precision {
+                beam_switch: settings.precision.beam_switch,
+                ..Precision::default()
+            },
+            ..*settings
+        };
+        let mut twins = self.twins.borrow_mut();
+        let known = twins.iter().position(|(have, _)| *have == key);
+        let index = known.unwrap_or_else(|| {
+            let frame = reference::render::<f64>(self.scene, self.camera, &self.clips[0], &key);
+            twins.push((key, frame.picture));
+            twins.len() - 1
+        });
+        measure::psnr(picture, &twins[index].1)
+    }
+}
+
+/// The clip, and `steps` more, each of whose planes stands a little further towards what it keeps.
+fn sweep(scene: &Gaussians, clip: &Clip, steps: u32) -> Result<Vec<Clip>> {
+    let extent = |normal: DVec3| {
+        let (low, high) = extent_along(scene, normal);
+        high - low
+    };
+    let moved = |plane: &Plane, step: u32| {
+        let by = STEP * f64::from(step) * extent(plane.normal());
+        Plane::new(plane.normal(), plane.offset() - by)
+    };
+    let at = |step: u32| {
+        let planes = clip.planes.iter().map(|plane| moved(plane, step));
+        Ok(Clip {
+            planes: planes.collect::<Result<_>>()?,
+            op: clip.op,
+        })
+    };
+    (0..=steps).map(at).collect()
+}

@@ -1,0 +1,76 @@
+//! The three ways of cutting that the paper compares, against the truth, at a small size and at the size asked for.
+
+use rara::{Camera, Clip, Gaussians, Miss, Mode, Result, Settings};
+use serde::Serialize;
+
+use super::Session;
+use super::judge::{Judge, Measures};
+
+/// Pixels a side of the small picture.
+const SMALL: u32 = 256;
+
+/// One way of cutting at one size.
+#[derive(Debug, Serialize)]
+pub(super) struct Line {
+    pub(super) size: [u32; 2],
+    pub(super) name: &'static str,
+    #[serde(flatten)]
+    pub(super) measures: Measures,
+    /// How many times exact is nearer to the truth, by L1.
+    pub(super) l1_over_exact: f64,
+}
+
+/// Measures them all at the small size, in the precision of `look`; what `measured` has of them by name is at the size
+/// asked for.
+pub(super) fn lines(
+    session: &mut Session,
+    scene: &Gaussians,
+    (camera, clip): (&Camera, &Clip),
+    look: &Settings,
+    steps: u32,
+    measured: &[(&str, &Measures)],
+) -> Result<Vec<Line>> {
+    session.reload(scene, look.precision.sh)?;
+    let small_camera = camera.resized((SMALL, SMALL * camera.height / camera.width.max(1)))?;
+    let small = Judge::new(scene, &small_camera, clip, look, steps)?;
+    let mut of_small = Vec::new();
+    for (name, settings) in ways(*look) {
+        of_small.push((name, small.measure(session, &settings)?));
+    }
+    let known = |name| measured.iter().find(|(have, _)| *have == name);
+    let of_size = ways(*look).map(|(name, _)| Some((name, known(name)?.1.clone())));
+    let mut lines = with_ratios(&small_camera, of_small);
+    if [small_camera.width, small_camera.height] != [camera.width, camera.height] {
+        lines.extend(with_ratios(camera, of_size.into_iter().flatten().collect()));
+    }
+    Ok(lines)
+}
+
+/// Lines of one size.
+fn with_ratios(camera: &Camera, measured: Vec<(&'static str, Measures)>) -> Vec<Line> {
+    let exact = measured.iter().find(|(name, _)| *name == "exact");
+    let exact = exact.map_or(f64::NAN, |(_, measures)| measures.l1);
+    let line = |(name, measures): (&'static str, Measures)| Line {
+        size: [camera.width, camera.height],
+        name,
+        l1_over_exact: measures.l1 / exact.max(1e-12),
+        measures,
+    };
+    measured.into_iter().map(line).collect()
+}
+
+/// By centre, the paper's text, our default reading of it, and exact, which the others are compared with.
+fn ways(look: Settings) -> [(&'static str, Settings); 4] {
+    let mode = |mode| Settings { mode, ..look };
+    let paper = Settings {
+        sigma: 1.0,
+        miss: Miss::Keep,
+        ..mode(Mode::Rara)
+    };
+    [
+        ("hard", mode(Mode::Hard)),
+        ("rara, paper", paper),
+        ("rara", mode(Mode::Rara)),
+        ("exact", mode(Mode::Exact)),
+    ]
+}

@@ -1,0 +1,128 @@
+//! What is compared: every mode, law and preset, and every choice of precision by itself.
+
+use rara::{
+    Decay, ExactForm, Miss, Mode, PhiForm, Precision, Preset, Settings, ShFormat, TargetFormat,
+};
+
+/// One choice.
+#[derive(Debug, Clone)]
+pub(super) struct Variant {
+    pub(super) name: &'static str,
+    /// The flags that choose it.
+    pub(super) flags: &'static str,
+    pub(super) settings: Settings,
+}
+
+/// The names, as a parser of one.
+pub(super) fn names() -> clap::builder::PossibleValuesParser {
+    let names = variants(Settings::default()).into_iter().map(|v| v.name);
+    names.collect::<Vec<_>>().into()
+}
+
+/// All of them, on top of what the command line says about everything else. Choices that store spherical harmonics in
+/// the same way follow each other.
+pub(super) fn variants(look: Settings) -> Vec<Variant> {
+    let variant = |name, flags, settings| Variant {
+        name,
+        flags,
+        settings,
+    };
+    let mode = |mode| Settings { mode, ..look };
+    let exact = mode(Mode::Exact);
+    let rara = |sigma, miss, decay| Settings {
+        sigma,
+        miss,
+        decay,
+        ..mode(Mode::Rara)
+    };
+    let precise = |precision| Settings { precision, ..exact };
+    let base = look.precision;
+    let target = |target| precise(Precision { target, ..base });
+    let sh = |sh| precise(Precision { sh, ..base });
+    let phi = |phi| precise(Precision { phi, ..base });
+    let keys = |key_bits| precise(Precision { key_bits, ..base });
+    let switch = |beam_switch| {
+        precise(Precision {
+            beam_switch,
+            ..base
+        })
+    };
+    let keep = rara(1.0, Miss::Keep, None);
+    let drop = rara(3.0, Miss::Drop, None);
+    let linear = Settings {
+        decay: Some(Decay::Linear),
+        ..exact
+    };
+    let affine = Settings {
+        form: ExactForm::Affine,
+        ..exact
+    };
+    vec![
+        variant("none", "--mode none", mode(Mode::None)),
+        variant("hard", "--mode hard", mode(Mode::Hard)),
+        variant("rara, paper", "--mode rara --sigma 1 --miss keep", keep),
+        variant("rara, released", "--mode rara --miss drop", drop),
+        variant("rara", "--mode rara", mode(Mode::Rara)),
+        variant(
+            "rara, depth law",
+            "--mode rara --decay depth",
+            rara(look.sigma, look.miss, Some(Decay::Depth)),
+        ),
+        variant("exact, linear law", "--decay linear", linear),
+        variant("exact", "", exact),
+        variant("exact, all affine", "--beam-switch 1e9", affine),
+        variant(
+            "preset exact",
+            "--preset exact",
+            precise(Preset::Exact.precision()),
+        ),
+        variant("switch 0.005", "--beam-switch 0.005", switch(0.005)),
+        variant("switch 0.01", "--beam-switch 0.01", switch(0.01)),
+        variant("switch 0.02", "--beam-switch 0.02", switch(0.02)),
+        variant("switch 0.05", "--beam-switch 0.05", switch(0.05)),
+        variant("phi cubic", "--phi cubic", phi(PhiForm::Cubic)),
+        variant("phi logistic", "--phi logistic", phi(PhiForm::Logistic)),
+        variant("keys 24", "--key-bits 24", keys(24)),
+        variant("keys 16", "--key-bits 16", keys(16)),
+        variant(
+            "target 16f",
+            "--target-format 16f",
+            target(TargetFormat::Half),
+        ),
+        variant(
+            "target 8",
+            "--target-format 8",
+            target(TargetFormat::Unorm8),
+        ),
+        variant("sh 16f", "--sh-format 16f", sh(ShFormat::Half)),
+        variant(
+            "preset fast",
+            "--preset fast",
+            precise(Preset::Fast.precision()),
+        ),
+        variant("sh 8", "--sh-format 8", sh(ShFormat::Byte)),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_choices_are_distinct() {
+        let all = variants(Settings::default());
+        for (i, a) in all.iter().enumerate() {
+            for b in &all[..i] {
+                assert_ne!(a.name, b.name);
+                let twice = a.settings == b.settings;
+                // The default is also one of the beam switches.
+                let same = ["exact", "switch 0.01", "switch 0.02", "switch 0.05"];
+                assert!(
+                    !twice || (same.contains(&a.name) && same.contains(&b.name)),
+                    "{}",
+                    a.name
+                );
+            }
+        }
+    }
+}

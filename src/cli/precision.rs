@@ -1,0 +1,129 @@
+//! The flags that give up exactness for time.
+
+use clap::{Args, ValueEnum};
+use rara::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
+
+/// What is given up for time. A single choice overrides the preset's.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Precision")]
+pub(super) struct PrecisionArgs {
+    /// A choice of all the following; the README has what each costs and gives up
+    #[arg(long, default_value = "balanced")]
+    pub(super) preset: PresetArg,
+    /// Channels of the picture that is drawn into: 8 bits, or floats of 16 or 32
+    #[arg(long, value_name = "FORMAT")]
+    target_format: Option<TargetArg>,
+    /// Spherical harmonics on the device: floats of 32 or 16 bits, or 8 bits and a scale a Gaussian
+    #[arg(long, value_name = "FORMAT")]
+    sh_format: Option<ShArg>,
+    /// Approximation of the normal distribution in mode exact: off by at most 2e-5, 1.4e-4 or 1e-2
+    #[arg(long, value_name = "FORM")]
+    phi: Option<PhiArg>,
+    /// Most bits of the depths that the sort looks at; each 8 are a pass
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(8..=32))]
+    key_bits: Option<u32>,
+    /// Mode exact: sigma/depth above which a cut splat gets the form that is exact in perspective; 0 is all of them
+    #[arg(long, value_name = "X", value_parser = switch, allow_hyphen_values = true)]
+    beam_switch: Option<f32>,
+}
+
+/// `--preset`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum PresetArg {
+    /// Nothing is given up
+    Exact,
+    /// What no picture shows is given up
+    Balanced,
+    /// What pictures hardly show is given up
+    Fast,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum TargetArg {
+    #[value(name = "8")]
+    Unorm8,
+    #[value(name = "16f")]
+    Half,
+    #[value(name = "32f")]
+    Float,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ShArg {
+    #[value(name = "8")]
+    Byte,
+    #[value(name = "16f")]
+    Half,
+    #[value(name = "32f")]
+    Float,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum PhiArg {
+    Quintic,
+    Cubic,
+    Logistic,
+}
+
+impl PrecisionArgs {
+    /// The precision that was meant.
+    pub(super) fn meant(&self) -> Precision {
+        let preset = match self.preset {
+            PresetArg::Exact => Preset::Exact,
+            PresetArg::Balanced => Preset::Balanced,
+            PresetArg::Fast => Preset::Fast,
+        };
+        let preset = preset.precision();
+        Precision {
+            target: self.target_format.map_or(preset.target, |t| match t {
+                TargetArg::Unorm8 => TargetFormat::Unorm8,
+                TargetArg::Half => TargetFormat::Half,
+                TargetArg::Float => TargetFormat::Float,
+            }),
+            sh: self.sh_format.map_or(preset.sh, |sh| match sh {
+                ShArg::Byte => ShFormat::Byte,
+                ShArg::Half => ShFormat::Half,
+                ShArg::Float => ShFormat::Float,
+            }),
+            phi: self.phi.map_or(preset.phi, |phi| match phi {
+                PhiArg::Quintic => PhiForm::Quintic,
+                PhiArg::Cubic => PhiForm::Cubic,
+                PhiArg::Logistic => PhiForm::Logistic,
+            }),
+            key_bits: self.key_bits.unwrap_or(preset.key_bits),
+            beam_switch: self.beam_switch.unwrap_or(preset.beam_switch),
+        }
+    }
+}
+
+/// A size, zero included.
+fn switch(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
+        _ => Err("expected a finite number, zero or above".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::FromArgMatches as _;
+
+    fn meant(flags: &str) -> Precision {
+        let command = PrecisionArgs::augment_args(clap::Command::new("rara").no_binary_name(true));
+        let matches = command.get_matches_from(flags.split_whitespace());
+        PrecisionArgs::from_arg_matches(&matches).unwrap().meant()
+    }
+
+    #[test]
+    fn single_flags_override_the_preset() {
+        assert_eq!(meant(""), Precision::default());
+        assert_eq!(meant("--preset fast"), Preset::Fast.precision());
+        let mixed = meant("--preset fast --target-format 32f --key-bits 24 --phi logistic");
+        assert_eq!(mixed.target, TargetFormat::Float);
+        assert_eq!((mixed.key_bits, mixed.phi), (24, PhiForm::Logistic));
+        assert_eq!(mixed.sh, Preset::Fast.precision().sh);
+        assert_eq!(meant("--sh-format 8 --beam-switch 0").sh, ShFormat::Byte);
+        assert!(switch("-1").is_err() && switch("nan").is_err() && switch("0").is_ok());
+    }
+}

@@ -1,0 +1,190 @@
+//! How exactly a frame is stored and computed, where exactness costs time: five choices, and three presets of them.
+
+#![forbid(unsafe_code)]
+
+use ash::vk;
+
+use crate::half::from_half;
+use crate::limits;
+use crate::types;
+
+/// Format of the picture that [`Headless`](crate::Headless) draws into. A host has a format of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TargetFormat {
+    /// 8 bits a channel: each blend rounds, so that thin layers gather error or vanish.
+    Unorm8,
+    /// 16-bit floats.
+    Half,
+    /// 32-bit floats: thousands of thin layers stay exact.
+    #[default]
+    Float,
+}
+
+impl TargetFormat {
+    /// The Vulkan format.
+    pub const fn vulkan(self) -> vk::Format {
+        match self {
+            Self::Unorm8 => vk::Format::R8G8B8A8_UNORM,
+            Self::Half => vk::Format::R16G16B16A16_SFLOAT,
+            Self::Float => vk::Format::R32G32B32A32_SFLOAT,
+        }
+    }
+
+    /// Pixels read back from an image of this format.
+    pub(crate) fn decode(self, bytes: &[u8]) -> Vec<[f32; 4]> {
+        let channel = |at: usize| match self {
+            Self::Unorm8 => f32::from(bytes[at]) / 255.0,
+            Self::Half => from_half(u16::from_le_bytes([bytes[2 * at], bytes[2 * at + 1]])),
+            Self::Float => f32::from_le_bytes(std::array::from_fn(|byte| bytes[4 * at + byte])),
+        };
+        let pixels = bytes.len() / self.pixel_bytes() as usize;
+        let pixel = |at: usize| std::array::from_fn(|c| channel(4 * at + c));
+        (0..pixels).map(pixel).collect()
+    }
+
+    /// Bytes of a pixel.
+    pub const fn pixel_bytes(self) -> u64 {
+        match self {
+            Self::Unorm8 => 4,
+            Self::Half => 8,
+            Self::Float => 16,
+        }
+    }
+}
+
+/// How spherical harmonics lie in device memory. Chosen when a scene is loaded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum ShFormat {
+    /// 8 bits a coefficient and one scale a Gaussian; the constant term in 16-bit floats. 56 bytes for degree 3.
+    Byte,
+    /// 16-bit floats. 96 bytes for degree 3.
+    Half,
+    /// 32-bit floats. 192 bytes for degree 3.
+    #[default]
+    Float,
+}
+
+impl ShFormat {
+    /// The shaders' name of the format, `SH_*`.
+    pub(crate) const fn code(self) -> u32 {
+        match self {
+            Self::Byte => types::SH_BYTE,
+            Self::Half => types::SH_HALF,
+            Self::Float => types::SH_FLOAT,
+        }
+    }
+}
+
+/// The normal distribution's Phi in the weight of a cut splat: how it is approximated, and the largest error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum PhiForm {
+    /// A logistic of an odd quintic: 1.9e-5.
+    #[default]
+    Quintic,
+    /// A logistic of an odd cubic: 1.4e-4.
+    Cubic,
+    /// A logistic: 9.5e-3, two levels of 255.
+    Logistic,
+}
+
+impl PhiForm {
+    /// The shaders' name of the form, `PHI_*`.
+    pub(crate) const fn code(self) -> u32 {
+        match self {
+            Self::Quintic => types::PHI_QUINTIC,
+            Self::Cubic => types::PHI_CUBIC,
+            Self::Logistic => types::PHI_LOGISTIC,
+        }
+    }
+}
+
+/// What a frame gives up for time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Precision {
+    /// Format of the picture.
+    pub target: TargetFormat,
+    /// How spherical harmonics are stored. Takes effect in [`Headless::load_as`](crate::Headless::load_as) and
+    /// [`SceneBuffers::upload`](crate::SceneBuffers::upload), not frame by frame.
+    pub sh: ShFormat,
+    /// Phi of the exact mode.
+    pub phi: PhiForm,
+    /// Most bits of the depths that the sort looks at, 8 to 32; eight are a pass. They count from the nearest depth
+    /// that the scene's bounds allow, so 24 lose nothing unless the farthest is more than four times as far.
+    pub key_bits: u32,
+    /// Exact mode: a cut splat gets the perspective-exact form where sigma_max / Z exceeds this, else the affine one.
+    /// Zero is the exact form for all.
+    pub beam_switch: f32,
+}
+
+impl Precision {
+    /// What a picture of this precision is held to against its twin in f64, decibels: the least of what the single
+    /// choices are. Below it something else is wrong.
+    pub fn least_psnr(&self) -> f64 {
+        let target: f64 = match self.target {
+            TargetFormat::Unorm8 => 20.0,
+            TargetFormat::Half => 40.0,
+            TargetFormat::Float => 60.0,
+        };
+        let sh = match self.sh {
+            ShFormat::Byte => 45.0,
+            ShFormat::Half => 58.0,
+            ShFormat::Float => 60.0,
+        };
+        let phi = match self.phi {
+            PhiForm::Logistic => 40.0,
+            PhiForm::Cubic | PhiForm::Quintic => 60.0,
+        };
+        let keys = match self.key_bits {
+            ..16 => 20.0,
+            16..24 => 40.0,
+            24..28 => 55.0,
+            _ => 60.0,
+        };
+        target.min(sh).min(phi).min(keys)
+    }
+}
+
+impl Default for Precision {
+    fn default() -> Self {
+        Preset::Balanced.precision()
+    }
+}
+
+/// A choice of all five. See the README's measurements.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Preset {
+    /// Nothing is given up.
+    Exact,
+    /// What no picture shows is given up.
+    #[default]
+    Balanced,
+    /// What pictures hardly show is given up.
+    Fast,
+}
+
+impl Preset {
+    /// What the preset stands for.
+    pub const fn precision(self) -> Precision {
+        let balanced = Precision {
+            target: TargetFormat::Float,
+            sh: ShFormat::Float,
+            phi: PhiForm::Quintic,
+            key_bits: u32::BITS,
+            beam_switch: limits::BEAM_SWITCH,
+        };
+        match self {
+            Self::Exact => Precision {
+                beam_switch: 0.0,
+                ..balanced
+            },
+            Self::Balanced => balanced,
+            Self::Fast => Precision {
+                sh: ShFormat::Half,
+                phi: PhiForm::Cubic,
+                key_bits: 24,
+                beam_switch: 0.05,
+                ..balanced
+            },
+        }
+    }
+}

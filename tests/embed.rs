@@ -133,7 +133,8 @@ fn frames_in_flight_show_the_headless_pictures_over_what_the_host_has_painted() 
     ] {
         let mut host = host(format, VIEW, true);
         let device = adopt(&host);
-        let buffers = SceneBuffers::upload(&device, &scene).expect("uploads");
+        let buffers =
+            SceneBuffers::upload(&device, &scene, rara::ShFormat::default()).expect("uploads");
         let desc = in_flight(format, bindings);
         let mut renderer = Renderer::new(&device, desc).expect("a renderer");
 
@@ -183,7 +184,8 @@ fn a_viewport_anywhere_in_the_target_leaves_the_rest_alone() {
     for (format, optional) in [(FLOATS, true), (HALVES, true), (BYTES, false)] {
         let mut host = host(format, target, optional);
         let device = adopt(&host);
-        let buffers = SceneBuffers::upload(&device, &scene).expect("uploads");
+        let buffers =
+            SceneBuffers::upload(&device, &scene, rara::ShFormat::default()).expect("uploads");
         let desc = in_flight(format, Bindings::Bound);
         let mut renderer = Renderer::new(&device, desc).expect("a renderer");
         let mut raster = vec![Raster::Quad];
@@ -232,7 +234,8 @@ fn memory_that_a_frame_outgrows_is_freed_when_no_frame_can_use_it() {
     let frames = frames(&scene);
     let mut host = host(BYTES, VIEW, true);
     let device = adopt(&host);
-    let buffers = SceneBuffers::upload(&device, &scene).expect("uploads");
+    let buffers =
+        SceneBuffers::upload(&device, &scene, rara::ShFormat::default()).expect("uploads");
     let desc = in_flight(BYTES, Bindings::Address);
     let mut renderer = Renderer::new(&device, desc).expect("a renderer");
     let mut used = Vec::new();
@@ -261,7 +264,8 @@ fn an_empty_scene_records_nothing() {
     let (camera, clip, settings) = frames(&self::scene()).swap_remove(1);
     let mut host = host(BYTES, VIEW, true);
     let device = adopt(&host);
-    let buffers = SceneBuffers::upload(&device, &scene).expect("uploads");
+    let buffers =
+        SceneBuffers::upload(&device, &scene, rara::ShFormat::default()).expect("uploads");
     let mut renderer =
         Renderer::new(&device, in_flight(BYTES, Bindings::Address)).expect("a renderer");
     for _ in 0..3 {
@@ -310,7 +314,8 @@ fn another_scene_than_the_configured_one_is_refused() {
     let device = headless.device();
     let scene = scene();
     let (camera, clip, settings) = frames(&scene).swap_remove(1);
-    let upload = |scene| SceneBuffers::upload(device, scene).expect("uploads");
+    let upload =
+        |scene| SceneBuffers::upload(device, scene, rara::ShFormat::default()).expect("uploads");
     let (one, other) = (upload(&scene), upload(&generate(Kind::Layers, 3_000, 5)));
     let mut renderer = Renderer::new(device, RendererDesc::new(BYTES)).expect("a renderer");
     let configured = renderer.configure(&one, &camera, &clip, &settings);

@@ -38,7 +38,11 @@ fn main() -> rara::Result<()> {
 
     // SAFETY: the handles belong together, and the host outlives the device, which is dropped below.
     let device = unsafe { Device::adopt(host.lend()) }?;
-    let scene = SceneBuffers::upload(&device, &generate(Kind::General, 50_000, 1))?;
+    let scene = SceneBuffers::upload(
+        &device,
+        &generate(Kind::General, 50_000, 1),
+        rara::ShFormat::default(),
+    )?;
     let mut renderer = Renderer::new(
         &device,
         RendererDesc {

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::camera::Camera;
-use crate::clip::{Clip, ClipOp};
+use crate::clip::{Clip, ClipOp, Plane};
 use crate::error::{Error, Result};
 use crate::limits;
 use crate::passes::depth_keys::DepthKeys;
@@ -79,9 +79,9 @@ impl Plan {
             _ => types::MODE_NONE,
         };
         let planes = if clipping {
-            clip.planes.as_slice()
+            distinct(&clip.planes)
         } else {
-            &[]
+            Vec::new()
         };
         let cutoff = mode == types::MODE_RARA || mode == types::MODE_EXACT;
         // A header of three, the planes, and the eye's own plane where the camera may be inside a splat.
@@ -203,6 +203,13 @@ fn camera_constants(data: &mut FrameData, camera: &Camera) {
 /// Largest offset of a plane that is told from infinity, world units: a power of two below the end of single
 /// precision's range.
 const FARTHEST: f64 = (1_u128 << 126) as f64;
+
+/// The planes without repetitions: cutting twice is cutting once, and a splat that one plane cuts costs less.
+fn distinct(planes: &[Plane]) -> Vec<Plane> {
+    let is_first = |&(index, plane): &(usize, &Plane)| !planes[..index].contains(plane);
+    let first = planes.iter().enumerate().filter(is_first);
+    first.map(|(_, plane)| *plane).collect()
+}
 
 /// A vector as the sum of two single-precision ones.
 fn two_float(v: DVec3) -> ([f32; 3], [f32; 3]) {

@@ -249,11 +249,12 @@ fn auto_takes_the_perspective_form_for_what_is_large_or_outside_the_picture() {
         scale: [0.01, sigma, 0.01],
         ..One::default()
     };
-    assert!(is_beam(sized(0.081), &camera, ExactForm::Auto)); // 0.02 of the depth is 0.08
-    assert!(!is_beam(sized(0.079), &camera, ExactForm::Auto));
+    let switch = 4.0 * crate::limits::BEAM_SWITCH; // the splat is 4 away
+    assert!(is_beam(sized(1.01 * switch), &camera, ExactForm::Auto));
+    assert!(!is_beam(sized(0.99 * switch), &camera, ExactForm::Auto));
     assert!(!is_beam(sized(1.0), &camera, ExactForm::Affine));
     assert!(is_beam(sized(0.001), &camera, ExactForm::Beam));
-    // A long lens: the picture ends at X/Z = 0.004, the clamp at 0.0052, and 0.01 of the depth reaches far beyond.
+    // A long lens: the picture ends at X/Z = 0.004, the clamp at 0.0052, and the splat reaches far beyond.
     let camera = Camera {
         fx: 8000.0,
         fy: 8000.0,
@@ -261,7 +262,7 @@ fn auto_takes_the_perspective_form_for_what_is_large_or_outside_the_picture() {
     };
     let aside = |x: f32| One {
         position: [4.0 * x, 0.0, 4.0],
-        scale: [0.04; 3],
+        scale: [0.03; 3],
         ..One::default()
     };
     assert!(is_beam(aside(0.0053), &camera, ExactForm::Auto));

@@ -49,8 +49,8 @@ void main() {
         result.culled = FRAME.gaussian_count - survivors - all.z;
         result.project_groups = groups(survivors, SURVIVOR_GROUP_SIZE);
         result.cutoff_groups = groups(all.y, SURVIVOR_GROUP_SIZE);
-        // Nothing to order among fewer than two.
-        result.sort_groups = uvec4(survivors < 2u ? 0u : FRAME.sort_runs / SORT_GROUP_SIZE, 1u, 1u, 0u);
+        // One survivor is sorted too: the passes carry it to the buffer that the draw reads.
+        result.sort_groups = uvec4(survivors == 0u ? 0u : FRAME.sort_runs / SORT_GROUP_SIZE, 1u, 1u, 0u);
         result.draw = uvec4(4u, survivors, 0u, 0u);
         result.mesh_groups = groups(survivors, MESH_GROUP_SIZE);
         result.mesh_groups.w = survivors;

@@ -5,7 +5,8 @@
 //   2      e = m3 / Z, how the gradients change with the pixel, times scale; low-pass times scale^2
 //   3...   a plane each. Affine: z at the centre, dz/dx, dz/dy, and 1 where the far side is kept, -1 the near side.
 //          Ray: normal in unit space, and the centre's distance, both divided by the normal's largest component.
-//   last   with CUT_FRONT: the plane through the eye across the view axis, in the same form
+//   last   of one plane without CUT_RAY: its curvature, the factors of dx^2, dx dy and dy^2 in z
+//          with CUT_FRONT: the plane through the eye across the view axis, in the same form
 #ifndef RARA_CUT
 #define RARA_CUT
 
@@ -16,8 +17,8 @@ const uint CUT_RAY = 1u;
 const uint CUT_FRONT = 2u;
 const uint CUT_COUNT_SHIFT = 8u;
 
-// What the rasteriser carries for a splat: z at its centre, dz/dx, dz/dy, so that the usual case, one plane in the affine
-// form, needs no record in the fragment stage. Beyond CUT_RANGE, z says that the splat is whole; below -CUT_RANGE that
+// What the rasteriser carries for a splat: z at its centre, dz/dx, dz/dy and its curvature, so that the usual case, one
+// plane, needs no record in the fragment stage. Beyond CUT_RANGE, z says that the splat is whole; below -CUT_RANGE that
 // the slopes hold the lower and upper 16 bits of its record's number, as numbers: the bits of a small integer are those
 // of a denormal float, which a rasteriser may flush.
 const float CUT_RANGE = 1e30;

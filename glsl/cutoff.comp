@@ -3,6 +3,7 @@
 // One invocation a cutoff Gaussian: everything the fragment stage needs to weight it, into its cutoff record.
 #include "side.glsl"
 #include "cut.glsl"
+#include "curve.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 
@@ -58,35 +59,59 @@ void main() {
     uint base = cut * FRAME.cut_stride;
     uint at = base + CUT_HEADER;
     uint kept = FRAME.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
+    vec4 form;
     for (uint plane = 0u; plane < FRAME.plane_count; plane++) {
         float distance = plane_distance(plane, position);
         vec3 normal = unit_normal(plane, f);
         // A plane that keeps the whole splat changes no intersection, one that drops it no union.
         if (plane_side(distance, normal, reach) != kept) {
-            vec4 form = ray_plane(normal, distance);
+            form = ray_plane(normal, distance);
             cuts.at[at++] = ray ? form : affine_plane(f, form);
         }
     }
-    uint flags = (at - base - CUT_HEADER) << CUT_COUNT_SHIFT;
-    if (ray) {
-        flags |= CUT_RAY;
-        // True rays. The gradients at a pixel are these less its place times e.
-        vec3 b1 = FRAME.focal.x / f.view.z * f.m1;
-        vec3 b2 = FRAME.focal.y / f.view.z * f.m2;
-        vec3 e = f.m3 / f.view.z;
-        // They grow with the distance from the principal point: scale for the farthest pixel.
-        vec2 far = max(abs(FRAME.focal.zw), abs(FRAME.size.xy - FRAME.focal.zw));
-        float size = max(largest(b1) + far.x * largest(e), largest(b2) + far.y * largest(e));
-        // Without the low-pass there is nothing to keep in proportion: rara also scales up what is tiny.
-        float scale = 1.0 / max(size, FRAME.mode == MODE_RARA ? 1e-30 : 1.0);
-        if (front) {
-            flags |= CUT_FRONT;
-            cuts.at[at] = ray_plane(f.m3, f.view.z);
-        }
-        cuts.at[base + 1u] = vec4(b2 * scale, scale);
-        cuts.at[base + 2u] = vec4(e * scale, LOW_PASS * scale * scale);
-        cuts.at[base] = vec4(b1 * scale, float(flags));
-    } else {
+    uint count = at - base - CUT_HEADER;
+    uint flags = count << CUT_COUNT_SHIFT;
+    if (!ray) {
         cuts.at[base] = vec4(vec3(0.0), float(flags));
+        if (count == 1u) {
+            cuts.at[at] = vec4(0.0);
+        }
+        return;
     }
+
+    // True rays. The gradients at a pixel are these less its place times e.
+    vec3 b1 = FRAME.focal.x / f.view.z * f.m1;
+    vec3 b2 = FRAME.focal.y / f.view.z * f.m2;
+    vec3 e = f.m3 / f.view.z;
+    // They grow with the distance from the principal point: scale for the farthest pixel.
+    vec2 far = max(abs(FRAME.focal.zw), abs(FRAME.size.xy - FRAME.focal.zw));
+    float size = max(largest(b1) + far.x * largest(e), largest(b2) + far.y * largest(e));
+    // Without the low-pass there is nothing to keep in proportion: rara also scales up what is tiny.
+    float scale = 1.0 / max(size, FRAME.mode == MODE_RARA ? 1e-30 : 1.0);
+    CurveSource source;
+    source.h0 = vec4(b1 * scale, 0.0);
+    source.h1 = vec4(b2 * scale, scale);
+    source.h2 = vec4(e * scale, LOW_PASS * scale * scale);
+
+    if (FRAME.mode == MODE_EXACT && FRAME.form == FORM_AUTO && count == 1u && !front) {
+        Quad axes = along_axes(f, 1.0);
+        source.plane = form;
+        source.centre = f.centre - FRAME.focal.zw;
+        source.first = axes.first;
+        source.second = axes.second;
+        Curve curve = fitted(source, gaussian.position_opacity.w);
+        if (curve.good) {
+            cuts.at[base] = vec4(vec3(0.0), float(flags));
+            cuts.at[at - 1u] = vec4(curve.plane, 0.0);
+            cuts.at[at] = vec4(curve.curvature, 0.0);
+            return;
+        }
+    }
+    if (front) {
+        flags |= CUT_FRONT;
+        cuts.at[at] = ray_plane(f.m3, f.view.z);
+    }
+    cuts.at[base] = vec4(source.h0.xyz, float(flags | CUT_RAY));
+    cuts.at[base + 1u] = source.h1;
+    cuts.at[base + 2u] = source.h2;
 }

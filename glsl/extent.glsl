@@ -47,6 +47,22 @@ vec2 kept_interval(float slope, float offset) {
     return vec2(0.5 * (low + high), 0.5 * (high - low));
 }
 
+// What the rasteriser carries of a cut splat's weight: see cut.glsl.
+struct Carried {
+    vec3 plane;
+    vec3 curvature;
+};
+
+// By how much curvature can raise z anywhere in the quad.
+float rise(Quad quad, vec3 curvature) {
+    vec2 u = quad.first;
+    vec2 v = quad.second;
+    float ss = curvature.x * u.x * u.x + curvature.y * u.x * u.y + curvature.z * u.y * u.y;
+    float tt = curvature.x * v.x * v.x + curvature.y * v.x * v.y + curvature.z * v.y * v.y;
+    float st = 2.0 * curvature.x * u.x * v.x + curvature.y * (u.x * v.y + u.y * v.x) + 2.0 * curvature.z * u.y * v.y;
+    return max(ss, 0.0) + max(tt, 0.0) + abs(st);
+}
+
 // Cuts off what lies wholly behind the line plane.x + plane.yz . delta = 0.
 Quad trimmed(Quad quad, vec3 plane) {
     float a = dot(plane.yz, quad.first);
@@ -63,8 +79,7 @@ float area(Quad quad) {
 // Beyond this many deviations behind the plane a weight is below 4e-5 and changes no pixel by more than 0.05/255.
 const float TRIM_DEVIATIONS = 4.0;
 
-// `weight` is what the rasteriser carries of the clip's weight (cut.glsl).
-Quad quad_around(Footprint f, float extent, vec3 weight) {
+Quad quad_around(Footprint f, float extent, Carried weight) {
     Quad quad = along_axes(f, extent);
     if (max(largest(vec3(quad.first, 0.0)), largest(vec3(quad.second, 0.0))) > QUAD_MAX_EXTENT) {
         vec2 box = box_extent(f, extent);
@@ -75,11 +90,12 @@ Quad quad_around(Footprint f, float extent, vec3 weight) {
         vec2 half_sides = 0.5 * (high - low) + 1.0 + 1e-6 * abs(f.centre);
         return Quad(0.5 * (low + high) - f.centre, vec2(half_sides.x, 0.0), vec2(0.0, half_sides.y));
     }
-    float steepness = length(weight.yz);
-    if (abs(weight.x) < CUT_RANGE && steepness > 0.0) {
-        vec3 line = vec3(weight.x + TRIM_DEVIATIONS, weight.yz);
+    float steepness = length(weight.plane.yz);
+    if (abs(weight.plane.x) < CUT_RANGE && steepness > 0.0) {
+        vec3 line = vec3(weight.plane.x + TRIM_DEVIATIONS + rise(quad, weight.curvature), weight.plane.yz);
         Quad straight = trimmed(quad, line);
-        Quad turned = trimmed(along_direction(f, extent, weight.yz / steepness), line);
+        // The contour is inside the first quad too, whose bound on the rise serves both.
+        Quad turned = trimmed(along_direction(f, extent, weight.plane.yz / steepness), line);
         return area(turned) < area(straight) ? turned : straight;
     }
     return quad;

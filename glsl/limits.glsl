@@ -12,7 +12,7 @@ const float ALPHA_MAX = 0.99;
 // 1 / ALPHA_MIN: a splat contributes nothing to a pixel in which its unclipped alpha is below 1/255.
 const float ALPHA_MIN_INVERSE = 255.0;
 // A cut splat is weighted by the perspective-exact form where sigma_max / Z exceeds this, by the affine form below.
-const float BEAM_SWITCH = 0.01;
+const float BEAM_SWITCH = 0.005;
 // Share of a splat in front of the eye below which single precision cannot divide by it; the eye is then ignored.
 const float FRONT_MIN = 1e-4;
 // Most half-spaces in a clip. Raising it lengthens the frame's uniform block and the cutoff records of such clips.

@@ -20,13 +20,18 @@ BUFFER(writeonly, 7, uint, order)
 BUFFER(readonly, 8, vec4, cuts)
 
 // What the rasteriser carries of the weight: see cut.glsl.
-vec3 carried_weight(uint cut) {
-    if (!CUT || cut == NOT_CUT) {
-        return vec3(CUT_WHOLE, 0.0, 0.0);
+Carried carried_weight(uint cut) {
+    Carried weight = Carried(vec3(CUT_WHOLE, 0.0, 0.0), vec3(0.0));
+    if (CUT && cut != NOT_CUT) {
+        uint base = cut * FRAME.cut_stride;
+        if (cuts.at[base].w == float(1u << CUT_COUNT_SHIFT)) {
+            weight.plane = cuts.at[base + CUT_HEADER].xyz;
+            weight.curvature = cuts.at[base + CUT_HEADER + 1u].xyz;
+        } else {
+            weight.plane = vec3(CUT_RECORD, float(cut & 0xffffu), float(cut >> 16));
+        }
     }
-    uint base = cut * FRAME.cut_stride;
-    bool single = cuts.at[base].w == float(1u << CUT_COUNT_SHIFT);
-    return single ? cuts.at[base + CUT_HEADER].xyz : vec3(CUT_RECORD, float(cut & 0xffffu), float(cut >> 16));
+    return weight;
 }
 
 vec3 colour(uint index, vec3 direction) {
@@ -56,13 +61,14 @@ void main() {
 
     Splat splat;
     vec3 conic = cholesky(f);
-    vec3 weight = carried_weight(survivors.at[survivor].y);
+    Carried weight = carried_weight(survivors.at[survivor].y);
     Quad quad = quad_around(f, extent, weight);
     splat.centre_conic = vec4(f.centre, conic.xy);
-    splat.conic_cut = vec4(conic.z, opacity, weight.xy);
-    splat.colour_cut = vec4(colour(index, normalize(f.relative / largest(f.relative))), weight.z);
+    splat.conic_cut = vec4(conic.z, opacity, weight.plane.xy);
+    splat.colour_cut = vec4(colour(index, normalize(f.relative / largest(f.relative))), weight.plane.z);
     splat.axes = vec4(quad.first, quad.second);
     splat.middle = vec4(quad.middle, 0.0, 0.0);
+    splat.curvature = vec4(weight.curvature, 0.0);
     splats.at[survivor] = splat;
     // Positive floats order like their bits. Counted from the nearest depth that the scene's bounds allow they need
     // fewer of them, and fewer passes of the sort; dropping low bits never turns an order round.

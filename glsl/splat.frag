@@ -18,6 +18,7 @@ BUFFER(readonly, 4, vec4, cuts)
 layout(location = 0) flat in vec4 centre_conic;
 layout(location = 1) flat in vec4 conic_cut;
 layout(location = 2) flat in vec4 colour_cut;
+layout(location = 3) flat in vec3 curvature;
 layout(location = 0) out vec4 colour;
 
 void main() {
@@ -34,7 +35,9 @@ void main() {
     if (CLIP_MODE >= MODE_RARA && conic_cut.z < CUT_RANGE) {
         vec3 plane = vec3(conic_cut.zw, colour_cut.w);
         if (CLIP_MODE == MODE_EXACT && plane.x > -CUT_RANGE) {
-            alpha = decayed(alpha, phi(plane.x + plane.y * delta.x + plane.z * delta.y));
+            float z = plane.x + delta.x * (plane.y + curvature.x * delta.x + curvature.y * delta.y)
+                + delta.y * (plane.z + curvature.z * delta.y);
+            alpha = decayed(alpha, phi(z));
         } else {
             alpha = decayed(alpha, cut_weight(uint(plane.y) | uint(plane.z) << 16, delta));
         }

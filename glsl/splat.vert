@@ -6,6 +6,7 @@
 layout(location = 0) flat out vec4 centre_conic;
 layout(location = 1) flat out vec4 conic_cut;
 layout(location = 2) flat out vec4 colour_cut;
+layout(location = 3) flat out vec3 curvature;
 
 void main() {
     Splat splat = splat_at(gl_InstanceIndex);
@@ -13,4 +14,5 @@ void main() {
     centre_conic = fragment_centre(splat);
     conic_cut = splat.conic_cut;
     colour_cut = splat.colour_cut;
+    curvature = splat.curvature.xyz;
 }

@@ -53,6 +53,7 @@ struct Splat {
     vec4 colour_cut; // colour; dz/dy
     vec4 axes; // the quad's two half axes, px
     vec4 middle; // middle of the quad relative to the centre, px; zw unused
+    vec4 curvature; // of the weight's z: the factors of dx^2, dx dy and dy^2; w unused
 };
 
 // How many Gaussians ended where, and the indirect commands that follow from it.

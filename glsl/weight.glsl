@@ -2,7 +2,7 @@
 // declared the buffer `cuts` and the constants CLIP_MODE, CLIP_OP, DECAY and MISS.
 #ifndef RARA_WEIGHT
 #define RARA_WEIGHT
-#include "cut.glsl"
+#include "sight.glsl"
 
 // The normal distribution's Phi by a logistic of an odd quintic: absolute error 1.9e-5, and Phi(z) + Phi(-z) = 1 to
 // rounding. Beyond |z| = 8 the quintic would turn back.
@@ -47,42 +47,9 @@ float affine_weight(uint at, uint count, vec2 delta) {
     return combined(max(0.0, far - (1.0 - near)));
 }
 
-// The line of sight of a pixel in the Gaussian's unit space: the points u with b1.u = delta.x and b2.u = delta.y.
-// A pixel is two planes through the eye; dividing them by Z gives the gradients fx/Z m1 - X e and fy/Z m2 - Y e with the
-// pixel's place relative to the principal point. (The centre's gradients less delta e are the same, but for centres far
-// beside the picture the difference of two large slopes.)
-struct Sight {
-    vec3 b1, b2, c;
-    vec2 delta;
-    float low_pass;
-};
-
 Sight line_of_sight(uint base, vec2 delta) {
-    vec4 h0 = cuts.at[base];
-    vec4 h1 = cuts.at[base + 1u];
-    vec4 h2 = cuts.at[base + 2u];
-    Sight sight;
     vec2 pixel = gl_FragCoord.xy - vec2(uintBitsToFloat(push.param[4]), uintBitsToFloat(push.param[5]));
-    sight.b1 = h0.xyz - pixel.x * h2.xyz;
-    sight.b2 = h1.xyz - pixel.y * h2.xyz;
-    sight.c = cross(sight.b1, sight.b2);
-    sight.delta = delta * h1.w;
-    sight.low_pass = h2.w;
-    return sight;
-}
-
-// `exact`, perspective included: the same update as the affine form with this pixel's own gradients.
-float ray_z(Sight s, float det, vec4 plane, out bool far) {
-    vec3 a = plane.xyz;
-    vec3 a1 = cross(a, s.b1);
-    vec3 a2 = cross(a, s.b2);
-    float along = dot(a, s.c);
-    far = keeps_far(along, a);
-    float variance = along * along + s.low_pass * (dot(a1, a1) + dot(a2, a2))
-        + s.low_pass * s.low_pass * dot(a, a);
-    vec2 k = vec2(dot(s.c, a2) + s.low_pass * dot(a, s.b1), -dot(s.c, a1) + s.low_pass * dot(a, s.b2));
-    float mean = plane.w + dot(k, s.delta) / det;
-    return mean * inversesqrt(max(variance / det, 1e-30));
+    return sight_through(cuts.at[base], cuts.at[base + 1u], cuts.at[base + 2u], pixel, delta);
 }
 
 // Phi with a relative error of 2e-5 in its lower tail, for shares that are divided by the part in front of the eye.
@@ -96,7 +63,7 @@ float tail_phi(float z) {
 
 float beam_weight(uint base, uint count, bool has_front, vec2 delta) {
     Sight s = line_of_sight(base, delta);
-    float det = dot(s.c, s.c) + s.low_pass * (dot(s.b1, s.b1) + dot(s.b2, s.b2)) + s.low_pass * s.low_pass;
+    float det = determinant(s);
     float sign = complement_sign();
     // What the far thresholds leave, and what the near ones take of it.
     float far = 1.0;

@@ -233,6 +233,7 @@ impl Renderer {
         };
         assert!(
             plan.gaussians == scene.count
+                && plan.sh_format == scene.sh_format
                 && plan.data.sh_coefficients == (scene.sh_degree + 1).pow(2),
             "Renderer::prepare was given another scene than configure()"
         );

@@ -5,7 +5,9 @@ mod common;
 use std::path::Path;
 use std::process::Command;
 
-use rara::{ClipOp, Mode, Raster, Settings};
+use glam::DVec3;
+use rara::scene::{Kind, generate};
+use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings};
 
 const SIZE: (u32, u32) = (300, 220);
 
@@ -55,6 +57,44 @@ fn mesh_and_quad_paths_agree() {
     }
 }
 
+/// A frame must not see what an earlier one left: not even the order of its splats when only one is left to sort.
+#[test]
+fn a_lone_survivor_after_many_is_itself() {
+    let mut scene = generate(Kind::Layers, 8, 3);
+    for index in 0..scene.len() {
+        scene.positions[index] = glam::Vec3::new(index as f32 * 0.2 - 0.7, 0.0, 0.0);
+    }
+    let camera = common::views(&scene, 1, SIZE)[0];
+    let mut reused = common::headless();
+    reused.load(&scene).expect("uploads");
+    for end in 0..8 {
+        // Keeps the centres from `end` to `end`: each of the eight alone.
+        let x = f64::from(scene.positions[end].x);
+        let keep = |sign: f64| Plane::new(sign * DVec3::X, 0.1 - sign * x).expect("a proper plane");
+        let clip = Clip {
+            planes: vec![keep(1.0), keep(-1.0)],
+            op: ClipOp::And,
+        };
+        let hard = Settings {
+            mode: Mode::Hard,
+            ..Settings::default()
+        };
+        reused
+            .render(&camera, &Clip::default(), &hard)
+            .expect("renders");
+        let stats = reused.render(&camera, &clip, &hard).expect("renders");
+        assert_eq!(stats.counts.drawn, 1);
+        let after_many = reused.picture().expect("reads back");
+        let mut fresh = common::headless();
+        fresh.load(&scene).expect("uploads");
+        fresh.render(&camera, &clip, &hard).expect("renders");
+        assert!(
+            fresh.picture().expect("reads back") == after_many,
+            "number {end}"
+        );
+    }
+}
+
 #[test]
 fn every_run_with_any_number_of_driver_threads_gives_the_same_bytes() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
@@ -74,7 +114,13 @@ fn every_run_with_any_number_of_driver_threads_gives_the_same_bytes() {
             .arg(&scene)
             .arg("-o")
             .arg(&out);
-        command.args(["--size", "300x220", "--clip", "plane:1,0.2,0.1,0"]);
+        command.args([
+            "--size",
+            "300x220",
+            "--clip",
+            "plane:1,0.2,0.1,0",
+            "--validation",
+        ]);
         if let Ok(device) = std::env::var("RARA_TEST_DEVICE") {
             command.args(["--device", &device]);
         }

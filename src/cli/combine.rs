@@ -23,6 +23,14 @@ impl Combine {
     }
 }
 
+/// The counts of the frame that draws a middling number of splats: medians of each count by itself would not add up to
+/// the scene.
+fn middle(frames: &[FrameStats]) -> Counts {
+    let mut counts: Vec<Counts> = frames.iter().map(|frame| frame.counts).collect();
+    counts.sort_by_key(|counts| counts.drawn);
+    counts.get(frames.len() / 2).copied().unwrap_or_default()
+}
+
 /// Each value's median or mean over the frames. A stage that a frame did not run took it 0 ms there, and counts as
 /// skipped when most frames skipped it.
 pub(super) fn combine(frames: &[FrameStats], how: Combine) -> FrameStats {
@@ -42,12 +50,15 @@ pub(super) fn combine(frames: &[FrameStats], how: Combine) -> FrameStats {
         2 * frames.iter().filter(|f| f.skipped.contains(name)).count() > frames.len()
     });
     FrameStats {
-        counts: Counts {
-            visible: count(|c| c.visible),
-            cutoff: count(|c| c.cutoff),
-            invisible: count(|c| c.invisible),
-            culled: count(|c| c.culled),
-            drawn: count(|c| c.drawn),
+        counts: match how {
+            Combine::Median => middle(frames),
+            Combine::Mean => Counts {
+                visible: count(|c| c.visible),
+                cutoff: count(|c| c.cutoff),
+                invisible: count(|c| c.invisible),
+                culled: count(|c| c.culled),
+                drawn: count(|c| c.drawn),
+            },
         },
         passes: passes
             .into_iter()
@@ -83,6 +94,7 @@ mod tests {
             ..FrameStats::default()
         };
         frame.counts.visible = visible;
+        frame.counts.drawn = visible;
         frame.passes.push(PassTime {
             name: "classify",
             ms: 1.0,

@@ -402,23 +402,25 @@ mod tests {
     }
 
     proptest::proptest! {
-        /// Every hazard of a random recording is covered, and no barrier could be left out.
+        /// Every hazard of a random recording is covered, and no barrier on a single buffer could be left out. (On
+        /// several, one buffer's barrier may happen to order another's uses too, which the tracker does not look for.)
         #[test]
         fn barriers_are_enough_and_needed(
+            buffers in 1_u64..4,
             passes in proptest::collection::vec(
-                proptest::collection::vec((1_u64..4, 0_usize..9), 1..4), 1..7)
+                proptest::collection::vec((0_u64..12, 0_usize..9), 1..4), 1..7)
         ) {
             let names: Vec<Access> = Access::all().collect();
             let mut tracker = Tracker::new(true);
             let mut uses: Vec<Use> = Vec::new();
             let mut barriers = Barriers::new();
             for (at, pass) in passes.iter().enumerate() {
-                let pass: Vec<_> = pass.iter().map(|(b, a)| (buffer(*b), names[*a])).collect();
+                let pass: Vec<_> = pass.iter().map(|(b, a)| (buffer(1 + b % buffers), names[*a])).collect();
                 barriers.push(tracker.pass(&pass));
                 uses.extend(pass.iter().map(|(buffer, access)| (at, *buffer, *access)));
             }
             proptest::prop_assert_eq!(unordered(&uses, &barriers), 0);
-            for at in 0..barriers.len() {
+            for at in (0..barriers.len()).filter(|_| buffers == 1) {
                 let mut fewer = barriers.clone();
                 if fewer[at].take().is_some() {
                     proptest::prop_assert!(unordered(&uses, &fewer) > 0, "barrier {} is idle", at);

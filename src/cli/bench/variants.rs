@@ -76,7 +76,7 @@ pub(super) fn variants(look: Settings) -> Vec<Variant> {
             "--preset exact",
             precise(Preset::Exact.precision()),
         ),
-        variant("switch 0.005", "--beam-switch 0.005", switch(0.005)),
+        variant("switch 0.0025", "--beam-switch 0.0025", switch(0.0025)),
         variant("switch 0.01", "--beam-switch 0.01", switch(0.01)),
         variant("switch 0.02", "--beam-switch 0.02", switch(0.02)),
         variant("switch 0.05", "--beam-switch 0.05", switch(0.05)),

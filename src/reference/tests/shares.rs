@@ -262,7 +262,7 @@ fn auto_takes_the_perspective_form_for_what_is_large_or_outside_the_picture() {
     };
     let aside = |x: f32| One {
         position: [4.0 * x, 0.0, 4.0],
-        scale: [0.03; 3],
+        scale: [0.015; 3],
         ..One::default()
     };
     assert!(is_beam(aside(0.0053), &camera, ExactForm::Auto));

@@ -39,14 +39,15 @@ pub struct Loaded {
 /// [`Error::Io`] if the file can't be read, [`Error::Format`] if it is not a scene or is cut off, [`Error::Memory`] if
 /// it doesn't fit. Single bad elements are no error: see [`LoadReport`].
 pub fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<Loaded> {
-    let file = File::open(path).map_err(Error::io(path))?;
-    let metadata = file.metadata().map_err(Error::io(path))?;
+    // Before opening it, which would wait for a pipe's writer.
+    let metadata = std::fs::metadata(path).map_err(Error::io(path))?;
     if !metadata.is_file() {
         return Err(Error::format(
             path,
             "this is a folder or a device, not a file; give a .ply file",
         ));
     }
+    let file = File::open(path).map_err(Error::io(path))?;
     load_from(file, path, progress)
 }
 

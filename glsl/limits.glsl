@@ -31,7 +31,7 @@ const uint MESH_GROUP_SIZE = 32u;
 const uint SORT_BITS = 8u;
 // Workgroup size of the sort; one invocation owns a run of consecutive keys, which makes the sort stable.
 const uint SORT_GROUP_SIZE = 64u;
-// Indirect dispatches are folded into rows of this many workgroups, so that no dimension exceeds 65535.
+// Columns of a grid of workgroups that does not fit in a row: more than 65535 would break devices with the least limit.
 const uint GROUP_COLUMNS = 32768u;
 // Focal length beyond which positions in the camera's frame are computed in two floats, px. Single precision is off by
 // about 2e-7 of the distance, which is this times the focal length in pixels: 4e-4 px at this one.

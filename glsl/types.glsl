@@ -21,8 +21,6 @@ struct FrameData {
     uint plane_count; // half-spaces of the clip
     uint mode; // MODE_*
     uint op; // OP_*
-    uint decay; // DECAY_*
-    uint miss; // MISS_*
     float sigma; // rara: the traced ellipsoid, standard deviations
     float beam_switch; // sigma_max / Z above which the perspective-exact form is used
     uint trace_all; // 1: every Gaussian in view is cutoff
@@ -34,7 +32,7 @@ struct FrameData {
     uint key_near; // bits of the nearest depth a centre can have
     uint key_span; // by how much the farthest depth's bits exceed them
     uint key_shift; // low bits of the difference that the sort does without
-    uint pad_0; // unused
+    uint pad[3]; // unused
     vec4 plane_high[MAX_CLIP_PLANES]; // unit normal and distance, rounded to single precision
     vec4 plane_low[MAX_CLIP_PLANES]; // what the rounding lost
 };

@@ -9,7 +9,7 @@ use std::path::Path;
 use crate::{Error, Result};
 
 /// Writes a file beside `path` and renames it into place; if anything fails, `path` is as it was before.
-pub(crate) fn write_atomically(
+pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
 ) -> Result<()> {
@@ -19,8 +19,8 @@ pub(crate) fn write_atomically(
     let written = File::create(&beside).and_then(|file| {
         let mut writer = BufWriter::new(file);
         write(&mut writer)?;
-        writer.flush()?;
-        drop(writer);
+        // On the disk before it has its name: after a crash the name stands for the old file or the new, never for half.
+        writer.into_inner()?.sync_all()?;
         fs::rename(&beside, path)
     });
     if written.is_err() {

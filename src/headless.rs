@@ -25,6 +25,9 @@ pub struct HeadlessDesc {
     pub device: Option<String>,
     /// Load the Khronos validation layer with synchronisation checks; any message becomes [`Error::Validation`].
     pub validation: bool,
+    /// How buffers are reached; `None` is by address, and bound under validation, whose synchronisation checks cannot
+    /// watch an address.
+    pub bindings: Option<Bindings>,
 }
 
 /// A renderer that owns its device and draws into an offscreen picture, of 32-bit floats unless the settings say
@@ -54,12 +57,11 @@ impl Headless {
             validation: desc.validation,
             application_name: "rara".into(),
         })?;
-        // Under validation, buffers are bound so that the layer's synchronisation checks can see them.
-        let bindings = if desc.validation {
+        let bindings = desc.bindings.unwrap_or(if desc.validation {
             Bindings::Bound
         } else {
             Bindings::Address
-        };
+        });
         let renderer = Renderer::new(
             &device,
             RendererDesc {

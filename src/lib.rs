@@ -4,7 +4,7 @@ pub mod camera;
 pub mod camera_files;
 pub mod clip;
 pub mod error;
-mod files;
+pub mod files;
 mod framing;
 pub mod gpu;
 mod half;

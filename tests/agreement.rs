@@ -2,6 +2,7 @@
 
 mod common;
 
+use rara::gpu::Bindings;
 use rara::{ClipOp, Gaussians, Mode, Settings};
 
 /// Small enough for the suite, and not a multiple of any workgroup.
@@ -9,7 +10,16 @@ const SIZE: (u32, u32) = (253, 190);
 const VIEWS: usize = 6;
 
 fn check_scenes(scenes: Vec<(String, Gaussians)>, mode: Mode, clips: &[(usize, ClipOp)]) {
-    let mut headless = common::headless();
+    check_scenes_by(Bindings::Bound, scenes, mode, clips);
+}
+
+fn check_scenes_by(
+    bindings: Bindings,
+    scenes: Vec<(String, Gaussians)>,
+    mode: Mode,
+    clips: &[(usize, ClipOp)],
+) {
+    let mut headless = common::headless_by(bindings);
     for (name, scene) in scenes {
         headless.load(&scene).expect("uploads");
         for camera in common::views(&scene, VIEWS, common::scaled(SIZE)) {
@@ -62,5 +72,14 @@ fn exact_on_trained_scenes() {
 fn every_mode_on_generated_scenes() {
     for mode in [Mode::None, Mode::Hard, Mode::Rara, Mode::Exact] {
         check_scenes(common::generated_scenes(5_000), mode, &CLIPS);
+    }
+}
+
+/// How buffers are reached where nobody validates: the other tests bind them, for the synchronisation checks to see.
+#[test]
+fn every_mode_by_addresses() {
+    for mode in [Mode::None, Mode::Hard, Mode::Rara, Mode::Exact] {
+        let scenes = common::generated_scenes(5_000);
+        check_scenes_by(Bindings::Address, scenes, mode, &CLIPS);
     }
 }

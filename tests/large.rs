@@ -1,6 +1,4 @@
 //! Scenes beyond what can be bound as one buffer and beyond what fits in a row of workgroups.
-//!
-//! Without validation, whose checks take minutes at this size: that frames are recorded rightly, the others see to.
 
 mod common;
 
@@ -9,18 +7,13 @@ use std::time::Instant;
 use glam::DVec3;
 use rara::scene::{Bounds, Kind, generate};
 use rara::types::{Gaussian, Splat};
-use rara::{Clip, ClipOp, FrameStats, Gaussians, Headless, HeadlessDesc, Plane, Settings};
+use rara::{Clip, ClipOp, FrameStats, Gaussians, Headless, Plane, Settings};
 
 /// For the reference, which evaluates every splat's pixels in double precision: hundreds of splats meet in each.
 const SMALL: (u32, u32) = (253, 190);
 
 fn load(scene: &Gaussians) -> Headless {
-    let device = std::env::var("RARA_TEST_DEVICE").ok();
-    let desc = HeadlessDesc {
-        device,
-        validation: false,
-    };
-    let mut headless = Headless::new(&desc).expect("a Vulkan device");
+    let mut headless = common::headless();
     headless.load(scene).expect("uploads");
     headless
 }

@@ -43,14 +43,7 @@ pub(super) fn check_file(file: &Path) -> Result<()> {
 
 /// Writes a text file beside `file` and renames it into place, so that nobody sees half of one.
 pub(super) fn text(file: &Path, text: &str) -> Result<()> {
-    let mut name = file.file_name().unwrap_or_default().to_os_string();
-    name.push(format!(".{}.part", std::process::id()));
-    let beside = file.with_file_name(name);
-    let written = fs::write(&beside, text).and_then(|()| fs::rename(&beside, file));
-    if written.is_err() {
-        let _ = fs::remove_file(&beside); // what went wrong first is what counts
-    }
-    written.map_err(Error::io(file))
+    rara::files::write_atomically(file, |out| out.write_all(text.as_bytes()))
 }
 
 /// Makes `folder` unless it is there, and fails where files could not be written into it.

@@ -181,6 +181,7 @@ impl DeviceArgs {
         HeadlessDesc {
             device: self.device.clone(),
             validation: self.validation,
+            bindings: None,
         }
     }
 }

@@ -89,7 +89,7 @@ impl Image {
                     bytes(requirements.size)
                 );
                 return Err(Error::Memory(format!(
-                    "image \"{}\" of {size} could not be allocated ({error})",
+                    "image \"{}\" of {size} could not be allocated ({error}); make the picture smaller",
                     desc.name
                 )));
             }

@@ -32,7 +32,7 @@ pub use layout::Bindings;
 pub use memory::{Buffer, BufferDesc, Location};
 pub use open::{AdoptDesc, DeviceDesc};
 pub use pipeline::{ComputeDesc, ComputePipeline, GraphicsDesc, GraphicsPipeline};
-pub use recorder::{GRID_COLUMNS, Groups, Recorder, group_grid};
+pub use recorder::{Groups, Recorder, group_grid};
 pub use requirements::{Features, Support, check};
 pub use shader::{BufferAccess, BufferUse, MAX_BUFFERS, MAX_PARAMS, Shader};
 pub use timer::Timer;

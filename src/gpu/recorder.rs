@@ -5,6 +5,7 @@ use std::ffi::CStr;
 use ash::vk;
 
 use super::{Access, Buffer, ComputePipeline, Device, MAX_BUFFERS, Timer, Tracker};
+use crate::limits::GROUP_COLUMNS;
 
 /// How many workgroups a dispatch has.
 #[derive(Debug, Clone, Copy)]
@@ -15,22 +16,18 @@ pub enum Groups<'a> {
     Indirect(&'a Buffer, u64),
 }
 
-/// Columns of a grid of workgroups that does not fit in a row. A power of two, so that shaders that fill indirect
-/// arguments divide by shifting; more than 65535 would break devices with the least limit.
-pub const GRID_COLUMNS: u32 = 32_768;
-
-/// The grid for a linear number of workgroups: a row while `limit` allows, else rows of [`GRID_COLUMNS`], the last of
+/// The grid for a linear number of workgroups: a row while `limit` allows, else rows of [`GROUP_COLUMNS`], the last of
 /// which may be too long. Shaders compute `y * gl_NumWorkGroups.x + x` and leave if that is past the end.
 pub fn group_grid(count: u32, limit: u32) -> [u32; 3] {
     if count <= limit {
         return [count, 1, 1];
     }
-    let rows = count.div_ceil(GRID_COLUMNS);
+    let rows = count.div_ceil(GROUP_COLUMNS);
     assert!(
         rows <= limit,
         "{count} workgroups are more than a dispatch can have on this device"
     );
-    [GRID_COLUMNS, rows, 1]
+    [GROUP_COLUMNS, rows, 1]
 }
 
 /// Records compute passes, fills and copies. Neither allocates device memory, nor waits, nor submits.
@@ -289,8 +286,8 @@ mod tests {
     fn grids_hold_every_group_within_the_limits() {
         assert_eq!(group_grid(1, 65_535), [1, 1, 1]);
         assert_eq!(group_grid(65_535, 65_535), [65_535, 1, 1]);
-        assert_eq!(group_grid(65_536, 65_535), [GRID_COLUMNS, 2, 1]);
-        assert_eq!(group_grid(65_537, 65_535), [GRID_COLUMNS, 3, 1]);
+        assert_eq!(group_grid(65_536, 65_535), [GROUP_COLUMNS, 2, 1]);
+        assert_eq!(group_grid(65_537, 65_535), [GROUP_COLUMNS, 3, 1]);
         assert_eq!(group_grid(1 << 30, u32::MAX), [1 << 30, 1, 1]);
     }
 

@@ -24,6 +24,10 @@ pub(crate) struct Plan {
     pub(crate) cut_stride: u32,
     /// How the scene's spherical harmonics are stored.
     pub(crate) sh_format: ShFormat,
+    /// `DECAY_*`.
+    pub(crate) decay: u32,
+    /// `MISS_*`.
+    pub(crate) miss: u32,
     /// `PHI_*`.
     pub(crate) phi: u32,
     /// Passes of the sort.
@@ -91,6 +95,15 @@ impl Plan {
             0
         };
 
+        // Shaders count the records' elements in 32 bits.
+        if u64::from(scene.gaussians) * u64::from(cut_stride) > u64::from(u32::MAX) {
+            return Err(Error::Invalid(format!(
+                "{} Gaussians cut by {} planes are beyond what a frame can address; use fewer planes or split the scene",
+                scene.gaussians,
+                planes.len()
+            )));
+        }
+
         let mut data: FrameData = bytemuck::Zeroable::zeroed();
         camera_constants(&mut data, camera);
         data.gaussian_count = scene.gaussians;
@@ -104,15 +117,6 @@ impl Plan {
             types::OP_OR
         } else {
             types::OP_AND
-        };
-        data.decay = match settings.decay_law() {
-            Decay::Linear => types::DECAY_LINEAR,
-            Decay::Depth => types::DECAY_DEPTH,
-        };
-        data.miss = match settings.miss {
-            Miss::Keep => types::MISS_KEEP,
-            Miss::Drop => types::MISS_DROP,
-            Miss::Peak => types::MISS_PEAK,
         };
         data.form = match settings.form {
             ExactForm::Auto => types::FORM_AUTO,
@@ -144,6 +148,15 @@ impl Plan {
             cutoff,
             cut_stride,
             sh_format: scene.sh_format,
+            decay: match settings.decay_law() {
+                Decay::Linear => types::DECAY_LINEAR,
+                Decay::Depth => types::DECAY_DEPTH,
+            },
+            miss: match settings.miss {
+                Miss::Keep => types::MISS_KEEP,
+                Miss::Drop => types::MISS_DROP,
+                Miss::Peak => types::MISS_PEAK,
+            },
             phi: settings.precision.phi.code(),
             sort_passes: if scene.gaussians > 1 {
                 keys.passes()

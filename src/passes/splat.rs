@@ -53,8 +53,8 @@ impl SplatKey {
             format,
             mode: when(plan.cutoff, plan.mode),
             op: when(plan.cutoff, plan.data.op),
-            decay: when(plan.cutoff, plan.data.decay),
-            miss: when(plan.cutoff && plan.mode == types::MODE_RARA, plan.data.miss),
+            decay: when(plan.cutoff, plan.decay),
+            miss: when(plan.cutoff && plan.mode == types::MODE_RARA, plan.miss),
             phi: when(plan.cutoff && plan.mode == types::MODE_EXACT, plan.phi),
         }
     }

@@ -4,6 +4,7 @@
 use std::path::PathBuf;
 
 use glam::DVec3;
+use rara::gpu::Bindings;
 use rara::measure::compare;
 use rara::scene::{Bounds, Kind, generate, load};
 use rara::{
@@ -26,11 +27,18 @@ pub fn scaled((width, height): (u32, u32)) -> (u32, u32) {
     (scaled(width), scaled(height))
 }
 
-/// A renderer whose every validation message is an error.
+/// A renderer whose every validation message is an error, its buffers bound where the driver can, so that the
+/// synchronisation checks see them.
 pub fn headless() -> Headless {
+    headless_by(Bindings::Bound)
+}
+
+/// A renderer whose every validation message is an error.
+pub fn headless_by(bindings: Bindings) -> Headless {
     let desc = HeadlessDesc {
         device: std::env::var("RARA_TEST_DEVICE").ok(),
         validation: true,
+        bindings: Some(bindings),
     };
     Headless::new(&desc)
         .expect("a Vulkan device and the validation layer (tools/test installs both)")

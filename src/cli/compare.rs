@@ -71,7 +71,8 @@ impl Compare {
         say(format_args!("L1            {:.4} of 255", measures.l1));
         say(format_args!("RMSE          {:.4} of 255", measures.rmse));
         say(format_args!("largest       {:.2} of 255", measures.max));
-        say(format_args!("PSNR          {} dB", measures.psnr_text()));
+        let unit = if measures.psnr.is_some() { " dB" } else { "" };
+        say(format_args!("PSNR          {}{unit}", measures.psnr_text()));
         say(format_args!("SSIM          {:.6}", measures.ssim));
         say(format_args!(
             "over 2/255    {:.4} % of the pixels",

@@ -7,6 +7,7 @@ use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::gpu::{Bindings, Buffer, BufferDesc, Device, Drawer, Location, Recorder, Timer};
+use crate::limits;
 use crate::passes::{self, Buffers, Context, Plan, SceneBuffers, SceneFacts, Stages};
 use crate::settings::{Raster, Settings};
 use crate::stats::{Counts, PassTime};
@@ -69,7 +70,8 @@ pub struct Renderer {
     prepared: u64,
     plan: Option<Plan>,
     bindings: Bindings,
-    mesh: bool,
+    /// Pairs of tile and splat that frames have had or needed room for.
+    pair_capacity: u32,
     /// Whether the configured frame has been prepared.
     ready: bool,
 }
@@ -125,7 +127,7 @@ impl Renderer {
             prepared: 0,
             plan: None,
             bindings: desc.bindings,
-            mesh: false,
+            pair_capacity: 0,
             ready: false,
         })
     }
@@ -153,29 +155,34 @@ impl Renderer {
         self.plan = None;
         self.ready = false;
         self.free_finished();
+        self.make_room_for_pairs(scene.count);
         let support = self.device.support();
         let is_cpu = self.device.info().kind == vk::PhysicalDeviceType::CPU;
         let sort_runs = if is_cpu { SORT_RUNS_CPU } else { SORT_RUNS_GPU };
-        let facts = SceneFacts {
-            gaussians: scene.count,
-            sh_degree: scene.sh_degree,
-            sh_format: scene.sh_format,
-            bounds: scene.bounds,
-            sort_runs,
-        };
-        let plan = Plan::new(facts, camera, clip, settings)?;
-        self.mesh = match settings.raster {
+        let raster = match settings.raster {
             // On CPU drivers a mesh shader costs several times a quad's vertices; see the README's measurements.
-            Raster::Auto => support.mesh_shader && !is_cpu,
+            Raster::Auto if is_cpu => Raster::Quad,
+            Raster::Auto if support.mesh_shader => Raster::Mesh,
+            Raster::Auto => Raster::Quad,
             Raster::Mesh if !support.mesh_shader => {
                 return Err(Error::Device(
                     "this device has no mesh shaders (VK_EXT_mesh_shader); use --raster quad"
                         .into(),
                 ));
             }
-            Raster::Mesh => true,
-            Raster::Quad => false,
+            chosen => chosen,
         };
+        let facts = SceneFacts {
+            gaussians: scene.count,
+            sh_degree: scene.sh_degree,
+            sh_format: scene.sh_format,
+            bounds: scene.bounds,
+            sort_runs,
+            raster,
+            tile_rows: if is_cpu { limits::TILE_HEIGHT } else { 1 },
+            pair_capacity: self.pair_capacity,
+        };
+        let plan = Plan::new(facts, camera, clip, settings)?;
         let largest = Buffers::largest(&plan).max(scene.largest());
         self.bindings = match self.desc.bindings {
             Bindings::Bound
@@ -195,7 +202,7 @@ impl Renderer {
             Some(stages) => stages,
             None => stages.insert(Stages::new(&context)?),
         };
-        stages.ensure(&context, &plan, self.mesh)?;
+        stages.ensure(&context, &plan)?;
         if self
             .buffers
             .as_ref()
@@ -209,6 +216,18 @@ impl Renderer {
         }
         self.plan = Some(plan);
         Ok(())
+    }
+
+    /// Room for the pairs of tile and splat that the last finished frame had, or would have had.
+    fn make_room_for_pairs(&mut self, gaussians: u32) {
+        let usual = gaussians.saturating_mul(USUAL_PAIRS).max(FEWEST_PAIRS);
+        let needed = self.frame_counts().map_or(0, |counts| counts.pairs);
+        let needed = if needed > self.pair_capacity {
+            needed.saturating_add(needed / 4)
+        } else {
+            self.pair_capacity
+        };
+        self.pair_capacity = usual.max(needed).min(MOST_PAIRS);
     }
 
     /// Frees what only frames used that the host has waited for.
@@ -272,11 +291,16 @@ impl Renderer {
         }
         let at = ((self.prepared - 1) % self.slots.len() as u64) as usize;
         let timer = self.slots[at].timer.as_mut();
-        let splat = stages.splat(plan, self.mesh, self.desc.color_format);
+        let splat = stages.splat(plan, self.desc.color_format);
+        let composite = stages.composite.get(&self.desc.color_format);
+        let tiles = composite.zip(buffers.tiles.as_ref());
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
         let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
         drawer.pass("splat", |drawer| {
-            splat.record(drawer, buffers, plan, origin)
+            splat.record(drawer, buffers, plan, origin);
+            if let Some((composite, t)) = tiles.filter(|_| plan.raster == Raster::Tiles) {
+                composite.record(drawer, buffers, t, origin);
+            }
         });
     }
 
@@ -288,16 +312,16 @@ impl Renderer {
     /// How many Gaussians ended where in the oldest frame that is kept: the last one, with one frame in flight. Ask
     /// after waiting for it, before the next [`prepare`](Self::prepare). All zero where no frame is that old.
     pub fn counts(&self) -> Counts {
-        let Some(slot) = self.oldest().filter(|slot| !slot.empty) else {
-            return Counts::default();
-        };
-        let FrameCounts {
+        let Some(FrameCounts {
             visible,
             cutoff,
             invisible,
             culled,
             ..
-        } = bytemuck::pod_read_unaligned(&slot.counts.mapped()[..size_of::<FrameCounts>()]);
+        }) = self.frame_counts()
+        else {
+            return Counts::default();
+        };
         Counts {
             visible,
             cutoff,
@@ -305,6 +329,12 @@ impl Renderer {
             culled,
             drawn: visible + cutoff,
         }
+    }
+
+    fn frame_counts(&self) -> Option<FrameCounts> {
+        let slot = self.oldest().filter(|slot| !slot.empty)?;
+        let bytes = &slot.counts.mapped()[..size_of::<FrameCounts>()];
+        Some(bytemuck::pod_read_unaligned(bytes))
     }
 
     /// GPU time of each stage of the same frame as [`counts`](Self::counts); empty without timing.
@@ -327,6 +357,13 @@ impl Renderer {
     }
 }
 
+/// Pairs of tile and splat a Gaussian that there is room for from the beginning, before any frame has shown how many
+/// there are: most Gaussians are out of view, hidden or small.
+const USUAL_PAIRS: u32 = 4;
+/// The least room for pairs.
+const FEWEST_PAIRS: u32 = 1 << 16;
+/// The most room for pairs, 2 GiB: frames with more are drawn as quads.
+const MOST_PAIRS: u32 = 1 << 27;
 /// Runs of the sort on CPU drivers: few, because each costs a histogram; at least the lanes of all cores.
 const SORT_RUNS_CPU: u32 = 256;
 /// Runs of the sort on GPUs: enough invocations to hide the latency of their scattered writes.

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_vote : require
 // One workgroup a tile, an invocation a column of some of its pixels: the tile's splats front to back, until every pixel
 // is saturated. What one splat has in common for a column is computed once; on CPU drivers a column is the whole tile's
 // height, which makes a splat's fixed costs an eighth.
@@ -20,16 +21,7 @@ BUFFER(readonly, 2, uint, pair_splats)
 BUFFER(readonly, 3, uint, tile_begins)
 BUFFER(readonly, 4, vec4, cuts)
 BUFFER(writeonly, 5, vec4, picture)
-#include "weight.glsl"
-
-float weighted(float alpha, vec3 plane, vec3 curvature, vec2 delta, vec2 place) {
-    if (CLIP_MODE == MODE_EXACT && plane.x > -CUT_RANGE) {
-        float z = plane.x + delta.x * (plane.y + curvature.x * delta.x + curvature.y * delta.y)
-            + delta.y * (plane.z + curvature.z * delta.y);
-        return decayed(alpha, phi(z));
-    }
-    return decayed(alpha, cut_weight(uint(plane.y) | uint(plane.z) << 16, delta, place));
-}
+#include "column.glsl"
 
 void main() {
     uint tile = LINEAR_GROUP;
@@ -63,11 +55,32 @@ void main() {
         }
         if (CLIP_MODE >= MODE_RARA && conic_cut.z < CUT_RANGE) {
             vec3 plane = vec3(conic_cut.zw, colour_cut.w);
-            vec3 curvature = splats.at[number].curvature.xyz;
-            for (uint row = 0u; row < ROWS; row++) {
-                vec2 below = vec2(0.0, float(row));
-                vec2 here = place + below;
-                alpha[row] = weighted(alpha[row], plane, curvature, here - centre_conic.xy, here);
+            if (CLIP_MODE == MODE_EXACT && plane.x > -CUT_RANGE) {
+                vec3 curvature = splats.at[number].curvature.xyz;
+                float z0 = plane.x + delta.x * (plane.y + curvature.x * delta.x);
+                float slope = plane.z + curvature.y * delta.x;
+                for (uint row = 0u; row < ROWS; row++) {
+                    float y = delta.y + float(row);
+                    alpha[row] = decayed(alpha[row], phi(z0 + y * (slope + curvature.z * y)));
+                }
+            } else {
+                uint cut = uint(plane.y) | uint(plane.z) << 16;
+                float weight[ROWS];
+                cut_weights(cut, delta, place, weight);
+                bool whole = true;
+                bool nothing = true;
+                for (uint row = 0u; row < ROWS; row++) {
+                    whole = whole && weight[row] >= 1.0;
+                    nothing = nothing && weight[row] <= 0.0;
+                }
+                if (subgroupAll(nothing)) {
+                    continue;
+                }
+                if (!subgroupAll(whole)) {
+                    for (uint row = 0u; row < ROWS; row++) {
+                        alpha[row] = decayed(alpha[row], weight[row]);
+                    }
+                }
             }
         }
         float most = 0.0;

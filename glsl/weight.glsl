@@ -47,8 +47,12 @@ float affine_weight(uint at, uint count, vec2 delta) {
     return combined(max(0.0, far - (1.0 - near)));
 }
 
+vec2 principal_point() {
+    return vec2(uintBitsToFloat(push.param[4]), uintBitsToFloat(push.param[5]));
+}
+
 Sight line_of_sight(uint base, vec2 delta, vec2 place) {
-    vec2 pixel = place - vec2(uintBitsToFloat(push.param[4]), uintBitsToFloat(push.param[5]));
+    vec2 pixel = place - principal_point();
     return sight_through(cuts.at[base], cuts.at[base + 1u], cuts.at[base + 2u], pixel, delta);
 }
 

@@ -18,8 +18,10 @@ uint capped_sum(uint a, uint b) {
 
 void main() {
     uint d = gl_LocalInvocationIndex;
+    // Without survivors nothing was counted, and the histogram is another frame's.
+    uint runs = counts.at[0].mesh_groups.w == 0u ? 0u : FRAME.sort_runs;
     uint total = 0u;
-    for (uint run = 0u; run < FRAME.sort_runs; run++) {
+    for (uint run = 0u; run < runs; run++) {
         total = capped_sum(total, histogram.at[run * DIGITS + d]);
     }
     totals[d] = total;
@@ -29,7 +31,7 @@ void main() {
         place = capped_sum(place, totals[before]);
     }
     uint pairs = capped_sum(place, total);
-    for (uint run = 0u; run < FRAME.sort_runs; run++) {
+    for (uint run = 0u; run < runs; run++) {
         uint count = histogram.at[run * DIGITS + d];
         histogram.at[run * DIGITS + d] = place;
         place += count;

@@ -1,6 +1,5 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_vote : require
 // One workgroup a tile, an invocation a column of some of its pixels: the tile's splats front to back, until every pixel
 // is saturated. What one splat has in common for a column is computed once; on CPU drivers a column is the whole tile's
 // height, which makes a splat's fixed costs an eighth.
@@ -55,31 +54,19 @@ void main() {
         }
         if (CLIP_MODE >= MODE_RARA && conic_cut.z < CUT_RANGE) {
             vec3 plane = vec3(conic_cut.zw, colour_cut.w);
+            float weight[ROWS];
             if (CLIP_MODE == MODE_EXACT && plane.x > -CUT_RANGE) {
-                vec3 curvature = splats.at[number].curvature.xyz;
-                float z0 = plane.x + delta.x * (plane.y + curvature.x * delta.x);
-                float slope = plane.z + curvature.y * delta.x;
-                for (uint row = 0u; row < ROWS; row++) {
-                    float y = delta.y + float(row);
-                    alpha[row] = decayed(alpha[row], phi(z0 + y * (slope + curvature.z * y)));
-                }
+                carried_weights(plane, splats.at[number].curvature.xyz, delta, alpha, weight);
             } else {
-                uint cut = uint(plane.y) | uint(plane.z) << 16;
-                float weight[ROWS];
-                cut_weights(cut, delta, place, weight);
-                bool whole = true;
-                bool nothing = true;
+                cut_weights(uint(plane.y) | uint(plane.z) << 16, delta, place, alpha, weight);
+            }
+            bool whole = true;
+            for (uint row = 0u; row < ROWS; row++) {
+                whole = whole && (weight[row] >= 1.0 || alpha[row] == 0.0);
+            }
+            if (!whole) {
                 for (uint row = 0u; row < ROWS; row++) {
-                    whole = whole && weight[row] >= 1.0;
-                    nothing = nothing && weight[row] <= 0.0;
-                }
-                if (subgroupAll(nothing)) {
-                    continue;
-                }
-                if (!subgroupAll(whole)) {
-                    for (uint row = 0u; row < ROWS; row++) {
-                        alpha[row] = decayed(alpha[row], weight[row]);
-                    }
+                    alpha[row] = decayed(alpha[row], weight[row]);
                 }
             }
         }

@@ -151,6 +151,13 @@ float cut_weight(uint cut, vec2 delta, vec2 place) {
     if ((flags & CUT_RAY) != 0u) {
         return beam_weight(base, count, (flags & CUT_FRONT) != 0u, delta, place);
     }
+    if ((flags & CUT_CURVE) != 0u) {
+        vec4 linear = cuts.at[base];
+        vec3 bend = cuts.at[base + 1u].xyz;
+        vec4 twist = cuts.at[base + 2u];
+        return phi(linear.x + delta.x * (linear.y + delta.x * (bend.x + delta.x * twist.x + delta.y * twist.y) + delta.y * bend.y)
+            + delta.y * (linear.z + delta.y * (bend.z + delta.x * twist.z + delta.y * twist.w)));
+    }
     return affine_weight(base + CUT_HEADER, count, delta);
 }
 

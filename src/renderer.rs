@@ -10,7 +10,7 @@ use crate::gpu::{Bindings, Buffer, BufferDesc, Device, Drawer, Location, Recorde
 use crate::limits;
 use crate::passes::{self, Buffers, Context, Plan, SceneBuffers, SceneFacts, Stages};
 use crate::settings::{Raster, Settings};
-use crate::stats::{Counts, PassTime};
+use crate::stats::{Counts, PassTime, RasterChoice};
 use crate::types::FrameCounts;
 
 /// What a renderer is created with: [`RendererDesc::new`] for the usual, fields changed where a host wants otherwise.
@@ -72,6 +72,8 @@ pub struct Renderer {
     bindings: Bindings,
     /// Pairs of tile and splat that frames have had or needed room for.
     pair_capacity: u32,
+    /// Why the configured frame's rasteriser was chosen.
+    reason: &'static str,
     /// Whether the configured frame has been prepared.
     ready: bool,
 }
@@ -128,6 +130,7 @@ impl Renderer {
             plan: None,
             bindings: desc.bindings,
             pair_capacity: 0,
+            reason: "",
             ready: false,
         })
     }
@@ -155,23 +158,27 @@ impl Renderer {
         self.plan = None;
         self.ready = false;
         self.free_finished();
-        self.make_room_for_pairs(scene.count);
+        self.make_room_for_pairs(scene.count, camera);
         let support = self.device.support();
         let is_cpu = self.device.info().kind == vk::PhysicalDeviceType::CPU;
         let sort_runs = if is_cpu { SORT_RUNS_CPU } else { SORT_RUNS_GPU };
-        let raster = match settings.raster {
-            // On CPU drivers a mesh shader costs several times a quad's vertices; see the README's measurements.
-            Raster::Auto if is_cpu => Raster::Quad,
-            Raster::Auto if support.mesh_shader => Raster::Mesh,
-            Raster::Auto => Raster::Quad,
+        let (raster, reason) = match settings.raster {
+            // See the README's measurements.
+            Raster::Auto if is_cpu => (
+                Raster::Tiles,
+                "a CPU driver charges for each splat it draws",
+            ),
+            Raster::Auto if support.mesh_shader => (Raster::Mesh, "a GPU with mesh shaders"),
+            Raster::Auto => (Raster::Quad, "a GPU without mesh shaders"),
             Raster::Mesh if !support.mesh_shader => {
                 return Err(Error::Device(
                     "this device has no mesh shaders (VK_EXT_mesh_shader); use --raster quad"
                         .into(),
                 ));
             }
-            chosen => chosen,
+            chosen => (chosen, "asked for"),
         };
+        self.reason = reason;
         let facts = SceneFacts {
             gaussians: scene.count,
             sh_degree: scene.sh_degree,
@@ -219,8 +226,14 @@ impl Renderer {
     }
 
     /// Room for the pairs of tile and splat that the last finished frame had, or would have had.
-    fn make_room_for_pairs(&mut self, gaussians: u32) {
-        let usual = gaussians.saturating_mul(USUAL_PAIRS).max(FEWEST_PAIRS);
+    fn make_room_for_pairs(&mut self, gaussians: u32, camera: &Camera) {
+        let tiles = camera
+            .width
+            .div_ceil(limits::TILE_WIDTH)
+            .saturating_mul(camera.height.div_ceil(limits::TILE_HEIGHT));
+        let usual = gaussians
+            .saturating_mul(USUAL_PAIRS)
+            .saturating_add(tiles.saturating_mul(USUAL_SPLATS));
         let needed = self.frame_counts().map_or(0, |counts| counts.pairs);
         let needed = if needed > self.pair_capacity {
             needed.saturating_add(needed / 4)
@@ -309,6 +322,26 @@ impl Renderer {
         self.plan.as_ref().map(Plan::skipped).unwrap_or_default()
     }
 
+    /// How the configured frame's splats become pixels, and why in that way.
+    pub fn raster(&self) -> RasterChoice {
+        let raster = self.plan.as_ref().map(|plan| plan.raster);
+        let path = match raster {
+            Some(Raster::Mesh) => "mesh",
+            Some(Raster::Quad) => "quad",
+            Some(Raster::Tiles) => "tiles",
+            Some(Raster::Auto) | None => "",
+        };
+        let reason = self.reason;
+        RasterChoice { path, reason }
+    }
+
+    /// Whether the frame that [`counts`](Self::counts) is about had more pairs of tile and splat than room for them, so
+    /// that it was drawn as quads: the same picture, later. The next [`configure`](Self::configure) makes the room.
+    pub fn fell_back(&self) -> bool {
+        let pairs = self.frame_counts().map_or(0, |counts| counts.pairs);
+        pairs > self.pair_capacity && self.pair_capacity < MOST_PAIRS
+    }
+
     /// How many Gaussians ended where in the oldest frame that is kept: the last one, with one frame in flight. Ask
     /// after waiting for it, before the next [`prepare`](Self::prepare). All zero where no frame is that old.
     pub fn counts(&self) -> Counts {
@@ -357,11 +390,10 @@ impl Renderer {
     }
 }
 
-/// Pairs of tile and splat a Gaussian that there is room for from the beginning, before any frame has shown how many
-/// there are: most Gaussians are out of view, hidden or small.
-const USUAL_PAIRS: u32 = 4;
-/// The least room for pairs.
-const FEWEST_PAIRS: u32 = 1 << 16;
+/// Pairs of tile and splat that there is room for before any frame has shown how many there are: so many a Gaussian,
+/// where most are small, and so many a tile, where they are few and large.
+const USUAL_PAIRS: u32 = 2;
+const USUAL_SPLATS: u32 = 64;
 /// The most room for pairs, 2 GiB: frames with more are drawn as quads.
 const MOST_PAIRS: u32 = 1 << 27;
 /// Runs of the sort on CPU drivers: few, because each costs a histogram; at least the lanes of all cores.

@@ -63,7 +63,7 @@ impl Sort {
         for (pass, digit) in digits.enumerate() {
             let first_bit = [digit * limits::SORT_BITS, what];
             let ((keys, order), (sorted_keys, sorted_order)) =
-                (pairs[pass % 2], pairs[pass % 2 ^ 1]);
+                (pairs[pass % 2], pairs[(pass % 2) ^ 1]);
             let count = [&b.frame, &b.counts, keys, &b.histogram];
             recorder.dispatch(&self.count, &count, &first_bit, runs);
             let scan = [&b.frame, &b.histogram];

@@ -2,7 +2,7 @@
 // reaches there. Exact but for a margin, where a bounding box would give a slanting needle its whole square.
 #ifndef RARA_BIN
 #define RARA_BIN
-#include "footprint.glsl"
+#include "extent.glsl"
 #include "sort.glsl"
 
 struct Outline {
@@ -14,8 +14,19 @@ struct Outline {
     float reach; // half the contour's height, px
     float margin; // px
     vec2 sides; // what the splat's quad leaves: first and last x, px
+    vec3 line; // a cut splat is hidden where line.x + line.y dx + line.z dy is negative
     uvec2 rows; // first and last (exclusive) row of tiles
 };
+
+const vec3 NO_LINE = vec3(1.0, 0.0, 0.0);
+
+// Where a weight's z, with these factors of its terms of degree one, two and three, can exceed -TRIM_DEVIATIONS within a
+// box around the splat's centre.
+vec3 hidden_beyond(vec3 plane, vec3 bend, vec4 twist, vec2 box) {
+    float rise = max(bend.x, 0.0) * box.x * box.x + abs(bend.y) * box.x * box.y + max(bend.z, 0.0) * box.y * box.y
+        + dot(abs(twist), vec4(box.x * box.x * box.x, box.x * box.x * box.y, box.x * box.y * box.y, box.y * box.y * box.y));
+    return vec3(plane.x + TRIM_DEVIATIONS + rise, plane.yz);
+}
 
 // First and last (exclusive) tile with a pixel centre in [low, high].
 uvec2 tiles_between(float low, float high, float pixels, uint side) {
@@ -42,6 +53,11 @@ Outline outline(Splat splat) {
     o.sides = middle.x + vec2(-half_sides.x, half_sides.x);
     float top = max(middle.y - half_sides.y, o.centre.y - o.reach);
     float bottom = min(middle.y + half_sides.y, o.centre.y + o.reach);
+    o.line = NO_LINE;
+    vec3 plane = vec3(splat.conic_cut.zw, splat.colour_cut.w);
+    if (abs(plane.x) < CUT_RANGE) {
+        o.line = hidden_beyond(plane, splat.curvature.xyz, vec4(0.0), vec2(width, o.reach));
+    }
     o.rows = tiles_between(top, bottom, FRAME.size.y, TILE_HEIGHT);
     return o;
 }
@@ -64,7 +80,57 @@ uvec2 tiles_in_row(Outline o, uint row) {
     // The comparisons are false for what is no number: beyond single precision the quad's sides are all there is.
     left = left > o.sides.x ? left : o.sides.x;
     right = right < o.sides.y ? right : o.sides.y;
+    // What the line leaves at the height where it leaves most.
+    float least = o.line.x + max(o.line.z * top, o.line.z * bottom);
+    float at = o.centre.x - least / o.line.y;
+    left = o.line.y > 0.0 && at - o.margin > left ? at - o.margin : left;
+    right = o.line.y < 0.0 && at + o.margin < right ? at + o.margin : right;
+    if (o.line.y == 0.0 && least < 0.0) {
+        return uvec2(0u);
+    }
     return tiles_between(left, right, FRAME.size.x, TILE_WIDTH);
+}
+
+// A splat's tiles as a mask of MASK_SIDE x MASK_SIDE bits, row by row, from a first tile on: what project.comp finds once,
+// in the order of memory, for the passes that follow the order of depth.
+const uint MASK_SIDE = 8u;
+
+// x: first column and, in the upper half, first row; y: 1 where the tiles are more than the mask holds; zw: the mask.
+uvec4 tile_mask(Outline o) {
+    if (o.rows.y - o.rows.x > MASK_SIDE) {
+        return uvec4(0u, 1u, 0u, 0u);
+    }
+    uvec2 spans[MASK_SIDE];
+    uint first = ~0u;
+    uint last = 0u;
+    for (uint row = 0u; row < MASK_SIDE; row++) {
+        spans[row] = o.rows.x + row < o.rows.y ? tiles_in_row(o, o.rows.x + row) : uvec2(0u);
+        bool any = spans[row].x < spans[row].y;
+        first = any ? min(first, spans[row].x) : first;
+        last = any ? max(last, spans[row].y) : last;
+    }
+    if (last > first + MASK_SIDE) {
+        return uvec4(0u, 1u, 0u, 0u);
+    }
+    uvec2 mask = uvec2(0u);
+    for (uint row = 0u; row < MASK_SIDE; row++) {
+        if (spans[row].x < spans[row].y) {
+            uint bits = ((1u << (spans[row].y - spans[row].x)) - 1u) << (spans[row].x - first);
+            mask[row >> 2] |= bits << ((row & 3u) * MASK_SIDE);
+        }
+    }
+    return uvec4(first | o.rows.x << 16, 0u, mask);
+}
+
+// The tile of the lowest bit of a mask, which is taken out of it.
+uint next_tile(uint origin, inout uvec2 mask) {
+    uint half_index = mask.x != 0u ? 0u : 1u;
+    uint bits = half_index == 0u ? mask.x : mask.y;
+    uint bit = uint(findLSB(bits));
+    bits &= bits - 1u;
+    mask = half_index == 0u ? uvec2(bits, mask.y) : uvec2(0u, bits);
+    uint row = (origin >> 16) + half_index * 4u + bit / MASK_SIDE;
+    return row * FRAME.tile_columns + (origin & 0xffffu) + bit % MASK_SIDE;
 }
 
 #endif

@@ -10,6 +10,8 @@ BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, Splat, splats)
 BUFFER(readonly, 3, uint, order)
 BUFFER(, 4, uint, histogram)
+BUFFER(readonly, 5, uvec4, tile_masks)
+
 
 void main() {
     uint run = gl_GlobalInvocationID.x;
@@ -18,7 +20,15 @@ void main() {
     }
     uvec2 bounds = run_bounds(run, counts.at[0].visible + counts.at[0].cutoff);
     for (uint i = bounds.x; i < bounds.y; i++) {
-        Outline o = outline(splats.at[order.at[i]]);
+        uint splat = order.at[i];
+        uvec4 tiles = tile_masks.at[splat];
+        for (uvec2 mask = tiles.zw; (mask.x | mask.y) != 0u;) {
+            histogram.at[run * DIGITS + digit(next_tile(tiles.x, mask))]++;
+        }
+        if (tiles.y == 0u) {
+            continue;
+        }
+        Outline o = outline(splats.at[splat]);
         for (uint row = o.rows.x; row < o.rows.y; row++) {
             uvec2 columns = tiles_in_row(o, row) + row * FRAME.tile_columns;
             for (uint tile = columns.x; tile < columns.y; tile++) {

@@ -30,8 +30,6 @@ const uint MESH_GROUP_SIZE = 32u;
 // Pixels of a tile.
 const uint TILE_WIDTH = 8u;
 const uint TILE_HEIGHT = 8u;
-// A tile's pixel whose transmittance is below this is saturated: whatever lies behind changes it by less.
-const float TRANSMITTANCE_MIN = 1e-6;
 // Bits a pass of the radix sort looks at.
 const uint SORT_BITS = 8u;
 // Workgroup size of the sort; one invocation owns a run of consecutive keys, which makes the sort stable.

@@ -36,6 +36,7 @@ void main() {
         sum[row] = vec3(0.0);
         light[row] = 1.0;
     }
+    float saturated = FRAME.transmittance_min;
     uint end = tile_begins.at[tile + 1u];
     for (uint i = tile_begins.at[tile]; i < end; i++) {
         uint number = pair_splats.at[i];
@@ -77,7 +78,7 @@ void main() {
             light[row] -= share;
             most = max(most, light[row]);
         }
-        if (most < TRANSMITTANCE_MIN) {
+        if (most < saturated) {
             break;
         }
     }

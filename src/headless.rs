@@ -155,7 +155,7 @@ impl Headless {
             .background
             .map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
         let begin = Instant::now();
-        loop {
+        for attempt in 0..2 {
             self.device.submit_and_wait(|cmd| {
                 // SAFETY: `cmd` is recording and `scene`, the target and the renderer outlive the wait for it; the
                 // rendering scope is opened and closed here around the draw, on an attachment of the renderer's format.
@@ -172,9 +172,9 @@ impl Headless {
                 }
                 Ok(())
             })?;
-            // A first frame finds out how much room the tiles need. The picture must not depend on what came before, so
-            // that it is drawn again.
-            if !self.renderer.fell_back() {
+            // A first frame finds out how much room the tiles need. The bytes must not depend on what was drawn before:
+            // it is drawn again.
+            if attempt == 1 || !self.renderer.fell_back() {
                 break;
             }
             self.renderer.configure(scene, camera, clip, settings)?;

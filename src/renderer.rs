@@ -335,11 +335,12 @@ impl Renderer {
         RasterChoice { path, reason }
     }
 
-    /// Whether the frame that [`counts`](Self::counts) is about had more pairs of tile and splat than room for them, so
-    /// that it was drawn as quads: the same picture, later. The next [`configure`](Self::configure) makes the room.
+    /// Whether the frame that [`counts`](Self::counts) is about had more pairs of tile and splat than there was room for,
+    /// so that it was drawn as quads: the same picture, but slower. The next [`configure`](Self::configure) makes the
+    /// room, up to 2 GiB.
     pub fn fell_back(&self) -> bool {
-        let pairs = self.frame_counts().map_or(0, |counts| counts.pairs);
-        pairs > self.pair_capacity && self.pair_capacity < MOST_PAIRS
+        let counts = self.frame_counts();
+        counts.is_some_and(|counts| counts.pairs > 0 && counts.tiled == 0)
     }
 
     /// How many Gaussians ended where in the oldest frame that is kept: the last one, with one frame in flight. Ask

@@ -23,6 +23,8 @@ pub(crate) struct Buffers {
     pub(crate) keys: [Buffer; 2],
     pub(crate) order: [Buffer; 2],
     pub(crate) histogram: Buffer,
+    /// Which tiles each splat touches; empty where tiles are not wanted.
+    pub(crate) tile_masks: Buffer,
     /// Only for tiles.
     pub(crate) tiles: Option<TileBuffers>,
     sized_for: Sizes,
@@ -43,6 +45,7 @@ struct Sizes {
     gaussians: u64,
     cut_bytes: u64,
     sort_runs: u64,
+    masks: u64,
     pairs: u64,
     tiles: u64,
     pixels: u64,
@@ -67,6 +70,7 @@ impl Sizes {
             gaussians,
             cut_bytes,
             sort_runs: u64::from(plan.sort_runs),
+            masks: when_tiled(gaussians),
             pairs: when_tiled(plan.data.pair_capacity.into()),
             tiles: when_tiled(plan.data.tile_count.into()),
             pixels: when_tiled(plan.data.size[0] as u64 * plan.data.size[1] as u64),
@@ -101,6 +105,7 @@ impl Buffers {
             keys: [gpu("keys", n * 4)?, gpu("sorted_keys", n * 4)?],
             order: [gpu("order", n * 4)?, gpu("sorted_order", n * 4)?],
             histogram: gpu("histogram", digits * sizes.sort_runs * 4)?,
+            tile_masks: gpu("tile_masks", sizes.masks * 16)?,
             tiles: if plan.raster == Raster::Tiles {
                 Some(TileBuffers {
                     pair_tiles: [
@@ -127,6 +132,7 @@ impl Buffers {
         have.gaussians == need.gaussians
             && have.cut_bytes >= need.cut_bytes
             && have.sort_runs == need.sort_runs
+            && have.masks >= need.masks
             && have.pairs >= need.pairs
             && have.tiles >= need.tiles
             && have.pixels >= need.pixels

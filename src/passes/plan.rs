@@ -86,6 +86,12 @@ impl Plan {
                 "a beam switch of {switch} is not a size; give zero or more"
             )));
         }
+        let saturated = settings.precision.transmittance_min;
+        if !(0.0..1.0).contains(&saturated) {
+            return Err(Error::Invalid(format!(
+                "a least transmittance of {saturated} is not one; give zero or more, below 1"
+            )));
+        }
         let clipping = settings.mode != Mode::None && !clip.planes.is_empty();
         let mode = match settings.mode {
             Mode::Hard if clipping => types::MODE_HARD,
@@ -135,6 +141,7 @@ impl Plan {
             ExactForm::Affine => types::FORM_AFFINE,
         };
         data.sigma = settings.sigma;
+        data.transmittance_min = saturated;
         data.beam_switch = settings.precision.beam_switch;
         let keys = DepthKeys::new(scene.bounds, camera, settings.precision.key_bits)?;
         data.key_near = keys.near;

@@ -47,7 +47,14 @@ impl Bin {
         let at = |offset: usize| Groups::Indirect(&b.counts, offset as u64);
         let survivors = at(offset_of!(FrameCounts, sort_groups));
         let pairs = at(offset_of!(FrameCounts, pair_groups));
-        let count = [&b.frame, &b.counts, &b.splats, order, &b.histogram];
+        let count = [
+            &b.frame,
+            &b.counts,
+            &b.splats,
+            order,
+            &b.histogram,
+            &b.tile_masks,
+        ];
         recorder.dispatch(&self.count, &count, &[], survivors);
         let scan = [&b.frame, &b.counts, &b.histogram];
         recorder.dispatch(&self.scan, &scan, &[], Groups::Count(1));
@@ -60,6 +67,7 @@ impl Bin {
             &b.histogram,
             tiles,
             splats,
+            &b.tile_masks,
         ];
         recorder.dispatch(&self.scatter, &scatter, &[], pairs);
         sort.record_pairs(recorder, b, t, plan.tile_digits);

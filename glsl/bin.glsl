@@ -23,9 +23,10 @@ const vec3 NO_LINE = vec3(1.0, 0.0, 0.0);
 // Where a weight's z, with these factors of its terms of degree one, two and three, can exceed -TRIM_DEVIATIONS within a
 // box around the splat's centre.
 vec3 hidden_beyond(vec3 plane, vec3 bend, vec4 twist, vec2 box) {
-    float rise = max(bend.x, 0.0) * box.x * box.x + abs(bend.y) * box.x * box.y + max(bend.z, 0.0) * box.y * box.y
+    precise float rise = max(bend.x, 0.0) * box.x * box.x + abs(bend.y) * box.x * box.y + max(bend.z, 0.0) * box.y * box.y
         + dot(abs(twist), vec4(box.x * box.x * box.x, box.x * box.x * box.y, box.x * box.y * box.y, box.y * box.y * box.y));
-    return vec3(plane.x + TRIM_DEVIATIONS + rise, plane.yz);
+    precise vec3 line = vec3(plane.x + TRIM_DEVIATIONS + rise, plane.yz);
+    return line;
 }
 
 // First and last (exclusive) tile with a pixel centre in [low, high].
@@ -36,13 +37,13 @@ uvec2 tiles_between(float low, float high, float pixels, uint side) {
 }
 
 Outline outline(Splat splat) {
-    Outline o;
+    precise Outline o;
     o.centre = splat.centre_conic.xy;
     o.conic = vec3(splat.centre_conic.zw, splat.conic_cut.x);
     float extent = opacity_extent(splat.conic_cut.y);
     o.power = extent * extent;
-    float k = o.conic.x * o.conic.x + o.conic.y * o.conic.y;
-    float width = extent / o.conic.x;
+    precise float k = o.conic.x * o.conic.x + o.conic.y * o.conic.y;
+    precise float width = extent / o.conic.x;
     o.slope = -o.conic.y * o.conic.z / k;
     o.tip = -o.conic.y / o.conic.z * width;
     // Near the contour's ends its chord is a root of a difference, off by the root of single precision.
@@ -64,25 +65,27 @@ Outline outline(Splat splat) {
 
 // Half the contour's chord along x at a height above the centre.
 float half_chord(Outline o, float y) {
-    float k = o.conic.x * o.conic.x + o.conic.y * o.conic.y;
-    float rest = o.conic.x * o.conic.z * y;
-    return sqrt(max(0.0, k * o.power - rest * rest)) / k;
+    precise float k = o.conic.x * o.conic.x + o.conic.y * o.conic.y;
+    precise float rest = o.conic.x * o.conic.z * y;
+    precise float half_length = sqrt(max(0.0, k * o.power - rest * rest)) / k;
+    return half_length;
 }
 
 uvec2 tiles_in_row(Outline o, uint row) {
-    float top = float(row * TILE_HEIGHT) + 0.5 - o.centre.y;
-    float bottom = min(top + float(TILE_HEIGHT - 1u), o.reach);
+    precise float top = float(row * TILE_HEIGHT) + 0.5 - o.centre.y;
+    precise float bottom = min(top + float(TILE_HEIGHT - 1u), o.reach);
     top = max(top, -o.reach);
-    float right_at = clamp(o.tip, top, bottom);
-    float left_at = clamp(-o.tip, top, bottom);
-    float left = o.centre.x + o.slope * left_at - half_chord(o, left_at) - o.margin;
-    float right = o.centre.x + o.slope * right_at + half_chord(o, right_at) + o.margin;
+    // To the bit, wherever it is computed: what one shader counts another writes.
+    precise float right_at = clamp(o.tip, top, bottom);
+    precise float left_at = clamp(-o.tip, top, bottom);
+    precise float left = o.centre.x + o.slope * left_at - half_chord(o, left_at) - o.margin;
+    precise float right = o.centre.x + o.slope * right_at + half_chord(o, right_at) + o.margin;
     // The comparisons are false for what is no number: beyond single precision the quad's sides are all there is.
     left = left > o.sides.x ? left : o.sides.x;
     right = right < o.sides.y ? right : o.sides.y;
     // What the line leaves at the height where it leaves most.
-    float least = o.line.x + max(o.line.z * top, o.line.z * bottom);
-    float at = o.centre.x - least / o.line.y;
+    precise float least = o.line.x + max(o.line.z * top, o.line.z * bottom);
+    precise float at = o.centre.x - least / o.line.y;
     left = o.line.y > 0.0 && at - o.margin > left ? at - o.margin : left;
     right = o.line.y < 0.0 && at + o.margin < right ? at + o.margin : right;
     if (o.line.y == 0.0 && least < 0.0) {

@@ -19,11 +19,14 @@ void main() {
         histogram.at[run * DIGITS + d] = 0u;
     }
     uvec2 bounds = run_bounds(run, counts.at[0].visible + counts.at[0].cutoff);
-    for (uint i = bounds.x; i < bounds.y; i++) {
+    uint found = 0u;
+    // More than there is room for need no counting: quads are drawn, and the next frame has more room.
+    for (uint i = bounds.x; i < bounds.y && found <= FRAME.pair_capacity; i++) {
         uint splat = order.at[i];
         uvec4 tiles = tile_masks.at[splat];
         for (uvec2 mask = tiles.zw; (mask.x | mask.y) != 0u;) {
             histogram.at[run * DIGITS + digit(next_tile(tiles.x, mask))]++;
+            found++;
         }
         if (tiles.y == 0u) {
             continue;
@@ -34,6 +37,7 @@ void main() {
             for (uint tile = columns.x; tile < columns.y; tile++) {
                 histogram.at[run * DIGITS + digit(tile)]++;
             }
+            found += columns.y - columns.x;
         }
     }
 }

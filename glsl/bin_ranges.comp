@@ -16,7 +16,7 @@ void main() {
     uvec2 bounds = run_bounds(run, pairs);
     uint next = bounds.x == 0u ? 0u : pair_tiles.at[bounds.x - 1u] + 1u;
     for (uint i = bounds.x; i < bounds.y; i++) {
-        for (uint tile = pair_tiles.at[i]; next <= tile; next++) {
+        for (uint tile = min(pair_tiles.at[i], FRAME.tile_count - 1u); next <= tile; next++) {
             tile_begins.at[next] = i;
         }
     }

@@ -18,6 +18,9 @@ void put(uint run, uint tile, uint splat) {
     uint slot = run * DIGITS + digit(tile);
     uint place = histogram.at[slot];
     histogram.at[slot] = place + 1u;
+    if (place >= counts.at[0].pairs) {
+        return; // cannot be, while both steps find the same tiles
+    }
     pair_tiles.at[place] = tile;
     pair_splats.at[place] = splat;
 }

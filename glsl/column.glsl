@@ -5,7 +5,7 @@
 #define RARA_COLUMN
 #include "weight.glsl"
 
-// Beyond this Phi is taken for 0 or 1: off by less than 4e-6, a fifth of the approximation's own error.
+// Beyond this Phi is taken for 0 or 1: off by less than 4e-6, a fifth of what the best approximation is.
 const float PHI_ONE = 4.5;
 
 // Rows count from the column's middle, so that the polynomials' terms stay small.
@@ -28,7 +28,7 @@ vec3 product(vec3 a0, vec3 a1, vec3 b0, vec3 b1) {
     return vec3(dot(a0, b0), dot(a0, b1) + dot(a1, b0), dot(a1, b1));
 }
 
-// Phi where it matters: pixels without alpha have no say in whether all of the subgroup's are on one side.
+// Phi where it matters: pixels without alpha have no say in whether all of the column is on one side.
 void phi_or_side(float z[ROWS], float alpha[ROWS], out float share[ROWS]) {
     float low = 8.0;
     float high = -8.0;

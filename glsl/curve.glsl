@@ -109,7 +109,6 @@ float curve_z(Curve c, vec2 d) {
 
 // Whether no pixel's alpha differs by more than CURVE_TOLERANCE from the exact form's.
 bool is_good(Curve curve, CurveSamples z, float opacity) {
-    float worst = 0.0;
     for (uint ring = 0u; ring < CURVE_RINGS; ring++) {
         float r = curve_radius(ring);
         float alpha = opacity * exp(-0.5 * r * r);
@@ -117,16 +116,22 @@ bool is_good(Curve curve, CurveSamples z, float opacity) {
             // A steep edge may pass between the samples: what counts is z's error wherever an edge, the exact one or
             // the fit's, may come near.
             vec2 d = r * curve_direction(ring, step);
-            vec2 gradient = curve.slope + vec2(2.0 * curve.bend.x * d.x + curve.bend.y * d.y,
-                                               2.0 * curve.bend.z * d.y + curve.bend.y * d.x);
+            vec4 t = curve.twist;
+            vec2 gradient = curve.slope
+                + vec2(2.0 * curve.bend.x * d.x + curve.bend.y * d.y, 2.0 * curve.bend.z * d.y + curve.bend.y * d.x)
+                + vec2(3.0 * t.x * d.x * d.x + 2.0 * t.y * d.x * d.y + t.z * d.y * d.y,
+                       t.y * d.x * d.x + 2.0 * t.z * d.x * d.y + 3.0 * t.w * d.y * d.y);
             float exact = z.at[ring * CURVE_STEPS + step];
             float fit = curve_z(curve, d);
-            if (min(abs(exact), abs(fit)) < 5.0 + length(gradient) || exact * fit < 0.0) {
-                worst = max(worst, 0.4 * alpha * abs(fit - exact));
+            if (!(min(abs(exact), abs(fit)) >= 5.0 + length(gradient) && exact * fit >= 0.0)) {
+                // Not its opposite: what is no number is no good.
+                if (!(0.4 * alpha * abs(fit - exact) <= CURVE_TOLERANCE)) {
+                    return false;
+                }
             }
         }
     }
-    return worst <= CURVE_TOLERANCE;
+    return true;
 }
 
 // The product of a form of degree two with a linear one.
@@ -143,7 +148,7 @@ Curve in_pixels(Curve c, CurveSource source) {
     vec3 st = vec3(s.x * t.x, s.x * t.y + s.y * t.x, s.y * t.y);
     vec3 tt = vec3(t.x * t.x, 2.0 * t.x * t.y, t.y * t.y);
     Curve pixels;
-    pixels.at = c.at;
+    pixels.at = clamp(c.at, -1e20, 1e20); // within what the rasteriser carries
     pixels.slope = c.slope.x * s + c.slope.y * t;
     pixels.bend = c.bend.x * ss + c.bend.y * st + c.bend.z * tt;
     pixels.twist = c.twist.x * raised(ss, s) + c.twist.y * raised(ss, t) + c.twist.z * raised(tt, s)

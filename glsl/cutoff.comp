@@ -35,7 +35,8 @@ vec4 affine_plane(Footprint f, vec4 plane) {
         return vec4(plane.w >= 0.0 ? 40.0 : -40.0, 0.0, 0.0, side);
     }
     float inverse = inversesqrt(variance / f.det);
-    return vec4(plane.w * inverse, slope * (f.scale / f.det * inverse), side);
+    // Within what the rasteriser carries: beyond 40 deviations all distances are one.
+    return vec4(clamp(plane.w * inverse, -1e20, 1e20), slope * (f.scale / f.det * inverse), side);
 }
 
 void main() {

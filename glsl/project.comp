@@ -48,7 +48,8 @@ vec3 colour(uint index, vec3 direction) {
         uint k = 3u * i;
         sum += basis[i] * vec3(sh_number(base, unit, k), sh_number(base, unit, k + 1u), sh_number(base, unit, k + 2u));
     }
-    return max(sum, vec3(0.0));
+    // Finite, so that a share of nothing stays nothing.
+    return clamp(sum, vec3(0.0), vec3(3e38));
 }
 
 void main() {

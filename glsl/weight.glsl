@@ -1,5 +1,5 @@
-// The weight w of a cut splat in a pixel, and what it does to alpha. Included by what turns splats into pixels, after it has
-// declared the buffer `cuts` and the constants CLIP_MODE, CLIP_OP, DECAY and MISS.
+// The weight w of a cut splat in a pixel, and what it does to alpha. Included by what turns splats into pixels, after it
+// has declared the buffer `cuts` and the constants CLIP_MODE, CLIP_OP, DECAY, MISS and PHI_FORM.
 #ifndef RARA_WEIGHT
 #define RARA_WEIGHT
 #include "sight.glsl"
@@ -137,10 +137,9 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place
     return combined(share);
 }
 
-// Which of the three by the frame's mode and the record's form. `delta` is the pixel's place relative to the splat's
-// centre, `place` its place. Parameter 2 is the traced ellipsoid's sigma, 3 the
-// records' stride, 4 and 5 the principal point
-// in the coordinates of `place`.
+// Which of them by the frame's mode and the record's form. `place` is the pixel's, `delta` the same relative to the
+// splat's centre. Parameter 2 is the traced ellipsoid's sigma, 3 the records' stride, 4 and 5 the principal point in the
+// coordinates of `place`.
 float cut_weight(uint cut, vec2 delta, vec2 place) {
     uint base = cut * push.param[3];
     uint flags = uint(cuts.at[base].w);

@@ -155,7 +155,7 @@ impl Headless {
             .background
             .map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
         let begin = Instant::now();
-        for attempt in 0..2 {
+        loop {
             self.device.submit_and_wait(|cmd| {
                 // SAFETY: `cmd` is recording and `scene`, the target and the renderer outlive the wait for it; the
                 // rendering scope is opened and closed here around the draw, on an attachment of the renderer's format.
@@ -174,10 +174,14 @@ impl Headless {
             })?;
             // A first frame finds out how much room the tiles need. The bytes must not depend on what was drawn before:
             // it is drawn again.
-            if attempt == 1 || !self.renderer.fell_back() {
+            let room = self.renderer.pair_capacity();
+            if !self.renderer.fell_back() {
                 break;
             }
             self.renderer.configure(scene, camera, clip, settings)?;
+            if self.renderer.pair_capacity() <= room {
+                break; // there is no more to be had, and the quads are the picture
+            }
         }
         let wall_ms = begin.elapsed().as_secs_f64() * 1e3;
         self.check_validation()?;

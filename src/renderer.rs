@@ -72,6 +72,8 @@ pub struct Renderer {
     bindings: Bindings,
     /// Pairs of tile and splat that frames have had or needed room for.
     pair_capacity: u32,
+    /// The most that they get: less than [`MOST_PAIRS`] once the device has had no memory for them.
+    most_pairs: u32,
     /// Why the configured frame's rasteriser was chosen.
     reason: &'static str,
     /// Whether the configured frame has been prepared.
@@ -89,14 +91,16 @@ struct Slot {
 
 impl Slot {
     fn new(device: &Device, timing: bool) -> Result<Self> {
+        let mut counts = device.create_buffer(&BufferDesc {
+            name: "counts_readback",
+            size: size_of::<FrameCounts>() as u64,
+            location: Location::Readback,
+        })?;
+        counts.mapped_mut().fill(0); // what a frame that is never submitted would tell
         Ok(Self {
             // The stages of a frame, with room for several draws.
             timer: timing.then(|| Timer::new(device, 16)).transpose()?,
-            counts: device.create_buffer(&BufferDesc {
-                name: "counts_readback",
-                size: size_of::<FrameCounts>() as u64,
-                location: Location::Readback,
-            })?,
+            counts,
             empty: true,
         })
     }
@@ -130,6 +134,7 @@ impl Renderer {
             plan: None,
             bindings: desc.bindings,
             pair_capacity: 0,
+            most_pairs: MOST_PAIRS,
             reason: "",
             ready: false,
         })
@@ -158,12 +163,18 @@ impl Renderer {
         self.plan = None;
         self.ready = false;
         self.free_finished();
-        self.make_room_for_pairs(scene.count, camera);
+        let columns = camera.width.div_ceil(limits::TILE_WIDTH);
+        let tiles = columns.saturating_mul(camera.height.div_ceil(limits::TILE_HEIGHT));
+        self.make_room_for_pairs(scene.count, tiles);
         let support = self.device.support();
         let is_cpu = self.device.info().kind == vk::PhysicalDeviceType::CPU;
         let sort_runs = if is_cpu { SORT_RUNS_CPU } else { SORT_RUNS_GPU };
         let (raster, reason) = match settings.raster {
             // See the README's measurements.
+            Raster::Auto if u64::from(tiles) * TILE_BYTES > MOST_PICTURE => (
+                Raster::Quad,
+                "the tiles' picture would take more than 1 GiB",
+            ),
             Raster::Auto if is_cpu => (
                 Raster::Tiles,
                 "a CPU driver charges for each splat it draws",
@@ -219,28 +230,55 @@ impl Renderer {
             let outgrown = self.buffers.take();
             self.retired.extend(outgrown.map(|b| (self.prepared, b)));
             self.free_finished();
-            self.buffers = Some(Buffers::new(&self.device, &plan)?);
+            match Buffers::new(&self.device, &plan) {
+                Ok(buffers) => self.buffers = Some(buffers),
+                Err(Error::Memory(_)) if plan.raster == Raster::Tiles => {
+                    return self.configure_without_tiles(scene, camera, clip, settings);
+                }
+                Err(error) => return Err(error),
+            }
         }
         self.plan = Some(plan);
         Ok(())
     }
 
+    /// The same frame as quads, on a device that has no memory for so many tiles and their lists.
+    fn configure_without_tiles(
+        &mut self,
+        scene: &SceneBuffers,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<()> {
+        self.most_pairs = self.pair_capacity / 2;
+        self.pair_capacity = 0;
+        let quads = Settings {
+            raster: Raster::Quad,
+            ..*settings
+        };
+        self.configure(scene, camera, clip, &quads)?;
+        self.reason = "the device has no memory for the tiles' lists";
+        Ok(())
+    }
+
     /// Room for the pairs of tile and splat that the last finished frame had, or would have had.
-    fn make_room_for_pairs(&mut self, gaussians: u32, camera: &Camera) {
-        let tiles = camera
-            .width
-            .div_ceil(limits::TILE_WIDTH)
-            .saturating_mul(camera.height.div_ceil(limits::TILE_HEIGHT));
+    fn make_room_for_pairs(&mut self, gaussians: u32, tiles: u32) {
+        let all = gaussians.saturating_mul(tiles);
         let usual = gaussians
             .saturating_mul(USUAL_PAIRS)
-            .saturating_add(tiles.saturating_mul(USUAL_SPLATS));
+            .saturating_add(tiles.saturating_mul(USUAL_SPLATS))
+            .min(all);
         let needed = self.frame_counts().map_or(0, |counts| counts.pairs);
-        let needed = if needed > self.pair_capacity {
-            needed.saturating_add(needed / 4)
-        } else {
-            self.pair_capacity
-        };
-        self.pair_capacity = usual.max(needed).min(MOST_PAIRS);
+        let grown = needed.saturating_add(needed / 4);
+        // What would not fit anyway is no reason to take memory.
+        let missing = needed > self.pair_capacity && grown <= self.most_pairs;
+        let wanted = if missing { grown } else { self.pair_capacity };
+        self.pair_capacity = wanted.max(usual.min(self.most_pairs));
+    }
+
+    /// Pairs of tile and splat that the configured frame has room for.
+    pub(crate) fn pair_capacity(&self) -> u32 {
+        self.pair_capacity
     }
 
     /// Frees what only frames used that the host has waited for.
@@ -283,7 +321,7 @@ impl Renderer {
     }
 
     /// Records the splats inside the host's rendering scope, blended `over` what is there: premultiplied colours, one
-    /// sample a pixel. `origin` is the viewport's upper left corner in the attachment, px; the viewport has the camera's
+    /// sample a pixel. `origin` is the viewport's upper left corner in the attachment, whole px; the viewport has the camera's
     /// size. May be recorded more than once for a prepared frame.
     ///
     /// # Safety
@@ -322,9 +360,16 @@ impl Renderer {
         self.plan.as_ref().map(Plan::skipped).unwrap_or_default()
     }
 
-    /// How the configured frame's splats become pixels, and why in that way.
+    /// How splats become pixels in the configured frame, or became in the one that [`counts`](Self::counts) is about where
+    /// its tiles had no room; and why in that way.
     pub fn raster(&self) -> RasterChoice {
         let raster = self.plan.as_ref().map(|plan| plan.raster);
+        if raster == Some(Raster::Tiles) && self.fell_back() {
+            return RasterChoice {
+                path: "quad",
+                reason: "there is no room for the tiles' lists",
+            };
+        }
         let path = match raster {
             Some(Raster::Mesh) => "mesh",
             Some(Raster::Quad) => "quad",
@@ -397,6 +442,9 @@ const USUAL_PAIRS: u32 = 2;
 const USUAL_SPLATS: u32 = 64;
 /// The most room for pairs, 2 GiB: frames with more are drawn as quads.
 const MOST_PAIRS: u32 = 1 << 27;
+/// What a tile's pixels take, and the most that a picture of them may: what every device can allocate at once.
+const TILE_BYTES: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64 * 16;
+const MOST_PICTURE: u64 = 1 << 30;
 /// Runs of the sort on CPU drivers: few, because each costs a histogram; at least the lanes of all cores.
 const SORT_RUNS_CPU: u32 = 256;
 /// Runs of the sort on GPUs: enough invocations to hide the latency of their scattered writes.

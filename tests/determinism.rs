@@ -60,6 +60,28 @@ fn quads_meshes_and_tiles_give_one_picture() {
     }
 }
 
+/// More tiles than two digits of the sort count, and a picture beyond what can be bound.
+#[test]
+fn a_wide_picture_of_many_tiles_is_that_of_quads() {
+    let scene = generate(Kind::General, 2_000, 9);
+    let camera = common::views(&scene, 1, (4101, 2057))[0];
+    let clip = common::clip(&scene, 1, ClipOp::And);
+    let mut headless = common::headless();
+    headless.load(&scene).expect("uploads");
+    let mut picture = |raster| {
+        let settings = Settings {
+            raster,
+            ..Settings::default()
+        };
+        let stats = headless.render(&camera, &clip, &settings).expect("renders");
+        (stats.raster.path, headless.picture().expect("reads back"))
+    };
+    let (path, tiles) = picture(Raster::Tiles);
+    assert_eq!(path, "tiles");
+    let worst = apart(&tiles, &picture(Raster::Quad).1);
+    assert!(worst <= 1.0, "tiles and quads differ by {worst:.3}/255");
+}
+
 /// A frame must not see what an earlier one left: not even the order of its splats when only one is left to sort.
 #[test]
 fn a_lone_survivor_after_many_is_itself() {

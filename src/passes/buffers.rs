@@ -1,4 +1,5 @@
-//! The frame's working memory: one buffer per array that a stage writes, sized for the worst the scene can need.
+//! The frame's working memory: one buffer per array that a stage writes, sized for the worst the scene can need, but for
+//! the tiles' lists, whose worst nobody could afford.
 
 use crate::error::Result;
 use crate::gpu::{Buffer, BufferDesc, Device, Location};
@@ -7,8 +8,8 @@ use crate::passes::plan::Plan;
 use crate::settings::Raster;
 use crate::types::{FrameCounts, FrameData, Splat};
 
-/// Everything the stages hand to each other. No stage reads a count on the CPU, so each array has room for every
-/// Gaussian of the scene; drivers back untouched memory lazily.
+/// Everything the stages hand to each other. No stage reads a count on the CPU, so each array but the
+/// tiles' lists has room for every Gaussian of the scene; drivers back untouched memory lazily.
 #[derive(Debug)]
 pub(crate) struct Buffers {
     pub(crate) frame: Buffer,

@@ -205,7 +205,9 @@ impl Plan {
     /// The stages that this frame does not need.
     pub(crate) fn skipped(&self) -> Vec<&'static str> {
         match (self.gaussians, self.cutoff) {
-            (0, _) => vec!["classify", "compact", "cutoff", "project", "sort", "splat"],
+            (0, _) => vec![
+                "classify", "compact", "cutoff", "project", "sort", "bin", "tiles", "splat",
+            ],
             (1, true) => vec!["sort"],
             (1, false) => vec!["cutoff", "sort"],
             (_, true) => vec![],

@@ -320,7 +320,7 @@ impl Renderer {
         passes::record(&mut recorder, stages, scene, buffers, plan, &slot.counts);
     }
 
-    /// Records the splats inside the host's rendering scope, blended `over` what is there: premultiplied colours, one
+    /// Records the splats, or the picture that the tiles have made of them, inside the host's rendering scope, blended `over` what is there: premultiplied colours, one
     /// sample a pixel. `origin` is the viewport's upper left corner in the attachment, whole px; the viewport has the camera's
     /// size. May be recorded more than once for a prepared frame.
     ///

@@ -54,6 +54,12 @@ void main() {
         result.draw = uvec4(4u, survivors, 0u, 0u);
         result.mesh_groups = groups(survivors, MESH_GROUP_SIZE);
         result.mesh_groups.w = survivors;
+        // Binning counts them, where tiles are wanted.
+        result.pairs = 0u;
+        result.tiled = 0u;
+        result.pair_groups = uvec4(0u);
+        result.tile_groups = uvec4(0u);
+        result.composite = uvec4(0u);
         counts.at[0] = result;
     }
 }

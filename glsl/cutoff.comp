@@ -35,7 +35,8 @@ vec4 affine_plane(Footprint f, vec4 plane) {
         return vec4(plane.w >= 0.0 ? 40.0 : -40.0, 0.0, 0.0, side);
     }
     float inverse = inversesqrt(variance / f.det);
-    return vec4(plane.w * inverse, slope * (f.scale / f.det * inverse), side);
+    // Within what the rasteriser carries: beyond 40 deviations all distances are one.
+    return vec4(clamp(plane.w * inverse, -1e20, 1e20), slope * (f.scale / f.det * inverse), side);
 }
 
 void main() {
@@ -99,11 +100,23 @@ void main() {
         source.centre = f.centre - FRAME.focal.zw;
         source.first = axes.first;
         source.second = axes.second;
-        Curve curve = fitted(source, gaussian.position_opacity.w);
-        if (curve.good) {
+        CurveSamples samples = sampled(source);
+        Curve square;
+        Curve cube;
+        fitted(samples, square, cube);
+        float opacity = gaussian.position_opacity.w;
+        if (is_good(square, samples, opacity)) {
+            Curve curve = in_pixels(square, source);
             cuts.at[base] = vec4(vec3(0.0), float(flags));
-            cuts.at[at - 1u] = vec4(curve.plane, 0.0);
-            cuts.at[at] = vec4(curve.curvature, 0.0);
+            cuts.at[at - 1u] = vec4(curve.at, curve.slope, 0.0);
+            cuts.at[at] = vec4(curve.bend, 0.0);
+            return;
+        }
+        if (is_good(cube, samples, opacity)) {
+            Curve curve = in_pixels(cube, source);
+            cuts.at[base] = vec4(curve.at, curve.slope, float(flags | CUT_CURVE));
+            cuts.at[base + 1u] = vec4(curve.bend, 0.0);
+            cuts.at[base + 2u] = curve.twist;
             return;
         }
     }

@@ -27,6 +27,9 @@ const uint GROUP_SIZE = 256u;
 const uint SURVIVOR_GROUP_SIZE = 64u;
 // Splats a mesh workgroup emits: 4 vertices and 2 triangles each, half of the least that Vulkan guarantees.
 const uint MESH_GROUP_SIZE = 32u;
+// Pixels of a tile.
+const uint TILE_WIDTH = 8u;
+const uint TILE_HEIGHT = 8u;
 // Bits a pass of the radix sort looks at.
 const uint SORT_BITS = 8u;
 // Workgroup size of the sort; one invocation owns a run of consecutive keys, which makes the sort stable.

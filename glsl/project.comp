@@ -4,10 +4,12 @@
 #include "footprint.glsl"
 #include "spherical_harmonics.glsl"
 #include "cut.glsl"
-#include "extent.glsl"
+#include "bin.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 layout(constant_id = 0) const bool CUT = false;
+// Whether tiles are wanted of it.
+layout(constant_id = 2) const bool TILES = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uint, sh)
@@ -18,6 +20,7 @@ BUFFER(writeonly, 6, uint, keys)
 BUFFER(writeonly, 7, uint, order)
 #include "sh_storage.glsl"
 BUFFER(readonly, 8, vec4, cuts)
+BUFFER(writeonly, 9, uvec4, tile_masks)
 
 // What the rasteriser carries of the weight: see cut.glsl.
 Carried carried_weight(uint cut) {
@@ -45,7 +48,8 @@ vec3 colour(uint index, vec3 direction) {
         uint k = 3u * i;
         sum += basis[i] * vec3(sh_number(base, unit, k), sh_number(base, unit, k + 1u), sh_number(base, unit, k + 2u));
     }
-    return max(sum, vec3(0.0));
+    // Finite, so that a share of nothing stays nothing.
+    return clamp(sum, vec3(0.0), vec3(3e38));
 }
 
 void main() {
@@ -70,6 +74,18 @@ void main() {
     splat.middle = vec4(quad.middle, 0.0, 0.0);
     splat.curvature = vec4(weight.curvature, 0.0);
     splats.at[survivor] = splat;
+    if (TILES) {
+        Outline o = outline(splat);
+        uint cut = survivors.at[survivor].y;
+        if (CUT && cut != NOT_CUT && weight.plane.x < -CUT_RANGE) {
+            uint base = cut * FRAME.cut_stride;
+            vec4 linear = cuts.at[base];
+            if ((uint(linear.w) & CUT_CURVE) != 0u) {
+                o.line = hidden_beyond(linear.xyz, cuts.at[base + 1u].xyz, cuts.at[base + 2u], box_extent(f, extent));
+            }
+        }
+        tile_masks.at[survivor] = tile_mask(o);
+    }
     // Positive floats order like their bits. Counted from the nearest depth that the scene's bounds allow they need
     // fewer of them, and fewer passes of the sort; dropping low bits never turns an order round.
     uint depth = max(floatBitsToUint(f.view.z), FRAME.key_near) - FRAME.key_near;

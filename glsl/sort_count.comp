@@ -14,7 +14,7 @@ void main() {
     for (uint d = 0u; d < DIGITS; d++) {
         histogram.at[run * DIGITS + d] = 0u;
     }
-    uvec2 bounds = run_bounds(run, counts.at[0].visible + counts.at[0].cutoff);
+    uvec2 bounds = run_bounds(run, KEY_COUNT);
     for (uint i = bounds.x; i < bounds.y; i++) {
         histogram.at[run * DIGITS + digit(keys.at[i])]++;
     }

@@ -14,7 +14,7 @@ BUFFER(writeonly, 6, uint, sorted_order)
 
 void main() {
     uint run = gl_GlobalInvocationID.x;
-    uvec2 bounds = run_bounds(run, counts.at[0].visible + counts.at[0].cutoff);
+    uvec2 bounds = run_bounds(run, KEY_COUNT);
     for (uint i = bounds.x; i < bounds.y; i++) {
         uint key = keys.at[i];
         uint slot = run * DIGITS + digit(key);

@@ -32,6 +32,10 @@ struct FrameData {
     uint key_near; // bits of the nearest depth a centre can have
     uint key_span; // by how much the farthest depth's bits exceed them
     uint key_shift; // low bits of the difference that the sort does without
+    uint tile_columns; // tiles across the picture
+    uint tile_count; // tiles in the picture
+    uint pair_capacity; // pairs of tile and splat that there is room for
+    float transmittance_min; // below it a tile's pixel is saturated: what lies behind changes it by less
     uint pad[3]; // unused
     vec4 plane_high[MAX_CLIP_PLANES]; // unit normal and distance, rounded to single precision
     vec4 plane_low[MAX_CLIP_PLANES]; // what the rounding lost
@@ -65,6 +69,12 @@ struct FrameCounts {
     uvec4 sort_groups; // indirect dispatch of the sort's runs
     uvec4 draw; // indirect draw: vertices, instances, first vertex, first instance
     uvec4 mesh_groups; // indirect mesh tasks; w: survivors
+    uvec4 pair_groups; // indirect dispatch of the runs over the pairs of tile and splat
+    uvec4 tile_groups; // indirect dispatch of the tiles
+    uvec4 composite; // indirect draw of the tiles' picture
+    uint pairs; // pairs of tile and splat
+    uint tiled; // 1: the pairs have room, and tiles draw the splats
+    uint pad[2]; // unused
 };
 
 const uint MODE_NONE = 0u;

@@ -1,5 +1,5 @@
-// The weight w of a cut splat in a pixel, and what it does to alpha. Included by the fragment stage only, after it has
-// declared the buffer `cuts` and the constants CLIP_MODE, CLIP_OP, DECAY and MISS.
+// The weight w of a cut splat in a pixel, and what it does to alpha. Included by what turns splats into pixels, after it
+// has declared the buffer `cuts` and the constants CLIP_MODE, CLIP_OP, DECAY, MISS and PHI_FORM.
 #ifndef RARA_WEIGHT
 #define RARA_WEIGHT
 #include "sight.glsl"
@@ -47,8 +47,12 @@ float affine_weight(uint at, uint count, vec2 delta) {
     return combined(max(0.0, far - (1.0 - near)));
 }
 
-Sight line_of_sight(uint base, vec2 delta) {
-    vec2 pixel = gl_FragCoord.xy - vec2(uintBitsToFloat(push.param[4]), uintBitsToFloat(push.param[5]));
+vec2 principal_point() {
+    return vec2(uintBitsToFloat(push.param[4]), uintBitsToFloat(push.param[5]));
+}
+
+Sight line_of_sight(uint base, vec2 delta, vec2 place) {
+    vec2 pixel = place - principal_point();
     return sight_through(cuts.at[base], cuts.at[base + 1u], cuts.at[base + 2u], pixel, delta);
 }
 
@@ -61,8 +65,8 @@ float tail_phi(float z) {
     return z < 0.0 ? tail : 1.0 - tail;
 }
 
-float beam_weight(uint base, uint count, bool has_front, vec2 delta) {
-    Sight s = line_of_sight(base, delta);
+float beam_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place) {
+    Sight s = line_of_sight(base, delta, place);
     float det = determinant(s);
     float sign = complement_sign();
     // What the far thresholds leave, and what the near ones take of it.
@@ -92,8 +96,8 @@ float beam_weight(uint base, uint count, bool has_front, vec2 delta) {
 // `rara`: the visible share of the chord that the ray cuts out of the ellipsoid (paper section 3.3 and eq. 11). The
 // line is p + t c/|c| with p its point nearest the centre; |p|^2 = |delta.x b2 - delta.y b1|^2 / |c|^2 needs no
 // inverse of M and no B^2 - 4 A C.
-float chord_weight(uint base, uint count, bool has_front, vec2 delta) {
-    Sight s = line_of_sight(base, delta);
+float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place) {
+    Sight s = line_of_sight(base, delta, place);
     float cc = dot(s.c, s.c);
     float sigma = uintBitsToFloat(push.param[2]);
     bool degenerate = !(cc > 0.0);
@@ -133,17 +137,25 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta) {
     return combined(share);
 }
 
-// Which of the three by the frame's mode and the record's form. Parameter 2 is the traced ellipsoid's sigma, 3 the
-// records' stride, 4 and 5 the principal point in the coordinates of gl_FragCoord.
-float cut_weight(uint cut, vec2 delta) {
+// Which of them by the frame's mode and the record's form. `place` is the pixel's, `delta` the same relative to the
+// splat's centre. Parameter 2 is the traced ellipsoid's sigma, 3 the records' stride, 4 and 5 the principal point in the
+// coordinates of `place`.
+float cut_weight(uint cut, vec2 delta, vec2 place) {
     uint base = cut * push.param[3];
     uint flags = uint(cuts.at[base].w);
     uint count = flags >> CUT_COUNT_SHIFT;
     if (CLIP_MODE == MODE_RARA) {
-        return chord_weight(base, count, (flags & CUT_FRONT) != 0u, delta);
+        return chord_weight(base, count, (flags & CUT_FRONT) != 0u, delta, place);
     }
     if ((flags & CUT_RAY) != 0u) {
-        return beam_weight(base, count, (flags & CUT_FRONT) != 0u, delta);
+        return beam_weight(base, count, (flags & CUT_FRONT) != 0u, delta, place);
+    }
+    if ((flags & CUT_CURVE) != 0u) {
+        vec4 linear = cuts.at[base];
+        vec3 bend = cuts.at[base + 1u].xyz;
+        vec4 twist = cuts.at[base + 2u];
+        return phi(linear.x + delta.x * (linear.y + delta.x * (bend.x + delta.x * twist.x + delta.y * twist.y) + delta.y * bend.y)
+            + delta.y * (linear.z + delta.y * (bend.z + delta.x * twist.z + delta.y * twist.w)));
     }
     return affine_weight(base + CUT_HEADER, count, delta);
 }

@@ -155,22 +155,34 @@ impl Headless {
             .background
             .map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
         let begin = Instant::now();
-        self.device.submit_and_wait(|cmd| {
-            // SAFETY: `cmd` is recording and `scene`, the target and the renderer outlive the wait for it; the
-            // rendering scope is opened and closed here around the draw, on an attachment of the renderer's format.
-            unsafe {
-                self.renderer.prepare(cmd, scene);
-                target.image.begin_rendering(cmd, clear);
-                let area = vk::Rect2D {
-                    offset: vk::Offset2D::default(),
-                    extent,
-                };
-                Drawer::new(&self.device, cmd, None).viewport(area);
-                self.renderer.draw(cmd, [0.0, 0.0]);
-                target.image.end_rendering(cmd);
+        loop {
+            self.device.submit_and_wait(|cmd| {
+                // SAFETY: `cmd` is recording and `scene`, the target and the renderer outlive the wait for it; the
+                // rendering scope is opened and closed here around the draw, on an attachment of the renderer's format.
+                unsafe {
+                    self.renderer.prepare(cmd, scene);
+                    target.image.begin_rendering(cmd, clear);
+                    let area = vk::Rect2D {
+                        offset: vk::Offset2D::default(),
+                        extent,
+                    };
+                    Drawer::new(&self.device, cmd, None).viewport(area);
+                    self.renderer.draw(cmd, [0.0, 0.0]);
+                    target.image.end_rendering(cmd);
+                }
+                Ok(())
+            })?;
+            // A first frame finds out how much room the tiles need. The bytes must not depend on what was drawn before:
+            // it is drawn again.
+            let room = self.renderer.pair_capacity();
+            if !self.renderer.fell_back() {
+                break;
             }
-            Ok(())
-        })?;
+            self.renderer.configure(scene, camera, clip, settings)?;
+            if self.renderer.pair_capacity() <= room {
+                break; // there is no more to be had, and the quads are the picture
+            }
+        }
         let wall_ms = begin.elapsed().as_secs_f64() * 1e3;
         self.check_validation()?;
         let passes = self.renderer.pass_times();
@@ -182,6 +194,7 @@ impl Headless {
             gpu_ms,
             wall_ms,
             skipped,
+            raster: self.renderer.raster(),
         })
     }
 

@@ -36,4 +36,4 @@ pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 pub use renderer::{Renderer, RendererDesc};
 pub use scene::Gaussians;
 pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings};
-pub use stats::{Counts, FrameStats, PassTime};
+pub use stats::{Counts, FrameStats, PassTime, RasterChoice};

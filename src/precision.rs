@@ -1,4 +1,4 @@
-//! How exactly a frame is stored and computed, where exactness costs time: five choices, and three presets of them.
+//! How exactly a frame is stored and computed, where exactness costs time: six choices, and three presets of them.
 
 #![forbid(unsafe_code)]
 
@@ -114,6 +114,9 @@ pub struct Precision {
     /// Exact mode: a cut splat gets the perspective-exact form where sigma_max / Z exceeds this, else the affine one.
     /// Zero is the exact form for all.
     pub beam_switch: f32,
+    /// Tiles only: a pixel with less transmittance than this is saturated. What lies behind would change it by less
+    /// than this times its colour. Zero blends everything.
+    pub transmittance_min: f32,
 }
 
 impl Precision {
@@ -150,7 +153,7 @@ impl Default for Precision {
     }
 }
 
-/// A choice of all five. See the README's measurements.
+/// A choice of all six. See the README's measurements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Preset {
     /// Nothing is given up.
@@ -171,10 +174,12 @@ impl Preset {
             phi: PhiForm::Quintic,
             key_bits: u32::BITS,
             beam_switch: limits::BEAM_SWITCH,
+            transmittance_min: 4e-6,
         };
         match self {
             Self::Exact => Precision {
                 beam_switch: 0.0,
+                transmittance_min: 1e-7,
                 ..balanced
             },
             Self::Balanced => balanced,
@@ -183,6 +188,7 @@ impl Preset {
                 phi: PhiForm::Cubic,
                 key_bits: 24,
                 beam_switch: 0.05,
+                transmittance_min: 1e-4,
                 ..balanced
             },
         }

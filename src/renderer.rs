@@ -7,9 +7,10 @@ use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::gpu::{Bindings, Buffer, BufferDesc, Device, Drawer, Location, Recorder, Timer};
+use crate::limits;
 use crate::passes::{self, Buffers, Context, Plan, SceneBuffers, SceneFacts, Stages};
 use crate::settings::{Raster, Settings};
-use crate::stats::{Counts, PassTime};
+use crate::stats::{Counts, PassTime, RasterChoice};
 use crate::types::FrameCounts;
 
 /// What a renderer is created with: [`RendererDesc::new`] for the usual, fields changed where a host wants otherwise.
@@ -69,7 +70,12 @@ pub struct Renderer {
     prepared: u64,
     plan: Option<Plan>,
     bindings: Bindings,
-    mesh: bool,
+    /// Pairs of tile and splat that frames have had or needed room for.
+    pair_capacity: u32,
+    /// The most that they get: less than [`MOST_PAIRS`] once the device has had no memory for them.
+    most_pairs: u32,
+    /// Why the configured frame's rasteriser was chosen.
+    reason: &'static str,
     /// Whether the configured frame has been prepared.
     ready: bool,
 }
@@ -85,14 +91,16 @@ struct Slot {
 
 impl Slot {
     fn new(device: &Device, timing: bool) -> Result<Self> {
+        let mut counts = device.create_buffer(&BufferDesc {
+            name: "counts_readback",
+            size: size_of::<FrameCounts>() as u64,
+            location: Location::Readback,
+        })?;
+        counts.mapped_mut().fill(0); // what a frame that is never submitted would tell
         Ok(Self {
             // The stages of a frame, with room for several draws.
             timer: timing.then(|| Timer::new(device, 16)).transpose()?,
-            counts: device.create_buffer(&BufferDesc {
-                name: "counts_readback",
-                size: size_of::<FrameCounts>() as u64,
-                location: Location::Readback,
-            })?,
+            counts,
             empty: true,
         })
     }
@@ -125,7 +133,9 @@ impl Renderer {
             prepared: 0,
             plan: None,
             bindings: desc.bindings,
-            mesh: false,
+            pair_capacity: 0,
+            most_pairs: MOST_PAIRS,
+            reason: "",
             ready: false,
         })
     }
@@ -153,29 +163,44 @@ impl Renderer {
         self.plan = None;
         self.ready = false;
         self.free_finished();
+        let columns = camera.width.div_ceil(limits::TILE_WIDTH);
+        let tiles = columns.saturating_mul(camera.height.div_ceil(limits::TILE_HEIGHT));
+        self.make_room_for_pairs(scene.count, tiles);
         let support = self.device.support();
         let is_cpu = self.device.info().kind == vk::PhysicalDeviceType::CPU;
         let sort_runs = if is_cpu { SORT_RUNS_CPU } else { SORT_RUNS_GPU };
-        let facts = SceneFacts {
-            gaussians: scene.count,
-            sh_degree: scene.sh_degree,
-            sh_format: scene.sh_format,
-            bounds: scene.bounds,
-            sort_runs,
-        };
-        let plan = Plan::new(facts, camera, clip, settings)?;
-        self.mesh = match settings.raster {
-            // On CPU drivers a mesh shader costs several times a quad's vertices; see the README's measurements.
-            Raster::Auto => support.mesh_shader && !is_cpu,
+        let (raster, reason) = match settings.raster {
+            // See the README's measurements.
+            Raster::Auto if u64::from(tiles) * TILE_BYTES > MOST_PICTURE => (
+                Raster::Quad,
+                "the tiles' picture would take more than 1 GiB",
+            ),
+            Raster::Auto if is_cpu => (
+                Raster::Tiles,
+                "a CPU driver charges for each splat it draws",
+            ),
+            Raster::Auto if support.mesh_shader => (Raster::Mesh, "a GPU with mesh shaders"),
+            Raster::Auto => (Raster::Quad, "a GPU without mesh shaders"),
             Raster::Mesh if !support.mesh_shader => {
                 return Err(Error::Device(
                     "this device has no mesh shaders (VK_EXT_mesh_shader); use --raster quad"
                         .into(),
                 ));
             }
-            Raster::Mesh => true,
-            Raster::Quad => false,
+            chosen => (chosen, "asked for"),
         };
+        self.reason = reason;
+        let facts = SceneFacts {
+            gaussians: scene.count,
+            sh_degree: scene.sh_degree,
+            sh_format: scene.sh_format,
+            bounds: scene.bounds,
+            sort_runs,
+            raster,
+            tile_rows: if is_cpu { limits::TILE_HEIGHT } else { 1 },
+            pair_capacity: self.pair_capacity,
+        };
+        let plan = Plan::new(facts, camera, clip, settings)?;
         let largest = Buffers::largest(&plan).max(scene.largest());
         self.bindings = match self.desc.bindings {
             Bindings::Bound
@@ -195,7 +220,7 @@ impl Renderer {
             Some(stages) => stages,
             None => stages.insert(Stages::new(&context)?),
         };
-        stages.ensure(&context, &plan, self.mesh)?;
+        stages.ensure(&context, &plan)?;
         if self
             .buffers
             .as_ref()
@@ -205,10 +230,55 @@ impl Renderer {
             let outgrown = self.buffers.take();
             self.retired.extend(outgrown.map(|b| (self.prepared, b)));
             self.free_finished();
-            self.buffers = Some(Buffers::new(&self.device, &plan)?);
+            match Buffers::new(&self.device, &plan) {
+                Ok(buffers) => self.buffers = Some(buffers),
+                Err(Error::Memory(_)) if plan.raster == Raster::Tiles => {
+                    return self.configure_without_tiles(scene, camera, clip, settings);
+                }
+                Err(error) => return Err(error),
+            }
         }
         self.plan = Some(plan);
         Ok(())
+    }
+
+    /// The same frame as quads, on a device that has no memory for so many tiles and their lists.
+    fn configure_without_tiles(
+        &mut self,
+        scene: &SceneBuffers,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<()> {
+        self.most_pairs = self.pair_capacity / 2;
+        self.pair_capacity = 0;
+        let quads = Settings {
+            raster: Raster::Quad,
+            ..*settings
+        };
+        self.configure(scene, camera, clip, &quads)?;
+        self.reason = "the device has no memory for the tiles' lists";
+        Ok(())
+    }
+
+    /// Room for the pairs of tile and splat that the last finished frame had, or would have had.
+    fn make_room_for_pairs(&mut self, gaussians: u32, tiles: u32) {
+        let all = gaussians.saturating_mul(tiles);
+        let usual = gaussians
+            .saturating_mul(USUAL_PAIRS)
+            .saturating_add(tiles.saturating_mul(USUAL_SPLATS))
+            .min(all);
+        let needed = self.frame_counts().map_or(0, |counts| counts.pairs);
+        let grown = needed.saturating_add(needed / 4);
+        // What would not fit anyway is no reason to take memory.
+        let missing = needed > self.pair_capacity && grown <= self.most_pairs;
+        let wanted = if missing { grown } else { self.pair_capacity };
+        self.pair_capacity = wanted.max(usual.min(self.most_pairs));
+    }
+
+    /// Pairs of tile and splat that the configured frame has room for.
+    pub(crate) fn pair_capacity(&self) -> u32 {
+        self.pair_capacity
     }
 
     /// Frees what only frames used that the host has waited for.
@@ -250,8 +320,8 @@ impl Renderer {
         passes::record(&mut recorder, stages, scene, buffers, plan, &slot.counts);
     }
 
-    /// Records the splats inside the host's rendering scope, blended `over` what is there: premultiplied colours, one
-    /// sample a pixel. `origin` is the viewport's upper left corner in the attachment, px; the viewport has the camera's
+    /// Records the splats, or the picture that the tiles have made of them, inside the host's rendering scope, blended `over` what is there: premultiplied colours, one
+    /// sample a pixel. `origin` is the viewport's upper left corner in the attachment, whole px; the viewport has the camera's
     /// size. May be recorded more than once for a prepared frame.
     ///
     /// # Safety
@@ -272,11 +342,16 @@ impl Renderer {
         }
         let at = ((self.prepared - 1) % self.slots.len() as u64) as usize;
         let timer = self.slots[at].timer.as_mut();
-        let splat = stages.splat(plan, self.mesh, self.desc.color_format);
+        let splat = stages.splat(plan, self.desc.color_format);
+        let composite = stages.composite.get(&self.desc.color_format);
+        let tiles = composite.zip(buffers.tiles.as_ref());
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
         let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
         drawer.pass("splat", |drawer| {
-            splat.record(drawer, buffers, plan, origin)
+            splat.record(drawer, buffers, plan, origin);
+            if let Some((composite, t)) = tiles.filter(|_| plan.raster == Raster::Tiles) {
+                composite.record(drawer, buffers, t, origin);
+            }
         });
     }
 
@@ -285,19 +360,47 @@ impl Renderer {
         self.plan.as_ref().map(Plan::skipped).unwrap_or_default()
     }
 
+    /// How splats become pixels in the configured frame, or became in the one that [`counts`](Self::counts) is about where
+    /// its tiles had no room; and why in that way.
+    pub fn raster(&self) -> RasterChoice {
+        let raster = self.plan.as_ref().map(|plan| plan.raster);
+        if raster == Some(Raster::Tiles) && self.fell_back() {
+            return RasterChoice {
+                path: "quad",
+                reason: "there is no room for the tiles' lists",
+            };
+        }
+        let path = match raster {
+            Some(Raster::Mesh) => "mesh",
+            Some(Raster::Quad) => "quad",
+            Some(Raster::Tiles) => "tiles",
+            Some(Raster::Auto) | None => "",
+        };
+        let reason = self.reason;
+        RasterChoice { path, reason }
+    }
+
+    /// Whether the frame that [`counts`](Self::counts) is about had more pairs of tile and splat than there was room for,
+    /// so that it was drawn as quads: the same picture, but slower. The next [`configure`](Self::configure) makes the
+    /// room, up to 2 GiB.
+    pub fn fell_back(&self) -> bool {
+        let counts = self.frame_counts();
+        counts.is_some_and(|counts| counts.pairs > 0 && counts.tiled == 0)
+    }
+
     /// How many Gaussians ended where in the oldest frame that is kept: the last one, with one frame in flight. Ask
     /// after waiting for it, before the next [`prepare`](Self::prepare). All zero where no frame is that old.
     pub fn counts(&self) -> Counts {
-        let Some(slot) = self.oldest().filter(|slot| !slot.empty) else {
-            return Counts::default();
-        };
-        let FrameCounts {
+        let Some(FrameCounts {
             visible,
             cutoff,
             invisible,
             culled,
             ..
-        } = bytemuck::pod_read_unaligned(&slot.counts.mapped()[..size_of::<FrameCounts>()]);
+        }) = self.frame_counts()
+        else {
+            return Counts::default();
+        };
         Counts {
             visible,
             cutoff,
@@ -305,6 +408,12 @@ impl Renderer {
             culled,
             drawn: visible + cutoff,
         }
+    }
+
+    fn frame_counts(&self) -> Option<FrameCounts> {
+        let slot = self.oldest().filter(|slot| !slot.empty)?;
+        let bytes = &slot.counts.mapped()[..size_of::<FrameCounts>()];
+        Some(bytemuck::pod_read_unaligned(bytes))
     }
 
     /// GPU time of each stage of the same frame as [`counts`](Self::counts); empty without timing.
@@ -327,6 +436,15 @@ impl Renderer {
     }
 }
 
+/// Pairs of tile and splat that there is room for before any frame has shown how many there are: so many a Gaussian,
+/// where most are small, and so many a tile, where they are few and large.
+const USUAL_PAIRS: u32 = 2;
+const USUAL_SPLATS: u32 = 64;
+/// The most room for pairs, 2 GiB: frames with more are drawn as quads.
+const MOST_PAIRS: u32 = 1 << 27;
+/// What a tile's pixels take, and the most that a picture of them may: what every device can allocate at once.
+const TILE_BYTES: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64 * 16;
+const MOST_PICTURE: u64 = 1 << 30;
 /// Runs of the sort on CPU drivers: few, because each costs a histogram; at least the lanes of all cores.
 const SORT_RUNS_CPU: u32 = 256;
 /// Runs of the sort on GPUs: enough invocations to hide the latency of their scattered writes.

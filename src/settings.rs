@@ -47,6 +47,9 @@ pub enum Raster {
     Mesh,
     /// Instanced quads.
     Quad,
+    /// Tiles of pixels, each an ordered list of its splats, in a compute shader; front to back, until a tile is
+    /// saturated.
+    Tiles,
 }
 
 /// Which form of the exact weight a cut splat gets.

@@ -26,6 +26,15 @@ pub struct PassTime {
     pub ms: f64,
 }
 
+/// Which way of turning splats into pixels a frame took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct RasterChoice {
+    /// `mesh`, `quad` or `tiles`; empty before the first frame.
+    pub path: &'static str,
+    /// Why.
+    pub reason: &'static str,
+}
+
 /// The statistics of one frame.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct FrameStats {
@@ -39,4 +48,6 @@ pub struct FrameStats {
     pub wall_ms: f64,
     /// The stages that this frame did not need.
     pub skipped: Vec<&'static str>,
+    /// How splats became pixels, and why in that way.
+    pub raster: RasterChoice,
 }

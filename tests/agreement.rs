@@ -3,7 +3,7 @@
 mod common;
 
 use rara::gpu::Bindings;
-use rara::{ClipOp, Gaussians, Mode, Settings};
+use rara::{ClipOp, Gaussians, Mode, Raster, Settings};
 
 /// Small enough for the suite, and not a multiple of any workgroup.
 const SIZE: (u32, u32) = (253, 190);
@@ -72,6 +72,34 @@ fn exact_on_trained_scenes() {
 fn every_mode_on_generated_scenes() {
     for mode in [Mode::None, Mode::Hard, Mode::Rara, Mode::Exact] {
         check_scenes(common::generated_scenes(5_000), mode, &CLIPS);
+    }
+}
+
+/// Tiles are what a CPU driver gets unasked, and draws are what a GPU gets.
+#[test]
+fn every_mode_by_quads() {
+    let mut headless = common::headless();
+    let mut scenes = common::generated_scenes(5_000);
+    scenes.extend(common::trained_scenes());
+    for (name, scene) in scenes {
+        headless.load(&scene).expect("uploads");
+        for camera in common::views(&scene, 2, common::scaled(SIZE)) {
+            for (mode, planes) in [
+                (Mode::None, 0),
+                (Mode::Hard, 1),
+                (Mode::Rara, 1),
+                (Mode::Exact, 1),
+                (Mode::Exact, 6),
+            ] {
+                let clip = common::clip(&scene, planes, ClipOp::And);
+                let settings = Settings {
+                    mode,
+                    raster: Raster::Quad,
+                    ..Settings::default()
+                };
+                common::check(&mut headless, &name, &scene, &camera, &clip, &settings);
+            }
+        }
     }
 }
 

@@ -7,25 +7,38 @@ use std::process::Command;
 
 use glam::DVec3;
 use rara::scene::{Kind, generate};
-use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings};
+use rara::{Clip, ClipOp, Mode, Picture, Plane, Raster, Settings};
 
 const SIZE: (u32, u32) = (300, 220);
 
+/// Largest difference of a channel, in units of 1/255.
+fn apart(a: &Picture, b: &Picture) -> f32 {
+    let pairs = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
+    255.0 * pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
 #[test]
-fn mesh_and_quad_paths_agree() {
+fn quads_meshes_and_tiles_give_one_picture() {
     let mut headless = common::headless();
-    if !headless.device().support().mesh_shader {
-        eprintln!("SKIPPED: this device has no mesh shaders");
-        return;
+    let mut others = vec![Raster::Tiles];
+    if headless.device().support().mesh_shader {
+        others.push(Raster::Mesh);
+    } else {
+        eprintln!("SKIPPED: this device has no mesh shaders; tiles and quads are compared");
     }
-    for (name, scene) in common::generated_scenes(4_000)
-        .into_iter()
-        .chain(common::trained_scenes())
-    {
+    let scenes = common::generated_scenes(4_000).into_iter();
+    for (name, scene) in scenes.chain(common::trained_scenes()) {
         headless.load(&scene).expect("uploads");
-        for mode in [Mode::None, Mode::Rara, Mode::Exact] {
-            let clip = common::clip(&scene, 2, ClipOp::And);
-            let camera = common::views(&scene, 3, common::scaled(SIZE))[1];
+        let camera = common::views(&scene, 3, common::scaled(SIZE))[1];
+        for (mode, planes, op) in [
+            (Mode::None, 0, ClipOp::And),
+            (Mode::Hard, 1, ClipOp::And),
+            (Mode::Rara, 2, ClipOp::And),
+            (Mode::Exact, 1, ClipOp::And),
+            (Mode::Exact, 2, ClipOp::And),
+            (Mode::Exact, 2, ClipOp::Or),
+        ] {
+            let clip = common::clip(&scene, planes, op);
             let mut picture = |raster| {
                 let settings = Settings {
                     mode,
@@ -35,26 +48,38 @@ fn mesh_and_quad_paths_agree() {
                 headless.render(&camera, &clip, &settings).expect("renders");
                 headless.picture().expect("reads back")
             };
-            let (mesh, quad) = (picture(Raster::Mesh), picture(Raster::Quad));
-            let apart = |(a, b): (&[f32; 4], &[f32; 4])| {
-                a.iter()
-                    .zip(b)
-                    .map(|(a, b)| (a - b).abs())
-                    .fold(0.0, f32::max)
-            };
-            let worst = mesh
-                .pixels
-                .iter()
-                .zip(&quad.pixels)
-                .map(apart)
-                .fold(0.0, f32::max);
-            assert!(
-                worst <= 1.0 / 255.0,
-                "{name}, {mode:?}: mesh and quad differ by {:.3}/255",
-                worst * 255.0
-            );
+            let quads = picture(Raster::Quad);
+            for raster in &others {
+                let worst = apart(&picture(*raster), &quads);
+                assert!(
+                    worst <= 1.0,
+                    "{name}, {mode:?}, {planes} planes {op:?}: {raster:?} and quads differ by {worst:.3}/255"
+                );
+            }
         }
     }
+}
+
+/// More tiles than two digits of the sort count, and a picture beyond what can be bound.
+#[test]
+fn a_wide_picture_of_many_tiles_is_that_of_quads() {
+    let scene = generate(Kind::General, 2_000, 9);
+    let camera = common::views(&scene, 1, (4101, 2057))[0];
+    let clip = common::clip(&scene, 1, ClipOp::And);
+    let mut headless = common::headless();
+    headless.load(&scene).expect("uploads");
+    let mut picture = |raster| {
+        let settings = Settings {
+            raster,
+            ..Settings::default()
+        };
+        let stats = headless.render(&camera, &clip, &settings).expect("renders");
+        (stats.raster.path, headless.picture().expect("reads back"))
+    };
+    let (path, tiles) = picture(Raster::Tiles);
+    assert_eq!(path, "tiles");
+    let worst = apart(&tiles, &picture(Raster::Quad).1);
+    assert!(worst <= 1.0, "tiles and quads differ by {worst:.3}/255");
 }
 
 /// A frame must not see what an earlier one left: not even the order of its splats when only one is left to sort.

@@ -188,7 +188,7 @@ fn a_viewport_anywhere_in_the_target_leaves_the_rest_alone() {
             SceneBuffers::upload(&device, &scene, rara::ShFormat::default()).expect("uploads");
         let desc = in_flight(format, Bindings::Bound);
         let mut renderer = Renderer::new(&device, desc).expect("a renderer");
-        let mut raster = vec![Raster::Quad];
+        let mut raster = vec![Raster::Quad, Raster::Tiles];
         if device.support().mesh_shader {
             raster.push(Raster::Mesh);
         }
@@ -322,4 +322,48 @@ fn another_scene_than_the_configured_one_is_refused() {
     configured.expect("configures");
     // SAFETY: refused before anything is recorded.
     unsafe { renderer.prepare(vk::CommandBuffer::null(), &other) };
+}
+
+/// More pairs of tile and splat than a first frame has room for: it is drawn as quads, the same picture, and the frame
+/// after the host has waited for it has the room.
+#[test]
+fn a_frame_without_room_for_its_tiles_is_drawn_as_quads() {
+    let mut scene = generate(Kind::General, 1_000, 5);
+    let size = rara::scene::Bounds::of(&scene).radius() as f32;
+    for scale in &mut scene.scales {
+        *scale = glam::Vec3::splat(size);
+    }
+    for opacity in &mut scene.opacities {
+        *opacity = 0.02; // so that no pixel is saturated before the last
+    }
+    let (camera, clip, settings) = frames(&scene).swap_remove(1);
+    let truth = rara::reference::render::<f64>(&scene, &camera, &clip, &settings).picture;
+    let mut host = host(FLOATS, VIEW, true);
+    let device = adopt(&host);
+    let buffers =
+        SceneBuffers::upload(&device, &scene, rara::ShFormat::default()).expect("uploads");
+    let mut renderer =
+        Renderer::new(&device, in_flight(FLOATS, Bindings::Bound)).expect("a renderer");
+    let expected = expected(&host, &truth, 0);
+    for frame in 0..2 * FRAMES {
+        if let Some(pixels) = host.wait().expect("waits") {
+            assert!(
+                renderer.fell_back(),
+                "frame {frame} tells of one that had no room"
+            );
+            assert_shows(&format!("frame {frame}"), FLOATS, &pixels, &expected);
+        }
+        let settings = Settings {
+            raster: Raster::Tiles,
+            ..settings
+        };
+        let configured = renderer.configure(&buffers, &camera, &clip, &settings);
+        configured.expect("configures");
+        record(&mut host, &mut renderer, &buffers, vk::Offset2D::default());
+    }
+    let pixels = host.wait_for_all().expect("waits");
+    assert_shows("the last frame", FLOATS, &pixels, &expected);
+    assert!(!renderer.fell_back());
+    drop((renderer, buffers, device));
+    assert_eq!(host.close(), Vec::<String>::new());
 }

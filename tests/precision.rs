@@ -21,6 +21,10 @@ fn choices() -> Vec<(&'static str, Precision)> {
         beam_switch,
         ..base
     };
+    let transmittance_min = |transmittance_min| Precision {
+        transmittance_min,
+        ..base
+    };
     vec![
         ("exact", Preset::Exact.precision()),
         ("balanced", Preset::Balanced.precision()),
@@ -34,6 +38,8 @@ fn choices() -> Vec<(&'static str, Precision)> {
         ("keys 24", key_bits(24)),
         ("keys 16", key_bits(16)),
         ("switch 0.05", beam_switch(0.05)),
+        ("saturated 1e-4", transmittance_min(1e-4)),
+        ("saturated 0", transmittance_min(0.0)),
     ]
 }
 

@@ -70,6 +70,7 @@ pub(super) fn combine(frames: &[FrameStats], how: Combine) -> FrameStats {
         gpu_ms: value(&|frame| frame.gpu_ms),
         wall_ms: value(&|frame| frame.wall_ms),
         skipped,
+        raster: frames.last().map(|frame| frame.raster).unwrap_or_default(),
     }
 }
 

@@ -25,6 +25,9 @@ pub(super) struct PrecisionArgs {
     /// Mode exact: sigma/depth above which a cut splat gets the form that is exact in perspective; 0 is all of them
     #[arg(long, value_name = "X", value_parser = switch, allow_hyphen_values = true)]
     beam_switch: Option<f32>,
+    /// Tiles: transmittance below which a pixel is saturated, and what lies behind is left out; 0 blends everything
+    #[arg(long, value_name = "X", value_parser = transmittance, allow_hyphen_values = true)]
+    transmittance_min: Option<f32>,
 }
 
 /// `--preset`.
@@ -92,6 +95,7 @@ impl PrecisionArgs {
             }),
             key_bits: self.key_bits.unwrap_or(preset.key_bits),
             beam_switch: self.beam_switch.unwrap_or(preset.beam_switch),
+            transmittance_min: self.transmittance_min.unwrap_or(preset.transmittance_min),
         }
     }
 }
@@ -101,6 +105,14 @@ fn switch(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
         _ => Err("expected a finite number, zero or above".into()),
+    }
+}
+
+/// A share, one excluded.
+fn transmittance(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(number) if (0.0..1.0).contains(&number) => Ok(number),
+        _ => Err("expected a number from zero to below 1".into()),
     }
 }
 
@@ -124,6 +136,7 @@ mod tests {
         assert_eq!((mixed.key_bits, mixed.phi), (24, PhiForm::Logistic));
         assert_eq!(mixed.sh, Preset::Fast.precision().sh);
         assert_eq!(meant("--sh-format 8 --beam-switch 0").sh, ShFormat::Byte);
+        assert!(transmittance("1").is_err() && transmittance("0").is_ok());
         assert!(switch("-1").is_err() && switch("nan").is_err() && switch("0").is_ok());
     }
 }

@@ -159,11 +159,7 @@ impl LookArgs {
             RasterArg::Auto => Raster::Auto,
             RasterArg::Mesh => Raster::Mesh,
             RasterArg::Quad => Raster::Quad,
-            RasterArg::Tiles => {
-                return Err(Failure::Usage(
-                    "--raster tiles is not implemented yet; use mesh, quad or auto".into(),
-                ));
-            }
+            RasterArg::Tiles => Raster::Tiles,
         };
         Ok(Settings {
             background: self.background,

@@ -1,13 +1,15 @@
-//! The frame's working memory: one buffer per array that a stage writes, sized for the worst the scene can need.
+//! The frame's working memory: one buffer per array that a stage writes, sized for the worst the scene can need, but for
+//! the tiles' lists, whose worst nobody could afford.
 
 use crate::error::Result;
 use crate::gpu::{Buffer, BufferDesc, Device, Location};
 use crate::limits;
 use crate::passes::plan::Plan;
+use crate::settings::Raster;
 use crate::types::{FrameCounts, FrameData, Splat};
 
-/// Everything the stages hand to each other. No stage reads a count on the CPU, so each array has room for every
-/// Gaussian of the scene; drivers back untouched memory lazily.
+/// Everything the stages hand to each other. No stage reads a count on the CPU, so each array but the
+/// tiles' lists has room for every Gaussian of the scene; drivers back untouched memory lazily.
 #[derive(Debug)]
 pub(crate) struct Buffers {
     pub(crate) frame: Buffer,
@@ -22,7 +24,20 @@ pub(crate) struct Buffers {
     pub(crate) keys: [Buffer; 2],
     pub(crate) order: [Buffer; 2],
     pub(crate) histogram: Buffer,
+    /// Which tiles each splat touches; empty where tiles are not wanted.
+    pub(crate) tile_masks: Buffer,
+    /// Only for tiles.
+    pub(crate) tiles: Option<TileBuffers>,
     sized_for: Sizes,
+}
+
+/// The tile rasteriser's part.
+#[derive(Debug)]
+pub(crate) struct TileBuffers {
+    pub(crate) pair_tiles: [Buffer; 2],
+    pub(crate) pair_splats: [Buffer; 2],
+    pub(crate) begins: Buffer,
+    pub(crate) picture: Buffer,
 }
 
 /// What the sizes depend on.
@@ -31,6 +46,10 @@ struct Sizes {
     gaussians: u64,
     cut_bytes: u64,
     sort_runs: u64,
+    masks: u64,
+    pairs: u64,
+    tiles: u64,
+    pixels: u64,
 }
 
 impl Sizes {
@@ -41,10 +60,21 @@ impl Sizes {
         } else {
             0
         };
+        let when_tiled = |size: u64| {
+            if plan.raster == Raster::Tiles {
+                size
+            } else {
+                0
+            }
+        };
         Self {
             gaussians,
             cut_bytes,
             sort_runs: u64::from(plan.sort_runs),
+            masks: when_tiled(gaussians),
+            pairs: when_tiled(plan.data.pair_capacity.into()),
+            tiles: when_tiled(plan.data.tile_count.into()),
+            pixels: when_tiled(plan.data.size[0] as u64 * plan.data.size[1] as u64),
         }
     }
 }
@@ -76,6 +106,23 @@ impl Buffers {
             keys: [gpu("keys", n * 4)?, gpu("sorted_keys", n * 4)?],
             order: [gpu("order", n * 4)?, gpu("sorted_order", n * 4)?],
             histogram: gpu("histogram", digits * sizes.sort_runs * 4)?,
+            tile_masks: gpu("tile_masks", sizes.masks * 16)?,
+            tiles: if plan.raster == Raster::Tiles {
+                Some(TileBuffers {
+                    pair_tiles: [
+                        gpu("pair_tiles", sizes.pairs * 4)?,
+                        gpu("sorted_pair_tiles", sizes.pairs * 4)?,
+                    ],
+                    pair_splats: [
+                        gpu("pair_splats", sizes.pairs * 4)?,
+                        gpu("sorted_pair_splats", sizes.pairs * 4)?,
+                    ],
+                    begins: gpu("tile_begins", (sizes.tiles + 1) * 4)?,
+                    picture: gpu("tile_picture", sizes.pixels * 16)?,
+                })
+            } else {
+                None
+            },
             sized_for: sizes,
         })
     }
@@ -86,6 +133,10 @@ impl Buffers {
         have.gaussians == need.gaussians
             && have.cut_bytes >= need.cut_bytes
             && have.sort_runs == need.sort_runs
+            && have.masks >= need.masks
+            && have.pairs >= need.pairs
+            && have.tiles >= need.tiles
+            && have.pixels >= need.pixels
     }
 
     /// The largest buffer that a shader binds, bytes.
@@ -94,5 +145,7 @@ impl Buffers {
         sizes
             .cut_bytes
             .max(sizes.gaussians * size_of::<Splat>() as u64)
+            .max(sizes.pairs * 4)
+            .max(sizes.pixels * 16)
     }
 }

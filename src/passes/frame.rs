@@ -6,6 +6,7 @@ use crate::passes::buffers::Buffers;
 use crate::passes::plan::Plan;
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::stages::Stages;
+use crate::settings::Raster;
 
 /// Records everything up to the draw. `readback` gets a copy of the counts for the host.
 pub(crate) fn record(
@@ -34,6 +35,15 @@ pub(crate) fn record(
     // Their order.
     if plan.sort_passes > 0 {
         recorder.pass("sort", |r| stages.sort.record(r, b, plan.sort_passes));
+    }
+
+    let tiles = stages.bin.as_ref().zip(b.tiles.as_ref());
+    if let Some((bin, t)) = tiles.filter(|_| plan.raster == Raster::Tiles) {
+        // Which of them each tile of pixels holds.
+        recorder.pass("bin", |r| bin.record(r, &stages.sort, b, t, plan));
+        // The pixels, front to back.
+        recorder.pass("tiles", |r| stages.tiles(plan).record(r, b, t, plan));
+        recorder.ready_to_draw(&[&t.picture]);
     }
 
     recorder.copy(

@@ -15,6 +15,7 @@ mod shaders;
 mod sort;
 mod splat;
 mod stages;
+mod tiles;
 
 pub(crate) use buffers::Buffers;
 pub(crate) use context::Context;

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::limits;
 use crate::passes::depth_keys::DepthKeys;
 use crate::precision::ShFormat;
-use crate::settings::{Decay, ExactForm, Miss, Mode, Settings};
+use crate::settings::{Decay, ExactForm, Miss, Mode, Raster, Settings};
 use crate::types::{self, FrameData};
 
 /// A frame, decided but not recorded.
@@ -34,6 +34,12 @@ pub(crate) struct Plan {
     pub(crate) sort_passes: u32,
     /// Invocations of the sort.
     pub(crate) sort_runs: u32,
+    /// How splats become pixels; never `Auto`.
+    pub(crate) raster: Raster,
+    /// Digits of a tile's number, of `SORT_BITS` bits each.
+    pub(crate) tile_digits: u32,
+    /// Pixels that an invocation of the tile rasteriser owns, one above the other.
+    pub(crate) tile_rows: u32,
     /// The frame's constants.
     pub(crate) data: FrameData,
 }
@@ -47,6 +53,11 @@ pub(crate) struct SceneFacts {
     /// The corners of the box around the centres.
     pub(crate) bounds: [Vec3; 2],
     pub(crate) sort_runs: u32,
+    /// How splats become pixels; never `Auto`.
+    pub(crate) raster: Raster,
+    pub(crate) tile_rows: u32,
+    /// Pairs of tile and splat that there is to be room for.
+    pub(crate) pair_capacity: u32,
 }
 
 impl Plan {
@@ -73,6 +84,12 @@ impl Plan {
         if switch.is_nan() || switch < 0.0 {
             return Err(Error::Invalid(format!(
                 "a beam switch of {switch} is not a size; give zero or more"
+            )));
+        }
+        let saturated = settings.precision.transmittance_min;
+        if !(0.0..1.0).contains(&saturated) {
+            return Err(Error::Invalid(format!(
+                "a least transmittance of {saturated} is not one; give zero or more, below 1"
             )));
         }
         let clipping = settings.mode != Mode::None && !clip.planes.is_empty();
@@ -124,6 +141,7 @@ impl Plan {
             ExactForm::Affine => types::FORM_AFFINE,
         };
         data.sigma = settings.sigma;
+        data.transmittance_min = saturated;
         data.beam_switch = settings.precision.beam_switch;
         let keys = DepthKeys::new(scene.bounds, camera, settings.precision.key_bits)?;
         data.key_near = keys.near;
@@ -132,6 +150,9 @@ impl Plan {
         data.trace_all = settings.trace_all.into();
         data.cut_stride = cut_stride;
         data.sort_runs = scene.sort_runs;
+        data.tile_columns = camera.width.div_ceil(limits::TILE_WIDTH);
+        data.tile_count = data.tile_columns * camera.height.div_ceil(limits::TILE_HEIGHT);
+        data.pair_capacity = scene.pair_capacity;
         data.group_count = scene.gaussians.div_ceil(limits::GROUP_SIZE);
         for (index, plane) in planes.iter().enumerate() {
             let (high, low) = two_float(plane.normal());
@@ -164,6 +185,9 @@ impl Plan {
                 0
             },
             sort_runs: scene.sort_runs,
+            raster: scene.raster,
+            tile_digits: digits(data.tile_count),
+            tile_rows: scene.tile_rows,
             data,
         })
     }
@@ -173,16 +197,29 @@ impl Plan {
         (self.sort_passes % 2) as usize
     }
 
+    /// Which of the two pairs of tile and splat buffers holds the sorted ones.
+    pub(crate) fn sorted_pairs(&self) -> usize {
+        ((self.tile_digits - 1) % 2) as usize
+    }
+
     /// The stages that this frame does not need.
     pub(crate) fn skipped(&self) -> Vec<&'static str> {
         match (self.gaussians, self.cutoff) {
-            (0, _) => vec!["classify", "compact", "cutoff", "project", "sort", "splat"],
+            (0, _) => vec![
+                "classify", "compact", "cutoff", "project", "sort", "bin", "tiles", "splat",
+            ],
             (1, true) => vec!["sort"],
             (1, false) => vec!["cutoff", "sort"],
             (_, true) => vec![],
             (_, false) => vec!["cutoff"],
         }
     }
+}
+
+/// Digits of `SORT_BITS` bits that numbers below `count` have, at least one.
+fn digits(count: u32) -> u32 {
+    let bits = u32::BITS - count.saturating_sub(1).leading_zeros();
+    bits.div_ceil(limits::SORT_BITS).max(1)
 }
 
 fn camera_constants(data: &mut FrameData, camera: &Camera) {

@@ -10,6 +10,7 @@ use crate::passes::plan::Plan;
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::shaders;
 use crate::precision::ShFormat;
+use crate::settings::Raster;
 use crate::types::FrameCounts;
 
 #[derive(Debug)]
@@ -21,6 +22,7 @@ pub(crate) struct Project {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct ProjectKey {
     cut: bool,
+    tiles: bool,
     sh: ShFormat,
 }
 
@@ -29,6 +31,7 @@ impl ProjectKey {
     pub(crate) fn new(plan: &Plan) -> Self {
         Self {
             cut: plan.cutoff,
+            tiles: plan.raster == Raster::Tiles,
             sh: plan.sh_format,
         }
     }
@@ -37,7 +40,11 @@ impl ProjectKey {
 impl Project {
     /// For spherical harmonics stored in one way; with `cut` false the shader knows no cutoff records.
     pub(crate) fn new(context: &Context<'_>, key: ProjectKey) -> Result<Self> {
-        let constants = [(0, key.cut.into()), (1, key.sh.code())];
+        let constants = [
+            (0, key.cut.into()),
+            (1, key.sh.code()),
+            (2, key.tiles.into()),
+        ];
         Ok(Self {
             pipeline: context.compute("project", &shaders::PROJECT_COMP, &constants)?,
         })
@@ -55,6 +62,7 @@ impl Project {
             keys,
             order,
             &b.cuts,
+            &b.tile_masks,
         ];
         let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, project_groups) as u64);
         recorder.dispatch(&self.pipeline, &buffers, &[], groups);

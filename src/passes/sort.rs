@@ -3,9 +3,9 @@
 use std::mem::offset_of;
 
 use crate::error::Result;
-use crate::gpu::{ComputePipeline, Groups, Recorder};
+use crate::gpu::{Buffer, ComputePipeline, Groups, Recorder};
 use crate::limits;
-use crate::passes::buffers::Buffers;
+use crate::passes::buffers::{Buffers, TileBuffers};
 use crate::passes::context::Context;
 use crate::passes::shaders;
 use crate::types::FrameCounts;
@@ -26,18 +26,48 @@ impl Sort {
         })
     }
 
-    /// Sorts by the lowest `passes` digits of the keys; the result is in `keys[passes % 2]` and `order[passes % 2]`.
+    /// Sorts the survivors by the lowest `passes` digits of their depths; the result is in `keys[passes % 2]` and
+    /// `order[passes % 2]`.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, b: &Buffers, passes: u32) {
-        let runs = Groups::Indirect(&b.counts, offset_of!(FrameCounts, sort_groups) as u64);
-        for pass in 0..passes {
-            let (from, to) = ((pass % 2) as usize, (pass % 2) as usize ^ 1);
-            let first_bit = [pass * limits::SORT_BITS];
-            let count = [&b.frame, &b.counts, &b.keys[from], &b.histogram];
+        let groups = offset_of!(FrameCounts, sort_groups) as u64;
+        let pairs = [(&b.keys[0], &b.order[0]), (&b.keys[1], &b.order[1])];
+        self.passes(recorder, b, [0, groups as u32], pairs, 0..passes);
+    }
+
+    /// Sorts the pairs of tile and splat, which lie in order of the lowest digit already, by the others.
+    pub(crate) fn record_pairs(
+        &self,
+        recorder: &mut Recorder<'_>,
+        b: &Buffers,
+        t: &TileBuffers,
+        digits: u32,
+    ) {
+        let groups = offset_of!(FrameCounts, pair_groups) as u64;
+        let pairs = [
+            (&t.pair_tiles[0], &t.pair_splats[0]),
+            (&t.pair_tiles[1], &t.pair_splats[1]),
+        ];
+        self.passes(recorder, b, [1, groups as u32], pairs, 1..digits);
+    }
+
+    /// What is sorted, as the shaders know it, and where its indirect dispatch stands; the first pass reads `pairs[0]`.
+    fn passes(
+        &self,
+        recorder: &mut Recorder<'_>,
+        b: &Buffers,
+        [what, groups]: [u32; 2],
+        pairs: [(&Buffer, &Buffer); 2],
+        digits: std::ops::Range<u32>,
+    ) {
+        let runs = Groups::Indirect(&b.counts, groups.into());
+        for (pass, digit) in digits.enumerate() {
+            let first_bit = [digit * limits::SORT_BITS, what];
+            let ((keys, order), (sorted_keys, sorted_order)) =
+                (pairs[pass % 2], pairs[(pass % 2) ^ 1]);
+            let count = [&b.frame, &b.counts, keys, &b.histogram];
             recorder.dispatch(&self.count, &count, &first_bit, runs);
             let scan = [&b.frame, &b.histogram];
             recorder.dispatch(&self.scan, &scan, &first_bit, Groups::Count(1));
-            let (sorted_keys, sorted_order) = (&b.keys[to], &b.order[to]);
-            let (keys, order) = (&b.keys[from], &b.order[from]);
             let scatter = [
                 &b.frame,
                 &b.counts,

@@ -11,6 +11,7 @@ use crate::passes::buffers::Buffers;
 use crate::passes::context::Context;
 use crate::passes::plan::Plan;
 use crate::passes::shaders;
+use crate::settings::Raster;
 use crate::types::{self, FrameCounts};
 
 #[derive(Debug)]
@@ -20,22 +21,29 @@ pub(crate) struct Splat {
 }
 
 /// Premultiplied `over`.
-const OVER: vk::PipelineColorBlendAttachmentState = vk::PipelineColorBlendAttachmentState {
-    blend_enable: vk::TRUE,
-    src_color_blend_factor: vk::BlendFactor::ONE,
-    dst_color_blend_factor: vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
-    color_blend_op: vk::BlendOp::ADD,
-    src_alpha_blend_factor: vk::BlendFactor::ONE,
-    dst_alpha_blend_factor: vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
-    alpha_blend_op: vk::BlendOp::ADD,
-    color_write_mask: vk::ColorComponentFlags::RGBA,
-};
+pub(crate) const OVER: vk::PipelineColorBlendAttachmentState =
+    vk::PipelineColorBlendAttachmentState {
+        blend_enable: vk::TRUE,
+        src_color_blend_factor: vk::BlendFactor::ONE,
+        dst_color_blend_factor: vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
+        color_blend_op: vk::BlendOp::ADD,
+        src_alpha_blend_factor: vk::BlendFactor::ONE,
+        dst_alpha_blend_factor: vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
+        alpha_blend_op: vk::BlendOp::ADD,
+        color_write_mask: vk::ColorComponentFlags::RGBA,
+    };
 
 /// What tells one pipeline from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct SplatKey {
     mesh: bool,
     format: vk::Format,
+    weight: WeightKey,
+}
+
+/// What of a frame the weight of cut splats depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct WeightKey {
     mode: u32,
     op: u32,
     decay: u32,
@@ -46,17 +54,39 @@ pub(crate) struct SplatKey {
 impl SplatKey {
     /// The pipeline a plan needs: after a hard clip nothing is left for the fragment stage to do, and what a mode does
     /// not ask for does not tell its pipelines apart.
-    pub(crate) fn new(plan: &Plan, mesh: bool, format: vk::Format) -> Self {
+    pub(crate) fn new(plan: &Plan, format: vk::Format) -> Self {
+        Self {
+            mesh: plan.raster == Raster::Mesh,
+            format,
+            weight: WeightKey::new(plan),
+        }
+    }
+}
+
+impl WeightKey {
+    /// What a plan needs.
+    pub(crate) fn new(plan: &Plan) -> Self {
         let when = |needed: bool, value: u32| if needed { value } else { 0 };
         Self {
-            mesh,
-            format,
             mode: when(plan.cutoff, plan.mode),
             op: when(plan.cutoff, plan.data.op),
             decay: when(plan.cutoff, plan.decay),
             miss: when(plan.cutoff && plan.mode == types::MODE_RARA, plan.miss),
             phi: when(plan.cutoff && plan.mode == types::MODE_EXACT, plan.phi),
         }
+    }
+}
+
+impl WeightKey {
+    /// The specialisation constants of glsl/weight.glsl.
+    pub(crate) fn constants(self) -> [(u32, u32); 5] {
+        [
+            (0, self.mode),
+            (1, self.op),
+            (2, self.decay),
+            (3, self.miss),
+            (4, self.phi),
+        ]
     }
 }
 
@@ -69,13 +99,7 @@ impl Splat {
         } else {
             &shaders::SPLAT_VERT
         };
-        let constants = [
-            (0, key.mode),
-            (1, key.op),
-            (2, key.decay),
-            (3, key.miss),
-            (4, key.phi),
-        ];
+        let constants = key.weight.constants();
         let pipeline = context.graphics("splat", front, &shaders::SPLAT_FRAG, &constants, OVER)?;
         Ok(Self { pipeline, mesh })
     }

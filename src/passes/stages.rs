@@ -13,7 +13,9 @@ use crate::passes::cutoff::Cutoff;
 use crate::passes::plan::Plan;
 use crate::passes::project::{Project, ProjectKey};
 use crate::passes::sort::Sort;
-use crate::passes::splat::{Splat, SplatKey};
+use crate::passes::splat::{Splat, SplatKey, WeightKey};
+use crate::passes::tiles::{Bin, Composite, Composites, Tiles};
+use crate::settings::Raster;
 use crate::types;
 
 /// All stages for one way of binding. Variants that no frame has asked for do not exist.
@@ -25,6 +27,9 @@ pub(crate) struct Stages {
     project: HashMap<ProjectKey, Project>,
     pub(crate) sort: Sort,
     splat: HashMap<SplatKey, Splat>,
+    pub(crate) bin: Option<Bin>,
+    tiles: HashMap<(WeightKey, u32), Tiles>,
+    pub(crate) composite: Composites,
 }
 
 impl Stages {
@@ -36,11 +41,14 @@ impl Stages {
             project: HashMap::new(),
             sort: Sort::new(context)?,
             splat: HashMap::new(),
+            bin: None,
+            tiles: HashMap::new(),
+            composite: HashMap::new(),
         })
     }
 
     /// Creates what a plan needs and is not there yet.
-    pub(crate) fn ensure(&mut self, context: &Context<'_>, plan: &Plan, mesh: bool) -> Result<()> {
+    pub(crate) fn ensure(&mut self, context: &Context<'_>, plan: &Plan) -> Result<()> {
         let clip = plan.mode != types::MODE_NONE;
         let classify = &mut self.classify[usize::from(clip)];
         if classify.is_none() {
@@ -52,9 +60,26 @@ impl Stages {
         if let Entry::Vacant(missing) = self.project.entry(ProjectKey::new(plan)) {
             missing.insert(Project::new(context, ProjectKey::new(plan))?);
         }
-        let key = SplatKey::new(plan, mesh, context.color_format);
+        if plan.raster == Raster::Tiles {
+            self.ensure_tiles(context, plan)?;
+        }
+        let key = SplatKey::new(plan, context.color_format);
         if let Entry::Vacant(missing) = self.splat.entry(key) {
             missing.insert(Splat::new(context, key)?);
+        }
+        Ok(())
+    }
+
+    fn ensure_tiles(&mut self, context: &Context<'_>, plan: &Plan) -> Result<()> {
+        if self.bin.is_none() {
+            self.bin = Some(Bin::new(context)?);
+        }
+        let key = (WeightKey::new(plan), plan.tile_rows);
+        if let Entry::Vacant(missing) = self.tiles.entry(key) {
+            missing.insert(Tiles::new(context, key.0, key.1)?);
+        }
+        if let Entry::Vacant(missing) = self.composite.entry(context.color_format) {
+            missing.insert(Composite::new(context)?);
         }
         Ok(())
     }
@@ -72,7 +97,12 @@ impl Stages {
     }
 
     /// The rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.
-    pub(crate) fn splat(&self, plan: &Plan, mesh: bool, format: vk::Format) -> &Splat {
-        &self.splat[&SplatKey::new(plan, mesh, format)]
+    pub(crate) fn splat(&self, plan: &Plan, format: vk::Format) -> &Splat {
+        &self.splat[&SplatKey::new(plan, format)]
+    }
+
+    /// The tile rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.
+    pub(crate) fn tiles(&self, plan: &Plan) -> &Tiles {
+        &self.tiles[&(WeightKey::new(plan), plan.tile_rows)]
     }
 }

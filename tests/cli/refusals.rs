@@ -147,8 +147,8 @@ fn a_wrong_command_line_is_status_2_and_one_line() {
         ),
         ("render x.ply -o a.png --clip-op xor", "and, or"),
         (
-            "render x.ply -o a.png --raster tiles",
-            "not implemented yet",
+            "render x.ply -o a.png --raster triangles",
+            "mesh, quad, tiles",
         ),
         (
             "render x.ply -o a.png --background 1,2,3",

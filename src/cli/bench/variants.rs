@@ -1,7 +1,8 @@
 //! What is compared: every mode, law and preset, and every choice of precision by itself.
 
 use rara::{
-    Decay, ExactForm, Miss, Mode, PhiForm, Precision, Preset, Settings, ShFormat, TargetFormat,
+    Decay, ExactForm, Miss, Mode, PhiForm, Precision, Preset, Raster, Settings, ShFormat,
+    TargetFormat,
 };
 
 /// One choice.
@@ -47,6 +48,16 @@ pub(super) fn variants(look: Settings) -> Vec<Variant> {
             ..base
         })
     };
+    let saturated = |transmittance_min| {
+        precise(Precision {
+            transmittance_min,
+            ..base
+        })
+    };
+    let quads = Settings {
+        raster: Raster::Quad,
+        ..exact
+    };
     let keep = rara(1.0, Miss::Keep, None);
     let drop = rara(3.0, Miss::Drop, None);
     let linear = Settings {
@@ -80,6 +91,13 @@ pub(super) fn variants(look: Settings) -> Vec<Variant> {
         variant("switch 0.01", "--beam-switch 0.01", switch(0.01)),
         variant("switch 0.02", "--beam-switch 0.02", switch(0.02)),
         variant("switch 0.05", "--beam-switch 0.05", switch(0.05)),
+        variant("saturated 0", "--transmittance-min 0", saturated(0.0)),
+        variant(
+            "saturated 1e-4",
+            "--transmittance-min 1e-4",
+            saturated(1e-4),
+        ),
+        variant("quads", "--raster quad", quads),
         variant("phi cubic", "--phi cubic", phi(PhiForm::Cubic)),
         variant("phi logistic", "--phi logistic", phi(PhiForm::Logistic)),
         variant("keys 24", "--key-bits 24", keys(24)),
@@ -115,13 +133,7 @@ mod tests {
             for b in &all[..i] {
                 assert_ne!(a.name, b.name);
                 let twice = a.settings == b.settings;
-                // The default is also one of the beam switches.
-                let same = ["exact", "switch 0.01", "switch 0.02", "switch 0.05"];
-                assert!(
-                    !twice || (same.contains(&a.name) && same.contains(&b.name)),
-                    "{}",
-                    a.name
-                );
+                assert!(!twice, "{} is {}", a.name, b.name);
             }
         }
     }

@@ -1,0 +1,139 @@
+// Which tiles a splat contributes to: for each row of tiles, the columns between the ends that the contour alpha = 1/255
+// reaches there. Exact but for a margin, where a bounding box would give a slanting needle its whole square.
+#ifndef RARA_BIN
+#define RARA_BIN
+#include "extent.glsl"
+#include "sort.glsl"
+
+struct Outline {
+    vec2 centre; // px
+    vec3 conic; // Cholesky factor, 1/px
+    float power; // q on the contour
+    float slope; // by how much the middle of the contour's chord moves along x a pixel along y
+    float tip; // y relative to the centre, at which the contour reaches farthest to the right
+    float reach; // half the contour's height, px
+    float margin; // px
+    vec2 sides; // what the splat's quad leaves: first and last x, px
+    vec3 line; // a cut splat is hidden where line.x + line.y dx + line.z dy is negative
+    uvec2 rows; // first and last (exclusive) row of tiles
+};
+
+const vec3 NO_LINE = vec3(1.0, 0.0, 0.0);
+
+// Where a weight's z, with these factors of its terms of degree one, two and three, can exceed -TRIM_DEVIATIONS within a
+// box around the splat's centre.
+vec3 hidden_beyond(vec3 plane, vec3 bend, vec4 twist, vec2 box) {
+    precise float rise = max(bend.x, 0.0) * box.x * box.x + abs(bend.y) * box.x * box.y + max(bend.z, 0.0) * box.y * box.y
+        + dot(abs(twist), vec4(box.x * box.x * box.x, box.x * box.x * box.y, box.x * box.y * box.y, box.y * box.y * box.y));
+    precise vec3 line = vec3(plane.x + TRIM_DEVIATIONS + rise, plane.yz);
+    return line;
+}
+
+// First and last (exclusive) tile with a pixel centre in [low, high].
+uvec2 tiles_between(float low, float high, float pixels, uint side) {
+    float first = max(ceil(low - 0.5), 0.0);
+    float last = min(floor(high - 0.5), pixels - 1.0);
+    return first <= last ? uvec2(uint(first) / side, uint(last) / side + 1u) : uvec2(0u);
+}
+
+Outline outline(Splat splat) {
+    precise Outline o;
+    o.centre = splat.centre_conic.xy;
+    o.conic = vec3(splat.centre_conic.zw, splat.conic_cut.x);
+    float extent = opacity_extent(splat.conic_cut.y);
+    o.power = extent * extent;
+    precise float k = o.conic.x * o.conic.x + o.conic.y * o.conic.y;
+    precise float width = extent / o.conic.x;
+    o.slope = -o.conic.y * o.conic.z / k;
+    o.tip = -o.conic.y / o.conic.z * width;
+    // Near the contour's ends its chord is a root of a difference, off by the root of single precision.
+    o.margin = 0.01 + 4e-4 * width + 1e-6 * largest(vec3(o.centre, 0.0));
+    o.reach = extent * sqrt(k) / (o.conic.x * o.conic.z) + o.margin;
+    vec2 middle = o.centre + splat.middle.xy;
+    vec2 half_sides = abs(splat.axes.xy) + abs(splat.axes.zw);
+    o.sides = middle.x + vec2(-half_sides.x, half_sides.x);
+    float top = max(middle.y - half_sides.y, o.centre.y - o.reach);
+    float bottom = min(middle.y + half_sides.y, o.centre.y + o.reach);
+    o.line = NO_LINE;
+    vec3 plane = vec3(splat.conic_cut.zw, splat.colour_cut.w);
+    if (abs(plane.x) < CUT_RANGE) {
+        o.line = hidden_beyond(plane, splat.curvature.xyz, vec4(0.0), vec2(width, o.reach));
+    }
+    o.rows = tiles_between(top, bottom, FRAME.size.y, TILE_HEIGHT);
+    return o;
+}
+
+// Half the contour's chord along x at a height above the centre.
+float half_chord(Outline o, float y) {
+    precise float k = o.conic.x * o.conic.x + o.conic.y * o.conic.y;
+    precise float rest = o.conic.x * o.conic.z * y;
+    precise float half_length = sqrt(max(0.0, k * o.power - rest * rest)) / k;
+    return half_length;
+}
+
+uvec2 tiles_in_row(Outline o, uint row) {
+    precise float top = float(row * TILE_HEIGHT) + 0.5 - o.centre.y;
+    precise float bottom = min(top + float(TILE_HEIGHT - 1u), o.reach);
+    top = max(top, -o.reach);
+    // To the bit, wherever it is computed: what one shader counts another writes.
+    precise float right_at = clamp(o.tip, top, bottom);
+    precise float left_at = clamp(-o.tip, top, bottom);
+    precise float left = o.centre.x + o.slope * left_at - half_chord(o, left_at) - o.margin;
+    precise float right = o.centre.x + o.slope * right_at + half_chord(o, right_at) + o.margin;
+    // The comparisons are false for what is no number: beyond single precision the quad's sides are all there is.
+    left = left > o.sides.x ? left : o.sides.x;
+    right = right < o.sides.y ? right : o.sides.y;
+    // What the line leaves at the height where it leaves most.
+    precise float least = o.line.x + max(o.line.z * top, o.line.z * bottom);
+    precise float at = o.centre.x - least / o.line.y;
+    left = o.line.y > 0.0 && at - o.margin > left ? at - o.margin : left;
+    right = o.line.y < 0.0 && at + o.margin < right ? at + o.margin : right;
+    if (o.line.y == 0.0 && least < 0.0) {
+        return uvec2(0u);
+    }
+    return tiles_between(left, right, FRAME.size.x, TILE_WIDTH);
+}
+
+// A splat's tiles as a mask of MASK_SIDE x MASK_SIDE bits, row by row, from a first tile on: what project.comp finds once,
+// in the order of memory, for the passes that follow the order of depth.
+const uint MASK_SIDE = 8u;
+
+// x: first column and, in the upper half, first row; y: 1 where the tiles are more than the mask holds; zw: the mask.
+uvec4 tile_mask(Outline o) {
+    if (o.rows.y - o.rows.x > MASK_SIDE) {
+        return uvec4(0u, 1u, 0u, 0u);
+    }
+    uvec2 spans[MASK_SIDE];
+    uint first = ~0u;
+    uint last = 0u;
+    for (uint row = 0u; row < MASK_SIDE; row++) {
+        spans[row] = o.rows.x + row < o.rows.y ? tiles_in_row(o, o.rows.x + row) : uvec2(0u);
+        bool any = spans[row].x < spans[row].y;
+        first = any ? min(first, spans[row].x) : first;
+        last = any ? max(last, spans[row].y) : last;
+    }
+    if (last > first + MASK_SIDE) {
+        return uvec4(0u, 1u, 0u, 0u);
+    }
+    uvec2 mask = uvec2(0u);
+    for (uint row = 0u; row < MASK_SIDE; row++) {
+        if (spans[row].x < spans[row].y) {
+            uint bits = ((1u << (spans[row].y - spans[row].x)) - 1u) << (spans[row].x - first);
+            mask[row >> 2] |= bits << ((row & 3u) * MASK_SIDE);
+        }
+    }
+    return uvec4(first | o.rows.x << 16, 0u, mask);
+}
+
+// The tile of the lowest bit of a mask, which is taken out of it.
+uint next_tile(uint origin, inout uvec2 mask) {
+    uint half_index = mask.x != 0u ? 0u : 1u;
+    uint bits = half_index == 0u ? mask.x : mask.y;
+    uint bit = uint(findLSB(bits));
+    bits &= bits - 1u;
+    mask = half_index == 0u ? uvec2(bits, mask.y) : uvec2(0u, bits);
+    uint row = (origin >> 16) + half_index * 4u + bit / MASK_SIDE;
+    return row * FRAME.tile_columns + (origin & 0xffffu) + bit % MASK_SIDE;
+}
+
+#endif

@@ -1,0 +1,43 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// First step of binning: how often each run of the sorted splats touches tiles of each lowest digit. It is the first
+// step of sorting the pairs of tile and splat by tile, which need not exist for it.
+#include "bin.glsl"
+
+layout(local_size_x = SORT_GROUP_SIZE) in;
+
+BUFFER(readonly, 1, FrameCounts, counts)
+BUFFER(readonly, 2, Splat, splats)
+BUFFER(readonly, 3, uint, order)
+BUFFER(, 4, uint, histogram)
+BUFFER(readonly, 5, uvec4, tile_masks)
+
+
+void main() {
+    uint run = gl_GlobalInvocationID.x;
+    for (uint d = 0u; d < DIGITS; d++) {
+        histogram.at[run * DIGITS + d] = 0u;
+    }
+    uvec2 bounds = run_bounds(run, counts.at[0].visible + counts.at[0].cutoff);
+    uint found = 0u;
+    // More than there is room for need no counting: quads are drawn, and the next frame has more room.
+    for (uint i = bounds.x; i < bounds.y && found <= FRAME.pair_capacity; i++) {
+        uint splat = order.at[i];
+        uvec4 tiles = tile_masks.at[splat];
+        for (uvec2 mask = tiles.zw; (mask.x | mask.y) != 0u;) {
+            histogram.at[run * DIGITS + digit(next_tile(tiles.x, mask))]++;
+            found++;
+        }
+        if (tiles.y == 0u) {
+            continue;
+        }
+        Outline o = outline(splats.at[splat]);
+        for (uint row = o.rows.x; row < o.rows.y; row++) {
+            uvec2 columns = tiles_in_row(o, row) + row * FRAME.tile_columns;
+            for (uint tile = columns.x; tile < columns.y; tile++) {
+                histogram.at[run * DIGITS + digit(tile)]++;
+            }
+            found += columns.y - columns.x;
+        }
+    }
+}

@@ -1,0 +1,15 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The tiles' picture, for the blend onto what the host has drawn. Parameters 0 and 1 are where the viewport begins, px.
+#include "frame.glsl"
+
+BUFFER(readonly, 1, vec4, picture)
+
+layout(location = 0) out vec4 colour;
+
+void main() {
+    vec2 place = gl_FragCoord.xy - vec2(uintBitsToFloat(push.param[0]), uintBitsToFloat(push.param[1]));
+    uvec2 size = uvec2(FRAME.size.xy);
+    uvec2 pixel = min(uvec2(place), size - 1u);
+    colour = picture.at[pixel.y * size.x + pixel.x];
+}

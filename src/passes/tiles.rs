@@ -1,0 +1,158 @@
+//! The tile rasteriser: which splats meet each tile of pixels, front to back, and a compute shader that blends them until
+//! the tile is saturated. What does not fit is drawn as quads in the same frame.
+
+use std::mem::offset_of;
+
+use ash::vk;
+
+use crate::error::Result;
+use crate::gpu::{ComputePipeline, Drawer, GraphicsPipeline, Groups, Recorder};
+use crate::limits;
+use crate::passes::buffers::{Buffers, TileBuffers};
+use crate::passes::context::Context;
+use crate::passes::plan::Plan;
+use crate::passes::shaders;
+use crate::passes::sort::Sort;
+use crate::passes::splat::{OVER, WeightKey};
+use crate::types::FrameCounts;
+
+/// Pairs of tile and splat, ordered by tile and within each tile by depth.
+#[derive(Debug)]
+pub(crate) struct Bin {
+    count: ComputePipeline,
+    scan: ComputePipeline,
+    scatter: ComputePipeline,
+    ranges: ComputePipeline,
+}
+
+impl Bin {
+    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
+        Ok(Self {
+            count: context.compute("bin_count", &shaders::BIN_COUNT_COMP, &[])?,
+            scan: context.compute("bin_scan", &shaders::BIN_SCAN_COMP, &[])?,
+            scatter: context.compute("bin_scatter", &shaders::BIN_SCATTER_COMP, &[])?,
+            ranges: context.compute("bin_ranges", &shaders::BIN_RANGES_COMP, &[])?,
+        })
+    }
+
+    pub(crate) fn record(
+        &self,
+        recorder: &mut Recorder<'_>,
+        sort: &Sort,
+        b: &Buffers,
+        t: &TileBuffers,
+        plan: &Plan,
+    ) {
+        let order = &b.order[plan.sorted()];
+        let at = |offset: usize| Groups::Indirect(&b.counts, offset as u64);
+        let survivors = at(offset_of!(FrameCounts, sort_groups));
+        let pairs = at(offset_of!(FrameCounts, pair_groups));
+        let count = [
+            &b.frame,
+            &b.counts,
+            &b.splats,
+            order,
+            &b.histogram,
+            &b.tile_masks,
+        ];
+        recorder.dispatch(&self.count, &count, &[], survivors);
+        let scan = [&b.frame, &b.counts, &b.histogram];
+        recorder.dispatch(&self.scan, &scan, &[], Groups::Count(1));
+        let (tiles, splats) = (&t.pair_tiles[0], &t.pair_splats[0]);
+        let scatter = [
+            &b.frame,
+            &b.counts,
+            &b.splats,
+            order,
+            &b.histogram,
+            tiles,
+            splats,
+            &b.tile_masks,
+        ];
+        recorder.dispatch(&self.scatter, &scatter, &[], pairs);
+        sort.record_pairs(recorder, b, t, plan.tile_digits);
+        let ranges = [
+            &b.frame,
+            &b.counts,
+            &t.pair_tiles[plan.sorted_pairs()],
+            &t.begins,
+        ];
+        recorder.dispatch(&self.ranges, &ranges, &[], pairs);
+    }
+}
+
+/// The tiles' pixels.
+#[derive(Debug)]
+pub(crate) struct Tiles {
+    pipeline: ComputePipeline,
+}
+
+impl Tiles {
+    pub(crate) fn new(context: &Context<'_>, weight: WeightKey, rows: u32) -> Result<Self> {
+        let [mode, op, decay, miss, phi] = weight.constants();
+        let constants = [
+            mode,
+            op,
+            decay,
+            miss,
+            phi,
+            (5, rows),
+            (6, limits::TILE_HEIGHT / rows),
+        ];
+        Ok(Self {
+            pipeline: context.compute("tiles", &shaders::TILES_COMP, &constants)?,
+        })
+    }
+
+    pub(crate) fn record(
+        &self,
+        recorder: &mut Recorder<'_>,
+        b: &Buffers,
+        t: &TileBuffers,
+        plan: &Plan,
+    ) {
+        let splats = &t.pair_splats[plan.sorted_pairs()];
+        let buffers = [&b.frame, &b.splats, splats, &t.begins, &b.cuts, &t.picture];
+        let [_, _, cx, cy] = plan.data.focal.map(f32::to_bits);
+        let params = [0, 0, plan.data.sigma.to_bits(), plan.cut_stride, cx, cy];
+        let tiles = Groups::Indirect(&b.counts, offset_of!(FrameCounts, tile_groups) as u64);
+        recorder.dispatch(&self.pipeline, &buffers, &params, tiles);
+    }
+}
+
+/// The tiles' picture, blended onto what the host has drawn.
+#[derive(Debug)]
+pub(crate) struct Composite {
+    pipeline: GraphicsPipeline,
+}
+
+impl Composite {
+    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
+        let (front, fragment) = (&shaders::COMPOSITE_VERT, &shaders::COMPOSITE_FRAG);
+        Ok(Self {
+            pipeline: context.graphics("composite", front, fragment, &[], OVER)?,
+        })
+    }
+
+    /// Draws inside the host's rendering scope; `origin` is where its viewport begins, px.
+    pub(crate) fn record(
+        &self,
+        drawer: &mut Drawer<'_>,
+        b: &Buffers,
+        t: &TileBuffers,
+        origin: [f32; 2],
+    ) {
+        let buffers = [&b.frame, &t.picture];
+        let at = offset_of!(FrameCounts, composite) as u64;
+        drawer.draw_indirect(
+            &self.pipeline,
+            &buffers,
+            &origin.map(f32::to_bits),
+            &b.counts,
+            at,
+        );
+    }
+}
+
+/// Graphics pipelines differ by what they draw into.
+pub(crate) type Composites = std::collections::HashMap<vk::Format, Composite>;

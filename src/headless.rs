@@ -174,12 +174,12 @@ impl Headless {
             })?;
             // A first frame finds out how much room the tiles need. The bytes must not depend on what was drawn before:
             // it is drawn again.
-            let room = self.renderer.pair_capacity();
+            let room = self.renderer.pair_room();
             if !self.renderer.fell_back() {
                 break;
             }
             self.renderer.configure(scene, camera, clip, settings)?;
-            if self.renderer.pair_capacity() <= room {
+            if self.renderer.pair_room() <= room {
                 break; // there is no more to be had, and the quads are the picture
             }
         }

@@ -6,12 +6,15 @@ use ash::vk;
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
-use crate::gpu::{Bindings, Buffer, BufferDesc, Device, Drawer, Location, Recorder, Timer};
+use crate::gpu::{
+    Bindings, Buffer, BufferDesc, Device, Drawer, Location, Recorder, Support, Timer,
+};
 use crate::limits;
-use crate::passes::{self, Buffers, Context, Plan, SceneBuffers, SceneFacts, Stages};
+use crate::passes::{self, Buffers, Context, PairRoom, Plan, SceneBuffers, SceneFacts, Stages};
 use crate::settings::{Raster, Settings};
-use crate::stats::{Counts, PassTime, RasterChoice};
 use crate::types::FrameCounts;
+
+mod tell;
 
 /// What a renderer is created with: [`RendererDesc::new`] for the usual, fields changed where a host wants otherwise.
 #[derive(Debug, Clone, Copy)]
@@ -70,10 +73,7 @@ pub struct Renderer {
     prepared: u64,
     plan: Option<Plan>,
     bindings: Bindings,
-    /// Pairs of tile and splat that frames have had or needed room for.
-    pair_capacity: u32,
-    /// The most that they get: less than [`MOST_PAIRS`] once the device has had no memory for them.
-    most_pairs: u32,
+    pairs: PairRoom,
     /// Why the configured frame's rasteriser was chosen.
     reason: &'static str,
     /// Whether the configured frame has been prepared.
@@ -133,8 +133,7 @@ impl Renderer {
             prepared: 0,
             plan: None,
             bindings: desc.bindings,
-            pair_capacity: 0,
-            most_pairs: MOST_PAIRS,
+            pairs: PairRoom::default(),
             reason: "",
             ready: false,
         })
@@ -165,30 +164,12 @@ impl Renderer {
         self.free_finished();
         let columns = camera.width.div_ceil(limits::TILE_WIDTH);
         let tiles = columns.saturating_mul(camera.height.div_ceil(limits::TILE_HEIGHT));
-        self.make_room_for_pairs(scene.count, tiles);
+        let needed = self.frame_counts().map_or(0, |counts| counts.pairs);
+        self.pairs.make(scene.count, tiles, needed);
         let support = self.device.support();
         let is_cpu = self.device.info().kind == vk::PhysicalDeviceType::CPU;
-        let sort_runs = if is_cpu { SORT_RUNS_CPU } else { SORT_RUNS_GPU };
-        let (raster, reason) = match settings.raster {
-            // See the README's measurements.
-            Raster::Auto if u64::from(tiles) * TILE_BYTES > MOST_PICTURE => (
-                Raster::Quad,
-                "the tiles' picture would take more than 1 GiB",
-            ),
-            Raster::Auto if is_cpu => (
-                Raster::Tiles,
-                "a CPU driver charges for each splat it draws",
-            ),
-            Raster::Auto if support.mesh_shader => (Raster::Mesh, "a GPU with mesh shaders"),
-            Raster::Auto => (Raster::Quad, "a GPU without mesh shaders"),
-            Raster::Mesh if !support.mesh_shader => {
-                return Err(Error::Device(
-                    "this device has no mesh shaders (VK_EXT_mesh_shader); use --raster quad"
-                        .into(),
-                ));
-            }
-            chosen => (chosen, "asked for"),
-        };
+        let sort_runs = sort_runs(is_cpu, scene.count);
+        let (raster, reason) = choose(settings.raster, support, is_cpu, tiles)?;
         self.reason = reason;
         let facts = SceneFacts {
             gaussians: scene.count,
@@ -198,7 +179,7 @@ impl Renderer {
             sort_runs,
             raster,
             tile_rows: if is_cpu { limits::TILE_HEIGHT } else { 1 },
-            pair_capacity: self.pair_capacity,
+            pair_capacity: self.pairs.room(),
         };
         let plan = Plan::new(facts, camera, clip, settings)?;
         let largest = Buffers::largest(&plan).max(scene.largest());
@@ -250,8 +231,7 @@ impl Renderer {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<()> {
-        self.most_pairs = self.pair_capacity / 2;
-        self.pair_capacity = 0;
+        self.pairs.refuse();
         let quads = Settings {
             raster: Raster::Quad,
             ..*settings
@@ -261,24 +241,9 @@ impl Renderer {
         Ok(())
     }
 
-    /// Room for the pairs of tile and splat that the last finished frame had, or would have had.
-    fn make_room_for_pairs(&mut self, gaussians: u32, tiles: u32) {
-        let all = gaussians.saturating_mul(tiles);
-        let usual = gaussians
-            .saturating_mul(USUAL_PAIRS)
-            .saturating_add(tiles.saturating_mul(USUAL_SPLATS))
-            .min(all);
-        let needed = self.frame_counts().map_or(0, |counts| counts.pairs);
-        let grown = needed.saturating_add(needed / 4);
-        // What would not fit anyway is no reason to take memory.
-        let missing = needed > self.pair_capacity && grown <= self.most_pairs;
-        let wanted = if missing { grown } else { self.pair_capacity };
-        self.pair_capacity = wanted.max(usual.min(self.most_pairs));
-    }
-
     /// Pairs of tile and splat that the configured frame has room for.
-    pub(crate) fn pair_capacity(&self) -> u32 {
-        self.pair_capacity
+    pub(crate) fn pair_room(&self) -> u32 {
+        self.pairs.room()
     }
 
     /// Frees what only frames used that the host has waited for.
@@ -320,9 +285,9 @@ impl Renderer {
         passes::record(&mut recorder, stages, scene, buffers, plan, &slot.counts);
     }
 
-    /// Records the splats, or the picture that the tiles have made of them, inside the host's rendering scope, blended `over` what is there: premultiplied colours, one
-    /// sample a pixel. `origin` is the viewport's upper left corner in the attachment, whole px; the viewport has the camera's
-    /// size. May be recorded more than once for a prepared frame.
+    /// Records the splats, or the picture that the tiles have made of them, inside the host's rendering scope, blended
+    /// `over` what is there: premultiplied colours, one sample a pixel. `origin` is the viewport's upper left corner in the
+    /// attachment, whole px; the viewport has the camera's size. May be recorded more than once for a prepared frame.
     ///
     /// # Safety
     /// `cmd` is inside a rendering scope whose only attachment is a colour one of the format given at creation, with one
@@ -354,98 +319,42 @@ impl Renderer {
             }
         });
     }
-
-    /// The stages that the configured frame does not need.
-    pub fn skipped(&self) -> Vec<&'static str> {
-        self.plan.as_ref().map(Plan::skipped).unwrap_or_default()
-    }
-
-    /// How splats become pixels in the configured frame, or became in the one that [`counts`](Self::counts) is about where
-    /// its tiles had no room; and why in that way.
-    pub fn raster(&self) -> RasterChoice {
-        let raster = self.plan.as_ref().map(|plan| plan.raster);
-        if raster == Some(Raster::Tiles) && self.fell_back() {
-            return RasterChoice {
-                path: "quad",
-                reason: "there is no room for the tiles' lists",
-            };
-        }
-        let path = match raster {
-            Some(Raster::Mesh) => "mesh",
-            Some(Raster::Quad) => "quad",
-            Some(Raster::Tiles) => "tiles",
-            Some(Raster::Auto) | None => "",
-        };
-        let reason = self.reason;
-        RasterChoice { path, reason }
-    }
-
-    /// Whether the frame that [`counts`](Self::counts) is about had more pairs of tile and splat than there was room for,
-    /// so that it was drawn as quads: the same picture, but slower. The next [`configure`](Self::configure) makes the
-    /// room, up to 2 GiB.
-    pub fn fell_back(&self) -> bool {
-        let counts = self.frame_counts();
-        counts.is_some_and(|counts| counts.pairs > 0 && counts.tiled == 0)
-    }
-
-    /// How many Gaussians ended where in the oldest frame that is kept: the last one, with one frame in flight. Ask
-    /// after waiting for it, before the next [`prepare`](Self::prepare). All zero where no frame is that old.
-    pub fn counts(&self) -> Counts {
-        let Some(FrameCounts {
-            visible,
-            cutoff,
-            invisible,
-            culled,
-            ..
-        }) = self.frame_counts()
-        else {
-            return Counts::default();
-        };
-        Counts {
-            visible,
-            cutoff,
-            invisible,
-            culled,
-            drawn: visible + cutoff,
-        }
-    }
-
-    fn frame_counts(&self) -> Option<FrameCounts> {
-        let slot = self.oldest().filter(|slot| !slot.empty)?;
-        let bytes = &slot.counts.mapped()[..size_of::<FrameCounts>()];
-        Some(bytemuck::pod_read_unaligned(bytes))
-    }
-
-    /// GPU time of each stage of the same frame as [`counts`](Self::counts); empty without timing.
-    pub fn pass_times(&self) -> Vec<PassTime> {
-        let timer = self
-            .oldest()
-            .filter(|slot| !slot.empty)
-            .and_then(|slot| slot.timer.as_ref());
-        let times = timer.and_then(Timer::read).unwrap_or_default();
-        times
-            .into_iter()
-            .map(|(name, ms)| PassTime { name, ms })
-            .collect()
-    }
-
-    /// The slot of the frame before which the host waits next: the one that the next frame will take over.
-    fn oldest(&self) -> Option<&Slot> {
-        let count = self.slots.len() as u64;
-        (self.prepared >= count).then(|| &self.slots[(self.prepared % count) as usize])
-    }
 }
 
-/// Pairs of tile and splat that there is room for before any frame has shown how many there are: so many a Gaussian,
-/// where most are small, and so many a tile, where they are few and large.
-const USUAL_PAIRS: u32 = 2;
-const USUAL_SPLATS: u32 = 64;
-/// The most room for pairs, 2 GiB: frames with more are drawn as quads.
-const MOST_PAIRS: u32 = 1 << 27;
+/// How splats become pixels on a device, and why in that way.
+fn choose(
+    wanted: Raster,
+    support: &Support,
+    is_cpu: bool,
+    tiles: u32,
+) -> Result<(Raster, &'static str)> {
+    Ok(match wanted {
+        Raster::Auto if u64::from(tiles) * TILE_BYTES > MOST_PICTURE => {
+            let reason = "the tiles' picture would take more than 1 GiB";
+            (Raster::Quad, reason)
+        }
+        // See the README's measurements.
+        Raster::Auto if is_cpu => (Raster::Tiles, "a CPU driver charges for each drawn splat"),
+        Raster::Auto if support.mesh_shader => (Raster::Mesh, "a GPU with mesh shaders"),
+        Raster::Auto => (Raster::Quad, "a GPU without mesh shaders"),
+        Raster::Mesh if !support.mesh_shader => {
+            return Err(Error::Device(
+                "this device has no mesh shaders (VK_EXT_mesh_shader); use --raster quad".into(),
+            ));
+        }
+        chosen => (chosen, "asked for"),
+    })
+}
+
 /// What a tile's pixels take, and the most that a picture of them may: what every device can allocate at once.
 const TILE_BYTES: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64 * 16;
 const MOST_PICTURE: u64 = 1 << 30;
-/// Runs of the sort on CPU drivers: few, because each costs a histogram; at least the lanes of all cores.
-const SORT_RUNS_CPU: u32 = 256;
-/// Runs of the sort on GPUs: enough invocations to hide the latency of their scattered writes.
-const SORT_RUNS_GPU: u32 = 2048;
+/// Runs of the sort: each costs a histogram, so few where there is little to sort and on CPU drivers; but at least the
+/// lanes of all cores there, and on GPUs enough invocations to hide the latency of their scattered writes.
+fn sort_runs(is_cpu: bool, gaussians: u32) -> u32 {
+    match (is_cpu, gaussians) {
+        (true, ..32_768) => 128,
+        (true, _) => 256,
+        (false, _) => 2048,
+    }
+}

@@ -1,0 +1,88 @@
+//! How many pairs of tile and splat a frame has room for: what earlier frames needed, for nobody reads a count within one.
+
+/// Pairs that there is room for before any frame has shown how many there are: so many a Gaussian, where most are small,
+/// and so many a tile, where they are few and large.
+const USUAL_PER_GAUSSIAN: u32 = 2;
+const USUAL_PER_TILE: u32 = 64;
+/// The most, 2 GiB of lists: frames with more are drawn as quads.
+const MOST: u32 = 1 << 27;
+
+/// Grows with what frames need, and stays.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PairRoom {
+    room: u32,
+    /// Less than [`MOST`] once the device has had no memory for them.
+    most: u32,
+}
+
+impl Default for PairRoom {
+    fn default() -> Self {
+        Self {
+            room: 0,
+            most: MOST,
+        }
+    }
+}
+
+impl PairRoom {
+    /// Room for a scene of `gaussians` in a picture of `tiles`, after a frame that had, or would have had, `needed` pairs.
+    pub(crate) fn make(&mut self, gaussians: u32, tiles: u32, needed: u32) {
+        let usual = gaussians
+            .saturating_mul(USUAL_PER_GAUSSIAN)
+            .saturating_add(tiles.saturating_mul(USUAL_PER_TILE))
+            .min(gaussians.saturating_mul(tiles));
+        let grown = needed.saturating_add(needed / 4);
+        // What would not fit anyway is no reason to take memory.
+        if needed > self.room && grown <= self.most {
+            self.room = grown;
+        }
+        self.room = self.room.max(usual.min(self.most));
+    }
+
+    /// The device has no memory for so many.
+    pub(crate) fn refuse(&mut self) {
+        self.most = self.room / 2;
+        self.room = 0;
+    }
+
+    /// Pairs that there is room for.
+    pub(crate) fn room(&self) -> u32 {
+        self.room
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn room_grows_with_the_need_and_never_beyond_the_most() {
+        let mut pairs = PairRoom::default();
+        pairs.make(10, 20, 0);
+        assert_eq!(pairs.room(), 200, "every splat in every tile");
+        pairs.make(1000, 500, 0);
+        assert_eq!(pairs.room(), 34_000, "the usual");
+        pairs.make(1000, 500, 40_000);
+        assert_eq!(pairs.room(), 50_000, "what was needed, and a quarter");
+        pairs.make(1000, 500, 30_000);
+        assert_eq!(pairs.room(), 50_000, "what there is stays");
+        pairs.make(u32::MAX, u32::MAX, u32::MAX);
+        assert_eq!(pairs.room(), MOST);
+    }
+
+    #[test]
+    fn what_would_not_fit_anyway_takes_no_memory() {
+        let mut pairs = PairRoom::default();
+        pairs.make(1000, 500, MOST);
+        assert_eq!(pairs.room(), 34_000);
+    }
+
+    #[test]
+    fn a_refusal_is_remembered() {
+        let mut pairs = PairRoom::default();
+        pairs.make(1000, 500, 40_000);
+        pairs.refuse();
+        pairs.make(1000, 500, 40_000);
+        assert_eq!(pairs.room(), 25_000);
+    }
+}

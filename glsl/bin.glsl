@@ -20,11 +20,13 @@ struct Outline {
 
 const vec3 NO_LINE = vec3(1.0, 0.0, 0.0);
 
-// Where a weight's z, with these factors of its terms of degree one, two and three, can exceed -TRIM_DEVIATIONS within a
-// box around the splat's centre.
-vec3 hidden_beyond(vec3 plane, vec3 bend, vec4 twist, vec2 box) {
+// Where a weight's z, with these factors of its terms of degree one to four (bend.w is that of dy^4), can exceed
+// -TRIM_DEVIATIONS within a box around the splat's centre.
+vec3 hidden_beyond(vec3 plane, vec4 bend, vec4 twist, vec4 wave, vec2 box) {
     precise float rise = max(bend.x, 0.0) * box.x * box.x + abs(bend.y) * box.x * box.y + max(bend.z, 0.0) * box.y * box.y
-        + dot(abs(twist), vec4(box.x * box.x * box.x, box.x * box.x * box.y, box.x * box.y * box.y, box.y * box.y * box.y));
+        + dot(abs(twist), vec4(box.x * box.x * box.x, box.x * box.x * box.y, box.x * box.y * box.y, box.y * box.y * box.y))
+        + box.x * dot(abs(wave), vec4(box.x * box.x * box.x, box.x * box.x * box.y, box.x * box.y * box.y, box.y * box.y * box.y))
+        + max(bend.w, 0.0) * box.y * box.y * box.y * box.y;
     precise vec3 line = vec3(plane.x + TRIM_DEVIATIONS + rise, plane.yz);
     return line;
 }
@@ -57,7 +59,7 @@ Outline outline(Splat splat) {
     o.line = NO_LINE;
     vec3 plane = vec3(splat.conic_cut.zw, splat.colour_cut.w);
     if (abs(plane.x) < CUT_RANGE) {
-        o.line = hidden_beyond(plane, splat.curvature.xyz, vec4(0.0), vec2(width, o.reach));
+        o.line = hidden_beyond(plane, vec4(splat.curvature.xyz, 0.0), vec4(0.0), vec4(0.0), vec2(width, o.reach));
     }
     o.rows = tiles_between(top, bottom, FRAME.size.y, TILE_HEIGHT);
     return o;

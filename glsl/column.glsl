@@ -47,13 +47,13 @@ void phi_or_side(float z[ROWS], float alpha[ROWS], out float share[ROWS]) {
     }
 }
 
-// One plane with z = at + y (slope + y (second + y third)) in the row y below the splat's centre.
-void polynomial_weights(float at, float slope, float second, float third, float y, float alpha[ROWS],
+// One plane with z = at + y (slope + y (second + y (third + y fourth))) in the row y below the splat's centre.
+void polynomial_weights(float at, float slope, float second, float third, float fourth, float y, float alpha[ROWS],
                         out float weight[ROWS]) {
     float z[ROWS];
     for (uint row = 0u; row < ROWS; row++) {
         float here = y + float(row);
-        z[row] = at + here * (slope + here * (second + here * third));
+        z[row] = at + here * (slope + here * (second + here * (third + here * fourth)));
     }
     phi_or_side(z, alpha, weight);
 }
@@ -61,7 +61,7 @@ void polynomial_weights(float at, float slope, float second, float third, float 
 // Of a splat that carries its curve.
 void carried_weights(vec3 plane, vec3 curvature, vec2 delta, float alpha[ROWS], out float weight[ROWS]) {
     float at = plane.x + delta.x * (plane.y + curvature.x * delta.x);
-    polynomial_weights(at, plane.z + curvature.y * delta.x, curvature.z, 0.0, delta.y, alpha, weight);
+    polynomial_weights(at, plane.z + curvature.y * delta.x, curvature.z, 0.0, 0.0, delta.y, alpha, weight);
 }
 
 // `exact` with the record's planes in the ray form and the camera outside the splat: beam_weight of glsl/weight.glsl.
@@ -123,13 +123,14 @@ void cut_weights(uint cut, vec2 delta, vec2 place, float alpha[ROWS], out float 
     uint flags = uint(cuts.at[base].w);
     if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         vec4 linear = cuts.at[base];
-        vec3 bend = cuts.at[base + 1u].xyz;
+        vec4 bend = cuts.at[base + 1u];
         vec4 twist = cuts.at[base + 2u];
+        vec4 wave = cuts.at[base + CUT_HEADER];
         float x = delta.x;
-        float at = linear.x + x * (linear.y + x * (bend.x + x * twist.x));
-        float slope = linear.z + x * (bend.y + x * twist.y);
-        float second = bend.z + x * twist.z;
-        polynomial_weights(at, slope, second, twist.w, delta.y, alpha, weight);
+        float at = linear.x + x * (linear.y + x * (bend.x + x * (twist.x + x * wave.x)));
+        float slope = linear.z + x * (bend.y + x * (twist.y + x * wave.y));
+        float second = bend.z + x * (twist.z + x * wave.z);
+        polynomial_weights(at, slope, second, twist.w + x * wave.w, bend.w, delta.y, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & (CUT_RAY | CUT_FRONT)) == CUT_RAY) {
         vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
         beam_weights(base, flags >> CUT_COUNT_SHIFT, delta + middle, place + middle, alpha, weight);

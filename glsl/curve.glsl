@@ -1,16 +1,19 @@
 // The usual cut splat's weight without lines of sight: z as a polynomial in the pixel, fitted to the perspective-exact
-// form and kept only where it is as good. Of degree two, the rasteriser carries it; of degree three, a record holds it.
+// form and kept only where it is as good. Of degree two, the rasteriser carries it; of degree four, a record holds it.
 #ifndef RARA_CURVE
 #define RARA_CURVE
 #include "extent.glsl"
 #include "sight.glsl"
 
-// z = at + slope . d + bend . (dx^2, dx dy, dy^2) + twist . (dx^3, dx^2 dy, dx dy^2, dy^3).
+// z = at + slope . d + bend . (dx^2, dx dy, dy^2) + twist . (dx^3, dx^2 dy, dx dy^2, dy^3)
+//     + wave . (dx^4, dx^3 dy, dx^2 dy^2, dx dy^3) + ripple dy^4.
 struct Curve {
     float at;
     vec2 slope;
     vec3 bend;
     vec4 twist;
+    vec4 wave;
+    float ripple;
 };
 
 // Largest error of alpha times weight that a fit may have: a twenty-fifth of a level of 8 bits.
@@ -67,10 +70,11 @@ CurveSamples sampled(CurveSource source) {
 struct Harmonics {
     float mean;
     vec2 first, second, third;
+    float fourth; // of cosine on rings that are not turned, of sine on those that are
 };
 
 Harmonics harmonics(CurveSamples z, uint ring) {
-    Harmonics h = Harmonics(0.0, vec2(0.0), vec2(0.0), vec2(0.0));
+    Harmonics h = Harmonics(0.0, vec2(0.0), vec2(0.0), vec2(0.0), 0.0);
     for (uint step = 0u; step < CURVE_STEPS; step++) {
         vec2 one = curve_direction(ring, step);
         vec2 two = vec2(one.x * one.x - one.y * one.y, 2.0 * one.x * one.y);
@@ -80,13 +84,15 @@ Harmonics harmonics(CurveSamples z, uint ring) {
         h.first += 2.0 * here * one;
         h.second += 2.0 * here * two;
         h.third += 2.0 * here * three;
+        h.fourth += (step & 1u) == 0u ? here : -here;
     }
     return h;
 }
 
 // Both fits in deviations along the axes, from the rings at 1 and 2. Each harmonic's lowest powers of the radius are
-// fitted; the factors balance what the next power leaves on the two rings, weighted by alpha there, 0.61 and 0.14.
-void fitted(CurveSamples z, out Curve square, out Curve cube) {
+// fitted; the factors balance what the next power leaves on the two rings, weighted by alpha there, 0.61 and 0.14. Where
+// the degree allows a harmonic two powers, they pass through both rings.
+void fitted(CurveSamples z, out Curve square, out Curve quartic) {
     Harmonics one = harmonics(z, 0u);
     Harmonics two = harmonics(z, 1u);
     float mean = 0.53 * (one.mean - z.centre) + 0.1175 * (two.mean - z.centre); // r^2
@@ -95,16 +101,30 @@ void fitted(CurveSamples z, out Curve square, out Curve cube) {
     square.slope = 0.693 * one.first + 0.1535 * two.first; // r
     square.bend = vec3(mean + second.x, 2.0 * second.y, mean - second.x);
     square.twist = vec4(0.0);
+    square.wave = vec4(0.0);
+    square.ripple = 0.0;
     vec2 first = (two.first - 2.0 * one.first) / 6.0; // r^3
     vec2 third = 0.36 * one.third + 0.08 * two.third; // r^3
-    cube = square;
-    cube.slope = one.first - first;
-    cube.twist = vec4(first.x + third.x, first.y + 3.0 * third.y, first.x - 3.0 * third.x, first.y - third.y);
+    float mean_4 = ((two.mean - z.centre) - 4.0 * (one.mean - z.centre)) / 12.0; // r^4
+    vec2 second_4 = (two.second - 4.0 * one.second) / 12.0; // r^4
+    vec2 fourth = vec2(one.fourth, two.fourth / 16.0); // r^4
+    float mean_2 = one.mean - z.centre - mean_4;
+    vec2 second_2 = one.second - second_4;
+    quartic.at = z.centre;
+    quartic.slope = one.first - first;
+    quartic.bend = vec3(mean_2 + second_2.x, 2.0 * second_2.y, mean_2 - second_2.x);
+    quartic.twist = vec4(first.x + third.x, first.y + 3.0 * third.y, first.x - 3.0 * third.x, first.y - third.y);
+    quartic.wave = vec4(mean_4 + second_4.x + fourth.x, 2.0 * second_4.y + 4.0 * fourth.y, 2.0 * mean_4 - 6.0 * fourth.x,
+                        2.0 * second_4.y - 4.0 * fourth.y);
+    quartic.ripple = mean_4 - second_4.x + fourth.x;
 }
 
 float curve_z(Curve c, vec2 d) {
-    return c.at + d.x * (c.slope.x + d.x * (c.bend.x + d.x * c.twist.x + d.y * c.twist.y) + d.y * c.bend.y)
-        + d.y * (c.slope.y + d.y * (c.bend.z + d.x * c.twist.z + d.y * c.twist.w));
+    float at = c.at + d.x * (c.slope.x + d.x * (c.bend.x + d.x * (c.twist.x + d.x * c.wave.x)));
+    float slope = c.slope.y + d.x * (c.bend.y + d.x * (c.twist.y + d.x * c.wave.y));
+    float second = c.bend.z + d.x * (c.twist.z + d.x * c.wave.z);
+    float third = c.twist.w + d.x * c.wave.w;
+    return at + d.y * (slope + d.y * (second + d.y * (third + d.y * c.ripple)));
 }
 
 // Whether no pixel's alpha differs by more than CURVE_TOLERANCE from the exact form's.
@@ -120,7 +140,8 @@ bool is_good(Curve curve, CurveSamples z, float opacity) {
             vec2 gradient = curve.slope
                 + vec2(2.0 * curve.bend.x * d.x + curve.bend.y * d.y, 2.0 * curve.bend.z * d.y + curve.bend.y * d.x)
                 + vec2(3.0 * t.x * d.x * d.x + 2.0 * t.y * d.x * d.y + t.z * d.y * d.y,
-                       t.y * d.x * d.x + 2.0 * t.z * d.x * d.y + 3.0 * t.w * d.y * d.y);
+                       t.y * d.x * d.x + 2.0 * t.z * d.x * d.y + 3.0 * t.w * d.y * d.y)
+                + r * r * r * vec2(4.0 * largest(curve.wave.xyz), 4.0 * max(abs(curve.wave.w), abs(curve.ripple)));
             float exact = z.at[ring * CURVE_STEPS + step];
             float fit = curve_z(curve, d);
             if (!(min(abs(exact), abs(fit)) >= 5.0 + length(gradient) && exact * fit >= 0.0)) {
@@ -139,6 +160,12 @@ vec4 raised(vec3 bend, vec2 slope) {
     return vec4(bend * slope.x, 0.0) + vec4(0.0, bend * slope.y);
 }
 
+// The product of two forms of degree two: the last factor apart.
+vec4 squared(vec3 a, vec3 b, out float last) {
+    last = a.z * b.z;
+    return vec4(a.x * b.x, a.x * b.y + a.y * b.x, a.x * b.z + a.y * b.y + a.z * b.x, a.y * b.z + a.z * b.y);
+}
+
 // A curve in deviations along the axes as one in pixels.
 Curve in_pixels(Curve c, CurveSource source) {
     // s and t are the components of the pixel's offset along the axes.
@@ -153,6 +180,17 @@ Curve in_pixels(Curve c, CurveSource source) {
     pixels.bend = c.bend.x * ss + c.bend.y * st + c.bend.z * tt;
     pixels.twist = c.twist.x * raised(ss, s) + c.twist.y * raised(ss, t) + c.twist.z * raised(tt, s)
         + c.twist.w * raised(tt, t);
+    float last;
+    pixels.wave = c.wave.x * squared(ss, ss, last);
+    pixels.ripple = c.wave.x * last;
+    pixels.wave += c.wave.y * squared(ss, st, last);
+    pixels.ripple += c.wave.y * last;
+    pixels.wave += c.wave.z * squared(ss, tt, last);
+    pixels.ripple += c.wave.z * last;
+    pixels.wave += c.wave.w * squared(st, tt, last);
+    pixels.ripple += c.wave.w * last;
+    pixels.wave += c.ripple * squared(tt, tt, last);
+    pixels.ripple += c.ripple * last;
     return pixels;
 }
 

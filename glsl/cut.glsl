@@ -5,8 +5,8 @@
 //   2      e = m3 / Z, how the gradients change with the pixel, times scale; low-pass times scale^2
 //   3...   a plane each. Affine: z at the centre, dz/dx, dz/dy, and 1 where the far side is kept, -1 the near side.
 //          Ray: normal in unit space, and the centre's distance, both divided by the normal's largest component.
-//   With CUT_CURVE 0 holds z at the centre and its slopes, 1 the factors of dx^2, dx dy and dy^2, 2 those of dx^3, dx^2 dy,
-//   dx dy^2 and dy^3.
+//   With CUT_CURVE 0 holds z at the centre and its slopes, 1 the factors of dx^2, dx dy, dy^2 and dy^4, 2 those of dx^3,
+//   dx^2 dy, dx dy^2 and dy^3, 3 those of dx^4, dx^3 dy, dx^2 dy^2 and dx dy^3.
 //   last   of one plane without CUT_RAY: its curvature, the factors of dx^2, dx dy and dy^2 in z
 //          with CUT_FRONT: the plane through the eye across the view axis, in the same form
 #ifndef RARA_CUT
@@ -17,7 +17,7 @@ const uint CUT_HEADER = 3u;
 const uint CUT_RAY = 1u;
 // The splat reaches behind the eye.
 const uint CUT_FRONT = 2u;
-// The record is one plane's z as a polynomial of degree three.
+// The record is one plane's z as a polynomial of degree four.
 const uint CUT_CURVE = 4u;
 const uint CUT_COUNT_SHIFT = 8u;
 

@@ -102,8 +102,8 @@ void main() {
         source.second = axes.second;
         CurveSamples samples = sampled(source);
         Curve square;
-        Curve cube;
-        fitted(samples, square, cube);
+        Curve quartic;
+        fitted(samples, square, quartic);
         float opacity = gaussian.position_opacity.w;
         if (is_good(square, samples, opacity)) {
             Curve curve = in_pixels(square, source);
@@ -112,11 +112,12 @@ void main() {
             cuts.at[at] = vec4(curve.bend, 0.0);
             return;
         }
-        if (is_good(cube, samples, opacity)) {
-            Curve curve = in_pixels(cube, source);
+        if (is_good(quartic, samples, opacity)) {
+            Curve curve = in_pixels(quartic, source);
             cuts.at[base] = vec4(curve.at, curve.slope, float(flags | CUT_CURVE));
-            cuts.at[base + 1u] = vec4(curve.bend, 0.0);
+            cuts.at[base + 1u] = vec4(curve.bend, curve.ripple);
             cuts.at[base + 2u] = curve.twist;
+            cuts.at[base + CUT_HEADER] = curve.wave;
             return;
         }
     }

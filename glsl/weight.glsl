@@ -152,10 +152,15 @@ float cut_weight(uint cut, vec2 delta, vec2 place) {
     }
     if ((flags & CUT_CURVE) != 0u) {
         vec4 linear = cuts.at[base];
-        vec3 bend = cuts.at[base + 1u].xyz;
+        vec4 bend = cuts.at[base + 1u];
         vec4 twist = cuts.at[base + 2u];
-        return phi(linear.x + delta.x * (linear.y + delta.x * (bend.x + delta.x * twist.x + delta.y * twist.y) + delta.y * bend.y)
-            + delta.y * (linear.z + delta.y * (bend.z + delta.x * twist.z + delta.y * twist.w)));
+        vec4 wave = cuts.at[base + CUT_HEADER];
+        float x = delta.x;
+        float at = linear.x + x * (linear.y + x * (bend.x + x * (twist.x + x * wave.x)));
+        float slope = linear.z + x * (bend.y + x * (twist.y + x * wave.y));
+        float second = bend.z + x * (twist.z + x * wave.z);
+        float third = twist.w + x * wave.w;
+        return phi(at + delta.y * (slope + delta.y * (second + delta.y * (third + delta.y * bend.w))));
     }
     return affine_weight(base + CUT_HEADER, count, delta);
 }

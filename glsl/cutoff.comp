@@ -53,7 +53,7 @@ void main() {
     bool front = f.view.z < reach * length(f.m3);
     bool ray = FRAME.mode == MODE_RARA || FRAME.form == FORM_BEAM;
     if (FRAME.mode == MODE_EXACT && FRAME.form == FORM_AUTO) {
-        ray = front || f.clamped || gaussian.scale.w > FRAME.beam_switch * f.view.z;
+        ray = front || f.clamped || largest(gaussian.scale.xyz) > FRAME.beam_switch * f.view.z;
     }
     front = front && ray;
 
@@ -63,7 +63,7 @@ void main() {
     vec4 form;
     for (uint plane = 0u; plane < FRAME.plane_count; plane++) {
         float distance = plane_distance(plane, position);
-        vec3 normal = unit_normal(plane, f);
+        vec3 normal = unit_normal(plane, f.world_factor);
         // A plane that keeps the whole splat changes no intersection, one that drops it no union.
         if (plane_side(distance, normal, reach) != kept) {
             form = ray_plane(normal, distance);

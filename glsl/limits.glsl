@@ -21,8 +21,15 @@ const uint MAX_CLIP_PLANES = 32u;
 const uint MAX_SH_COEFFICIENTS = 16u;
 // Opacity below which a splat is invisible everywhere, and more of a cut splat is never computed: 1/255.
 const float ALPHA_MIN = 1.0 / ALPHA_MIN_INVERSE;
-// Gaussians a workgroup of classify and compact handles; eight words of its bit masks.
-const uint GROUP_SIZE = 256u;
+// Gaussians of a block, one workgroup of clip, classify and compact; eight words of its bit masks.
+const uint BLOCK_SIZE = 256u;
+// Blocks that a workgroup decides about at a time.
+const uint BLOCK_GROUP_SIZE = 64u;
+// Opacity from which a splat's bounding box spans a pixel whatever the projection: its contour of 1/255 is then at 0.92
+// deviations or more, and the low-pass alone makes them 0.55 px.
+const float OPACITY_SPANNING = 0.006;
+// Standard deviation on the screen up to which single precision surely finds a splat's conic, px.
+const float DRAWABLE_DEVIATION = 1e6;
 // Survivors a workgroup of project and cutoff handles.
 const uint SURVIVOR_GROUP_SIZE = 64u;
 // Splats a mesh workgroup emits: 4 vertices and 2 triangles each, half of the least that Vulkan guarantees.

@@ -16,8 +16,8 @@ float plane_distance(uint plane, vec3 position) {
 }
 
 // The normal in the Gaussian's unit space; its length is the standard deviation along the normal.
-vec3 unit_normal(uint plane, Footprint f) {
-    return FRAME.plane_high[plane].xyz * f.world_factor;
+vec3 unit_normal(uint plane, mat3 world_factor) {
+    return FRAME.plane_high[plane].xyz * world_factor;
 }
 
 // How far the band reaches, in standard deviations. rara also traces its own ellipsoid.
@@ -38,12 +38,12 @@ uint plane_side(float distance, vec3 normal, float reach) {
 }
 
 // All planes together.
-uint clip_side(Footprint f, vec3 position, float extent) {
+uint clip_side(mat3 world_factor, vec3 position, float extent) {
     uint decided = FRAME.op == OP_AND ? SIDE_INVISIBLE : SIDE_VISIBLE;
     uint side = FRAME.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
     float reach = band(extent);
     for (uint plane = 0u; plane < FRAME.plane_count; plane++) {
-        uint one = plane_side(plane_distance(plane, position), unit_normal(plane, f), reach);
+        uint one = plane_side(plane_distance(plane, position), unit_normal(plane, world_factor), reach);
         if (one == decided) {
             return decided;
         }

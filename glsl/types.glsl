@@ -26,7 +26,7 @@ struct FrameData {
     uint trace_all; // 1: every Gaussian in view is cutoff
     uint cut_stride; // vec4s of a cutoff record
     uint sort_runs; // invocations of the sort
-    uint group_count; // workgroups of classify
+    uint block_count; // blocks of Gaussians
     uint form; // FORM_*
     uint precise_view; // 1: positions in the camera's frame are computed in two floats
     uint key_near; // bits of the nearest depth a centre can have
@@ -44,8 +44,15 @@ struct FrameData {
 // A Gaussian without its colour.
 struct Gaussian {
     vec4 position_opacity; // centre, world units; opacity 0 to 1
-    vec4 scale; // standard deviations, world units; w the largest of them
+    vec4 scale; // standard deviations, world units; w the bits of its number in the file
     vec4 rotation; // unit quaternion x y z w
+};
+
+// What the Gaussians of a block lie within; a block is BLOCK_SIZE neighbours on a space-filling curve. The reach is the
+// farthest that one's contour of 1/255 can lie from its centre, negative where none has such a contour.
+struct Block {
+    vec4 low_reach; // least coordinates of the centres; reach: world units
+    vec4 high_sigma; // greatest ones; largest standard deviation, negative where some may miss all pixels though in view
 };
 
 // A survivor on the screen: what the rasteriser needs.
@@ -64,6 +71,9 @@ struct FrameCounts {
     uint cutoff; // in view, cut
     uint invisible; // in view, wholly clipped away
     uint culled; // outside the view or too faint
+    uvec4 clip_groups; // indirect dispatch over the blocks that the clip may cut; w: how many
+    uvec4 classify_groups; // indirect dispatch over the blocks that neither view nor clip settles; w: how many
+    uvec4 compact_groups; // indirect dispatch over the blocks with survivors; w: how many
     uvec4 project_groups; // indirect dispatch over the survivors
     uvec4 cutoff_groups; // indirect dispatch over the cutoff Gaussians
     uvec4 sort_groups; // indirect dispatch of the sort's runs

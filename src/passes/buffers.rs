@@ -6,7 +6,7 @@ use crate::gpu::{Buffer, BufferDesc, Device, Location};
 use crate::limits;
 use crate::passes::plan::Plan;
 use crate::settings::Raster;
-use crate::types::{FrameCounts, FrameData, Splat};
+use crate::types::{self, FrameCounts, FrameData, Splat};
 
 /// Everything the stages hand to each other. No stage reads a count on the CPU, so each array but the
 /// tiles' lists has room for every Gaussian of the scene; drivers back untouched memory lazily.
@@ -14,8 +14,13 @@ use crate::types::{FrameCounts, FrameData, Splat};
 pub(crate) struct Buffers {
     pub(crate) frame: Buffer,
     pub(crate) masks: Buffer,
-    pub(crate) group_counts: Buffer,
-    pub(crate) group_offsets: Buffer,
+    /// The clip's sides and masks of the blocks; empty without a clip.
+    pub(crate) clip_sides: Buffer,
+    pub(crate) clip_masks: Buffer,
+    pub(crate) block_sides: Buffer,
+    pub(crate) block_list: Buffer,
+    pub(crate) block_counts: Buffer,
+    pub(crate) block_offsets: Buffer,
     pub(crate) counts: Buffer,
     pub(crate) survivors: Buffer,
     pub(crate) cutoffs: Buffer,
@@ -44,6 +49,7 @@ pub(crate) struct TileBuffers {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Sizes {
     gaussians: u64,
+    clip_blocks: u64,
     cut_bytes: u64,
     sort_runs: u64,
     masks: u64,
@@ -69,6 +75,11 @@ impl Sizes {
         };
         Self {
             gaussians,
+            clip_blocks: if plan.mode == types::MODE_NONE {
+                0
+            } else {
+                plan.data.block_count.into()
+            },
             cut_bytes,
             sort_runs: u64::from(plan.sort_runs),
             masks: when_tiled(gaussians),
@@ -91,13 +102,18 @@ impl Buffers {
             })
         };
         let n = sizes.gaussians;
-        let groups = n.div_ceil(u64::from(limits::GROUP_SIZE));
+        let blocks = n.div_ceil(u64::from(limits::BLOCK_SIZE));
+        let mask_bytes = u64::from(limits::BLOCK_SIZE) / 4; // two bits a Gaussian
         let digits = 1_u64 << limits::SORT_BITS;
         Ok(Self {
             frame: gpu("frame", size_of::<FrameData>() as u64)?,
-            masks: gpu("masks", groups * u64::from(limits::GROUP_SIZE) / 4)?,
-            group_counts: gpu("group_counts", groups * 16)?,
-            group_offsets: gpu("group_offsets", groups * 8)?,
+            masks: gpu("masks", blocks * mask_bytes)?,
+            clip_sides: gpu("clip_sides", sizes.clip_blocks * 4)?,
+            clip_masks: gpu("clip_masks", sizes.clip_blocks * mask_bytes)?,
+            block_sides: gpu("block_sides", blocks * 4)?,
+            block_list: gpu("block_list", blocks * 4)?,
+            block_counts: gpu("block_counts", blocks * 16)?,
+            block_offsets: gpu("block_offsets", blocks * 8)?,
             counts: gpu("counts", size_of::<FrameCounts>() as u64)?,
             survivors: gpu("survivors", n * 8)?,
             cutoffs: gpu("cutoffs", n * 4)?,
@@ -131,6 +147,7 @@ impl Buffers {
     pub(crate) fn fit(&self, plan: &Plan) -> bool {
         let (have, need) = (self.sized_for, Sizes::of(plan));
         have.gaussians == need.gaussians
+            && have.clip_blocks >= need.clip_blocks
             && have.cut_bytes >= need.cut_bytes
             && have.sort_runs == need.sort_runs
             && have.masks >= need.masks

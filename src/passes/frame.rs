@@ -17,15 +17,21 @@ pub(crate) fn record(
     plan: &Plan,
     readback: &Buffer,
 ) {
-    let groups = plan.data.group_count;
     recorder.update(&b.frame, 0, bytemuck::bytes_of(&plan.data));
 
-    // Which Gaussians are in view, and on which side of the clip.
-    recorder.pass("classify", |r| {
-        stages.classify(plan).record(r, scene, b, groups)
+    let list = &stages.block_list;
+    // On which side of the clip each block of Gaussians lies, and each Gaussian of those that it cuts.
+    if let Some(clip) = stages.clip.as_ref().filter(|_| plan.clip) {
+        recorder.pass("clip", |r| clip.record(r, list, scene, b, plan));
+    }
+    // Which blocks are in view.
+    recorder.pass("blocks", |r| {
+        stages.blocks(plan).record(r, list, scene, b, plan)
     });
+    // Which Gaussians of those that are so in part.
+    recorder.pass("classify", |r| stages.classify(plan).record(r, scene, b));
     // Their numbers, in order, and the sizes of all that follows.
-    recorder.pass("compact", |r| stages.compact.record(r, b, groups));
+    recorder.pass("compact", |r| stages.compact.record(r, b));
     // What the fragment stage needs of the cut ones.
     if let Some(cutoff) = stages.cutoff.as_ref().filter(|_| plan.cutoff) {
         recorder.pass("cutoff", |r| cutoff.record(r, scene, b));
@@ -34,7 +40,7 @@ pub(crate) fn record(
     recorder.pass("project", |r| stages.project(plan).record(r, scene, b));
     // Their order.
     if plan.sort_passes > 0 {
-        recorder.pass("sort", |r| stages.sort.record(r, b, plan.sort_passes));
+        recorder.pass("sort", |r| stages.sort.record(r, scene, b, plan));
     }
 
     let tiles = stages.bin.as_ref().zip(b.tiles.as_ref());

@@ -1,7 +1,10 @@
 //! The stages of the frame, one file each: buffers in, buffers out. [`frame`] lists them in order.
 
+mod block_order;
+mod blocks;
 mod buffers;
 mod classify;
+mod clip;
 mod compact;
 mod context;
 mod cutoff;

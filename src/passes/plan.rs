@@ -18,6 +18,8 @@ pub(crate) struct Plan {
     pub(crate) gaussians: u32,
     /// The mode, reduced to `MODE_NONE` where there is nothing to clip with.
     pub(crate) mode: u32,
+    /// Whether there is a clip whose classes have to be found: they are kept while the clip stays.
+    pub(crate) clip: bool,
     /// Whether cutoff Gaussians can exist.
     pub(crate) cutoff: bool,
     /// vec4s of a cutoff record.
@@ -153,7 +155,7 @@ impl Plan {
         data.tile_columns = camera.width.div_ceil(limits::TILE_WIDTH);
         data.tile_count = data.tile_columns * camera.height.div_ceil(limits::TILE_HEIGHT);
         data.pair_capacity = scene.pair_capacity;
-        data.group_count = scene.gaussians.div_ceil(limits::GROUP_SIZE);
+        data.block_count = scene.gaussians.div_ceil(limits::BLOCK_SIZE);
         for (index, plane) in planes.iter().enumerate() {
             let (high, low) = two_float(plane.normal());
             // Farther away than single precision reaches: beyond every splat.
@@ -166,6 +168,7 @@ impl Plan {
         Ok(Self {
             gaussians: scene.gaussians,
             mode,
+            clip: mode != types::MODE_NONE,
             cutoff,
             cut_stride,
             sh_format: scene.sh_format,
@@ -204,15 +207,19 @@ impl Plan {
 
     /// The stages that this frame does not need.
     pub(crate) fn skipped(&self) -> Vec<&'static str> {
-        match (self.gaussians, self.cutoff) {
-            (0, _) => vec![
-                "classify", "compact", "cutoff", "project", "sort", "bin", "tiles", "splat",
-            ],
-            (1, true) => vec!["sort"],
-            (1, false) => vec!["cutoff", "sort"],
-            (_, true) => vec![],
-            (_, false) => vec!["cutoff"],
+        if self.gaussians == 0 {
+            return vec![
+                "clip", "blocks", "classify", "compact", "cutoff", "project", "sort", "bin",
+                "tiles", "splat",
+            ];
         }
+        let stages = [
+            ("clip", self.clip),
+            ("cutoff", self.cutoff),
+            ("sort", self.gaussians > 1),
+        ];
+        let skipped = stages.iter().filter(|(_, needed)| !needed);
+        skipped.map(|(name, _)| *name).collect()
     }
 }
 

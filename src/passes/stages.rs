@@ -6,7 +6,9 @@ use std::collections::hash_map::Entry;
 use ash::vk;
 
 use crate::error::Result;
+use crate::passes::blocks::{BlockList, Blocks};
 use crate::passes::classify::Classify;
+use crate::passes::clip::Clip;
 use crate::passes::compact::Compact;
 use crate::passes::context::Context;
 use crate::passes::cutoff::Cutoff;
@@ -21,6 +23,9 @@ use crate::types;
 /// All stages for one way of binding. Variants that no frame has asked for do not exist.
 #[derive(Debug)]
 pub(crate) struct Stages {
+    pub(crate) clip: Option<Clip>,
+    pub(crate) block_list: BlockList,
+    blocks: [Option<Blocks>; 2],
     classify: [Option<Classify>; 2],
     pub(crate) compact: Compact,
     pub(crate) cutoff: Option<Cutoff>,
@@ -35,6 +40,9 @@ pub(crate) struct Stages {
 impl Stages {
     pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
         Ok(Self {
+            clip: None,
+            block_list: BlockList::new(context)?,
+            blocks: [None, None],
             classify: [None, None],
             compact: Compact::new(context)?,
             cutoff: None,
@@ -50,6 +58,13 @@ impl Stages {
     /// Creates what a plan needs and is not there yet.
     pub(crate) fn ensure(&mut self, context: &Context<'_>, plan: &Plan) -> Result<()> {
         let clip = plan.mode != types::MODE_NONE;
+        if clip && self.clip.is_none() {
+            self.clip = Some(Clip::new(context)?);
+        }
+        let blocks = &mut self.blocks[usize::from(clip)];
+        if blocks.is_none() {
+            *blocks = Some(Blocks::new(context, clip)?);
+        }
         let classify = &mut self.classify[usize::from(clip)];
         if classify.is_none() {
             *classify = Some(Classify::new(context, clip)?);
@@ -82,6 +97,13 @@ impl Stages {
             missing.insert(Composite::new(context)?);
         }
         Ok(())
+    }
+
+    /// The blocks' stage for a plan, once [`ensure`](Self::ensure) has seen it.
+    pub(crate) fn blocks(&self, plan: &Plan) -> &Blocks {
+        self.blocks[usize::from(plan.mode != types::MODE_NONE)]
+            .as_ref()
+            .expect("ensure() creates it")
     }
 
     /// The classification for a plan, once [`ensure`](Self::ensure) has seen it.

@@ -18,11 +18,11 @@ vec3 block_half(Block block) {
     return 0.5 * block.high_sigma.xyz - 0.5 * block.low_reach.xyz + 1e-6 * (abs(block.low_reach.xyz) + abs(block.high_sigma.xyz));
 }
 
-uint block_plane_side(uint plane, Block block) {
+uint block_plane_side(uint plane, Block block, float widening) {
     if (FRAME.trace_all != 0u && FRAME.mode != MODE_HARD) {
         return SIDE_CUTOFF;
     }
-    float reach = max(block.low_reach.w, 0.0);
+    float reach = widening * max(block.low_reach.w, 0.0);
     float traced = FRAME.sigma * abs(block.high_sigma.w);
     float support = FRAME.mode == MODE_HARD ? 0.0 : FRAME.mode == MODE_RARA ? max(reach, traced) : reach;
     float distance = plane_distance(plane, block_middle(block));
@@ -30,12 +30,12 @@ uint block_plane_side(uint plane, Block block) {
     return distance > margin ? SIDE_VISIBLE : distance < -margin ? SIDE_INVISIBLE : SIDE_CUTOFF;
 }
 
-// All planes together, as clip_side does for one Gaussian.
-uint block_clip_side(Block block) {
+// All planes together, as clip_side does for one Gaussian, and with what perspective adds to the band at most.
+uint block_clip_side(Block block, float widening) {
     uint decided = FRAME.op == OP_AND ? SIDE_INVISIBLE : SIDE_VISIBLE;
     uint side = FRAME.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
     for (uint plane = 0u; plane < FRAME.plane_count; plane++) {
-        uint one = block_plane_side(plane, block);
+        uint one = block_plane_side(plane, block, widening);
         if (one == decided) {
             return decided;
         }
@@ -94,6 +94,20 @@ uint block_view_side(Block block) {
     bool drawable = sigma >= 0.0 && nearest > 1.0001 * NEAR_Z
         && 4.0 * sigma * max(focal.x, focal.y) < DRAWABLE_DEVIATION * nearest;
     return x == SIDE_VISIBLE && y == SIDE_VISIBLE && drawable ? SIDE_VISIBLE : SIDE_CUTOFF;
+}
+
+// The clip's side of a block that is in view as a whole, so that no slope is clamped. Without large splats it does not
+// depend on the camera, and is `side`.
+uint block_side_in_view(Block block, uint side) {
+    float sigma = abs(block.high_sigma.w);
+    vec2 depth = range_over(eye_relative(block_middle(block)), block_half(block), vec3(0.0), 0.0, 1.0);
+    float nearest = depth.x - depth.y;
+    bool beam = FRAME.form == FORM_BEAM || (FRAME.form == FORM_AUTO && sigma > FRAME.beam_switch * nearest);
+    if (FRAME.mode != MODE_EXACT || !beam) {
+        return side;
+    }
+    float rest = 1.0 - 1.001 * block.low_reach.w / nearest;
+    return rest > WIDENING_REST ? block_clip_side(block, 1.0 / rest) : SIDE_CUTOFF;
 }
 
 // Gaussians of a block: all but the last are full.

@@ -17,7 +17,7 @@ void main() {
     }
     uint side = block_view_side(blocks.at[block]);
     if (CLIP && side == SIDE_VISIBLE) {
-        side = clip_sides.at[block];
+        side = block_side_in_view(blocks.at[block], clip_sides.at[block]);
     }
     block_sides.at[block] = side;
 }

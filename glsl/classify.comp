@@ -59,7 +59,14 @@ uint classify(uint block, uint local) {
     if (!drawable || !covers_a_pixel(f.centre, box_extent(f, extent))) {
         return SIDE_CULLED;
     }
-    return CLIP ? clip_class(block, local) : SIDE_VISIBLE;
+    if (!CLIP) {
+        return SIDE_VISIBLE;
+    }
+    float sigma = largest(gaussian.scale.xyz);
+    if (FRAME.mode == MODE_EXACT && is_beam(f, sigma)) {
+        return clip_side(f.world_factor, gaussian.position_opacity.xyz, band_in_view(f, sigma, extent));
+    }
+    return clip_class(block, local);
 }
 
 void main() {

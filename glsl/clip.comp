@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One workgroup a block that the clip may cut, one invocation a Gaussian: the paper's three classes (section 3.2), whatever
-// the camera sees of it. A block's masks are eight words of what is visible and eight of what is cut.
+// the camera sees of it. (What perspective adds to the band of large splats, classify does.) A block's masks are eight words of what is visible and eight of what is cut.
 #include "side.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
@@ -27,7 +27,7 @@ void main() {
     if (is_block && index < FRAME.gaussian_count) {
         Gaussian gaussian = gaussians.at[index];
         uint side = clip_side(world_factor(gaussian), gaussian.position_opacity.xyz,
-                              opacity_extent(gaussian.position_opacity.w));
+                              band(opacity_extent(gaussian.position_opacity.w)));
         if (side >= SIDE_VISIBLE) {
             // A union does not depend on the order of atomics.
             atomicOr(masks[(side == SIDE_CUTOFF ? WORDS : 0u) + (local >> 5)], 1u << (local & 31u));

@@ -13,6 +13,8 @@ const float ALPHA_MAX = 0.99;
 const float ALPHA_MIN_INVERSE = 255.0;
 // A cut splat is weighted by the perspective-exact form where sigma_max / Z exceeds this, by the affine form below.
 const float BEAM_SWITCH = 0.005;
+// What perspective may leave of a splat's depth, as a share, before its band has no bound and every plane may cut it.
+const float WIDENING_REST = 0.05;
 // Share of a splat in front of the eye below which single precision cannot divide by it; the eye is then ignored.
 const float FRONT_MIN = 1e-4;
 // Most half-spaces in a clip. Raising it lengthens the frame's uniform block and the cutoff records of such clips.

@@ -81,8 +81,8 @@ void main() {
             uint base = cut * FRAME.cut_stride;
             vec4 linear = cuts.at[base];
             if ((uint(linear.w) & CUT_CURVE) != 0u) {
-                o.line = hidden_beyond(linear.xyz, cuts.at[base + 1u], cuts.at[base + 2u], cuts.at[base + CUT_HEADER],
-                                       box_extent(f, extent));
+                o.line = hidden_beyond_curve(linear, cuts.at[base + 1u], cuts.at[base + 2u], cuts.at[base + CUT_HEADER], conic,
+                                             1.001 * extent);
             }
         }
         tile_masks.at[survivor] = tile_mask(o);

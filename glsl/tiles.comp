@@ -59,7 +59,8 @@ void main() {
             if (CLIP_MODE == MODE_EXACT && plane.x > -CUT_RANGE) {
                 carried_weights(plane, splats.at[number].curvature.xyz, delta, alpha, weight);
             } else {
-                cut_weights(uint(plane.y) | uint(plane.z) << 16, delta, place, alpha, weight);
+                vec2 uv = vec2(u, v + conic_cut.x * delta.y);
+                cut_weights(uint(plane.y) | uint(plane.z) << 16, delta, uv, conic_cut.x, place, alpha, weight);
             }
             bool whole = true;
             for (uint row = 0u; row < ROWS; row++) {

@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, BufferDesc, Device, Location};
 use crate::passes::{block_order, sh_storage};
 use crate::precision::ShFormat;
 use crate::scene::Gaussians;
-use crate::types::{Gaussian};
+use crate::types::Gaussian;
 
 /// A scene's Gaussians in device memory.
 #[derive(Debug)]

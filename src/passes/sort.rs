@@ -53,7 +53,12 @@ impl Sort {
                 &b.survivors,
                 &scene.gaussians,
             ];
-            recorder.dispatch(&self.ties, &ties, &[0, 0], Groups::Indirect(&b.counts, groups));
+            recorder.dispatch(
+                &self.ties,
+                &ties,
+                &[0, 0],
+                Groups::Indirect(&b.counts, groups),
+            );
         }
     }
 

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One invocation a survivor: conic, quad and colour for the rasteriser, and the key that orders it.
-#include "footprint.glsl"
+#include "gaussian.glsl"
 #include "spherical_harmonics.glsl"
 #include "cut.glsl"
 #include "bin.glsl"
@@ -11,7 +11,6 @@ layout(constant_id = 0) const bool CUT = false;
 // Whether tiles are wanted of it.
 layout(constant_id = 2) const bool TILES = false;
 
-BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uint, sh)
 BUFFER(readonly, 3, uvec2, survivors)
 BUFFER(readonly, 4, FrameCounts, counts)
@@ -40,13 +39,24 @@ Carried carried_weight(uint cut) {
 vec3 colour(uint index, vec3 direction) {
     float basis[MAX_SH_COEFFICIENTS];
     sh_basis(direction, FRAME.sh_degree, basis);
-    uint base = index * sh_words(FRAME.sh_coefficients * 3u);
-    float unit = sh_unit(base);
-    uint used = (FRAME.sh_degree + 1u) * (FRAME.sh_degree + 1u);
-    vec3 sum = vec3(0.5);
-    for (uint i = 0u; i < used; i++) {
-        uint k = 3u * i;
-        sum += basis[i] * vec3(sh_number(base, unit, k), sh_number(base, unit, k + 1u), sh_number(base, unit, k + 2u));
+    uint base = index * sh_words(FRAME.sh_coefficients);
+    vec3 sum = 0.5 + basis[0] * sh_constant(base);
+    // A loop a degree: the compiler unrolls what has a fixed length.
+    if (FRAME.sh_degree > 0u) {
+        mat3 units = sh_units(base);
+        for (uint i = 1u; i < 4u; i++) {
+            sum += basis[i] * sh_coefficient(base, units[0], i);
+        }
+        if (FRAME.sh_degree > 1u) {
+            for (uint i = 4u; i < 9u; i++) {
+                sum += basis[i] * sh_coefficient(base, units[1], i);
+            }
+        }
+        if (FRAME.sh_degree > 2u) {
+            for (uint i = 9u; i < 16u; i++) {
+                sum += basis[i] * sh_coefficient(base, units[2], i);
+            }
+        }
     }
     // Finite, so that a share of nothing stays nothing.
     return clamp(sum, vec3(0.0), vec3(3e38));
@@ -58,7 +68,7 @@ void main() {
         return;
     }
     uint index = survivors.at[survivor].x;
-    Gaussian gaussian = gaussians.at[index];
+    Gaussian gaussian = load_gaussian(index);
     Footprint f = footprint(gaussian);
     float opacity = gaussian.position_opacity.w;
     float extent = opacity_extent(opacity);

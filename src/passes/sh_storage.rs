@@ -58,8 +58,8 @@ fn pack_words(numbers: &[f32], out: &mut Vec<u32>) {
         let (stored, scale) = scale(largest(numbers), bits);
         out[scales_at] |= stored << (11 * degree);
         out.extend(numbers.chunks_exact(3).map(|rgb| {
-            let [r, g, b] = [0, 1, 2].map(|c| share(rgb[c], scale, BITS[c]));
-            r | g << 11 | b << 22
+            let channel = |c: usize| share(rgb[c], scale, BITS[c]);
+            channel(0) | channel(1) << 11 | channel(2) << 22
         }));
         rest = higher;
     }
@@ -80,12 +80,16 @@ fn scale(value: f32, bits: u32) -> (u32, f32) {
 /// `value` as a share of `scale`, a signed integer of so many bits whose largest is the scale.
 fn share(value: f32, scale: f32, bits: u32) -> u32 {
     let most = (1 << (bits - 1)) - 1;
-    // Divided first: `most / scale` may be beyond the range. Clamped: a scale may be below the largest.
-    let share = if scale > 0.0 { value / scale } else { 0.0 };
-    let count = (share * most as f32)
-        .round()
-        .clamp(-(most as f32), most as f32) as i32;
-    count as u32 & ((1 << bits) - 1)
+    // Scales are 2^-24 or more, so that this is finite.
+    let unit = if scale > 0.0 {
+        most as f32 / scale
+    } else {
+        0.0
+    };
+    // Clamped: a scale may be below the largest; `as` stays in range by itself. `round` would be a call for each number.
+    let share = value * unit;
+    let count = (share + 0.5_f32.copysign(share)) as i32;
+    count.clamp(-most, most) as u32 & ((1 << bits) - 1)
 }
 
 fn largest(numbers: &[f32]) -> f32 {

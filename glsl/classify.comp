@@ -2,12 +2,12 @@
 #extension GL_GOOGLE_include_directive : require
 // One invocation a Gaussian: view culling by footprint, opacity and size, then the paper's three classes (section 3.2).
 // Writes one bit a Gaussian (survives; is cut) and each workgroup's totals; compact turns them into ordered lists.
-#include "gaussian.glsl"
 #include "side.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 layout(constant_id = 0) const bool CLIP = false;
 
+BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(writeonly, 2, uint, masks)
 BUFFER(writeonly, 3, uvec4, group_counts)
 
@@ -26,7 +26,7 @@ bool covers_a_pixel(vec2 centre, vec2 extent) {
 }
 
 uint classify(uint index) {
-    Gaussian gaussian = load_gaussian(index);
+    Gaussian gaussian = gaussians.at[index];
     float opacity = gaussian.position_opacity.w;
     // Depth first: it is cheap and drops what is behind the eye. Negated, so that a NaN is culled too.
     float depth = dot(FRAME.rotation_z.xyz, eye_relative(gaussian.position_opacity.xyz));

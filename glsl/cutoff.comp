@@ -1,13 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One invocation a cutoff Gaussian: everything the fragment stage needs to weight it, into its cutoff record.
-#include "gaussian.glsl"
 #include "side.glsl"
 #include "cut.glsl"
 #include "curve.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 
+BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uint, cutoffs)
 BUFFER(readonly, 3, FrameCounts, counts)
 BUFFER(writeonly, 4, vec4, cuts)
@@ -44,7 +44,7 @@ void main() {
     if (cut >= counts.at[0].cutoff) {
         return;
     }
-    Gaussian gaussian = load_gaussian(cutoffs.at[cut]);
+    Gaussian gaussian = gaussians.at[cutoffs.at[cut]];
     vec3 position = gaussian.position_opacity.xyz;
     Footprint f = footprint(gaussian);
     float extent = opacity_extent(gaussian.position_opacity.w);
@@ -53,7 +53,7 @@ void main() {
     bool front = f.view.z < reach * length(f.m3);
     bool ray = FRAME.mode == MODE_RARA || FRAME.form == FORM_BEAM;
     if (FRAME.mode == MODE_EXACT && FRAME.form == FORM_AUTO) {
-        ray = front || f.clamped || largest(gaussian.scale) > FRAME.beam_switch * f.view.z;
+        ray = front || f.clamped || gaussian.scale.w > FRAME.beam_switch * f.view.z;
     }
     front = front && ray;
 

@@ -8,13 +8,6 @@
 #include "frame.glsl"
 #include "two_float.glsl"
 
-// A Gaussian without its colour.
-struct Gaussian {
-    vec4 position_opacity; // centre, world units; opacity 0 to 1
-    vec3 scale; // standard deviations, world units
-    vec4 rotation; // unit quaternion x y z w
-};
-
 struct Footprint {
     vec3 view; // centre in the camera's frame
     vec3 relative; // centre relative to the eye, world axes

@@ -19,8 +19,6 @@ const float FRONT_MIN = 1e-4;
 const uint MAX_CLIP_PLANES = 32u;
 // Degree 3: the most coefficients a colour channel has.
 const uint MAX_SH_COEFFICIENTS = 16u;
-// Words of a Gaussian in device memory without its colour.
-const uint GAUSSIAN_WORDS = 11u;
 // Opacity below which a splat is invisible everywhere, and more of a cut splat is never computed: 1/255.
 const float ALPHA_MIN = 1.0 / ALPHA_MIN_INVERSE;
 // Gaussians a workgroup of classify and compact handles; eight words of its bit masks.

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One invocation a survivor: conic, quad and colour for the rasteriser, and the key that orders it.
-#include "gaussian.glsl"
+#include "footprint.glsl"
 #include "spherical_harmonics.glsl"
 #include "cut.glsl"
 #include "bin.glsl"
@@ -11,6 +11,7 @@ layout(constant_id = 0) const bool CUT = false;
 // Whether tiles are wanted of it.
 layout(constant_id = 2) const bool TILES = false;
 
+BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uint, sh)
 BUFFER(readonly, 3, uvec2, survivors)
 BUFFER(readonly, 4, FrameCounts, counts)
@@ -68,7 +69,7 @@ void main() {
         return;
     }
     uint index = survivors.at[survivor].x;
-    Gaussian gaussian = load_gaussian(index);
+    Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
     float opacity = gaussian.position_opacity.w;
     float extent = opacity_extent(opacity);

@@ -2,8 +2,9 @@
 // r, g, b; number k is coefficient k / 3, channel k % 3. Included by project.comp only, after it has declared `sh`.
 //   SH_FLOAT   a word a number
 //   SH_HALF    two numbers to a word, the first in the low half
-//   SH_PACKED  the constant term as three floats; the scales of degrees 1, 2 and 3 as unsigned floats of 11, 11 and 10
-//              bits; then a word a coefficient: 11, 11 and 10 bits, the largest being its degree's scale
+//   SH_PACKED  halves: the constant term's three channels; beside the third, for degrees 1, 2 and 3, five bits each: the
+//              exponent of their scale, a power of two; then a word a coefficient: 11, 11 and 10 bits, signed, the
+//              largest being its degree's scale
 //   SH_BYTE    halves: the constant term's three channels, and a scale; then four to a word, 127 being the scale
 #ifndef RARA_SH_STORAGE
 #define RARA_SH_STORAGE
@@ -15,7 +16,7 @@ uint sh_words(uint coefficients) {
     uint numbers = 3u * coefficients;
     return SH_FORMAT == SH_FLOAT ? numbers
         : SH_FORMAT == SH_HALF ? (numbers + 1u) / 2u
-        : SH_FORMAT == SH_PACKED ? (coefficients == 1u ? 3u : 3u + coefficients)
+        : SH_FORMAT == SH_PACKED ? 1u + coefficients
         : 2u + numbers / 4u;
 }
 
@@ -30,19 +31,18 @@ vec3 sh_floats(uint at) {
 
 // The constant term.
 vec3 sh_constant(uint base) {
-    return SH_FORMAT == SH_FLOAT || SH_FORMAT == SH_PACKED ? sh_floats(base)
+    return SH_FORMAT == SH_FLOAT ? sh_floats(base)
         : vec3(sh_half(base, 0u), sh_half(base, 1u), sh_half(base, 2u));
 }
 
 // What an integer counts in each channel, a column a degree from 1 on; nothing where numbers are floats.
 mat3 sh_units(uint base) {
     if (SH_FORMAT == SH_PACKED) {
-        // Eleven bits are a half without its sign and last four, ten without its last five.
-        uint word = sh.at[base + 3u];
-        vec2 low = unpackHalf2x16((word & 0x7ffu) << 4 | (word & 0x3ff800u) << 9);
-        float high = unpackHalf2x16(word >> 22 << 5).x;
+        // Moved to where a float has its exponent.
+        uvec3 exponents = uvec3(sh.at[base + 1u]) >> uvec3(16u, 21u, 26u) & 31u;
+        vec3 scales = uintBitsToFloat(exponents + SH_EXPONENT_BIAS << 23);
         vec3 unit = vec3(1.0 / 1023.0, 1.0 / 1023.0, 1.0 / 511.0);
-        return mat3(low.x * unit, low.y * unit, high * unit);
+        return mat3(scales.x * unit, scales.y * unit, scales.z * unit);
     }
     vec3 unit = vec3(SH_FORMAT == SH_BYTE ? unpackHalf2x16(sh.at[base + 1u]).y / 127.0 : 0.0);
     return mat3(unit, unit, unit);
@@ -63,7 +63,7 @@ vec3 sh_coefficient(uint base, vec3 unit, uint i) {
         return vec3(sh_half(base, k), sh_half(base, k + 1u), sh_half(base, k + 2u));
     }
     if (SH_FORMAT == SH_PACKED) {
-        int word = int(sh.at[base + 3u + i]);
+        int word = int(sh.at[base + 1u + i]);
         return unit * vec3(bitfieldExtract(word, 0, 11), bitfieldExtract(word, 11, 11), word >> 22);
     }
     return unit * vec3(sh_byte(base, k), sh_byte(base, k + 1u), sh_byte(base, k + 2u));

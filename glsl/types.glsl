@@ -41,6 +41,13 @@ struct FrameData {
     vec4 plane_low[MAX_CLIP_PLANES]; // what the rounding lost
 };
 
+// A Gaussian without its colour.
+struct Gaussian {
+    vec4 position_opacity; // centre, world units; opacity 0 to 1
+    vec4 scale; // standard deviations, world units; w the largest of them
+    vec4 rotation; // unit quaternion x y z w
+};
+
 // A survivor on the screen: what the rasteriser needs.
 struct Splat {
     vec4 centre_conic; // centre, px; k0 k1 of the inverse 2D covariance's Cholesky factor, 1/px
@@ -88,6 +95,8 @@ const uint SH_FLOAT = 0u;
 const uint SH_HALF = 1u;
 const uint SH_BYTE = 2u;
 const uint SH_PACKED = 3u;
+// A packed scale's exponent 0 in a float's: scales are from 2^-15 to 2^16.
+const uint SH_EXPONENT_BIAS = 112u;
 const uint PHI_QUINTIC = 0u;
 const uint PHI_CUBIC = 1u;
 const uint PHI_LOGISTIC = 2u;

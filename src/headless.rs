@@ -119,7 +119,7 @@ impl Headless {
     }
 
     /// Uploads a scene in place of the one before, its spherical harmonics as they are: 192 bytes a Gaussian at degree
-    /// 3. [`load_as`](Self::load_as) with [`Precision::sh`](crate::Precision::sh) of a preset takes 76.
+    /// 3. [`load_as`](Self::load_as) with [`Precision::sh`](crate::Precision::sh) of a preset takes 68.
     pub fn load(&mut self, scene: &Gaussians) -> Result<()> {
         self.load_as(scene, ShFormat::Float)
     }

@@ -57,8 +57,9 @@ impl TargetFormat {
 pub enum ShFormat {
     /// 8 bits a coefficient and one scale a Gaussian; the constant term in 16-bit floats. 56 bytes for degree 3.
     Byte,
-    /// The constant term in 32-bit floats; each other coefficient's red, green and blue in 11, 11 and 10 bits, with a
-    /// scale a degree. 76 bytes for degree 3.
+    /// The constant term in 16-bit floats; each other coefficient's red, green and blue in 11, 11 and 10 bits of its
+    /// degree's scale, a power of two: off by a 1023rd and a 511th of the degree's largest at most, unless that is
+    /// beyond 65536. 68 bytes for degree 3.
     Packed,
     /// 16-bit floats. 96 bytes for degree 3.
     Half,

@@ -5,9 +5,8 @@ mod common;
 use std::time::Instant;
 
 use glam::DVec3;
-use rara::limits;
 use rara::scene::{Bounds, Kind, generate};
-use rara::types::Splat;
+use rara::types::{Gaussian, Splat};
 use rara::{Clip, ClipOp, FrameStats, Gaussians, Headless, Plane, Settings};
 
 /// For the reference, which evaluates every splat's pixels in double precision: hundreds of splats meet in each.
@@ -101,7 +100,7 @@ fn five_million_gaussians_exceed_bindings_and_rows_and_agree() {
     let (bound, row) = (128 << 20, 65_535);
     let cutoff = stats.counts.cutoff as usize;
     for size in [
-        scene.len() * 4 * limits::GAUSSIAN_WORDS as usize,
+        scene.len() * size_of::<Gaussian>(),
         cutoff * size_of::<Splat>(),
         cutoff * 5 * size_of::<[f32; 4]>(),
     ] {

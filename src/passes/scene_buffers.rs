@@ -5,10 +5,10 @@ use glam::Vec3;
 
 use crate::error::{Error, Result};
 use crate::gpu::{Buffer, BufferDesc, Device, Location};
-use crate::limits;
 use crate::passes::sh_storage;
 use crate::precision::ShFormat;
 use crate::scene::Gaussians;
+use crate::types::Gaussian;
 
 /// A scene's Gaussians in device memory.
 #[derive(Debug)]
@@ -21,9 +21,6 @@ pub struct SceneBuffers {
     /// The corners of the box around all centres.
     pub(crate) bounds: [Vec3; 2],
 }
-
-/// A Gaussian without its colour, as `glsl/gaussian.glsl` reads it.
-type Packed = [f32; limits::GAUSSIAN_WORDS as usize];
 
 /// Gaussians converted at a time while uploading, so that the scene is never in memory a third time.
 const UPLOAD_CHUNK: usize = 1 << 16;
@@ -53,11 +50,11 @@ impl SceneBuffers {
                 location: Location::GpuOnly,
             })
         };
-        let gaussians = gpu("gaussians", u64::from(count) * size_of::<Packed>() as u64)?;
+        let gaussians = gpu("gaussians", u64::from(count) * size_of::<Gaussian>() as u64)?;
         let mut offset = 0;
         for begin in (0..scene.len()).step_by(UPLOAD_CHUNK) {
             let end = scene.len().min(begin + UPLOAD_CHUNK);
-            let packed: Vec<Packed> = (begin..end).map(|index| pack(scene, index)).collect();
+            let packed: Vec<Gaussian> = (begin..end).map(|index| pack(scene, index)).collect();
             device.upload(&gaussians, offset, cast_slice(&packed))?;
             offset += size_of_val(packed.as_slice()) as u64;
         }
@@ -106,11 +103,11 @@ fn upload_packed(device: &Device, sh: &Buffer, scene: &Gaussians, format: ShForm
     Ok(())
 }
 
-fn pack(scene: &Gaussians, index: usize) -> Packed {
-    let mut packed = Packed::default();
-    packed[..3].copy_from_slice(&scene.positions[index].to_array());
-    packed[3] = scene.opacities[index];
-    packed[4..7].copy_from_slice(&scene.scales[index].to_array());
-    packed[7..].copy_from_slice(&scene.rotations[index].to_array());
-    packed
+fn pack(scene: &Gaussians, index: usize) -> Gaussian {
+    let scale = scene.scales[index];
+    Gaussian {
+        position_opacity: scene.positions[index].extend(scene.opacities[index]).into(),
+        scale: scale.extend(scale.max_element()).into(),
+        rotation: scene.rotations[index].into(),
+    }
 }

@@ -2,14 +2,14 @@
 
 use crate::half::{from_half, to_half};
 use crate::precision::ShFormat;
+use crate::types;
 
 /// Words of a Gaussian with `numbers` coefficients, all three channels counted.
 pub(crate) fn words(format: ShFormat, numbers: usize) -> usize {
     match format {
         ShFormat::Float => numbers,
         ShFormat::Half => numbers.div_ceil(2),
-        ShFormat::Packed if numbers == 3 => 3,
-        ShFormat::Packed => 3 + numbers / 3,
+        ShFormat::Packed => 1 + numbers / 3,
         ShFormat::Byte => 2 + (numbers - 3).div_ceil(4),
     }
 }
@@ -41,22 +41,19 @@ pub(crate) fn pack(format: ShFormat, numbers: &[f32], out: &mut Vec<u32>) {
     }
 }
 
-/// Bits of red, green and blue of a packed coefficient, and of the scales of degrees 1, 2 and 3.
+/// Bits of red, green and blue of a packed coefficient.
 const BITS: [u32; 3] = [11, 11, 10];
 
 fn pack_words(numbers: &[f32], out: &mut Vec<u32>) {
-    let (constant, rest) = numbers.split_at(3);
-    out.extend(constant.iter().map(|v| v.to_bits()));
-    if rest.is_empty() {
-        return;
-    }
-    let scales_at = out.len();
-    out.push(0);
-    let mut rest = rest;
-    for (degree, bits) in BITS.into_iter().enumerate() {
-        let (numbers, higher) = rest.split_at(rest.len().min(3 * (2 * degree + 3)));
-        let (stored, scale) = scale(largest(numbers), bits);
-        out[scales_at] |= stored << (11 * degree);
+    let (constant, mut rest) = numbers.split_at(3);
+    let half = |v: f32| u32::from(to_half(v));
+    out.push(half(constant[0]) | half(constant[1]) << 16);
+    let exponents_at = out.len();
+    out.push(half(constant[2]));
+    for degree in 1..=3 {
+        let (numbers, higher) = rest.split_at(rest.len().min(3 * (2 * degree + 1)));
+        let (exponent, scale) = scale(largest(numbers));
+        out[exponents_at] |= exponent << (11 + 5 * degree);
         out.extend(numbers.chunks_exact(3).map(|rgb| {
             let channel = |c: usize| share(rgb[c], scale, BITS[c]);
             channel(0) | channel(1) << 11 | channel(2) << 22
@@ -65,22 +62,20 @@ fn pack_words(numbers: &[f32], out: &mut Vec<u32>) {
     }
 }
 
-/// The least unsigned float of so many bits, five of them the exponent's, that is not below `value`, and its value. The
-/// largest there is below infinity is 65024 in eleven bits and 64512 in ten: larger coefficients become that.
-fn scale(value: f32, bits: u32) -> (u32, f32) {
-    let dropped = 15 - bits; // a half without its sign and its last bits
-    let float = |stored: u32| from_half((stored << dropped) as u16);
-    // Down, then one up where that is below.
-    let below = u32::from(to_half(value)) >> dropped;
-    let most = (31 << (bits - 5)) - 1;
-    let stored = (below + u32::from(float(below) < value)).min(most);
-    (stored, float(stored))
+/// The least power of two that is not below `value`, as its five bits of exponent and itself. Beyond the largest,
+/// 2^16, coefficients become that.
+fn scale(value: f32) -> (u32, f32) {
+    // Carries into the exponent unless `value` is a power of two.
+    let up = (value.to_bits() + 0x007f_ffff) >> 23;
+    let exponent = up.saturating_sub(types::SH_EXPONENT_BIAS).min(31);
+    let scale = f32::from_bits((exponent + types::SH_EXPONENT_BIAS) << 23);
+    (exponent, scale)
 }
 
 /// `value` as a share of `scale`, a signed integer of so many bits whose largest is the scale.
 fn share(value: f32, scale: f32, bits: u32) -> u32 {
     let most = (1 << (bits - 1)) - 1;
-    // Scales are 2^-24 or more, so that this is finite.
+    // A scale is 0, or 2^-24 at least: this is finite.
     let unit = if scale > 0.0 {
         most as f32 / scale
     } else {
@@ -116,16 +111,13 @@ mod tests {
         match format {
             ShFormat::Float => f32::from_bits(packed[k]),
             ShFormat::Half => half(k),
-            ShFormat::Packed if k < 3 => f32::from_bits(packed[k]),
+            ShFormat::Packed if k < 3 => half(k),
             ShFormat::Packed => {
-                let scale = match degree(k) {
-                    1 => (packed[3] & 0x7ff) << 4,
-                    2 => (packed[3] & 0x003f_f800) >> 11 << 4,
-                    _ => packed[3] >> 22 << 5,
-                };
+                let exponent = packed[1] >> (11 + 5 * degree(k)) & 31;
+                let scale = f32::from_bits((exponent + types::SH_EXPONENT_BIAS) << 23);
                 let (low, bits) = [(0, 11), (11, 11), (22, 10)][k % 3];
                 let most = ((1 << (bits - 1)) - 1) as f32;
-                signed(packed[3 + k / 3], low, bits) * (from_half(scale as u16) / most)
+                signed(packed[1 + k / 3], low, bits) * (scale / most)
             }
             ShFormat::Byte if k < 3 => half(k),
             ShFormat::Byte => {
@@ -152,21 +144,12 @@ mod tests {
         match format {
             ShFormat::Float => 0.0,
             ShFormat::Half => half,
-            ShFormat::Packed if k < 3 => 0.0,
-            // Half a step of a scale that was rounded up by a 64th at most, a 32nd for degree 3, or to the least there
-            // is; and what computing it in single precision loses.
+            ShFormat::Packed if k < 3 => half,
+            // Half a step of a scale that is below twice the largest, or the least there is; and what computing it in
+            // single precision loses.
             ShFormat::Packed => {
-                let step = if k % 3 == 2 {
-                    1.0 / 1022.0
-                } else {
-                    1.0 / 2046.0
-                };
-                let (rounding, least) = if degree(k) == 3 {
-                    (1.0 / 32.0, 2.0_f32.powi(-19))
-                } else {
-                    (1.0 / 64.0, 2.0_f32.powi(-20))
-                };
-                (of_degree * (1.0 + rounding)).max(of_degree + least) * step * 1.001
+                let most = if k % 3 == 2 { 511.0 } else { 1023.0 };
+                of_degree.max(2.0_f32.powi(-16)) / most * 1.001
             }
             ShFormat::Byte if k < 3 => half,
             // Half a step, and what rounding the scale moves.
@@ -221,20 +204,16 @@ mod tests {
     }
 
     #[test]
-    fn a_scale_is_the_least_that_is_large_enough() {
-        for bits in [10, 11] {
-            let most = (31 << (bits - 5)) - 1;
-            let float = |stored: u32| from_half((stored << (15 - bits)) as u16);
-            for stored in 0..=most {
-                let value = float(stored);
-                assert_eq!(scale(value, bits), (stored, value));
-                if stored < most {
-                    let above = f32::from_bits(value.to_bits() + 1);
-                    assert_eq!(scale(above, bits).0, stored + 1, "above {value}");
-                }
-            }
-            assert_eq!(scale(f32::MAX, bits).0, most);
+    fn a_scale_is_the_least_power_of_two_that_is_large_enough() {
+        for exponent in 0..32 {
+            let power = 2.0_f32.powi(exponent - 15);
+            let exponent = exponent as u32;
+            assert_eq!(scale(power), (exponent, power));
+            let above = f32::from_bits(power.to_bits() + 1);
+            assert_eq!(scale(above).0, (exponent + 1).min(31), "above {power}");
         }
+        assert_eq!((scale(0.0).0, scale(1e-40).0), (0, 0));
+        assert_eq!(scale(f32::MAX), (31, 65536.0));
     }
 
     #[test]
@@ -250,9 +229,9 @@ mod tests {
         packed.clear();
         pack(ShFormat::Packed, &numbers, &mut packed);
         let read = |k| component(ShFormat::Packed, &packed, k);
-        assert_eq!((read(0), read(1)), (3e38, -3e38));
+        assert_eq!((read(0), read(1)), (65504.0, -65504.0));
         // Where single precision rounds the last bit of the product is not the point.
-        for (k, most) in [(3, 65024.0), (12, 65024.0), (13, -65024.0), (27, 64512.0)] {
+        for (k, most) in [(3, 65536.0), (12, 65536.0), (13, -65536.0), (29, 65536.0)] {
             assert!((read(k) / most - 1.0).abs() < 1e-6, "{k}: {}", read(k));
         }
     }

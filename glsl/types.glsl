@@ -36,7 +36,8 @@ struct FrameData {
     uint tile_count; // tiles in the picture
     uint pair_capacity; // pairs of tile and splat that there is room for
     float transmittance_min; // below it a tile's pixel is saturated: what lies behind changes it by less
-    uint pad[3]; // unused
+    uint redrawn; // 1: a frame whose pairs have no room is drawn once more, so that nothing is drawn of it
+    uint pad[2]; // unused
     vec4 plane_high[MAX_CLIP_PLANES]; // unit normal and distance, rounded to single precision
     vec4 plane_low[MAX_CLIP_PLANES]; // what the rounding lost
 };

@@ -145,6 +145,7 @@ impl Headless {
             .ok_or_else(|| Error::Invalid("there is no scene to render; load one first".into()))?;
         let format = settings.precision.target;
         self.renderer.set_color_format(format.vulkan());
+        self.renderer.set_redraws(true);
         self.renderer.configure(scene, camera, clip, settings)?;
         let extent = vk::Extent2D {
             width: camera.width,
@@ -176,6 +177,7 @@ impl Headless {
             .background
             .map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
         let begin = Instant::now();
+        let mut quads = false;
         loop {
             self.device.submit_and_wait(|cmd| {
                 // SAFETY: `cmd` is recording and `scene`, the target and the renderer outlive the wait for it; the
@@ -193,15 +195,20 @@ impl Headless {
                 }
                 Ok(())
             })?;
-            // A first frame finds out how much room the tiles need. The bytes must not depend on what was drawn before:
-            // it is drawn again.
+            // A first frame finds out how much room the tiles need, and nothing is drawn of it.
             let room = self.renderer.pair_room();
             if !self.renderer.fell_back() {
                 break;
             }
+            if quads {
+                break; // they are the picture
+            }
             self.renderer.configure(scene, camera, clip, settings)?;
             if self.renderer.pair_room() <= room {
-                break; // there is no more to be had, and the quads are the picture
+                // There is no more to be had.
+                quads = true;
+                self.renderer.set_redraws(false);
+                self.renderer.configure(scene, camera, clip, settings)?;
             }
         }
         let wall_ms = begin.elapsed().as_secs_f64() * 1e3;

@@ -58,6 +58,8 @@ pub(crate) struct SceneFacts {
     pub(crate) tile_rows: u32,
     /// Pairs of tile and splat that there is to be room for.
     pub(crate) pair_capacity: u32,
+    /// Whether a frame without room for its pairs is drawn once more, instead of as quads.
+    pub(crate) redrawn: bool,
 }
 
 impl Plan {
@@ -153,6 +155,7 @@ impl Plan {
         data.tile_columns = camera.width.div_ceil(limits::TILE_WIDTH);
         data.tile_count = data.tile_columns * camera.height.div_ceil(limits::TILE_HEIGHT);
         data.pair_capacity = scene.pair_capacity;
+        data.redrawn = scene.redrawn.into();
         data.group_count = scene.gaussians.div_ceil(limits::GROUP_SIZE);
         for (index, plane) in planes.iter().enumerate() {
             let (high, low) = two_float(plane.normal());

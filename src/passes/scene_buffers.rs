@@ -26,7 +26,8 @@ pub struct SceneBuffers {
 const UPLOAD_CHUNK: usize = 1 << 16;
 
 impl SceneBuffers {
-    /// Uploads a scene, its spherical harmonics stored as `format` says, and waits for it.
+    /// Uploads a scene, its spherical harmonics stored as `format` says, in chunks, and waits for it. Beside the scene it
+    /// takes 32 MiB at most.
     pub fn upload(device: &Device, scene: &Gaussians, format: ShFormat) -> Result<Self> {
         let too_many = |_| {
             Error::Invalid(format!(

@@ -40,13 +40,24 @@ Carried carried_weight(uint cut) {
 vec3 colour(uint index, vec3 direction) {
     float basis[MAX_SH_COEFFICIENTS];
     sh_basis(direction, FRAME.sh_degree, basis);
-    uint base = index * sh_words(FRAME.sh_coefficients * 3u);
-    float unit = sh_unit(base);
-    uint used = (FRAME.sh_degree + 1u) * (FRAME.sh_degree + 1u);
-    vec3 sum = vec3(0.5);
-    for (uint i = 0u; i < used; i++) {
-        uint k = 3u * i;
-        sum += basis[i] * vec3(sh_number(base, unit, k), sh_number(base, unit, k + 1u), sh_number(base, unit, k + 2u));
+    uint base = index * sh_words(FRAME.sh_coefficients);
+    vec3 sum = 0.5 + basis[0] * sh_constant(base);
+    // A loop a degree: the compiler unrolls what has a fixed length.
+    if (FRAME.sh_degree > 0u) {
+        mat3 units = sh_units(base);
+        for (uint i = 1u; i < 4u; i++) {
+            sum += basis[i] * sh_coefficient(base, units[0], i);
+        }
+        if (FRAME.sh_degree > 1u) {
+            for (uint i = 4u; i < 9u; i++) {
+                sum += basis[i] * sh_coefficient(base, units[1], i);
+            }
+        }
+        if (FRAME.sh_degree > 2u) {
+            for (uint i = 9u; i < 16u; i++) {
+                sum += basis[i] * sh_coefficient(base, units[2], i);
+            }
+        }
     }
     // Finite, so that a share of nothing stays nothing.
     return clamp(sum, vec3(0.0), vec3(3e38));

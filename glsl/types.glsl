@@ -36,7 +36,8 @@ struct FrameData {
     uint tile_count; // tiles in the picture
     uint pair_capacity; // pairs of tile and splat that there is room for
     float transmittance_min; // below it a tile's pixel is saturated: what lies behind changes it by less
-    uint pad[3]; // unused
+    uint redrawn; // 1: a frame whose pairs have no room is drawn once more, so that nothing is drawn of it
+    uint pad[2]; // unused
     vec4 plane_high[MAX_CLIP_PLANES]; // unit normal and distance, rounded to single precision
     vec4 plane_low[MAX_CLIP_PLANES]; // what the rounding lost
 };
@@ -104,6 +105,9 @@ const uint FORM_AFFINE = 2u;
 const uint SH_FLOAT = 0u;
 const uint SH_HALF = 1u;
 const uint SH_BYTE = 2u;
+const uint SH_PACKED = 3u;
+// A packed scale's exponent 0 in a float's: scales are from 2^-15 to 2^16.
+const uint SH_EXPONENT_BIAS = 112u;
 const uint PHI_QUINTIC = 0u;
 const uint PHI_CUBIC = 1u;
 const uint PHI_LOGISTIC = 2u;

@@ -60,6 +60,11 @@ impl Session {
         self.headless.device().info().kind_name() == "cpu"
     }
 
+    /// Device memory that the scene takes.
+    pub(super) fn scene_bytes(&self) -> u64 {
+        self.headless.scene_bytes()
+    }
+
     /// Device name, driver, and device memory in use.
     pub(super) fn about(&self) -> (String, String, u64) {
         let headless = &self.headless;

@@ -60,6 +60,8 @@ pub(crate) struct SceneFacts {
     pub(crate) tile_rows: u32,
     /// Pairs of tile and splat that there is to be room for.
     pub(crate) pair_capacity: u32,
+    /// Whether a frame without room for its pairs is drawn once more, instead of as quads.
+    pub(crate) redrawn: bool,
 }
 
 impl Plan {
@@ -156,6 +158,7 @@ impl Plan {
         data.tile_count = data.tile_columns * camera.height.div_ceil(limits::TILE_HEIGHT);
         data.pair_capacity = scene.pair_capacity;
         data.block_count = scene.gaussians.div_ceil(limits::BLOCK_SIZE);
+        data.redrawn = scene.redrawn.into();
         for (index, plane) in planes.iter().enumerate() {
             let (high, low) = two_float(plane.normal());
             // Farther away than single precision reaches: beyond every splat.

@@ -29,7 +29,8 @@ pub struct SceneBuffers {
 const UPLOAD_CHUNK: usize = 1 << 16;
 
 impl SceneBuffers {
-    /// Uploads a scene, its spherical harmonics stored as `format` says, and waits for it.
+    /// Uploads a scene, its spherical harmonics stored as `format` says, in chunks, and waits for it. Beside the scene it
+    /// takes 32 MiB at most.
     pub fn upload(device: &Device, scene: &Gaussians, format: ShFormat) -> Result<Self> {
         let too_many = |_| {
             Error::Invalid(format!(
@@ -79,6 +80,11 @@ impl SceneBuffers {
             sh_format: format,
             bounds,
         })
+    }
+
+    /// Bytes of device memory that the scene takes.
+    pub fn bytes(&self) -> u64 {
+        self.gaussians.size() + self.sh.size() + self.blocks.size()
     }
 
     /// The larger of the two buffers, bytes.

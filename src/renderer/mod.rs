@@ -74,6 +74,8 @@ pub struct Renderer {
     plan: Option<Plan>,
     bindings: Bindings,
     pairs: PairRoom,
+    /// Whether a frame without room for its pairs is drawn once more, instead of as quads.
+    redraws: bool,
     /// Why the configured frame's rasteriser was chosen.
     reason: &'static str,
     /// Whether the configured frame has been prepared.
@@ -134,6 +136,7 @@ impl Renderer {
             plan: None,
             bindings: desc.bindings,
             pairs: PairRoom::default(),
+            redraws: false,
             reason: "",
             ready: false,
         })
@@ -180,6 +183,7 @@ impl Renderer {
             raster,
             tile_rows: if is_cpu { limits::TILE_HEIGHT } else { 1 },
             pair_capacity: self.pairs.room(),
+            redrawn: self.redraws,
         };
         let plan = Plan::new(facts, camera, clip, settings)?;
         let largest = Buffers::largest(&plan).max(scene.largest());
@@ -244,6 +248,12 @@ impl Renderer {
     /// Pairs of tile and splat that the configured frame has room for.
     pub(crate) fn pair_room(&self) -> u32 {
         self.pairs.room()
+    }
+
+    /// Whether whoever submits draws a frame without room for its pairs once more: then nothing is drawn of it, which
+    /// spares the quads. For the next [`configure`](Self::configure) on.
+    pub(crate) fn set_redraws(&mut self, redraws: bool) {
+        self.redraws = redraws;
     }
 
     /// Frees what only frames used that the host has waited for.

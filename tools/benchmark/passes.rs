@@ -14,11 +14,13 @@ use crate::turns::in_turn;
 use crate::variant::{MODES, Variant, rasters};
 use crate::world::{Source, World};
 
-/// The table at the end.
+/// The tables at the end, of the frame and of the processor's time, which other work on the machine disturbs less.
 const OVERVIEW: [&str; 7] = ["scene", "size", "raster", "none", "hard", "rara", "exact"];
+type Overview = [Table; 2];
 
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
-    let mut overview = Table::new("passes: ms a frame, medians", &OVERVIEW);
+    let table = |total| Table::new(format!("passes: {total}, ms, median (least)"), &OVERVIEW);
+    let mut overview = [table(TOTALS[0]), table(TOTALS[1])];
     for source in bench.args.sources(Section::Passes) {
         let place = |size| Place {
             section: Section::Passes,
@@ -31,11 +33,11 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
             result => result?,
         }
     }
-    overview.print();
+    overview.iter().for_each(Table::print);
     Ok(())
 }
 
-fn scene(bench: &mut Bench, source: &Source, overview: &mut Table) -> Result<()> {
+fn scene(bench: &mut Bench, source: &Source, overview: &mut Overview) -> Result<()> {
     memory::check(source.expected(), 1)?;
     let world = source.world()?;
     let mut headless = Headless::new(&bench.args.desc())?;
@@ -62,7 +64,7 @@ fn size(
     world: &World,
     headless: &mut Headless,
     place: &Place,
-    overview: &mut Table,
+    overview: &mut Overview,
 ) -> Result<()> {
     let mut variants: Vec<Variant> = Vec::new();
     for raster in rasters(headless) {
@@ -89,18 +91,18 @@ fn size(
         let frames: Vec<Vec<Timed>> = of.iter().map(|&i| frames[i].clone()).collect();
         one_raster(bench, place, raster, &modes, &frames)?;
         let scene = format!("{}, {}", place.scene, grouped(place.gaussians));
-        let median = |mode: &str| {
-            let at = modes.iter().position(|name| *name == mode);
-            at.map_or("wrong".into(), |at| {
-                digits(summary(&frames[at], "frame").median)
-            })
-        };
         let [width, height] = place.size;
-        let cells = [format!("{width}x{height}"), raster.into()];
-        overview.line(
-            scene,
-            cells.into_iter().chain(MODES.map(|(mode, _)| median(mode))),
-        );
+        for (table, total) in overview.iter_mut().zip(TOTALS) {
+            let cell = |(mode, _)| match modes.iter().position(|name| *name == mode) {
+                None => "wrong".to_owned(),
+                Some(at) => {
+                    let s = summary(&frames[at], total);
+                    format!("{} ({})", digits(s.median), digits(s.min))
+                }
+            };
+            let cells = [format!("{width}x{height}"), raster.into()];
+            table.line(scene.clone(), cells.into_iter().chain(MODES.map(cell)));
+        }
     }
     Ok(())
 }

@@ -25,12 +25,12 @@ pub(crate) struct Place {
 
 impl Place {
     pub(crate) fn title(&self) -> String {
-        let [width, height] = self.size;
-        let (scene, gaussians) = (&self.scene, grouped(self.gaussians));
-        format!(
-            "{}: {scene}, {gaussians} Gaussians, {width}x{height}",
-            self.section.name()
-        )
+        let (section, scene) = (self.section.name(), &self.scene);
+        let title = format!("{section}: {scene}, {} Gaussians", grouped(self.gaussians));
+        match self.size {
+            [0, _] => title,
+            [width, height] => format!("{title}, {width}x{height}"),
+        }
     }
 }
 

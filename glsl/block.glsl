@@ -96,17 +96,35 @@ uint block_view_side(Block block) {
     return x == SIDE_VISIBLE && y == SIDE_VISIBLE && drawable ? SIDE_VISIBLE : SIDE_CUTOFF;
 }
 
+// Least depth of a centre.
+float block_nearest(Block block) {
+    vec2 depth = range_over(eye_relative(block_middle(block)), block_half(block), vec3(0.0), 0.0, 1.0);
+    return depth.x - depth.y;
+}
+
+// Whether the exact form of some splat may follow true rays, for its size or because its slope is clamped.
+bool may_be_beam(Block block) {
+    if (FRAME.mode != MODE_EXACT || FRAME.form == FORM_AFFINE) {
+        return false;
+    }
+    vec3 relative = eye_relative(block_middle(block));
+    vec3 half_box = block_half(block);
+    vec4 bounds = FRAME.slope_bounds;
+    vec2 left = range_over(relative, half_box, FRAME.rotation_x.xyz, 1.0, -bounds.x);
+    vec2 right = range_over(relative, half_box, FRAME.rotation_x.xyz, 1.0, -bounds.y);
+    vec2 top = range_over(relative, half_box, FRAME.rotation_y.xyz, 1.0, -bounds.z);
+    vec2 bottom = range_over(relative, half_box, FRAME.rotation_y.xyz, 1.0, -bounds.w);
+    bool clamped = !(left.x - left.y > 0.0 && right.x + right.y < 0.0 && top.x - top.y > 0.0 && bottom.x + bottom.y < 0.0);
+    return FRAME.form == FORM_BEAM || clamped || abs(block.high_sigma.w) > FRAME.beam_switch * max(block_nearest(block), 0.0);
+}
+
 // The clip's side of a block that is in view as a whole, so that no slope is clamped. Without large splats it does not
 // depend on the camera, and is `side`.
 uint block_side_in_view(Block block, uint side) {
-    float sigma = abs(block.high_sigma.w);
-    vec2 depth = range_over(eye_relative(block_middle(block)), block_half(block), vec3(0.0), 0.0, 1.0);
-    float nearest = depth.x - depth.y;
-    bool beam = FRAME.form == FORM_BEAM || (FRAME.form == FORM_AUTO && sigma > FRAME.beam_switch * nearest);
-    if (FRAME.mode != MODE_EXACT || !beam) {
+    if (!may_be_beam(block)) {
         return side;
     }
-    float rest = 1.0 - 1.001 * block.low_reach.w / nearest;
+    float rest = 1.0 - 1.001 * block.low_reach.w / block_nearest(block);
     return rest > WIDENING_REST ? block_clip_side(block, 1.0 / rest) : SIDE_CUTOFF;
 }
 

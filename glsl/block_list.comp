@@ -7,6 +7,7 @@
 
 layout(local_size_x = BLOCK_SIZE) in;
 
+// In the two low bits.
 BUFFER(readonly, 1, uint, sides)
 BUFFER(writeonly, 2, uint, block_list)
 BUFFER(writeonly, 3, FrameCounts, counts)
@@ -20,7 +21,7 @@ void main() {
     uint end = min(begin + run, FRAME.block_count);
     uint total = 0u;
     for (uint block = begin; block < end; block++) {
-        total += sides.at[block] == SIDE_CUTOFF ? 1u : 0u;
+        total += (sides.at[block] & 3u) == SIDE_CUTOFF ? 1u : 0u;
     }
     run_totals[local] = total;
     barrier();
@@ -29,7 +30,7 @@ void main() {
         place += run_totals[other];
     }
     for (uint block = begin; block < end; block++) {
-        if (sides.at[block] == SIDE_CUTOFF) {
+        if ((sides.at[block] & 3u) == SIDE_CUTOFF) {
             block_list.at[place++] = block;
         }
     }

@@ -28,6 +28,8 @@ const uint CUT_COUNT_SHIFT = 8u;
 const float CUT_RANGE = 1e30;
 const float CUT_WHOLE = 2e30;
 const float CUT_RECORD = -2e30;
+// In a sweep, whose survivors are all in view, that the splat is clipped away.
+const float CUT_GONE = 4e30;
 
 // Whether a plane keeps the far part of a line of sight: by its normal's component along the line. Where that is zero
 // (a Gaussian without thickness) any fixed rule would do, if it told opposed planes apart: the normal's first non-zero

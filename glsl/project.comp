@@ -22,20 +22,7 @@ BUFFER(writeonly, 7, uint, order)
 BUFFER(readonly, 8, vec4, cuts)
 BUFFER(writeonly, 9, uvec4, tile_masks)
 
-// What the rasteriser carries of the weight: see cut.glsl.
-Carried carried_weight(uint cut) {
-    Carried weight = Carried(vec3(CUT_WHOLE, 0.0, 0.0), vec3(0.0));
-    if (CUT && cut != NOT_CUT) {
-        uint base = cut * FRAME.cut_stride;
-        if (cuts.at[base].w == float(1u << CUT_COUNT_SHIFT)) {
-            weight.plane = cuts.at[base + CUT_HEADER].xyz;
-            weight.curvature = cuts.at[base + CUT_HEADER + 1u].xyz;
-        } else {
-            weight.plane = vec3(CUT_RECORD, float(cut & 0xffffu), float(cut >> 16));
-        }
-    }
-    return weight;
-}
+#include "carried.glsl"
 
 vec3 colour(uint index, vec3 direction) {
     float basis[MAX_SH_COEFFICIENTS];
@@ -76,7 +63,7 @@ void main() {
 
     Splat splat;
     vec3 conic = cholesky(f);
-    Carried weight = carried_weight(survivors.at[survivor].y);
+    Carried weight = CUT ? carried_weight(survivors.at[survivor].y) : whole_weight();
     Quad quad = quad_around(f, extent, weight);
     splat.centre_conic = vec4(f.centre, conic.xy);
     splat.conic_cut = vec4(conic.z, opacity, weight.plane.xy);
@@ -88,13 +75,8 @@ void main() {
     if (TILES) {
         Outline o = outline(splat);
         uint cut = survivors.at[survivor].y;
-        if (CUT && cut != NOT_CUT && weight.plane.x < -CUT_RANGE) {
-            uint base = cut * FRAME.cut_stride;
-            vec4 linear = cuts.at[base];
-            if ((uint(linear.w) & CUT_CURVE) != 0u) {
-                o.line = hidden_beyond_curve(linear, cuts.at[base + 1u], cuts.at[base + 2u], cuts.at[base + CUT_HEADER], conic,
-                                             1.001 * extent);
-            }
+        if (CUT && cut != NOT_CUT) {
+            o.line = hidden_by_record(o.line, cut, weight, conic, extent);
         }
         tile_masks.at[survivor] = tile_mask(o);
     }

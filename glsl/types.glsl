@@ -77,6 +77,7 @@ struct FrameCounts {
     uvec4 compact_groups; // indirect dispatch over the blocks with survivors; w: how many
     uvec4 project_groups; // indirect dispatch over the survivors
     uvec4 cutoff_groups; // indirect dispatch over the cutoff Gaussians
+    uvec4 recut_groups; // indirect dispatch over the survivors that a moved clip changes; w: how many
     uvec4 sort_groups; // indirect dispatch of the sort's runs
     uvec4 draw; // indirect draw: vertices, instances, first vertex, first instance
     uvec4 mesh_groups; // indirect mesh tasks; w: survivors
@@ -112,5 +113,6 @@ const uint PHI_QUINTIC = 0u;
 const uint PHI_CUBIC = 1u;
 const uint PHI_LOGISTIC = 2u;
 const uint NOT_CUT = 0xffffffffu;
+const uint CUT_AWAY = 0xfffffffeu;
 
 #endif

@@ -40,6 +40,8 @@ pub struct Headless {
     renderer: Renderer,
     scene: Option<SceneBuffers>,
     target: Option<Target>,
+    /// What the target holds: the frame's background, if it is the renderer's last frame.
+    drawn: Option<Option<[u32; 3]>>,
     pipelines: Option<PipelineFile>,
     /// Bytes of compiled pipelines that were there at the start.
     kept_pipeline_bytes: u64,
@@ -75,6 +77,7 @@ impl Headless {
             RendererDesc {
                 bindings,
                 timing: true,
+                reuse: true,
                 ..RendererDesc::new(TargetFormat::default().vulkan())
             },
         )?;
@@ -82,6 +85,7 @@ impl Headless {
             renderer,
             scene: None,
             target: None,
+            drawn: None,
             pipelines,
             kept_pipeline_bytes,
             device,
@@ -132,6 +136,14 @@ impl Headless {
         Ok(())
     }
 
+    /// Forgets what earlier frames have computed: the next one computes everything. Without it a frame takes over what
+    /// the one before has found out and this one would find out again, to the same bytes; where nothing has changed it
+    /// does nothing at all.
+    pub fn forget(&mut self) {
+        self.renderer.forget();
+        self.drawn = None;
+    }
+
     /// Renders one frame of the scene; the picture stays on the device.
     pub fn render(
         &mut self,
@@ -157,6 +169,7 @@ impl Headless {
             .is_none_or(|target| target.image.extent() != extent || target.format != format)
         {
             self.target = None;
+            self.drawn = None;
             check_blending(&self.device, format)?;
             let image = self.device.create_image(&ImageDesc {
                 name: "target",
@@ -177,6 +190,20 @@ impl Headless {
             .background
             .map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
         let begin = Instant::now();
+        let background = settings.background.map(|rgb| rgb.map(f32::to_bits));
+        if self.renderer.changes_nothing() && self.drawn == Some(background) {
+            let mut skipped = self.renderer.skipped();
+            skipped.push("splat");
+            return Ok(FrameStats {
+                counts: self.renderer.counts(),
+                passes: Vec::new(),
+                gpu_ms: 0.0,
+                wall_ms: begin.elapsed().as_secs_f64() * 1e3,
+                skipped,
+                raster: self.renderer.raster(),
+            });
+        }
+        self.drawn = None;
         let mut quads = false;
         loop {
             self.device.submit_and_wait(|cmd| {
@@ -213,6 +240,7 @@ impl Headless {
         }
         let wall_ms = begin.elapsed().as_secs_f64() * 1e3;
         self.check_validation()?;
+        self.drawn = Some(background);
         let passes = self.renderer.pass_times();
         let gpu_ms = passes.iter().map(|pass| pass.ms).sum();
         let skipped = self.renderer.skipped();

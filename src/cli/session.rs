@@ -32,7 +32,10 @@ impl Session {
         settings: &Settings,
         repeat: u32,
     ) -> Result<FrameStats> {
-        let frames = (0..repeat).map(|_| self.headless.render(camera, clip, settings));
+        let frames = (0..repeat).map(|_| {
+            self.headless.forget(); // nothing is carried over between them
+            self.headless.render(camera, clip, settings)
+        });
         Ok(combine(
             &frames.collect::<Result<Vec<_>>>()?,
             Combine::Median,

@@ -33,6 +33,8 @@ pub(crate) struct Buffers {
     pub(crate) tile_masks: Buffer,
     /// Only for tiles.
     pub(crate) tiles: Option<TileBuffers>,
+    /// Only where the camera has stood still.
+    pub(crate) sweep: Option<SweepBuffers>,
     sized_for: Sizes,
 }
 
@@ -43,6 +45,15 @@ pub(crate) struct TileBuffers {
     pub(crate) pair_splats: [Buffer; 2],
     pub(crate) begins: Buffer,
     pub(crate) picture: Buffer,
+}
+
+/// What a sweep of the clip needs besides.
+#[derive(Debug)]
+pub(crate) struct SweepBuffers {
+    pub(crate) looks: Buffer,
+    pub(crate) reclips: Buffer,
+    pub(crate) recuts: Buffer,
+    pub(crate) dirty: Buffer,
 }
 
 /// What the sizes depend on.
@@ -139,8 +150,32 @@ impl Buffers {
             } else {
                 None
             },
+            sweep: None,
             sized_for: sizes,
         })
+    }
+
+    /// Allocates what a sweep needs besides.
+    pub(crate) fn ensure_sweep(&mut self, device: &Device) -> Result<()> {
+        if self.sweep.is_some() {
+            return Ok(());
+        }
+        let gpu = |name, size| {
+            device.create_buffer(&BufferDesc {
+                name,
+                size,
+                location: Location::GpuOnly,
+            })
+        };
+        let n = self.sized_for.gaussians;
+        let blocks = n.div_ceil(u64::from(limits::BLOCK_SIZE));
+        self.sweep = Some(SweepBuffers {
+            looks: gpu("looks", blocks * 4)?,
+            reclips: gpu("reclips", blocks * 4 * u64::from(limits::RECLIP_WORDS))?,
+            recuts: gpu("recuts", n * 8)?,
+            dirty: gpu("dirty", self.sized_for.tiles * 4)?,
+        });
+        Ok(())
     }
 
     /// Whether a plan fits into what is allocated.

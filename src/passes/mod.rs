@@ -19,7 +19,9 @@ mod shaders;
 mod sort;
 mod splat;
 mod stages;
+mod sweep;
 mod tiles;
+mod work;
 
 pub(crate) use buffers::Buffers;
 pub(crate) use context::Context;
@@ -28,3 +30,4 @@ pub(crate) use pair_room::PairRoom;
 pub(crate) use plan::{Plan, SceneFacts};
 pub use scene_buffers::SceneBuffers;
 pub(crate) use stages::Stages;
+pub(crate) use work::{Kept, Work};

@@ -7,6 +7,7 @@ use crate::clip::{Clip, ClipOp, Plane};
 use crate::error::{Error, Result};
 use crate::limits;
 use crate::passes::depth_keys::DepthKeys;
+use crate::passes::work::Work;
 use crate::precision::ShFormat;
 use crate::settings::{Decay, ExactForm, Miss, Mode, Raster, Settings};
 use crate::types::{self, FrameData};
@@ -18,8 +19,8 @@ pub(crate) struct Plan {
     pub(crate) gaussians: u32,
     /// The mode, reduced to `MODE_NONE` where there is nothing to clip with.
     pub(crate) mode: u32,
-    /// Whether there is a clip whose classes have to be found: they are kept while the clip stays.
-    pub(crate) clip: bool,
+    /// What of the frame has to be computed.
+    pub(crate) work: Work,
     /// Whether cutoff Gaussians can exist.
     pub(crate) cutoff: bool,
     /// vec4s of a cutoff record.
@@ -171,7 +172,9 @@ impl Plan {
         Ok(Self {
             gaussians: scene.gaussians,
             mode,
-            clip: mode != types::MODE_NONE,
+            work: Work::Whole {
+                clip: mode != types::MODE_NONE,
+            },
             cutoff,
             cut_stride,
             sh_format: scene.sh_format,
@@ -208,21 +211,41 @@ impl Plan {
         ((self.tile_digits - 1) % 2) as usize
     }
 
-    /// The stages that this frame does not need.
-    pub(crate) fn skipped(&self) -> Vec<&'static str> {
-        if self.gaussians == 0 {
-            return vec![
-                "clip", "blocks", "classify", "compact", "cutoff", "project", "sort", "bin",
-                "tiles", "splat",
-            ];
+    /// The same frame without its clip: all that is in view.
+    pub(crate) fn unclipped(&self) -> Self {
+        Self {
+            mode: types::MODE_NONE,
+            cutoff: false,
+            ..self.clone()
         }
+    }
+
+    /// The stages that this frame does not need, among those of a whole one.
+    pub(crate) fn skipped(&self) -> Vec<&'static str> {
+        let is_empty = self.gaussians == 0;
+        let (clip, view, cut) = match self.work {
+            Work::Whole { clip } => (clip, true, true),
+            Work::Sweep { base, .. } => (false, base, true),
+            Work::Draw => (false, false, false),
+        };
+        let sort = view && self.gaussians > 1;
+        let tiled = self.raster == Raster::Tiles || is_empty;
         let stages = [
-            ("clip", self.clip),
-            ("cutoff", self.cutoff),
-            ("sort", self.gaussians > 1),
+            ("clip", clip, true),
+            ("blocks", view, true),
+            ("classify", view, true),
+            ("compact", view, true),
+            ("cutoff", cut && self.cutoff, true),
+            ("project", view, true),
+            ("sort", sort, true),
+            ("bin", view, tiled),
+            ("tiles", cut, tiled),
+            ("splat", true, true),
         ];
-        let skipped = stages.iter().filter(|(_, needed)| !needed);
-        skipped.map(|(name, _)| *name).collect()
+        let skipped = stages
+            .iter()
+            .filter(|(_, needed, exists)| *exists && (is_empty || !needed));
+        skipped.map(|(name, ..)| *name).collect()
     }
 }
 

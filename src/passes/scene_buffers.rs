@@ -1,5 +1,7 @@
 //! The scene on the device: geometry and spherical harmonics, uploaded once.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use bytemuck::cast_slice;
 use glam::Vec3;
 
@@ -13,6 +15,8 @@ use crate::types::Gaussian;
 /// A scene's Gaussians in device memory.
 #[derive(Debug)]
 pub struct SceneBuffers {
+    /// No other scene of this process has it.
+    pub(crate) id: u64,
     pub(crate) gaussians: Buffer,
     pub(crate) sh: Buffer,
     pub(crate) blocks: Buffer,
@@ -24,6 +28,8 @@ pub struct SceneBuffers {
     /// The corners of the box around all centres.
     pub(crate) bounds: [Vec3; 2],
 }
+
+static NEXT_ID: AtomicU64 = AtomicU64::new(0);
 
 /// Gaussians converted at a time while uploading, so that the scene is never in memory a third time.
 const UPLOAD_CHUNK: usize = 1 << 16;
@@ -71,6 +77,7 @@ impl SceneBuffers {
             [low.min(x), high.max(x)]
         });
         Ok(Self {
+            id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
             gaussians,
             sh,
             blocks,

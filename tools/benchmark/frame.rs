@@ -45,7 +45,9 @@ pub(crate) fn frame(
 }
 
 /// Makes the next frame computed from nothing.
-fn forget(_headless: &mut Headless) {}
+fn forget(headless: &mut Headless) {
+    headless.forget();
+}
 
 /// Time that all threads of this process have spent on a processor: what Linux's scheduler has counted.
 fn processor_ms() -> f64 {

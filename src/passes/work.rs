@@ -47,10 +47,12 @@ impl Kept {
         let Some(kept) = kept.filter(|kept| kept.scene == scene) else {
             return whole;
         };
-        if kept.holds && kept.plan.is_drawn_like(plan) {
+        let is_same = kept.plan.is_drawn_like(plan);
+        if kept.holds && is_same {
             return Work::Draw;
         }
-        let is_still = kept.plan.sees_like(plan);
+        // The same frame in other buffers is no sweep.
+        let is_still = kept.plan.sees_like(plan) && !is_same;
         if is_still && plan.mode != types::MODE_NONE {
             let base = kept.base.filter(|_| kept.holds);
             return Work::Sweep {
@@ -92,6 +94,7 @@ impl Plan {
     /// Whether another plan gives the same pixels.
     fn is_drawn_like(&self, other: &Self) -> bool {
         let data = |plan: &Self| FrameData {
+            pair_capacity: 0,
             redrawn: 0,
             ..plan.data
         };

@@ -67,6 +67,6 @@ void main() {
     splats.at[survivor].conic_cut.zw = weight.plane.xy;
     splats.at[survivor].colour_cut.w = weight.plane.z;
     splats.at[survivor].axes = vec4(quad.first, quad.second);
-    splats.at[survivor].middle = vec4(quad.middle, 0.0, 0.0);
+    splats.at[survivor].middle.xy = quad.middle;
     splats.at[survivor].curvature = vec4(weight.curvature, 0.0);
 }

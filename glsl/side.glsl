@@ -26,10 +26,11 @@ bool is_beam(Footprint f, float sigma) {
         || (FRAME.form == FORM_AUTO && (f.clamped || sigma > FRAME.beam_switch * f.view.z));
 }
 
-// How much farther from the centre a pixel's true ray can pass than its place in the footprint says: a pixel at delta
-// sees the point u with B u = delta in the footprint, and on its ray u / (1 - e.u), with e = m3 / Z. Where the slope was
-// clamped, the root of the trace of one covariance by the other's inverse bounds how far apart the two footprints are.
-float widening(Footprint f, float extent) {
+// How far the band of a splat reaches whose weight follows each pixel's true ray: a pixel at delta sees the point u with
+// B u = delta in the footprint, and on its ray u / (1 - e.u), with e = m3 / Z. Where the slope was clamped, the root of the
+// trace of one covariance by the other's inverse bounds how far apart the two footprints are. Around the eye that has no
+// bound, but all rays pass through the eye, and beyond it by BEYOND_EYE deviations nothing counts.
+float beam_band(Footprint f, float extent) {
     float stretch = 1.0;
     if (f.clamped) {
         vec3 b1;
@@ -45,8 +46,13 @@ float widening(Footprint f, float extent) {
         stretch = max(1.0, sqrt(trace));
     }
     float rest = 1.0 - extent * stretch * length(f.m3) / f.view.z;
-    // What is no number has no bound either.
-    return rest > WIDENING_REST ? stretch / rest : 1e30;
+    if (rest > WIDENING_REST) {
+        return extent * stretch / rest;
+    }
+    mat3 m = f.world_factor;
+    vec3 eye = f.relative * m / vec3(dot(m[0], m[0]), dot(m[1], m[1]), dot(m[2], m[2]));
+    // What is no number bounds nothing: every plane then cuts.
+    return length(eye) + BEYOND_EYE;
 }
 
 // How far the band reaches, in standard deviations. rara also traces its own ellipsoid.
@@ -68,7 +74,7 @@ uint plane_side(float distance, vec3 normal, float reach) {
 
 // The same with what perspective adds to it.
 float band_in_view(Footprint f, float sigma, float extent) {
-    return FRAME.mode == MODE_EXACT && is_beam(f, sigma) ? extent * widening(f, extent) : band(extent);
+    return FRAME.mode == MODE_EXACT && is_beam(f, sigma) ? beam_band(f, extent) : band(extent);
 }
 
 // All planes together.

@@ -11,8 +11,7 @@ BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, uint, keys)
 BUFFER(coherent, 3, uint, order)
 BUFFER(coherent, 4, uint, scratch)
-BUFFER(readonly, 5, uvec2, survivors)
-BUFFER(readonly, 6, Gaussian, gaussians)
+BUFFER(readonly, 5, Splat, splats)
 
 // Most that one invocation orders alone.
 const uint FEW = 24u;
@@ -22,7 +21,7 @@ shared uint layer_count;
 
 // A survivor's number in the file.
 uint number(uint survivor) {
-    return floatBitsToUint(gaussians.at[survivors.at[survivor].x].scale.w);
+    return floatBitsToUint(splats.at[survivor].middle.z);
 }
 
 void order_alone(uint begin, uint end) {

@@ -62,7 +62,7 @@ struct Splat {
     vec4 conic_cut; // k2; opacity; the weight's z at the centre and dz/dx, as cut.glsl says
     vec4 colour_cut; // colour; dz/dy
     vec4 axes; // the quad's two half axes, px
-    vec4 middle; // middle of the quad relative to the centre, px; zw unused
+    vec4 middle; // middle of the quad relative to the centre, px; the bits of its number in the file; w unused
     vec4 curvature; // of the weight's z: the factors of dx^2, dx dy and dy^2; w unused
 };
 

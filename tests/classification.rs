@@ -65,20 +65,28 @@ proptest! {
     /// is wider.
     #[test]
     fn outside_the_band_no_pixel_changes_by_half_a_level(
-        form in prop::sample::select(vec![ExactForm::Affine, ExactForm::Beam]), away in (-2.0..2.0_f64, -2.0..2.0_f64),
+        form in prop::sample::select(vec![ExactForm::Affine, ExactForm::Beam]), distance in 0.5..4.0_f64,
+        away in (-2.0..2.0_f64, -2.0..2.0_f64),
         scales in scales(), rotation in rotation(), opacity in 0.005..1.0_f32, normal in direction(),
         beyond in 1.0..1.3_f64, kept in prop::bool::ANY, aim in prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64), 40),
     ) {
         let scene = one(scales, rotation, opacity);
         // Off the axis too, and beyond the picture's edge.
-        let camera = Camera { eye: view_from(4.0).eye + DVec3::new(away.0, away.1, 0.0), ..view_from(4.0) };
+        let from = view_from(distance);
+        let camera = Camera { eye: from.eye + distance / 4.0 * DVec3::new(away.0, away.1, 0.0), ..from };
         let view = View::<f64>::new(&camera);
         let Some(footprint) = Footprint::new(&scene, 0, &view) else { return Ok(()) };
         let mut reach = (2.0 * (255.0 * f64::from(opacity)).ln()).sqrt();
         if form == ExactForm::Beam {
             let rest = 1.0 - reach * footprint.stretch * footprint.rows[2].length() / footprint.centre.z;
-            prop_assume!(rest > 0.051); // else every plane may cut it
-            reach *= footprint.stretch / rest;
+            prop_assume!((rest - 0.05).abs() > 1e-6);
+            reach = if rest > 0.05 {
+                reach * footprint.stretch / rest
+            } else {
+                // Around the eye: by where the eye is in the splat.
+                let turned = scene.rotations[0].as_dquat().inverse() * camera.eye;
+                (turned / scene.scales[0].as_dvec3()).length() + 6.0
+            };
         }
         let sign = if kept { 1.0 } else { -1.0 };
         let clip = cut_by(normal, sign * beyond * (1.0 + 1e-9) * reach * deviation(&scene, 0, normal));

@@ -23,8 +23,10 @@ fn a_gaussian_of_degree_3_takes_at_most_120_bytes_in_the_default_preset() {
         headless.load_as(scene, format).expect("uploads");
         headless.scene_bytes() as f64 / scene.len() as f64
     };
+    // A block of 256 has bounds of 32 bytes, and the last one is not full.
+    let blocks = 0.13;
     for (preset, most) in [
-        (Preset::Exact, 240.0),
+        (Preset::Exact, 240.0 + blocks),
         (Preset::Balanced, 120.0),
         (Preset::Fast, 120.0),
     ] {
@@ -34,7 +36,10 @@ fn a_gaussian_of_degree_3_takes_at_most_120_bytes_in_the_default_preset() {
     for (degree, most) in [(2, 88.0), (1, 68.0), (0, 56.0)] {
         scene.set_sh_degree(degree);
         let taken = bytes(&scene, ShFormat::Packed);
-        assert!(taken <= most, "degree {degree}: {taken} bytes a Gaussian");
+        assert!(
+            taken <= most + blocks,
+            "degree {degree}: {taken} bytes a Gaussian"
+        );
     }
 }
 

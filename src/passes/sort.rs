@@ -50,8 +50,7 @@ impl Sort {
                 &b.keys[sorted],
                 &b.order[sorted],
                 &b.order[sorted ^ 1],
-                &b.survivors,
-                &scene.gaussians,
+                &b.splats,
             ];
             recorder.dispatch(
                 &self.ties,

@@ -3,7 +3,7 @@
 //! The paper's band is 3 max(sigma) on either side of the plane. Here it is K |M^T n|: the Gaussian's own extent along
 //! the normal, out to the contour on which its alpha falls to 1/255. Outside of it no pixel would change by more
 //! than half of 1/255, and half as many needles are called cut. Where weights follow each pixel's true ray, the band is
-//! wider by what perspective adds: see [`widening`].
+//! wider by what perspective adds: see [`beam_band`].
 
 use glam::DVec3;
 
@@ -11,7 +11,7 @@ use super::cutoff::is_beam;
 use super::footprint::Footprint;
 use super::real::{Real, Vec3, vec3};
 use super::view::View;
-use crate::limits::{ALPHA_MIN_INVERSE, WIDENING_REST};
+use crate::limits::{ALPHA_MIN_INVERSE, BEYOND_EYE, WIDENING_REST};
 use crate::{Clip, ClipOp, Gaussians, Mode, Plane, Settings};
 
 /// The paper's three classes, and what is not seen anyway.
@@ -156,25 +156,31 @@ fn band<T: Real>(
 ) -> T {
     match settings.mode {
         Mode::Rara => footprint.reach.max(T::of(f64::from(settings.sigma))),
-        Mode::Exact if is_beam(scene, index, footprint, settings) => {
-            footprint.reach * widening(footprint)
-        }
+        Mode::Exact if is_beam(scene, index, footprint, settings) => beam_band(footprint),
         Mode::None | Mode::Hard | Mode::Exact => footprint.reach,
     }
 }
 
-/// How much farther from the centre a pixel's true ray can pass than its place in the footprint says, as a factor of the
-/// deviations. The footprint is linear: a pixel at `delta` sees the point u with `B u = delta`. The ray of the same
-/// pixel holds the points with `B u = delta (1 + e . u)`, e the depth's derivatives by u over the depth, among them
-/// `u / (1 - e . u)` of that same u. So no ray within K deviations passes farther than `K / (1 - K |e|)`; where that
-/// has no bound, the splat reaches around the eye and every plane may cut it.
-fn widening<T: Real>(footprint: &Footprint<T>) -> T {
+/// Half width of the band of a splat whose weight follows each pixel's true ray. The footprint is linear: a pixel at
+/// `delta` sees the point u with `B u = delta`. The ray of the same pixel holds the points with
+/// `B u = delta (1 + e . u)`, e the depth's derivatives by u over the depth, among them `u / (1 - e . u)` of that same u.
+/// So no ray within K deviations passes farther than `K / (1 - K |e|)`. Where the splat reaches around the eye that has
+/// no bound, but all rays pass through the eye; [`BEYOND_EYE`] deviations beyond it nothing counts.
+fn beam_band<T: Real>(footprint: &Footprint<T>) -> T {
     let depth_share = footprint.rows[2].length() / footprint.centre.z;
     let rest = T::one() - footprint.reach * footprint.stretch * depth_share;
     if rest > T::of(f64::from(WIDENING_REST)) {
-        footprint.stretch / rest
-    } else {
+        return footprint.reach * footprint.stretch / rest;
+    }
+    let eye = footprint
+        .axes
+        .map(|axis| axis.dot(footprint.relative) / axis.dot(axis));
+    let eye = vec3(eye[0], eye[1], eye[2]).length();
+    // A splat without thickness has its eye nowhere: every plane may cut it.
+    if eye.is_nan() {
         T::infinity()
+    } else {
+        eye + T::of(f64::from(BEYOND_EYE))
     }
 }
 

@@ -24,7 +24,17 @@ impl Session {
         self.headless.load_as(scene, sh)
     }
 
-    /// Renders the frame `repeat` times; the statistics are the medians.
+    /// Renders a frame that follows the one before and takes over what stays the same.
+    pub(super) fn next_frame(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<FrameStats> {
+        self.headless.render(camera, clip, settings)
+    }
+
+    /// Renders the frame `repeat` times from nothing; the statistics are the medians.
     pub(super) fn frame(
         &mut self,
         camera: &Camera,

@@ -20,14 +20,20 @@ struct Outline {
 
 const vec3 NO_LINE = vec3(1.0, 0.0, 0.0);
 
-// Where a weight's z, with these factors of its terms of degree one to four (bend.w is that of dy^4), can exceed
-// -TRIM_DEVIATIONS within a box around the splat's centre.
-vec3 hidden_beyond(vec3 plane, vec4 bend, vec4 twist, vec4 wave, vec2 box) {
-    precise float rise = max(bend.x, 0.0) * box.x * box.x + abs(bend.y) * box.x * box.y + max(bend.z, 0.0) * box.y * box.y
-        + dot(abs(twist), vec4(box.x * box.x * box.x, box.x * box.x * box.y, box.x * box.y * box.y, box.y * box.y * box.y))
-        + box.x * dot(abs(wave), vec4(box.x * box.x * box.x, box.x * box.x * box.y, box.x * box.y * box.y, box.y * box.y * box.y))
-        + max(bend.w, 0.0) * box.y * box.y * box.y * box.y;
+// Where a carried weight's z can exceed -TRIM_DEVIATIONS within a box around the splat's centre.
+vec3 hidden_beyond(vec3 plane, vec3 curvature, vec2 box) {
+    precise float rise = max(curvature.x, 0.0) * box.x * box.x + abs(curvature.y) * box.x * box.y
+        + max(curvature.z, 0.0) * box.y * box.y;
     precise vec3 line = vec3(plane.x + TRIM_DEVIATIONS + rise, plane.yz);
+    return line;
+}
+
+// The same of a record that is a curve (cut.glsl), whose coordinates are nowhere beyond the splat's extent.
+vec3 hidden_beyond_curve(vec4 linear, vec4 bend, vec4 twist, vec4 wave, vec3 conic, float extent) {
+    float square = extent * extent;
+    precise float rise = square * (max(bend.x, 0.0) + abs(bend.y) + max(bend.z, 0.0)
+        + extent * dot(abs(twist), vec4(1.0)) + square * (dot(abs(wave), vec4(1.0)) + max(bend.w, 0.0)));
+    precise vec3 line = vec3(linear.x + TRIM_DEVIATIONS + rise, linear.y * conic.x + linear.z * conic.y, linear.z * conic.z);
     return line;
 }
 
@@ -59,7 +65,7 @@ Outline outline(Splat splat) {
     o.line = NO_LINE;
     vec3 plane = vec3(splat.conic_cut.zw, splat.colour_cut.w);
     if (abs(plane.x) < CUT_RANGE) {
-        o.line = hidden_beyond(plane, vec4(splat.curvature.xyz, 0.0), vec4(0.0), vec4(0.0), vec2(width, o.reach));
+        o.line = hidden_beyond(plane, splat.curvature.xyz, vec2(width, o.reach));
     }
     o.rows = tiles_between(top, bottom, FRAME.size.y, TILE_HEIGHT);
     return o;

@@ -44,7 +44,7 @@ void main() {
         counts.at[0].pair_groups = uvec4(tiled ? FRAME.sort_runs / SORT_GROUP_SIZE : 0u, 1u, 1u, 0u);
         counts.at[0].tile_groups = uvec4(tiled ? min(FRAME.tile_count, GROUP_COLUMNS) : 0u, rows, 1u, 0u);
         counts.at[0].composite = uvec4(3u, tiled ? 1u : 0u, 0u, 0u);
-        if (tiled) {
+        if (tiled || FRAME.redrawn != 0u) {
             counts.at[0].draw.y = 0u;
         }
     }

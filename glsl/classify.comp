@@ -1,17 +1,22 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a Gaussian: view culling by footprint, opacity and size, then the paper's three classes (section 3.2).
-// Writes one bit a Gaussian (survives; is cut) and each workgroup's totals; compact turns them into ordered lists.
+// One workgroup a block that neither view nor clip settles as a whole, one invocation a Gaussian: view culling by
+// footprint, opacity and size; of what is in view, the clip's class. Writes one bit a Gaussian (survives; is cut) and the
+// block's totals; compact turns them into ordered lists.
 #include "side.glsl"
 
-layout(local_size_x = GROUP_SIZE) in;
+layout(local_size_x = BLOCK_SIZE) in;
 layout(constant_id = 0) const bool CLIP = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
-BUFFER(writeonly, 2, uint, masks)
-BUFFER(writeonly, 3, uvec4, group_counts)
+BUFFER(readonly, 2, uint, block_list)
+BUFFER(readonly, 3, FrameCounts, counts)
+BUFFER(readonly, 4, uint, clip_sides)
+BUFFER(readonly, 5, uint, clip_masks)
+BUFFER(writeonly, 6, uint, masks)
+BUFFER(writeonly, 7, uvec4, block_counts)
 
-const uint WORDS = GROUP_SIZE / 32u;
+const uint WORDS = BLOCK_SIZE / 32u;
 shared uint survivor_mask[WORDS];
 shared uint cutoff_mask[WORDS];
 shared uint visible_count;
@@ -25,7 +30,20 @@ bool covers_a_pixel(vec2 centre, vec2 extent) {
     return low.x <= high.x && low.y <= high.y;
 }
 
-uint classify(uint index) {
+// What the clip stage has found.
+uint clip_class(uint block, uint local) {
+    uint side = clip_sides.at[block];
+    if (side != SIDE_CUTOFF) {
+        return side;
+    }
+    uint word = block * 2u * WORDS + (local >> 5);
+    uint visible = bitfieldExtract(clip_masks.at[word], int(local & 31u), 1);
+    uint cut = bitfieldExtract(clip_masks.at[word + WORDS], int(local & 31u), 1);
+    return cut != 0u ? SIDE_CUTOFF : visible != 0u ? SIDE_VISIBLE : SIDE_INVISIBLE;
+}
+
+uint classify(uint block, uint local) {
+    uint index = block * BLOCK_SIZE + local;
     Gaussian gaussian = gaussians.at[index];
     float opacity = gaussian.position_opacity.w;
     // Depth first: it is cheap and drops what is behind the eye. Negated, so that a NaN is culled too.
@@ -41,7 +59,14 @@ uint classify(uint index) {
     if (!drawable || !covers_a_pixel(f.centre, box_extent(f, extent))) {
         return SIDE_CULLED;
     }
-    return CLIP ? clip_side(f, gaussian.position_opacity.xyz, extent) : SIDE_VISIBLE;
+    if (!CLIP) {
+        return SIDE_VISIBLE;
+    }
+    float sigma = largest(gaussian.scale.xyz);
+    if (FRAME.mode == MODE_EXACT && is_beam(f, sigma)) {
+        return clip_side(f.world_factor, gaussian.position_opacity.xyz, band_in_view(f, sigma, extent));
+    }
+    return clip_class(block, local);
 }
 
 void main() {
@@ -57,9 +82,10 @@ void main() {
     }
     barrier();
     uint group = LINEAR_GROUP;
-    uint index = group * GROUP_SIZE + local;
-    if (index < FRAME.gaussian_count) {
-        uint side = classify(index);
+    bool is_block = group < counts.at[0].classify_groups.w;
+    uint block = is_block ? block_list.at[group] : 0u;
+    if (is_block && block * BLOCK_SIZE + local < FRAME.gaussian_count) {
+        uint side = classify(block, local);
         uint bit = 1u << (local & 31u);
         // Sums and unions do not depend on the order of atomics.
         if (side >= SIDE_VISIBLE) {
@@ -75,13 +101,13 @@ void main() {
         }
     }
     barrier();
-    if (group < FRAME.group_count) {
+    if (is_block) {
         if (local < WORDS) {
-            masks.at[group * 2u * WORDS + local] = survivor_mask[local];
-            masks.at[group * 2u * WORDS + WORDS + local] = cutoff_mask[local];
+            masks.at[block * 2u * WORDS + local] = survivor_mask[local];
+            masks.at[block * 2u * WORDS + WORDS + local] = cutoff_mask[local];
         }
         if (local == 0u) {
-            group_counts.at[group] = uvec4(visible_count, cutoff_count, invisible_count, 0u);
+            block_counts.at[block] = uvec4(visible_count, cutoff_count, invisible_count, 0u);
         }
     }
 }

@@ -47,21 +47,35 @@ void phi_or_side(float z[ROWS], float alpha[ROWS], out float share[ROWS]) {
     }
 }
 
-// One plane with z = at + y (slope + y (second + y (third + y fourth))) in the row y below the splat's centre.
-void polynomial_weights(float at, float slope, float second, float third, float fourth, float y, float alpha[ROWS],
-                        out float weight[ROWS]) {
+// Of a splat that carries its curve, a polynomial of degree two in the pixel.
+void carried_weights(vec3 plane, vec3 curvature, vec2 delta, float alpha[ROWS], out float weight[ROWS]) {
+    float at = plane.x + delta.x * (plane.y + curvature.x * delta.x);
+    float slope = plane.z + curvature.y * delta.x;
     float z[ROWS];
     for (uint row = 0u; row < ROWS; row++) {
-        float here = y + float(row);
-        z[row] = at + here * (slope + here * (second + here * (third + here * fourth)));
+        float y = delta.y + float(row);
+        z[row] = at + y * (slope + y * curvature.z);
     }
     phi_or_side(z, alpha, weight);
 }
 
-// Of a splat that carries its curve.
-void carried_weights(vec3 plane, vec3 curvature, vec2 delta, float alpha[ROWS], out float weight[ROWS]) {
-    float at = plane.x + delta.x * (plane.y + curvature.x * delta.x);
-    polynomial_weights(at, plane.z + curvature.y * delta.x, curvature.z, 0.0, 0.0, delta.y, alpha, weight);
+// Of a record that is a curve, a polynomial of degree four in the splat's own coordinates: u is that of the column, v
+// that of the first row, and v_step by how much v changes a row.
+void curve_weights(uint base, float u, float v, float v_step, float alpha[ROWS], out float weight[ROWS]) {
+    vec4 linear = cuts.at[base];
+    vec4 bend = cuts.at[base + 1u];
+    vec4 twist = cuts.at[base + 2u];
+    vec4 wave = cuts.at[base + CUT_HEADER];
+    float at = linear.x + u * (linear.y + u * (bend.x + u * (twist.x + u * wave.x)));
+    float slope = linear.z + u * (bend.y + u * (twist.y + u * wave.y));
+    float second = bend.z + u * (twist.z + u * wave.z);
+    float third = twist.w + u * wave.w;
+    float z[ROWS];
+    for (uint row = 0u; row < ROWS; row++) {
+        float w = v + float(row) * v_step;
+        z[row] = at + w * (slope + w * (second + w * (third + w * bend.w)));
+    }
+    phi_or_side(z, alpha, weight);
 }
 
 // `exact` with the record's planes in the ray form and the camera outside the splat: beam_weight of glsl/weight.glsl.
@@ -117,27 +131,20 @@ void beam_weights(uint base, uint count, vec2 delta, vec2 place, float alpha[ROW
     }
 }
 
-// The weight of each pixel of a column. `delta` and `place` are the first row's.
-void cut_weights(uint cut, vec2 delta, vec2 place, float alpha[ROWS], out float weight[ROWS]) {
+// The weight of each pixel of a column. `delta`, `uv` and `place` are the first row's, `v_step` is how much v changes a
+// row.
+void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 place, float alpha[ROWS], out float weight[ROWS]) {
     uint base = cut * push.param[3];
     uint flags = uint(cuts.at[base].w);
     if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
-        vec4 linear = cuts.at[base];
-        vec4 bend = cuts.at[base + 1u];
-        vec4 twist = cuts.at[base + 2u];
-        vec4 wave = cuts.at[base + CUT_HEADER];
-        float x = delta.x;
-        float at = linear.x + x * (linear.y + x * (bend.x + x * (twist.x + x * wave.x)));
-        float slope = linear.z + x * (bend.y + x * (twist.y + x * wave.y));
-        float second = bend.z + x * (twist.z + x * wave.z);
-        polynomial_weights(at, slope, second, twist.w + x * wave.w, bend.w, delta.y, alpha, weight);
+        curve_weights(base, uv.x, uv.y, v_step, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & (CUT_RAY | CUT_FRONT)) == CUT_RAY) {
         vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
         beam_weights(base, flags >> CUT_COUNT_SHIFT, delta + middle, place + middle, alpha, weight);
     } else {
         for (uint row = 0u; row < ROWS; row++) {
             vec2 below = vec2(0.0, float(row));
-            weight[row] = cut_weight(cut, delta + below, place + below);
+            weight[row] = cut_weight(cut, delta + below, uv + v_step * below, place + below);
         }
     }
 }

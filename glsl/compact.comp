@@ -1,19 +1,22 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a Gaussian: ordered stream compaction. The place of a survivor is its workgroup's offset plus the set
-// bits before its own, so the lists are in the order of the file in every run.
-#include "frame.glsl"
+// One workgroup a block with survivors, one invocation a Gaussian: ordered stream compaction. The place of a survivor is
+// its block's offset plus the set bits before its own, so the lists are in the order of the scene in every run.
+#include "side.glsl"
 
-layout(local_size_x = GROUP_SIZE) in;
+layout(local_size_x = BLOCK_SIZE) in;
 
-BUFFER(readonly, 1, uint, masks)
-BUFFER(readonly, 2, uvec2, group_offsets)
-BUFFER(writeonly, 3, uvec2, survivors)
-BUFFER(writeonly, 4, uint, cutoffs)
+BUFFER(readonly, 1, uint, block_list)
+BUFFER(readonly, 2, FrameCounts, counts)
+BUFFER(readonly, 3, uint, block_sides)
+BUFFER(readonly, 4, uint, masks)
+BUFFER(readonly, 5, uvec2, block_offsets)
+BUFFER(writeonly, 6, uvec2, survivors)
+BUFFER(writeonly, 7, uint, cutoffs)
 
-const uint WORDS = GROUP_SIZE / 32u;
+const uint WORDS = BLOCK_SIZE / 32u;
 
-// Set bits of a workgroup's mask before bit `local`.
+// Set bits of a block's mask before bit `local`.
 uint rank(uint base, uint local) {
     uint word = local >> 5;
     uint count = bitCount(masks.at[base + word] & ((1u << (local & 31u)) - 1u));
@@ -26,16 +29,24 @@ uint rank(uint base, uint local) {
 void main() {
     uint group = LINEAR_GROUP;
     uint local = gl_LocalInvocationIndex;
-    uint index = group * GROUP_SIZE + local;
+    if (group >= counts.at[0].compact_groups.w) {
+        return;
+    }
+    uint block = block_list.at[group];
+    uint index = block * BLOCK_SIZE + local;
     if (index >= FRAME.gaussian_count) {
         return;
     }
-    uint base = group * 2u * WORDS;
+    uvec2 offset = block_offsets.at[block];
+    if (block_sides.at[block] == SIDE_VISIBLE) {
+        survivors.at[offset.x + local] = uvec2(index, NOT_CUT);
+        return;
+    }
+    uint base = block * 2u * WORDS;
     uint bit = 1u << (local & 31u);
     if ((masks.at[base + (local >> 5)] & bit) == 0u) {
         return;
     }
-    uvec2 offset = group_offsets.at[group];
     uint cut = NOT_CUT;
     if ((masks.at[base + WORDS + (local >> 5)] & bit) != 0u) {
         cut = offset.y + rank(base + WORDS, local);

@@ -1,65 +1,70 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup: turns the workgroups' totals into each one's place in the lists, the frame's counts and the indirect
-// commands of everything after. Each invocation owns a run of workgroups, so the order is that of the file.
-#include "frame.glsl"
+// One workgroup: turns the blocks' totals into each one's place in the lists, the frame's counts and the indirect
+// commands of everything after. Each invocation owns a run of blocks, so the order is that of the scene.
+#include "block.glsl"
+#include "groups.glsl"
 
-layout(local_size_x = GROUP_SIZE) in;
+layout(local_size_x = BLOCK_SIZE) in;
 
-BUFFER(readonly, 1, uvec4, group_counts)
-BUFFER(writeonly, 2, uvec2, group_offsets)
-BUFFER(writeonly, 3, FrameCounts, counts)
+BUFFER(readonly, 1, uint, block_sides)
+BUFFER(readonly, 2, uvec4, block_counts)
+BUFFER(writeonly, 3, uvec2, block_offsets)
+BUFFER(writeonly, 4, uint, block_list)
+BUFFER(writeonly, 5, FrameCounts, counts)
 
-shared uvec3 run_totals[GROUP_SIZE];
+shared uvec4 run_totals[BLOCK_SIZE];
 
-// Workgroups for `count` items, folded into rows when there are more than a row holds.
-uvec4 groups(uint count, uint size) {
-    uint needed = (count + size - 1u) / size;
-    return uvec4(min(needed, GROUP_COLUMNS), (needed + GROUP_COLUMNS - 1u) / GROUP_COLUMNS, 1u, 0u);
+// Visible, cut and invisible Gaussians of a block, and 1 where some survive.
+uvec4 totals_of(uint block) {
+    uint side = block_sides.at[block];
+    uvec3 totals = side == SIDE_CUTOFF ? block_counts.at[block].xyz
+        : uvec3(side == SIDE_VISIBLE ? 1u : 0u, 0u, side == SIDE_INVISIBLE ? 1u : 0u) * block_length(block);
+    return uvec4(totals, totals.x + totals.y > 0u ? 1u : 0u);
 }
 
 void main() {
     uint local = gl_LocalInvocationIndex;
-    uint run = (FRAME.group_count + GROUP_SIZE - 1u) / GROUP_SIZE;
-    uint begin = min(local * run, FRAME.group_count);
-    uint end = min(begin + run, FRAME.group_count);
-    uvec3 total = uvec3(0u);
-    for (uint group = begin; group < end; group++) {
-        total += group_counts.at[group].xyz;
+    uint run = (FRAME.block_count + BLOCK_SIZE - 1u) / BLOCK_SIZE;
+    uint begin = min(local * run, FRAME.block_count);
+    uint end = min(begin + run, FRAME.block_count);
+    uvec4 total = uvec4(0u);
+    for (uint block = begin; block < end; block++) {
+        total += totals_of(block);
     }
     run_totals[local] = total;
     barrier();
-    uvec3 before = uvec3(0u);
+    uvec4 before = uvec4(0u);
     for (uint other = 0u; other < local; other++) {
         before += run_totals[other];
     }
-    uvec2 offset = uvec2(before.x + before.y, before.y);
-    for (uint group = begin; group < end; group++) {
-        group_offsets.at[group] = offset;
-        uvec3 here = group_counts.at[group].xyz;
-        offset += uvec2(here.x + here.y, here.y);
+    uvec4 place = before;
+    for (uint block = begin; block < end; block++) {
+        uvec4 here = totals_of(block);
+        if (here.w != 0u) {
+            block_offsets.at[block] = uvec2(place.x + place.y, place.y);
+            block_list.at[place.w] = block;
+        }
+        place += here;
     }
-    if (local == GROUP_SIZE - 1u) {
-        uvec3 all = before + total;
-        uint survivors = all.x + all.y;
-        FrameCounts result;
-        result.visible = all.x;
-        result.cutoff = all.y;
-        result.invisible = all.z;
-        result.culled = FRAME.gaussian_count - survivors - all.z;
-        result.project_groups = groups(survivors, SURVIVOR_GROUP_SIZE);
-        result.cutoff_groups = groups(all.y, SURVIVOR_GROUP_SIZE);
+    if (local == BLOCK_SIZE - 1u) {
+        uint survivors = place.x + place.y;
+        counts.at[0].visible = place.x;
+        counts.at[0].cutoff = place.y;
+        counts.at[0].invisible = place.z;
+        counts.at[0].culled = FRAME.gaussian_count - survivors - place.z;
+        counts.at[0].compact_groups = groups(place.w, 1u);
+        counts.at[0].project_groups = groups(survivors, SURVIVOR_GROUP_SIZE);
+        counts.at[0].cutoff_groups = groups(place.y, SURVIVOR_GROUP_SIZE);
         // One survivor is sorted too: the passes carry it to the buffer that the draw reads.
-        result.sort_groups = uvec4(survivors == 0u ? 0u : FRAME.sort_runs / SORT_GROUP_SIZE, 1u, 1u, 0u);
-        result.draw = uvec4(4u, survivors, 0u, 0u);
-        result.mesh_groups = groups(survivors, MESH_GROUP_SIZE);
-        result.mesh_groups.w = survivors;
+        counts.at[0].sort_groups = uvec4(survivors == 0u ? 0u : FRAME.sort_runs / SORT_GROUP_SIZE, 1u, 1u, 0u);
+        counts.at[0].draw = uvec4(4u, survivors, 0u, 0u);
+        counts.at[0].mesh_groups = groups(survivors, MESH_GROUP_SIZE);
         // Binning counts them, where tiles are wanted.
-        result.pairs = 0u;
-        result.tiled = 0u;
-        result.pair_groups = uvec4(0u);
-        result.tile_groups = uvec4(0u);
-        result.composite = uvec4(0u);
-        counts.at[0] = result;
+        counts.at[0].pairs = 0u;
+        counts.at[0].tiled = 0u;
+        counts.at[0].pair_groups = uvec4(0u);
+        counts.at[0].tile_groups = uvec4(0u);
+        counts.at[0].composite = uvec4(0u);
     }
 }

@@ -1,12 +1,15 @@
-// The usual cut splat's weight without lines of sight: z as a polynomial in the pixel, fitted to the perspective-exact
-// form and kept only where it is as good. Of degree two, the rasteriser carries it; of degree four, a record holds it.
+// The usual cut splat's weight without lines of sight: z as a polynomial in the splat's own coordinates, fitted to the
+// perspective-exact form and kept only where it is as good. Of degree two, the rasteriser carries it; of degree four, a
+// record holds it.
 #ifndef RARA_CURVE
 #define RARA_CURVE
 #include "extent.glsl"
 #include "sight.glsl"
 
-// z = at + slope . d + bend . (dx^2, dx dy, dy^2) + twist . (dx^3, dx^2 dy, dx dy^2, dy^3)
-//     + wave . (dx^4, dx^3 dy, dx^2 dy^2, dx dy^3) + ripple dy^4.
+// A point d of a splat as u = k0 dx and v = k1 dx + k2 dy, with the Cholesky factor of its conic: alpha is
+// opacity exp(-(u^2 + v^2) / 2), so that no pixel that counts is far from 0, and no power of a coordinate large.
+// z = at + slope . (u, v) + bend . (u^2, u v, v^2) + twist . (u^3, u^2 v, u v^2, v^3)
+//     + wave . (u^4, u^3 v, u^2 v^2, u v^3) + ripple v^4.
 struct Curve {
     float at;
     vec2 slope;
@@ -24,25 +27,29 @@ struct CurveSource {
     vec4 h0, h1, h2; // header of the cutoff record
     vec4 plane; // in the ray form
     vec2 centre; // relative to the principal point, px
-    vec2 first, second; // one deviation along the footprint's axes, px
+    vec3 conic; // Cholesky factor, 1/px
 };
 
-float exact_z(CurveSource source, vec2 st) {
-    vec2 delta = st.x * source.first + st.y * source.second;
+float exact_z(CurveSource source, vec2 uv) {
+    float dx = uv.x / source.conic.x;
+    vec2 delta = vec2(dx, (uv.y - source.conic.y * dx) / source.conic.z);
     Sight sight = sight_through(source.h0, source.h1, source.h2, source.centre + delta, delta);
     bool far;
     return ray_z(sight, determinant(sight), source.plane, far);
 }
 
-// The samples: eight on each of four rings around the centre, every other ring turned by half a step. The first two are
+// The samples: eight on each of five rings around the centre, every other ring turned by half a step. The first two are
 // fitted to, all of them are checked.
 const uint CURVE_STEPS = 8u;
-const uint CURVE_RINGS = 4u;
+const uint CURVE_RINGS = 5u;
 const uint CURVE_SAMPLES = CURVE_RINGS * CURVE_STEPS;
+// The rings from the centre outwards.
+const uint CURVE_OUTWARDS[CURVE_RINGS] = uint[](0u, 3u, 1u, 4u, 2u);
 
-// Deviations from the centre: 1, 2, 3 and 1.5.
-float curve_radius(uint ring) {
-    return ring == 3u ? 1.5 : float(ring + 1u);
+// Deviations from the centre; the last ring is the contour at which the splat ends.
+float curve_radius(uint ring, float extent) {
+    float last = max(extent, 2.5);
+    return ring == 0u ? 1.0 : ring == 1u ? 2.0 : ring == 2u ? last : ring == 3u ? 1.5 : 0.5 * (2.0 + last);
 }
 
 vec2 curve_direction(uint ring, uint step) {
@@ -55,18 +62,18 @@ struct CurveSamples {
     float at[CURVE_SAMPLES];
 };
 
-CurveSamples sampled(CurveSource source) {
+CurveSamples sampled(CurveSource source, float extent) {
     CurveSamples z;
     z.centre = exact_z(source, vec2(0.0));
     for (uint ring = 0u; ring < CURVE_RINGS; ring++) {
         for (uint step = 0u; step < CURVE_STEPS; step++) {
-            z.at[ring * CURVE_STEPS + step] = exact_z(source, curve_radius(ring) * curve_direction(ring, step));
+            z.at[ring * CURVE_STEPS + step] = exact_z(source, curve_radius(ring, extent) * curve_direction(ring, step));
         }
     }
     return z;
 }
 
-// The parts of z on a ring that turn with the angle and its multiples: means of z times cosine and sine.
+// Fourier coefficients of the samples of a ring.
 struct Harmonics {
     float mean;
     vec2 first, second, third;
@@ -127,24 +134,41 @@ float curve_z(Curve c, vec2 d) {
     return at + d.y * (slope + d.y * (second + d.y * (third + d.y * c.ripple)));
 }
 
+vec2 curve_gradient(Curve c, vec2 d) {
+    float u = d.x;
+    float v = d.y;
+    float along_u = c.slope.x + u * (2.0 * c.bend.x + u * (3.0 * c.twist.x + u * 4.0 * c.wave.x))
+        + v * (c.bend.y + u * (2.0 * c.twist.y + u * 3.0 * c.wave.y) + v * (c.twist.z + u * 2.0 * c.wave.z + v * c.wave.w));
+    float along_v = c.slope.y + u * (c.bend.y + u * (c.twist.y + u * c.wave.y))
+        + v * (2.0 * (c.bend.z + u * (c.twist.z + u * c.wave.z)) + v * (3.0 * (c.twist.w + u * c.wave.w) + v * 4.0 * c.ripple));
+    return vec2(along_u, along_v);
+}
+
+// By how much the exact form changes from a sample to its neighbours, along its ring and to the rings inside and outside.
+float exact_change(CurveSamples z, uint outwards, uint step) {
+    uint ring = CURVE_OUTWARDS[outwards];
+    float here = z.at[ring * CURVE_STEPS + step];
+    float next = z.at[ring * CURVE_STEPS + (step + 1u) % CURVE_STEPS];
+    float last = z.at[ring * CURVE_STEPS + (step + CURVE_STEPS - 1u) % CURVE_STEPS];
+    float inside = outwards == 0u ? z.centre : z.at[CURVE_OUTWARDS[outwards - 1u] * CURVE_STEPS + step];
+    float outside = outwards + 1u == CURVE_RINGS ? here : z.at[CURVE_OUTWARDS[outwards + 1u] * CURVE_STEPS + step];
+    return max(max(abs(next - here), abs(last - here)), max(abs(inside - here), abs(outside - here)));
+}
+
 // Whether no pixel's alpha differs by more than CURVE_TOLERANCE from the exact form's.
-bool is_good(Curve curve, CurveSamples z, float opacity) {
-    for (uint ring = 0u; ring < CURVE_RINGS; ring++) {
-        float r = curve_radius(ring);
+bool is_good(Curve curve, CurveSamples z, float opacity, float extent) {
+    for (uint outwards = 0u; outwards < CURVE_RINGS; outwards++) {
+        uint ring = CURVE_OUTWARDS[outwards];
+        float r = curve_radius(ring, extent);
         float alpha = opacity * exp(-0.5 * r * r);
         for (uint step = 0u; step < CURVE_STEPS; step++) {
             // A steep edge may pass between the samples: what counts is z's error wherever an edge, the exact one or
-            // the fit's, may come near.
+            // the fit's, may come near. Where both are on one side, far enough for either to stay there, nothing does.
             vec2 d = r * curve_direction(ring, step);
-            vec4 t = curve.twist;
-            vec2 gradient = curve.slope
-                + vec2(2.0 * curve.bend.x * d.x + curve.bend.y * d.y, 2.0 * curve.bend.z * d.y + curve.bend.y * d.x)
-                + vec2(3.0 * t.x * d.x * d.x + 2.0 * t.y * d.x * d.y + t.z * d.y * d.y,
-                       t.y * d.x * d.x + 2.0 * t.z * d.x * d.y + 3.0 * t.w * d.y * d.y)
-                + r * r * r * vec2(4.0 * largest(curve.wave.xyz), 4.0 * max(abs(curve.wave.w), abs(curve.ripple)));
             float exact = z.at[ring * CURVE_STEPS + step];
             float fit = curve_z(curve, d);
-            if (!(min(abs(exact), abs(fit)) >= 5.0 + length(gradient) && exact * fit >= 0.0)) {
+            float change = max(length(curve_gradient(curve, d)), exact_change(z, outwards, step));
+            if (!(min(abs(exact), abs(fit)) >= 5.0 + change && exact * fit >= 0.0)) {
                 // Not its opposite: what is no number is no good.
                 if (!(0.4 * alpha * abs(fit - exact) <= CURVE_TOLERANCE)) {
                     return false;
@@ -155,43 +179,13 @@ bool is_good(Curve curve, CurveSamples z, float opacity) {
     return true;
 }
 
-// The product of a form of degree two with a linear one.
-vec4 raised(vec3 bend, vec2 slope) {
-    return vec4(bend * slope.x, 0.0) + vec4(0.0, bend * slope.y);
-}
-
-// The product of two forms of degree two: the last factor apart.
-vec4 squared(vec3 a, vec3 b, out float last) {
-    last = a.z * b.z;
-    return vec4(a.x * b.x, a.x * b.y + a.y * b.x, a.x * b.z + a.y * b.y + a.z * b.x, a.y * b.z + a.z * b.y);
-}
-
-// A curve in deviations along the axes as one in pixels.
-Curve in_pixels(Curve c, CurveSource source) {
-    // s and t are the components of the pixel's offset along the axes.
-    vec2 s = source.first / dot(source.first, source.first);
-    vec2 t = source.second / dot(source.second, source.second);
-    vec3 ss = vec3(s.x * s.x, 2.0 * s.x * s.y, s.y * s.y);
-    vec3 st = vec3(s.x * t.x, s.x * t.y + s.y * t.x, s.y * t.y);
-    vec3 tt = vec3(t.x * t.x, 2.0 * t.x * t.y, t.y * t.y);
-    Curve pixels;
-    pixels.at = clamp(c.at, -1e20, 1e20); // within what the rasteriser carries
-    pixels.slope = c.slope.x * s + c.slope.y * t;
-    pixels.bend = c.bend.x * ss + c.bend.y * st + c.bend.z * tt;
-    pixels.twist = c.twist.x * raised(ss, s) + c.twist.y * raised(ss, t) + c.twist.z * raised(tt, s)
-        + c.twist.w * raised(tt, t);
-    float last;
-    pixels.wave = c.wave.x * squared(ss, ss, last);
-    pixels.ripple = c.wave.x * last;
-    pixels.wave += c.wave.y * squared(ss, st, last);
-    pixels.ripple += c.wave.y * last;
-    pixels.wave += c.wave.z * squared(ss, tt, last);
-    pixels.ripple += c.wave.z * last;
-    pixels.wave += c.wave.w * squared(st, tt, last);
-    pixels.ripple += c.wave.w * last;
-    pixels.wave += c.ripple * squared(tt, tt, last);
-    pixels.ripple += c.ripple * last;
-    return pixels;
+// The plane and the curvature of a curve of degree two, per pixel: what the rasteriser carries.
+void in_pixels(Curve c, vec3 conic, out vec3 plane, out vec3 curvature) {
+    vec2 u = vec2(conic.x, 0.0);
+    vec2 v = conic.yz;
+    plane = vec3(c.at, c.slope.x * u + c.slope.y * v);
+    curvature = vec3(c.bend.x * u.x * u.x + c.bend.y * u.x * v.x + c.bend.z * v.x * v.x,
+                     c.bend.y * u.x * v.y + 2.0 * c.bend.z * v.x * v.y, c.bend.z * v.y * v.y);
 }
 
 #endif

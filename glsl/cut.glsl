@@ -5,8 +5,8 @@
 //   2      e = m3 / Z, how the gradients change with the pixel, times scale; low-pass times scale^2
 //   3...   a plane each. Affine: z at the centre, dz/dx, dz/dy, and 1 where the far side is kept, -1 the near side.
 //          Ray: normal in unit space, and the centre's distance, both divided by the normal's largest component.
-//   With CUT_CURVE 0 holds z at the centre and its slopes, 1 the factors of dx^2, dx dy, dy^2 and dy^4, 2 those of dx^3,
-//   dx^2 dy, dx dy^2 and dy^3, 3 those of dx^4, dx^3 dy, dx^2 dy^2 and dx dy^3.
+//   With CUT_CURVE, in the coordinates of curve.glsl, 0 holds z at the centre and its slopes, 1 the factors of u^2, u v,
+//   v^2 and v^4, 2 those of u^3, u^2 v, u v^2 and v^3, 3 those of u^4, u^3 v, u^2 v^2 and u v^3.
 //   last   of one plane without CUT_RAY: its curvature, the factors of dx^2, dx dy and dy^2 in z
 //          with CUT_FRONT: the plane through the eye across the view axis, in the same form
 #ifndef RARA_CUT
@@ -28,6 +28,8 @@ const uint CUT_COUNT_SHIFT = 8u;
 const float CUT_RANGE = 1e30;
 const float CUT_WHOLE = 2e30;
 const float CUT_RECORD = -2e30;
+// In a sweep, whose survivors are all in view, that the splat is clipped away.
+const float CUT_GONE = 4e30;
 
 // Whether a plane keeps the far part of a line of sight: by its normal's component along the line. Where that is zero
 // (a Gaussian without thickness) any fixed rule would do, if it told opposed planes apart: the normal's first non-zero

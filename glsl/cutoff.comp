@@ -48,13 +48,11 @@ void main() {
     vec3 position = gaussian.position_opacity.xyz;
     Footprint f = footprint(gaussian);
     float extent = opacity_extent(gaussian.position_opacity.w);
-    float reach = band(extent);
+    float sigma = largest(gaussian.scale.xyz);
+    float reach = band_in_view(f, sigma, extent);
 
-    bool front = f.view.z < reach * length(f.m3);
-    bool ray = FRAME.mode == MODE_RARA || FRAME.form == FORM_BEAM;
-    if (FRAME.mode == MODE_EXACT && FRAME.form == FORM_AUTO) {
-        ray = front || f.clamped || gaussian.scale.w > FRAME.beam_switch * f.view.z;
-    }
+    bool front = f.view.z < band(extent) * length(f.m3);
+    bool ray = FRAME.mode == MODE_RARA || is_beam(f, sigma) || (FRAME.form == FORM_AUTO && front);
     front = front && ray;
 
     uint base = cut * FRAME.cut_stride;
@@ -63,7 +61,7 @@ void main() {
     vec4 form;
     for (uint plane = 0u; plane < FRAME.plane_count; plane++) {
         float distance = plane_distance(plane, position);
-        vec3 normal = unit_normal(plane, f);
+        vec3 normal = unit_normal(plane, f.world_factor);
         // A plane that keeps the whole splat changes no intersection, one that drops it no union.
         if (plane_side(distance, normal, reach) != kept) {
             form = ray_plane(normal, distance);
@@ -94,30 +92,30 @@ void main() {
     source.h1 = vec4(b2 * scale, scale);
     source.h2 = vec4(e * scale, LOW_PASS * scale * scale);
 
-    if (FRAME.mode == MODE_EXACT && FRAME.form == FORM_AUTO && count == 1u && !front) {
-        Quad axes = along_axes(f, 1.0);
+    // A switch of zero asks for the exact form itself.
+    if (FRAME.mode == MODE_EXACT && FRAME.form == FORM_AUTO && FRAME.beam_switch > 0.0 && count == 1u && !front) {
         source.plane = form;
         source.centre = f.centre - FRAME.focal.zw;
-        source.first = axes.first;
-        source.second = axes.second;
-        CurveSamples samples = sampled(source);
+        source.conic = cholesky(f);
+        CurveSamples samples = sampled(source, extent);
         Curve square;
         Curve quartic;
         fitted(samples, square, quartic);
         float opacity = gaussian.position_opacity.w;
-        if (is_good(square, samples, opacity)) {
-            Curve curve = in_pixels(square, source);
+        if (is_good(square, samples, opacity, extent)) {
+            vec3 plane;
+            vec3 curvature;
+            in_pixels(square, source.conic, plane, curvature);
             cuts.at[base] = vec4(vec3(0.0), float(flags));
-            cuts.at[at - 1u] = vec4(curve.at, curve.slope, 0.0);
-            cuts.at[at] = vec4(curve.bend, 0.0);
+            cuts.at[at - 1u] = vec4(plane, 0.0);
+            cuts.at[at] = vec4(curvature, 0.0);
             return;
         }
-        if (is_good(quartic, samples, opacity)) {
-            Curve curve = in_pixels(quartic, source);
-            cuts.at[base] = vec4(curve.at, curve.slope, float(flags | CUT_CURVE));
-            cuts.at[base + 1u] = vec4(curve.bend, curve.ripple);
-            cuts.at[base + 2u] = curve.twist;
-            cuts.at[base + CUT_HEADER] = curve.wave;
+        if (is_good(quartic, samples, opacity, extent)) {
+            cuts.at[base] = vec4(quartic.at, quartic.slope, float(flags | CUT_CURVE));
+            cuts.at[base + 1u] = vec4(quartic.bend, quartic.ripple);
+            cuts.at[base + 2u] = quartic.twist;
+            cuts.at[base + CUT_HEADER] = quartic.wave;
             return;
         }
     }

@@ -77,8 +77,8 @@ float area(Quad quad) {
     return length(quad.first) * length(quad.second);
 }
 
-// Beyond this many deviations behind the plane a weight is below 4e-5 and changes no pixel by more than 0.05/255.
-const float TRIM_DEVIATIONS = 4.0;
+// Beyond this many deviations behind the plane nothing is drawn: a little more than where tiles take a weight for zero.
+const float TRIM_DEVIATIONS = 4.55;
 
 Quad quad_around(Footprint f, float extent, Carried weight) {
     Quad quad = along_axes(f, extent);

@@ -66,12 +66,16 @@ void screen_gradients(Footprint f, vec2 slope, out vec3 b1, out vec3 b2) {
     b2 = FRAME.focal.y / f.view.z * (f.m2 - slope.y * f.m3);
 }
 
+mat3 world_factor(Gaussian gaussian) {
+    mat3 axes = rotation_matrix(gaussian.rotation);
+    return mat3(axes[0] * gaussian.scale.x, axes[1] * gaussian.scale.y, axes[2] * gaussian.scale.z);
+}
+
 Footprint footprint(Gaussian gaussian) {
     Footprint f;
     f.relative = eye_relative(gaussian.position_opacity.xyz);
     f.view = view_position(gaussian.position_opacity.xyz, f.relative);
-    mat3 axes = rotation_matrix(gaussian.rotation);
-    f.world_factor = mat3(axes[0] * gaussian.scale.x, axes[1] * gaussian.scale.y, axes[2] * gaussian.scale.z);
+    f.world_factor = world_factor(gaussian);
     f.m1 = FRAME.rotation_x.xyz * f.world_factor;
     f.m2 = FRAME.rotation_y.xyz * f.world_factor;
     f.m3 = FRAME.rotation_z.xyz * f.world_factor;

@@ -13,6 +13,11 @@ const float ALPHA_MAX = 0.99;
 const float ALPHA_MIN_INVERSE = 255.0;
 // A cut splat is weighted by the perspective-exact form where sigma_max / Z exceeds this, by the affine form below.
 const float BEAM_SWITCH = 0.005;
+// What perspective may leave of a splat's depth, as a share, before its band follows from where the eye is in it.
+const float WIDENING_REST = 0.05;
+// Deviations beyond the eye at which a plane cuts nothing off that is in front of it: 1e-9 of the whole, 1e-5 of the least
+// part in front of the eye that counts.
+const float BEYOND_EYE = 6.0;
 // Share of a splat in front of the eye below which single precision cannot divide by it; the eye is then ignored.
 const float FRONT_MIN = 1e-4;
 // Most half-spaces in a clip. Raising it lengthens the frame's uniform block and the cutoff records of such clips.
@@ -21,8 +26,17 @@ const uint MAX_CLIP_PLANES = 32u;
 const uint MAX_SH_COEFFICIENTS = 16u;
 // Opacity below which a splat is invisible everywhere, and more of a cut splat is never computed: 1/255.
 const float ALPHA_MIN = 1.0 / ALPHA_MIN_INVERSE;
-// Gaussians a workgroup of classify and compact handles; eight words of its bit masks.
-const uint GROUP_SIZE = 256u;
+// Gaussians of a block, one workgroup of clip, classify and compact; eight words of its bit masks.
+const uint BLOCK_SIZE = 256u;
+// Blocks that a workgroup decides about at a time.
+const uint BLOCK_GROUP_SIZE = 64u;
+// Words that a sweep keeps of a block: see reclip.glsl.
+const uint RECLIP_WORDS = 32u;
+// Opacity from which a splat's bounding box spans a pixel whatever the projection: its contour of 1/255 is then at 0.92
+// deviations or more, and the low-pass alone makes them 0.55 px.
+const float OPACITY_SPANNING = 0.006;
+// Standard deviation on the screen up to which single precision surely finds a splat's conic, px.
+const float DRAWABLE_DEVIATION = 1e6;
 // Survivors a workgroup of project and cutoff handles.
 const uint SURVIVOR_GROUP_SIZE = 64u;
 // Splats a mesh workgroup emits: 4 vertices and 2 triangles each, half of the least that Vulkan guarantees.

@@ -22,31 +22,29 @@ BUFFER(writeonly, 7, uint, order)
 BUFFER(readonly, 8, vec4, cuts)
 BUFFER(writeonly, 9, uvec4, tile_masks)
 
-// What the rasteriser carries of the weight: see cut.glsl.
-Carried carried_weight(uint cut) {
-    Carried weight = Carried(vec3(CUT_WHOLE, 0.0, 0.0), vec3(0.0));
-    if (CUT && cut != NOT_CUT) {
-        uint base = cut * FRAME.cut_stride;
-        if (cuts.at[base].w == float(1u << CUT_COUNT_SHIFT)) {
-            weight.plane = cuts.at[base + CUT_HEADER].xyz;
-            weight.curvature = cuts.at[base + CUT_HEADER + 1u].xyz;
-        } else {
-            weight.plane = vec3(CUT_RECORD, float(cut & 0xffffu), float(cut >> 16));
-        }
-    }
-    return weight;
-}
+#include "carried.glsl"
 
 vec3 colour(uint index, vec3 direction) {
     float basis[MAX_SH_COEFFICIENTS];
     sh_basis(direction, FRAME.sh_degree, basis);
-    uint base = index * sh_words(FRAME.sh_coefficients * 3u);
-    float unit = sh_unit(base);
-    uint used = (FRAME.sh_degree + 1u) * (FRAME.sh_degree + 1u);
-    vec3 sum = vec3(0.5);
-    for (uint i = 0u; i < used; i++) {
-        uint k = 3u * i;
-        sum += basis[i] * vec3(sh_number(base, unit, k), sh_number(base, unit, k + 1u), sh_number(base, unit, k + 2u));
+    uint base = index * sh_words(FRAME.sh_coefficients);
+    vec3 sum = 0.5 + basis[0] * sh_constant(base);
+    // A loop a degree: the compiler unrolls what has a fixed length.
+    if (FRAME.sh_degree > 0u) {
+        mat3 units = sh_units(base);
+        for (uint i = 1u; i < 4u; i++) {
+            sum += basis[i] * sh_coefficient(base, units[0], i);
+        }
+        if (FRAME.sh_degree > 1u) {
+            for (uint i = 4u; i < 9u; i++) {
+                sum += basis[i] * sh_coefficient(base, units[1], i);
+            }
+        }
+        if (FRAME.sh_degree > 2u) {
+            for (uint i = 9u; i < 16u; i++) {
+                sum += basis[i] * sh_coefficient(base, units[2], i);
+            }
+        }
     }
     // Finite, so that a share of nothing stays nothing.
     return clamp(sum, vec3(0.0), vec3(3e38));
@@ -65,25 +63,20 @@ void main() {
 
     Splat splat;
     vec3 conic = cholesky(f);
-    Carried weight = carried_weight(survivors.at[survivor].y);
+    Carried weight = CUT ? carried_weight(survivors.at[survivor].y) : whole_weight();
     Quad quad = quad_around(f, extent, weight);
     splat.centre_conic = vec4(f.centre, conic.xy);
     splat.conic_cut = vec4(conic.z, opacity, weight.plane.xy);
     splat.colour_cut = vec4(colour(index, normalize(f.relative / largest(f.relative))), weight.plane.z);
     splat.axes = vec4(quad.first, quad.second);
-    splat.middle = vec4(quad.middle, 0.0, 0.0);
+    splat.middle = vec4(quad.middle, gaussian.scale.w, 0.0);
     splat.curvature = vec4(weight.curvature, 0.0);
     splats.at[survivor] = splat;
     if (TILES) {
         Outline o = outline(splat);
         uint cut = survivors.at[survivor].y;
-        if (CUT && cut != NOT_CUT && weight.plane.x < -CUT_RANGE) {
-            uint base = cut * FRAME.cut_stride;
-            vec4 linear = cuts.at[base];
-            if ((uint(linear.w) & CUT_CURVE) != 0u) {
-                o.line = hidden_beyond(linear.xyz, cuts.at[base + 1u], cuts.at[base + 2u], cuts.at[base + CUT_HEADER],
-                                       box_extent(f, extent));
-            }
+        if (CUT && cut != NOT_CUT) {
+            o.line = hidden_by_record(o.line, cut, weight, conic, extent);
         }
         tile_masks.at[survivor] = tile_mask(o);
     }

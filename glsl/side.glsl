@@ -1,6 +1,6 @@
 // The paper's three classes (section 3.2) for one Gaussian and every plane, by its tight support along the normal:
 // |n.mu + d| against K |M^T n| with K where alpha falls to 1/255, instead of 3 max(sigma). Outside that band no pixel
-// of the splat changes by more than 0.5/255.
+// of the splat changes by more than 0.5/255; where weights follow true rays, perspective widens it.
 #ifndef RARA_SIDE
 #define RARA_SIDE
 #include "footprint.glsl"
@@ -16,8 +16,43 @@ float plane_distance(uint plane, vec3 position) {
 }
 
 // The normal in the Gaussian's unit space; its length is the standard deviation along the normal.
-vec3 unit_normal(uint plane, Footprint f) {
-    return FRAME.plane_high[plane].xyz * f.world_factor;
+vec3 unit_normal(uint plane, mat3 world_factor) {
+    return FRAME.plane_high[plane].xyz * world_factor;
+}
+
+// Whether the exact form of a splat follows each pixel's true ray.
+bool is_beam(Footprint f, float sigma) {
+    return FRAME.form == FORM_BEAM
+        || (FRAME.form == FORM_AUTO && (f.clamped || sigma > FRAME.beam_switch * f.view.z));
+}
+
+// How far the band of a splat reaches whose weight follows each pixel's true ray: a pixel at delta sees the point u with
+// B u = delta in the footprint, and on its ray u / (1 - e.u), with e = m3 / Z. Where the slope was clamped, the root of the
+// trace of one covariance by the other's inverse bounds how far apart the two footprints are. Around the eye that has no
+// bound, but all rays pass through the eye, and beyond it by BEYOND_EYE deviations nothing counts.
+float beam_band(Footprint f, float extent) {
+    float stretch = 1.0;
+    if (f.clamped) {
+        vec3 b1;
+        vec3 b2;
+        screen_gradients(f, f.view.xy / f.view.z, b1, b2);
+        b1 *= f.scale;
+        b2 *= f.scale;
+        vec3 across = cross(b1, b2);
+        float n1 = dot(b1, b1);
+        float n2 = dot(b2, b2);
+        float det = dot(across, across) + f.low_pass * (n1 + n2) + f.low_pass * f.low_pass;
+        float trace = (f.xx * (n2 + f.low_pass) - 2.0 * f.xy * dot(b1, b2) + f.yy * (n1 + f.low_pass)) / det;
+        stretch = max(1.0, sqrt(trace));
+    }
+    float rest = 1.0 - extent * stretch * length(f.m3) / f.view.z;
+    if (rest > WIDENING_REST) {
+        return extent * stretch / rest;
+    }
+    mat3 m = f.world_factor;
+    vec3 eye = f.relative * m / vec3(dot(m[0], m[0]), dot(m[1], m[1]), dot(m[2], m[2]));
+    // What is no number bounds nothing: every plane then cuts.
+    return length(eye) + BEYOND_EYE;
 }
 
 // How far the band reaches, in standard deviations. rara also traces its own ellipsoid.
@@ -37,13 +72,17 @@ uint plane_side(float distance, vec3 normal, float reach) {
     return distance >= support ? SIDE_VISIBLE : distance <= -support ? SIDE_INVISIBLE : SIDE_CUTOFF;
 }
 
+// The same with what perspective adds to it.
+float band_in_view(Footprint f, float sigma, float extent) {
+    return FRAME.mode == MODE_EXACT && is_beam(f, sigma) ? beam_band(f, extent) : band(extent);
+}
+
 // All planes together.
-uint clip_side(Footprint f, vec3 position, float extent) {
+uint clip_side(mat3 world_factor, vec3 position, float reach) {
     uint decided = FRAME.op == OP_AND ? SIDE_INVISIBLE : SIDE_VISIBLE;
     uint side = FRAME.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
-    float reach = band(extent);
     for (uint plane = 0u; plane < FRAME.plane_count; plane++) {
-        uint one = plane_side(plane_distance(plane, position), unit_normal(plane, f), reach);
+        uint one = plane_side(plane_distance(plane, position), unit_normal(plane, world_factor), reach);
         if (one == decided) {
             return decided;
         }

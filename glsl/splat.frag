@@ -39,7 +39,7 @@ void main() {
                 + delta.y * (plane.z + curvature.z * delta.y);
             alpha = decayed(alpha, phi(z));
         } else {
-            alpha = decayed(alpha, cut_weight(uint(plane.y) | uint(plane.z) << 16, delta, gl_FragCoord.xy));
+            alpha = decayed(alpha, cut_weight(uint(plane.y) | uint(plane.z) << 16, delta, vec2(u, v), gl_FragCoord.xy));
         }
     }
     colour = vec4(colour_cut.rgb * alpha, alpha);

@@ -14,17 +14,21 @@ layout(constant_id = 4) const uint PHI_FORM = 0u;
 // Pixels of an invocation, one above the other.
 layout(constant_id = 5) const uint ROWS = 8u;
 layout(local_size_x = TILE_WIDTH, local_size_y_id = 6) in;
+// Whether the camera stands still and only the clip moves: tiles that nothing has changed keep their pixels, and some of
+// the splats are clipped away.
+layout(constant_id = 7) const bool SWEEP = false;
 
 BUFFER(readonly, 1, Splat, splats)
 BUFFER(readonly, 2, uint, pair_splats)
 BUFFER(readonly, 3, uint, tile_begins)
 BUFFER(readonly, 4, vec4, cuts)
 BUFFER(writeonly, 5, vec4, picture)
+BUFFER(readonly, 6, uint, dirty)
 #include "column.glsl"
 
 void main() {
     uint tile = LINEAR_GROUP;
-    if (tile >= FRAME.tile_count) {
+    if (tile >= FRAME.tile_count || (SWEEP && dirty.at[tile] == 0u)) {
         return;
     }
     uvec2 corner = uvec2(tile % FRAME.tile_columns * TILE_WIDTH, tile / FRAME.tile_columns * TILE_HEIGHT);
@@ -42,6 +46,9 @@ void main() {
         uint number = pair_splats.at[i];
         vec4 centre_conic = splats.at[number].centre_conic;
         vec4 conic_cut = splats.at[number].conic_cut;
+        if (SWEEP && conic_cut.z == CUT_GONE) {
+            continue;
+        }
         vec4 colour_cut = splats.at[number].colour_cut;
         vec2 delta = place - centre_conic.xy;
         float u = centre_conic.z * delta.x;
@@ -59,7 +66,8 @@ void main() {
             if (CLIP_MODE == MODE_EXACT && plane.x > -CUT_RANGE) {
                 carried_weights(plane, splats.at[number].curvature.xyz, delta, alpha, weight);
             } else {
-                cut_weights(uint(plane.y) | uint(plane.z) << 16, delta, place, alpha, weight);
+                vec2 uv = vec2(u, v + conic_cut.x * delta.y);
+                cut_weights(uint(plane.y) | uint(plane.z) << 16, delta, uv, conic_cut.x, place, alpha, weight);
             }
             bool whole = true;
             for (uint row = 0u; row < ROWS; row++) {

@@ -26,7 +26,7 @@ struct FrameData {
     uint trace_all; // 1: every Gaussian in view is cutoff
     uint cut_stride; // vec4s of a cutoff record
     uint sort_runs; // invocations of the sort
-    uint group_count; // workgroups of classify
+    uint block_count; // blocks of Gaussians
     uint form; // FORM_*
     uint precise_view; // 1: positions in the camera's frame are computed in two floats
     uint key_near; // bits of the nearest depth a centre can have
@@ -36,7 +36,8 @@ struct FrameData {
     uint tile_count; // tiles in the picture
     uint pair_capacity; // pairs of tile and splat that there is room for
     float transmittance_min; // below it a tile's pixel is saturated: what lies behind changes it by less
-    uint pad[3]; // unused
+    uint redrawn; // 1: a frame whose pairs have no room is drawn once more, so that nothing is drawn of it
+    uint pad[2]; // unused
     vec4 plane_high[MAX_CLIP_PLANES]; // unit normal and distance, rounded to single precision
     vec4 plane_low[MAX_CLIP_PLANES]; // what the rounding lost
 };
@@ -44,8 +45,15 @@ struct FrameData {
 // A Gaussian without its colour.
 struct Gaussian {
     vec4 position_opacity; // centre, world units; opacity 0 to 1
-    vec4 scale; // standard deviations, world units; w the largest of them
+    vec4 scale; // standard deviations, world units; w the bits of its number in the file
     vec4 rotation; // unit quaternion x y z w
+};
+
+// What the Gaussians of a block lie within; a block is BLOCK_SIZE neighbours on a space-filling curve. The reach is the
+// farthest that one's contour of 1/255 can lie from its centre, negative where none has such a contour.
+struct Block {
+    vec4 low_reach; // least coordinates of the centres; reach: world units
+    vec4 high_sigma; // greatest ones; largest standard deviation, negative where some may miss all pixels though in view
 };
 
 // A survivor on the screen: what the rasteriser needs.
@@ -54,7 +62,7 @@ struct Splat {
     vec4 conic_cut; // k2; opacity; the weight's z at the centre and dz/dx, as cut.glsl says
     vec4 colour_cut; // colour; dz/dy
     vec4 axes; // the quad's two half axes, px
-    vec4 middle; // middle of the quad relative to the centre, px; zw unused
+    vec4 middle; // middle of the quad relative to the centre, px; the bits of its number in the file; w unused
     vec4 curvature; // of the weight's z: the factors of dx^2, dx dy and dy^2; w unused
 };
 
@@ -64,8 +72,12 @@ struct FrameCounts {
     uint cutoff; // in view, cut
     uint invisible; // in view, wholly clipped away
     uint culled; // outside the view or too faint
+    uvec4 clip_groups; // indirect dispatch over the blocks that the clip may cut; w: how many
+    uvec4 classify_groups; // indirect dispatch over the blocks that neither view nor clip settles; w: how many
+    uvec4 compact_groups; // indirect dispatch over the blocks with survivors; w: how many
     uvec4 project_groups; // indirect dispatch over the survivors
     uvec4 cutoff_groups; // indirect dispatch over the cutoff Gaussians
+    uvec4 recut_groups; // indirect dispatch over the survivors that a moved clip changes; w: how many
     uvec4 sort_groups; // indirect dispatch of the sort's runs
     uvec4 draw; // indirect draw: vertices, instances, first vertex, first instance
     uvec4 mesh_groups; // indirect mesh tasks; w: survivors
@@ -94,9 +106,13 @@ const uint FORM_AFFINE = 2u;
 const uint SH_FLOAT = 0u;
 const uint SH_HALF = 1u;
 const uint SH_BYTE = 2u;
+const uint SH_PACKED = 3u;
+// A packed scale's exponent 0 in a float's: scales are from 2^-15 to 2^16.
+const uint SH_EXPONENT_BIAS = 112u;
 const uint PHI_QUINTIC = 0u;
 const uint PHI_CUBIC = 1u;
 const uint PHI_LOGISTIC = 2u;
 const uint NOT_CUT = 0xffffffffu;
+const uint CUT_AWAY = 0xfffffffeu;
 
 #endif

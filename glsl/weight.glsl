@@ -138,9 +138,9 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place
 }
 
 // Which of them by the frame's mode and the record's form. `place` is the pixel's, `delta` the same relative to the
-// splat's centre. Parameter 2 is the traced ellipsoid's sigma, 3 the records' stride, 4 and 5 the principal point in the
+// splat's centre, `uv` that in the splat's own coordinates (curve.glsl). Parameter 2 is the traced ellipsoid's sigma, 3 the records' stride, 4 and 5 the principal point in the
 // coordinates of `place`.
-float cut_weight(uint cut, vec2 delta, vec2 place) {
+float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 place) {
     uint base = cut * push.param[3];
     uint flags = uint(cuts.at[base].w);
     uint count = flags >> CUT_COUNT_SHIFT;
@@ -155,12 +155,11 @@ float cut_weight(uint cut, vec2 delta, vec2 place) {
         vec4 bend = cuts.at[base + 1u];
         vec4 twist = cuts.at[base + 2u];
         vec4 wave = cuts.at[base + CUT_HEADER];
-        float x = delta.x;
-        float at = linear.x + x * (linear.y + x * (bend.x + x * (twist.x + x * wave.x)));
-        float slope = linear.z + x * (bend.y + x * (twist.y + x * wave.y));
-        float second = bend.z + x * (twist.z + x * wave.z);
-        float third = twist.w + x * wave.w;
-        return phi(at + delta.y * (slope + delta.y * (second + delta.y * (third + delta.y * bend.w))));
+        float at = linear.x + uv.x * (linear.y + uv.x * (bend.x + uv.x * (twist.x + uv.x * wave.x)));
+        float slope = linear.z + uv.x * (bend.y + uv.x * (twist.y + uv.x * wave.y));
+        float second = bend.z + uv.x * (twist.z + uv.x * wave.z);
+        float third = twist.w + uv.x * wave.w;
+        return phi(at + uv.y * (slope + uv.y * (second + uv.y * (third + uv.y * bend.w))));
     }
     return affine_weight(base + CUT_HEADER, count, delta);
 }

@@ -9,6 +9,7 @@ use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::gpu::{
     Bindings, Buffer, BufferDesc, Device, DeviceDesc, Drawer, Image, ImageDesc, Location,
+    PipelineCache, PipelineFile,
 };
 use crate::passes::SceneBuffers;
 use crate::picture::Picture;
@@ -28,6 +29,8 @@ pub struct HeadlessDesc {
     /// How buffers are reached; `None` is by address, and bound under validation, whose synchronisation checks cannot
     /// watch an address.
     pub bindings: Option<Bindings>,
+    /// Where compiled pipelines are kept from one run to the next.
+    pub pipeline_cache: PipelineCache,
 }
 
 /// A renderer that owns its device and draws into an offscreen picture, of 32-bit floats unless the settings say
@@ -37,6 +40,11 @@ pub struct Headless {
     renderer: Renderer,
     scene: Option<SceneBuffers>,
     target: Option<Target>,
+    /// What the target holds: the frame's background, if it is the renderer's last frame.
+    drawn: Option<Option<[u32; 3]>>,
+    pipelines: Option<PipelineFile>,
+    /// Bytes of compiled pipelines that were there at the start.
+    kept_pipeline_bytes: u64,
     // Last, so that everything above is freed before the device.
     device: Device,
 }
@@ -57,6 +65,8 @@ impl Headless {
             validation: desc.validation,
             application_name: "rara".into(),
         })?;
+        let pipelines = PipelineFile::open(&desc.pipeline_cache, &device);
+        let kept_pipeline_bytes = pipelines.as_ref().map_or(0, PipelineFile::held_bytes);
         let bindings = desc.bindings.unwrap_or(if desc.validation {
             Bindings::Bound
         } else {
@@ -67,6 +77,7 @@ impl Headless {
             RendererDesc {
                 bindings,
                 timing: true,
+                reuse: true,
                 ..RendererDesc::new(TargetFormat::default().vulkan())
             },
         )?;
@@ -74,6 +85,9 @@ impl Headless {
             renderer,
             scene: None,
             target: None,
+            drawn: None,
+            pipelines,
+            kept_pipeline_bytes,
             device,
         })
     }
@@ -98,7 +112,18 @@ impl Headless {
         self.device.device_bytes()
     }
 
-    /// Uploads a scene in place of the one before, its spherical harmonics as they are.
+    /// Device memory that the scene takes, bytes; 0 without one.
+    pub fn scene_bytes(&self) -> u64 {
+        self.scene.as_ref().map_or(0, SceneBuffers::bytes)
+    }
+
+    /// Bytes of compiled pipelines that an earlier run had kept; 0 if none had, or what it had could not be used.
+    pub fn kept_pipeline_bytes(&self) -> u64 {
+        self.kept_pipeline_bytes
+    }
+
+    /// Uploads a scene in place of the one before, its spherical harmonics as they are: 192 bytes a Gaussian at degree
+    /// 3. [`load_as`](Self::load_as) with [`Precision::sh`](crate::Precision::sh) of a preset takes 68.
     pub fn load(&mut self, scene: &Gaussians) -> Result<()> {
         self.load_as(scene, ShFormat::Float)
     }
@@ -109,6 +134,14 @@ impl Headless {
         self.scene = None;
         self.scene = Some(SceneBuffers::upload(&self.device, scene, format)?);
         Ok(())
+    }
+
+    /// Forgets what earlier frames have computed: the next one computes everything. Without it a frame takes over what
+    /// the one before has found out and this one would find out again, to the same bytes; where nothing has changed it
+    /// does nothing at all.
+    pub fn forget(&mut self) {
+        self.renderer.forget();
+        self.drawn = None;
     }
 
     /// Renders one frame of the scene; the picture stays on the device.
@@ -124,6 +157,7 @@ impl Headless {
             .ok_or_else(|| Error::Invalid("there is no scene to render; load one first".into()))?;
         let format = settings.precision.target;
         self.renderer.set_color_format(format.vulkan());
+        self.renderer.set_redraws(true);
         self.renderer.configure(scene, camera, clip, settings)?;
         let extent = vk::Extent2D {
             width: camera.width,
@@ -135,6 +169,7 @@ impl Headless {
             .is_none_or(|target| target.image.extent() != extent || target.format != format)
         {
             self.target = None;
+            self.drawn = None;
             check_blending(&self.device, format)?;
             let image = self.device.create_image(&ImageDesc {
                 name: "target",
@@ -155,6 +190,21 @@ impl Headless {
             .background
             .map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
         let begin = Instant::now();
+        let background = settings.background.map(|rgb| rgb.map(f32::to_bits));
+        if self.renderer.changes_nothing() && self.drawn == Some(background) {
+            let mut skipped = self.renderer.skipped();
+            skipped.push("splat");
+            return Ok(FrameStats {
+                counts: self.renderer.counts(),
+                passes: Vec::new(),
+                gpu_ms: 0.0,
+                wall_ms: begin.elapsed().as_secs_f64() * 1e3,
+                skipped,
+                raster: self.renderer.raster(),
+            });
+        }
+        self.drawn = None;
+        let mut quads = false;
         loop {
             self.device.submit_and_wait(|cmd| {
                 // SAFETY: `cmd` is recording and `scene`, the target and the renderer outlive the wait for it; the
@@ -172,19 +222,25 @@ impl Headless {
                 }
                 Ok(())
             })?;
-            // A first frame finds out how much room the tiles need. The bytes must not depend on what was drawn before:
-            // it is drawn again.
+            // A first frame finds out how much room the tiles need, and nothing is drawn of it.
             let room = self.renderer.pair_room();
             if !self.renderer.fell_back() {
                 break;
             }
+            if quads {
+                break; // they are the picture
+            }
             self.renderer.configure(scene, camera, clip, settings)?;
             if self.renderer.pair_room() <= room {
-                break; // there is no more to be had, and the quads are the picture
+                // There is no more to be had.
+                quads = true;
+                self.renderer.set_redraws(false);
+                self.renderer.configure(scene, camera, clip, settings)?;
             }
         }
         let wall_ms = begin.elapsed().as_secs_f64() * 1e3;
         self.check_validation()?;
+        self.drawn = Some(background);
         let passes = self.renderer.pass_times();
         let gpu_ms = passes.iter().map(|pass| pass.ms).sum();
         let skipped = self.renderer.skipped();
@@ -236,6 +292,15 @@ impl Headless {
             Ok(())
         } else {
             Err(Error::Validation(messages))
+        }
+    }
+}
+
+/// What was compiled is kept for the next run.
+impl Drop for Headless {
+    fn drop(&mut self) {
+        if let Some(pipelines) = &mut self.pipelines {
+            pipelines.keep(&self.device);
         }
     }
 }

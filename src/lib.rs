@@ -29,6 +29,7 @@ pub use {ash, glam};
 pub use camera::Camera;
 pub use clip::{Clip, ClipOp, Plane};
 pub use error::{Error, Result};
+pub use gpu::PipelineCache;
 pub use headless::{Headless, HeadlessDesc};
 pub use passes::SceneBuffers;
 pub use picture::Picture;

@@ -57,6 +57,10 @@ impl TargetFormat {
 pub enum ShFormat {
     /// 8 bits a coefficient and one scale a Gaussian; the constant term in 16-bit floats. 56 bytes for degree 3.
     Byte,
+    /// The constant term in 16-bit floats; each other coefficient's red, green and blue in 11, 11 and 10 bits of its
+    /// degree's scale, a power of two: off by a 1023rd and a 511th of the degree's largest at most, unless that is
+    /// beyond 65536. 68 bytes for degree 3.
+    Packed,
     /// 16-bit floats. 96 bytes for degree 3.
     Half,
     /// 32-bit floats. 192 bytes for degree 3.
@@ -69,6 +73,7 @@ impl ShFormat {
     pub(crate) const fn code(self) -> u32 {
         match self {
             Self::Byte => types::SH_BYTE,
+            Self::Packed => types::SH_PACKED,
             Self::Half => types::SH_HALF,
             Self::Float => types::SH_FLOAT,
         }
@@ -131,7 +136,8 @@ impl Precision {
         let sh = match self.sh {
             ShFormat::Byte => 45.0,
             ShFormat::Half => 58.0,
-            ShFormat::Float => 60.0,
+            // A step of 511 of the degree's largest is far below what the others leave.
+            ShFormat::Packed | ShFormat::Float => 60.0,
         };
         let phi = match self.phi {
             PhiForm::Logistic => 40.0,
@@ -170,7 +176,7 @@ impl Preset {
     pub const fn precision(self) -> Precision {
         let balanced = Precision {
             target: TargetFormat::Float,
-            sh: ShFormat::Float,
+            sh: ShFormat::Packed,
             phi: PhiForm::Quintic,
             key_bits: u32::BITS,
             beam_switch: limits::BEAM_SWITCH,
@@ -178,13 +184,13 @@ impl Preset {
         };
         match self {
             Self::Exact => Precision {
+                sh: ShFormat::Float,
                 beam_switch: 0.0,
                 transmittance_min: 1e-7,
                 ..balanced
             },
             Self::Balanced => balanced,
             Self::Fast => Precision {
-                sh: ShFormat::Half,
                 phi: PhiForm::Cubic,
                 key_bits: 24,
                 beam_switch: 0.05,

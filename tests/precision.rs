@@ -31,6 +31,7 @@ fn choices() -> Vec<(&'static str, Precision)> {
         ("fast", Preset::Fast.precision()),
         ("target 16f", target(TargetFormat::Half)),
         ("target 8", target(TargetFormat::Unorm8)),
+        ("sh 32f", sh(ShFormat::Float)),
         ("sh 16f", sh(ShFormat::Half)),
         ("sh 8", sh(ShFormat::Byte)),
         ("phi cubic", phi(PhiForm::Cubic)),

@@ -13,7 +13,7 @@ pub(super) struct PrecisionArgs {
     /// Channels of the picture that is drawn into: 8 bits, or floats of 16 or 32
     #[arg(long, value_name = "FORMAT")]
     target_format: Option<TargetArg>,
-    /// Spherical harmonics on the device: floats of 32 or 16 bits, or 8 bits and a scale a Gaussian
+    /// Spherical harmonics on the device: floats of 32 or 16 bits, 11 bits and a scale a degree (packed), or 8 and a scale a Gaussian
     #[arg(long, value_name = "FORMAT")]
     sh_format: Option<ShArg>,
     /// Approximation of the normal distribution in mode exact: off by at most 2e-5, 1.4e-4 or 1e-2
@@ -55,6 +55,7 @@ enum TargetArg {
 enum ShArg {
     #[value(name = "8")]
     Byte,
+    Packed,
     #[value(name = "16f")]
     Half,
     #[value(name = "32f")]
@@ -85,6 +86,7 @@ impl PrecisionArgs {
             }),
             sh: self.sh_format.map_or(preset.sh, |sh| match sh {
                 ShArg::Byte => ShFormat::Byte,
+                ShArg::Packed => ShFormat::Packed,
                 ShArg::Half => ShFormat::Half,
                 ShArg::Float => ShFormat::Float,
             }),

@@ -38,6 +38,10 @@ struct SceneReport {
 #[derive(Debug, Serialize)]
 struct Memory {
     device_bytes: u64,
+    /// Of those, the scene's.
+    scene_bytes: u64,
+    /// The scene's, a Gaussian.
+    scene_bytes_per_gaussian: f64,
     peak_rss_bytes: u64,
 }
 
@@ -51,6 +55,7 @@ impl Report {
         frames: &[FrameStats],
     ) -> Self {
         let (device, driver, device_bytes) = session.about();
+        let scene_bytes = session.scene_bytes();
         Self {
             device,
             driver,
@@ -65,6 +70,8 @@ impl Report {
             stats: combine(frames, Combine::Median),
             memory: Memory {
                 device_bytes,
+                scene_bytes,
+                scene_bytes_per_gaussian: scene_bytes as f64 / scene.gaussians.len().max(1) as f64,
                 peak_rss_bytes: peak_rss_bytes(),
             },
             frames: Vec::new(),
@@ -134,8 +141,10 @@ impl fmt::Display for Report {
         )?;
         write!(
             f,
-            "memory   {:.1} MiB on the device, {:.1} MiB here at most",
+            "memory   {:.1} MiB on the device, {:.1} of them the scene's ({:.1} bytes a Gaussian); {:.1} MiB here at most",
             mib(memory.device_bytes),
+            mib(memory.scene_bytes),
+            memory.scene_bytes_per_gaussian,
             mib(memory.peak_rss_bytes)
         )
     }

@@ -24,7 +24,17 @@ impl Session {
         self.headless.load_as(scene, sh)
     }
 
-    /// Renders the frame `repeat` times; the statistics are the medians.
+    /// Renders a frame that follows the one before and takes over what stays the same.
+    pub(super) fn next_frame(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<FrameStats> {
+        self.headless.render(camera, clip, settings)
+    }
+
+    /// Renders the frame `repeat` times from nothing; the statistics are the medians.
     pub(super) fn frame(
         &mut self,
         camera: &Camera,
@@ -32,7 +42,10 @@ impl Session {
         settings: &Settings,
         repeat: u32,
     ) -> Result<FrameStats> {
-        let frames = (0..repeat).map(|_| self.headless.render(camera, clip, settings));
+        let frames = (0..repeat).map(|_| {
+            self.headless.forget(); // nothing is carried over between them
+            self.headless.render(camera, clip, settings)
+        });
         Ok(combine(
             &frames.collect::<Result<Vec<_>>>()?,
             Combine::Median,
@@ -58,6 +71,11 @@ impl Session {
     /// Whether the device is this machine's processor.
     pub(super) fn is_cpu(&self) -> bool {
         self.headless.device().info().kind_name() == "cpu"
+    }
+
+    /// Device memory that the scene takes.
+    pub(super) fn scene_bytes(&self) -> u64 {
+        self.headless.scene_bytes()
     }
 
     /// Device name, driver, and device memory in use.

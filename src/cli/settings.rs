@@ -1,7 +1,7 @@
 //! The flags that say how a frame is drawn, and on which device.
 
 use clap::{Args, ValueEnum};
-use rara::{Decay, HeadlessDesc, Miss, Mode, Raster, Settings};
+use rara::{Decay, HeadlessDesc, Miss, Mode, PipelineCache, Raster, Settings};
 
 use super::failure::Failure;
 use super::precision::PrecisionArgs;
@@ -57,6 +57,10 @@ pub(super) struct DeviceArgs {
     /// Load the Khronos validation layer with synchronisation checks; any message is an error
     #[arg(long)]
     validation: bool,
+    /// Compile everything anew, and keep nothing for the next run. By itself it is kept in RARA_CACHE (set to nothing:
+    /// nowhere), else in the user's cache folder
+    #[arg(long)]
+    no_pipeline_cache: bool,
 }
 
 /// `--mode`.
@@ -178,6 +182,11 @@ impl DeviceArgs {
             device: self.device.clone(),
             validation: self.validation,
             bindings: None,
+            pipeline_cache: if self.no_pipeline_cache {
+                PipelineCache::Off
+            } else {
+                PipelineCache::User
+            },
         }
     }
 }

@@ -18,7 +18,7 @@ Example:
 
 Single cut splats, a row a regime. alpha: largest error of a pixel's uncut alpha. affine, beam, auto, rara: largest
 error of alpha times weight in that form against the same form in f64. dB: worst picture of all. missed: pixels that
-the drawn quads leave out. A row that misses its target is marked, and the exit status is 1.")]
+what is drawn, tiles and quads, leaves out. A row that misses its target is marked, and the exit status is 1.")]
 pub(super) struct Stress {
     /// Only regimes whose name contains one of these
     #[arg(value_name = "NAME-PART")]

@@ -25,7 +25,7 @@ Examples:
   rara sweep scene.ply --clip-normal 0,0,1 --clip-file planes.json:skin -o frames
 
 The first frame keeps the whole of the scene's robust bounds, the last one nothing of them. Pictures are
-frame_000.png and so on. Other clip shapes stand still; --clip-op joins the moving plane to them too. The
+frame_000.png and so on. The third frame and those after it compute only what the plane changes. Other clip shapes stand still; --clip-op joins the moving plane to them too. The
 JSON has the frames, their medians on top and their means under \"mean\".")]
 pub(super) struct Sweep {
     /// Scene files (3DGS .ply); several are merged
@@ -40,6 +40,9 @@ pub(super) struct Sweep {
     /// Folder for the pictures; made unless it is there
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    /// Render each frame from nothing; without it a frame takes over what stays the same, to the same bytes
+    #[arg(long)]
+    independent: bool,
     /// Render each frame N times, nothing carried over between them, and take the medians
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     repeat: u32,
@@ -92,7 +95,11 @@ impl Sweep {
             shapes.pop();
             shapes.push(plane.into());
             let clip = Clip::of_shapes(&shapes, op)?;
-            frames.push(session.frame(&camera, &clip, &settings, self.repeat)?);
+            frames.push(if self.independent || self.repeat > 1 {
+                session.frame(&camera, &clip, &settings, self.repeat)?
+            } else {
+                session.next_frame(&camera, &clip, &settings)?
+            });
             if let Some(folder) = &self.output {
                 let path = folder.join(format!("frame_{index:03}.png"));
                 session.last_picture()?.save(&path)?;

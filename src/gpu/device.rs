@@ -35,6 +35,7 @@ pub(super) struct Inner {
     /// `None` only while being dropped.
     allocator: Mutex<Option<Allocator>>,
     allocated: AtomicU64,
+    allocated_at_most: AtomicU64,
     /// Idle command buffers of [`Device::submit_and_wait`].
     pub(super) idle: Mutex<Vec<OneOff>>,
     /// `None` for a host's device, which is never destroyed here.
@@ -70,6 +71,7 @@ impl Device {
                 pipeline_cache: desc.pipeline_cache,
                 allocator: Mutex::new(Some(allocator)),
                 allocated: AtomicU64::new(0),
+                allocated_at_most: AtomicU64::new(0),
                 idle: Mutex::new(Vec::new()),
                 owned,
                 instance,
@@ -101,6 +103,12 @@ impl Device {
             .optimal_tiling_features
     }
 
+    pub(super) fn properties(&self) -> vk::PhysicalDeviceProperties {
+        let (instance, physical) = (&self.inner.instance, self.inner.physical);
+        // SAFETY: the instance is ours, or the host's and outlives this device.
+        unsafe { instance.get_physical_device_properties(physical) }
+    }
+
     /// The family of the queue.
     pub fn queue_family(&self) -> u32 {
         self.inner.queue_family
@@ -119,6 +127,11 @@ impl Device {
     /// Bytes of device memory that live buffers and images take.
     pub fn device_bytes(&self) -> u64 {
         self.inner.allocated.load(Ordering::Relaxed)
+    }
+
+    /// The most that [`device_bytes`](Self::device_bytes) has ever been.
+    pub fn peak_device_bytes(&self) -> u64 {
+        self.inner.allocated_at_most.load(Ordering::Relaxed)
     }
 
     /// Takes the validation layer's warnings and errors since the last call, from all threads. Empty without the
@@ -186,9 +199,13 @@ impl Device {
             .as_mut()
             .expect("taken only by drop")
             .allocate(desc)?;
-        self.inner
+        let before = self
+            .inner
             .allocated
             .fetch_add(allocation.size(), Ordering::Relaxed);
+        self.inner
+            .allocated_at_most
+            .fetch_max(before + allocation.size(), Ordering::Relaxed);
         Ok(allocation)
     }
 
@@ -238,9 +255,12 @@ impl Drop for Inner {
                 .take(),
         );
         if self.owned.is_some() {
-            // SAFETY: everything made from the device holds an `Arc` of it or was destroyed above. The instance goes
-            // after this function, with the field.
-            unsafe { self.raw.destroy_device(None) };
+            // SAFETY: everything made from the device holds an `Arc` of it or was destroyed above, and the cache is its
+            // own or null. The instance goes after this function, with the field.
+            unsafe {
+                self.raw.destroy_pipeline_cache(self.pipeline_cache, None);
+                self.raw.destroy_device(None);
+            }
         }
     }
 }

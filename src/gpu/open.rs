@@ -90,6 +90,9 @@ impl Device {
             .map_err(failed("vkCreateDevice"))?;
         // SAFETY: the device was created with one queue of this family.
         let queue = unsafe { raw.get_device_queue(family, 0) };
+        let empty = vk::PipelineCacheCreateInfo::default();
+        // SAFETY: the device was created just now. It works without a cache too.
+        let pipeline_cache = unsafe { raw.create_pipeline_cache(&empty, None) }.unwrap_or_default();
         let adopt = AdoptDesc {
             instance: owned.raw.clone(),
             physical_device: physical,
@@ -99,11 +102,14 @@ impl Device {
             mesh_shader: support.mesh_shader,
             push_descriptor: support.push_descriptor,
             debug_utils: owned.debug_utils,
-            pipeline_cache: vk::PipelineCache::null(),
+            pipeline_cache,
         };
         let allocator = allocator(&adopt).inspect_err(|_| {
-            // SAFETY: nothing was made from the device, and nobody else knows it.
-            unsafe { raw.destroy_device(None) };
+            // SAFETY: nothing else was made from the device, and nobody else knows it.
+            unsafe {
+                raw.destroy_pipeline_cache(pipeline_cache, None);
+                raw.destroy_device(None);
+            }
         })?;
         Ok(Self::new(adopt, info, support, allocator, Some(owned)))
     }

@@ -6,7 +6,7 @@ use crate::gpu::{Buffer, BufferDesc, Device, Location};
 use crate::limits;
 use crate::passes::plan::Plan;
 use crate::settings::Raster;
-use crate::types::{FrameCounts, FrameData, Splat};
+use crate::types::{self, FrameCounts, FrameData, Splat};
 
 /// Everything the stages hand to each other. No stage reads a count on the CPU, so each array but the
 /// tiles' lists has room for every Gaussian of the scene; drivers back untouched memory lazily.
@@ -14,8 +14,13 @@ use crate::types::{FrameCounts, FrameData, Splat};
 pub(crate) struct Buffers {
     pub(crate) frame: Buffer,
     pub(crate) masks: Buffer,
-    pub(crate) group_counts: Buffer,
-    pub(crate) group_offsets: Buffer,
+    /// The clip's sides and masks of the blocks; empty without a clip.
+    pub(crate) clip_sides: Buffer,
+    pub(crate) clip_masks: Buffer,
+    pub(crate) block_sides: Buffer,
+    pub(crate) block_list: Buffer,
+    pub(crate) block_counts: Buffer,
+    pub(crate) block_offsets: Buffer,
     pub(crate) counts: Buffer,
     pub(crate) survivors: Buffer,
     pub(crate) cutoffs: Buffer,
@@ -28,6 +33,8 @@ pub(crate) struct Buffers {
     pub(crate) tile_masks: Buffer,
     /// Only for tiles.
     pub(crate) tiles: Option<TileBuffers>,
+    /// Only where the camera has stood still.
+    pub(crate) sweep: Option<SweepBuffers>,
     sized_for: Sizes,
 }
 
@@ -40,10 +47,20 @@ pub(crate) struct TileBuffers {
     pub(crate) picture: Buffer,
 }
 
+/// What a sweep of the clip needs besides.
+#[derive(Debug)]
+pub(crate) struct SweepBuffers {
+    pub(crate) looks: Buffer,
+    pub(crate) reclips: Buffer,
+    pub(crate) recuts: Buffer,
+    pub(crate) dirty: Buffer,
+}
+
 /// What the sizes depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Sizes {
     gaussians: u64,
+    clip_blocks: u64,
     cut_bytes: u64,
     sort_runs: u64,
     masks: u64,
@@ -69,6 +86,11 @@ impl Sizes {
         };
         Self {
             gaussians,
+            clip_blocks: if plan.mode == types::MODE_NONE {
+                0
+            } else {
+                plan.data.block_count.into()
+            },
             cut_bytes,
             sort_runs: u64::from(plan.sort_runs),
             masks: when_tiled(gaussians),
@@ -91,13 +113,18 @@ impl Buffers {
             })
         };
         let n = sizes.gaussians;
-        let groups = n.div_ceil(u64::from(limits::GROUP_SIZE));
+        let blocks = n.div_ceil(u64::from(limits::BLOCK_SIZE));
+        let mask_bytes = u64::from(limits::BLOCK_SIZE) / 4; // two bits a Gaussian
         let digits = 1_u64 << limits::SORT_BITS;
         Ok(Self {
             frame: gpu("frame", size_of::<FrameData>() as u64)?,
-            masks: gpu("masks", groups * u64::from(limits::GROUP_SIZE) / 4)?,
-            group_counts: gpu("group_counts", groups * 16)?,
-            group_offsets: gpu("group_offsets", groups * 8)?,
+            masks: gpu("masks", blocks * mask_bytes)?,
+            clip_sides: gpu("clip_sides", sizes.clip_blocks * 4)?,
+            clip_masks: gpu("clip_masks", sizes.clip_blocks * mask_bytes)?,
+            block_sides: gpu("block_sides", blocks * 4)?,
+            block_list: gpu("block_list", blocks * 4)?,
+            block_counts: gpu("block_counts", blocks * 16)?,
+            block_offsets: gpu("block_offsets", blocks * 8)?,
             counts: gpu("counts", size_of::<FrameCounts>() as u64)?,
             survivors: gpu("survivors", n * 8)?,
             cutoffs: gpu("cutoffs", n * 4)?,
@@ -123,14 +150,39 @@ impl Buffers {
             } else {
                 None
             },
+            sweep: None,
             sized_for: sizes,
         })
+    }
+
+    /// Allocates what a sweep needs besides.
+    pub(crate) fn ensure_sweep(&mut self, device: &Device) -> Result<()> {
+        if self.sweep.is_some() {
+            return Ok(());
+        }
+        let gpu = |name, size| {
+            device.create_buffer(&BufferDesc {
+                name,
+                size,
+                location: Location::GpuOnly,
+            })
+        };
+        let n = self.sized_for.gaussians;
+        let blocks = n.div_ceil(u64::from(limits::BLOCK_SIZE));
+        self.sweep = Some(SweepBuffers {
+            looks: gpu("looks", blocks * 4)?,
+            reclips: gpu("reclips", blocks * 4 * u64::from(limits::RECLIP_WORDS))?,
+            recuts: gpu("recuts", n * 8)?,
+            dirty: gpu("dirty", self.sized_for.tiles * 4)?,
+        });
+        Ok(())
     }
 
     /// Whether a plan fits into what is allocated.
     pub(crate) fn fit(&self, plan: &Plan) -> bool {
         let (have, need) = (self.sized_for, Sizes::of(plan));
         have.gaussians == need.gaussians
+            && have.clip_blocks >= need.clip_blocks
             && have.cut_bytes >= need.cut_bytes
             && have.sort_runs == need.sort_runs
             && have.masks >= need.masks

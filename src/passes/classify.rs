@@ -1,5 +1,7 @@
-//! Stage 1, a Gaussian an invocation: view culling by footprint, opacity and size; the paper's three classes
-//! (section 3.2).
+//! Stage 3, a Gaussian an invocation, of the blocks that are not settled as a whole: view culling by footprint, opacity
+//! and size, and the clip's class.
+
+use std::mem::offset_of;
 
 use crate::error::Result;
 use crate::gpu::{ComputePipeline, Groups, Recorder};
@@ -7,6 +9,7 @@ use crate::passes::buffers::Buffers;
 use crate::passes::context::Context;
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::shaders;
+use crate::types::FrameCounts;
 
 #[derive(Debug)]
 pub(crate) struct Classify {
@@ -21,14 +24,18 @@ impl Classify {
         })
     }
 
-    pub(crate) fn record(
-        &self,
-        recorder: &mut Recorder<'_>,
-        scene: &SceneBuffers,
-        b: &Buffers,
-        groups: u32,
-    ) {
-        let buffers = [&b.frame, &scene.gaussians, &b.masks, &b.group_counts];
-        recorder.dispatch(&self.pipeline, &buffers, &[], Groups::Count(groups));
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, b: &Buffers) {
+        let buffers = [
+            &b.frame,
+            &scene.gaussians,
+            &b.block_list,
+            &b.counts,
+            &b.clip_sides,
+            &b.clip_masks,
+            &b.masks,
+            &b.block_counts,
+        ];
+        let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, classify_groups) as u64);
+        recorder.dispatch(&self.pipeline, &buffers, &[], groups);
     }
 }

@@ -1,11 +1,14 @@
-//! Stage 2: the survivors' and the cutoff Gaussians' numbers in the order of the file, the counts, and the indirect
+//! Stage 4: the survivors' and the cutoff Gaussians' numbers in the order of the scene, the counts, and the indirect
 //! commands of everything after. No place in a list depends on the order of atomics.
+
+use std::mem::offset_of;
 
 use crate::error::Result;
 use crate::gpu::{ComputePipeline, Groups, Recorder};
 use crate::passes::buffers::Buffers;
 use crate::passes::context::Context;
 use crate::passes::shaders;
+use crate::types::FrameCounts;
 
 #[derive(Debug)]
 pub(crate) struct Compact {
@@ -21,16 +24,27 @@ impl Compact {
         })
     }
 
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, b: &Buffers, groups: u32) {
-        let scan = [&b.frame, &b.group_counts, &b.group_offsets, &b.counts];
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, b: &Buffers) {
+        let scan = [
+            &b.frame,
+            &b.block_sides,
+            &b.block_counts,
+            &b.block_offsets,
+            &b.block_list,
+            &b.counts,
+        ];
         recorder.dispatch(&self.scan, &scan, &[], Groups::Count(1));
         let compact = [
             &b.frame,
+            &b.block_list,
+            &b.counts,
+            &b.block_sides,
             &b.masks,
-            &b.group_offsets,
+            &b.block_offsets,
             &b.survivors,
             &b.cutoffs,
         ];
-        recorder.dispatch(&self.compact, &compact, &[], Groups::Count(groups));
+        let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, compact_groups) as u64);
+        recorder.dispatch(&self.compact, &compact, &[], groups);
     }
 }

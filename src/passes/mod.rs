@@ -1,7 +1,10 @@
 //! The stages of the frame, one file each: buffers in, buffers out. [`frame`] lists them in order.
 
+mod block_order;
+mod blocks;
 mod buffers;
 mod classify;
+mod clip;
 mod compact;
 mod context;
 mod cutoff;
@@ -16,7 +19,9 @@ mod shaders;
 mod sort;
 mod splat;
 mod stages;
+mod sweep;
 mod tiles;
+mod work;
 
 pub(crate) use buffers::Buffers;
 pub(crate) use context::Context;
@@ -25,3 +30,4 @@ pub(crate) use pair_room::PairRoom;
 pub(crate) use plan::{Plan, SceneFacts};
 pub use scene_buffers::SceneBuffers;
 pub(crate) use stages::Stages;
+pub(crate) use work::{Kept, Work};

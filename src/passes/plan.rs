@@ -7,6 +7,7 @@ use crate::clip::{Clip, ClipOp, Plane};
 use crate::error::{Error, Result};
 use crate::limits;
 use crate::passes::depth_keys::DepthKeys;
+use crate::passes::work::Work;
 use crate::precision::ShFormat;
 use crate::settings::{Decay, ExactForm, Miss, Mode, Raster, Settings};
 use crate::types::{self, FrameData};
@@ -18,6 +19,8 @@ pub(crate) struct Plan {
     pub(crate) gaussians: u32,
     /// The mode, reduced to `MODE_NONE` where there is nothing to clip with.
     pub(crate) mode: u32,
+    /// What of the frame has to be computed.
+    pub(crate) work: Work,
     /// Whether cutoff Gaussians can exist.
     pub(crate) cutoff: bool,
     /// vec4s of a cutoff record.
@@ -58,6 +61,8 @@ pub(crate) struct SceneFacts {
     pub(crate) tile_rows: u32,
     /// Pairs of tile and splat that there is to be room for.
     pub(crate) pair_capacity: u32,
+    /// Whether a frame without room for its pairs is drawn once more, instead of as quads.
+    pub(crate) redrawn: bool,
 }
 
 impl Plan {
@@ -153,7 +158,8 @@ impl Plan {
         data.tile_columns = camera.width.div_ceil(limits::TILE_WIDTH);
         data.tile_count = data.tile_columns * camera.height.div_ceil(limits::TILE_HEIGHT);
         data.pair_capacity = scene.pair_capacity;
-        data.group_count = scene.gaussians.div_ceil(limits::GROUP_SIZE);
+        data.block_count = scene.gaussians.div_ceil(limits::BLOCK_SIZE);
+        data.redrawn = scene.redrawn.into();
         for (index, plane) in planes.iter().enumerate() {
             let (high, low) = two_float(plane.normal());
             // Farther away than single precision reaches: beyond every splat.
@@ -166,6 +172,9 @@ impl Plan {
         Ok(Self {
             gaussians: scene.gaussians,
             mode,
+            work: Work::Whole {
+                clip: mode != types::MODE_NONE,
+            },
             cutoff,
             cut_stride,
             sh_format: scene.sh_format,
@@ -202,17 +211,41 @@ impl Plan {
         ((self.tile_digits - 1) % 2) as usize
     }
 
-    /// The stages that this frame does not need.
-    pub(crate) fn skipped(&self) -> Vec<&'static str> {
-        match (self.gaussians, self.cutoff) {
-            (0, _) => vec![
-                "classify", "compact", "cutoff", "project", "sort", "bin", "tiles", "splat",
-            ],
-            (1, true) => vec!["sort"],
-            (1, false) => vec!["cutoff", "sort"],
-            (_, true) => vec![],
-            (_, false) => vec!["cutoff"],
+    /// The same frame without its clip: all that is in view.
+    pub(crate) fn unclipped(&self) -> Self {
+        Self {
+            mode: types::MODE_NONE,
+            cutoff: false,
+            ..self.clone()
         }
+    }
+
+    /// The stages that this frame does not need, among those of a whole one.
+    pub(crate) fn skipped(&self) -> Vec<&'static str> {
+        let is_empty = self.gaussians == 0;
+        let (clip, view, cut) = match self.work {
+            Work::Whole { clip } => (clip, true, true),
+            Work::Sweep { base, .. } => (false, base, true),
+            Work::Draw => (false, false, false),
+        };
+        let sort = view && self.gaussians > 1;
+        let tiled = self.raster == Raster::Tiles || is_empty;
+        let stages = [
+            ("clip", clip, true),
+            ("blocks", view, true),
+            ("classify", view, true),
+            ("compact", view, true),
+            ("cutoff", cut && self.cutoff, true),
+            ("project", view, true),
+            ("sort", sort, true),
+            ("bin", view, tiled),
+            ("tiles", cut, tiled),
+            ("splat", true, true),
+        ];
+        let skipped = stages
+            .iter()
+            .filter(|(_, needed, exists)| *exists && (is_empty || !needed));
+        skipped.map(|(name, ..)| *name).collect()
     }
 }
 

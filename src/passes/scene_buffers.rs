@@ -1,11 +1,13 @@
 //! The scene on the device: geometry and spherical harmonics, uploaded once.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use bytemuck::cast_slice;
 use glam::Vec3;
 
 use crate::error::{Error, Result};
 use crate::gpu::{Buffer, BufferDesc, Device, Location};
-use crate::passes::sh_storage;
+use crate::passes::{block_order, sh_storage};
 use crate::precision::ShFormat;
 use crate::scene::Gaussians;
 use crate::types::Gaussian;
@@ -13,8 +15,13 @@ use crate::types::Gaussian;
 /// A scene's Gaussians in device memory.
 #[derive(Debug)]
 pub struct SceneBuffers {
+    /// No other scene of this process has it.
+    pub(crate) id: u64,
     pub(crate) gaussians: Buffer,
     pub(crate) sh: Buffer,
+    pub(crate) blocks: Buffer,
+    /// Whether the Gaussians lie in another order than the file's.
+    pub(crate) reordered: bool,
     pub(crate) count: u32,
     pub(crate) sh_degree: u32,
     pub(crate) sh_format: ShFormat,
@@ -22,11 +29,14 @@ pub struct SceneBuffers {
     pub(crate) bounds: [Vec3; 2],
 }
 
+static NEXT_ID: AtomicU64 = AtomicU64::new(0);
+
 /// Gaussians converted at a time while uploading, so that the scene is never in memory a third time.
 const UPLOAD_CHUNK: usize = 1 << 16;
 
 impl SceneBuffers {
-    /// Uploads a scene, its spherical harmonics stored as `format` says, and waits for it.
+    /// Uploads a scene, its spherical harmonics stored as `format` says, in chunks, and waits for it. Beside the scene it
+    /// takes 32 MiB at most.
     pub fn upload(device: &Device, scene: &Gaussians, format: ShFormat) -> Result<Self> {
         let too_many = |_| {
             Error::Invalid(format!(
@@ -50,32 +60,38 @@ impl SceneBuffers {
                 location: Location::GpuOnly,
             })
         };
+        let order = block_order::order(scene);
         let gaussians = gpu("gaussians", u64::from(count) * size_of::<Gaussian>() as u64)?;
-        let mut offset = 0;
-        for begin in (0..scene.len()).step_by(UPLOAD_CHUNK) {
-            let end = scene.len().min(begin + UPLOAD_CHUNK);
-            let packed: Vec<Gaussian> = (begin..end).map(|index| pack(scene, index)).collect();
-            device.upload(&gaussians, offset, cast_slice(&packed))?;
-            offset += size_of_val(packed.as_slice()) as u64;
-        }
+        upload_in_chunks(device, &gaussians, &order, |index, out| {
+            out.push(pack(scene, index));
+        })?;
         let sh = gpu("sh", (scene.len() * words * size_of::<u32>()) as u64)?;
-        if format == ShFormat::Float {
-            device.upload(&sh, 0, cast_slice(&scene.sh))?;
-        } else {
-            upload_packed(device, &sh, scene, format)?;
-        }
+        upload_in_chunks(device, &sh, &order, |index, out| {
+            sh_storage::pack(format, scene.sh_of(index as usize), out);
+        })?;
+        let bounds_of_blocks = block_order::blocks(scene, &order);
+        let blocks = gpu("blocks", size_of_val(bounds_of_blocks.as_slice()) as u64)?;
+        device.upload(&blocks, 0, cast_slice(&bounds_of_blocks))?;
         let centres = scene.positions.iter();
         let bounds = centres.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], &x| {
             [low.min(x), high.max(x)]
         });
         Ok(Self {
+            id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
             gaussians,
             sh,
+            blocks,
+            reordered: !order.is_sorted(),
             count,
             sh_degree: scene.sh_degree,
             sh_format: format,
             bounds,
         })
+    }
+
+    /// Bytes of device memory that the scene takes.
+    pub fn bytes(&self) -> u64 {
+        self.gaussians.size() + self.sh.size() + self.blocks.size()
     }
 
     /// The larger of the two buffers, bytes.
@@ -84,25 +100,32 @@ impl SceneBuffers {
     }
 }
 
-fn upload_packed(device: &Device, sh: &Buffer, scene: &Gaussians, format: ShFormat) -> Result<()> {
+/// Uploads what `append` makes of each Gaussian, in an order.
+fn upload_in_chunks<T: bytemuck::NoUninit>(
+    device: &Device,
+    buffer: &Buffer,
+    order: &[u32],
+    mut append: impl FnMut(u32, &mut Vec<T>),
+) -> Result<()> {
     let mut offset = 0;
     let mut packed = Vec::new();
-    for begin in (0..scene.len()).step_by(UPLOAD_CHUNK) {
+    for chunk in order.chunks(UPLOAD_CHUNK) {
         packed.clear();
-        for index in begin..scene.len().min(begin + UPLOAD_CHUNK) {
-            sh_storage::pack(format, scene.sh_of(index), &mut packed);
+        for &index in chunk {
+            append(index, &mut packed);
         }
-        device.upload(sh, offset, cast_slice(&packed))?;
+        device.upload(buffer, offset, cast_slice(&packed))?;
         offset += size_of_val(packed.as_slice()) as u64;
     }
     Ok(())
 }
 
-fn pack(scene: &Gaussians, index: usize) -> Gaussian {
-    let scale = scene.scales[index];
+fn pack(scene: &Gaussians, number: u32) -> Gaussian {
+    let index = number as usize;
+    let position = scene.positions[index];
     Gaussian {
-        position_opacity: scene.positions[index].extend(scene.opacities[index]).into(),
-        scale: scale.extend(scale.max_element()).into(),
+        position_opacity: position.extend(scene.opacities[index]).into(),
+        scale: scene.scales[index].extend(f32::from_bits(number)).into(),
         rotation: scene.rotations[index].into(),
     }
 }

@@ -2,12 +2,14 @@
 
 use crate::half::{from_half, to_half};
 use crate::precision::ShFormat;
+use crate::types;
 
 /// Words of a Gaussian with `numbers` coefficients, all three channels counted.
 pub(crate) fn words(format: ShFormat, numbers: usize) -> usize {
     match format {
         ShFormat::Float => numbers,
         ShFormat::Half => numbers.div_ceil(2),
+        ShFormat::Packed => 1 + numbers / 3,
         ShFormat::Byte => 2 + (numbers - 3).div_ceil(4),
     }
 }
@@ -22,18 +24,15 @@ pub(crate) fn pack(format: ShFormat, numbers: &[f32], out: &mut Vec<u32>) {
                 .chunks(2)
                 .map(|two| pair(two[0], *two.get(1).unwrap_or(&0.0))),
         ),
+        ShFormat::Packed => pack_words(numbers, out),
         ShFormat::Byte => {
             let (constant, rest) = numbers.split_at(3);
-            let largest = rest.iter().fold(0.0_f32, |most, v| most.max(v.abs()));
             // What the shader will multiply by is the rounded scale.
-            let scale = from_half(to_half(largest));
-            let unit = if scale > 0.0 { 127.0 / scale } else { 0.0 };
-            // `as` clamps: rounding may have left the scale just below the largest.
-            let byte = |v: &f32| (((v * unit).round() as i32).clamp(-127, 127) as i8 as u8).into();
+            let scale = from_half(to_half(largest(rest)));
             out.push(pair(constant[0], constant[1]));
             out.push(pair(constant[2], scale));
             out.extend(rest.chunks(4).map(|four| {
-                let bytes = four.iter().map(byte).enumerate();
+                let bytes = four.iter().map(|v| share(*v, scale, 8)).enumerate();
                 bytes.fold(0, |word, (place, byte): (usize, u32)| {
                     word | byte << (8 * place)
                 })
@@ -42,20 +41,134 @@ pub(crate) fn pack(format: ShFormat, numbers: &[f32], out: &mut Vec<u32>) {
     }
 }
 
+/// Bits of red, green and blue of a packed coefficient.
+const BITS: [u32; 3] = [11, 11, 10];
+
+fn pack_words(numbers: &[f32], out: &mut Vec<u32>) {
+    let (constant, mut rest) = numbers.split_at(3);
+    let half = |v: f32| u32::from(to_half(v));
+    out.push(half(constant[0]) | half(constant[1]) << 16);
+    let exponents_at = out.len();
+    out.push(half(constant[2]));
+    for degree in 1..=3 {
+        let (numbers, higher) = rest.split_at(rest.len().min(3 * (2 * degree + 1)));
+        let (exponent, scale) = scale(largest(numbers));
+        out[exponents_at] |= exponent << (11 + 5 * degree);
+        out.extend(numbers.chunks_exact(3).map(|rgb| {
+            let channel = |c: usize| share(rgb[c], scale, BITS[c]);
+            channel(0) | channel(1) << 11 | channel(2) << 22
+        }));
+        rest = higher;
+    }
+}
+
+/// The least power of two that is not below `value`, as its five bits of exponent and itself. Beyond the largest,
+/// 2^16, coefficients become that.
+fn scale(value: f32) -> (u32, f32) {
+    // Carries into the exponent unless `value` is a power of two.
+    let up = (value.to_bits() + 0x007f_ffff) >> 23;
+    let exponent = up.saturating_sub(types::SH_EXPONENT_BIAS).min(31);
+    let scale = f32::from_bits((exponent + types::SH_EXPONENT_BIAS) << 23);
+    (exponent, scale)
+}
+
+/// `value` as a share of `scale`, a signed integer of so many bits whose largest is the scale.
+fn share(value: f32, scale: f32, bits: u32) -> u32 {
+    let most = (1 << (bits - 1)) - 1;
+    // A scale is 0, or 2^-24 at least: this is finite.
+    let unit = if scale > 0.0 {
+        most as f32 / scale
+    } else {
+        0.0
+    };
+    // Clamped: a scale may be below the largest; `as` stays in range by itself. `round` would be a call for each number.
+    let share = value * unit;
+    let count = (share + 0.5_f32.copysign(share)) as i32;
+    count.clamp(-most, most) as u32 & ((1 << bits) - 1)
+}
+
+fn largest(numbers: &[f32]) -> f32 {
+    numbers.iter().fold(0.0, |most, v| most.max(v.abs()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const ALL: [ShFormat; 4] = [
+        ShFormat::Float,
+        ShFormat::Half,
+        ShFormat::Packed,
+        ShFormat::Byte,
+    ];
+
     /// What the shader reads.
     fn component(format: ShFormat, packed: &[u32], k: usize) -> f32 {
         let half = |k: usize| from_half((packed[k / 2] >> (16 * (k % 2))) as u16);
+        let signed = |word: u32, low: u32, bits: u32| {
+            ((word << (32 - low - bits)) as i32 >> (32 - bits)) as f32
+        };
         match format {
             ShFormat::Float => f32::from_bits(packed[k]),
             ShFormat::Half => half(k),
+            ShFormat::Packed if k < 3 => half(k),
+            ShFormat::Packed => {
+                let exponent = packed[1] >> (11 + 5 * degree(k)) & 31;
+                let scale = f32::from_bits((exponent + types::SH_EXPONENT_BIAS) << 23);
+                let (low, bits) = [(0, 11), (11, 11), (22, 10)][k % 3];
+                let most = ((1 << (bits - 1)) - 1) as f32;
+                signed(packed[1 + k / 3], low, bits) * (scale / most)
+            }
             ShFormat::Byte if k < 3 => half(k),
             ShFormat::Byte => {
-                let byte = (packed[2 + (k - 3) / 4] >> (8 * ((k - 3) % 4))) as u8 as i8;
-                f32::from(byte) * (half(3) / 127.0)
+                let word = packed[2 + (k - 3) / 4];
+                signed(word, 8 * ((k as u32 - 3) % 4), 8) * (half(3) / 127.0)
+            }
+        }
+    }
+
+    fn degree(k: usize) -> usize {
+        match k / 3 {
+            0 => 0,
+            1..4 => 1,
+            4..9 => 2,
+            _ => 3,
+        }
+    }
+
+    /// How far number `k` may be off, where nothing is beyond the range of 16 bits.
+    fn bound(format: ShFormat, numbers: &[f32], k: usize) -> f32 {
+        let half = (numbers[k].abs() / 2048.0).max(3e-8); // half a step; of subnormal ones 2^-25
+        let same = (0..numbers.len()).filter(|j| degree(*j) == degree(k));
+        let of_degree = same.fold(0.0_f32, |most, j| most.max(numbers[j].abs()));
+        match format {
+            ShFormat::Float => 0.0,
+            ShFormat::Half => half,
+            ShFormat::Packed if k < 3 => half,
+            // Half a step of a scale that is below twice the largest, or the least there is; and what computing it in
+            // single precision loses.
+            ShFormat::Packed => {
+                let most = if k % 3 == 2 { 511.0 } else { 1023.0 };
+                of_degree.max(2.0_f32.powi(-16)) / most * 1.001
+            }
+            ShFormat::Byte if k < 3 => half,
+            // Half a step, and what rounding the scale moves.
+            ShFormat::Byte => largest(&numbers[3..]) * (1.0 / 254.0 + 1.0 / 2048.0) + 3e-8,
+        }
+    }
+
+    fn check(numbers: &[f32]) {
+        for format in ALL {
+            let mut packed = Vec::new();
+            pack(format, numbers, &mut packed);
+            assert_eq!(packed.len(), words(format, numbers.len()));
+            for (k, v) in numbers.iter().enumerate() {
+                let error = (component(format, &packed, k) - v).abs();
+                let bound = bound(format, numbers, k);
+                assert!(
+                    error <= bound,
+                    "{format:?}, number {k} of {numbers:?}: off by {error}, beyond {bound}"
+                );
             }
         }
     }
@@ -69,31 +182,38 @@ mod tests {
         };
         for degree in 0..=3 {
             let count = 3 * (degree + 1) * (degree + 1);
-            for size in [1e-9_f32, 1e-3, 0.3, 5.0] {
-                let numbers: Vec<f32> = (0..count).map(|_| size * next()).collect();
-                let largest = numbers[3..].iter().fold(0.0_f32, |m, v| m.max(v.abs()));
-                for format in [ShFormat::Float, ShFormat::Half, ShFormat::Byte] {
-                    let mut packed = Vec::new();
-                    pack(format, &numbers, &mut packed);
-                    assert_eq!(packed.len(), words(format, count));
-                    for (k, v) in numbers.iter().enumerate() {
-                        let error = (component(format, &packed, k) - v).abs();
-                        let half = (v.abs() / 2048.0).max(3e-8);
-                        let bound = match format {
-                            ShFormat::Float => 0.0,
-                            ShFormat::Half => half,
-                            ShFormat::Byte if k < 3 => half,
-                            // Half a step, and what rounding the scale moves.
-                            ShFormat::Byte => largest * (1.0 / 254.0 + 1.0 / 2048.0) + 3e-8,
-                        };
-                        assert!(
-                            error <= bound,
-                            "{format:?} degree {degree}: {v} off by {error}"
-                        );
-                    }
+            for size in [0.0, 1e-30, 1e-9_f32, 1e-6, 3e-5, 1e-3, 0.3, 5.0, 6e4] {
+                for _ in 0..20 {
+                    check(&(0..count).map(|_| size * next()).collect::<Vec<_>>());
                 }
+                // One that is large, and the others nothing beside it.
+                let mut one: Vec<f32> = (0..count).map(|_| 1e-6 * size * next()).collect();
+                one[count - 1] = size;
+                check(&one);
             }
         }
+    }
+
+    #[test]
+    fn each_degree_of_the_packed_ones_has_a_scale_of_its_own() {
+        let mut numbers = [0.0; 48];
+        numbers[3..12].fill(100.0);
+        numbers[12..27].fill(-1.0);
+        numbers[27..].fill(0.01);
+        check(&numbers);
+    }
+
+    #[test]
+    fn a_scale_is_the_least_power_of_two_that_is_large_enough() {
+        for exponent in 0..32 {
+            let power = 2.0_f32.powi(exponent - 15);
+            let exponent = exponent as u32;
+            assert_eq!(scale(power), (exponent, power));
+            let above = f32::from_bits(power.to_bits() + 1);
+            assert_eq!(scale(above).0, (exponent + 1).min(31), "above {power}");
+        }
+        assert_eq!((scale(0.0).0, scale(1e-40).0), (0, 0));
+        assert_eq!(scale(f32::MAX), (31, 65536.0));
     }
 
     #[test]
@@ -103,5 +223,16 @@ mod tests {
         assert_eq!(component(ShFormat::Half, &packed, 0), 65504.0);
         assert_eq!(component(ShFormat::Half, &packed, 1), -65504.0);
         assert_eq!(component(ShFormat::Half, &packed, 2), 0.5);
+        let mut numbers = [3e38; 48];
+        numbers[1] = -3e38;
+        numbers[13] = -3e38;
+        packed.clear();
+        pack(ShFormat::Packed, &numbers, &mut packed);
+        let read = |k| component(ShFormat::Packed, &packed, k);
+        assert_eq!((read(0), read(1)), (65504.0, -65504.0));
+        // Where single precision rounds the last bit of the product is not the point.
+        for (k, most) in [(3, 65536.0), (12, 65536.0), (13, -65536.0), (29, 65536.0)] {
+            assert!((read(k) / most - 1.0).abs() < 1e-6, "{k}: {}", read(k));
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Stage 5: stable radix sort of the survivors by linear view depth, ties by their number.
+//! Stage 7: stable radix sort of the survivors by linear view depth, ties by their number in the file.
 
 use std::mem::offset_of;
 
@@ -7,6 +7,8 @@ use crate::gpu::{Buffer, ComputePipeline, Groups, Recorder};
 use crate::limits;
 use crate::passes::buffers::{Buffers, TileBuffers};
 use crate::passes::context::Context;
+use crate::passes::plan::Plan;
+use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::shaders;
 use crate::types::FrameCounts;
 
@@ -15,6 +17,7 @@ pub(crate) struct Sort {
     count: ComputePipeline,
     scan: ComputePipeline,
     scatter: ComputePipeline,
+    ties: ComputePipeline,
 }
 
 impl Sort {
@@ -23,15 +26,39 @@ impl Sort {
             count: context.compute("sort_count", &shaders::SORT_COUNT_COMP, &[])?,
             scan: context.compute("sort_scan", &shaders::SORT_SCAN_COMP, &[])?,
             scatter: context.compute("sort_scatter", &shaders::SORT_SCATTER_COMP, &[])?,
+            ties: context.compute("sort_ties", &shaders::SORT_TIES_COMP, &[])?,
         })
     }
 
-    /// Sorts the survivors by the lowest `passes` digits of their depths; the result is in `keys[passes % 2]` and
-    /// `order[passes % 2]`.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, b: &Buffers, passes: u32) {
+    /// Sorts the survivors by their depths, and those of one depth by their number in the file; the result is in
+    /// `keys[plan.sorted()]` and `order[plan.sorted()]`.
+    pub(crate) fn record(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneBuffers,
+        b: &Buffers,
+        plan: &Plan,
+    ) {
         let groups = offset_of!(FrameCounts, sort_groups) as u64;
         let pairs = [(&b.keys[0], &b.order[0]), (&b.keys[1], &b.order[1])];
-        self.passes(recorder, b, [0, groups as u32], pairs, 0..passes);
+        self.passes(recorder, b, [0, groups as u32], pairs, 0..plan.sort_passes);
+        if scene.reordered {
+            let sorted = plan.sorted();
+            let ties = [
+                &b.frame,
+                &b.counts,
+                &b.keys[sorted],
+                &b.order[sorted],
+                &b.order[sorted ^ 1],
+                &b.splats,
+            ];
+            recorder.dispatch(
+                &self.ties,
+                &ties,
+                &[0, 0],
+                Groups::Indirect(&b.counts, groups),
+            );
+        }
     }
 
     /// Sorts the pairs of tile and splat, which lie in order of the lowest digit already, by the others.

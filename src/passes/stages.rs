@@ -6,21 +6,28 @@ use std::collections::hash_map::Entry;
 use ash::vk;
 
 use crate::error::Result;
+use crate::passes::blocks::{BlockList, Blocks};
 use crate::passes::classify::Classify;
+use crate::passes::clip::Clip;
 use crate::passes::compact::Compact;
 use crate::passes::context::Context;
 use crate::passes::cutoff::Cutoff;
 use crate::passes::plan::Plan;
 use crate::passes::project::{Project, ProjectKey};
 use crate::passes::sort::Sort;
-use crate::passes::splat::{Splat, SplatKey, WeightKey};
-use crate::passes::tiles::{Bin, Composite, Composites, Tiles};
+use crate::passes::splat::{Splat, SplatKey};
+use crate::passes::sweep::{Reclip, Recut};
+use crate::passes::tiles::{Bin, Composite, Composites, Tiles, TilesKey};
+use crate::passes::work::Work;
 use crate::settings::Raster;
 use crate::types;
 
 /// All stages for one way of binding. Variants that no frame has asked for do not exist.
 #[derive(Debug)]
 pub(crate) struct Stages {
+    pub(crate) clip: Option<Clip>,
+    pub(crate) block_list: BlockList,
+    blocks: [Option<Blocks>; 2],
     classify: [Option<Classify>; 2],
     pub(crate) compact: Compact,
     pub(crate) cutoff: Option<Cutoff>,
@@ -28,13 +35,18 @@ pub(crate) struct Stages {
     pub(crate) sort: Sort,
     splat: HashMap<SplatKey, Splat>,
     pub(crate) bin: Option<Bin>,
-    tiles: HashMap<(WeightKey, u32), Tiles>,
+    tiles: HashMap<TilesKey, Tiles>,
+    pub(crate) reclip: Option<Reclip>,
+    recut: [Option<Recut>; 2],
     pub(crate) composite: Composites,
 }
 
 impl Stages {
     pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
         Ok(Self {
+            clip: None,
+            block_list: BlockList::new(context)?,
+            blocks: [None, None],
             classify: [None, None],
             compact: Compact::new(context)?,
             cutoff: None,
@@ -43,22 +55,29 @@ impl Stages {
             splat: HashMap::new(),
             bin: None,
             tiles: HashMap::new(),
+            reclip: None,
+            recut: [None, None],
             composite: HashMap::new(),
         })
     }
 
     /// Creates what a plan needs and is not there yet.
     pub(crate) fn ensure(&mut self, context: &Context<'_>, plan: &Plan) -> Result<()> {
-        let clip = plan.mode != types::MODE_NONE;
-        let classify = &mut self.classify[usize::from(clip)];
-        if classify.is_none() {
-            *classify = Some(Classify::new(context, clip)?);
+        if let Work::Sweep { .. } = plan.work {
+            self.ensure_view(context, &plan.unclipped())?;
+            if self.reclip.is_none() {
+                self.reclip = Some(Reclip::new(context)?);
+            }
+            let tiles = plan.raster == Raster::Tiles;
+            let recut = &mut self.recut[usize::from(tiles)];
+            if recut.is_none() {
+                *recut = Some(Recut::new(context, tiles)?);
+            }
+        } else {
+            self.ensure_view(context, plan)?;
         }
         if plan.cutoff && self.cutoff.is_none() {
             self.cutoff = Some(Cutoff::new(context)?);
-        }
-        if let Entry::Vacant(missing) = self.project.entry(ProjectKey::new(plan)) {
-            missing.insert(Project::new(context, ProjectKey::new(plan))?);
         }
         if plan.raster == Raster::Tiles {
             self.ensure_tiles(context, plan)?;
@@ -70,18 +89,45 @@ impl Stages {
         Ok(())
     }
 
+    /// What finds the survivors and puts them on the screen.
+    fn ensure_view(&mut self, context: &Context<'_>, plan: &Plan) -> Result<()> {
+        let clip = plan.mode != types::MODE_NONE;
+        if clip && self.clip.is_none() {
+            self.clip = Some(Clip::new(context)?);
+        }
+        let blocks = &mut self.blocks[usize::from(clip)];
+        if blocks.is_none() {
+            *blocks = Some(Blocks::new(context, clip)?);
+        }
+        let classify = &mut self.classify[usize::from(clip)];
+        if classify.is_none() {
+            *classify = Some(Classify::new(context, clip)?);
+        }
+        if let Entry::Vacant(missing) = self.project.entry(ProjectKey::new(plan)) {
+            missing.insert(Project::new(context, ProjectKey::new(plan))?);
+        }
+        Ok(())
+    }
+
     fn ensure_tiles(&mut self, context: &Context<'_>, plan: &Plan) -> Result<()> {
         if self.bin.is_none() {
             self.bin = Some(Bin::new(context)?);
         }
-        let key = (WeightKey::new(plan), plan.tile_rows);
+        let key = TilesKey::new(plan);
         if let Entry::Vacant(missing) = self.tiles.entry(key) {
-            missing.insert(Tiles::new(context, key.0, key.1)?);
+            missing.insert(Tiles::new(context, key)?);
         }
         if let Entry::Vacant(missing) = self.composite.entry(context.color_format) {
             missing.insert(Composite::new(context)?);
         }
         Ok(())
+    }
+
+    /// The blocks' stage for a plan, once [`ensure`](Self::ensure) has seen it.
+    pub(crate) fn blocks(&self, plan: &Plan) -> &Blocks {
+        self.blocks[usize::from(plan.mode != types::MODE_NONE)]
+            .as_ref()
+            .expect("ensure() creates it")
     }
 
     /// The classification for a plan, once [`ensure`](Self::ensure) has seen it.
@@ -96,6 +142,11 @@ impl Stages {
         &self.project[&ProjectKey::new(plan)]
     }
 
+    /// What a sweep changes of the splats, once [`ensure`](Self::ensure) has seen the plan.
+    pub(crate) fn recut(&self, plan: &Plan) -> Option<&Recut> {
+        self.recut[usize::from(plan.raster == Raster::Tiles)].as_ref()
+    }
+
     /// The rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.
     pub(crate) fn splat(&self, plan: &Plan, format: vk::Format) -> &Splat {
         &self.splat[&SplatKey::new(plan, format)]
@@ -103,6 +154,6 @@ impl Stages {
 
     /// The tile rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.
     pub(crate) fn tiles(&self, plan: &Plan) -> &Tiles {
-        &self.tiles[&(WeightKey::new(plan), plan.tile_rows)]
+        &self.tiles[&TilesKey::new(plan)]
     }
 }

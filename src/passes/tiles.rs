@@ -14,6 +14,7 @@ use crate::passes::plan::Plan;
 use crate::passes::shaders;
 use crate::passes::sort::Sort;
 use crate::passes::splat::{OVER, WeightKey};
+use crate::passes::work::Work;
 use crate::types::FrameCounts;
 
 /// Pairs of tile and splat, ordered by tile and within each tile by depth.
@@ -81,6 +82,25 @@ impl Bin {
     }
 }
 
+/// What tells one pipeline of the tiles' pixels from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct TilesKey {
+    weight: WeightKey,
+    rows: u32,
+    sweep: bool,
+}
+
+impl TilesKey {
+    /// What a plan needs.
+    pub(crate) fn new(plan: &Plan) -> Self {
+        Self {
+            weight: WeightKey::new(plan),
+            rows: plan.tile_rows,
+            sweep: matches!(plan.work, Work::Sweep { .. }),
+        }
+    }
+}
+
 /// The tiles' pixels.
 #[derive(Debug)]
 pub(crate) struct Tiles {
@@ -88,16 +108,17 @@ pub(crate) struct Tiles {
 }
 
 impl Tiles {
-    pub(crate) fn new(context: &Context<'_>, weight: WeightKey, rows: u32) -> Result<Self> {
-        let [mode, op, decay, miss, phi] = weight.constants();
+    pub(crate) fn new(context: &Context<'_>, key: TilesKey) -> Result<Self> {
+        let [mode, op, decay, miss, phi] = key.weight.constants();
         let constants = [
             mode,
             op,
             decay,
             miss,
             phi,
-            (5, rows),
-            (6, limits::TILE_HEIGHT / rows),
+            (5, key.rows),
+            (6, limits::TILE_HEIGHT / key.rows),
+            (7, key.sweep.into()),
         ];
         Ok(Self {
             pipeline: context.compute("tiles", &shaders::TILES_COMP, &constants)?,
@@ -112,7 +133,11 @@ impl Tiles {
         plan: &Plan,
     ) {
         let splats = &t.pair_splats[plan.sorted_pairs()];
-        let buffers = [&b.frame, &b.splats, splats, &t.begins, &b.cuts, &t.picture];
+        // Only a sweep looks at what is dirty.
+        let dirty = b.sweep.as_ref().map_or(&b.counts, |sweep| &sweep.dirty);
+        let buffers = [
+            &b.frame, &b.splats, splats, &t.begins, &b.cuts, &t.picture, dirty,
+        ];
         let [_, _, cx, cy] = plan.data.focal.map(f32::to_bits);
         let params = [0, 0, plan.data.sigma.to_bits(), plan.cut_stride, cx, cy];
         let tiles = Groups::Indirect(&b.counts, offset_of!(FrameCounts, tile_groups) as u64);

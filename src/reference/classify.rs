@@ -2,14 +2,16 @@
 //!
 //! The paper's band is 3 max(sigma) on either side of the plane. Here it is K |M^T n|: the Gaussian's own extent along
 //! the normal, out to the contour on which its alpha falls to 1/255. Outside of it no pixel would change by more
-//! than half of 1/255, and half as many needles are called cut.
+//! than half of 1/255, and half as many needles are called cut. Where weights follow each pixel's true ray, the band is
+//! wider by what perspective adds: see [`beam_band`].
 
 use glam::DVec3;
 
+use super::cutoff::is_beam;
 use super::footprint::Footprint;
 use super::real::{Real, Vec3, vec3};
 use super::view::View;
-use crate::limits::ALPHA_MIN_INVERSE;
+use crate::limits::{ALPHA_MIN_INVERSE, BEYOND_EYE, WIDENING_REST};
 use crate::{Clip, ClipOp, Gaussians, Mode, Plane, Settings};
 
 /// The paper's three classes, and what is not seen anyway.
@@ -111,7 +113,7 @@ pub fn side<T: Real>(
     if settings.trace_all {
         return Side::Cutoff;
     }
-    let reach = band(footprint, settings);
+    let reach = band(scene, index, footprint, settings);
     let verdicts: Vec<_> = planes.map(|plane| plane.verdict(reach)).collect();
     let (all, any) = (
         |v| verdicts.iter().all(|&x| x == v),
@@ -134,7 +136,7 @@ pub fn cutting<T: Real>(
     clip: &Clip,
     settings: &Settings,
 ) -> Vec<UnitPlane<T>> {
-    let reach = band(footprint, settings);
+    let reach = band(scene, index, footprint, settings);
     let planes = clip
         .planes
         .iter()
@@ -146,10 +148,39 @@ pub fn cutting<T: Real>(
 
 /// Half width of the band in which a plane cuts, standard deviations. The paper's chord can be longer than the
 /// visible footprint; a splat is then cut as soon as its traced ellipsoid is.
-fn band<T: Real>(footprint: &Footprint<T>, settings: &Settings) -> T {
+fn band<T: Real>(
+    scene: &Gaussians,
+    index: usize,
+    footprint: &Footprint<T>,
+    settings: &Settings,
+) -> T {
     match settings.mode {
         Mode::Rara => footprint.reach.max(T::of(f64::from(settings.sigma))),
+        Mode::Exact if is_beam(scene, index, footprint, settings) => beam_band(footprint),
         Mode::None | Mode::Hard | Mode::Exact => footprint.reach,
+    }
+}
+
+/// Half width of the band of a splat whose weight follows each pixel's true ray. The footprint is linear: a pixel at
+/// `delta` sees the point u with `B u = delta`. The ray of the same pixel holds the points with
+/// `B u = delta (1 + e . u)`, e the depth's derivatives by u over the depth, among them `u / (1 - e . u)` of that same u.
+/// So no ray within K deviations passes farther than `K / (1 - K |e|)`. Where the splat reaches around the eye that has
+/// no bound, but all rays pass through the eye; [`BEYOND_EYE`] deviations beyond it nothing counts.
+fn beam_band<T: Real>(footprint: &Footprint<T>) -> T {
+    let depth_share = footprint.rows[2].length() / footprint.centre.z;
+    let rest = T::one() - footprint.reach * footprint.stretch * depth_share;
+    if rest > T::of(f64::from(WIDENING_REST)) {
+        return footprint.reach * footprint.stretch / rest;
+    }
+    let eye = footprint
+        .axes
+        .map(|axis| axis.dot(footprint.relative) / axis.dot(axis));
+    let eye = vec3(eye[0], eye[1], eye[2]).length();
+    // A splat without thickness has its eye nowhere: every plane may cut it.
+    if eye.is_nan() {
+        T::infinity()
+    } else {
+        eye + T::of(f64::from(BEYOND_EYE))
     }
 }
 

@@ -75,7 +75,7 @@ pub fn cutoff<T: Real>(
 
 /// Whether a splat is too large or too far off the axis for the affine form. An eye within the splat makes it too large:
 /// its depth is then less than K < 3.4 deviations.
-fn is_beam<T: Real>(
+pub(super) fn is_beam<T: Real>(
     scene: &Gaussians,
     index: usize,
     footprint: &Footprint<T>,

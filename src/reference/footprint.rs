@@ -27,6 +27,9 @@ pub struct Footprint<T> {
     pub gradients: [Vec3<T>; 2],
     /// Whether that direction was clamped.
     pub clamped: bool,
+    /// How much farther from the centre, in deviations, a pixel can be by the true direction than by the clamped one: at
+    /// least 1, and 1 where nothing was clamped.
+    pub stretch: T,
     /// The centre's pixel position (not clamped).
     pub pixel: [T; 2],
     /// Cholesky factors k0, k1, k2 of the footprint's inverse covariance: see [`power`](Self::power).
@@ -73,6 +76,12 @@ impl<T: Real> Footprint<T> {
             centre,
             gradients,
             clamped: clamped != slopes,
+            stretch: if clamped == slopes {
+                T::one()
+            } else {
+                let unclamped = image_gradients(&rows, view.focal, slopes, centre.z);
+                stretch(gradients, unclamped)
+            },
             pixel: [0, 1].map(|axis| view.focal[axis] * slopes[axis] + view.principal[axis]),
             factors,
             opacity,
@@ -110,6 +119,19 @@ impl<T: Real> Footprint<T> {
         let last = (centre + reach).floor().min(T::of(f64::from(size) - 1.0));
         (first <= last).then(|| (first.wide() as u32, last.wide() as u32))
     }
+}
+
+/// The largest ratio of two covariances' deviations is at most the root of the trace of one by the other's inverse.
+fn stretch<T: Real>(clamped: [Vec3<T>; 2], unclamped: [Vec3<T>; 2]) -> T {
+    let low_pass = T::of(f64::from(LOW_PASS));
+    let covariance =
+        |[b1, b2]: [Vec3<T>; 2]| (b1.dot(b1) + low_pass, b1.dot(b2), b2.dot(b2) + low_pass);
+    let (xx, xy, yy) = covariance(clamped);
+    let (true_xx, true_xy, true_yy) = covariance(unclamped);
+    let across = unclamped[0].cross(unclamped[1]);
+    let determinant = across.dot(across) + low_pass * (true_xx + true_yy - low_pass);
+    let trace = (xx * true_yy - T::of(2.0) * xy * true_xy + yy * true_xx) / determinant;
+    trace.sqrt().max(T::one())
 }
 
 /// Columns of R(q) S.

@@ -10,7 +10,9 @@ use crate::gpu::{
     Bindings, Buffer, BufferDesc, Device, Drawer, Location, Recorder, Support, Timer,
 };
 use crate::limits;
-use crate::passes::{self, Buffers, Context, PairRoom, Plan, SceneBuffers, SceneFacts, Stages};
+use crate::passes::{
+    self, Buffers, Context, Kept, PairRoom, Plan, SceneBuffers, SceneFacts, Stages, Work,
+};
 use crate::settings::{Raster, Settings};
 use crate::types::FrameCounts;
 
@@ -27,17 +29,21 @@ pub struct RendererDesc {
     pub bindings: Bindings,
     /// Whether to take timestamps around the stages.
     pub timing: bool,
+    /// Whether a frame takes over what the one before has computed and this one would compute again, to the same bytes.
+    /// The host then submits every frame that it prepares, in order, or calls [`Renderer::forget`].
+    pub reuse: bool,
     /// How many recorded frames may be unfinished at once, 1 or more; [`Renderer`] says what the host promises.
     pub frames_in_flight: u32,
 }
 
 impl RendererDesc {
-    /// Buffers by address, no timestamps, one frame in flight.
+    /// Buffers by address, no timestamps, nothing reused, one frame in flight.
     pub const fn new(color_format: vk::Format) -> Self {
         Self {
             color_format,
             bindings: Bindings::Address,
             timing: false,
+            reuse: false,
             frames_in_flight: 1,
         }
     }
@@ -72,8 +78,12 @@ pub struct Renderer {
     /// Frames prepared so far.
     prepared: u64,
     plan: Option<Plan>,
+    /// What the last prepared frame has left in the buffers.
+    kept: Option<Kept>,
     bindings: Bindings,
     pairs: PairRoom,
+    /// Whether a frame without room for its pairs is drawn once more, instead of as quads.
+    redraws: bool,
     /// Why the configured frame's rasteriser was chosen.
     reason: &'static str,
     /// Whether the configured frame has been prepared.
@@ -132,8 +142,10 @@ impl Renderer {
             slots: slots.collect::<Result<_>>()?,
             prepared: 0,
             plan: None,
+            kept: None,
             bindings: desc.bindings,
             pairs: PairRoom::default(),
+            redraws: false,
             reason: "",
             ready: false,
         })
@@ -145,6 +157,11 @@ impl Renderer {
             self.desc.color_format = format;
             self.plan = None; // what is configured would draw into the old one
         }
+    }
+
+    /// Forgets what earlier frames have computed: the next one computes everything.
+    pub fn forget(&mut self) {
+        self.kept = None;
     }
 
     /// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the
@@ -180,8 +197,9 @@ impl Renderer {
             raster,
             tile_rows: if is_cpu { limits::TILE_HEIGHT } else { 1 },
             pair_capacity: self.pairs.room(),
+            redrawn: self.redraws,
         };
-        let plan = Plan::new(facts, camera, clip, settings)?;
+        let mut plan = Plan::new(facts, camera, clip, settings)?;
         let largest = Buffers::largest(&plan).max(scene.largest());
         self.bindings = match self.desc.bindings {
             Bindings::Bound
@@ -191,6 +209,30 @@ impl Renderer {
             }
             Bindings::Bound | Bindings::Address => Bindings::Address,
         };
+        if self
+            .buffers
+            .as_ref()
+            .is_none_or(|buffers| !buffers.fit(&plan))
+        {
+            // Free first: both together may not fit.
+            let outgrown = self.buffers.take();
+            if let Some(kept) = &mut self.kept {
+                kept.holds = false;
+            }
+            self.retired.extend(outgrown.map(|b| (self.prepared, b)));
+            self.free_finished();
+            match Buffers::new(&self.device, &plan) {
+                Ok(buffers) => self.buffers = Some(buffers),
+                Err(Error::Memory(_)) if plan.raster == Raster::Tiles => {
+                    return self.configure_without_tiles(scene, camera, clip, settings);
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        plan.work = Kept::work(self.kept.as_ref(), scene.id, &plan);
+        if let (Work::Sweep { .. }, Some(buffers)) = (plan.work, &mut self.buffers) {
+            buffers.ensure_sweep(&self.device)?;
+        }
         let context = Context {
             device: &self.device,
             bindings: self.bindings,
@@ -202,23 +244,6 @@ impl Renderer {
             None => stages.insert(Stages::new(&context)?),
         };
         stages.ensure(&context, &plan)?;
-        if self
-            .buffers
-            .as_ref()
-            .is_none_or(|buffers| !buffers.fit(&plan))
-        {
-            // Free first: both together may not fit.
-            let outgrown = self.buffers.take();
-            self.retired.extend(outgrown.map(|b| (self.prepared, b)));
-            self.free_finished();
-            match Buffers::new(&self.device, &plan) {
-                Ok(buffers) => self.buffers = Some(buffers),
-                Err(Error::Memory(_)) if plan.raster == Raster::Tiles => {
-                    return self.configure_without_tiles(scene, camera, clip, settings);
-                }
-                Err(error) => return Err(error),
-            }
-        }
         self.plan = Some(plan);
         Ok(())
     }
@@ -241,9 +266,22 @@ impl Renderer {
         Ok(())
     }
 
+    /// Whether the configured frame's pixels are those of the last prepared one.
+    pub(crate) fn changes_nothing(&self) -> bool {
+        self.plan
+            .as_ref()
+            .is_some_and(|plan| plan.work == Work::Draw)
+    }
+
     /// Pairs of tile and splat that the configured frame has room for.
     pub(crate) fn pair_room(&self) -> u32 {
         self.pairs.room()
+    }
+
+    /// Whether whoever submits draws a frame without room for its pairs once more: then nothing is drawn of it, which
+    /// spares the quads. For the next [`configure`](Self::configure) on.
+    pub(crate) fn set_redraws(&mut self, redraws: bool) {
+        self.redraws = redraws;
     }
 
     /// Frees what only frames used that the host has waited for.
@@ -283,6 +321,10 @@ impl Renderer {
         // SAFETY: the caller promises that `cmd` is recording, outside a rendering scope.
         let mut recorder = unsafe { Recorder::begin(&self.device, cmd, slot.timer.as_mut()) };
         passes::record(&mut recorder, stages, scene, buffers, plan, &slot.counts);
+        if plan.work != Work::Draw {
+            let before = self.kept.take();
+            self.kept = self.desc.reuse.then(|| Kept::after(before, scene.id, plan));
+        }
     }
 
     /// Records the splats, or the picture that the tiles have made of them, inside the host's rendering scope, blended

@@ -6,7 +6,7 @@ use super::{Case, Limit, Regime, TARGET};
 use crate::limits::ALPHA_MIN_INVERSE;
 use crate::measure::{Comparison, compare};
 use crate::reference;
-use crate::{Clip, Decay, ExactForm, Headless, Mode, Picture, Result, Settings};
+use crate::{Clip, Decay, ExactForm, Headless, Mode, Picture, Raster, Result, Settings};
 
 /// The forms of the cut that are measured. Mode `rara` only has to be finite and right in the picture: its length
 /// ratio jumps where a ray leaves the ellipsoid.
@@ -51,7 +51,7 @@ pub struct Row {
     pub splats: usize,
     /// Largest error of the uncut alpha in a pixel, single splats only: what no form of the cut can be better than.
     pub alpha: f64,
-    /// Pixels whose alpha is at least 1/255 but that the drawn quads miss.
+    /// Pixels whose alpha is at least 1/255 but that the drawn tiles or quads miss.
     pub missed: usize,
     /// Values of pictures that are not finite.
     pub not_finite: usize,
@@ -108,15 +108,19 @@ fn measure(headless: &mut Headless, case: &Case, row: &mut Row) -> Result<()> {
         mode: Mode::None,
         ..Settings::default()
     };
-    let (ours, whole) = both(headless, case, &Clip::default(), &uncut)?;
-    row.not_finite += not_finite(&ours);
-    let pixels = ours.pixels.iter().zip(&whole.pixels);
-    let decided: Vec<_> = pixels
-        .map(|(a, b)| !undecided(a[3]) && !undecided(b[3]))
+    let (drawn, whole) = pictures(headless, case, &Clip::default(), &uncut)?;
+    let decided: Vec<_> = (0..whole.pixels.len())
+        .map(|at| {
+            let alphas = drawn.iter().map(|ours| ours.pixels[at][3]);
+            alphas.chain([whole.pixels[at][3]]).all(|a| !undecided(a))
+        })
         .collect();
-    row.missed += missed(&ours, &whole, &decided);
-    if case.apart {
-        row.alpha = row.alpha.max(worst(&ours, &whole, &decided));
+    for ours in &drawn {
+        row.not_finite += not_finite(ours);
+        row.missed += missed(ours, &whole, &decided);
+        if case.apart {
+            row.alpha = row.alpha.max(worst(ours, &whole, &decided));
+        }
     }
 
     let mut beam = None;
@@ -128,15 +132,19 @@ fn measure(headless: &mut Headless, case: &Case, row: &mut Row) -> Result<()> {
             decay: case.apart.then_some(Decay::Linear),
             ..Settings::default()
         };
-        let (ours, truth) = both(headless, case, &case.clip, &settings)?;
-        let bad = not_finite(&ours);
-        row.not_finite += bad;
+        let (drawn, truth) = pictures(headless, case, &case.clip, &settings)?;
         let to = &mut row.forms[at];
-        if bad == 0 {
-            to.add(compare(&scaled(&ours, &truth), &scaled(&truth, &truth))?);
+        for ours in &drawn {
+            let bad = not_finite(ours);
+            row.not_finite += bad;
+            if bad == 0 {
+                to.add(compare(&scaled(ours, &truth), &scaled(&truth, &truth))?);
+            }
+            if case.apart {
+                to.weight = to.weight.max(worst(ours, &truth, &decided));
+            }
         }
         if case.apart {
-            to.weight = to.weight.max(worst(&ours, &truth, &decided));
             let beam = beam.get_or_insert_with(|| {
                 let settings = Settings {
                     form: ExactForm::Beam,
@@ -151,16 +159,24 @@ fn measure(headless: &mut Headless, case: &Case, row: &mut Row) -> Result<()> {
     Ok(())
 }
 
-/// The GPU's picture and the truth.
-fn both(
+/// The GPU's pictures, by tiles and by quads, and the truth.
+fn pictures(
     headless: &mut Headless,
     case: &Case,
     clip: &Clip,
     settings: &Settings,
-) -> Result<(Picture, Picture)> {
-    headless.render(&case.camera, clip, settings)?;
+) -> Result<([Picture; 2], Picture)> {
+    let mut draw = |raster| {
+        let settings = Settings {
+            raster,
+            ..*settings
+        };
+        headless.render(&case.camera, clip, &settings)?;
+        headless.picture()
+    };
+    let drawn = [draw(Raster::Tiles)?, draw(Raster::Quad)?];
     let truth = reference::render::<f64>(&case.scene, &case.camera, clip, settings);
-    Ok((headless.picture()?, truth.picture))
+    Ok((drawn, truth.picture))
 }
 
 fn not_finite(picture: &Picture) -> usize {

@@ -70,7 +70,6 @@ pub fn regimes() -> Vec<Regime> {
     ]
 }
 
-/// What the perspective-exact form loses far off the axis.
 /// Centres up to 300 px times `aside` beside the picture, and splats so large that they reach into it.
 fn beside(aside: f64) -> Vec<Case> {
     let mut random = Random::new(13);

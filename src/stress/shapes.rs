@@ -26,6 +26,8 @@ pub fn regimes() -> Vec<Regime> {
         Regime::new("pancakes, aspect 1e4", || pancakes(1e4)),
         Regime::new("pancakes, aspect 1e5", || pancakes(1e5)),
         Regime::new("pancakes, aspect 1e6", || pancakes(1e6)),
+        Regime::new("long ones in a large picture", || large(1e3, false)),
+        Regime::new("flat ones in a large picture", || large(1e3, true)),
         Regime::new("sigma 1e-7", || sigma(1e-7)),
         Regime::new("sigma 1e-5", || sigma(1e-5)),
         Regime::new("sigma 1e-3", || sigma(1e-3)),
@@ -57,6 +59,25 @@ fn pancakes(aspect: f64) -> Vec<Case> {
     cases(3, PLAIN, &any_normal, &|r, px| {
         let long = px * between(r, 0.5, 40.0);
         DVec3::new(long, long * between(r, 0.2, 1.0), long / aspect)
+    })
+}
+
+/// Hundreds of pixels long, and thinner than one.
+fn large(aspect: f64, flat: bool) -> Vec<Case> {
+    let stage = Stage {
+        focal: 1200.0,
+        size: (1024, 768),
+        ..PLAIN
+    };
+    cases(31, stage, &any_normal, &|r, px| {
+        let long = px * between(r, 20.0, 250.0);
+        let thin = long / aspect;
+        let middle = if flat {
+            long * between(r, 0.3, 1.0)
+        } else {
+            thin
+        };
+        DVec3::new(long, middle, thin)
     })
 }
 

@@ -14,6 +14,8 @@ fn rara<A: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = A>) -> Ou
     let mut command = Command::new(env!("CARGO_BIN_EXE_rara"));
     command
         .args(arguments)
+        // The user's own cache is not the tests' business.
+        .env("RARA_CACHE", "")
         .output()
         .expect("the rara binary runs")
 }

@@ -67,6 +67,13 @@ fn a_picture_and_its_statistics() {
     }
     assert!(report["gpu_ms"].is_number() && report["wall_ms"].is_number());
     assert!(report["memory"]["device_bytes"].as_u64().unwrap() > 0);
+    assert!(report["memory"]["scene_bytes"].as_u64().unwrap() > 0);
+    assert!(
+        report["memory"]["scene_bytes_per_gaussian"]
+            .as_f64()
+            .unwrap()
+            > 44.0
+    );
     assert!(report["memory"]["peak_rss_bytes"].is_u64());
     assert!(report["skipped"].is_array());
     assert_eq!(report["frames"], serde_json::json!([]));

@@ -8,8 +8,8 @@ use rara::gpu::Bindings;
 use rara::measure::compare;
 use rara::scene::{Bounds, Kind, generate, load};
 use rara::{
-    Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, HeadlessDesc, Picture, Plane, Settings,
-    reference,
+    Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, HeadlessDesc, Picture, PipelineCache,
+    Plane, Settings, reference,
 };
 
 /// How large generated scenes and pictures are, against the usual: `RARA_TEST_SCALE`, for slow drivers. The bounds of the
@@ -39,6 +39,7 @@ pub fn headless_by(bindings: Bindings) -> Headless {
         device: std::env::var("RARA_TEST_DEVICE").ok(),
         validation: true,
         bindings: Some(bindings),
+        pipeline_cache: PipelineCache::Off,
     };
     Headless::new(&desc)
         .expect("a Vulkan device and the validation layer (tools/test installs both)")

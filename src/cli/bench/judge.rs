@@ -51,12 +51,13 @@ pub(super) struct Judge<'a> {
     twins: RefCell<Vec<(Settings, Picture)>>,
 }
 
-/// The truth: exact in perspective for every splat, by optical depth.
+/// The truth: exact in perspective for every splat, called cut or not, by optical depth.
 pub(super) fn truth_settings(look: &Settings) -> Settings {
     Settings {
         mode: Mode::Exact,
         decay: Some(Decay::Depth),
         form: ExactForm::Beam,
+        trace_all: true,
         ..*look
     }
 }

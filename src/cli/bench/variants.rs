@@ -82,11 +82,6 @@ pub(super) fn variants(look: Settings) -> Vec<Variant> {
         variant("exact, linear law", "--decay linear", linear),
         variant("exact", "", exact),
         variant("exact, all affine", "--beam-switch 1e9", affine),
-        variant(
-            "preset exact",
-            "--preset exact",
-            precise(Preset::Exact.precision()),
-        ),
         variant("switch 0.0025", "--beam-switch 0.0025", switch(0.0025)),
         variant("switch 0.01", "--beam-switch 0.01", switch(0.01)),
         variant("switch 0.02", "--beam-switch 0.02", switch(0.02)),
@@ -112,12 +107,18 @@ pub(super) fn variants(look: Settings) -> Vec<Variant> {
             "--target-format 8",
             target(TargetFormat::Unorm8),
         ),
-        variant("sh 16f", "--sh-format 16f", sh(ShFormat::Half)),
         variant(
             "preset fast",
             "--preset fast",
             precise(Preset::Fast.precision()),
         ),
+        variant(
+            "preset exact",
+            "--preset exact",
+            precise(Preset::Exact.precision()),
+        ),
+        variant("sh 32f", "--sh-format 32f", sh(ShFormat::Float)),
+        variant("sh 16f", "--sh-format 16f", sh(ShFormat::Half)),
         variant("sh 8", "--sh-format 8", sh(ShFormat::Byte)),
     ]
 }

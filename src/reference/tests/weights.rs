@@ -1,7 +1,7 @@
 //! Weights of mode `rara` against the paper's own quadratic, and the classes.
 
 use super::*;
-use crate::{Miss, Settings};
+use crate::{ExactForm, Miss, Settings};
 use glam::DMat3;
 
 /// The paper's Algorithm 1 as it stands, for one plane, in f64: intersect, compare, divide. Nothing where there are not
@@ -183,15 +183,23 @@ fn classes_follow_the_splats_extent_along_the_normal() {
     use ClipOp::{And, Or};
     use Side::{Cutoff, Invisible, Visible};
     let exact = mode(Mode::Exact);
+    let affine = Settings {
+        form: ExactForm::Affine,
+        ..exact
+    };
     let reach = (2.0 * 255.0_f64.ln()).sqrt();
-    for (deviations, expected) in [
-        (reach + 1e-6, Visible),
-        (reach - 1e-6, Cutoff),
-        (-reach + 1e-6, Cutoff),
-        (-reach - 1e-6, Invisible),
-    ] {
-        assert_eq!(class(And, &[deviations], &exact), expected);
-        assert_eq!(class(Or, &[deviations], &exact), expected);
+    // True rays: a deviation is a fortieth of the depth.
+    let wider = reach / (1.0 - reach * f64::from(0.1_f32) / 4.0);
+    for (settings, reach) in [(affine, reach), (exact, wider)] {
+        for (deviations, expected) in [
+            (reach + 1e-6, Visible),
+            (reach - 1e-6, Cutoff),
+            (-reach + 1e-6, Cutoff),
+            (-reach - 1e-6, Invisible),
+        ] {
+            assert_eq!(class(And, &[deviations], &settings), expected);
+            assert_eq!(class(Or, &[deviations], &settings), expected);
+        }
     }
     for (op, deviations, expected) in [
         (And, [9.0, 9.0], Visible),

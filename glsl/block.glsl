@@ -1,0 +1,136 @@
+// What view and clip say about a whole block of Gaussians, from its bounds: conservative, so that a block is only settled
+// where each of its Gaussians alone would be. A block has the side that all of its Gaussians have; SIDE_CUTOFF says that
+// they may differ and have to be looked at.
+#ifndef RARA_BLOCK
+#define RARA_BLOCK
+#include "side.glsl"
+
+// Contour of 1/255 of an opaque splat, standard deviations, and what the low-pass adds to a splat's deviation at most, px.
+const float EXTENT_MAX = 3.33;
+const float LOW_PASS_DEVIATION = 0.548;
+
+// The box around the centres, a little wider than exact.
+vec3 block_middle(Block block) {
+    return 0.5 * block.low_reach.xyz + 0.5 * block.high_sigma.xyz;
+}
+
+vec3 block_half(Block block) {
+    return 0.5 * block.high_sigma.xyz - 0.5 * block.low_reach.xyz + 1e-6 * (abs(block.low_reach.xyz) + abs(block.high_sigma.xyz));
+}
+
+uint block_plane_side(uint plane, Block block, float widening) {
+    if (FRAME.trace_all != 0u && FRAME.mode != MODE_HARD) {
+        return SIDE_CUTOFF;
+    }
+    float reach = widening * max(block.low_reach.w, 0.0);
+    float traced = FRAME.sigma * abs(block.high_sigma.w);
+    float support = FRAME.mode == MODE_HARD ? 0.0 : FRAME.mode == MODE_RARA ? max(reach, traced) : reach;
+    float distance = plane_distance(plane, block_middle(block));
+    float margin = dot(abs(FRAME.plane_high[plane].xyz), block_half(block)) + 1.0001 * support;
+    return distance > margin ? SIDE_VISIBLE : distance < -margin ? SIDE_INVISIBLE : SIDE_CUTOFF;
+}
+
+// All planes together, as clip_side does for one Gaussian, and with what perspective adds to the band at most.
+uint block_clip_side(Block block, float widening) {
+    uint decided = FRAME.op == OP_AND ? SIDE_INVISIBLE : SIDE_VISIBLE;
+    uint side = FRAME.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
+    for (uint plane = 0u; plane < FRAME.plane_count; plane++) {
+        uint one = block_plane_side(plane, block, widening);
+        if (one == decided) {
+            return decided;
+        }
+        side = one == SIDE_CUTOFF ? SIDE_CUTOFF : side;
+    }
+    return side;
+}
+
+// A linear function a x + b z of the camera's frame over the box: its middle and by how much it can differ from that.
+vec2 range_over(vec3 relative, vec3 half_box, vec3 row, float a, float b) {
+    vec3 gradient = a * row + b * FRAME.rotation_z.xyz;
+    float spread = dot(abs(gradient), half_box);
+    // The eye's rows and the differences are rounded.
+    float slack = 4e-6 * (abs(a) + abs(b)) * (length(relative) + length(half_box));
+    return vec2(dot(gradient, relative), spread + slack);
+}
+
+// Along one axis of the picture: SIDE_CULLED where no splat reaches it, SIDE_VISIBLE where all centres are half a pixel
+// inside, else SIDE_CUTOFF. A splat at x, z spans f x/z + c +- K (f sigma/z sqrt(1 + s^2) + 0.55), with s the slope of
+// its Jacobian; times z all of this is linear.
+uint axis_side(vec3 relative, vec3 half_box, vec3 row, float focal, float centre, float size, vec2 slopes, float reach) {
+    float steepest = max(abs(slopes.x), abs(slopes.y));
+    float span = 1.001 * focal * reach * sqrt(1.0 + steepest * steepest);
+    float edge = EXTENT_MAX * LOW_PASS_DEVIATION + 1.0;
+    vec2 before = range_over(relative, half_box, row, focal, centre + edge);
+    vec2 behind = range_over(relative, half_box, row, focal, centre - size - edge);
+    if (before.x + before.y + span < 0.0 || behind.x - behind.y - span > 0.0) {
+        return SIDE_CULLED;
+    }
+    vec2 first = range_over(relative, half_box, row, focal, centre - 0.51);
+    vec2 last = range_over(relative, half_box, row, focal, centre - size + 0.51);
+    return first.x - first.y >= 0.0 && last.x + last.y <= 0.0 ? SIDE_VISIBLE : SIDE_CUTOFF;
+}
+
+// SIDE_CULLED where no Gaussian is in view, SIDE_VISIBLE where all are, else SIDE_CUTOFF.
+uint block_view_side(Block block) {
+    float reach = block.low_reach.w;
+    float sigma = block.high_sigma.w;
+    if (reach < 0.0) {
+        return SIDE_CULLED;
+    }
+    vec3 relative = eye_relative(block_middle(block));
+    vec3 half_box = block_half(block);
+    vec2 depth = range_over(relative, half_box, vec3(0.0), 0.0, 1.0);
+    float farthest = depth.x + depth.y;
+    float nearest = depth.x - depth.y;
+    if (farthest < NEAR_Z) {
+        return SIDE_CULLED;
+    }
+    vec4 focal = FRAME.focal;
+    uint x = axis_side(relative, half_box, FRAME.rotation_x.xyz, focal.x, focal.z, FRAME.size.x, FRAME.slope_bounds.xy, reach);
+    uint y = axis_side(relative, half_box, FRAME.rotation_y.xyz, focal.y, focal.w, FRAME.size.y, FRAME.slope_bounds.zw, reach);
+    if (x == SIDE_CULLED || y == SIDE_CULLED) {
+        return SIDE_CULLED;
+    }
+    bool drawable = sigma >= 0.0 && nearest > 1.0001 * NEAR_Z
+        && 4.0 * sigma * max(focal.x, focal.y) < DRAWABLE_DEVIATION * nearest;
+    return x == SIDE_VISIBLE && y == SIDE_VISIBLE && drawable ? SIDE_VISIBLE : SIDE_CUTOFF;
+}
+
+// Least depth of a centre.
+float block_nearest(Block block) {
+    vec2 depth = range_over(eye_relative(block_middle(block)), block_half(block), vec3(0.0), 0.0, 1.0);
+    return depth.x - depth.y;
+}
+
+// Whether the exact form of some splat may follow true rays, for its size or because its slope is clamped.
+bool may_be_beam(Block block) {
+    if (FRAME.mode != MODE_EXACT || FRAME.form == FORM_AFFINE) {
+        return false;
+    }
+    vec3 relative = eye_relative(block_middle(block));
+    vec3 half_box = block_half(block);
+    vec4 bounds = FRAME.slope_bounds;
+    vec2 left = range_over(relative, half_box, FRAME.rotation_x.xyz, 1.0, -bounds.x);
+    vec2 right = range_over(relative, half_box, FRAME.rotation_x.xyz, 1.0, -bounds.y);
+    vec2 top = range_over(relative, half_box, FRAME.rotation_y.xyz, 1.0, -bounds.z);
+    vec2 bottom = range_over(relative, half_box, FRAME.rotation_y.xyz, 1.0, -bounds.w);
+    bool clamped = !(left.x - left.y > 0.0 && right.x + right.y < 0.0 && top.x - top.y > 0.0 && bottom.x + bottom.y < 0.0);
+    return FRAME.form == FORM_BEAM || clamped || abs(block.high_sigma.w) > FRAME.beam_switch * max(block_nearest(block), 0.0);
+}
+
+// The clip's side of a block that is in view as a whole, so that no slope is clamped. Without large splats it does not
+// depend on the camera, and is `side`.
+uint block_side_in_view(Block block, uint side) {
+    if (!may_be_beam(block)) {
+        return side;
+    }
+    float rest = 1.0 - 1.001 * block.low_reach.w / block_nearest(block);
+    return rest > WIDENING_REST ? block_clip_side(block, 1.0 / rest) : SIDE_CUTOFF;
+}
+
+// Gaussians of a block: all but the last are full.
+uint block_length(uint block) {
+    return min(FRAME.gaussian_count - block * BLOCK_SIZE, BLOCK_SIZE);
+}
+
+#endif

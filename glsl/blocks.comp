@@ -1,0 +1,23 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One invocation a block: what view and clip together say about all of its Gaussians.
+#include "block.glsl"
+
+layout(local_size_x = BLOCK_GROUP_SIZE) in;
+layout(constant_id = 0) const bool CLIP = false;
+
+BUFFER(readonly, 1, Block, blocks)
+BUFFER(readonly, 2, uint, clip_sides)
+BUFFER(writeonly, 3, uint, block_sides)
+
+void main() {
+    uint block = LINEAR_GROUP * BLOCK_GROUP_SIZE + gl_LocalInvocationIndex;
+    if (block >= FRAME.block_count) {
+        return;
+    }
+    uint side = block_view_side(blocks.at[block]);
+    if (CLIP && side == SIDE_VISIBLE) {
+        side = block_side_in_view(blocks.at[block], clip_sides.at[block]);
+    }
+    block_sides.at[block] = side;
+}

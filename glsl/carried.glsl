@@ -1,0 +1,34 @@
+// What the rasteriser carries of a splat's weight: see cut.glsl. Included after the buffer `cuts` is declared.
+#ifndef RARA_CARRIED
+#define RARA_CARRIED
+#include "bin.glsl"
+
+Carried whole_weight() {
+    return Carried(vec3(CUT_WHOLE, 0.0, 0.0), vec3(0.0));
+}
+
+Carried carried_weight(uint cut) {
+    Carried weight = whole_weight();
+    if (cut != NOT_CUT) {
+        uint base = cut * FRAME.cut_stride;
+        if (cuts.at[base].w == float(1u << CUT_COUNT_SHIFT)) {
+            weight.plane = cuts.at[base + CUT_HEADER].xyz;
+            weight.curvature = cuts.at[base + CUT_HEADER + 1u].xyz;
+        } else {
+            weight.plane = vec3(CUT_RECORD, float(cut & 0xffffu), float(cut >> 16));
+        }
+    }
+    return weight;
+}
+
+// The line beyond which a splat's curve hides it, where a record holds that; else the line that there is.
+vec3 hidden_by_record(vec3 line, uint cut, Carried weight, vec3 conic, float extent) {
+    uint base = cut * FRAME.cut_stride;
+    vec4 linear = cuts.at[base];
+    if (weight.plane.x >= -CUT_RANGE || (uint(linear.w) & CUT_CURVE) == 0u) {
+        return line;
+    }
+    return hidden_beyond_curve(linear, cuts.at[base + 1u], cuts.at[base + 2u], cuts.at[base + CUT_HEADER], conic, 1.001 * extent);
+}
+
+#endif

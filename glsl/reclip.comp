@@ -1,0 +1,100 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One workgroup a block between the clip's old and new surface, one invocation a Gaussian: its class now, and whether what
+// the rasteriser holds of it has to change.
+#include "reclip.glsl"
+
+layout(local_size_x = BLOCK_SIZE) in;
+
+BUFFER(readonly, 1, Gaussian, gaussians)
+BUFFER(readonly, 2, uint, block_list)
+BUFFER(readonly, 3, FrameCounts, counts)
+BUFFER(readonly, 4, uint, looks)
+BUFFER(readonly, 5, uint, block_sides)
+BUFFER(readonly, 6, uint, masks)
+BUFFER(, 7, uint, reclips)
+
+shared uint visible_mask[WORDS];
+shared uint cut_mask[WORDS];
+shared uint gone_mask[WORDS];
+shared uint changed_mask[WORDS];
+
+uint class_before(uint block, uint local) {
+    uint side = side_before(looks.at[block]);
+    if (side != SIDE_CUTOFF) {
+        return side;
+    }
+    uint word = block * RECLIP_WORDS + (local >> 5);
+    uint visible = bitfieldExtract(reclips.at[word + RECLIP_VISIBLE], int(local & 31u), 1);
+    uint cut = bitfieldExtract(reclips.at[word + RECLIP_CUT], int(local & 31u), 1);
+    return cut != 0u ? SIDE_CUTOFF : visible != 0u ? SIDE_VISIBLE : SIDE_INVISIBLE;
+}
+
+uint class_now(uint block, uint index) {
+    uint side = reclips.at[block * RECLIP_WORDS + RECLIP_SIDE];
+    if (side != SIDE_CUTOFF) {
+        return side;
+    }
+    Gaussian gaussian = gaussians.at[index];
+    Footprint f = footprint(gaussian);
+    float extent = opacity_extent(gaussian.position_opacity.w);
+    return clip_side(f.world_factor, gaussian.position_opacity.xyz, band_in_view(f, largest(gaussian.scale.xyz), extent));
+}
+
+bool is_in_view(uint block, uint local) {
+    uint side = block_sides.at[block];
+    return side == SIDE_VISIBLE
+        || (side == SIDE_CUTOFF && (masks.at[block * 2u * WORDS + (local >> 5)] & 1u << (local & 31u)) != 0u);
+}
+
+void main() {
+    uint local = gl_LocalInvocationIndex;
+    if (local < WORDS) {
+        visible_mask[local] = 0u;
+        cut_mask[local] = 0u;
+        gone_mask[local] = 0u;
+        changed_mask[local] = 0u;
+    }
+    barrier();
+    uint group = LINEAR_GROUP;
+    bool is_block = group < counts.at[0].clip_groups.w;
+    uint block = is_block ? block_list.at[group] : 0u;
+    uint index = block * BLOCK_SIZE + local;
+    if (is_block && index < FRAME.gaussian_count && is_in_view(block, local)) {
+        uint before = class_before(block, local);
+        uint now = class_now(block, index);
+        uint word = local >> 5;
+        uint bit = 1u << (local & 31u);
+        // Unions do not depend on the order of atomics.
+        if (now == SIDE_VISIBLE) {
+            atomicOr(visible_mask[word], bit);
+        } else if (now == SIDE_CUTOFF) {
+            atomicOr(cut_mask[word], bit);
+        } else {
+            atomicOr(gone_mask[word], bit);
+        }
+        if (now != before || now == SIDE_CUTOFF) {
+            atomicOr(changed_mask[word], bit);
+        }
+    }
+    barrier();
+    if (!is_block) {
+        return;
+    }
+    uint base = block * RECLIP_WORDS;
+    if (local < WORDS) {
+        reclips.at[base + RECLIP_CHANGED + local] = changed_mask[local];
+        reclips.at[base + RECLIP_VISIBLE + local] = visible_mask[local];
+        reclips.at[base + RECLIP_CUT + local] = cut_mask[local];
+    }
+    if (local == 0u) {
+        uvec4 totals = uvec4(0u);
+        for (uint word = 0u; word < WORDS; word++) {
+            totals += uvec4(bitCount(visible_mask[word]), bitCount(cut_mask[word]), bitCount(gone_mask[word]),
+                            bitCount(changed_mask[word]));
+        }
+        for (uint k = 0u; k < 4u; k++) {
+            reclips.at[base + RECLIP_TOTALS + k] = totals[k];
+        }
+    }
+}

@@ -1,0 +1,39 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One invocation a block: its side of a clip that has moved while the camera stood still, and whether its Gaussians have to
+// be looked at. Parameter 0 is 1 where the frame before knew no clip.
+#include "reclip.glsl"
+
+layout(local_size_x = BLOCK_GROUP_SIZE) in;
+
+BUFFER(readonly, 1, Block, blocks)
+BUFFER(readonly, 2, uint, block_sides)
+BUFFER(readonly, 3, uvec4, block_counts)
+BUFFER(writeonly, 4, uint, looks)
+BUFFER(, 5, uint, reclips)
+
+// Blocks only partly in view may hold Gaussians whose band the camera widens by any amount.
+uint side_now(Block block, uint view_side) {
+    uint side = block_clip_side(block, 1.0);
+    return view_side == SIDE_VISIBLE ? block_side_in_view(block, side) : may_be_beam(block) ? SIDE_CUTOFF : side;
+}
+
+void main() {
+    uint block = LINEAR_GROUP * BLOCK_GROUP_SIZE + gl_LocalInvocationIndex;
+    if (block >= FRAME.block_count) {
+        return;
+    }
+    uint base = block * RECLIP_WORDS;
+    uint view_side = block_sides.at[block];
+    uint in_view = view_side == SIDE_VISIBLE ? block_length(block) : view_side == SIDE_CUTOFF ? block_counts.at[block].x : 0u;
+    uint before = reclips.at[base + RECLIP_SIDE];
+    if (push.param[0] != 0u) {
+        before = SIDE_VISIBLE;
+        reclips.at[base + RECLIP_TOTALS] = in_view;
+        reclips.at[base + RECLIP_TOTALS + 1u] = 0u;
+        reclips.at[base + RECLIP_TOTALS + 2u] = 0u;
+    }
+    uint now = in_view == 0u ? SIDE_VISIBLE : side_now(blocks.at[block], view_side);
+    reclips.at[base + RECLIP_SIDE] = now;
+    looks.at[block] = now == SIDE_CUTOFF || now != before ? SIDE_CUTOFF | before << 2 : SIDE_CULLED;
+}

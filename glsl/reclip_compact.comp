@@ -1,0 +1,51 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One workgroup a block that was looked at, one invocation a Gaussian: the lists of the survivors that change and of the
+// Gaussians that are cut, in the order of the scene.
+#include "reclip.glsl"
+
+layout(local_size_x = BLOCK_SIZE) in;
+
+BUFFER(readonly, 1, uint, block_list)
+BUFFER(readonly, 2, FrameCounts, counts)
+BUFFER(readonly, 3, uint, block_sides)
+BUFFER(readonly, 4, uint, masks)
+BUFFER(readonly, 5, uvec2, block_offsets)
+BUFFER(readonly, 6, uint, reclips)
+BUFFER(writeonly, 7, uvec2, recuts)
+BUFFER(writeonly, 8, uint, cutoffs)
+
+// How many bits of a word stand before a Gaussian's.
+uint bits_before(uint word, uint place, uint local) {
+    return place < local >> 5 ? bitCount(word) : place == local >> 5 ? bitCount(word & ((1u << (local & 31u)) - 1u)) : 0u;
+}
+
+void main() {
+    uint group = LINEAR_GROUP;
+    uint local = gl_LocalInvocationIndex;
+    if (group >= counts.at[0].clip_groups.w) {
+        return;
+    }
+    uint block = block_list.at[group];
+    uint base = block * RECLIP_WORDS;
+    uint bit = 1u << (local & 31u);
+    if ((reclips.at[base + RECLIP_CHANGED + (local >> 5)] & bit) == 0u) {
+        return;
+    }
+    uint view_base = block * 2u * WORDS;
+    bool is_whole = block_sides.at[block] == SIDE_VISIBLE;
+    uint survivor = block_offsets.at[block].x + (is_whole ? local : 0u);
+    uint place = reclips.at[base + RECLIP_PLACES];
+    uint cut = reclips.at[base + RECLIP_PLACES + 1u];
+    for (uint word = 0u; word <= local >> 5; word++) {
+        place += bits_before(reclips.at[base + RECLIP_CHANGED + word], word, local);
+        cut += bits_before(reclips.at[base + RECLIP_CUT + word], word, local);
+        survivor += is_whole ? 0u : bits_before(masks.at[view_base + word], word, local);
+    }
+    bool is_cut = (reclips.at[base + RECLIP_CUT + (local >> 5)] & bit) != 0u;
+    bool is_visible = (reclips.at[base + RECLIP_VISIBLE + (local >> 5)] & bit) != 0u;
+    if (is_cut) {
+        cutoffs.at[cut] = block * BLOCK_SIZE + local;
+    }
+    recuts.at[place] = uvec2(survivor, is_cut ? cut : is_visible ? NOT_CUT : CUT_AWAY);
+}

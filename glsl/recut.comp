@@ -1,0 +1,72 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One invocation a survivor that a moved clip changes: what of it depends on the clip, and the tiles to draw again. Its
+// place, colour, depth and tiles stay.
+#include "footprint.glsl"
+#include "cut.glsl"
+#include "bin.glsl"
+
+layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
+// Whether tiles are wanted of it.
+layout(constant_id = 0) const bool TILES = false;
+
+BUFFER(readonly, 1, Gaussian, gaussians)
+BUFFER(readonly, 2, uvec2, survivors)
+BUFFER(readonly, 3, FrameCounts, counts)
+BUFFER(readonly, 4, uvec2, recuts)
+BUFFER(readonly, 5, vec4, cuts)
+BUFFER(readonly, 6, uvec4, tile_masks)
+BUFFER(, 7, Splat, splats)
+BUFFER(writeonly, 8, uint, dirty)
+#include "carried.glsl"
+
+// All who find a tile changed write the same. The tiles are those of the whole splat, which is what the lists hold.
+void mark(uint survivor, Quad whole) {
+    uvec4 tiles = tile_masks.at[survivor];
+    for (uvec2 mask = tiles.zw; (mask.x | mask.y) != 0u;) {
+        dirty.at[next_tile(tiles.x, mask)] = 1u;
+    }
+    if (tiles.y != 0u) {
+        Splat splat = splats.at[survivor];
+        splat.conic_cut.z = CUT_WHOLE;
+        splat.axes = vec4(whole.first, whole.second);
+        splat.middle.xy = whole.middle;
+        Outline o = outline(splat);
+        for (uint row = o.rows.x; row < o.rows.y; row++) {
+            uvec2 columns = tiles_in_row(o, row) + row * FRAME.tile_columns;
+            for (uint tile = columns.x; tile < columns.y; tile++) {
+                dirty.at[tile] = 1u;
+            }
+        }
+    }
+}
+
+void main() {
+    uint change = LINEAR_GROUP * SURVIVOR_GROUP_SIZE + gl_LocalInvocationIndex;
+    if (change >= counts.at[0].recut_groups.w) {
+        return;
+    }
+    uint survivor = recuts.at[change].x;
+    uint cut = recuts.at[change].y;
+    Gaussian gaussian = gaussians.at[survivors.at[survivor].x];
+    Footprint f = footprint(gaussian);
+    Carried weight = whole_weight();
+    if (cut < CUT_AWAY) {
+        weight = carried_weight(cut);
+    }
+    float extent = opacity_extent(gaussian.position_opacity.w);
+    if (TILES) {
+        mark(survivor, quad_around(f, extent, whole_weight()));
+    }
+    Quad quad = quad_around(f, extent, weight);
+    if (cut == CUT_AWAY) {
+        // Nothing to rasterise; tiles look at z.
+        weight.plane.x = CUT_GONE;
+        quad = Quad(vec2(0.0), vec2(0.0), vec2(0.0));
+    }
+    splats.at[survivor].conic_cut.zw = weight.plane.xy;
+    splats.at[survivor].colour_cut.w = weight.plane.z;
+    splats.at[survivor].axes = vec4(quad.first, quad.second);
+    splats.at[survivor].middle.xy = quad.middle;
+    splats.at[survivor].curvature = vec4(weight.curvature, 0.0);
+}

@@ -1,0 +1,112 @@
+//! What a driver has compiled, as bytes to keep and to give back. Whoever keeps them in a file checks them first: drivers
+//! are promised to refuse what is not theirs, and some crash.
+
+use ash::vk;
+
+use super::Device;
+use super::failure::failed;
+use crate::Result;
+
+/// Which driver on which device has compiled something: nothing else can use it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PipelineCacheId {
+    /// The device's vendor.
+    pub vendor: u32,
+    /// The device's model.
+    pub device: u32,
+    /// The driver's version, in the vendor's own way of writing it.
+    pub driver: u32,
+    /// What the driver changes with the format of its caches.
+    pub uuid: [u8; vk::UUID_SIZE],
+}
+
+/// Bytes of the header that every cache begins with: its size, its version, vendor, device and UUID.
+const HEADER: usize = 16 + vk::UUID_SIZE;
+
+impl PipelineCacheId {
+    /// Whether `data` begins with the header of this driver's caches.
+    pub fn matches(&self, data: &[u8]) -> bool {
+        let word = |at: usize| u32::from_le_bytes(std::array::from_fn(|byte| data[4 * at + byte]));
+        data.len() >= HEADER
+            && (HEADER..=data.len()).contains(&(word(0) as usize))
+            && word(1) == vk::PipelineCacheHeaderVersion::ONE.as_raw() as u32
+            && (word(2), word(3)) == (self.vendor, self.device)
+            && data[16..HEADER] == self.uuid
+    }
+}
+
+impl Device {
+    /// Whose caches this device's driver can use.
+    pub fn pipeline_cache_id(&self) -> PipelineCacheId {
+        let properties = self.properties();
+        PipelineCacheId {
+            vendor: properties.vendor_id,
+            device: properties.device_id,
+            driver: properties.driver_version,
+            uuid: properties.pipeline_cache_uuid,
+        }
+    }
+
+    /// Adds what an earlier run kept to the pipelines that need not be compiled again.
+    ///
+    /// # Safety
+    ///
+    /// `data` is what [`pipeline_cache_data`](Self::pipeline_cache_data) returned on a device of the same
+    /// [`PipelineCacheId`], whole and unchanged.
+    pub(crate) unsafe fn add_pipeline_cache_data(&self, data: &[u8]) -> Result<()> {
+        if self.pipeline_cache() == vk::PipelineCache::null() {
+            return Ok(());
+        }
+        let info = vk::PipelineCacheCreateInfo::default().initial_data(data);
+        // SAFETY: the caller vouches for the data.
+        let added = unsafe { self.raw().create_pipeline_cache(&info, None) }
+            .map_err(failed("vkCreatePipelineCache"))?;
+        // SAFETY: both are this device's, two, and nobody else uses the first while its owner is borrowed or calls this
+        // before it compiles; the second is ours alone.
+        let merged = unsafe {
+            self.raw()
+                .merge_pipeline_caches(self.pipeline_cache(), &[added])
+        };
+        // SAFETY: created above, used by nothing any more.
+        unsafe { self.raw().destroy_pipeline_cache(added, None) };
+        merged.map_err(failed("vkMergePipelineCaches"))
+    }
+
+    /// What has been compiled so far, for a later run. Empty where nothing is kept: on a host's device that came without
+    /// a cache.
+    pub fn pipeline_cache_data(&self) -> Result<Vec<u8>> {
+        if self.pipeline_cache() == vk::PipelineCache::null() {
+            return Ok(Vec::new());
+        }
+        // SAFETY: the cache is this device's, or the host's and outlives it.
+        unsafe { self.raw().get_pipeline_cache_data(self.pipeline_cache()) }
+            .map_err(failed("vkGetPipelineCacheData"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_same_drivers_header_matches() {
+        let id = PipelineCacheId {
+            vendor: 1,
+            device: 2,
+            driver: 3,
+            uuid: [7; 16],
+        };
+        let words = [32_u32, 1, 1, 2];
+        let mut data: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
+        data.extend([7; 16]);
+        assert!(id.matches(&data));
+        for byte in 0..data.len() {
+            data[byte] ^= 0x10;
+            assert!(!id.matches(&data), "byte {byte} is not looked at");
+            data[byte] ^= 0x10;
+        }
+        assert!(!id.matches(&data[..31]) && !id.matches(&[]));
+        data.extend([1, 2, 3]);
+        assert!(id.matches(&data));
+    }
+}

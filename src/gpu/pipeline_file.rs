@@ -1,0 +1,244 @@
+//! Compiled pipelines in a file of the user's cache folder, from one run to the next. A file that cannot be used is as
+//! good as none, and one that cannot be written is no error.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use super::{Device, PipelineCacheId};
+use crate::files::write_atomically;
+use crate::{Error, Result};
+
+/// Where [`Headless`](crate::Headless) keeps compiled pipelines from one run to the next.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum PipelineCache {
+    /// In the user's cache folder: `RARA_CACHE`, else `rara` in `XDG_CACHE_HOME`, else `~/.cache/rara`. Nowhere if there
+    /// is no home, or if `RARA_CACHE` is set to nothing.
+    #[default]
+    User,
+    /// In this folder, made when there is something to keep.
+    Folder(PathBuf),
+    /// Nowhere: every run compiles everything.
+    Off,
+}
+
+impl PipelineCache {
+    fn folder(&self) -> Option<PathBuf> {
+        match self {
+            Self::User => user_folder(|name| std::env::var_os(name)),
+            Self::Folder(folder) => Some(folder.clone()),
+            Self::Off => None,
+        }
+    }
+}
+
+fn user_folder(variable: impl Fn(&str) -> Option<std::ffi::OsString>) -> Option<PathBuf> {
+    if let Some(own) = variable("RARA_CACHE") {
+        return (!own.is_empty()).then(|| own.into());
+    }
+    // A relative path means nothing here, says the standard.
+    let absolute = |name| {
+        variable(name)
+            .map(PathBuf::from)
+            .filter(|path| path.is_absolute())
+    };
+    let caches = absolute("XDG_CACHE_HOME").or_else(|| Some(absolute("HOME")?.join(".cache")));
+    Some(caches?.join("rara"))
+}
+
+/// The file of one device and driver.
+#[derive(Debug)]
+pub(crate) struct PipelineFile {
+    path: PathBuf,
+    /// What it is known to hold.
+    held: Option<Seal>,
+}
+
+/// Before the data: this, then its [`Seal`].
+const MAGIC: [u8; 8] = *b"rarapipe";
+/// More than drivers are known to keep for a few dozen pipelines: a larger file is none of ours.
+const MOST: u64 = 256 << 20;
+
+/// Length and hash of the data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Seal {
+    length: u64,
+    hash: u64,
+}
+
+impl Seal {
+    const BYTES: usize = 16;
+
+    fn of(data: &[u8]) -> Self {
+        // FNV-1a: the enemy is a full disk or a broken one.
+        let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        Self {
+            length: data.len() as u64,
+            hash: data.iter().fold(0xcbf2_9ce4_8422_2325, step),
+        }
+    }
+
+    fn bytes(self) -> [u8; Self::BYTES] {
+        let mut bytes = [0; Self::BYTES];
+        bytes[..8].copy_from_slice(&self.length.to_le_bytes());
+        bytes[8..].copy_from_slice(&self.hash.to_le_bytes());
+        bytes
+    }
+}
+
+impl PipelineFile {
+    /// Takes what an earlier run kept for this device. `None` if nothing is to be kept.
+    pub(crate) fn open(cache: &PipelineCache, device: &Device) -> Option<Self> {
+        let id = device.pipeline_cache_id();
+        let path = cache.folder()?.join(name(&id));
+        let mut this = Self { path, held: None };
+        match read(&this.path, &id) {
+            Ok(data) => {
+                // SAFETY: only `keep` writes what passes the checks of `read`: whole, unchanged, and by this driver.
+                let added = unsafe { device.add_pipeline_cache_data(&data) };
+                match added {
+                    Ok(()) => this.held = Some(Seal::of(&data)),
+                    Err(error) => log::warn!("{}: {error}", this.path.display()),
+                }
+            }
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            Err(error) => log::warn!("{}: {error}; compiling anew", this.path.display()),
+        }
+        Some(this)
+    }
+
+    /// Bytes of compiled pipelines that the file is known to hold.
+    pub(crate) fn held_bytes(&self) -> u64 {
+        self.held.map_or(0, |seal| seal.length)
+    }
+
+    /// Keeps what the device has compiled, unless the file holds that already.
+    pub(crate) fn keep(&mut self, device: &Device) {
+        let kept = device
+            .pipeline_cache_data()
+            .and_then(|data| self.write(&data));
+        if let Err(error) = kept {
+            log::warn!("compiled pipelines are not kept: {error}");
+        }
+    }
+
+    fn write(&mut self, data: &[u8]) -> Result<()> {
+        let seal = Seal::of(data);
+        if data.is_empty() || seal.length > MOST || self.held == Some(seal) {
+            return Ok(());
+        }
+        let folder = self.path.parent().expect("a file in a folder");
+        fs::create_dir_all(folder).map_err(Error::io(folder))?;
+        write_atomically(&self.path, |out| {
+            out.write_all(&MAGIC)?;
+            out.write_all(&seal.bytes())?;
+            out.write_all(data)
+        })?;
+        self.held = Some(seal);
+        Ok(())
+    }
+}
+
+/// A name for each device and driver: one machine may have several, and one home several machines.
+fn name(id: &PipelineCacheId) -> String {
+    let uuid: String = id.uuid.iter().map(|byte| format!("{byte:02x}")).collect();
+    let PipelineCacheId {
+        vendor,
+        device,
+        driver,
+        ..
+    } = id;
+    format!("pipelines-{vendor:x}-{device:x}-{driver:x}-{uuid}.bin")
+}
+
+/// The data of a file, if it is whole and this driver's.
+fn read(path: &Path, id: &PipelineCacheId) -> io::Result<Vec<u8>> {
+    let file = File::open(path)?;
+    let mut bytes = Vec::new();
+    file.take(MOST + 1).read_to_end(&mut bytes)?;
+    let refuse = |why: &str| Err(io::Error::new(io::ErrorKind::InvalidData, why.to_owned()));
+    let sealed = bytes
+        .strip_prefix(&MAGIC)
+        .and_then(|rest| rest.split_at_checked(Seal::BYTES));
+    let Some((seal, data)) = sealed else {
+        return refuse("not a file of compiled pipelines");
+    };
+    if Seal::of(data).bytes() != seal {
+        return refuse("damaged");
+    }
+    if !id.matches(data) {
+        return refuse("made by another driver or device");
+    }
+    Ok(data.to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_users_folder_is_the_first_that_is_set() {
+        let folder = |set: &[(&str, &str)]| {
+            let set: Vec<(String, String)> = set
+                .iter()
+                .map(|(name, value)| ((*name).into(), (*value).into()))
+                .collect();
+            user_folder(move |name| {
+                let found = set.iter().find(|(have, _)| have == name);
+                found.map(|(_, value)| value.into())
+            })
+        };
+        let (own, xdg, home) = (
+            ("RARA_CACHE", "/a"),
+            ("XDG_CACHE_HOME", "/b"),
+            ("HOME", "/c"),
+        );
+        assert_eq!(folder(&[own, xdg, home]), Some("/a".into()));
+        assert_eq!(folder(&[xdg, home]), Some("/b/rara".into()));
+        assert_eq!(folder(&[home]), Some("/c/.cache/rara".into()));
+        let relative = ("XDG_CACHE_HOME", "b");
+        assert_eq!(folder(&[relative, home]), Some("/c/.cache/rara".into()));
+        assert_eq!(folder(&[("RARA_CACHE", ""), xdg, home]), None);
+        assert_eq!(folder(&[]), None);
+    }
+
+    #[test]
+    fn a_file_is_used_only_if_it_is_whole_and_the_drivers_own() {
+        let folder = std::env::temp_dir().join(format!("rara-pipelines-{}", std::process::id()));
+        let id = PipelineCacheId {
+            vendor: 1,
+            device: 2,
+            driver: 3,
+            uuid: [7; 16],
+        };
+        let words = [32_u32, 1, 1, 2];
+        let mut data: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
+        data.extend([7; 16]);
+        data.extend(0..100);
+        let mut file = PipelineFile {
+            path: folder.join(name(&id)),
+            held: None,
+        };
+        file.write(&data).expect("writes, and makes the folder");
+        assert_eq!(file.held_bytes(), data.len() as u64);
+        assert_eq!(read(&file.path, &id).expect("reads"), data);
+        let other = PipelineCacheId {
+            uuid: [8; 16],
+            ..id
+        };
+        assert!(read(&file.path, &other).is_err());
+
+        let whole = fs::read(&file.path).expect("is there");
+        for byte in 0..whole.len() {
+            let mut damaged = whole.clone();
+            damaged[byte] ^= 4;
+            fs::write(&file.path, damaged).expect("writes");
+            assert!(read(&file.path, &id).is_err(), "byte {byte} is not checked");
+        }
+        for length in 0..whole.len() {
+            fs::write(&file.path, &whole[..length]).expect("writes");
+            assert!(read(&file.path, &id).is_err(), "{length} bytes are a file");
+        }
+        fs::remove_dir_all(&folder).expect("goes");
+    }
+}

@@ -1,0 +1,215 @@
+//! The order of the Gaussians on the device: along a space-filling curve, so that neighbours share a block, and the
+//! bounds of those blocks. Large ones and those too faint to be sure of a pixel have blocks of their own: a single one
+//! would widen, or leave undecided, the block of its neighbours.
+
+use glam::Vec3;
+
+use crate::limits;
+use crate::scene::Gaussians;
+use crate::types::Block;
+
+/// Places a curve distinguishes along each axis, as bits: three of them and the class are a key of 32.
+const BITS: u32 = 10;
+/// Classes of Gaussians, from the lowest key up; each has its own curve.
+const SMALL: u32 = 0;
+const MIDDLE: u32 = 1;
+const LARGE: u32 = 2;
+const FAINT: u32 = 3;
+/// Reach, as a share of the scene's size, from which a Gaussian is no longer small and from which it is large.
+const MIDDLE_REACH: f32 = 1.0 / 128.0;
+const LARGE_REACH: f32 = 1.0 / 16.0;
+/// Centres that the scene's extent is estimated from, and the share of them beyond each end.
+const SAMPLES: usize = 1 << 14;
+const OUTLIERS: usize = 100;
+
+/// The numbers of the Gaussians in the order of the device.
+pub(super) fn order(scene: &Gaussians) -> Vec<u32> {
+    let count = scene.len() as u32;
+    if count <= limits::BLOCK_SIZE {
+        return (0..count).collect(); // one block, whatever the order
+    }
+    let [low, high] = extent(&scene.positions);
+    let size = (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
+    let key = |number: u32| {
+        let index = number as usize;
+        let reach = reach(scene, index) / size.max_element();
+        let class = if !is_spanning(scene, index) {
+            FAINT
+        } else if reach < MIDDLE_REACH {
+            SMALL
+        } else if reach < LARGE_REACH {
+            MIDDLE
+        } else {
+            LARGE
+        };
+        // Outliers go to the ends, and what is no number to the beginning.
+        let share = ((scene.positions[index] - low) / size).clamp(Vec3::ZERO, Vec3::ONE);
+        let cell = share * ((1 << BITS) - 1) as f32;
+        class << (3 * BITS) | morton(cell.x as u32, cell.y as u32, cell.z as u32)
+    };
+    let mut keys: Vec<u64> = (0..count)
+        .map(|number| u64::from(key(number)) << 32 | u64::from(number))
+        .collect();
+    keys.sort_unstable();
+    keys.into_iter().map(|key| key as u32).collect()
+}
+
+/// The blocks of an order.
+pub(super) fn blocks(scene: &Gaussians, order: &[u32]) -> Vec<Block> {
+    let chunks = order.chunks(limits::BLOCK_SIZE as usize);
+    chunks.map(|numbers| block(scene, numbers)).collect()
+}
+
+fn block(scene: &Gaussians, numbers: &[u32]) -> Block {
+    let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
+    let (mut farthest, mut sigma, mut spanning) = (-1.0_f32, 0.0_f32, true);
+    for index in numbers.iter().map(|&number| number as usize) {
+        spanning &= is_spanning(scene, index);
+        if scene.opacities[index] < limits::ALPHA_MIN {
+            continue; // nowhere visible, wherever it is
+        }
+        let position = scene.positions[index];
+        let reach = reach(scene, index);
+        if !(position.is_finite() && reach.is_finite()) {
+            // Looked at, wherever the others are.
+            farthest = f32::INFINITY;
+            spanning = false;
+            continue;
+        }
+        low = low.min(position);
+        high = high.max(position);
+        farthest = farthest.max(reach);
+        sigma = sigma.max(scene.scales[index].max_element());
+    }
+    let sigma = if spanning {
+        sigma
+    } else {
+        -sigma.max(f32::MIN_POSITIVE)
+    };
+    Block {
+        low_reach: low.extend(farthest).into(),
+        high_sigma: high.extend(sigma).into(),
+    }
+}
+
+/// How far from its centre a splat's contour of 1/255 can lie, world units.
+fn reach(scene: &Gaussians, index: usize) -> f32 {
+    let times = scene.opacities[index] * limits::ALPHA_MIN_INVERSE;
+    // A little more than single precision finds on the device.
+    let extent = 1.0001 * (2.0 * times.max(1.0).ln()).sqrt();
+    extent * scene.scales[index].max_element()
+}
+
+fn is_spanning(scene: &Gaussians, index: usize) -> bool {
+    scene.opacities[index] >= limits::OPACITY_SPANNING
+}
+
+/// Where nearly all centres are, from a sample.
+fn extent(positions: &[Vec3]) -> [Vec3; 2] {
+    let step = positions.len().div_ceil(SAMPLES);
+    let along = |pick: fn(&Vec3) -> f32| {
+        let mut values: Vec<f32> = positions.iter().step_by(step).map(pick).collect();
+        values.sort_unstable_by(f32::total_cmp);
+        let outliers = values.len() / OUTLIERS;
+        (values[outliers], values[values.len() - 1 - outliers])
+    };
+    let (x, y, z) = (along(|p| p.x), along(|p| p.y), along(|p| p.z));
+    [Vec3::new(x.0, y.0, z.0), Vec3::new(x.1, y.1, z.1)]
+}
+
+/// The bits of three coordinates in turn.
+fn morton(x: u32, y: u32, z: u32) -> u32 {
+    /// Two zeros behind each of the lowest ten bits.
+    fn spread(v: u32) -> u32 {
+        let v = (v | v << 16) & 0x0300_00ff;
+        let v = (v | v << 8) & 0x0300_f00f;
+        let v = (v | v << 4) & 0x030c_30c3;
+        (v | v << 2) & 0x0924_9249
+    }
+    spread(x) | spread(y) << 1 | spread(z) << 2
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Quat;
+
+    fn scene(count: usize) -> Gaussians {
+        let mut state = 1_u32;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / (1 << 24) as f32
+        };
+        Gaussians {
+            positions: (0..count)
+                .map(|_| Vec3::new(next(), next(), next()))
+                .collect(),
+            scales: (0..count)
+                .map(|_| Vec3::splat(0.1 * next().powi(8)))
+                .collect(),
+            rotations: vec![Quat::IDENTITY; count],
+            opacities: (0..count).map(|_| next()).collect(),
+            sh_degree: 0,
+            sh: vec![0.0; 3 * count],
+        }
+    }
+
+    #[test]
+    fn an_order_holds_every_gaussian_once() {
+        let mut order = order(&scene(5000));
+        assert!(!order.is_sorted());
+        order.sort_unstable();
+        assert!(order.iter().copied().eq(0..5000));
+    }
+
+    #[test]
+    fn bounds_hold_every_gaussian_and_are_small() {
+        let scene = scene(100_000);
+        let order = order(&scene);
+        let blocks = blocks(&scene, &order);
+        let mut volume = 0.0;
+        for (block, numbers) in blocks.iter().zip(order.chunks(limits::BLOCK_SIZE as usize)) {
+            let [low @ .., reach] = block.low_reach;
+            let [high @ .., sigma] = block.high_sigma;
+            let (low, high) = (Vec3::from(low), Vec3::from(high));
+            for index in numbers.iter().map(|&n| n as usize) {
+                if scene.opacities[index] < limits::ALPHA_MIN {
+                    assert!(sigma < 0.0, "not all of them span a pixel");
+                    continue;
+                }
+                let (x, s) = (scene.positions[index], scene.scales[index].x);
+                assert!(low.cmple(x).all() && x.cmple(high).all());
+                let extent = (2.0 * (255.0 * scene.opacities[index]).ln()).sqrt();
+                assert!(s <= sigma.abs() && s * extent <= reach);
+            }
+            volume += f64::from((high - low).max(Vec3::ZERO).element_product());
+        }
+        // Each class covers the cube once; a curve that were none would make every block as large as the cube.
+        assert!(volume < 20.0, "{volume} times the scene's volume");
+    }
+
+    #[test]
+    fn one_that_is_no_number_leaves_its_block_undecided_and_bounded() {
+        let mut scene = scene(10);
+        scene.positions[3].y = f32::NAN;
+        let block = blocks(&scene, &order(&scene))[0];
+        assert_eq!(block.low_reach[3], f32::INFINITY);
+        assert!(block.high_sigma[3] < 0.0);
+        assert!(block.low_reach[..3].iter().all(|x| x.is_finite()));
+    }
+
+    #[test]
+    fn faint_ones_are_a_block_that_nothing_sees() {
+        let mut scene = scene(10);
+        scene.opacities.fill(0.001);
+        assert!(blocks(&scene, &order(&scene))[0].low_reach[3] < 0.0);
+    }
+
+    #[test]
+    fn bits_of_a_place_alternate() {
+        assert_eq!(morton(0x3ff, 0, 0), 0x0924_9249);
+        assert_eq!(morton(0, 1, 0), 2);
+        assert_eq!(morton(0, 0, 2), 32);
+        assert_eq!(morton(0x3ff, 0x3ff, 0x3ff), 0x3fff_ffff);
+    }
+}

@@ -1,0 +1,78 @@
+//! What rara's frames take: the program behind `tools/bench`. A file a section; each measures and tells.
+
+mod args;
+mod callgrind;
+mod child;
+mod correct;
+mod frame;
+mod instructions;
+mod memory;
+mod passes;
+mod proportion;
+mod report;
+mod scratch;
+mod start;
+mod statistics;
+mod sweep;
+mod table;
+mod turns;
+mod variant;
+mod world;
+
+use std::process::ExitCode;
+
+use args::{Args, Section};
+use clap::Parser as _;
+use correct::Wrong;
+use rara::{Headless, Result};
+use report::Report;
+
+/// What every section needs.
+struct Bench {
+    args: Args,
+    report: Report,
+    wrong: Wrong,
+}
+
+/// A section.
+type Run = fn(&mut Bench) -> Result<()>;
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    let result = match args.child {
+        Some(child) => child::run(child, &args).map(|()| true),
+        None => measure(args),
+    };
+    match result {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            report::say(format_args!("error: {error}"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Runs the sections; whether every picture was right.
+fn measure(args: Args) -> Result<bool> {
+    let report = Report::new(args.output.as_deref(), &Headless::new(&args.desc())?)?;
+    let mut bench = Bench {
+        args,
+        report,
+        wrong: Wrong::default(),
+    };
+    correct::run(&mut bench)?;
+    let sections: [(Section, Run); 5] = [
+        (Section::Passes, passes::run),
+        (Section::Sweep, sweep::run),
+        (Section::Proportion, proportion::run),
+        (Section::Start, start::run),
+        (Section::Instructions, instructions::run),
+    ];
+    for (section, run) in sections {
+        if bench.args.wants(section) {
+            run(&mut bench)?;
+        }
+    }
+    Ok(bench.wrong.none())
+}

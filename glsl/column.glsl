@@ -59,6 +59,18 @@ void carried_weights(vec3 plane, vec3 curvature, vec2 delta, float alpha[ROWS], 
     phi_or_side(z, alpha, weight);
 }
 
+// Whether nothing of a column is visible. Without a sweep the tiles' lists leave most of such out.
+bool is_carried_away(vec3 plane, vec3 curvature, vec2 delta) {
+    float at = plane.x + delta.x * (plane.y + curvature.x * delta.x);
+    float slope = plane.z + curvature.y * delta.x;
+    float high = -8.0;
+    for (uint row = 0u; row < ROWS; row++) {
+        float y = delta.y + float(row);
+        high = max(high, at + y * (slope + y * curvature.z));
+    }
+    return high < -PHI_ONE;
+}
+
 // Of a record that is a curve, a polynomial of degree four in the splat's own coordinates: u is that of the column, v
 // that of the first row, and v_step by how much v changes a row.
 void curve_weights(uint base, float u, float v, float v_step, float alpha[ROWS], out float weight[ROWS]) {

@@ -51,6 +51,10 @@ void main() {
         }
         vec4 colour_cut = splats.at[number].colour_cut;
         vec2 delta = place - centre_conic.xy;
+        if (SWEEP && CLIP_MODE == MODE_EXACT && abs(conic_cut.z) < CUT_RANGE
+            && is_carried_away(vec3(conic_cut.zw, colour_cut.w), splats.at[number].curvature.xyz, delta)) {
+            continue;
+        }
         float u = centre_conic.z * delta.x;
         float v = centre_conic.w * delta.x;
         float alpha[ROWS];

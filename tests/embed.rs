@@ -169,6 +169,83 @@ fn frames_in_flight_show_the_headless_pictures_over_what_the_host_has_painted() 
     }
 }
 
+/// A clip that moves, stands still and moves back before a camera that stands still, then another camera.
+fn sweep(scene: &Gaussians) -> Vec<(Camera, Clip, Settings)> {
+    let cameras = common::views(scene, 3, (VIEW.width, VIEW.height));
+    let (low, high) = rara::scene::extent_along(scene, glam::DVec3::X);
+    let steps = [
+        (0, 0.2),
+        (0, 0.4),
+        (0, 0.6),
+        (0, 0.6),
+        (0, 0.3),
+        (0, 0.7),
+        (1, 0.7),
+        (1, 0.5),
+    ];
+    let frame = |(camera, share): (usize, f64)| {
+        let plane = rara::Plane::new(glam::DVec3::X, -(low + share * (high - low)));
+        let clip = Clip {
+            planes: vec![plane.expect("a finite normal")],
+            op: ClipOp::And,
+        };
+        (cameras[camera], clip, Settings::default())
+    };
+    steps.map(frame).to_vec()
+}
+
+#[test]
+fn a_host_whose_frames_take_over_from_each_other_gets_the_same_pictures() {
+    let scene = scene();
+    let frames = sweep(&scene);
+    let mut headless = common::headless();
+    headless.load(&scene).expect("uploads");
+    let truth: Vec<Picture> = frames
+        .iter()
+        .map(|(camera, clip, settings)| {
+            headless.forget();
+            headless.render(camera, clip, settings).expect("renders");
+            headless.picture().expect("reads back")
+        })
+        .collect();
+    for raster in [Raster::Tiles, Raster::Quad] {
+        let mut host = host(FLOATS, VIEW, true);
+        let device = adopt(&host);
+        let buffers =
+            SceneBuffers::upload(&device, &scene, rara::ShFormat::Float).expect("uploads");
+        let desc = RendererDesc {
+            reuse: true,
+            ..in_flight(FLOATS, Bindings::Bound)
+        };
+        let mut renderer = Renderer::new(&device, desc).expect("a renderer");
+        let check = |host: &Host, pixels: &[[f32; 4]], frame: usize| {
+            let what = format!("{raster:?}, frame {frame}");
+            assert_shows(&what, FLOATS, pixels, &expected(host, &truth[frame], 0));
+        };
+        let mut reused = 0;
+        for (index, (camera, clip, settings)) in frames.iter().enumerate() {
+            if let Some(pixels) = host.wait().expect("waits") {
+                check(&host, &pixels, index - FRAMES);
+            }
+            let settings = Settings {
+                raster,
+                ..*settings
+            };
+            let configured = renderer.configure(&buffers, camera, clip, &settings);
+            configured.expect("configures");
+            reused += usize::from(renderer.skipped().contains(&"project"));
+            record(&mut host, &mut renderer, &buffers, vk::Offset2D::default());
+        }
+        let pixels = host.wait().expect("waits").expect("a frame so long ago");
+        check(&host, &pixels, frames.len() - FRAMES);
+        let pixels = host.wait_for_all().expect("waits");
+        check(&host, &pixels, frames.len() - 1);
+        assert_eq!(reused, 4, "the third frame to the sixth");
+        drop((renderer, buffers, device));
+        assert_eq!(host.close(), Vec::<String>::new());
+    }
+}
+
 #[test]
 fn a_viewport_anywhere_in_the_target_leaves_the_rest_alone() {
     let scene = scene();

@@ -100,7 +100,7 @@ enum RasterArg {
     Mesh,
     /// Instanced quads
     Quad,
-    /// Compute tiles (not implemented yet)
+    /// Tiles of 8x8 pixels by compute shaders
     Tiles,
     /// The faster one on the device
     Auto,

@@ -1,4 +1,4 @@
-//! Stage 3, a cutoff Gaussian an invocation: what the fragment stage needs to weight it, into the cutoff buffer.
+//! Stage 5, a cutoff Gaussian an invocation: what the fragment stage needs to weight it, into the cutoff buffer.
 
 use std::mem::offset_of;
 

@@ -299,3 +299,68 @@ fn two_float(v: DVec3) -> ([f32; 3], [f32; 3]) {
     let high = v.as_vec3();
     (high.into(), (v - high.as_dvec3()).as_vec3().into())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::passes::project::ProjectKey;
+    use crate::passes::splat::WeightKey;
+
+    fn plan(mode: Mode, planes: usize) -> Plan {
+        let facts = SceneFacts {
+            gaussians: 1000,
+            sh_degree: 0,
+            sh_format: ShFormat::Float,
+            bounds: [Vec3::NEG_ONE, Vec3::ONE],
+            sort_runs: 128,
+            raster: Raster::Tiles,
+            tile_rows: 8,
+            pair_capacity: 1000,
+            redrawn: false,
+        };
+        let eye = DVec3::new(0.0, 0.0, -4.0);
+        let camera = Camera::look_at(eye, DVec3::ZERO, -DVec3::Y, 50.0, (64, 64));
+        let plane = Plane::new(DVec3::X, 0.0).expect("a finite normal");
+        let clip = Clip {
+            planes: vec![plane; planes],
+            op: ClipOp::And,
+        };
+        let settings = Settings {
+            mode,
+            ..Settings::default()
+        };
+        Plan::new(facts, &camera.expect("a view"), &clip, &settings).expect("a plan")
+    }
+
+    #[test]
+    fn without_planes_every_mode_is_none_to_the_pipeline_and_the_byte() {
+        let none = plan(Mode::None, 0);
+        assert_eq!(none.skipped(), ["clip", "cutoff"]);
+        for (mode, planes) in [
+            (Mode::None, 2),
+            (Mode::Hard, 0),
+            (Mode::Rara, 0),
+            (Mode::Exact, 0),
+        ] {
+            let plan = plan(mode, planes);
+            assert_eq!(plan.work, none.work);
+            assert_eq!(
+                plan.mode, none.mode,
+                "the blocks' and the classes' pipeline"
+            );
+            assert_eq!(WeightKey::new(&plan), WeightKey::new(&none));
+            assert_eq!(ProjectKey::new(&plan), ProjectKey::new(&none));
+            assert_eq!((plan.cutoff, plan.cut_stride), (false, 0), "no record");
+            let bytes = |plan: &Plan| bytemuck::bytes_of(&plan.data).to_vec();
+            assert!(bytes(&plan) == bytes(&none), "{mode:?}");
+        }
+    }
+
+    #[test]
+    fn a_hard_clip_needs_no_records_and_no_weights() {
+        let (none, hard) = (plan(Mode::None, 0), plan(Mode::Hard, 1));
+        assert_eq!(hard.skipped(), ["cutoff"]);
+        assert_eq!(WeightKey::new(&hard), WeightKey::new(&none));
+        assert_eq!(ProjectKey::new(&hard), ProjectKey::new(&none));
+    }
+}

@@ -1,4 +1,4 @@
-//! Stage 4, a survivor an invocation: conic, quad, colour and depth key.
+//! Stage 6, a survivor an invocation: conic, quad, colour and depth key.
 
 use std::mem::offset_of;
 

@@ -1,4 +1,4 @@
-//! Stage 6: quads by a mesh shader or by instancing, back to front, blended `over`; the fragment stage consults the
+//! Stage 10: quads by a mesh shader or by instancing, back to front, blended `over`; the fragment stage consults the
 //! cutoff buffer for cut splats only.
 
 use std::mem::offset_of;

@@ -1,4 +1,4 @@
-//! The tile rasteriser: which splats meet each tile of pixels, front to back, and a compute shader that blends them until
+//! Stages 8 and 9, the tile rasteriser: which splats meet each tile of pixels, front to back, and a compute shader that blends them until
 //! the tile is saturated. What does not fit is drawn as quads in the same frame.
 
 use std::mem::offset_of;

@@ -42,7 +42,14 @@ float beam_band(Footprint f, float extent) {
         float n1 = dot(b1, b1);
         float n2 = dot(b2, b2);
         float det = dot(across, across) + f.low_pass * (n1 + n2) + f.low_pass * f.low_pass;
-        float trace = (f.xx * (n2 + f.low_pass) - 2.0 * f.xy * dot(b1, b2) + f.yy * (n1 + f.low_pass)) / det;
+        // A sum of squares, where xx yy' - 2 xy xy' + yy xx' would cancel for needles.
+        float trace = dot(f.b1, f.b1) + dot(f.b2, f.b2) + n1 + n2 + 2.0 * f.low_pass;
+        trace *= f.low_pass;
+        for (uint i = 0u; i < 3u; i++) {
+            vec3 apart = f.b1[i] * b2 - f.b2[i] * b1;
+            trace += dot(apart, apart);
+        }
+        trace /= det;
         stretch = max(1.0, sqrt(trace));
     }
     float rest = 1.0 - extent * stretch * length(f.m3) / f.view.z;

@@ -94,6 +94,7 @@ void main() {
     while (i < bounds.y && i > 0u && keys.at[i] == keys.at[i - 1u]) {
         i++;
     }
+    bool again;
     do {
         uvec2 layer = uvec2(0u);
         while (i < bounds.y && layer.y == 0u) {
@@ -125,6 +126,8 @@ void main() {
                 }
             }
         }
+        // For all alike: the next round begins with setting the count.
+        again = layer_count > 0u;
         barrier();
-    } while (layer_count > 0u);
+    } while (again);
 }

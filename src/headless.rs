@@ -206,7 +206,7 @@ impl Headless {
         self.drawn = None;
         let mut quads = false;
         loop {
-            self.device.submit_and_wait(|cmd| {
+            let submitted = self.device.submit_and_wait(|cmd| {
                 // SAFETY: `cmd` is recording and `scene`, the target and the renderer outlive the wait for it; the
                 // rendering scope is opened and closed here around the draw, on an attachment of the renderer's format.
                 unsafe {
@@ -221,7 +221,11 @@ impl Headless {
                     target.image.end_rendering(cmd);
                 }
                 Ok(())
-            })?;
+            });
+            if submitted.is_err() {
+                self.renderer.forget(); // what it would have computed is not there
+            }
+            submitted?;
             // A first frame finds out how much room the tiles need, and nothing is drawn of it.
             let room = self.renderer.pair_room();
             if !self.renderer.fell_back() {
@@ -235,6 +239,7 @@ impl Headless {
                 // There is no more to be had.
                 quads = true;
                 self.renderer.set_redraws(false);
+                self.renderer.forget(); // nothing was drawn of it
                 self.renderer.configure(scene, camera, clip, settings)?;
             }
         }
@@ -316,4 +321,54 @@ fn check_blending(device: &Device, format: TargetFormat) -> Result<()> {
         "this device cannot blend into pictures of {} bits a channel; choose another target format",
         2 * format.pixel_bytes()
     )))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::{ClipOp, Plane};
+    use crate::scene::{Bounds, Kind, generate};
+    use crate::settings::Raster;
+    use glam::DVec3;
+
+    #[test]
+    fn what_tiles_never_have_room_for_is_drawn_as_quads() {
+        let desc = HeadlessDesc {
+            device: std::env::var("RARA_TEST_DEVICE").ok(),
+            validation: true,
+            ..HeadlessDesc::default()
+        };
+        let mut headless = Headless::new(&desc).expect("a device and the validation layer");
+        let scene = generate(Kind::General, 3_000, 1);
+        headless.load(&scene).expect("uploads");
+        headless.renderer.limit_pairs(1 << 11);
+        let bounds = Bounds::of(&scene);
+        let camera = Camera::frame(&bounds, -DVec3::Y, 50.0, (200, 150)).expect("a view");
+        // The second and the third are a sweep, whose base has no room either.
+        for offset in [0.0, 0.1, 0.2] {
+            let clip = Clip {
+                planes: vec![Plane::new(DVec3::X, offset).expect("a finite normal")],
+                op: ClipOp::And,
+            };
+            let draw = |headless: &mut Headless, raster| {
+                let settings = Settings {
+                    raster,
+                    ..Settings::default()
+                };
+                let stats = headless.render(&camera, &clip, &settings).expect("renders");
+                (stats.raster.path, headless.picture().expect("reads back"))
+            };
+            let (path, picture) = draw(&mut headless, Raster::Tiles);
+            assert_eq!(path, "quad");
+            assert!(picture.pixels.iter().any(|pixel| pixel[3] > 0.5));
+            assert!(
+                picture == draw(&mut headless, Raster::Tiles).1,
+                "drawn again"
+            );
+            headless.forget();
+            assert!(picture == draw(&mut headless, Raster::Quad).1, "{offset}");
+            headless.forget();
+            draw(&mut headless, Raster::Tiles);
+        }
+    }
 }

@@ -6,8 +6,9 @@ use std::path::Path;
 use std::process::Command;
 
 use glam::DVec3;
+use rara::measure::compare;
 use rara::scene::{Kind, generate};
-use rara::{Clip, ClipOp, Mode, Picture, Plane, Raster, Settings};
+use rara::{Camera, Clip, ClipOp, Mode, Picture, Plane, Raster, Settings, reference};
 
 const SIZE: (u32, u32) = (300, 220);
 
@@ -158,5 +159,32 @@ fn every_run_with_any_number_of_driver_threads_gives_the_same_bytes() {
             render(run + 1, threads) == first,
             "{threads} driver threads give other bytes than one"
         );
+    }
+}
+
+#[test]
+fn splats_of_one_depth_keep_the_order_of_the_file() {
+    let mut headless = common::headless();
+    let mut scene = generate(Kind::General, 6_000, 3);
+    let eye = DVec3::new(0.0, 0.0, -5.0);
+    let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, SIZE).expect("a view");
+    // One layer; a few, longer than a run of the sort; many, several of them in a run; pairs and threes.
+    for layers in [1, 7, 200, 2500] {
+        for (index, position) in scene.positions.iter_mut().enumerate() {
+            position.z = (index * 37 % layers) as f32 / 4096.0;
+        }
+        headless.load(&scene).expect("uploads");
+        for raster in [Raster::Tiles, Raster::Quad] {
+            let settings = Settings {
+                raster,
+                ..Settings::default()
+            };
+            let rendered = headless.render(&camera, &Clip::default(), &settings);
+            rendered.expect("renders");
+            let ours = headless.picture().expect("reads back");
+            let truth = reference::render::<f64>(&scene, &camera, &Clip::default(), &settings);
+            let psnr = compare(&ours, &truth.picture).expect("one size").psnr;
+            assert!(psnr > 90.0, "{layers} layers, {raster:?}: {psnr} dB");
+        }
     }
 }

@@ -45,6 +45,12 @@ impl PairRoom {
         self.room = 0;
     }
 
+    /// As on a device with less memory.
+    #[cfg(test)]
+    pub(crate) fn limited(most: u32) -> Self {
+        Self { room: 0, most }
+    }
+
     /// Pairs that there is room for.
     pub(crate) fn room(&self) -> u32 {
         self.room

@@ -94,7 +94,7 @@ impl SceneBuffers {
         self.gaussians.size() + self.sh.size() + self.blocks.size()
     }
 
-    /// The larger of the two buffers, bytes.
+    /// The largest buffer, bytes; the blocks' is never that.
     pub(crate) fn largest(&self) -> u64 {
         self.gaussians.size().max(self.sh.size())
     }

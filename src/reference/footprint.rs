@@ -121,17 +121,20 @@ impl<T: Real> Footprint<T> {
     }
 }
 
-/// The largest ratio of two covariances' deviations is at most the root of the trace of one by the other's inverse.
-fn stretch<T: Real>(clamped: [Vec3<T>; 2], unclamped: [Vec3<T>; 2]) -> T {
+/// The largest ratio of two covariances' deviations is at most the root of the trace of one by the other's inverse. The
+/// trace is a sum of squares: `xx yy' - 2 xy xy' + yy xx'` would cancel for needles.
+fn stretch<T: Real>([b1, b2]: [Vec3<T>; 2], [c1, c2]: [Vec3<T>; 2]) -> T {
     let low_pass = T::of(f64::from(LOW_PASS));
-    let covariance =
-        |[b1, b2]: [Vec3<T>; 2]| (b1.dot(b1) + low_pass, b1.dot(b2), b2.dot(b2) + low_pass);
-    let (xx, xy, yy) = covariance(clamped);
-    let (true_xx, true_xy, true_yy) = covariance(unclamped);
-    let across = unclamped[0].cross(unclamped[1]);
-    let determinant = across.dot(across) + low_pass * (true_xx + true_yy - low_pass);
-    let trace = (xx * true_yy - T::of(2.0) * xy * true_xy + yy * true_xx) / determinant;
-    trace.sqrt().max(T::one())
+    let lengths = c1.dot(c1) + c2.dot(c2);
+    let across = c1.cross(c2);
+    let determinant = across.dot(across) + low_pass * (lengths + low_pass);
+    let apart = |u: T, v: T| {
+        let difference = c2 * u + c1 * (T::zero() - v);
+        difference.dot(difference)
+    };
+    let squares = apart(b1.x, b2.x) + apart(b1.y, b2.y) + apart(b1.z, b2.z);
+    let rest = low_pass * (b1.dot(b1) + b2.dot(b2) + lengths + T::of(2.0) * low_pass);
+    ((squares + rest) / determinant).sqrt().max(T::one())
 }
 
 /// Columns of R(q) S.

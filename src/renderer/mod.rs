@@ -159,9 +159,13 @@ impl Renderer {
         }
     }
 
-    /// Forgets what earlier frames have computed: the next one computes everything.
+    /// Forgets what earlier frames have computed: the next one computes everything. [`configure`](Self::configure) comes
+    /// after it.
     pub fn forget(&mut self) {
         self.kept = None;
+        // What is configured may count on it.
+        self.plan = None;
+        self.ready = false;
     }
 
     /// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the
@@ -231,7 +235,15 @@ impl Renderer {
         }
         plan.work = Kept::work(self.kept.as_ref(), scene.id, &plan);
         if let (Work::Sweep { .. }, Some(buffers)) = (plan.work, &mut self.buffers) {
-            buffers.ensure_sweep(&self.device)?;
+            match buffers.ensure_sweep(&self.device) {
+                Ok(()) => {}
+                // A frame of its own needs less.
+                Err(Error::Memory(_)) => {
+                    self.kept = None;
+                    plan.work = Kept::work(None, scene.id, &plan);
+                }
+                Err(error) => return Err(error),
+            }
         }
         let context = Context {
             device: &self.device,
@@ -271,6 +283,12 @@ impl Renderer {
         self.plan
             .as_ref()
             .is_some_and(|plan| plan.work == Work::Draw)
+    }
+
+    /// As on a device with room for so few pairs of tile and splat.
+    #[cfg(test)]
+    pub(crate) fn limit_pairs(&mut self, most: u32) {
+        self.pairs = PairRoom::limited(most);
     }
 
     /// Pairs of tile and splat that the configured frame has room for.

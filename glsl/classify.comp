@@ -3,7 +3,7 @@
 // One workgroup a block that neither view nor clip settles as a whole, one invocation a Gaussian: view culling by
 // footprint, opacity and size; of what is in view, the clip's class. Writes one bit a Gaussian (survives; is cut) and the
 // block's totals; compact turns them into ordered lists.
-#include "side.glsl"
+#include "masks.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
 layout(constant_id = 0) const bool CLIP = false;
@@ -16,7 +16,6 @@ BUFFER(readonly, 5, uint, clip_masks)
 BUFFER(writeonly, 6, uint, masks)
 BUFFER(writeonly, 7, uvec4, block_counts)
 
-const uint WORDS = BLOCK_SIZE / 32u;
 shared uint survivor_mask[WORDS];
 shared uint cutoff_mask[WORDS];
 shared uint visible_count;
@@ -37,9 +36,7 @@ uint clip_class(uint block, uint local) {
         return side;
     }
     uint word = block * 2u * WORDS + (local >> 5);
-    uint visible = bitfieldExtract(clip_masks.at[word], int(local & 31u), 1);
-    uint cut = bitfieldExtract(clip_masks.at[word + WORDS], int(local & 31u), 1);
-    return cut != 0u ? SIDE_CUTOFF : visible != 0u ? SIDE_VISIBLE : SIDE_INVISIBLE;
+    return class_of(clip_masks.at[word], clip_masks.at[word + WORDS], local);
 }
 
 uint classify(uint block, uint local) {

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // One workgroup a block that the clip may cut, one invocation a Gaussian: the paper's three classes (section 3.2), whatever
 // the camera sees of it. (What perspective adds to the band of large splats, classify does.) A block's masks are eight words of what is visible and eight of what is cut.
-#include "side.glsl"
+#include "masks.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
 
@@ -11,7 +11,6 @@ BUFFER(readonly, 2, uint, block_list)
 BUFFER(readonly, 3, FrameCounts, counts)
 BUFFER(writeonly, 4, uint, clip_masks)
 
-const uint WORDS = BLOCK_SIZE / 32u;
 shared uint masks[2u * WORDS];
 
 void main() {

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // One workgroup a block with survivors, one invocation a Gaussian: ordered stream compaction. The place of a survivor is
 // its block's offset plus the set bits before its own, so the lists are in the order of the scene in every run.
-#include "side.glsl"
+#include "masks.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
 
@@ -14,14 +14,12 @@ BUFFER(readonly, 5, uvec2, block_offsets)
 BUFFER(writeonly, 6, uvec2, survivors)
 BUFFER(writeonly, 7, uint, cutoffs)
 
-const uint WORDS = BLOCK_SIZE / 32u;
 
 // Set bits of a block's mask before bit `local`.
 uint rank(uint base, uint local) {
-    uint word = local >> 5;
-    uint count = bitCount(masks.at[base + word] & ((1u << (local & 31u)) - 1u));
-    for (uint before = 0u; before < word; before++) {
-        count += bitCount(masks.at[base + before]);
+    uint count = 0u;
+    for (uint word = 0u; word <= local >> 5; word++) {
+        count += bits_before(masks.at[base + word], word, local);
     }
     return count;
 }

@@ -25,9 +25,7 @@ uint class_before(uint block, uint local) {
         return side;
     }
     uint word = block * RECLIP_WORDS + (local >> 5);
-    uint visible = bitfieldExtract(reclips.at[word + RECLIP_VISIBLE], int(local & 31u), 1);
-    uint cut = bitfieldExtract(reclips.at[word + RECLIP_CUT], int(local & 31u), 1);
-    return cut != 0u ? SIDE_CUTOFF : visible != 0u ? SIDE_VISIBLE : SIDE_INVISIBLE;
+    return class_of(reclips.at[word + RECLIP_VISIBLE], reclips.at[word + RECLIP_CUT], local);
 }
 
 uint class_now(uint block, uint index) {

@@ -4,8 +4,8 @@
 #ifndef RARA_RECLIP
 #define RARA_RECLIP
 #include "block.glsl"
+#include "masks.glsl"
 
-const uint WORDS = BLOCK_SIZE / 32u;
 const uint RECLIP_CHANGED = 0u;
 const uint RECLIP_VISIBLE = WORDS;
 const uint RECLIP_CUT = 2u * WORDS;

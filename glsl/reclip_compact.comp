@@ -15,11 +15,6 @@ BUFFER(readonly, 6, uint, reclips)
 BUFFER(writeonly, 7, uvec2, recuts)
 BUFFER(writeonly, 8, uint, cutoffs)
 
-// How many bits of a word stand before a Gaussian's.
-uint bits_before(uint word, uint place, uint local) {
-    return place < local >> 5 ? bitCount(word) : place == local >> 5 ? bitCount(word & ((1u << (local & 31u)) - 1u)) : 0u;
-}
-
 void main() {
     uint group = LINEAR_GROUP;
     uint local = gl_LocalInvocationIndex;

@@ -84,21 +84,28 @@ impl Device {
     }
 }
 
+/// A driver, and the header of its caches.
+#[cfg(test)]
+pub(super) fn example() -> (PipelineCacheId, Vec<u8>) {
+    let id = PipelineCacheId {
+        vendor: 1,
+        device: 2,
+        driver: 3,
+        uuid: [7; 16],
+    };
+    let words = [32_u32, 1, 1, 2];
+    let mut header: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
+    header.extend([7; 16]);
+    (id, header)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn only_the_same_drivers_header_matches() {
-        let id = PipelineCacheId {
-            vendor: 1,
-            device: 2,
-            driver: 3,
-            uuid: [7; 16],
-        };
-        let words = [32_u32, 1, 1, 2];
-        let mut data: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
-        data.extend([7; 16]);
+        let (id, mut data) = example();
         assert!(id.matches(&data));
         for byte in 0..data.len() {
             data[byte] ^= 0x10;

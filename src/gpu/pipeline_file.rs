@@ -205,15 +205,7 @@ mod tests {
     #[test]
     fn a_file_is_used_only_if_it_is_whole_and_the_drivers_own() {
         let folder = std::env::temp_dir().join(format!("rara-pipelines-{}", std::process::id()));
-        let id = PipelineCacheId {
-            vendor: 1,
-            device: 2,
-            driver: 3,
-            uuid: [7; 16],
-        };
-        let words = [32_u32, 1, 1, 2];
-        let mut data: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
-        data.extend([7; 16]);
+        let (id, mut data) = crate::gpu::pipeline_cache::example();
         data.extend(0..100);
         let mut file = PipelineFile {
             path: folder.join(name(&id)),

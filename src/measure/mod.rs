@@ -4,11 +4,13 @@
 
 mod pareto;
 mod popping;
+mod processor;
 mod region;
 mod ssim;
 
 pub use pareto::undominated;
 pub use popping::{Popping, popping};
+pub use processor::processor_ms;
 pub use region::Region;
 
 use crate::{Error, Picture, Result};

@@ -101,17 +101,20 @@ impl Sizes {
     }
 }
 
+/// A buffer that only the device sees.
+pub(super) fn gpu_only(device: &Device, name: &'static str, size: u64) -> Result<Buffer> {
+    device.create_buffer(&BufferDesc {
+        name,
+        size,
+        location: Location::GpuOnly,
+    })
+}
+
 impl Buffers {
     /// Allocates for a plan.
     pub(crate) fn new(device: &Device, plan: &Plan) -> Result<Self> {
         let sizes = Sizes::of(plan);
-        let gpu = |name, size| {
-            device.create_buffer(&BufferDesc {
-                name,
-                size,
-                location: Location::GpuOnly,
-            })
-        };
+        let gpu = |name, size| gpu_only(device, name, size);
         let n = sizes.gaussians;
         let blocks = n.div_ceil(u64::from(limits::BLOCK_SIZE));
         let mask_bytes = u64::from(limits::BLOCK_SIZE) / 4; // two bits a Gaussian
@@ -160,13 +163,7 @@ impl Buffers {
         if self.sweep.is_some() {
             return Ok(());
         }
-        let gpu = |name, size| {
-            device.create_buffer(&BufferDesc {
-                name,
-                size,
-                location: Location::GpuOnly,
-            })
-        };
+        let gpu = |name, size| gpu_only(device, name, size);
         let n = self.sized_for.gaussians;
         let blocks = n.div_ceil(u64::from(limits::BLOCK_SIZE));
         self.sweep = Some(SweepBuffers {

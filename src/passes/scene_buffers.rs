@@ -6,7 +6,8 @@ use bytemuck::cast_slice;
 use glam::Vec3;
 
 use crate::error::{Error, Result};
-use crate::gpu::{Buffer, BufferDesc, Device, Location};
+use crate::gpu::{Buffer, Device};
+use crate::passes::buffers::gpu_only;
 use crate::passes::{block_order, sh_storage};
 use crate::precision::ShFormat;
 use crate::scene::Gaussians;
@@ -53,13 +54,7 @@ impl SceneBuffers {
                 scene.sh_degree
             )));
         }
-        let gpu = |name, size| {
-            device.create_buffer(&BufferDesc {
-                name,
-                size,
-                location: Location::GpuOnly,
-            })
-        };
+        let gpu = |name, size| gpu_only(device, name, size);
         let order = block_order::order(scene);
         let gaussians = gpu("gaussians", u64::from(count) * size_of::<Gaussian>() as u64)?;
         upload_in_chunks(device, &gaussians, &order, |index, out| {

@@ -41,11 +41,9 @@ pub(crate) struct Kept {
 impl Kept {
     /// What is left to do for a plan, after a frame that left `kept`.
     pub(crate) fn work(kept: Option<&Self>, scene: u64, plan: &Plan) -> Work {
-        let whole = Work::Whole {
-            clip: plan.mode != types::MODE_NONE,
-        };
+        let clip = plan.mode != types::MODE_NONE;
         let Some(kept) = kept.filter(|kept| kept.scene == scene) else {
-            return whole;
+            return Work::Whole { clip };
         };
         let is_same = kept.plan.is_drawn_like(plan);
         if kept.holds && is_same {
@@ -53,20 +51,17 @@ impl Kept {
         }
         // The same frame in other buffers is no sweep.
         let is_still = kept.plan.sees_like(plan) && !is_same;
-        if is_still && plan.mode != types::MODE_NONE {
+        if is_still && clip {
             let base = kept.base.filter(|_| kept.holds);
             return Work::Sweep {
                 base: base.is_none(),
                 fresh: base.unwrap_or(true),
             };
         }
-        let clip = clip_constants(plan);
-        let has_classes = kept.holds && kept.clip.is_some_and(|had| same(&had, &clip));
-        match whole {
-            Work::Whole { clip } => Work::Whole {
-                clip: clip && !has_classes,
-            },
-            other => other,
+        let constants = clip_constants(plan);
+        let has_classes = kept.holds && kept.clip.is_some_and(|had| same(&had, &constants));
+        Work::Whole {
+            clip: clip && !has_classes,
         }
     }
 
@@ -100,9 +95,7 @@ impl Plan {
         };
         same(&data(self), &data(other))
             && WeightKey::new(self) == WeightKey::new(other)
-            && self.raster == other.raster
-            && self.sh_format == other.sh_format
-            && self.sort_passes == other.sort_passes
+            && self.goes_the_way_of(other)
     }
 
     /// Whether another plan differs in nothing but the clip.
@@ -125,8 +118,12 @@ impl Plan {
                 ..plan.data
             }
         };
-        same(&data(self), &data(other))
-            && self.raster == other.raster
+        same(&data(self), &data(other)) && self.goes_the_way_of(other)
+    }
+
+    /// Whether the stages of another plan leave the same kinds of things in the same buffers.
+    fn goes_the_way_of(&self, other: &Self) -> bool {
+        self.raster == other.raster
             && self.sh_format == other.sh_format
             && self.sort_passes == other.sort_passes
     }

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use rara::measure::processor_ms;
 use rara::{Camera, Clip, FrameStats, Headless, Result, Settings};
 
 use crate::statistics::Summary;
@@ -47,18 +48,6 @@ pub(crate) fn frame(
 /// Makes the next frame computed from nothing.
 fn forget(headless: &mut Headless) {
     headless.forget();
-}
-
-/// Time that all threads of this process have spent on a processor: what Linux's scheduler has counted.
-fn processor_ms() -> f64 {
-    let Ok(threads) = std::fs::read_dir("/proc/self/task") else {
-        return 0.0;
-    };
-    let spent = |thread: std::fs::DirEntry| -> Option<f64> {
-        let text = std::fs::read_to_string(thread.path().join("schedstat")).ok()?;
-        text.split_whitespace().next()?.parse().ok()
-    };
-    threads.flatten().filter_map(spent).sum::<f64>() / 1e6
 }
 
 /// The columns of a frame that are not stages: the call, the processor's time, and all stages together.

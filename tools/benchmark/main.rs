@@ -24,14 +24,40 @@ use std::process::ExitCode;
 use args::{Args, Section};
 use clap::Parser as _;
 use correct::Wrong;
-use rara::{Headless, Result};
-use report::Report;
+use rara::{Error, Headless, Result};
+use report::{Place, Report, say};
+use world::Source;
 
 /// What every section needs.
 struct Bench {
     args: Args,
     report: Report,
     wrong: Wrong,
+}
+
+impl Bench {
+    /// Measures each scene of a section, and says which ones there is no memory for.
+    fn each_source(
+        &mut self,
+        section: Section,
+        scene: fn(&mut Self, &Source, &mut Place) -> Result<()>,
+    ) -> Result<()> {
+        for source in self.args.sources(section) {
+            let size = self.args.size();
+            let mut place = Place {
+                section,
+                scene: source.name(),
+                gaussians: source.expected(),
+                size: [size, size],
+            };
+            say(place.title());
+            match scene(self, &source, &mut place) {
+                Err(Error::Memory(why)) => self.report.no_memory(&place, &why)?,
+                result => result?,
+            }
+        }
+        Ok(())
+    }
 }
 
 /// A section.
@@ -47,7 +73,7 @@ fn main() -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(error) => {
-            report::say(format_args!("error: {error}"));
+            say(format_args!("error: {error}"));
             ExitCode::FAILURE
         }
     }

@@ -1,13 +1,13 @@
 //! Cost follows what is seen: frames that show a hundredth of a scene against frames that show all of it.
 
 use rara::glam::{DMat3, DVec3};
-use rara::{Camera, Clip, Error, Headless, Result};
+use rara::{Camera, Clip, Headless, Result};
 
 use crate::Bench;
 use crate::args::Section;
 use crate::frame::{Past, Timed, column, frame, summary};
 use crate::memory;
-use crate::report::{Place, grouped, say};
+use crate::report::{Place, grouped};
 use crate::statistics::{Summary, ratios};
 use crate::table::{Table, spread};
 use crate::turns::in_turn;
@@ -54,21 +54,7 @@ impl Look {
 }
 
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
-    for source in bench.args.sources(Section::Proportion) {
-        let size = bench.args.size();
-        let mut place = Place {
-            section: Section::Proportion,
-            scene: source.name(),
-            gaussians: source.expected(),
-            size: [size, size],
-        };
-        say(place.title());
-        match scene(bench, &source, &mut place) {
-            Err(Error::Memory(why)) => bench.report.no_memory(&place, &why)?,
-            result => result?,
-        }
-    }
-    Ok(())
+    bench.each_source(Section::Proportion, scene)
 }
 
 fn scene(bench: &mut Bench, source: &Source, place: &mut Place) -> Result<()> {

@@ -12,7 +12,7 @@ use crate::Bench;
 use crate::args::Section;
 use crate::child::{self, Child};
 use crate::memory;
-use crate::report::{Place, say};
+use crate::report::Place;
 use crate::scratch::Scratch;
 use crate::statistics::Summary;
 use crate::table::{Table, spread};
@@ -28,24 +28,10 @@ const LAST: &str = "first picture";
 type Steps = Vec<(String, f64)>;
 
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
-    for source in bench.args.sources(Section::Start) {
-        let size = bench.args.size();
-        let place = Place {
-            section: Section::Start,
-            scene: source.name(),
-            gaussians: source.expected(),
-            size: [size, size],
-        };
-        say(place.title());
-        match scene(bench, &source, &place) {
-            Err(Error::Memory(why)) => bench.report.no_memory(&place, &why)?,
-            result => result?,
-        }
-    }
-    Ok(())
+    bench.each_source(Section::Start, scene)
 }
 
-fn scene(bench: &mut Bench, source: &Source, place: &Place) -> Result<()> {
+fn scene(bench: &mut Bench, source: &Source, place: &mut Place) -> Result<()> {
     memory::check(source.expected(), 1)?;
     let scratch = Scratch::new()?;
     let file = scratch.file(source)?;

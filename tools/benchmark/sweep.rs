@@ -2,14 +2,14 @@
 
 use rara::glam::DVec3;
 use rara::scene::extent_along;
-use rara::{Clip, Error, Headless, Result};
+use rara::{Clip, Headless, Result};
 
 use crate::Bench;
 use crate::args::Section;
 use crate::correct::KEPT;
 use crate::frame::{Past, frame};
 use crate::memory;
-use crate::report::{Place, say};
+use crate::report::Place;
 use crate::statistics::{Summary, ratios};
 use crate::table::{Table, spread};
 use crate::turns::in_turn;
@@ -44,21 +44,7 @@ struct Times {
 }
 
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
-    for source in bench.args.sources(Section::Sweep) {
-        let size = bench.args.size();
-        let mut place = Place {
-            section: Section::Sweep,
-            scene: source.name(),
-            gaussians: source.expected(),
-            size: [size, size],
-        };
-        say(place.title());
-        match scene(bench, &source, &mut place) {
-            Err(Error::Memory(why)) => bench.report.no_memory(&place, &why)?,
-            result => result?,
-        }
-    }
-    Ok(())
+    bench.each_source(Section::Sweep, scene)
 }
 
 fn scene(bench: &mut Bench, source: &Source, place: &mut Place) -> Result<()> {

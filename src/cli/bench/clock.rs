@@ -1,5 +1,6 @@
 //! Times of several choices, taken in turn so that their ratios hold on a machine that does other things too.
 
+use rara::measure::processor_ms;
 use rara::{Camera, Clip, Gaussians, PassTime, Result, Settings};
 use serde::Serialize;
 
@@ -58,9 +59,9 @@ pub(super) fn time(
                 session.frame(camera, clip, settings, 1)?;
                 loaded = Some(sh);
             }
-            let before = process_cpu_ms();
+            let before = processor_ms();
             let frame = session.frame(camera, clip, settings, 1)?;
-            let after = process_cpu_ms();
+            let after = processor_ms();
             if round > 0 {
                 samples.ms.push(frame.gpu_ms);
                 samples.wall.push(frame.wall_ms);
@@ -119,18 +120,6 @@ fn median(values: &[f64]) -> f64 {
         0 => 0.0,
         n => (sorted[(n - 1) / 2] + sorted[n / 2]) / 2.0,
     }
-}
-
-/// Time that all threads of this process have spent on a processor: what Linux's scheduler has counted.
-fn process_cpu_ms() -> f64 {
-    let Ok(threads) = std::fs::read_dir("/proc/self/task") else {
-        return 0.0;
-    };
-    let spent = |thread: std::fs::DirEntry| -> Option<f64> {
-        let text = std::fs::read_to_string(thread.path().join("schedstat")).ok()?;
-        text.split_whitespace().next()?.parse().ok()
-    };
-    threads.flatten().filter_map(spent).sum::<f64>() / 1e6
 }
 
 #[cfg(test)]

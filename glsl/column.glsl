@@ -5,9 +5,6 @@
 #define RARA_COLUMN
 #include "weight.glsl"
 
-// Beyond this Phi is taken for 0 or 1: off by less than 4e-6, a fifth of what the best approximation is.
-const float PHI_ONE = 4.5;
-
 // Rows count from the column's middle, so that the polynomials' terms stay small.
 float row_place(uint row) {
     return float(row) - 0.5 * float(ROWS - 1u);
@@ -90,56 +87,104 @@ void curve_weights(uint base, float u, float v, float v_step, float alpha[ROWS],
     phi_or_side(z, alpha, weight);
 }
 
-// `exact` with the record's planes in the ray form and the camera outside the splat: beam_weight of glsl/weight.glsl.
+// What all planes of a splat have in common in a column: the line of sight in its middle, by how much b2 and c change a
+// row, and the determinant, a polynomial in the row.
+struct ColumnSight {
+    Sight s;
+    vec3 b2_step;
+    vec3 c_step;
+    vec2 delta_y;
+    vec3 det;
+};
+
 // `delta` and `place` are the middle's.
-void beam_weights(uint base, uint count, vec2 delta, vec2 place, float alpha[ROWS], out float weight[ROWS]) {
+ColumnSight column_sight(uint base, vec2 delta, vec2 place) {
     vec4 h1 = cuts.at[base + 1u];
     vec4 h2 = cuts.at[base + 2u];
+    ColumnSight column;
     Sight s = sight_through(cuts.at[base], h1, h2, place - principal_point(), delta);
-    // By how much b2 and c change a row, and delta along y.
-    vec3 b2_step = -h2.xyz;
-    vec3 c_step = cross(s.b1, b2_step);
-    vec2 delta_y = vec2(s.delta.y, h1.w);
-    float n1 = dot(s.b1, s.b1);
-    vec3 det = product(s.c, c_step, s.c, c_step) + s.low_pass * product(s.b2, b2_step, s.b2, b2_step);
-    det.x += s.low_pass * (n1 + s.low_pass);
-    float sign = complement_sign();
-    float gone[ROWS];
+    column.s = s;
+    column.b2_step = -h2.xyz;
+    column.c_step = cross(s.b1, column.b2_step);
+    column.delta_y = vec2(s.delta.y, h1.w);
+    vec3 c_step = column.c_step;
+    column.det = product(s.c, c_step, s.c, c_step) + s.low_pass * product(s.b2, column.b2_step, s.b2, column.b2_step);
+    column.det.x += s.low_pass * (dot(s.b1, s.b1) + s.low_pass);
+    return column;
+}
+
+// A plane's z in each row: ray_z of glsl/sight.glsl.
+void ray_zs(ColumnSight column, vec4 plane, out float z[ROWS]) {
+    Sight s = column.s;
+    vec3 c_step = column.c_step;
+    vec3 a = plane.xyz;
+    vec3 a1 = cross(a, s.b1);
+    vec3 a2 = cross(a, s.b2);
+    vec3 a2_step = cross(a, column.b2_step);
+    vec2 along = vec2(dot(a, s.c), dot(a, c_step));
+    vec3 variance = product(along, along) + s.low_pass * product(a2, a2_step, a2, a2_step);
+    variance.x += s.low_pass * (dot(a1, a1) + s.low_pass * dot(a, a));
+    vec3 kx = product(s.c, c_step, a2, a2_step);
+    kx.x += s.low_pass * dot(a, s.b1);
+    vec2 ky = s.low_pass * vec2(dot(a, s.b2), dot(a, column.b2_step)) - vec2(dot(s.c, a1), dot(c_step, a1));
+    vec3 mean = plane.w * column.det + s.delta.x * kx + product(column.delta_y, ky);
     for (uint row = 0u; row < ROWS; row++) {
-        weight[row] = 1.0;
-        gone[row] = 0.0;
+        float y = row_place(row);
+        float inverse = 1.0 / quadratic(column.det, y);
+        z[row] = quadratic(mean, y) * inverse * inversesqrt(max(quadratic(variance, y) * inverse, 1e-30));
     }
+}
+
+// `exact` with the camera outside the splat: exact_weight of glsl/weight.glsl. `delta` and `place` are the first row's.
+void exact_weights(uint base, uint count, vec2 delta, vec2 place, float alpha[ROWS], out float weight[ROWS]) {
+    vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
+    ColumnSight column = column_sight(base, delta + middle, place + middle);
     float z[ROWS];
-    float kept[ROWS];
-    for (uint plane = 0u; plane < count; plane++) {
-        vec4 form = cuts.at[base + CUT_HEADER + plane];
-        vec3 a = form.xyz;
-        vec3 a1 = cross(a, s.b1);
-        vec3 a2 = cross(a, s.b2);
-        vec3 a2_step = cross(a, b2_step);
-        vec2 along = vec2(dot(a, s.c), dot(a, c_step));
-        vec3 variance = product(along, along) + s.low_pass * product(a2, a2_step, a2, a2_step);
-        variance.x += s.low_pass * (dot(a1, a1) + s.low_pass * dot(a, a));
-        vec3 kx = product(s.c, c_step, a2, a2_step);
-        kx.x += s.low_pass * dot(a, s.b1);
-        vec2 ky = s.low_pass * vec2(dot(a, s.b2), dot(a, b2_step)) - vec2(dot(s.c, a1), dot(c_step, a1));
-        vec3 mean = form.w * det + s.delta.x * kx + product(delta_y, ky);
+    if (CLIP_OP == OP_ONE || count == 1u) {
+        ray_zs(column, cuts.at[base + CUT_HEADER], z);
+        phi_or_side(z, alpha, weight);
+        return;
+    }
+    if (count == 2u && cuts.at[base + CUT_HEADER].xyz == -cuts.at[base + CUT_HEADER + 1u].xyz) {
+        // A slab: both planes are thresholds in one variable.
+        float other[ROWS];
+        ray_zs(column, plane_of(base, 0u), z);
+        phi_or_side(z, alpha, weight);
+        ray_zs(column, plane_of(base, 1u), z);
+        phi_or_side(z, alpha, other);
         for (uint row = 0u; row < ROWS; row++) {
-            float y = row_place(row);
-            float inverse = 1.0 / quadratic(det, y);
-            z[row] = sign * quadratic(mean, y) * inverse * inversesqrt(max(quadratic(variance, y) * inverse, 1e-30));
+            weight[row] = combined(max(0.0, weight[row] - (1.0 - other[row])));
         }
-        phi_or_side(z, alpha, kept);
+        return;
+    }
+    // The least z of each row, and how many planes leave it open.
+    float least[ROWS];
+    uint opens[ROWS];
+    for (uint row = 0u; row < ROWS; row++) {
+        least[row] = 8.0;
+        opens[row] = 0u;
+    }
+    for (uint plane = 0u; plane < count; plane++) {
+        ray_zs(column, plane_of(base, plane), z);
         for (uint row = 0u; row < ROWS; row++) {
-            if (keeps_far(along.x + row_place(row) * along.y, a) == (CLIP_OP == OP_AND)) {
-                weight[row] = min(weight[row], kept[row]);
-            } else {
-                gone[row] = max(gone[row], 1.0 - kept[row]);
-            }
+            least[row] = min(least[row], z[row]);
+            opens[row] += z[row] < PHI_ONE ? 1u : 0u;
         }
     }
+    phi_or_side(least, alpha, weight);
+    uint edges = 0u;
     for (uint row = 0u; row < ROWS; row++) {
-        weight[row] = combined(max(0.0, weight[row] - gone[row]));
+        weight[row] = combined(weight[row]);
+        edges |= opens[row] > 1u && least[row] > -PHI_ONE && alpha[row] > 0.0 ? 1u << row : 0u;
+    }
+    // Not a loop over all rows: the body would be there once for each.
+    for (; edges != 0u; edges &= edges - 1u) {
+        uint edge = uint(findLSB(edges));
+        vec2 below = vec2(0.0, float(edge));
+        float share = exact_weight(base, count, delta + below, place + below);
+        for (uint row = 0u; row < ROWS; row++) {
+            weight[row] = row == edge ? share : weight[row];
+        }
     }
 }
 
@@ -150,9 +195,8 @@ void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 place, float 
     uint flags = uint(cuts.at[base].w);
     if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         curve_weights(base, uv.x, uv.y, v_step, alpha, weight);
-    } else if (CLIP_MODE == MODE_EXACT && (flags & (CUT_RAY | CUT_FRONT)) == CUT_RAY) {
-        vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
-        beam_weights(base, flags >> CUT_COUNT_SHIFT, delta + middle, place + middle, alpha, weight);
+    } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) == 0u) {
+        exact_weights(base, flags >> CUT_COUNT_SHIFT, delta, place, alpha, weight);
     } else {
         for (uint row = 0u; row < ROWS; row++) {
             vec2 below = vec2(0.0, float(row));

@@ -1,19 +1,20 @@
 // The cutoff record: what the fragment stage needs to weight a cut splat, computed once a splat by cutoff.comp.
 // vec4s of a record (FRAME.cut_stride of them):
-//   0      fx / Z m1, the screen gradient along x for a pixel on the principal axis, times scale; the sum of CUT_RAY, CUT_FRONT and 256 times the number of planes
+//   0      fx / Z m1, the screen gradient along x for a pixel on the principal axis, times scale; the sum of CUT_RAY,
+//          CUT_FRONT and 256 times the number of planes
 //   1      fy / Z m2, the same along y, times scale; scale
 //   2      e = m3 / Z, how the gradients change with the pixel, times scale; low-pass times scale^2
-//   3...   a plane each. Affine: z at the centre, dz/dx, dz/dy, and 1 where the far side is kept, -1 the near side.
-//          Ray: normal in unit space, and the centre's distance, both divided by the normal's largest component.
-//   With CUT_CURVE, in the coordinates of curve.glsl, 0 holds z at the centre and its slopes, 1 the factors of u^2, u v,
-//   v^2 and v^4, 2 those of u^3, u^2 v, u v^2 and v^3, 3 those of u^4, u^3 v, u^2 v^2 and u v^3.
-//   last   of one plane without CUT_RAY: its curvature, the factors of dx^2, dx dy and dy^2 in z
-//          with CUT_FRONT: the plane through the eye across the view axis, in the same form
+//   3...   a plane each: normal in unit space, and the centre's distance, both divided by the normal's largest component
+//   last   with CUT_FRONT: the plane through the eye across the view axis, in the same form
+// Several planes in the affine form are such a record with the footprint's gradients and e = 0. Without CUT_RAY there is
+// one plane, which the rasteriser carries: 3 holds z at the centre, dz/dx and dz/dy, 4 its curvature, the factors of dx^2,
+// dx dy and dy^2. With CUT_CURVE, in the coordinates of curve.glsl, 0 holds z at the centre and its slopes, 1 the factors
+// of u^2, u v, v^2 and v^4, 2 those of u^3, u^2 v, u v^2 and v^3, 3 those of u^4, u^3 v, u^2 v^2 and u v^3.
 #ifndef RARA_CUT
 #define RARA_CUT
 
 const uint CUT_HEADER = 3u;
-// The planes are in the ray form, else affine.
+// The planes are evaluated on each pixel's line of sight.
 const uint CUT_RAY = 1u;
 // The splat reaches behind the eye.
 const uint CUT_FRONT = 2u;

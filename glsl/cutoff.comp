@@ -18,7 +18,7 @@ vec4 ray_plane(vec3 normal, float distance) {
     return size > 0.0 ? vec4(normal, distance) / size : vec4(vec3(0.0), distance >= 0.0 ? 1.0 : -1.0);
 }
 
-// A plane in the affine form. Given the pixel, the Gaussian seen through the low-pass has, along the plane's normal,
+// One plane in the affine form. Given the pixel, the Gaussian seen through the low-pass has, along the plane's normal,
 // mean g + k.delta and variance s^2 (the update of a Kalman filter that has observed the pixel):
 //   k = S^-1 B a, s^2 = |a|^2 - (B a)^T S^-1 (B a), with S = B B^T + L the splat's 2D covariance,
 // so the share on the visible side is Phi((g + k.delta) / s). Both written as sums of squares over det S.
@@ -30,13 +30,12 @@ vec4 affine_plane(Footprint f, vec4 plane) {
     float ac = dot(a, c);
     float variance = ac * ac + f.low_pass * (dot(a1, a1) + dot(a2, a2)) + f.low_pass * f.low_pass * dot(a, a);
     vec2 slope = vec2(dot(c, a2) + f.low_pass * dot(a, f.b1), -dot(c, a1) + f.low_pass * dot(a, f.b2));
-    float side = keeps_far(ac, a) ? 1.0 : -1.0;
     if (!(variance > 0.0)) {
-        return vec4(plane.w >= 0.0 ? 40.0 : -40.0, 0.0, 0.0, side);
+        return vec4(plane.w >= 0.0 ? 40.0 : -40.0, 0.0, 0.0, 0.0);
     }
     float inverse = inversesqrt(variance / f.det);
     // Within what the rasteriser carries: beyond 40 deviations all distances are one.
-    return vec4(clamp(plane.w * inverse, -1e20, 1e20), slope * (f.scale / f.det * inverse), side);
+    return vec4(clamp(plane.w * inverse, -1e20, 1e20), slope * (f.scale / f.det * inverse), 0.0);
 }
 
 void main() {
@@ -65,16 +64,22 @@ void main() {
         // A plane that keeps the whole splat changes no intersection, one that drops it no union.
         if (plane_side(distance, normal, reach) != kept) {
             form = ray_plane(normal, distance);
-            cuts.at[at++] = ray ? form : affine_plane(f, form);
+            cuts.at[at++] = form;
         }
     }
     uint count = at - base - CUT_HEADER;
     uint flags = count << CUT_COUNT_SHIFT;
-    if (!ray) {
+    if (!ray && count == 1u) {
         cuts.at[base] = vec4(vec3(0.0), float(flags));
-        if (count == 1u) {
-            cuts.at[at] = vec4(0.0);
-        }
+        cuts.at[at - 1u] = affine_plane(f, form);
+        cuts.at[at] = vec4(0.0);
+        return;
+    }
+    if (!ray) {
+        // Several planes: the footprint's own gradients, the same in all pixels.
+        cuts.at[base] = vec4(f.b1, float(flags | CUT_RAY));
+        cuts.at[base + 1u] = vec4(f.b2, f.scale);
+        cuts.at[base + 2u] = vec4(vec3(0.0), f.low_pass);
         return;
     }
 

@@ -18,33 +18,15 @@ float phi(float z) {
     return 1.0 / (1.0 + exp2(-x * (2.3017272 + s * (0.10617733 - 9.1122696e-4 * s))));
 }
 
-// Half-spaces on one line of sight are thresholds in one variable: those that keep the far side bound it from below,
-// the others from above. An intersection is what both leave; a union is the rest of the complements' intersection,
-// which is why every plane is negated (`sign`) under OP_OR.
+#include "orthant.glsl"
+
+// A union is the rest of the complements' intersection, which is why every plane is negated (`sign`) under OP_OR.
 float complement_sign() {
     return CLIP_OP == OP_OR ? -1.0 : 1.0;
 }
 
 float combined(float share) {
     return CLIP_OP == OP_OR ? 1.0 - share : share;
-}
-
-// `exact`, affine in the pixel.
-float affine_weight(uint at, uint count, vec2 delta) {
-    float sign = complement_sign();
-    float far = 1.0;
-    float near = 1.0;
-    for (uint plane = 0u; plane < count; plane++) {
-        vec4 form = cuts.at[at + plane];
-        float kept = phi(sign * (form.x + form.y * delta.x + form.z * delta.y));
-        if (sign * form.w > 0.0) {
-            far = min(far, kept);
-        } else {
-            near = min(near, kept);
-        }
-    }
-    // Not far + near - 1: where no near plane cuts, the share must stay as it is, to the bit.
-    return combined(max(0.0, far - (1.0 - near)));
 }
 
 vec2 principal_point() {
@@ -65,32 +47,131 @@ float tail_phi(float z) {
     return z < 0.0 ? tail : 1.0 - tail;
 }
 
-float beam_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place) {
+// A record's plane; under OP_OR its complement.
+vec4 plane_of(uint base, uint plane) {
+    return complement_sign() * cuts.at[base + CUT_HEADER + plane];
+}
+
+Threshold threshold_of(Sight s, float det, uint base, uint plane) {
+    vec4 form = plane_of(base, plane);
+    Threshold t;
+    t.z = ray_z(s, det, form, t.far);
+    t.direction = direction(s, form.xyz);
+    return t;
+}
+
+// The strictest plane besides two; `count` where there is none of the kind asked for.
+const uint KIND_NEAR = 0u;
+const uint KIND_FAR = 1u;
+const uint KIND_ANY = 2u;
+
+uint strictest(Sight s, float det, uint base, uint count, uvec2 besides, uint kind) {
+    uint found = count;
+    float least = PHI_ONE;
+    for (uint plane = 0u; plane < count; plane++) {
+        bool far;
+        float z = ray_z(s, det, plane_of(base, plane), far);
+        bool is_asked = kind == KIND_ANY || (kind == KIND_FAR) == far;
+        if (z < least && is_asked && plane != besides.x && plane != besides.y) {
+            least = z;
+            found = plane;
+        }
+    }
+    return found;
+}
+
+// What three and more planes keep that one pixel sees the edges of. No arrays: they would cost every splat their room.
+float corner_weight(Sight s, float det, uint base, uint count) {
+    uint a = strictest(s, det, base, count, uvec2(count), KIND_ANY);
+    Threshold first = threshold_of(s, det, base, a);
+    uint b = strictest(s, det, base, count, uvec2(a), first.far ? KIND_NEAR : KIND_FAR);
+    bool is_mixed = b < count;
+    b = is_mixed ? b : strictest(s, det, base, count, uvec2(a), KIND_ANY);
+    Threshold second = threshold_of(s, det, base, b);
+    uint c = strictest(s, det, base, count, uvec2(a, b), KIND_ANY);
+    float share = three_positive(first, second, threshold_of(s, det, base, c));
+    // Bounds from pairs: the least of them, and what is left when each plane takes what the strictest one of its kind, and
+    // this what the strictest of all, has not taken. Where correlations are full both are the share.
+    float p = phi(first.z);
+    float q = phi(second.z);
+    float high = both_positive(first, second);
+    float low = high;
+    for (uint plane = 0u; plane < count; plane++) {
+        Threshold t = threshold_of(s, det, base, plane);
+        if (plane == a || plane == b || t.z >= PHI_ONE) {
+            continue;
+        }
+        float with_first = both_positive(first, t);
+        float with_second = both_positive(second, t);
+        high = min(high, min(with_first, with_second));
+        low += is_mixed && t.far == second.far ? with_second - q : with_first - p;
+        // Beyond three planes: as if each depended on the strictest only.
+        share *= plane == c ? 1.0 : with_first / max(p, 1e-6);
+    }
+    return clamp(share, max(low, 0.0), max(high, 0.0));
+}
+
+// What several planes of a record keep together. Few pixels of a splat see the edges of more than one of them.
+float several_weight(Sight s, float det, uint base, uint count) {
+    uvec2 open = uvec2(0u);
+    vec2 z = vec2(0.0);
+    uint opens = 0u;
+    for (uint plane = 0u; plane < count; plane++) {
+        bool far;
+        float here = ray_z(s, det, plane_of(base, plane), far);
+        if (here <= -PHI_ONE) {
+            return 0.0;
+        }
+        if (here < PHI_ONE) {
+            open = uvec2(open.y, plane);
+            z = vec2(z.y, here);
+            opens++;
+        }
+    }
+    if (opens < 2u) {
+        return opens == 0u ? 1.0 : phi(z.y);
+    }
+    if (opens > 2u) {
+        return corner_weight(s, det, base, count);
+    }
+    vec2 rho = correlation(direction(s, plane_of(base, open.x).xyz), direction(s, plane_of(base, open.y).xyz));
+    return both_positive(z.x, z.y, phi(z.x), phi(z.y), rho);
+}
+
+// `exact`, with the planes of a record.
+float exact_weight(uint base, uint count, vec2 delta, vec2 place) {
+    Sight s = line_of_sight(base, delta, place);
+    float det = determinant(s);
+    if (CLIP_OP == OP_ONE || count == 1u) {
+        bool far;
+        return phi(ray_z(s, det, cuts.at[base + CUT_HEADER], far));
+    }
+    return combined(several_weight(s, det, base, count));
+}
+
+// The same with the camera inside the splat: only what is in front of the eye counts, as part and as whole. Such a splat
+// is so large that the low-pass is nothing: the planes are thresholds in one variable along the ray, those that keep the
+// far side bound it from below, as the eye does, the others from above.
+float front_weight(uint base, uint count, vec2 delta, vec2 place) {
     Sight s = line_of_sight(base, delta, place);
     float det = determinant(s);
     float sign = complement_sign();
-    // What the far thresholds leave, and what the near ones take of it.
     float far = 1.0;
     float gone = 0.0;
     bool keeps;
     for (uint plane = 0u; plane < count; plane++) {
         float z = sign * ray_z(s, det, cuts.at[base + CUT_HEADER + plane], keeps);
-        if (keeps == (CLIP_OP == OP_AND)) {
-            far = min(far, has_front ? tail_phi(z) : phi(z));
+        if (keeps == (CLIP_OP != OP_OR)) {
+            far = min(far, tail_phi(z));
         } else {
-            gone = max(gone, has_front ? tail_phi(-z) : phi(-z));
+            gone = max(gone, tail_phi(-z));
         }
     }
-    float whole = 1.0;
-    if (has_front) {
-        // The camera is inside: only the part in front of the eye counts, as part and as whole.
-        float front = tail_phi(ray_z(s, det, cuts.at[base + CUT_HEADER + count], keeps));
-        if (front >= FRONT_MIN) {
-            whole = front;
-            far = min(far, front);
-        }
+    float whole = tail_phi(ray_z(s, det, cuts.at[base + CUT_HEADER + count], keeps));
+    if (whole < FRONT_MIN) {
+        return combined(max(0.0, far - gone));
     }
-    return combined(max(0.0, far - gone) / whole);
+    return combined(max(0.0, min(far, whole) - gone) / whole);
 }
 
 // `rara`: the visible share of the chord that the ray cuts out of the ellipsoid (paper section 3.3 and eq. 11). The
@@ -126,7 +207,7 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place
         float slope = dot(form.xyz, direction);
         if (miss || slope == 0.0) {
             // The plane itself is visible, so it is no part of a complement.
-            inside = inside && (value > 0.0 || (value == 0.0 && CLIP_OP == OP_AND));
+            inside = inside && (value > 0.0 || (value == 0.0 && CLIP_OP != OP_OR));
         } else if (slope > 0.0) {
             low = max(low, -value / slope);
         } else {
@@ -138,8 +219,8 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place
 }
 
 // Which of them by the frame's mode and the record's form. `place` is the pixel's, `delta` the same relative to the
-// splat's centre, `uv` that in the splat's own coordinates (curve.glsl). Parameter 2 is the traced ellipsoid's sigma, 3 the records' stride, 4 and 5 the principal point in the
-// coordinates of `place`.
+// splat's centre, `uv` that in the splat's own coordinates (curve.glsl). Parameter 2 is the traced ellipsoid's sigma, 3 the
+// records' stride, 4 and 5 the principal point in the coordinates of `place`.
 float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 place) {
     uint base = cut * push.param[3];
     uint flags = uint(cuts.at[base].w);
@@ -147,8 +228,8 @@ float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 place) {
     if (CLIP_MODE == MODE_RARA) {
         return chord_weight(base, count, (flags & CUT_FRONT) != 0u, delta, place);
     }
-    if ((flags & CUT_RAY) != 0u) {
-        return beam_weight(base, count, (flags & CUT_FRONT) != 0u, delta, place);
+    if ((flags & CUT_FRONT) != 0u) {
+        return front_weight(base, count, delta, place);
     }
     if ((flags & CUT_CURVE) != 0u) {
         vec4 linear = cuts.at[base];
@@ -161,7 +242,7 @@ float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 place) {
         float third = twist.w + uv.x * wave.w;
         return phi(at + uv.y * (slope + uv.y * (second + uv.y * (third + uv.y * bend.w))));
     }
-    return affine_weight(base + CUT_HEADER, count, delta);
+    return exact_weight(base, count, delta, place);
 }
 
 // The paper scales alpha (eq. 12). The default for `exact` scales optical depth, -ln(1 - alpha): then complementary

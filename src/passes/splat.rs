@@ -67,9 +67,13 @@ impl WeightKey {
     /// What a plan needs.
     pub(crate) fn new(plan: &Plan) -> Self {
         let when = |needed: bool, value: u32| if needed { value } else { 0 };
+        let op = match plan.data.plane_count {
+            1 => types::OP_ONE,
+            _ => plan.data.op,
+        };
         Self {
             mode: when(plan.cutoff, plan.mode),
-            op: when(plan.cutoff, plan.data.op),
+            op: when(plan.cutoff, op),
             decay: when(plan.cutoff, plan.decay),
             miss: when(plan.cutoff && plan.mode == types::MODE_RARA, plan.miss),
             phi: when(plan.cutoff && plan.mode == types::MODE_EXACT, plan.phi),

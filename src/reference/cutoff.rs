@@ -29,7 +29,7 @@ impl<T: Real> Cut<T> {
     pub fn weight(&self, dx: T, dy: T) -> T {
         match self {
             Cut::Affine { planes, op } => {
-                super::exact::combine(*op, planes.iter().map(|plane| plane.share(dx, dy)), None)
+                super::exact::combine(*op, planes.iter().map(|plane| plane.threshold(dx, dy)))
             }
             Cut::Beam(beam) => beam.weight(dx, dy),
             Cut::Chord(chord) => chord.weight(dx, dy),

@@ -10,19 +10,11 @@
 
 use super::classify::UnitPlane;
 use super::footprint::{Footprint, determinant, scaled};
+use super::orthant::{Direction, Threshold, orthant};
 use super::real::{Real, Vec3};
 use super::view::View;
 use crate::ClipOp;
 use crate::limits::FRONT_MIN;
-
-/// The part of a splat that one plane keeps in a pixel.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Share<T> {
-    /// How much, 0 to 1.
-    pub weight: T,
-    /// Whether the visible side is the farther one along the ray. See [`combine`].
-    pub far: bool,
-}
 
 /// The plane function given a pixel: normal with mean `mean[0] + mean[1] dx + mean[2] dy`.
 #[derive(Debug, Clone, Copy)]
@@ -30,6 +22,7 @@ struct Conditional<T> {
     mean: [T; 3],
     deviation: T,
     far: bool,
+    direction: Direction<T>,
 }
 
 /// Conditions a plane function on a pixel whose image derivatives are b1 and b2.
@@ -49,17 +42,24 @@ fn condition<T: Real>(gradients: [Vec3<T>; 2], plane: &UnitPlane<T>) -> Conditio
     let ([b1, b2], factor, low_pass) = scaled(gradients);
     let c = b1.cross(b2);
     let det = determinant([b1, b2], c, low_pass);
-    let along = a.dot(c);
     let (ab1, ab2) = (a.cross(b1), a.cross(b2));
-    let variance = along * along
-        + low_pass * (ab1.squared() + ab2.squared())
-        + low_pass * low_pass * a.squared();
+    let spread = low_pass.sqrt();
+    let direction = Direction {
+        along: a.dot(c),
+        across: [ab1 * spread, ab2 * spread, a * low_pass],
+    };
+    let variance = direction.squared();
     let kx = c.dot(ab2) + low_pass * a.dot(b1);
     let ky = low_pass * a.dot(b2) - c.dot(ab1);
     Conditional {
         mean: [g, kx * factor / det, ky * factor / det],
         deviation: (variance / det).sqrt(),
-        far: is_far(along, a),
+        far: is_far(direction.along, a),
+        direction: if variance > T::zero() {
+            direction * (T::one() / variance.sqrt())
+        } else {
+            direction
+        },
     }
 }
 
@@ -83,6 +83,8 @@ pub struct AffinePlane<T> {
     pub z: [T; 3],
     /// Whether the visible side is the farther one.
     pub far: bool,
+    /// What correlates it with other planes.
+    pub direction: Direction<T>,
 }
 
 impl<T: Real> AffinePlane<T> {
@@ -92,6 +94,7 @@ impl<T: Real> AffinePlane<T> {
             mean,
             deviation,
             far,
+            direction,
         } = condition(gradients, plane);
         // No deviation: the Gaussian is a point, wholly on one side (the plane itself is visible).
         let z = if deviation > T::zero() {
@@ -101,15 +104,16 @@ impl<T: Real> AffinePlane<T> {
         } else {
             [T::neg_infinity(), T::zero(), T::zero()]
         };
-        Self { z, far }
+        Self { z, far, direction }
     }
 
-    /// The share that the plane keeps at an offset from the splat's centre, pixels.
-    pub fn share(&self, dx: T, dy: T) -> Share<T> {
+    /// The plane at an offset from the splat's centre, pixels.
+    pub fn threshold(&self, dx: T, dy: T) -> Threshold<T> {
         let [z0, zx, zy] = self.z;
-        Share {
-            weight: (z0 + zx * dx + zy * dy).phi(),
+        Threshold {
+            z: z0 + zx * dx + zy * dy,
             far: self.far,
+            direction: self.direction,
         }
     }
 }
@@ -159,10 +163,13 @@ impl<T: Real> Beam<T> {
     pub fn weight(&self, dx: T, dy: T) -> T {
         let [b1, b2] = self.gradients;
         let ray = [b1 - self.lean * dx, b2 - self.lean * dy];
-        let share = |plane: &UnitPlane<T>| AffinePlane::new(ray, plane).share(dx, dy);
-        let front = self.front.as_ref().map(|plane| share(plane).weight);
-        let front = front.filter(|&front| front >= T::of(f64::from(FRONT_MIN)));
-        combine(self.op, self.planes.iter().map(share), front)
+        let threshold = |plane: &UnitPlane<T>| AffinePlane::new(ray, plane).threshold(dx, dy);
+        let planes = self.planes.iter().map(threshold);
+        let front = self.front.as_ref().map(|plane| threshold(plane).z.phi());
+        match front.filter(|&front| front >= T::of(f64::from(FRONT_MIN))) {
+            Some(front) => in_front(self.op, planes, front),
+            None => combine(self.op, planes),
+        }
     }
 }
 
@@ -171,32 +178,34 @@ pub fn holds_the_eye<T: Real>(footprint: &Footprint<T>) -> bool {
     footprint.centre.z < footprint.reach * footprint.rows[2].length()
 }
 
-/// Joins the shares that several planes keep in one pixel.
-///
-/// On one ray every plane is a threshold in the same normal variable: "far" planes keep what lies beyond theirs,
-/// "near" ones what lies before. Of each kind only the strictest (for `and`) or the most generous (for `or`) matters,
-/// and the two kinds overlap in what is left of 1. With the low-pass this is exact for one plane and for parallel ones,
-/// and close otherwise. `front` is the share in front of the eye where that is not everything: one more far threshold
-/// for what is visible as for what is not, and the whole that the result is a share of.
-pub fn combine<T: Real>(op: ClipOp, shares: impl Iterator<Item = Share<T>>, front: Option<T>) -> T {
-    let (zero, one) = (T::zero(), T::one());
-    let (mut near, mut far) = match op {
-        ClipOp::And => (one, one),
-        ClipOp::Or => (zero, zero),
-    };
-    for share in shares {
-        let side = if share.far { &mut far } else { &mut near };
-        *side = match op {
-            ClipOp::And => side.min(share.weight),
-            ClipOp::Or => side.max(share.weight),
-        };
+/// The share that several planes leave in one pixel.
+pub fn combine<T: Real>(op: ClipOp, planes: impl Iterator<Item = Threshold<T>>) -> T {
+    match op {
+        ClipOp::And => orthant(planes),
+        ClipOp::Or => T::one() - orthant(planes.map(Threshold::complement)),
     }
-    // `far - (1 - near)` and not `near + far - 1`: where no near plane cuts, the share must stay as it is, to the bit.
-    match (op, front) {
-        (ClipOp::And, None) => (far - (one - near)).max(zero),
-        (ClipOp::Or, None) => (near + far).min(one),
-        (ClipOp::And, Some(front)) => (far.min(front) - (one - near)).max(zero) / front,
-        // The complement of a union: before every far threshold, beyond every near one.
-        (ClipOp::Or, Some(front)) => one - ((one - near).min(front) - far).max(zero) / front,
+}
+
+/// The same where the eye is within the splat and only the share `front` is before it: of that share.
+///
+/// Such a splat is so large that the low-pass is nothing. On one ray every plane is a threshold in the same normal
+/// variable: "far" planes keep what lies beyond theirs, "near" ones what lies before. Of each kind only the strictest
+/// matters, and the two kinds overlap in what is left of 1; the eye is one more far threshold.
+fn in_front<T: Real>(op: ClipOp, planes: impl Iterator<Item = Threshold<T>>, front: T) -> T {
+    let (zero, one) = (T::zero(), T::one());
+    let of = |planes: &mut dyn Iterator<Item = Threshold<T>>| {
+        let (mut far, mut gone) = (front, zero);
+        for plane in planes {
+            if plane.far {
+                far = far.min(plane.z.phi());
+            } else {
+                gone = gone.max((-plane.z).phi());
+            }
+        }
+        (far - gone).max(zero) / front
+    };
+    match op {
+        ClipOp::And => of(&mut { planes }),
+        ClipOp::Or => one - of(&mut planes.map(Threshold::complement)),
     }
 }

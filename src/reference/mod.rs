@@ -12,6 +12,7 @@ pub mod cutoff;
 pub mod exact;
 pub mod footprint;
 pub mod harmonics;
+pub mod orthant;
 pub mod project;
 pub mod quadrature;
 mod real;

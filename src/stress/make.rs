@@ -181,7 +181,8 @@ pub(super) fn set_colour(scene: &mut Gaussians, random: &mut Random) {
     }
 }
 
-fn pop(scene: &mut Gaussians) {
+/// Takes the last splat back.
+pub(super) fn pop(scene: &mut Gaussians) {
     scene.positions.pop();
     scene.scales.pop();
     scene.rotations.pop();

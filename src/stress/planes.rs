@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::make::{PLAIN, any_normal, axes, cases, on_plane};
+use super::make::{PLAIN, any_normal, axes, cases, on_plane, pop};
 use super::places::mix;
 use super::{Case, Regime};
 use crate::scene::Random;
@@ -31,6 +31,10 @@ pub fn regimes() -> Vec<Regime> {
         }),
         Regime::new("duplicate planes", || together(ClipOp::And, again)),
         Regime::new("duplicate planes, either", || together(ClipOp::Or, again)),
+        Regime::new("the edge of two planes", || edge(ClipOp::And, 2)),
+        Regime::new("the edge of two planes, either", || edge(ClipOp::Or, 2)),
+        Regime::new("the edge of three planes", || edge(ClipOp::And, 3)),
+        Regime::new("the edge of six planes, either", || edge(ClipOp::Or, 6)),
         Regime::new("32 planes", || {
             together(ClipOp::And, |p| {
                 let turn = |i: u32| {
@@ -90,6 +94,34 @@ fn together(op: ClipOp, planes: fn(Plane) -> Vec<Plane>) -> Vec<Case> {
         }
     };
     (0..4).map(&mut one).collect()
+}
+
+/// Small splats along the line in which all planes meet, so that all planes cut all of them: the splats of which the
+/// low-pass leaves most.
+fn edge(op: ClipOp, count: usize) -> Vec<Case> {
+    let small = |random: &mut Random, px: f64| mix(random, px) * 0.05;
+    let mut cases = cases(24, PLAIN, &any_normal, &small);
+    let mut random = Random::new(25);
+    for case in &mut cases {
+        let first = case.clip.planes[0].normal();
+        let line = first.cross(axes(&case.camera).z_axis).normalize();
+        let scene = &mut case.scene;
+        while case.apart && scene.len() > 20 {
+            pop(scene);
+        }
+        let middle = scene.len() as f64 / 2.0;
+        let step = 2.0 * PLAIN.radius() / scene.len() as f64;
+        for (index, position) in scene.positions.iter_mut().enumerate() {
+            *position = (line * ((index as f64 - middle) * step)).as_vec3();
+        }
+        let mut turned = |_| {
+            let turn = random.range(-1.2, 1.2);
+            plane(first * turn.cos() + first.cross(line) * turn.sin(), 0.0)
+        };
+        case.clip.planes.extend((1..count).map(&mut turned));
+        case.clip.op = op;
+    }
+    cases
 }
 
 fn plane(normal: DVec3, offset: f64) -> Plane {

@@ -239,23 +239,28 @@ fn the_affine_form_is_close_for_small_splats_and_auto_for_all() {
 }
 
 #[test]
-fn several_oblique_planes_are_exact_along_a_ray_and_approximate_under_the_low_pass() {
+fn two_oblique_planes_are_as_exact_as_one_and_more_nearly_so() {
     for op in [ClipOp::And, ClipOp::Or] {
-        for (pixels, limit) in [
-            ([0.02, 0.2], 0.1),
-            ([1.0, 5.0], 0.03),
-            ([30.0, 300.0], 5e-4),
-        ] {
-            let errors = Study {
-                pixels,
-                planes: 2,
-                op,
-                cases: 100,
-                steps: 48,
-                ..STUDY
+        for (planes, limits) in [(2, [4e-4, 4e-4, 1e-4]), (3, [2e-3, 1e-3, 1e-4])] {
+            for (pixels, limit) in [[0.02, 0.2], [1.0, 5.0], [30.0, 300.0]]
+                .into_iter()
+                .zip(limits)
+            {
+                let errors = Study {
+                    pixels,
+                    planes,
+                    op,
+                    cases: 150,
+                    steps: 160,
+                    ..STUDY
+                }
+                .run();
+                println!("{op:?} {planes} {pixels:?}: {errors:?}");
+                assert!(
+                    errors.mean < limit,
+                    "{op:?} {planes} {pixels:?}: {errors:?}"
+                );
             }
-            .run();
-            assert!(errors.mean < limit, "{op:?} {pixels:?}: {errors:?}");
         }
     }
 }

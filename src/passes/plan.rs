@@ -287,11 +287,22 @@ fn camera_constants(data: &mut FrameData, camera: &Camera) {
 /// precision's range.
 const FARTHEST: f64 = (1_u128 << 126) as f64;
 
-/// The planes without repetitions: cutting twice is cutting once, and a splat that one plane cuts costs less.
+/// The planes without repetitions, since cutting twice is cutting once, and in an order of their own: to the bit no
+/// picture depends on the order in which planes are given.
 fn distinct(planes: &[Plane]) -> Vec<Plane> {
-    let is_first = |&(index, plane): &(usize, &Plane)| !planes[..index].contains(plane);
-    let first = planes.iter().enumerate().filter(is_first);
-    first.map(|(_, plane)| *plane).collect()
+    let key = |plane: &Plane| {
+        let [x, y, z] = plane.normal().to_array();
+        [x, y, z, plane.offset()]
+    };
+    let mut planes = planes.to_vec();
+    planes.sort_by(|a, b| {
+        let pairs = key(a).into_iter().zip(key(b));
+        pairs.fold(std::cmp::Ordering::Equal, |order, (a, b)| {
+            order.then((a + 0.0).total_cmp(&(b + 0.0))) // -0 is 0
+        })
+    });
+    planes.dedup();
+    planes
 }
 
 /// A vector as the sum of two single-precision ones.

@@ -33,7 +33,7 @@ pub(crate) struct Plan {
     pub(crate) miss: u32,
     /// `PHI_*`.
     pub(crate) phi: u32,
-    /// Passes of the sort.
+    /// Passes of the sort that the scene's bounds ask for, at least one.
     pub(crate) sort_passes: u32,
     /// Invocations of the sort.
     pub(crate) sort_runs: u32,
@@ -188,11 +188,7 @@ impl Plan {
                 Miss::Peak => types::MISS_PEAK,
             },
             phi: settings.precision.phi.code(),
-            sort_passes: if scene.gaussians > 1 {
-                keys.passes()
-            } else {
-                0
-            },
+            sort_passes: keys.passes(),
             sort_runs: scene.sort_runs,
             raster: scene.raster,
             tile_digits: digits(data.tile_count),
@@ -228,7 +224,6 @@ impl Plan {
             Work::Sweep { base, .. } => (false, base, true),
             Work::Draw => (false, false, false),
         };
-        let sort = view && self.gaussians > 1;
         let tiled = self.raster == Raster::Tiles || is_empty;
         let stages = [
             ("clip", clip, true),
@@ -237,7 +232,7 @@ impl Plan {
             ("compact", view, true),
             ("cutoff", cut && self.cutoff, true),
             ("project", view, true),
-            ("sort", sort, true),
+            ("sort", view, true),
             ("bin", view, tiled),
             ("tiles", cut, tiled),
             ("splat", true, true),

@@ -20,7 +20,7 @@ float phi(float z) {
 
 #include "orthant.glsl"
 
-// A union is the rest of the complements' intersection, which is why every plane is negated (`sign`) under OP_OR.
+// A union is the rest of the complements' intersection, which is why every plane is negated under OP_OR.
 float complement_sign() {
     return CLIP_OP == OP_OR ? -1.0 : 1.0;
 }
@@ -155,13 +155,12 @@ float exact_weight(uint base, uint count, vec2 delta, vec2 place) {
 float front_weight(uint base, uint count, vec2 delta, vec2 place) {
     Sight s = line_of_sight(base, delta, place);
     float det = determinant(s);
-    float sign = complement_sign();
     float far = 1.0;
     float gone = 0.0;
     bool keeps;
     for (uint plane = 0u; plane < count; plane++) {
-        float z = sign * ray_z(s, det, cuts.at[base + CUT_HEADER + plane], keeps);
-        if (keeps == (CLIP_OP != OP_OR)) {
+        float z = ray_z(s, det, plane_of(base, plane), keeps);
+        if (keeps) {
             far = min(far, tail_phi(z));
         } else {
             gone = max(gone, tail_phi(-z));
@@ -199,10 +198,9 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place
     if (miss && MISS != MISS_PEAK) {
         return MISS == MISS_KEEP ? 1.0 : 0.0;
     }
-    float sign = complement_sign();
     bool inside = true;
     for (uint plane = 0u; plane < count; plane++) {
-        vec4 form = sign * cuts.at[base + CUT_HEADER + plane];
+        vec4 form = plane_of(base, plane);
         float value = form.w + dot(form.xyz, nearest);
         float slope = dot(form.xyz, direction);
         if (miss || slope == 0.0) {

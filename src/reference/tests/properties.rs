@@ -151,7 +151,13 @@ proptest! {
         let extent = f64::from(case.one.scale.into_iter().fold(1e-3_f32, f32::max));
         moved[0] = Plane::new(planes[0].normal(), planes[0].offset() + step * extent).unwrap();
         if let (Some(before), Some(after)) = (case.weight::<f64>(&planes), case.weight::<f64>(&moved)) {
-            prop_assert!(after >= before - 1e-12, "{before}, then {after}");
+            // Two planes are integrated to 1e-6. Three are estimated: a case in a million gives way by 9e-4.
+            let most = match planes.len() {
+                1 => 1e-12,
+                2 => 1e-6,
+                _ => 2e-3,
+            };
+            prop_assert!(after >= before - most, "{before}, then {after}");
         }
     }
 

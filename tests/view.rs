@@ -55,11 +55,29 @@ impl Display {
         let read = BufReader::new(pipe).read_line(&mut number);
         read.expect("Xvfb says which display it has");
         assert!(!number.trim().is_empty(), "Xvfb found no free display");
-        Some(Self {
+        let this = Self {
             _server: server,
             name: format!(":{}", number.trim()),
             frame_buffer: folder.join("Xvfb_screen0"),
-        })
+        };
+        this.can_be_drawn_to(folder).then_some(this)
+    }
+
+    /// Whether the driver under test knows windows at all; SwiftShader as Chromium ships it does not.
+    fn can_be_drawn_to(&self, folder: &Path) -> bool {
+        if std::env::var_os("RARA_TEST_DEVICE").is_none() {
+            return true;
+        }
+        fs::write(folder.join("quit.txt"), "quit").expect("a script");
+        let mut command = rara(folder, "view @/scene.ply --script @/quit.txt");
+        let output = command.env("DISPLAY", &self.name).output();
+        let told = stderr(&output.expect("the rara binary runs"));
+        let lacks =
+            told.contains("cannot draw into windows") || told.contains("cannot be used here");
+        if lacks {
+            eprintln!("SKIPPED: {}", told.trim_end());
+        }
+        !lacks
     }
 
     /// The upper left corner of the screen, where a window without a window manager is.

@@ -5,6 +5,7 @@ use std::sync::PoisonError;
 use ash::{khr, vk};
 
 use super::failure::failed;
+use super::image::{WHOLE, barrier, begin_rendering};
 use super::surface::{Surface, lost};
 use super::{Device, Drawer};
 use crate::Result;
@@ -216,6 +217,7 @@ impl Swapchain {
         clear: [f32; 4],
     ) {
         let chain = self.chain();
+        let shown = &chain.images[image];
         let to_draw = vk::ImageMemoryBarrier2::default()
             // Behind the wait for the image, which is in this stage.
             .src_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)
@@ -226,22 +228,10 @@ impl Swapchain {
             // What was shown is forgotten.
             .old_layout(vk::ImageLayout::UNDEFINED)
             .new_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
-        let attachments = [vk::RenderingAttachmentInfo::default()
-            .image_view(chain.images[image].view)
-            .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
-            .load_op(vk::AttachmentLoadOp::CLEAR)
-            .store_op(vk::AttachmentStoreOp::STORE)
-            .clear_value(vk::ClearValue {
-                color: vk::ClearColorValue { float32: clear },
-            })];
-        let info = vk::RenderingInfo::default()
-            .render_area(chain.extent.into())
-            .layer_count(1)
-            .color_attachments(&attachments);
         // SAFETY: the caller vouches for `cmd`; the view is the image's own and covers the render area.
         unsafe {
-            self.barrier(cmd, image, to_draw);
-            self.device.raw().cmd_begin_rendering(cmd, &info);
+            barrier(&self.device, cmd, shown.image, to_draw);
+            begin_rendering(&self.device, cmd, (shown.view, chain.extent), clear);
             Drawer::new(&self.device, cmd, None).viewport(chain.extent.into());
         }
     }
@@ -261,26 +251,8 @@ impl Swapchain {
         // SAFETY: the caller vouches for `cmd`, and that the image is being rendered to.
         unsafe {
             self.device.raw().cmd_end_rendering(cmd);
-            self.barrier(cmd, image, to_show);
+            barrier(&self.device, cmd, self.chain().images[image].image, to_show);
         }
-    }
-
-    /// # Safety
-    /// `cmd` is recording on the device, outside rendering.
-    unsafe fn barrier(
-        &self,
-        cmd: vk::CommandBuffer,
-        image: usize,
-        barrier: vk::ImageMemoryBarrier2<'_>,
-    ) {
-        let barriers = [barrier
-            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .image(self.chain().images[image].image)
-            .subresource_range(WHOLE)];
-        let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
-        // SAFETY: the caller vouches for `cmd`.
-        unsafe { self.device.raw().cmd_pipeline_barrier2(cmd, &info) };
     }
 
     /// Shows an image once it is drawn.
@@ -356,15 +328,6 @@ impl Drop for Swapchain {
         let _ = self.clear(); // a lost device has nothing to wait for
     }
 }
-
-/// Every image here has one level and one layer of colour.
-const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
-    aspect_mask: vk::ImageAspectFlags::COLOR,
-    base_mip_level: 0,
-    level_count: 1,
-    base_array_layer: 0,
-    layer_count: 1,
-};
 
 /// The images' size: what the surface says, or the window's where the surface follows the images.
 fn extent(offered: &vk::SurfaceCapabilitiesKHR, (width, height): (u32, u32)) -> vk::Extent2D {

@@ -68,20 +68,26 @@ pub(super) fn connect() -> Result<EventLoop<Sent>, Failure> {
     match made {
         Ok(Ok(events)) => Ok(events),
         Ok(Err(error)) => {
-            log::debug!("{error}");
             let display = std::env::var("DISPLAY").unwrap_or_default();
-            let tried = if display.is_empty() {
+            let reason = if cfg!(target_os = "linux") && display.is_empty() {
                 "DISPLAY is not set".to_owned()
             } else {
-                format!("the display \"{display}\" does not answer")
+                without_place(&error.to_string()).to_owned()
             };
-            Err(Error::Device(format!("no window can be opened: {tried}; {remedy}")).into())
+            Err(Error::Device(format!("no window can be opened: {reason}; {remedy}")).into())
         }
         Err(_) => Err(Error::Device(format!(
             "no window can be opened: a library for windows is missing; {remedy}"
         ))
         .into()),
     }
+}
+
+/// winit begins its messages with where in its own sources they come from.
+fn without_place(message: &str) -> &str {
+    let place = message.split_once(".rs:");
+    let reason = place.and_then(|(_, rest)| rest.split_once(": "));
+    reason.map_or(message, |(_, reason)| reason)
 }
 
 /// Opens the window and stays until it is closed.
@@ -114,10 +120,10 @@ impl App {
             .with_title("rara")
             .with_inner_size(PhysicalSize::new(width, height));
         let window = events.create_window(attributes).map_err(|error| {
-            log::debug!("{error}");
             Error::Device(format!(
-                "a window of {width}x{height} pixels could not be opened; try a smaller --size, or draw without a window \
-                 (rara render)"
+                "a window of {width}x{height} pixels could not be opened ({}); try a smaller --size, or draw without a \
+                 window (rara render)",
+                without_place(&error.to_string())
             ))
         })?;
         let window = Arc::new(window);

@@ -184,6 +184,8 @@ impl Windowed {
             if self.room.replace(room) != Some(room) {
                 return Ok(Shown::Unsettled);
             }
+        } else {
+            self.room = None;
         }
         Ok(Shown::Settled)
     }

@@ -1,4 +1,4 @@
-//! Keys and mouse to actions. `KEYS` tells people the same; keep them side by side.
+//! Keys and mouse to actions; `KEYS` tells people.
 
 use std::collections::HashSet;
 

@@ -30,9 +30,9 @@ use super::{output, scenes, values};
 #[command(after_help = format!("\
 {KEYS}
 
-The window's title says what the last frame took on the device, and its three longest stages; T prints all of them.
-A screenshot is what rara render draws with the same camera, clip and settings, not the window's 8 bits; beside it goes
-its camera, for rara render --camera. Neither replaces a file.
+The window's title says what the last frame took on the device, and its three longest stages; T
+prints all of them. A screenshot is what rara render draws with the same camera, clip and settings;
+beside it goes its camera, for rara render --camera. Neither replaces a file.
 
 Scripts, a line an action, # begins a comment; each is on the screen before the next:
   turn DX,DY             degrees          plane on, off, flip, next

@@ -311,7 +311,7 @@ impl Drop for Headless {
 }
 
 /// Vulkan promises blending into every format here but 32-bit floats.
-fn check_blending(device: &Device, format: TargetFormat) -> Result<()> {
+pub(crate) fn check_blending(device: &Device, format: TargetFormat) -> Result<()> {
     let features = device.format_features(format.vulkan());
     let blends = vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
     if features.contains(blends) {

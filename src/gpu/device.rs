@@ -38,8 +38,8 @@ pub(super) struct Inner {
     allocated_at_most: AtomicU64,
     /// Idle command buffers of [`Device::submit_and_wait`].
     pub(super) idle: Mutex<Vec<OneOff>>,
-    /// `None` for a host's device, which is never destroyed here.
-    owned: Option<Instance>,
+    /// `None` for a host's device, which is never destroyed here. Shared with a window's surface.
+    owned: Option<Arc<Instance>>,
 }
 
 impl Device {
@@ -49,7 +49,7 @@ impl Device {
         info: DeviceInfo,
         support: Support,
         allocator: Allocator,
-        owned: Option<Instance>,
+        owned: Option<Arc<Instance>>,
     ) -> Self {
         let (instance, raw) = (desc.instance, desc.device);
         Self {
@@ -101,6 +101,11 @@ impl Device {
         // SAFETY: the instance is ours, or the host's and outlives this device.
         unsafe { instance.get_physical_device_format_properties(physical, format) }
             .optimal_tiling_features
+    }
+
+    #[cfg(feature = "view")]
+    pub(super) fn physical(&self) -> vk::PhysicalDevice {
+        self.inner.physical
     }
 
     pub(super) fn properties(&self) -> vk::PhysicalDeviceProperties {

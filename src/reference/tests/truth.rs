@@ -250,8 +250,8 @@ fn two_and_three_oblique_planes_are_as_exact_as_one_and_more_nearly_so() {
                     pixels,
                     planes,
                     op,
-                    cases: 150,
-                    steps: 160,
+                    cases: 80,
+                    steps: 112,
                     ..STUDY
                 }
                 .run();

@@ -62,7 +62,7 @@ struct Splat {
     vec4 conic_cut; // k2; opacity; the weight's z at the centre and dz/dx, as cut.glsl says
     vec4 colour_cut; // colour; dz/dy
     vec4 axes; // the quad's two half axes, px
-    vec4 middle; // middle of the quad relative to the centre, px; the bits of its number in the file; w unused
+    vec4 middle; // middle of the quad relative to the centre, px; the bits of its number in the file; the centre's depth
     vec4 curvature; // of the weight's z: the factors of dx^2, dx dy and dy^2; w unused
 };
 
@@ -114,6 +114,11 @@ const uint SH_EXPONENT_BIAS = 112u;
 const uint PHI_QUINTIC = 0u;
 const uint PHI_CUBIC = 1u;
 const uint PHI_LOGISTIC = 2u;
+// How a copied depth is stored.
+const uint DEPTH_NONE = 0u;
+const uint DEPTH_FLOAT = 1u;
+const uint DEPTH_24 = 2u;
+const uint DEPTH_16 = 3u;
 const uint NOT_CUT = 0xffffffffu;
 const uint CUT_AWAY = 0xfffffffeu;
 

@@ -45,6 +45,8 @@ pub(crate) struct TileBuffers {
     pub(crate) pair_splats: [Buffer; 2],
     pub(crate) begins: Buffer,
     pub(crate) picture: Buffer,
+    /// The host's depth; empty where it hides nothing.
+    pub(crate) occluders: Buffer,
 }
 
 /// What a sweep of the clip needs besides.
@@ -67,6 +69,7 @@ struct Sizes {
     pairs: u64,
     tiles: u64,
     pixels: u64,
+    occluders: u64,
 }
 
 impl Sizes {
@@ -84,6 +87,7 @@ impl Sizes {
                 0
             }
         };
+        let pixels = plan.data.size[0] as u64 * plan.data.size[1] as u64;
         Self {
             gaussians,
             clip_blocks: if plan.mode == types::MODE_NONE {
@@ -96,7 +100,8 @@ impl Sizes {
             masks: when_tiled(gaussians),
             pairs: when_tiled(plan.data.pair_capacity.into()),
             tiles: when_tiled(plan.data.tile_count.into()),
-            pixels: when_tiled(plan.data.size[0] as u64 * plan.data.size[1] as u64),
+            pixels: when_tiled(pixels),
+            occluders: plan.occluders.map_or(0, |_| when_tiled(pixels)),
         }
     }
 }
@@ -149,6 +154,7 @@ impl Buffers {
                     ],
                     begins: gpu("tile_begins", (sizes.tiles + 1) * 4)?,
                     picture: gpu("tile_picture", sizes.pixels * 16)?,
+                    occluders: gpu("occluders", sizes.occluders * 4)?,
                 })
             } else {
                 None
@@ -186,6 +192,7 @@ impl Buffers {
             && have.pairs >= need.pairs
             && have.tiles >= need.tiles
             && have.pixels >= need.pixels
+            && have.occluders >= need.occluders
     }
 
     /// The largest buffer that a shader binds, bytes.

@@ -3,10 +3,9 @@
 
 use std::mem::offset_of;
 
-use ash::vk;
-
+use crate::depth::DepthMap;
 use crate::error::Result;
-use crate::gpu::{Drawer, GraphicsPipeline};
+use crate::gpu::{Attachments, Drawer, GraphicsPipeline};
 use crate::passes::buffers::Buffers;
 use crate::passes::context::Context;
 use crate::passes::plan::Plan;
@@ -20,24 +19,14 @@ pub(crate) struct Splat {
     mesh: bool,
 }
 
-/// Premultiplied `over`.
-pub(crate) const OVER: vk::PipelineColorBlendAttachmentState =
-    vk::PipelineColorBlendAttachmentState {
-        blend_enable: vk::TRUE,
-        src_color_blend_factor: vk::BlendFactor::ONE,
-        dst_color_blend_factor: vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
-        color_blend_op: vk::BlendOp::ADD,
-        src_alpha_blend_factor: vk::BlendFactor::ONE,
-        dst_alpha_blend_factor: vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
-        alpha_blend_op: vk::BlendOp::ADD,
-        color_write_mask: vk::ColorComponentFlags::RGBA,
-    };
+/// The specialisation constant of glsl/quad.glsl: whether splats have a depth in the host's buffer.
+const DEPTH: u32 = 5;
 
 /// What tells one pipeline from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct SplatKey {
     mesh: bool,
-    format: vk::Format,
+    attachments: Attachments,
     weight: WeightKey,
 }
 
@@ -54,10 +43,10 @@ pub(crate) struct WeightKey {
 impl SplatKey {
     /// The pipeline a plan needs: after a hard clip nothing is left for the fragment stage to do, and what a mode does
     /// not ask for does not tell its pipelines apart.
-    pub(crate) fn new(plan: &Plan, format: vk::Format) -> Self {
+    pub(crate) fn new(plan: &Plan, attachments: Attachments) -> Self {
         Self {
             mesh: plan.raster == Raster::Mesh,
-            format,
+            attachments,
             weight: WeightKey::new(plan),
         }
     }
@@ -103,18 +92,23 @@ impl Splat {
         } else {
             &shaders::SPLAT_VERT
         };
-        let constants = key.weight.constants();
-        let pipeline = context.graphics("splat", front, &shaders::SPLAT_FRAG, &constants, OVER)?;
+        let depth = key.attachments.depth.is_some();
+        let [mode, op, decay, miss, phi] = key.weight.constants();
+        let constants = [mode, op, decay, miss, phi, (DEPTH, depth.into())];
+        let fragment = &shaders::SPLAT_FRAG;
+        let pipeline = context.graphics("splat", front, fragment, &constants, depth)?;
         Ok(Self { pipeline, mesh })
     }
 
-    /// Draws inside the host's rendering scope; `origin` is where its viewport begins, px.
+    /// Draws inside the host's rendering scope; `origin` is where its viewport begins, px. `map` is what the host's depth
+    /// buffer holds for a depth, if it is tested.
     pub(crate) fn record(
         &self,
         drawer: &mut Drawer<'_>,
         b: &Buffers,
         plan: &Plan,
         origin: [f32; 2],
+        map: Option<DepthMap>,
     ) {
         let buffers = [
             &b.frame,
@@ -127,7 +121,9 @@ impl Splat {
         let [_, _, cx, cy] = plan.data.focal;
         let principal = [cx + origin[0], cy + origin[1]].map(f32::to_bits);
         let sigma = plan.data.sigma.to_bits();
-        let params = [x, y, sigma, plan.cut_stride, principal[0], principal[1]];
+        let [px, py] = principal;
+        let [offset, scale] = map.map_or([0, 0], |map| map.words());
+        let params = [x, y, sigma, plan.cut_stride, px, py, offset, scale];
         if self.mesh {
             let at = offset_of!(FrameCounts, mesh_groups) as u64;
             drawer.draw_mesh_tasks_indirect(&self.pipeline, &buffers, &params, &b.counts, at);

@@ -3,9 +3,8 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use ash::vk;
-
 use crate::error::Result;
+use crate::gpu::Attachments;
 use crate::passes::blocks::{BlockList, Blocks};
 use crate::passes::classify::Classify;
 use crate::passes::clip::Clip;
@@ -61,6 +60,26 @@ impl Stages {
         })
     }
 
+    /// Whether all that a plan needs is there.
+    pub(crate) fn has(&self, context: &Context<'_>, plan: &Plan) -> bool {
+        let is_sweep = matches!(plan.work, Work::Sweep { .. });
+        let is_tiled = plan.raster == Raster::Tiles;
+        let attachments = context.attachments;
+        let view = if is_sweep { &plan.unclipped() } else { plan };
+        let clip = usize::from(view.mode != types::MODE_NONE);
+        (clip == 0 || self.clip.is_some())
+            && self.blocks[clip].is_some()
+            && self.classify[clip].is_some()
+            && self.project.contains_key(&ProjectKey::new(view))
+            && (!is_sweep || self.reclip.is_some() && self.recut[usize::from(is_tiled)].is_some())
+            && (!plan.cutoff || self.cutoff.is_some())
+            && (!is_tiled
+                || self.bin.is_some()
+                    && self.tiles.contains_key(&TilesKey::new(plan))
+                    && self.composite.contains_key(&attachments))
+            && self.splat.contains_key(&SplatKey::new(plan, attachments))
+    }
+
     /// Creates what a plan needs and is not there yet.
     pub(crate) fn ensure(&mut self, context: &Context<'_>, plan: &Plan) -> Result<()> {
         if let Work::Sweep { .. } = plan.work {
@@ -82,7 +101,7 @@ impl Stages {
         if plan.raster == Raster::Tiles {
             self.ensure_tiles(context, plan)?;
         }
-        let key = SplatKey::new(plan, context.color_format);
+        let key = SplatKey::new(plan, context.attachments);
         if let Entry::Vacant(missing) = self.splat.entry(key) {
             missing.insert(Splat::new(context, key)?);
         }
@@ -117,7 +136,7 @@ impl Stages {
         if let Entry::Vacant(missing) = self.tiles.entry(key) {
             missing.insert(Tiles::new(context, key)?);
         }
-        if let Entry::Vacant(missing) = self.composite.entry(context.color_format) {
+        if let Entry::Vacant(missing) = self.composite.entry(context.attachments) {
             missing.insert(Composite::new(context)?);
         }
         Ok(())
@@ -148,8 +167,8 @@ impl Stages {
     }
 
     /// The rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.
-    pub(crate) fn splat(&self, plan: &Plan, format: vk::Format) -> &Splat {
-        &self.splat[&SplatKey::new(plan, format)]
+    pub(crate) fn splat(&self, plan: &Plan, attachments: Attachments) -> &Splat {
+        &self.splat[&SplatKey::new(plan, attachments)]
     }
 
     /// The tile rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.

@@ -4,11 +4,8 @@
 #[path = "common/canvas.rs"]
 mod canvas;
 mod common;
-#[path = "../tools/examples/host.rs"]
-mod host;
 
-use canvas::{Canvas, CanvasDesc};
-use host::{Host, HostDesc};
+use canvas::{Canvas, CanvasDesc, with_host};
 use rara::ash::vk;
 use rara::gpu::{Bindings, Device, Target};
 use rara::scene::{Kind, generate};
@@ -22,28 +19,6 @@ const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const VIEW: (u32, u32) = (189, 131);
 const ORIGIN: (i32, i32) = (-7, 40);
 const TARGET: (u32, u32) = (211, 160);
-
-/// A host and its device, under validation.
-fn with_host(optional: bool, test: impl FnOnce(&Host, &Device)) {
-    let device = std::env::var("RARA_TEST_DEVICE").ok();
-    let host = Host::new(&HostDesc {
-        device: device.as_deref(),
-        validation: true,
-        optional,
-        extent: vk::Extent2D {
-            width: 1,
-            height: 1,
-        },
-        format: FLOATS,
-    });
-    let host = host.expect("a Vulkan device and the validation layer (tools/test installs both)");
-    // SAFETY: the handles belong together; everything made from the device is dropped in `test`.
-    let device = unsafe { Device::adopt(host.lend()) }.expect("the host's device draws splats");
-    test(&host, &device);
-    assert_eq!(device.device_bytes(), 0, "everything allocated was freed");
-    drop(device);
-    assert_eq!(host.close(), Vec::<String>::new());
-}
 
 /// A scene with a clip through it, and two meshes that face the camera, amid it.
 struct World {

@@ -2,8 +2,34 @@
 //! classic render pass, with rectangles in the depth buffer for opaque meshes.
 #![allow(dead_code, unreachable_pub, reason = "each test binary uses a part")]
 
+#[path = "../../tools/examples/host.rs"]
+mod host;
+
+use host::{Host, HostDesc};
 use rara::ash::{self, vk};
 use rara::gpu::{AdoptDesc, DepthImage, Device};
+
+/// A host and its device, under validation; with or without what is optional of a device.
+pub fn with_host(optional: bool, test: impl FnOnce(&Host, &Device)) {
+    let device = std::env::var("RARA_TEST_DEVICE").ok();
+    let host = Host::new(&HostDesc {
+        device: device.as_deref(),
+        validation: true,
+        optional,
+        extent: vk::Extent2D {
+            width: 1,
+            height: 1,
+        },
+        format: vk::Format::R8G8B8A8_UNORM,
+    });
+    let host = host.expect("a Vulkan device and the validation layer (tools/test installs both)");
+    // SAFETY: the handles belong together; everything made from the device is dropped in `test`.
+    let device = unsafe { Device::adopt(host.lend()) }.expect("the host's device draws splats");
+    test(&host, &device);
+    assert_eq!(device.device_bytes(), 0, "everything allocated was freed");
+    drop(device);
+    assert_eq!(host.close(), Vec::<String>::new());
+}
 
 pub struct CanvasDesc {
     pub extent: vk::Extent2D,
@@ -52,6 +78,12 @@ pub struct Canvas {
     render_pass: vk::RenderPass,
     framebuffer: vk::Framebuffer,
 }
+
+/// What is recorded before a scope and inside it.
+pub type Scope<'a> = (
+    &'a mut dyn FnMut(vk::CommandBuffer),
+    &'a mut dyn FnMut(vk::CommandBuffer),
+);
 
 struct Image {
     raw: vk::Image,
@@ -143,9 +175,14 @@ impl Canvas {
     /// pictures of the colour attachments.
     pub fn draw(
         &self,
-        before: impl FnOnce(vk::CommandBuffer),
-        inside: impl FnOnce(vk::CommandBuffer),
+        mut before: impl FnMut(vk::CommandBuffer),
+        mut inside: impl FnMut(vk::CommandBuffer),
     ) -> [Vec<[f32; 4]>; 2] {
+        self.draw_scopes(&mut [(&mut before, &mut inside)])
+    }
+
+    /// The same with several scopes, one after the other, in one command buffer.
+    pub fn draw_scopes(&self, scopes: &mut [Scope<'_>]) -> [Vec<[f32; 4]>; 2] {
         let pixels = u64::from(self.desc.extent.width) * u64::from(self.desc.extent.height);
         let colors = [
             self.resolved.as_ref().or(Some(&self.color)),
@@ -163,7 +200,7 @@ impl Canvas {
         let readbacks = ["color_readback", "second_readback"].map(buffer);
         let submitted = self.device.submit_and_wait(|cmd| {
             // SAFETY: `cmd` is recording, and everything that it uses outlives the wait.
-            unsafe { self.record(cmd, before, inside, &colors, &readbacks) };
+            unsafe { self.record(cmd, scopes, &colors, &readbacks) };
             Ok(())
         });
         submitted.expect("submits");
@@ -182,8 +219,7 @@ impl Canvas {
     unsafe fn record(
         &self,
         cmd: vk::CommandBuffer,
-        before: impl FnOnce(vk::CommandBuffer),
-        inside: impl FnOnce(vk::CommandBuffer),
+        scopes: &mut [Scope<'_>],
         colors: &[Option<&Image>; 2],
         readbacks: &[rara::gpu::Buffer; 2],
     ) {
@@ -203,16 +239,22 @@ impl Canvas {
                 self.paint_depth(cmd, depth);
                 self.turn(cmd, depth, DEPTH, COPIED);
             }
-            before(cmd);
-            if let Some(depth) = &self.depth {
-                self.turn(cmd, depth, COPIED, DEPTH);
-            }
-            self.begin(cmd);
-            inside(cmd);
-            if self.desc.render_pass {
-                self.raw.cmd_end_render_pass(cmd);
-            } else {
-                self.raw.cmd_end_rendering(cmd);
+            for (number, (before, inside)) in scopes.iter_mut().enumerate() {
+                before(cmd);
+                if let Some(depth) = &self.depth {
+                    self.turn(cmd, depth, COPIED, DEPTH);
+                }
+                self.begin(cmd, number == 0);
+                inside(cmd);
+                if self.desc.render_pass {
+                    self.raw.cmd_end_render_pass(cmd);
+                } else {
+                    self.raw.cmd_end_rendering(cmd);
+                }
+                self.turn(cmd, &self.color, COLOR, COLOR);
+                if let Some(depth) = &self.depth {
+                    self.turn(cmd, depth, DEPTH, COPIED);
+                }
             }
             for (image, buffer) in colors.iter().zip(readbacks) {
                 let Some(image) = image else { continue };
@@ -276,7 +318,7 @@ impl Canvas {
 
     /// # Safety
     /// `cmd` is recording outside a scope.
-    unsafe fn begin(&self, cmd: vk::CommandBuffer) {
+    unsafe fn begin(&self, cmd: vk::CommandBuffer, clears: bool) {
         let colour = |float32| vk::ClearValue {
             color: vk::ClearColorValue { float32 },
         };
@@ -294,11 +336,16 @@ impl Canvas {
             unsafe { self.raw.cmd_begin_render_pass(cmd, &info, contents) };
             return;
         }
+        let load = if clears {
+            vk::AttachmentLoadOp::CLEAR
+        } else {
+            vk::AttachmentLoadOp::LOAD
+        };
         let attach = |image: &Image, clear| {
             vk::RenderingAttachmentInfo::default()
                 .image_view(image.view)
                 .image_layout(COLOR)
-                .load_op(vk::AttachmentLoadOp::CLEAR)
+                .load_op(load)
                 .store_op(vk::AttachmentStoreOp::STORE)
                 .clear_value(clear)
         };

@@ -121,18 +121,25 @@ mod tests {
 
     #[test]
     fn a_projection_matrix_says_the_same() {
-        let projection = DMat4::perspective_rh(1.0, 1.5, 0.1, 50.0);
-        let map = DepthMap::of_projection(&projection).expect("perspective");
-        let turned = DMat4::perspective_lh(1.0, 1.5, 50.0, 0.1);
-        let reversed = DepthMap::of_projection(&turned).expect("perspective");
-        for z in [0.1, 0.7, 12.0, 50.0] {
-            let clip = projection * DVec4::new(0.3, -0.2, -z, 1.0);
+        // Focal lengths do not matter; the view looks along -z in the first and along +z in the second.
+        let matrix = |z: f64, offset: f64, w: f64| {
+            let (x, y) = (DVec4::X * 1.3, DVec4::Y * 0.9);
+            DMat4::from_cols(x, y, DVec4::new(0.1, 0.0, z, w), DVec4::Z * offset)
+        };
+        let (near, far) = (0.1, 50.0);
+        let away = matrix(far / (near - far), near * far / (near - far), -1.0);
+        let turned = matrix(near / (near - far), near * far / (far - near), 1.0);
+        let [map, reversed] =
+            [away, turned].map(|matrix| DepthMap::of_projection(&matrix).expect("perspective"));
+        assert_eq!((map.at(near), map.at(far)), (0.0, 1.0));
+        for z in [near, 0.7, 12.0, far] {
+            let clip = away * DVec4::new(0.3, -0.2, -z, 1.0);
             assert!((map.at(z) - clip.z / clip.w).abs() < 1e-12);
             let clip = turned * DVec4::new(0.3, -0.2, z, 1.0);
             assert!((reversed.at(z) - clip.z / clip.w).abs() < 1e-12);
         }
         assert!(reversed.is_reversed() && !map.is_reversed());
-        let flat = DMat4::orthographic_rh(-1.0, 1.0, -1.0, 1.0, 0.1, 10.0);
+        let flat = DMat4::from_scale(glam::DVec3::new(1.0, 1.0, 0.1));
         assert!(DepthMap::of_projection(&flat).is_err());
     }
 

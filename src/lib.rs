@@ -38,7 +38,7 @@ pub use passes::SceneBuffers;
 pub use picture::Picture;
 pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
-pub use renderer::{DepthDesc, Renderer, RendererDesc};
+pub use renderer::{DepthDesc, ExpectedDepthDesc, Renderer, RendererDesc};
 pub use scene::Gaussians;
 pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings};
 pub use stats::{Counts, FrameStats, PassTime, RasterChoice};

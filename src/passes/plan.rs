@@ -47,6 +47,8 @@ pub(crate) struct Plan {
     pub(crate) tile_rows: u32,
     /// What hides splats of tiles.
     pub(crate) occluders: Option<Occluders>,
+    /// Whether the splats' depths are wanted.
+    pub(crate) expects_depth: bool,
     /// The frame's constants.
     pub(crate) data: FrameData,
 }
@@ -69,6 +71,8 @@ pub(crate) struct SceneFacts {
     pub(crate) redrawn: bool,
     /// What hides splats of tiles, if they are wanted.
     pub(crate) occluders: Option<Occluders>,
+    /// Whether the splats' depths are wanted.
+    pub(crate) expects_depth: bool,
 }
 
 impl Plan {
@@ -213,6 +217,7 @@ impl Plan {
                     },
                     ..occluders
                 }),
+            expects_depth: scene.expects_depth,
             data,
         })
     }
@@ -334,6 +339,7 @@ mod tests {
             pair_capacity: 1000,
             redrawn: false,
             occluders: None,
+            expects_depth: false,
         };
         let eye = DVec3::new(0.0, 0.0, -4.0);
         let camera = Camera::look_at(eye, DVec3::ZERO, -DVec3::Y, 50.0, (64, 64));

@@ -20,7 +20,7 @@ pub(crate) struct Splat {
 }
 
 /// The specialisation constant of glsl/quad.glsl: whether splats have a depth in the host's buffer.
-const DEPTH: u32 = 5;
+pub(crate) const DEPTH: u32 = 5;
 
 /// What tells one pipeline from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -117,13 +117,7 @@ impl Splat {
             &b.order[plan.sorted()],
             &b.cuts,
         ];
-        let [x, y] = origin.map(f32::to_bits);
-        let [_, _, cx, cy] = plan.data.focal;
-        let principal = [cx + origin[0], cy + origin[1]].map(f32::to_bits);
-        let sigma = plan.data.sigma.to_bits();
-        let [px, py] = principal;
-        let [offset, scale] = map.map_or([0, 0], |map| map.words());
-        let params = [x, y, sigma, plan.cut_stride, px, py, offset, scale];
+        let params = params(plan, origin, map);
         if self.mesh {
             let at = offset_of!(FrameCounts, mesh_groups) as u64;
             drawer.draw_mesh_tasks_indirect(&self.pipeline, &buffers, &params, &b.counts, at);
@@ -132,4 +126,14 @@ impl Splat {
             drawer.draw_indirect(&self.pipeline, &buffers, &params, &b.counts, at);
         }
     }
+}
+
+/// The parameters of glsl/quad.glsl, glsl/weight.glsl and glsl/host_depth.glsl.
+pub(crate) fn params(plan: &Plan, origin: [f32; 2], map: Option<DepthMap>) -> [u32; 8] {
+    let [x, y] = origin.map(f32::to_bits);
+    let [_, _, cx, cy] = plan.data.focal;
+    let [cx, cy] = [cx + origin[0], cy + origin[1]].map(f32::to_bits);
+    let sigma = plan.data.sigma.to_bits();
+    let [offset, scale] = map.map_or([0, 0], |map| map.words());
+    [x, y, sigma, plan.cut_stride, cx, cy, offset, scale]
 }

@@ -12,6 +12,9 @@ layout(constant_id = 3) const uint MISS = MISS_PEAK;
 // PHI_*: which approximation of Phi.
 layout(constant_id = 4) const uint PHI_FORM = 0u;
 
+// The debug view.
+layout(constant_id = 6) const bool SHOW_WEIGHT = false;
+
 BUFFER(readonly, 4, vec4, cuts)
 #include "weight.glsl"
 #include "splat_alpha.glsl"
@@ -23,7 +26,8 @@ layout(location = 3) flat in vec3 curvature;
 layout(location = 0) out vec4 colour;
 
 void main() {
-    float alpha = splat_alpha(centre_conic, conic_cut, colour_cut.w, curvature);
+    float kept;
+    float alpha = splat_alpha(centre_conic, conic_cut, colour_cut.w, curvature, kept);
     // Blending nothing is cheaper than discard on lavapipe, which would lose early tests.
-    colour = vec4(colour_cut.rgb * alpha, alpha);
+    colour = vec4((SHOW_WEIGHT ? weight_colour(kept) : colour_cut.rgb) * alpha, alpha);
 }

@@ -1,9 +1,11 @@
 // Alpha of a splat in a pixel, by the Cholesky factor of the conic, then, for cut splats only, the clip's weight; 0 where
-// the splat does not count. Included after weight.glsl.
+// the splat does not count. `kept` is that weight, WHOLE for a splat that is not cut. Included after weight.glsl.
 #ifndef RARA_SPLAT_ALPHA
 #define RARA_SPLAT_ALPHA
+#include "weight_colour.glsl"
 
-float splat_alpha(vec4 centre_conic, vec4 conic_cut, float slope, vec3 curvature) {
+float splat_alpha(vec4 centre_conic, vec4 conic_cut, float slope, vec3 curvature, out float kept) {
+    kept = WHOLE;
     vec2 delta = gl_FragCoord.xy - centre_conic.xy;
     float u = centre_conic.z * delta.x;
     float v = centre_conic.w * delta.x + conic_cut.x * delta.y;
@@ -17,10 +19,11 @@ float splat_alpha(vec4 centre_conic, vec4 conic_cut, float slope, vec3 curvature
         if (CLIP_MODE == MODE_EXACT && plane.x > -CUT_RANGE) {
             float z = plane.x + delta.x * (plane.y + curvature.x * delta.x + curvature.y * delta.y)
                 + delta.y * (plane.z + curvature.z * delta.y);
-            alpha = decayed(alpha, phi(z));
+            kept = phi(z);
         } else {
-            alpha = decayed(alpha, cut_weight(uint(plane.y) | uint(plane.z) << 16, delta, vec2(u, v), gl_FragCoord.xy));
+            kept = cut_weight(uint(plane.y) | uint(plane.z) << 16, delta, vec2(u, v), gl_FragCoord.xy);
         }
+        alpha = decayed(alpha, kept);
     }
     return alpha;
 }

@@ -40,5 +40,5 @@ pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 pub use renderer::{DepthDesc, ExpectedDepthDesc, Renderer, RendererDesc};
 pub use scene::Gaussians;
-pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings};
+pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
 pub use stats::{Counts, FrameStats, PassTime, RasterChoice};

@@ -11,7 +11,7 @@ use crate::passes::depth_keys::DepthKeys;
 use crate::passes::occluders::Occluders;
 use crate::passes::work::Work;
 use crate::precision::ShFormat;
-use crate::settings::{Decay, ExactForm, Miss, Mode, Raster, Settings};
+use crate::settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
 use crate::types::{self, FrameData};
 
 /// A frame, decided but not recorded.
@@ -49,6 +49,8 @@ pub(crate) struct Plan {
     pub(crate) occluders: Option<Occluders>,
     /// Whether the splats' depths are wanted.
     pub(crate) expects_depth: bool,
+    /// Colours, or a debug view.
+    pub(crate) show: Show,
     /// The frame's constants.
     pub(crate) data: FrameData,
 }
@@ -218,6 +220,7 @@ impl Plan {
                     ..occluders
                 }),
             expects_depth: scene.expects_depth,
+            show: settings.show,
             data,
         })
     }

@@ -10,7 +10,7 @@ use crate::passes::buffers::Buffers;
 use crate::passes::context::Context;
 use crate::passes::plan::Plan;
 use crate::passes::shaders;
-use crate::settings::Raster;
+use crate::settings::{Raster, Show};
 use crate::types::{self, FrameCounts};
 
 #[derive(Debug)]
@@ -28,6 +28,7 @@ pub(crate) struct SplatKey {
     mesh: bool,
     attachments: Attachments,
     weight: WeightKey,
+    show: Show,
 }
 
 /// What of a frame the weight of cut splats depends on.
@@ -48,6 +49,7 @@ impl SplatKey {
             mesh: plan.raster == Raster::Mesh,
             attachments,
             weight: WeightKey::new(plan),
+            show: plan.show,
         }
     }
 }
@@ -94,7 +96,8 @@ impl Splat {
         };
         let depth = key.attachments.depth.is_some();
         let [mode, op, decay, miss, phi] = key.weight.constants();
-        let constants = [mode, op, decay, miss, phi, (DEPTH, depth.into())];
+        let show = (key.show == Show::Weight).into();
+        let constants = [mode, op, decay, miss, phi, (DEPTH, depth.into()), (6, show)];
         let fragment = &shaders::SPLAT_FRAG;
         let pipeline = context.graphics("splat", front, fragment, &constants, depth)?;
         Ok(Self { pipeline, mesh })

@@ -125,6 +125,7 @@ impl Plan {
     fn goes_the_way_of(&self, other: &Self) -> bool {
         self.raster == other.raster
             && self.expects_depth == other.expects_depth
+            && self.show == other.show
             && self.sh_format == other.sh_format
             && self.sort_passes == other.sort_passes
     }

@@ -69,7 +69,7 @@ void main() {
     splat.conic_cut = vec4(conic.z, opacity, weight.plane.xy);
     splat.colour_cut = vec4(colour(index, normalize(f.relative / largest(f.relative))), weight.plane.z);
     splat.axes = vec4(quad.first, quad.second);
-    splat.middle = vec4(quad.middle, gaussian.scale.w, 0.0);
+    splat.middle = vec4(quad.middle, gaussian.scale.w, f.view.z);
     splat.curvature = vec4(weight.curvature, 0.0);
     splats.at[survivor] = splat;
     if (TILES) {

@@ -17,6 +17,10 @@ layout(local_size_x = TILE_WIDTH, local_size_y_id = 6) in;
 // Whether the camera stands still and only the clip moves: tiles that nothing has changed keep their pixels, and some of
 // the splats are clipped away.
 layout(constant_id = 7) const bool SWEEP = false;
+// How the host's depth is stored that hides splats, if there is one.
+layout(constant_id = 8) const uint DEPTH_FORM = DEPTH_NONE;
+// The debug view.
+layout(constant_id = 9) const bool SHOW_WEIGHT = false;
 
 BUFFER(readonly, 1, Splat, splats)
 BUFFER(readonly, 2, uint, pair_splats)
@@ -24,7 +28,10 @@ BUFFER(readonly, 3, uint, tile_begins)
 BUFFER(readonly, 4, vec4, cuts)
 BUFFER(writeonly, 5, vec4, picture)
 BUFFER(readonly, 6, uint, dirty)
+BUFFER(readonly, 7, uint, occluders)
 #include "column.glsl"
+#include "occluders.glsl"
+#include "weight_colour.glsl"
 
 void main() {
     uint tile = LINEAR_GROUP;
@@ -39,6 +46,12 @@ void main() {
     for (uint row = 0u; row < ROWS; row++) {
         sum[row] = vec3(0.0);
         light[row] = 1.0;
+    }
+    float limit[ROWS];
+    if (DEPTH_FORM != DEPTH_NONE) {
+        for (uint row = 0u; row < ROWS; row++) {
+            limit[row] = hidden_beyond(pixel + uvec2(0u, row));
+        }
     }
     float saturated = FRAME.transmittance_min;
     uint end = tile_begins.at[tile + 1u];
@@ -64,6 +77,24 @@ void main() {
             float a = min(ALPHA_MAX, conic_cut.y * exp(-0.5 * (u * u + w * w)));
             alpha[row] = a >= ALPHA_MIN ? a : 0.0;
         }
+        if (DEPTH_FORM != DEPTH_NONE) {
+            float far = farness(host_depth(splats.at[number].middle.w));
+            bool behind = true;
+            for (uint row = 0u; row < ROWS; row++) {
+                alpha[row] = far > limit[row] ? 0.0 : alpha[row];
+                behind = behind && far > limit[row];
+            }
+            // So is all that follows, where the sort has looked at whole depths.
+            if (behind && FRAME.key_shift == 0u) {
+                break;
+            }
+        }
+        float kept[ROWS];
+        if (SHOW_WEIGHT) {
+            for (uint row = 0u; row < ROWS; row++) {
+                kept[row] = WHOLE;
+            }
+        }
         if (CLIP_MODE >= MODE_RARA && conic_cut.z < CUT_RANGE) {
             vec3 plane = vec3(conic_cut.zw, colour_cut.w);
             float weight[ROWS];
@@ -72,6 +103,11 @@ void main() {
             } else {
                 vec2 uv = vec2(u, v + conic_cut.x * delta.y);
                 cut_weights(uint(plane.y) | uint(plane.z) << 16, delta, uv, conic_cut.x, place, alpha, weight);
+            }
+            if (SHOW_WEIGHT) {
+                for (uint row = 0u; row < ROWS; row++) {
+                    kept[row] = weight[row];
+                }
             }
             bool whole = true;
             for (uint row = 0u; row < ROWS; row++) {
@@ -86,7 +122,7 @@ void main() {
         float most = 0.0;
         for (uint row = 0u; row < ROWS; row++) {
             float share = light[row] * alpha[row];
-            sum[row] += share * colour_cut.rgb;
+            sum[row] += share * (SHOW_WEIGHT ? weight_colour(kept[row]) : colour_cut.rgb);
             light[row] -= share;
             most = max(most, light[row]);
         }

@@ -62,8 +62,15 @@ struct Splat {
     vec4 conic_cut; // k2; opacity; the weight's z at the centre and dz/dx, as cut.glsl says
     vec4 colour_cut; // colour; dz/dy
     vec4 axes; // the quad's two half axes, px
-    vec4 middle; // middle of the quad relative to the centre, px; the bits of its number in the file; w unused
+    vec4 middle; // middle of the quad relative to the centre, px; the bits of its number in the file; the centre's depth
     vec4 curvature; // of the weight's z: the factors of dx^2, dx dy and dy^2; w unused
+};
+
+// How deep a splat is in a pixel: the mean of what the clip leaves of it. Of planes only the strictest of each kind counts.
+struct SplatDepth {
+    vec4 mean; // of the whole splat at its centre, how much it changes a px across and down; w: 1 where a union is kept
+    vec4 far; // the plane that keeps the far side: z at the centre, dz/dx, dz/dy; the shift of the mean by a density of one
+    vec4 near; // the plane that keeps the near side, likewise; its shift is towards the eye
 };
 
 // How many Gaussians ended where, and the indirect commands that follow from it.
@@ -116,6 +123,11 @@ const uint SH_EXPONENT_BIAS = 112u;
 const uint PHI_QUINTIC = 0u;
 const uint PHI_CUBIC = 1u;
 const uint PHI_LOGISTIC = 2u;
+// How a copied depth is stored.
+const uint DEPTH_NONE = 0u;
+const uint DEPTH_FLOAT = 1u;
+const uint DEPTH_24 = 2u;
+const uint DEPTH_16 = 3u;
 const uint NOT_CUT = 0xffffffffu;
 const uint CUT_AWAY = 0xfffffffeu;
 

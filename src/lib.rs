@@ -3,6 +3,7 @@
 pub mod camera;
 pub mod camera_files;
 pub mod clip;
+pub mod depth;
 pub mod error;
 pub mod files;
 mod framing;
@@ -14,6 +15,7 @@ pub mod limits;
 pub mod measure;
 mod passes;
 pub mod picture;
+pub mod placement;
 pub mod precision;
 pub mod reference;
 pub mod renderer;
@@ -30,15 +32,17 @@ pub use {ash, glam};
 
 pub use camera::Camera;
 pub use clip::{Clip, ClipOp, Plane};
+pub use depth::DepthMap;
 pub use error::{Error, Result};
 pub use gpu::PipelineCache;
 pub use headless::{Headless, HeadlessDesc};
 pub use passes::SceneBuffers;
 pub use picture::Picture;
+pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
-pub use renderer::{Renderer, RendererDesc};
+pub use renderer::{DepthDesc, ExpectedDepthDesc, Renderer, RendererDesc};
 pub use scene::Gaussians;
-pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings};
+pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
 pub use stats::{Counts, FrameStats, PassTime, RasterChoice};
 #[cfg(feature = "view")]
 pub use windowed::Windowed;

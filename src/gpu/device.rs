@@ -103,6 +103,24 @@ impl Device {
             .optimal_tiling_features
     }
 
+    /// How many samples optimally tiled 2D images of a format and use can have; none where there are no such images.
+    pub fn sample_counts(
+        &self,
+        format: vk::Format,
+        usage: vk::ImageUsageFlags,
+    ) -> vk::SampleCountFlags {
+        let (instance, physical) = (&self.inner.instance, self.inner.physical);
+        let (kind, tiling) = (vk::ImageType::TYPE_2D, vk::ImageTiling::OPTIMAL);
+        let flags = vk::ImageCreateFlags::empty();
+        // SAFETY: the instance is ours, or the host's and outlives this device.
+        let found = unsafe {
+            instance.get_physical_device_image_format_properties(
+                physical, format, kind, tiling, usage, flags,
+            )
+        };
+        found.map(|found| found.sample_counts).unwrap_or_default()
+    }
+
     #[cfg(feature = "view")]
     pub(super) fn physical(&self) -> vk::PhysicalDevice {
         self.inner.physical

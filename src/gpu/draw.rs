@@ -20,8 +20,8 @@ impl<'a> Drawer<'a> {
     ///
     /// # Safety
     ///
-    /// `cmd` must be recording on `device` inside dynamic rendering, with a colour attachment of the pipelines' format,
-    /// and stay so as long as the drawer lives. All buffers and pipelines given to the drawer must be this device's and
+    /// `cmd` must be recording on `device` inside a rendering scope with the pipelines' attachments, and stay so as long as
+    /// the drawer lives. All buffers and pipelines given to the drawer must be this device's and
     /// outlive the execution, and the buffers were made ready to draw after their last write.
     pub unsafe fn new(
         device: &'a Device,

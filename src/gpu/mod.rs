@@ -5,6 +5,7 @@
 //! and frames in flight.
 
 mod access;
+mod attachments;
 mod device;
 mod devices;
 mod draw;
@@ -33,6 +34,7 @@ mod upload;
 mod validation;
 
 pub use access::Access;
+pub use attachments::{Attachments, DepthAttachment, Target};
 pub use device::Device;
 pub use devices::{DeviceInfo, list_devices};
 pub use draw::Drawer;
@@ -46,7 +48,7 @@ pub use pipeline::{ComputeDesc, ComputePipeline, GraphicsDesc, GraphicsPipeline}
 pub use pipeline_cache::PipelineCacheId;
 pub use pipeline_file::PipelineCache;
 pub(crate) use pipeline_file::PipelineFile;
-pub use recorder::{Groups, Recorder, group_grid};
+pub use recorder::{DepthImage, Groups, Recorder, group_grid};
 pub use requirements::{Features, Support, check};
 pub use shader::{BufferAccess, BufferUse, MAX_BUFFERS, MAX_PARAMS, Shader};
 #[cfg(feature = "view")]

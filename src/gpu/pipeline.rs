@@ -6,7 +6,7 @@ use ash::vk;
 
 use super::failure::failed;
 use super::layout::Layout;
-use super::{Access, Bindings, BufferAccess, Device, Shader};
+use super::{Access, Attachments, Bindings, BufferAccess, Device, Shader};
 use crate::{Error, Result};
 
 /// Entry point of every shader.
@@ -78,8 +78,7 @@ impl ComputePipeline {
 
 /// What a graphics pipeline is created with.
 ///
-/// Pipelines draw into one colour attachment of a dynamic rendering scope, with dynamic viewport and scissor, without
-/// vertex input, culling, depth or stencil. Their shaders only read buffers.
+/// Pipelines have dynamic viewport and scissor, no vertex input, no culling and no stencil test; they write no depth. Their shaders only read buffers.
 #[derive(Debug, Clone, Copy)]
 pub struct GraphicsDesc<'a> {
     /// For debuggers, validation messages and errors.
@@ -90,8 +89,10 @@ pub struct GraphicsDesc<'a> {
     pub fragment: &'a Shader,
     /// Specialisation constants of both stages: id and value.
     pub constants: &'a [(u32, u32)],
-    /// The colour attachment's format.
-    pub color_format: vk::Format,
+    /// What is drawn into.
+    pub attachments: Attachments,
+    /// Whether what lies behind the depth attachment, where there is one, is not drawn.
+    pub depth_test: bool,
     /// How fragments are blended; `None` overwrites.
     pub blend: Option<vk::PipelineColorBlendAttachmentState>,
     /// What vertices make; unused with a mesh shader.
@@ -146,23 +147,37 @@ impl GraphicsPipeline {
             fragment.stage(&specialization),
         ];
 
+        let into = &desc.attachments;
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(desc.topology);
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
         let rasterization = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
-        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
-            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let multisample =
+            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(into.samples);
         let overwrite = vk::PipelineColorBlendAttachmentState::default()
             .color_write_mask(vk::ColorComponentFlags::RGBA);
-        let attachments = [desc.blend.unwrap_or(overwrite)];
-        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
+        let blends = [desc.blend.unwrap_or(overwrite)];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
+        let nearer = match into.depth {
+            Some(depth) if depth.reversed => vk::CompareOp::GREATER_OR_EQUAL,
+            _ => vk::CompareOp::LESS_OR_EQUAL,
+        };
+        let depth = vk::PipelineDepthStencilStateCreateInfo::default()
+            .depth_test_enable(desc.depth_test)
+            .depth_compare_op(nearer);
         let dynamic_states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);
-        let formats = [desc.color_format];
+        let formats = [into.color];
         let mut rendering =
             vk::PipelineRenderingCreateInfo::default().color_attachment_formats(&formats);
+        if let Some(depth) = into.depth {
+            rendering = rendering.depth_attachment_format(depth.format);
+            if depth.stencil {
+                rendering = rendering.stencil_attachment_format(depth.format);
+            }
+        }
         let mut info = vk::GraphicsPipelineCreateInfo::default()
             .stages(&stages)
             .viewport_state(&viewport)
@@ -170,14 +185,21 @@ impl GraphicsPipeline {
             .multisample_state(&multisample)
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
-            .layout(layout.raw)
-            .push_next(&mut rendering);
+            .layout(layout.raw);
+        if into.depth.is_some() {
+            info = info.depth_stencil_state(&depth);
+        }
+        info = match into.target.0 {
+            None => info.push_next(&mut rendering),
+            Some((render_pass, subpass)) => info.render_pass(render_pass).subpass(subpass),
+        };
         if !mesh {
             info = info
                 .vertex_input_state(&vertex_input)
                 .input_assembly_state(&assembly);
         }
-        // SAFETY: modules and layout are the device's and alive; everything pointed to outlives the call.
+        // SAFETY: modules and layout are the device's and alive; everything pointed to outlives the call. Whoever named a
+        // render pass vouched for it in `Target::render_pass`.
         let made = unsafe {
             device
                 .raw()

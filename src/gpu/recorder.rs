@@ -16,6 +16,21 @@ pub enum Groups<'a> {
     Indirect(&'a Buffer, u64),
 }
 
+/// A host's depth image, of one sample and created with `TRANSFER_SRC`.
+#[derive(Debug, Clone, Copy)]
+pub struct DepthImage {
+    /// The image, whose level 0 is read.
+    pub image: vk::Image,
+    /// Its layout at that time: `TRANSFER_SRC_OPTIMAL` or `GENERAL`.
+    pub layout: vk::ImageLayout,
+    /// Its size, px.
+    pub extent: vk::Extent2D,
+    /// The layer to read.
+    pub layer: u32,
+    /// The viewport's upper left corner in it, px.
+    pub origin: vk::Offset2D,
+}
+
 /// The grid for a linear number of workgroups: a row while `limit` allows, else rows of [`GROUP_COLUMNS`], the last of
 /// which may be too long. Shaders compute `y * gl_NumWorkGroups.x + x` and leave if that is past the end.
 pub fn group_grid(count: u32, limit: u32) -> [u32; 3] {
@@ -209,6 +224,58 @@ impl<'a> Recorder<'a> {
                 .raw()
                 .cmd_copy_buffer(self.cmd, source.handle(), target.handle(), regions)
         };
+    }
+
+    /// Copies the depths of a host's image that lie under a viewport of some size, row by row and without gaps, and says
+    /// which part of the viewport that is: what lies beside the image is left out.
+    ///
+    /// # Safety
+    /// The image is as its description says, its depths are visible to `COPY` by `TRANSFER_READ`, and it outlives the
+    /// execution.
+    pub unsafe fn copy_depth(
+        &mut self,
+        from: &DepthImage,
+        to: &Buffer,
+        size: vk::Extent2D,
+    ) -> vk::Rect2D {
+        let along = |origin: i32, size: u32, whole: u32| {
+            let first = i64::from(origin).max(0);
+            let last = (i64::from(origin) + i64::from(size)).min(whole.into());
+            let begin = (first - i64::from(origin)) as i32;
+            (first as i32, begin, (last - first).max(0) as u32)
+        };
+        let (x, left, width) = along(from.origin.x, size.width, from.extent.width);
+        let (y, top, height) = along(from.origin.y, size.height, from.extent.height);
+        let part = vk::Rect2D {
+            offset: vk::Offset2D { x: left, y: top },
+            extent: vk::Extent2D { width, height },
+        };
+        if width == 0 || height == 0 {
+            return part;
+        }
+        to.check_range(0, u64::from(width) * u64::from(height) * 4);
+        self.before(&[(to.handle(), Access::TransferWrite)]);
+        let region = vk::BufferImageCopy::default()
+            .image_subresource(
+                vk::ImageSubresourceLayers::default()
+                    .aspect_mask(vk::ImageAspectFlags::DEPTH)
+                    .base_array_layer(from.layer)
+                    .layer_count(1),
+            )
+            .image_offset(vk::Offset3D { x, y, z: 0 })
+            .image_extent(part.extent.into());
+        // SAFETY: `begin`'s contract covers `cmd` and the buffer, which has room for four bytes a pixel, the most that a
+        // depth takes; the caller vouches for the image, and the region lies inside.
+        unsafe {
+            self.device.raw().cmd_copy_image_to_buffer(
+                self.cmd,
+                from.image,
+                from.layout,
+                to.handle(),
+                &[region],
+            )
+        };
+        part
     }
 
     /// Makes buffers visible to draws later in the command buffer, as storage, arguments and indices, so that they need

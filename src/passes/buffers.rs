@@ -6,7 +6,7 @@ use crate::gpu::{Buffer, BufferDesc, Device, Location};
 use crate::limits;
 use crate::passes::plan::Plan;
 use crate::settings::Raster;
-use crate::types::{self, FrameCounts, FrameData, Splat};
+use crate::types::{self, FrameCounts, FrameData, Splat, SplatDepth};
 
 /// Everything the stages hand to each other. No stage reads a count on the CPU, so each array but the
 /// tiles' lists has room for every Gaussian of the scene; drivers back untouched memory lazily.
@@ -33,6 +33,8 @@ pub(crate) struct Buffers {
     pub(crate) tile_masks: Buffer,
     /// Only for tiles.
     pub(crate) tiles: Option<TileBuffers>,
+    /// Only where a host asks for expected depths.
+    pub(crate) depth: Option<DepthBuffers>,
     /// Only where the camera has stood still.
     pub(crate) sweep: Option<SweepBuffers>,
     sized_for: Sizes,
@@ -45,6 +47,16 @@ pub(crate) struct TileBuffers {
     pub(crate) pair_splats: [Buffer; 2],
     pub(crate) begins: Buffer,
     pub(crate) picture: Buffer,
+    /// The host's depth; empty where it hides nothing.
+    pub(crate) occluders: Buffer,
+}
+
+/// What expected depths need besides.
+#[derive(Debug)]
+pub(crate) struct DepthBuffers {
+    pub(crate) depths: Buffer,
+    /// The indirect draw of a quad a survivor.
+    pub(crate) draw: Buffer,
 }
 
 /// What a sweep of the clip needs besides.
@@ -67,6 +79,8 @@ struct Sizes {
     pairs: u64,
     tiles: u64,
     pixels: u64,
+    occluders: u64,
+    depths: u64,
 }
 
 impl Sizes {
@@ -84,6 +98,7 @@ impl Sizes {
                 0
             }
         };
+        let pixels = plan.data.size[0] as u64 * plan.data.size[1] as u64;
         Self {
             gaussians,
             clip_blocks: if plan.mode == types::MODE_NONE {
@@ -96,7 +111,9 @@ impl Sizes {
             masks: when_tiled(gaussians),
             pairs: when_tiled(plan.data.pair_capacity.into()),
             tiles: when_tiled(plan.data.tile_count.into()),
-            pixels: when_tiled(plan.data.size[0] as u64 * plan.data.size[1] as u64),
+            pixels: when_tiled(pixels),
+            depths: if plan.expects_depth { gaussians } else { 0 },
+            occluders: plan.occluders.map_or(0, |_| when_tiled(pixels)),
         }
     }
 }
@@ -149,6 +166,15 @@ impl Buffers {
                     ],
                     begins: gpu("tile_begins", (sizes.tiles + 1) * 4)?,
                     picture: gpu("tile_picture", sizes.pixels * 16)?,
+                    occluders: gpu("occluders", sizes.occluders * 4)?,
+                })
+            } else {
+                None
+            },
+            depth: if plan.expects_depth {
+                Some(DepthBuffers {
+                    depths: gpu("depths", n * size_of::<SplatDepth>() as u64)?,
+                    draw: gpu("depth_draw", 16)?,
                 })
             } else {
                 None
@@ -186,6 +212,8 @@ impl Buffers {
             && have.pairs >= need.pairs
             && have.tiles >= need.tiles
             && have.pixels >= need.pixels
+            && have.depths >= need.depths
+            && have.occluders >= need.occluders
     }
 
     /// The largest buffer that a shader binds, bytes.

@@ -4,15 +4,18 @@ use ash::vk;
 
 use crate::error::Result;
 use crate::gpu::{
-    Bindings, ComputeDesc, ComputePipeline, Device, GraphicsDesc, GraphicsPipeline, Shader,
+    Attachments, Bindings, ComputeDesc, ComputePipeline, Device, GraphicsDesc, GraphicsPipeline,
+    Shader,
 };
 
-/// Device, bindings and formats that the stages' pipelines share.
+/// Device, bindings and attachments that the stages' pipelines share.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Context<'a> {
     pub(crate) device: &'a Device,
     pub(crate) bindings: Bindings,
-    pub(crate) color_format: vk::Format,
+    pub(crate) attachments: Attachments,
+    /// Those of expected depths, where they are drawn.
+    pub(crate) expected_depth: Option<Attachments>,
 }
 
 impl Context<'_> {
@@ -40,21 +43,31 @@ impl Context<'_> {
         front: &'static Shader,
         fragment: &'static Shader,
         constants: &[(u32, u32)],
-        blend: vk::PipelineColorBlendAttachmentState,
+        depth_test: bool,
     ) -> Result<GraphicsPipeline> {
-        let topology = vk::PrimitiveTopology::TRIANGLE_STRIP;
-        let (bindings, color_format) = (self.bindings, self.color_format);
-        let blend = Some(blend);
         let desc = GraphicsDesc {
             name,
             front,
             fragment,
             constants,
-            color_format,
-            blend,
-            topology,
-            bindings,
+            attachments: self.attachments,
+            depth_test,
+            blend: Some(OVER),
+            topology: vk::PrimitiveTopology::TRIANGLE_STRIP,
+            bindings: self.bindings,
         };
         GraphicsPipeline::new(self.device, &desc)
     }
 }
+
+/// Premultiplied `over`.
+const OVER: vk::PipelineColorBlendAttachmentState = vk::PipelineColorBlendAttachmentState {
+    blend_enable: vk::TRUE,
+    src_color_blend_factor: vk::BlendFactor::ONE,
+    dst_color_blend_factor: vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
+    color_blend_op: vk::BlendOp::ADD,
+    src_alpha_blend_factor: vk::BlendFactor::ONE,
+    dst_alpha_blend_factor: vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
+    alpha_blend_op: vk::BlendOp::ADD,
+    color_write_mask: vk::ColorComponentFlags::RGBA,
+};

@@ -1,6 +1,8 @@
 //! The frame: every stage in order. Nothing waits or is read back in between; each stage's work follows from what the
 //! one before left on the device.
 
+use ash::vk;
+
 use crate::gpu::{Buffer, Recorder};
 use crate::passes::buffers::Buffers;
 use crate::passes::plan::Plan;
@@ -9,13 +11,14 @@ use crate::passes::stages::Stages;
 use crate::passes::work::Work;
 use crate::settings::Raster;
 
-/// Records everything up to the draw. `readback` gets a copy of the counts for the host.
+/// Records everything up to the draw. `readback` gets a copy of the counts for the host. `copied` is where the host's depth
+/// lies under the picture, for tiles that it hides.
 pub(crate) fn record(
     recorder: &mut Recorder<'_>,
     stages: &Stages,
     scene: &SceneBuffers,
     b: &Buffers,
-    plan: &Plan,
+    (plan, copied): (&Plan, vk::Rect2D),
     readback: &Buffer,
 ) {
     if plan.work != Work::Draw {
@@ -36,15 +39,29 @@ pub(crate) fn record(
     if let Some(t) = b.tiles.as_ref().filter(|_| plan.raster == Raster::Tiles) {
         if plan.work != Work::Draw {
             // The pixels, front to back.
-            recorder.pass("tiles", |r| stages.tiles(plan).record(r, b, t, plan));
+            recorder.pass("tiles", |r| {
+                stages.tiles(plan).record(r, b, t, (plan, copied))
+            });
         }
         recorder.ready_to_draw(&[&t.picture]);
+    }
+    if let Some((depth, d)) = stages
+        .depth
+        .as_ref()
+        .zip(b.depth.as_ref())
+        .filter(|_| plan.expects_depth)
+    {
+        if plan.work != Work::Draw {
+            // How deep the splats are, for who asks.
+            recorder.pass("depth", |r| depth.record(r, scene, b, d));
+        }
+        recorder.ready_to_draw(&[&d.depths, &d.draw]);
     }
 
     recorder.copy(
         &b.counts,
         readback,
-        &[ash::vk::BufferCopy::default().size(b.counts.size())],
+        &[vk::BufferCopy::default().size(b.counts.size())],
     );
     recorder.ready_for_host(&[readback]);
     let order = &b.order[plan.sorted()];

@@ -1,5 +1,6 @@
 //! What a frame needs, decided on the CPU before anything is recorded: which stages run, and the frame's constants.
 
+use ash::vk;
 use glam::{DVec3, Vec3};
 
 use crate::camera::Camera;
@@ -7,9 +8,10 @@ use crate::clip::{Clip, ClipOp, Plane};
 use crate::error::{Error, Result};
 use crate::limits;
 use crate::passes::depth_keys::DepthKeys;
+use crate::passes::occluders::Occluders;
 use crate::passes::work::Work;
 use crate::precision::ShFormat;
-use crate::settings::{Decay, ExactForm, Miss, Mode, Raster, Settings};
+use crate::settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
 use crate::types::{self, FrameData};
 
 /// A frame, decided but not recorded.
@@ -43,6 +45,12 @@ pub(crate) struct Plan {
     pub(crate) tile_digits: u32,
     /// Pixels that an invocation of the tile rasteriser owns, one above the other.
     pub(crate) tile_rows: u32,
+    /// What hides splats of tiles.
+    pub(crate) occluders: Option<Occluders>,
+    /// Whether the splats' depths are wanted.
+    pub(crate) expects_depth: bool,
+    /// Colours, or a debug view.
+    pub(crate) show: Show,
     /// The frame's constants.
     pub(crate) data: FrameData,
 }
@@ -63,6 +71,10 @@ pub(crate) struct SceneFacts {
     pub(crate) pair_capacity: u32,
     /// Whether a frame without room for its pairs is drawn once more, instead of as quads.
     pub(crate) redrawn: bool,
+    /// What hides splats of tiles, if they are wanted.
+    pub(crate) occluders: Option<Occluders>,
+    /// Whether the splats' depths are wanted.
+    pub(crate) expects_depth: bool,
 }
 
 impl Plan {
@@ -193,6 +205,18 @@ impl Plan {
             raster: scene.raster,
             tile_digits: digits(data.tile_count),
             tile_rows: scene.tile_rows,
+            occluders: scene
+                .occluders
+                .filter(|_| scene.raster == Raster::Tiles)
+                .map(|occluders| Occluders {
+                    size: vk::Extent2D {
+                        width: camera.width,
+                        height: camera.height,
+                    },
+                    ..occluders
+                }),
+            expects_depth: scene.expects_depth,
+            show: settings.show,
             data,
         })
     }
@@ -323,6 +347,8 @@ mod tests {
             tile_rows: 8,
             pair_capacity: 1000,
             redrawn: false,
+            occluders: None,
+            expects_depth: false,
         };
         let eye = DVec3::new(0.0, 0.0, -4.0);
         let camera = Camera::look_at(eye, DVec3::ZERO, -DVec3::Y, 50.0, (64, 64));

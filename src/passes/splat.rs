@@ -3,15 +3,14 @@
 
 use std::mem::offset_of;
 
-use ash::vk;
-
+use crate::depth::DepthMap;
 use crate::error::Result;
-use crate::gpu::{Drawer, GraphicsPipeline};
+use crate::gpu::{Attachments, Drawer, GraphicsPipeline};
 use crate::passes::buffers::Buffers;
 use crate::passes::context::Context;
 use crate::passes::plan::Plan;
 use crate::passes::shaders;
-use crate::settings::Raster;
+use crate::settings::{Raster, Show};
 use crate::types::{self, FrameCounts};
 
 #[derive(Debug)]
@@ -20,25 +19,16 @@ pub(crate) struct Splat {
     mesh: bool,
 }
 
-/// Premultiplied `over`.
-pub(crate) const OVER: vk::PipelineColorBlendAttachmentState =
-    vk::PipelineColorBlendAttachmentState {
-        blend_enable: vk::TRUE,
-        src_color_blend_factor: vk::BlendFactor::ONE,
-        dst_color_blend_factor: vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
-        color_blend_op: vk::BlendOp::ADD,
-        src_alpha_blend_factor: vk::BlendFactor::ONE,
-        dst_alpha_blend_factor: vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
-        alpha_blend_op: vk::BlendOp::ADD,
-        color_write_mask: vk::ColorComponentFlags::RGBA,
-    };
+/// The specialisation constant of glsl/quad.glsl: whether splats have a depth in the host's buffer.
+pub(crate) const DEPTH: u32 = 5;
 
 /// What tells one pipeline from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct SplatKey {
     mesh: bool,
-    format: vk::Format,
+    attachments: Attachments,
     weight: WeightKey,
+    show: Show,
 }
 
 /// What of a frame the weight of cut splats depends on.
@@ -54,11 +44,12 @@ pub(crate) struct WeightKey {
 impl SplatKey {
     /// The pipeline a plan needs: after a hard clip nothing is left for the fragment stage to do, and what a mode does
     /// not ask for does not tell its pipelines apart.
-    pub(crate) fn new(plan: &Plan, format: vk::Format) -> Self {
+    pub(crate) fn new(plan: &Plan, attachments: Attachments) -> Self {
         Self {
             mesh: plan.raster == Raster::Mesh,
-            format,
+            attachments,
             weight: WeightKey::new(plan),
+            show: plan.show,
         }
     }
 }
@@ -103,18 +94,24 @@ impl Splat {
         } else {
             &shaders::SPLAT_VERT
         };
-        let constants = key.weight.constants();
-        let pipeline = context.graphics("splat", front, &shaders::SPLAT_FRAG, &constants, OVER)?;
+        let depth = key.attachments.depth.is_some();
+        let [mode, op, decay, miss, phi] = key.weight.constants();
+        let show = (key.show == Show::Weight).into();
+        let constants = [mode, op, decay, miss, phi, (DEPTH, depth.into()), (6, show)];
+        let fragment = &shaders::SPLAT_FRAG;
+        let pipeline = context.graphics("splat", front, fragment, &constants, depth)?;
         Ok(Self { pipeline, mesh })
     }
 
-    /// Draws inside the host's rendering scope; `origin` is where its viewport begins, px.
+    /// Draws inside the host's rendering scope; `origin` is where its viewport begins, px. `map` is what the host's depth
+    /// buffer holds for a depth, if it is tested.
     pub(crate) fn record(
         &self,
         drawer: &mut Drawer<'_>,
         b: &Buffers,
         plan: &Plan,
         origin: [f32; 2],
+        map: Option<DepthMap>,
     ) {
         let buffers = [
             &b.frame,
@@ -123,11 +120,7 @@ impl Splat {
             &b.order[plan.sorted()],
             &b.cuts,
         ];
-        let [x, y] = origin.map(f32::to_bits);
-        let [_, _, cx, cy] = plan.data.focal;
-        let principal = [cx + origin[0], cy + origin[1]].map(f32::to_bits);
-        let sigma = plan.data.sigma.to_bits();
-        let params = [x, y, sigma, plan.cut_stride, principal[0], principal[1]];
+        let params = params(plan, origin, map);
         if self.mesh {
             let at = offset_of!(FrameCounts, mesh_groups) as u64;
             drawer.draw_mesh_tasks_indirect(&self.pipeline, &buffers, &params, &b.counts, at);
@@ -136,4 +129,14 @@ impl Splat {
             drawer.draw_indirect(&self.pipeline, &buffers, &params, &b.counts, at);
         }
     }
+}
+
+/// The parameters of glsl/quad.glsl, glsl/weight.glsl and glsl/host_depth.glsl.
+pub(crate) fn params(plan: &Plan, origin: [f32; 2], map: Option<DepthMap>) -> [u32; 8] {
+    let [x, y] = origin.map(f32::to_bits);
+    let [_, _, cx, cy] = plan.data.focal;
+    let [cx, cy] = [cx + origin[0], cy + origin[1]].map(f32::to_bits);
+    let sigma = plan.data.sigma.to_bits();
+    let [offset, scale] = map.map_or([0, 0], |map| map.words());
+    [x, y, sigma, plan.cut_stride, cx, cy, offset, scale]
 }

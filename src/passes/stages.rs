@@ -3,15 +3,15 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use ash::vk;
-
 use crate::error::Result;
+use crate::gpu::Attachments;
 use crate::passes::blocks::{BlockList, Blocks};
 use crate::passes::classify::Classify;
 use crate::passes::clip::Clip;
 use crate::passes::compact::Compact;
 use crate::passes::context::Context;
 use crate::passes::cutoff::Cutoff;
+use crate::passes::depth::{Depth, SplatDepth, SplatDepthKey};
 use crate::passes::plan::Plan;
 use crate::passes::project::{Project, ProjectKey};
 use crate::passes::sort::Sort;
@@ -39,6 +39,8 @@ pub(crate) struct Stages {
     pub(crate) reclip: Option<Reclip>,
     recut: [Option<Recut>; 2],
     pub(crate) composite: Composites,
+    pub(crate) depth: Option<Depth>,
+    splat_depth: HashMap<SplatDepthKey, SplatDepth>,
 }
 
 impl Stages {
@@ -58,7 +60,33 @@ impl Stages {
             reclip: None,
             recut: [None, None],
             composite: HashMap::new(),
+            depth: None,
+            splat_depth: HashMap::new(),
         })
+    }
+
+    /// Whether all that a plan needs is there.
+    pub(crate) fn has(&self, context: &Context<'_>, plan: &Plan) -> bool {
+        let is_sweep = matches!(plan.work, Work::Sweep { .. });
+        let is_tiled = plan.raster == Raster::Tiles;
+        let attachments = context.attachments;
+        let view = if is_sweep { &plan.unclipped() } else { plan };
+        let clip = usize::from(view.mode != types::MODE_NONE);
+        (clip == 0 || self.clip.is_some())
+            && self.blocks[clip].is_some()
+            && self.classify[clip].is_some()
+            && self.project.contains_key(&ProjectKey::new(view))
+            && (!is_sweep || self.reclip.is_some() && self.recut[usize::from(is_tiled)].is_some())
+            && (!plan.cutoff || self.cutoff.is_some())
+            && (!is_tiled
+                || self.bin.is_some()
+                    && self.tiles.contains_key(&TilesKey::new(plan))
+                    && self.composite.contains_key(&attachments))
+            && self.splat.contains_key(&SplatKey::new(plan, attachments))
+            && context.expected_depth.is_none_or(|attachments| {
+                let key = SplatDepthKey::new(plan, attachments);
+                self.depth.is_some() && self.splat_depth.contains_key(&key)
+            })
     }
 
     /// Creates what a plan needs and is not there yet.
@@ -82,9 +110,18 @@ impl Stages {
         if plan.raster == Raster::Tiles {
             self.ensure_tiles(context, plan)?;
         }
-        let key = SplatKey::new(plan, context.color_format);
+        let key = SplatKey::new(plan, context.attachments);
         if let Entry::Vacant(missing) = self.splat.entry(key) {
             missing.insert(Splat::new(context, key)?);
+        }
+        if let Some(attachments) = context.expected_depth {
+            if self.depth.is_none() {
+                self.depth = Some(Depth::new(context)?);
+            }
+            let key = SplatDepthKey::new(plan, attachments);
+            if let Entry::Vacant(missing) = self.splat_depth.entry(key) {
+                missing.insert(SplatDepth::new(context, key)?);
+            }
         }
         Ok(())
     }
@@ -117,7 +154,7 @@ impl Stages {
         if let Entry::Vacant(missing) = self.tiles.entry(key) {
             missing.insert(Tiles::new(context, key)?);
         }
-        if let Entry::Vacant(missing) = self.composite.entry(context.color_format) {
+        if let Entry::Vacant(missing) = self.composite.entry(context.attachments) {
             missing.insert(Composite::new(context)?);
         }
         Ok(())
@@ -148,8 +185,13 @@ impl Stages {
     }
 
     /// The rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.
-    pub(crate) fn splat(&self, plan: &Plan, format: vk::Format) -> &Splat {
-        &self.splat[&SplatKey::new(plan, format)]
+    pub(crate) fn splat(&self, plan: &Plan, attachments: Attachments) -> &Splat {
+        &self.splat[&SplatKey::new(plan, attachments)]
+    }
+
+    /// The draw of depths for a plan, once [`ensure`](Self::ensure) has seen it.
+    pub(crate) fn splat_depth(&self, plan: &Plan, attachments: Attachments) -> &SplatDepth {
+        &self.splat_depth[&SplatDepthKey::new(plan, attachments)]
     }
 
     /// The tile rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.

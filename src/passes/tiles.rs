@@ -6,16 +6,17 @@ use std::mem::offset_of;
 use ash::vk;
 
 use crate::error::Result;
-use crate::gpu::{ComputePipeline, Drawer, GraphicsPipeline, Groups, Recorder};
+use crate::gpu::{Attachments, ComputePipeline, Drawer, GraphicsPipeline, Groups, Recorder};
 use crate::limits;
 use crate::passes::buffers::{Buffers, TileBuffers};
 use crate::passes::context::Context;
 use crate::passes::plan::Plan;
 use crate::passes::shaders;
 use crate::passes::sort::Sort;
-use crate::passes::splat::{OVER, WeightKey};
+use crate::passes::splat::WeightKey;
 use crate::passes::work::Work;
-use crate::types::FrameCounts;
+use crate::settings::Show;
+use crate::types::{self, FrameCounts};
 
 /// Pairs of tile and splat, ordered by tile and within each tile by depth.
 #[derive(Debug)]
@@ -88,6 +89,8 @@ pub(crate) struct TilesKey {
     weight: WeightKey,
     rows: u32,
     sweep: bool,
+    depth: u32,
+    show: Show,
 }
 
 impl TilesKey {
@@ -97,6 +100,8 @@ impl TilesKey {
             weight: WeightKey::new(plan),
             rows: plan.tile_rows,
             sweep: matches!(plan.work, Work::Sweep { .. }),
+            depth: plan.occluders.map_or(types::DEPTH_NONE, |o| o.form),
+            show: plan.show,
         }
     }
 }
@@ -119,6 +124,8 @@ impl Tiles {
             (5, key.rows),
             (6, limits::TILE_HEIGHT / key.rows),
             (7, key.sweep.into()),
+            (8, key.depth),
+            (9, (key.show == Show::Weight).into()),
         ];
         Ok(Self {
             pipeline: context.compute("tiles", &shaders::TILES_COMP, &constants)?,
@@ -130,16 +137,33 @@ impl Tiles {
         recorder: &mut Recorder<'_>,
         b: &Buffers,
         t: &TileBuffers,
-        plan: &Plan,
+        (plan, copied): (&Plan, vk::Rect2D),
     ) {
         let splats = &t.pair_splats[plan.sorted_pairs()];
         // Only a sweep looks at what is dirty.
         let dirty = b.sweep.as_ref().map_or(&b.counts, |sweep| &sweep.dirty);
+        let occluders = plan.occluders.map_or(&b.counts, |_| &t.occluders);
         let buffers = [
-            &b.frame, &b.splats, splats, &t.begins, &b.cuts, &t.picture, dirty,
+            &b.frame, &b.splats, splats, &t.begins, &b.cuts, &t.picture, dirty, occluders,
         ];
         let [_, _, cx, cy] = plan.data.focal.map(f32::to_bits);
-        let params = [0, 0, plan.data.sigma.to_bits(), plan.cut_stride, cx, cy];
+        let [offset, scale] = plan.occluders.map_or([0, 0], |o| o.map.words());
+        let (at, size) = (copied.offset, copied.extent);
+        let sigma = plan.data.sigma.to_bits();
+        let params = [
+            0,
+            0,
+            sigma,
+            plan.cut_stride,
+            cx,
+            cy,
+            offset,
+            scale,
+            at.x as u32,
+            at.y as u32,
+            size.width,
+            size.height,
+        ];
         let tiles = Groups::Indirect(&b.counts, offset_of!(FrameCounts, tile_groups) as u64);
         recorder.dispatch(&self.pipeline, &buffers, &params, tiles);
     }
@@ -155,7 +179,7 @@ impl Composite {
     pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
         let (front, fragment) = (&shaders::COMPOSITE_VERT, &shaders::COMPOSITE_FRAG);
         Ok(Self {
-            pipeline: context.graphics("composite", front, fragment, &[], OVER)?,
+            pipeline: context.graphics("composite", front, fragment, &[], false)?,
         })
     }
 
@@ -180,4 +204,4 @@ impl Composite {
 }
 
 /// Graphics pipelines differ by what they draw into.
-pub(crate) type Composites = std::collections::HashMap<vk::Format, Composite>;
+pub(crate) type Composites = std::collections::HashMap<Attachments, Composite>;

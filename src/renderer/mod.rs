@@ -1,53 +1,25 @@
 //! The renderer an engine embeds: it records into the host's command buffer and never submits or waits.
 //! `tools/examples/embed.rs` is a whole host.
 
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
+
 use ash::vk;
 
-use crate::camera::Camera;
-use crate::clip::Clip;
-use crate::error::{Error, Result};
+use crate::depth::DepthMap;
+use crate::error::Result;
 use crate::gpu::{
-    Bindings, Buffer, BufferDesc, Device, Drawer, Location, Recorder, Support, Timer,
+    Bindings, Buffer, BufferDesc, DepthImage, Device, Drawer, Location, Recorder, Timer,
 };
-use crate::limits;
-use crate::passes::{
-    self, Buffers, Context, Kept, PairRoom, Plan, SceneBuffers, SceneFacts, Stages, Work,
-};
-use crate::settings::{Raster, Settings};
+use crate::passes::{self, Buffers, Kept, PairRoom, Plan, SceneBuffers, Stages, Work};
+use crate::placement::Placement;
+use crate::settings::Raster;
 use crate::types::FrameCounts;
 
+mod configure;
+mod desc;
 mod tell;
 
-/// What a renderer is created with: [`RendererDesc::new`] for the usual, fields changed where a host wants otherwise.
-#[derive(Debug, Clone, Copy)]
-pub struct RendererDesc {
-    /// Format of the colour attachment that [`Renderer::draw`] draws into. It must be blendable; splats are trained to
-    /// be blended as stored, so sRGB formats, which blend in linear light, give another picture.
-    pub color_format: vk::Format,
-    /// Whether buffers are reached by address (fast) or bound (the validation layer can watch them). With
-    /// [`Bindings::Bound`] a frame whose buffers exceed the device's binding size still uses addresses.
-    pub bindings: Bindings,
-    /// Whether to take timestamps around the stages.
-    pub timing: bool,
-    /// Whether a frame takes over what the one before has computed and this one would compute again, to the same bytes.
-    /// The host then submits every frame that it prepares, in order, or calls [`Renderer::forget`].
-    pub reuse: bool,
-    /// How many recorded frames may be unfinished at once, 1 or more; [`Renderer`] says what the host promises.
-    pub frames_in_flight: u32,
-}
-
-impl RendererDesc {
-    /// Buffers by address, no timestamps, nothing reused, one frame in flight.
-    pub const fn new(color_format: vk::Format) -> Self {
-        Self {
-            color_format,
-            bindings: Bindings::Address,
-            timing: false,
-            reuse: false,
-            frames_in_flight: 1,
-        }
-    }
-}
+pub use desc::{DepthDesc, ExpectedDepthDesc, RendererDesc};
 
 /// Draws a scene into the host's rendering scope.
 ///
@@ -61,15 +33,36 @@ impl RendererDesc {
 /// reads. Memory that a frame outgrows is freed `frames_in_flight` frames later. Before dropping the renderer, the host
 /// waits for all of its frames.
 ///
+/// **Synchronisation.** What `prepare` records begins with a global barrier, from all draws, dispatches and copies that
+/// are earlier in the queue to its own, and ends with one that makes what it wrote visible to the shaders and indirect
+/// arguments of `draw` and, of the counts, to the host: the host needs none between the two, nor for the buffers of the
+/// renderer and the scene at all. `draw` reads those in the vertex or mesh and the fragment stage; it reads and writes the
+/// colour attachment (`COLOR_ATTACHMENT_OUTPUT`) and reads the depth attachment (`EARLY_FRAGMENT_TESTS`,
+/// `LATE_FRAGMENT_TESTS`), whose layout may be read-only. For these the host waits as for any draw of its own. Of
+/// [`prepare_behind`](Self::prepare_behind) see there.
+///
 /// **What recording leaves behind.** `prepare` binds a compute pipeline, `draw` a graphics pipeline; both write push
 /// constants and, with [`Bindings::Bound`], push descriptor set 0. The host binds its own again. Nothing else is touched:
-/// no image, no layout, no dynamic state.
+/// no image, no layout, no dynamic state. Of dynamic state `draw` needs viewport and scissor, the viewport's depths from 0
+/// to 1.
+///
+/// **What lives how long.** The scene's buffers, and the image of `prepare_behind`, until the frame has executed;
+/// a render pass of [`RendererDesc::target`] until the last `configure`; a host's device and instance longer than all.
+///
+/// **Several views.** Views one after the other, each with a scope of its own (`prepare`, `draw`, `prepare`, `draw`), need
+/// one renderer, whose memory they share; each counts as a frame in flight. Views in one scope need a renderer each:
+/// [`sharing`](Self::sharing) makes one that compiles nothing twice. Scenes are shared in any case.
+///
+/// **Several scenes.** Each is prepared and drawn for itself, where [`set_placement`](Self::set_placement) puts it. They are composited in the order in which they are drawn, the farthest first: where
+/// scenes reach into each other the last one drawn is before all of the others. What has to be right there is one scene:
+/// [`Gaussians::append`](crate::Gaussians::append).
 #[derive(Debug)]
 pub struct Renderer {
     device: Device,
     desc: RendererDesc,
-    /// For addresses and for bound buffers; never replaced, so frames in flight keep their pipelines.
-    stages: [Option<Stages>; 2],
+    /// Where the scene stands in the world of camera, clip and depths.
+    placement: Placement,
+    stages: SharedStages,
     buffers: Option<Buffers>,
     /// What frames in flight may still use, with the number of frames prepared when it was replaced.
     retired: Vec<(u64, Buffers)>,
@@ -88,6 +81,14 @@ pub struct Renderer {
     reason: &'static str,
     /// Whether the configured frame has been prepared.
     ready: bool,
+}
+
+/// For addresses and for bound buffers; never replaced, so frames in flight keep their pipelines. Written only by
+/// `configure`, and only where something is missing.
+type SharedStages = Arc<RwLock<[Option<Stages>; 2]>>;
+
+fn read(stages: &SharedStages) -> RwLockReadGuard<'_, [Option<Stages>; 2]> {
+    stages.read().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// What a frame tells about itself, kept until its slot's next frame.
@@ -118,25 +119,34 @@ impl Slot {
 
 impl Renderer {
     /// A renderer on a device. Pipelines and buffers come with the first frame that needs them.
+    ///
+    /// # Errors
+    /// [`Error::Device`](crate::Error::Device) where the device cannot draw into such attachments.
     pub fn new(device: &Device, desc: RendererDesc) -> Result<Self> {
+        Self::with(device, desc, SharedStages::default())
+    }
+
+    /// Another renderer on the same device that shares this one's compiled pipelines: one for each view that is drawn in the
+    /// same scope. Working memory is its own.
+    ///
+    /// # Errors
+    /// As of [`new`](Self::new).
+    pub fn sharing(&self, desc: RendererDesc) -> Result<Self> {
+        Self::with(&self.device, desc, self.stages.clone())
+    }
+
+    fn with(device: &Device, desc: RendererDesc, stages: SharedStages) -> Result<Self> {
         assert!(
             desc.frames_in_flight > 0,
             "a renderer needs at least one frame in flight"
         );
-        let wanted = vk::FormatFeatureFlags::COLOR_ATTACHMENT
-            | vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
-        if !device.format_features(desc.color_format).contains(wanted) {
-            return Err(Error::Device(format!(
-                "{} cannot blend into {:?}; every device can into R8G8B8A8_UNORM and R16G16B16A16_SFLOAT",
-                device.info().name,
-                desc.color_format
-            )));
-        }
+        desc.check(device)?;
         let slots = (0..desc.frames_in_flight).map(|_| Slot::new(device, desc.timing));
         Ok(Self {
             device: device.clone(),
             desc,
-            stages: [None, None],
+            placement: Placement::IDENTITY,
+            stages,
             buffers: None,
             retired: Vec::new(),
             slots: slots.collect::<Result<_>>()?,
@@ -149,6 +159,30 @@ impl Renderer {
             reason: "",
             ready: false,
         })
+    }
+
+    /// Where the scene stands in the world, from the next [`configure`](Self::configure) on: camera, clip, the depth map
+    /// and expected depths are the world's. Without it, where it was made.
+    pub fn set_placement(&mut self, placement: Placement) {
+        if self.placement != placement {
+            self.placement = placement;
+            self.plan = None; // what is configured stands in the old place
+        }
+    }
+
+    /// Changes what the host's depth buffer holds for a depth, from the next [`configure`](Self::configure) on: where its
+    /// near and far planes move.
+    ///
+    /// # Panics
+    /// Without [`RendererDesc::depth`].
+    pub fn set_depth_map(&mut self, map: DepthMap) {
+        let depth = self.desc.depth.as_mut();
+        let depth =
+            depth.expect("Renderer::set_depth_map needs a depth attachment in its RendererDesc");
+        if depth.map != map {
+            depth.map = map;
+            self.plan = None; // what is configured would test against the old one
+        }
     }
 
     /// Changes the format of the attachment that the next [`configure`](Self::configure) is for.
@@ -166,116 +200,6 @@ impl Renderer {
         // What is configured may count on it.
         self.plan = None;
         self.ready = false;
-    }
-
-    /// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the
-    /// viewport of [`draw`](Self::draw). [`Settings::background`] is the host's business and ignored here.
-    ///
-    /// Where a frame needs more memory than the one before, old and new exist side by side while frames are in flight;
-    /// with one frame in flight the old goes first. After an error nothing can be recorded until a call succeeds.
-    pub fn configure(
-        &mut self,
-        scene: &SceneBuffers,
-        camera: &Camera,
-        clip: &Clip,
-        settings: &Settings,
-    ) -> Result<()> {
-        self.plan = None;
-        self.ready = false;
-        self.free_finished();
-        let columns = camera.width.div_ceil(limits::TILE_WIDTH);
-        let tiles = columns.saturating_mul(camera.height.div_ceil(limits::TILE_HEIGHT));
-        let needed = self.frame_counts().map_or(0, |counts| counts.pairs);
-        self.pairs.make(scene.count, tiles, needed);
-        let support = self.device.support();
-        let is_cpu = self.device.info().kind == vk::PhysicalDeviceType::CPU;
-        let sort_runs = sort_runs(is_cpu, scene.count);
-        let (raster, reason) = choose(settings.raster, support, is_cpu, tiles)?;
-        self.reason = reason;
-        let facts = SceneFacts {
-            gaussians: scene.count,
-            sh_degree: scene.sh_degree,
-            sh_format: scene.sh_format,
-            bounds: scene.bounds,
-            sort_runs,
-            raster,
-            tile_rows: if is_cpu { limits::TILE_HEIGHT } else { 1 },
-            pair_capacity: self.pairs.room(),
-            redrawn: self.redraws,
-        };
-        let mut plan = Plan::new(facts, camera, clip, settings)?;
-        let largest = Buffers::largest(&plan).max(scene.largest());
-        self.bindings = match self.desc.bindings {
-            Bindings::Bound
-                if support.push_descriptor && largest <= support.max_storage_buffer_range =>
-            {
-                Bindings::Bound
-            }
-            Bindings::Bound | Bindings::Address => Bindings::Address,
-        };
-        if self
-            .buffers
-            .as_ref()
-            .is_none_or(|buffers| !buffers.fit(&plan))
-        {
-            // Free first: both together may not fit.
-            let outgrown = self.buffers.take();
-            if let Some(kept) = &mut self.kept {
-                kept.holds = false;
-            }
-            self.retired.extend(outgrown.map(|b| (self.prepared, b)));
-            self.free_finished();
-            match Buffers::new(&self.device, &plan) {
-                Ok(buffers) => self.buffers = Some(buffers),
-                Err(Error::Memory(_)) if plan.raster == Raster::Tiles => {
-                    return self.configure_without_tiles(scene, camera, clip, settings);
-                }
-                Err(error) => return Err(error),
-            }
-        }
-        plan.work = Kept::work(self.kept.as_ref(), scene.id, &plan);
-        if let (Work::Sweep { .. }, Some(buffers)) = (plan.work, &mut self.buffers) {
-            match buffers.ensure_sweep(&self.device) {
-                Ok(()) => {}
-                // A frame of its own needs less.
-                Err(Error::Memory(_)) => {
-                    self.kept = None;
-                    plan.work = Kept::work(None, scene.id, &plan);
-                }
-                Err(error) => return Err(error),
-            }
-        }
-        let context = Context {
-            device: &self.device,
-            bindings: self.bindings,
-            color_format: self.desc.color_format,
-        };
-        let stages = &mut self.stages[self.bindings as usize];
-        let stages = match stages {
-            Some(stages) => stages,
-            None => stages.insert(Stages::new(&context)?),
-        };
-        stages.ensure(&context, &plan)?;
-        self.plan = Some(plan);
-        Ok(())
-    }
-
-    /// The same frame as quads, on a device that has no memory for so many tiles and their lists.
-    fn configure_without_tiles(
-        &mut self,
-        scene: &SceneBuffers,
-        camera: &Camera,
-        clip: &Clip,
-        settings: &Settings,
-    ) -> Result<()> {
-        self.pairs.refuse();
-        let quads = Settings {
-            raster: Raster::Quad,
-            ..*settings
-        };
-        self.configure(scene, camera, clip, &quads)?;
-        self.reason = "the device has no memory for the tiles' lists";
-        Ok(())
     }
 
     /// Whether the configured frame's pixels are those of the last prepared one.
@@ -313,24 +237,64 @@ impl Renderer {
         self.redraws = redraws;
     }
 
-    /// Frees what only frames used that the host has waited for.
-    fn free_finished(&mut self) {
-        let finished = (self.prepared + 1).saturating_sub(self.slots.len() as u64);
-        self.retired.retain(|(prepared, _)| *prepared > finished);
-    }
-
     /// Records the stages up to the draw, outside any rendering scope.
     ///
     /// # Safety
     /// `cmd` is in the recording state, outside a rendering scope, on a queue family with compute and graphics, and
     /// will be submitted to the device's queue, or never. `scene` is the one given to [`configure`](Self::configure)
     /// and lives until the commands have executed. The host has waited for the frames that [`Renderer`] says.
+    ///
+    /// # Panics
+    /// Without a successful [`configure`](Self::configure) before it, with another scene, and where
+    /// [`DepthDesc::readable`] promises the host's depth.
     pub unsafe fn prepare(&mut self, cmd: vk::CommandBuffer, scene: &SceneBuffers) {
-        let (Some(stages), Some(buffers), Some(plan)) = (
-            &self.stages[self.bindings as usize],
-            &self.buffers,
-            &self.plan,
-        ) else {
+        assert!(
+            !self.desc.depth.is_some_and(|depth| depth.readable),
+            "this renderer was promised the host's depth: Renderer::prepare_behind takes it"
+        );
+        // SAFETY: the caller's promises are those asked for.
+        unsafe { self.prepare_with(cmd, scene, None) };
+    }
+
+    /// As [`prepare`](Self::prepare), for a renderer whose [`DepthDesc::readable`] says so: with what the host has drawn
+    /// already, so that tiles leave out the splats behind it. The same picture as that of quads, which test each sample
+    /// against the attachment itself. Tiles of such a frame are computed anew even where [`RendererDesc::reuse`] is set.
+    ///
+    /// The part of the image under the viewport is copied, at `COPY` by `TRANSFER_READ`: the host's barrier before makes
+    /// its depths visible to that, its barrier after waits for it before the image changes layout or contents.
+    ///
+    /// # Safety
+    /// As for [`prepare`](Self::prepare); and `depth` is as its description says, visible to the copy, and lives until
+    /// the commands have executed.
+    ///
+    /// # Panics
+    /// As [`prepare`](Self::prepare), and where [`DepthDesc::readable`] is not set.
+    pub unsafe fn prepare_behind(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        scene: &SceneBuffers,
+        depth: &DepthImage,
+    ) {
+        assert!(
+            self.desc.depth.is_some_and(|depth| depth.readable),
+            "Renderer::prepare_behind needs DepthDesc::readable"
+        );
+        // SAFETY: the caller's promises are those asked for.
+        unsafe { self.prepare_with(cmd, scene, Some(depth)) };
+    }
+
+    /// # Safety
+    /// As for [`prepare`](Self::prepare) or, with `depth`, [`prepare_behind`](Self::prepare_behind).
+    unsafe fn prepare_with(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        scene: &SceneBuffers,
+        depth: Option<&DepthImage>,
+    ) {
+        let stages = read(&self.stages);
+        let (Some(stages), Some(buffers), Some(plan)) =
+            (&stages[self.bindings as usize], &self.buffers, &self.plan)
+        else {
             panic!("Renderer::prepare needs a successful configure() before it");
         };
         assert!(
@@ -349,24 +313,42 @@ impl Renderer {
         }
         // SAFETY: the caller promises that `cmd` is recording, outside a rendering scope.
         let mut recorder = unsafe { Recorder::begin(&self.device, cmd, slot.timer.as_mut()) };
-        passes::record(&mut recorder, stages, scene, buffers, plan, &slot.counts);
+        let occluders = depth.zip(plan.occluders).zip(buffers.tiles.as_ref()).map(
+            |((depth, occluders), tiles)| {
+                // SAFETY: the caller promises the image, its layout and that its depths are visible.
+                unsafe { recorder.copy_depth(depth, &tiles.occluders, occluders.size) }
+            },
+        );
+        let copied = occluders.unwrap_or_default();
+        passes::record(
+            &mut recorder,
+            stages,
+            scene,
+            buffers,
+            (plan, copied),
+            &slot.counts,
+        );
         if plan.work != Work::Draw {
             let before = self.kept.take();
-            self.kept = self.desc.reuse.then(|| Kept::after(before, scene.id, plan));
+            let keeps = self.desc.reuse && plan.occluders.is_none();
+            self.kept = keeps.then(|| Kept::after(before, scene.id, plan));
         }
     }
 
     /// Records the splats, or the picture that the tiles have made of them, inside the host's rendering scope, blended
-    /// `over` what is there: premultiplied colours, one sample a pixel. `origin` is the viewport's upper left corner in the
+    /// `over` what is there: premultiplied colours, the same for all samples of a pixel. `origin` is the viewport's upper left corner in the
     /// attachment, whole px; the viewport has the camera's size. May be recorded more than once for a prepared frame.
     ///
     /// # Safety
-    /// `cmd` is inside a rendering scope whose only attachment is a colour one of the format given at creation, with one
-    /// layer and no view mask; viewport and scissor are set; [`prepare`](Self::prepare) was recorded for the same frame
-    /// before it.
+    /// `cmd` is inside a rendering scope with the attachments of the [`RendererDesc`] and no others, one layer and no view
+    /// mask; viewport and scissor are set; [`prepare`](Self::prepare) was recorded for the same frame before it.
+    ///
+    /// # Panics
+    /// Without a prepared frame.
     pub unsafe fn draw(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) {
+        let stages = read(&self.stages);
         let (Some(stages), Some(buffers), Some(plan), true) = (
-            &self.stages[self.bindings as usize],
+            &stages[self.bindings as usize],
             &self.buffers,
             &self.plan,
             self.ready,
@@ -377,55 +359,66 @@ impl Renderer {
             return;
         }
         let at = ((self.prepared - 1) % self.slots.len() as u64) as usize;
+        let map = self.depth_map();
         let timer = self.slots[at].timer.as_mut();
-        let splat = stages.splat(plan, self.desc.color_format);
-        let composite = stages.composite.get(&self.desc.color_format);
+        let attachments = self.desc.attachments();
+        let splat = stages.splat(plan, attachments);
+        let composite = stages.composite.get(&attachments);
         let tiles = composite.zip(buffers.tiles.as_ref());
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
         let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
         drawer.pass("splat", |drawer| {
-            splat.record(drawer, buffers, plan, origin);
+            splat.record(drawer, buffers, plan, origin, map);
             if let Some((composite, t)) = tiles.filter(|_| plan.raster == Raster::Tiles) {
                 composite.record(drawer, buffers, t, origin);
             }
         });
     }
-}
 
-/// How splats become pixels on a device, and why in that way.
-fn choose(
-    wanted: Raster,
-    support: &Support,
-    is_cpu: bool,
-    tiles: u32,
-) -> Result<(Raster, &'static str)> {
-    Ok(match wanted {
-        Raster::Auto if u64::from(tiles) * TILE_BYTES > MOST_PICTURE => {
-            let reason = "the tiles' picture would take more than 1 GiB";
-            (Raster::Quad, reason)
-        }
-        // See the README's measurements.
-        Raster::Auto if is_cpu => (Raster::Tiles, "a CPU driver charges for each drawn splat"),
-        Raster::Auto if support.mesh_shader => (Raster::Mesh, "a GPU with mesh shaders"),
-        Raster::Auto => (Raster::Quad, "a GPU without mesh shaders"),
-        Raster::Mesh if !support.mesh_shader => {
-            return Err(Error::Device(
-                "this device has no mesh shaders (VK_EXT_mesh_shader); use --raster quad".into(),
-            ));
-        }
-        chosen => (chosen, "asked for"),
-    })
-}
+    /// Records the splats' depths inside a rendering scope of their own, with the attachments of
+    /// [`RendererDesc::expected_depth`] and, if there is one, the same depth attachment: blended `over` what is there,
+    /// red is the sum of the depths, each times what its splat adds to the pixel's alpha, green that alpha. Where the host
+    /// has cleared both to 0, red / green is the pixel's expected depth along the view axis, world units; further
+    /// scenes over it keep that meaning. A splat's depth in a pixel is the mean of what the clip leaves of the Gaussian on
+    /// the pixel's line of sight, to first order of perspective; of several planes the strictest that keeps the far side
+    /// counts, and the strictest that keeps the near one. Drawn as quads however the colours are. `origin` as of
+    /// [`draw`](Self::draw).
+    ///
+    /// # Safety
+    /// As of [`draw`](Self::draw), in such a scope.
+    ///
+    /// # Panics
+    /// Without a prepared frame, and without [`RendererDesc::expected_depth`].
+    pub unsafe fn draw_depth(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) {
+        let attachments = self.desc.expected_depth();
+        let attachments =
+            attachments.expect("Renderer::draw_depth needs RendererDesc::expected_depth");
+        let stages = read(&self.stages);
+        let (Some(stages), Some(buffers), Some(plan), true) = (
+            &stages[self.bindings as usize],
+            &self.buffers,
+            &self.plan,
+            self.ready,
+        ) else {
+            panic!("Renderer::draw_depth needs a successful configure() and prepare() before it");
+        };
+        let Some(depths) = buffers.depth.as_ref().filter(|_| plan.gaussians > 0) else {
+            return;
+        };
+        let (map, unit) = (self.depth_map(), self.placement.scale());
+        let splat_depth = stages.splat_depth(plan, attachments);
+        let at = ((self.prepared - 1) % self.slots.len() as u64) as usize;
+        let timer = self.slots[at].timer.as_mut();
+        // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
+        let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
+        drawer.pass("splat_depth", |drawer| {
+            splat_depth.record(drawer, (buffers, depths), plan, origin, map, unit);
+        });
+    }
 
-/// What a tile's pixels take, and the most that a picture of them may: what every device can allocate at once.
-const TILE_BYTES: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64 * 16;
-const MOST_PICTURE: u64 = 1 << 30;
-/// Runs of the sort: each costs a histogram, so few where there is little to sort and on CPU drivers; but at least the
-/// lanes of all cores there, and on GPUs enough invocations to hide the latency of their scattered writes.
-fn sort_runs(is_cpu: bool, gaussians: u32) -> u32 {
-    match (is_cpu, gaussians) {
-        (true, ..32_768) => 128,
-        (true, _) => 256,
-        (false, _) => 2048,
+    /// What the host's depth buffer holds for a depth in the scene's units.
+    fn depth_map(&self) -> Option<DepthMap> {
+        let depth = self.desc.depth?;
+        Some(depth.map.in_scene(&self.placement))
     }
 }

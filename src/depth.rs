@@ -1,0 +1,153 @@
+//! What a host's depth buffer holds: how far something is, as the host's projection has it.
+
+#![forbid(unsafe_code)]
+
+use glam::DMat4;
+
+use crate::error::{Error, Result};
+use crate::placement::Placement;
+
+/// What a depth buffer holds for something at a depth `z` along the view axis, world units: `offset + scale / z`, with
+/// viewports whose depths go from 0 to 1. That is every perspective projection; nearer is more ("reversed") where `scale`
+/// is positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DepthMap {
+    offset: f64,
+    scale: f64,
+}
+
+impl DepthMap {
+    /// 0 at `near`, 1 at `far`, which may be infinite.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] unless `0 < near < far`.
+    pub fn ordinary(near: f64, far: f64) -> Result<Self> {
+        let reversed = Self::reversed(near, far)?;
+        Ok(Self {
+            offset: 1.0 - reversed.offset,
+            scale: -reversed.scale,
+        })
+    }
+
+    /// 1 at `near`, 0 at `far`, which may be infinite.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] unless `0 < near < far`.
+    pub fn reversed(near: f64, far: f64) -> Result<Self> {
+        if !(near > 0.0 && near < far && near.is_finite()) {
+            return Err(Error::Invalid(format!(
+                "a depth buffer from {near} to {far} is not possible; give 0 < near < far"
+            )));
+        }
+        let share = near / far; // zero where far is infinite
+        Ok(Self {
+            offset: -share / (1.0 - share),
+            scale: near / (1.0 - share),
+        })
+    }
+
+    /// That of a projection matrix for clip depths from 0 to w, column vectors, whose view looks along +z or -z.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if it is no perspective projection: then depths are not of this form.
+    pub fn of_projection(projection: &DMat4) -> Result<Self> {
+        let (z, w) = (projection.row(2), projection.row(3));
+        let forward = w.z; // 1 where the view looks along +z, -1 along -z
+        let is_perspective = [z.x, z.y, w.x, w.y, w.w].iter().all(|v| *v == 0.0)
+            && forward.abs() == 1.0
+            && z.w.is_finite()
+            && z.w != 0.0
+            && z.z.is_finite();
+        if !is_perspective {
+            return Err(Error::Invalid(
+                "only perspective projections, with 1 or -1 in the last row's third place, have depths that splats can be tested against"
+                    .into(),
+            ));
+        }
+        Ok(Self {
+            offset: z.z * forward,
+            scale: z.w,
+        })
+    }
+
+    /// The same buffer, for a scene that stands in the world so: depths are then in the scene's units, like those of
+    /// [`Camera::in_scene`](crate::Camera::in_scene).
+    #[must_use]
+    pub fn in_scene(self, placement: &Placement) -> Self {
+        Self {
+            scale: self.scale / placement.scale(),
+            ..self
+        }
+    }
+
+    /// Whether nearer is more.
+    pub fn is_reversed(&self) -> bool {
+        self.scale > 0.0
+    }
+
+    /// What the buffer holds for a depth along the view axis, kept within 0 to 1.
+    pub fn at(&self, depth: f64) -> f64 {
+        (self.offset + self.scale / depth).clamp(0.0, 1.0)
+    }
+
+    /// As parameters of the shaders.
+    pub(crate) fn words(&self) -> [u32; 2] {
+        [self.offset, self.scale].map(|v| (v as f32).to_bits())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec4;
+
+    #[test]
+    fn near_and_far_are_the_ends() {
+        for (near, far) in [(0.1, 1000.0), (1.0, 2.0), (0.5, f64::INFINITY)] {
+            let far_enough = far.min(1e12);
+            let [ordinary, reversed] = [DepthMap::ordinary, DepthMap::reversed]
+                .map(|make| make(near, far).expect("0 < near < far"));
+            for (map, ends) in [(ordinary, [0.0, 1.0]), (reversed, [1.0, 0.0])] {
+                assert!((map.at(near) - ends[0]).abs() < 1e-12);
+                assert!((map.at(far_enough) - ends[1]).abs() < 1e-11);
+                assert_eq!(map.at(near / 2.0), ends[0], "kept within the buffer");
+                assert_eq!(map.is_reversed(), ends[0] == 1.0);
+            }
+        }
+        for (near, far) in [(0.0, 1.0), (1.0, 1.0), (-1.0, 1.0), (f64::NAN, 1.0)] {
+            assert!(DepthMap::ordinary(near, far).is_err(), "{near} {far}");
+        }
+    }
+
+    #[test]
+    fn a_projection_matrix_says_the_same() {
+        // Focal lengths do not matter; the view looks along -z in the first and along +z in the second.
+        let matrix = |z: f64, offset: f64, w: f64| {
+            let (x, y) = (DVec4::X * 1.3, DVec4::Y * 0.9);
+            DMat4::from_cols(x, y, DVec4::new(0.1, 0.0, z, w), DVec4::Z * offset)
+        };
+        let (near, far) = (0.1, 50.0);
+        let away = matrix(far / (near - far), near * far / (near - far), -1.0);
+        let turned = matrix(near / (near - far), near * far / (far - near), 1.0);
+        let [map, reversed] =
+            [away, turned].map(|matrix| DepthMap::of_projection(&matrix).expect("perspective"));
+        assert!(map.at(near) < 1e-12 && map.at(far) > 1.0 - 1e-12);
+        for z in [near, 0.7, 12.0, far] {
+            let clip = away * DVec4::new(0.3, -0.2, -z, 1.0);
+            assert!((map.at(z) - clip.z / clip.w).abs() < 1e-12);
+            let clip = turned * DVec4::new(0.3, -0.2, z, 1.0);
+            assert!((reversed.at(z) - clip.z / clip.w).abs() < 1e-12);
+        }
+        assert!(reversed.is_reversed() && !map.is_reversed());
+        let flat = DMat4::from_scale(glam::DVec3::new(1.0, 1.0, 0.1));
+        assert!(DepthMap::of_projection(&flat).is_err());
+    }
+
+    #[test]
+    fn a_scene_of_another_scale_has_the_same_depths() {
+        let map = DepthMap::reversed(0.1, 100.0).expect("0 < near < far");
+        let placement = Placement::new(glam::DVec3::ONE, glam::DQuat::IDENTITY, 4.0);
+        let placement = placement.expect("a scale");
+        assert_eq!(map.in_scene(&placement).at(2.0), map.at(8.0));
+    }
+}

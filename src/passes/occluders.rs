@@ -1,0 +1,35 @@
+//! What the host has drawn already, for tiles: its depth, copied to where a compute shader can read it.
+
+use ash::vk;
+
+use crate::depth::DepthMap;
+use crate::placement::Placement;
+use crate::renderer::DepthDesc;
+use crate::types;
+
+/// How the host's depth hides the splats of tiles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Occluders {
+    /// `DEPTH_*`: how a copied depth is stored.
+    pub(crate) form: u32,
+    /// What it means.
+    pub(crate) map: DepthMap,
+    /// The picture's size, px.
+    pub(crate) size: vk::Extent2D,
+}
+
+impl Occluders {
+    /// Those of a host that shows its depth, for a scene that stands so and a picture of no size yet.
+    pub(crate) fn of(depth: &DepthDesc, placement: &Placement) -> Option<Self> {
+        let form = match depth.format {
+            vk::Format::D16_UNORM | vk::Format::D16_UNORM_S8_UINT => types::DEPTH_16,
+            vk::Format::X8_D24_UNORM_PACK32 | vk::Format::D24_UNORM_S8_UINT => types::DEPTH_24,
+            _ => types::DEPTH_FLOAT,
+        };
+        depth.readable.then_some(Self {
+            form,
+            map: depth.map.in_scene(placement),
+            size: vk::Extent2D::default(),
+        })
+    }
+}

@@ -1,0 +1,2 @@
+//! empty
+#[test] fn f() {}

@@ -127,7 +127,9 @@ pub(crate) unsafe fn list<'a, T>(first: *const T, count: usize, name: &str) -> R
         return Ok(&[]);
     }
     if count > isize::MAX as usize / size_of::<T>().max(1) {
-        return invalid(format!("{name}: {count} of them are more than memory holds"));
+        return invalid(format!(
+            "{name}: {count} of them are more than memory holds"
+        ));
     }
     // SAFETY: the caller's promise.
     unsafe { shared(first, name) }?;
@@ -224,10 +226,7 @@ pub(crate) unsafe fn write<T: Versioned>(
     name: &str,
 ) -> Result<()> {
     if size < size_of::<usize>() {
-        return invalid(format!(
-            "{name} of {size} bytes: give sizeof({})",
-            T::NAME
-        ));
+        return invalid(format!("{name} of {size} bytes: give sizeof({})", T::NAME));
     }
     // SAFETY: the caller's promise.
     unsafe { shared(pointer.cast_const().cast::<u8>(), name) }?;

@@ -56,7 +56,11 @@ pub(crate) unsafe fn clip(clip: *const RaraClip) -> Result<Clip> {
         made.map_err(|error| Error::Invalid(format!("clip->planes[{index}]: {error}")))
     };
     Ok(Clip {
-        planes: planes.iter().enumerate().map(plane).collect::<Result<_>>()?,
+        planes: planes
+            .iter()
+            .enumerate()
+            .map(plane)
+            .collect::<Result<_>>()?,
         op: match clip.op {
             RARA_CLIP_OP_AND => ClipOp::And,
             RARA_CLIP_OP_OR => ClipOp::Or,

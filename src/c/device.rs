@@ -311,9 +311,21 @@ unsafe fn load_device(instance: &ash::Instance, desc: &RaraAdoptDesc) -> Result<
     let needed: [(vk::Bool32, &CStr, &str); 5] = [
         (vk::TRUE, c"vkCmdPipelineBarrier2", "Vulkan 1.3"),
         (vk::TRUE, c"vkGetBufferDeviceAddress", "Vulkan 1.3"),
-        (desc.mesh_shader, c"vkCmdDrawMeshTasksEXT", "VK_EXT_mesh_shader"),
-        (desc.push_descriptor, c"vkCmdPushDescriptorSetKHR", "VK_KHR_push_descriptor"),
-        (desc.debug_utils, c"vkSetDebugUtilsObjectNameEXT", "VK_EXT_debug_utils"),
+        (
+            desc.mesh_shader,
+            c"vkCmdDrawMeshTasksEXT",
+            "VK_EXT_mesh_shader",
+        ),
+        (
+            desc.push_descriptor,
+            c"vkCmdPushDescriptorSetKHR",
+            "VK_KHR_push_descriptor",
+        ),
+        (
+            desc.debug_utils,
+            c"vkSetDebugUtilsObjectNameEXT",
+            "VK_EXT_debug_utils",
+        ),
     ];
     for (wanted, function, of) in needed {
         // SAFETY: both handles are alive, as the caller promises.

@@ -120,12 +120,7 @@ pub unsafe extern "C" fn rara_gaussians_append(
             return invalid("gaussians and other are the same scene");
         }
         // SAFETY: the caller's promises, and they are two.
-        let (to, from) = unsafe {
-            (
-                exclusive(gaussians, "gaussians")?,
-                shared(other, "other")?,
-            )
-        };
+        let (to, from) = unsafe { (exclusive(gaussians, "gaussians")?, shared(other, "other")?) };
         to.0.gaussians.append(&from.0.gaussians);
         to.0.report.dropped += from.0.report.dropped;
         to.0.report.repaired += from.0.report.repaired;

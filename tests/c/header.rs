@@ -5,7 +5,8 @@ use std::path::Path;
 #[test]
 fn the_header_is_current() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let config = cbindgen::Config::from_file(folder.join("cbindgen.toml")).expect("a configuration");
+    let config =
+        cbindgen::Config::from_file(folder.join("cbindgen.toml")).expect("a configuration");
     let bindings = cbindgen::Builder::new().with_config(config);
     let files = [
         "boundary", "camera", "clip", "depth", "device", "renderer", "scene", "settings", "stats",

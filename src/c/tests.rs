@@ -305,12 +305,8 @@ fn planes() {
     (given.plane_count, given.planes) = (1, null());
     assert_eq!(clip(&given).expect_err("no planes"), "clip->planes is null");
     // SAFETY: null is no clip.
-    assert!(
-        unsafe { super::clip::clip(null()) }
-            .expect("everything")
-            .planes
-            .is_empty()
-    );
+    let none = unsafe { super::clip::clip(null()) };
+    assert!(none.expect("everything").planes.is_empty());
 }
 
 #[test]

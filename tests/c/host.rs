@@ -2,6 +2,7 @@
 //! its splats are the headless picture, and a mesh among them hides some and not others.
 
 use std::env;
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -129,7 +130,8 @@ fn a_host_in_cpp_draws_splats_and_a_mesh() {
     let (truth, device) = truth(&scene);
 
     let folder = libraries();
-    let (shared, archive) = (folder.join("librara_c.so"), folder.join("librara_c.a"));
+    let shared = folder.join(format!("{DLL_PREFIX}rara_c{DLL_SUFFIX}"));
+    let archive = folder.join("librara_c.a");
     let rpath = format!("-Wl,-rpath,{}", folder.display());
     let shared = shared.to_str().expect("UTF-8");
     let shared = compile(&compiler, "c_host_shared", &[shared, &rpath]);

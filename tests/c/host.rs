@@ -169,5 +169,5 @@ fn a_host_in_cpp_draws_splats_and_a_mesh() {
     eprintln!(
         "{outside} pixels beside the mesh, {hidden} hidden by it, {before} with splats before it"
     );
-    assert!(hidden > 1000 && before > 1000);
+    assert!(hidden > 1000 && before > 200);
 }

@@ -9,8 +9,12 @@ BUFFER(readonly, 2, Splat, splats)
 BUFFER(readonly, 3, uint, order)
 
 // Back to front: the blend is the ordinary `over`, so that a host can draw splats onto what it has drawn already.
+uint number_at(uint number) {
+    return order.at[counts.at[0].mesh_groups.w - 1u - number];
+}
+
 Splat splat_at(uint number) {
-    return splats.at[order.at[counts.at[0].mesh_groups.w - 1u - number]];
+    return splats.at[number_at(number)];
 }
 
 // Whether splats have a depth in the host's buffer.

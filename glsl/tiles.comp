@@ -19,6 +19,8 @@ layout(local_size_x = TILE_WIDTH, local_size_y_id = 6) in;
 layout(constant_id = 7) const bool SWEEP = false;
 // How the host's depth is stored that hides splats, if there is one.
 layout(constant_id = 8) const uint DEPTH_FORM = DEPTH_NONE;
+// The debug view.
+layout(constant_id = 9) const bool SHOW_WEIGHT = false;
 
 BUFFER(readonly, 1, Splat, splats)
 BUFFER(readonly, 2, uint, pair_splats)
@@ -29,6 +31,7 @@ BUFFER(readonly, 6, uint, dirty)
 BUFFER(readonly, 7, uint, occluders)
 #include "column.glsl"
 #include "occluders.glsl"
+#include "weight_colour.glsl"
 
 void main() {
     uint tile = LINEAR_GROUP;
@@ -86,6 +89,12 @@ void main() {
                 break;
             }
         }
+        float kept[ROWS];
+        if (SHOW_WEIGHT) {
+            for (uint row = 0u; row < ROWS; row++) {
+                kept[row] = WHOLE;
+            }
+        }
         if (CLIP_MODE >= MODE_RARA && conic_cut.z < CUT_RANGE) {
             vec3 plane = vec3(conic_cut.zw, colour_cut.w);
             float weight[ROWS];
@@ -94,6 +103,11 @@ void main() {
             } else {
                 vec2 uv = vec2(u, v + conic_cut.x * delta.y);
                 cut_weights(uint(plane.y) | uint(plane.z) << 16, delta, uv, conic_cut.x, place, alpha, weight);
+            }
+            if (SHOW_WEIGHT) {
+                for (uint row = 0u; row < ROWS; row++) {
+                    kept[row] = weight[row];
+                }
             }
             bool whole = true;
             for (uint row = 0u; row < ROWS; row++) {
@@ -108,7 +122,7 @@ void main() {
         float most = 0.0;
         for (uint row = 0u; row < ROWS; row++) {
             float share = light[row] * alpha[row];
-            sum[row] += share * colour_cut.rgb;
+            sum[row] += share * (SHOW_WEIGHT ? weight_colour(kept[row]) : colour_cut.rgb);
             light[row] -= share;
             most = max(most, light[row]);
         }

@@ -66,6 +66,13 @@ struct Splat {
     vec4 curvature; // of the weight's z: the factors of dx^2, dx dy and dy^2; w unused
 };
 
+// How deep a splat is in a pixel: the mean of what the clip leaves of it. Of planes only the strictest of each kind counts.
+struct SplatDepth {
+    vec4 mean; // of the whole splat at its centre, how much it changes a px across and down; w: 1 where a union is kept
+    vec4 far; // the plane that keeps the far side: z at the centre, dz/dx, dz/dy; the shift of the mean by a density of one
+    vec4 near; // the plane that keeps the near side, likewise; its shift is towards the eye
+};
+
 // How many Gaussians ended where, and the indirect commands that follow from it.
 struct FrameCounts {
     uint visible; // in view, untouched

@@ -52,6 +52,17 @@ pub enum Raster {
     Tiles,
 }
 
+/// What a frame shows of its splats.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Show {
+    /// Their colours.
+    #[default]
+    Colour,
+    /// What the clip does to them: blue where it leaves them whole; where it cuts, from red, nothing is kept in this pixel,
+    /// to yellow, all is. Blended like colours.
+    Weight,
+}
+
 /// Which form of the exact weight a cut splat gets.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum ExactForm {
@@ -85,6 +96,8 @@ pub struct Settings {
     pub sh_degree: Option<u32>,
     /// How splats become pixels.
     pub raster: Raster,
+    /// Colours, or a debug view.
+    pub show: Show,
     /// What is given up for time.
     pub precision: Precision,
 }
@@ -101,6 +114,7 @@ impl Default for Settings {
             background: None,
             sh_degree: None,
             raster: Raster::default(),
+            show: Show::default(),
             precision: Precision::default(),
         }
     }

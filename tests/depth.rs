@@ -10,8 +10,8 @@ use rara::ash::vk;
 use rara::gpu::{Bindings, Device, Target};
 use rara::scene::{Kind, generate};
 use rara::{
-    Camera, Clip, ClipOp, DepthDesc, DepthMap, Gaussians, Picture, Raster, Renderer, RendererDesc,
-    SceneBuffers, Settings,
+    Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, Gaussians, Mode, Picture, Raster,
+    Renderer, RendererDesc, SceneBuffers, Settings, reference,
 };
 
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -432,4 +432,128 @@ fn a_promised_depth_that_is_not_given_is_refused() {
     let mut renderer = Renderer::new(device, desc).expect("a renderer");
     // SAFETY: refused before anything is recorded.
     unsafe { renderer.prepare(vk::CommandBuffer::null(), &scene) };
+}
+
+/// A frame of expected depths on a canvas of two channels: the reference's, in every way of drawing the colours.
+#[test]
+fn expected_depths_are_the_references() {
+    let world = World::new();
+    let format = vk::Format::R32G32_SFLOAT;
+    for (mode, planes, op) in [
+        (Mode::None, 0, ClipOp::And),
+        (Mode::Exact, 1, ClipOp::And),
+        (Mode::Exact, 2, ClipOp::Or),
+        (Mode::Rara, 1, ClipOp::And),
+        (Mode::Hard, 1, ClipOp::And),
+    ] {
+        let clip = common::clip(&world.scene, planes, op);
+        let settings = Settings {
+            mode,
+            ..Settings::default()
+        };
+        let truth =
+            reference::depth::expected::<f64>(&world.scene, &world.camera, &clip, &settings);
+        with_host(true, |host, device| {
+            let canvas = Canvas::new(&host.lend(), device, CanvasDesc::new(VIEW, format));
+            let scene = SceneBuffers::upload(device, &world.scene, rara::ShFormat::Float);
+            let scene = scene.expect("uploads");
+            for (raster, bindings) in [
+                (Raster::Tiles, Bindings::Bound),
+                (Raster::Quad, Bindings::Address),
+            ] {
+                let desc = RendererDesc {
+                    expected_depth: Some(ExpectedDepthDesc::new(format)),
+                    bindings,
+                    ..RendererDesc::new(FLOATS)
+                };
+                let mut renderer = Renderer::new(device, desc).expect("a renderer");
+                let settings = Settings { raster, ..settings };
+                let configured = renderer.configure(&scene, &world.camera, &clip, &settings);
+                configured.expect("configures");
+                let renderer = std::cell::RefCell::new(renderer);
+                // SAFETY: recording outside a scope, and all is waited for.
+                let before = |cmd| unsafe { renderer.borrow_mut().prepare(cmd, &scene) };
+                let inside = |cmd| {
+                    canvas.viewport(cmd, 0, 0, VIEW);
+                    // SAFETY: inside the canvas's scope, of the format given.
+                    unsafe { renderer.borrow_mut().draw_depth(cmd, [0.0; 2]) };
+                };
+                let [pixels, _] = canvas.draw(before, inside);
+                let mut errors: Vec<_> = pixels
+                    .iter()
+                    .zip(&truth)
+                    .filter(|(_, truth)| truth[1] > 0.02)
+                    .map(|(ours, truth)| {
+                        let depth = f64::from(ours[0]) / f64::from(ours[1]);
+                        ((depth - truth[0] / truth[1]) / depth).abs()
+                    })
+                    .collect();
+                errors.sort_by(f64::total_cmp);
+                assert!(errors.len() > 2_000, "{} pixels", errors.len());
+                let most = errors[errors.len() * 998 / 1000];
+                let worst = errors[errors.len() - 1];
+                let what = format!(
+                    "{mode:?}, {planes} planes {op:?}, {raster:?}: {worst:.1e}, {most:.1e} for 99.8 %"
+                );
+                eprintln!("{what}");
+                assert!(most < 2e-4 && worst < 0.02, "{what}");
+            }
+        });
+    }
+}
+
+/// What is left of a big splat lies farther than its centre, and a host's mesh hides depths like colours.
+#[test]
+fn expected_depths_are_behind_the_cut_and_before_the_mesh() {
+    let world = World::new();
+    let map = maps()[2];
+    let format = vk::Format::R32G32_SFLOAT;
+    with_host(true, |host, device| {
+        let mut desc = canvas(&world, map, vk::Format::D32_SFLOAT);
+        desc.color = format;
+        let depth = depth_desc(&desc, map, false);
+        let canvas = Canvas::new(&host.lend(), device, desc);
+        let scene = SceneBuffers::upload(device, &world.scene, rara::ShFormat::Float);
+        let scene = scene.expect("uploads");
+        let desc = RendererDesc {
+            depth: Some(depth),
+            expected_depth: Some(ExpectedDepthDesc::new(format)),
+            bindings: Bindings::Bound,
+            ..RendererDesc::new(FLOATS)
+        };
+        let mut renderer = Renderer::new(device, desc).expect("a renderer");
+        let clip = Clip::default();
+        let configured = renderer.configure(&scene, &world.camera, &clip, &Settings::default());
+        configured.expect("configures");
+        let renderer = std::cell::RefCell::new(renderer);
+        // SAFETY: recording outside a scope, and all is waited for.
+        let before = |cmd| unsafe { renderer.borrow_mut().prepare(cmd, &scene) };
+        let inside = |cmd| {
+            canvas.viewport(cmd, ORIGIN.0, ORIGIN.1, VIEW);
+            let origin = [ORIGIN.0 as f32, ORIGIN.1 as f32];
+            // SAFETY: inside the canvas's scope, of the format given.
+            unsafe { renderer.borrow_mut().draw_depth(cmd, origin) };
+        };
+        let [pixels, _] = canvas.draw(before, inside);
+        let depths = part(&pixels);
+        let (rect, mesh) = world.meshes[1];
+        let middle = (rect.offset.y + 20) as u32 * VIEW.0 + rect.offset.x as u32 + 60;
+        let whole = reference::depth::expected::<f64>(
+            &world.before(mesh),
+            &world.camera,
+            &clip,
+            &Settings::default(),
+        );
+        for at in (middle..middle + 20).map(|at| at as usize) {
+            let ([sum, alpha, ..], truth) = (depths.pixels[at], whole[at]);
+            assert!(
+                (f64::from(sum) - truth[0]).abs() < 2e-3 * truth[0],
+                "{sum} {truth:?}"
+            );
+            assert!(
+                (f64::from(alpha) - truth[1]).abs() < 2e-3,
+                "{alpha} {truth:?}"
+            );
+        }
+    });
 }

@@ -342,8 +342,7 @@ fn two_placed_scenes_stand_in_one_picture_with_a_mesh() {
             for ((renderer, buffers), placement) in renderers.iter().zip(&buffers).zip(&placements)
             {
                 let mut renderer = renderer.borrow_mut();
-                renderer.set_depth_map(map.in_scene(placement));
-                let (camera, clip) = (camera.in_scene(placement), clip.in_scene(placement));
+                renderer.set_placement(*placement);
                 let configured = renderer.configure(buffers, &camera, &clip, &raster(way));
                 configured.expect("configures");
             }

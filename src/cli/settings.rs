@@ -1,7 +1,7 @@
 //! The flags that say how a frame is drawn, and on which device.
 
 use clap::{Args, ValueEnum};
-use rara::{Decay, HeadlessDesc, Miss, Mode, PipelineCache, Raster, Settings};
+use rara::{Decay, HeadlessDesc, Miss, Mode, PipelineCache, Raster, Settings, Show};
 
 use super::failure::Failure;
 use super::precision::PrecisionArgs;
@@ -43,6 +43,9 @@ pub(super) struct LookArgs {
     /// How splats become pixels; the picture is the same
     #[arg(long, value_name = "HOW", default_value = "auto")]
     raster: RasterArg,
+    /// Colours, or what the clip does to each splat: whole ones blue, cut ones red to yellow by their weight
+    #[arg(long, value_name = "WHAT", default_value = "colour")]
+    show: ShowArg,
     #[command(flatten)]
     precision: PrecisionArgs,
 }
@@ -92,6 +95,14 @@ enum MissArg {
     Drop,
     /// All or nothing, by the side of the ray's densest point
     Peak,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ShowArg {
+    /// The splats' colours
+    Colour,
+    /// Class and weight
+    Weight,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -169,6 +180,10 @@ impl LookArgs {
             background: self.background,
             sh_degree: self.sh_degree,
             raster,
+            show: match self.show {
+                ShowArg::Colour => Show::Colour,
+                ShowArg::Weight => Show::Weight,
+            },
             precision: self.precision.meant(),
             ..Settings::default()
         })

@@ -5,10 +5,8 @@ use ash::vk;
 /// The attachments of a rendering scope, as pipelines must know them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Attachments {
-    /// Format of the first colour attachment.
+    /// Format of the only colour attachment.
     pub color: vk::Format,
-    /// Format of the second colour attachment; `UNDEFINED` where there is none.
-    pub second: vk::Format,
     /// The depth attachment, where there is one.
     pub depth: Option<DepthAttachment>,
     /// Samples a pixel of all of them.
@@ -51,15 +49,9 @@ impl Attachments {
     pub const fn color(format: vk::Format) -> Self {
         Self {
             color: format,
-            second: vk::Format::UNDEFINED,
             depth: None,
             samples: vk::SampleCountFlags::TYPE_1,
             target: Target::DYNAMIC,
         }
-    }
-
-    /// How many colour attachments there are.
-    pub(super) fn colors(&self) -> usize {
-        1 + usize::from(self.second != vk::Format::UNDEFINED)
     }
 }

@@ -78,8 +78,7 @@ impl ComputePipeline {
 
 /// What a graphics pipeline is created with.
 ///
-/// Pipelines have dynamic viewport and scissor, no vertex input, no culling and no stencil test; they blend into all colour
-/// attachments alike and write no depth. Their shaders only read buffers.
+/// Pipelines have dynamic viewport and scissor, no vertex input, no culling and no stencil test; they write no depth. Their shaders only read buffers.
 #[derive(Debug, Clone, Copy)]
 pub struct GraphicsDesc<'a> {
     /// For debuggers, validation messages and errors.
@@ -159,9 +158,8 @@ impl GraphicsPipeline {
             vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(into.samples);
         let overwrite = vk::PipelineColorBlendAttachmentState::default()
             .color_write_mask(vk::ColorComponentFlags::RGBA);
-        let blends = [desc.blend.unwrap_or(overwrite); 2];
-        let blend =
-            vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends[..into.colors()]);
+        let blends = [desc.blend.unwrap_or(overwrite)];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
         let nearer = match into.depth {
             Some(depth) if depth.reversed => vk::CompareOp::GREATER_OR_EQUAL,
             _ => vk::CompareOp::LESS_OR_EQUAL,
@@ -171,9 +169,9 @@ impl GraphicsPipeline {
             .depth_compare_op(nearer);
         let dynamic_states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);
-        let formats = [into.color, into.second];
-        let mut rendering = vk::PipelineRenderingCreateInfo::default()
-            .color_attachment_formats(&formats[..into.colors()]);
+        let formats = [into.color];
+        let mut rendering =
+            vk::PipelineRenderingCreateInfo::default().color_attachment_formats(&formats);
         if let Some(depth) = into.depth {
             rendering = rendering.depth_attachment_format(depth.format);
             if depth.stencil {

@@ -6,7 +6,7 @@ use crate::gpu::{Buffer, BufferDesc, Device, Location};
 use crate::limits;
 use crate::passes::plan::Plan;
 use crate::settings::Raster;
-use crate::types::{self, FrameCounts, FrameData, Splat};
+use crate::types::{self, FrameCounts, FrameData, Splat, SplatDepth};
 
 /// Everything the stages hand to each other. No stage reads a count on the CPU, so each array but the
 /// tiles' lists has room for every Gaussian of the scene; drivers back untouched memory lazily.
@@ -33,6 +33,8 @@ pub(crate) struct Buffers {
     pub(crate) tile_masks: Buffer,
     /// Only for tiles.
     pub(crate) tiles: Option<TileBuffers>,
+    /// Only where a host asks for expected depths.
+    pub(crate) depth: Option<DepthBuffers>,
     /// Only where the camera has stood still.
     pub(crate) sweep: Option<SweepBuffers>,
     sized_for: Sizes,
@@ -47,6 +49,14 @@ pub(crate) struct TileBuffers {
     pub(crate) picture: Buffer,
     /// The host's depth; empty where it hides nothing.
     pub(crate) occluders: Buffer,
+}
+
+/// What expected depths need besides.
+#[derive(Debug)]
+pub(crate) struct DepthBuffers {
+    pub(crate) depths: Buffer,
+    /// The indirect draw of a quad a survivor.
+    pub(crate) draw: Buffer,
 }
 
 /// What a sweep of the clip needs besides.
@@ -70,6 +80,7 @@ struct Sizes {
     tiles: u64,
     pixels: u64,
     occluders: u64,
+    depths: u64,
 }
 
 impl Sizes {
@@ -101,6 +112,7 @@ impl Sizes {
             pairs: when_tiled(plan.data.pair_capacity.into()),
             tiles: when_tiled(plan.data.tile_count.into()),
             pixels: when_tiled(pixels),
+            depths: if plan.expects_depth { gaussians } else { 0 },
             occluders: plan.occluders.map_or(0, |_| when_tiled(pixels)),
         }
     }
@@ -159,6 +171,14 @@ impl Buffers {
             } else {
                 None
             },
+            depth: if plan.expects_depth {
+                Some(DepthBuffers {
+                    depths: gpu("depths", n * size_of::<SplatDepth>() as u64)?,
+                    draw: gpu("depth_draw", 16)?,
+                })
+            } else {
+                None
+            },
             sweep: None,
             sized_for: sizes,
         })
@@ -192,6 +212,7 @@ impl Buffers {
             && have.pairs >= need.pairs
             && have.tiles >= need.tiles
             && have.pixels >= need.pixels
+            && have.depths >= need.depths
             && have.occluders >= need.occluders
     }
 

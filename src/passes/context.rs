@@ -14,6 +14,8 @@ pub(crate) struct Context<'a> {
     pub(crate) device: &'a Device,
     pub(crate) bindings: Bindings,
     pub(crate) attachments: Attachments,
+    /// Those of expected depths, where they are drawn.
+    pub(crate) expected_depth: Option<Attachments>,
 }
 
 impl Context<'_> {

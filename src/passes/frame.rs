@@ -45,6 +45,18 @@ pub(crate) fn record(
         }
         recorder.ready_to_draw(&[&t.picture]);
     }
+    if let Some((depth, d)) = stages
+        .depth
+        .as_ref()
+        .zip(b.depth.as_ref())
+        .filter(|_| plan.expects_depth)
+    {
+        if plan.work != Work::Draw {
+            // How deep the splats are, for who asks.
+            recorder.pass("depth", |r| depth.record(r, scene, b, d));
+        }
+        recorder.ready_to_draw(&[&d.depths, &d.draw]);
+    }
 
     recorder.copy(
         &b.counts,

@@ -8,6 +8,7 @@ mod clip;
 mod compact;
 mod context;
 mod cutoff;
+mod depth;
 mod depth_keys;
 mod frame;
 mod occluders;

@@ -3,6 +3,7 @@
 use ash::vk;
 
 use crate::depth::DepthMap;
+use crate::placement::Placement;
 use crate::renderer::DepthDesc;
 use crate::types;
 
@@ -18,8 +19,8 @@ pub(crate) struct Occluders {
 }
 
 impl Occluders {
-    /// Those of a host that shows its depth; for a picture of no size yet.
-    pub(crate) fn of(depth: &DepthDesc) -> Option<Self> {
+    /// Those of a host that shows its depth, for a scene that stands so and a picture of no size yet.
+    pub(crate) fn of(depth: &DepthDesc, placement: &Placement) -> Option<Self> {
         let form = match depth.format {
             vk::Format::D16_UNORM | vk::Format::D16_UNORM_S8_UINT => types::DEPTH_16,
             vk::Format::X8_D24_UNORM_PACK32 | vk::Format::D24_UNORM_S8_UINT => types::DEPTH_24,
@@ -27,7 +28,7 @@ impl Occluders {
         };
         depth.readable.then_some(Self {
             form,
-            map: depth.map,
+            map: depth.map.in_scene(placement),
             size: vk::Extent2D::default(),
         })
     }

@@ -11,7 +11,7 @@ use crate::passes::depth_keys::DepthKeys;
 use crate::passes::occluders::Occluders;
 use crate::passes::work::Work;
 use crate::precision::ShFormat;
-use crate::settings::{Decay, ExactForm, Miss, Mode, Raster, Settings};
+use crate::settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
 use crate::types::{self, FrameData};
 
 /// A frame, decided but not recorded.
@@ -47,6 +47,10 @@ pub(crate) struct Plan {
     pub(crate) tile_rows: u32,
     /// What hides splats of tiles.
     pub(crate) occluders: Option<Occluders>,
+    /// Whether the splats' depths are wanted.
+    pub(crate) expects_depth: bool,
+    /// Colours, or a debug view.
+    pub(crate) show: Show,
     /// The frame's constants.
     pub(crate) data: FrameData,
 }
@@ -69,6 +73,8 @@ pub(crate) struct SceneFacts {
     pub(crate) redrawn: bool,
     /// What hides splats of tiles, if they are wanted.
     pub(crate) occluders: Option<Occluders>,
+    /// Whether the splats' depths are wanted.
+    pub(crate) expects_depth: bool,
 }
 
 impl Plan {
@@ -213,6 +219,8 @@ impl Plan {
                     },
                     ..occluders
                 }),
+            expects_depth: scene.expects_depth,
+            show: settings.show,
             data,
         })
     }
@@ -334,6 +342,7 @@ mod tests {
             pair_capacity: 1000,
             redrawn: false,
             occluders: None,
+            expects_depth: false,
         };
         let eye = DVec3::new(0.0, 0.0, -4.0);
         let camera = Camera::look_at(eye, DVec3::ZERO, -DVec3::Y, 50.0, (64, 64));

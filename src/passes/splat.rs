@@ -10,7 +10,7 @@ use crate::passes::buffers::Buffers;
 use crate::passes::context::Context;
 use crate::passes::plan::Plan;
 use crate::passes::shaders;
-use crate::settings::Raster;
+use crate::settings::{Raster, Show};
 use crate::types::{self, FrameCounts};
 
 #[derive(Debug)]
@@ -20,7 +20,7 @@ pub(crate) struct Splat {
 }
 
 /// The specialisation constant of glsl/quad.glsl: whether splats have a depth in the host's buffer.
-const DEPTH: u32 = 5;
+pub(crate) const DEPTH: u32 = 5;
 
 /// What tells one pipeline from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -28,6 +28,7 @@ pub(crate) struct SplatKey {
     mesh: bool,
     attachments: Attachments,
     weight: WeightKey,
+    show: Show,
 }
 
 /// What of a frame the weight of cut splats depends on.
@@ -48,6 +49,7 @@ impl SplatKey {
             mesh: plan.raster == Raster::Mesh,
             attachments,
             weight: WeightKey::new(plan),
+            show: plan.show,
         }
     }
 }
@@ -94,7 +96,8 @@ impl Splat {
         };
         let depth = key.attachments.depth.is_some();
         let [mode, op, decay, miss, phi] = key.weight.constants();
-        let constants = [mode, op, decay, miss, phi, (DEPTH, depth.into())];
+        let show = (key.show == Show::Weight).into();
+        let constants = [mode, op, decay, miss, phi, (DEPTH, depth.into()), (6, show)];
         let fragment = &shaders::SPLAT_FRAG;
         let pipeline = context.graphics("splat", front, fragment, &constants, depth)?;
         Ok(Self { pipeline, mesh })
@@ -117,13 +120,7 @@ impl Splat {
             &b.order[plan.sorted()],
             &b.cuts,
         ];
-        let [x, y] = origin.map(f32::to_bits);
-        let [_, _, cx, cy] = plan.data.focal;
-        let principal = [cx + origin[0], cy + origin[1]].map(f32::to_bits);
-        let sigma = plan.data.sigma.to_bits();
-        let [px, py] = principal;
-        let [offset, scale] = map.map_or([0, 0], |map| map.words());
-        let params = [x, y, sigma, plan.cut_stride, px, py, offset, scale];
+        let params = params(plan, origin, map);
         if self.mesh {
             let at = offset_of!(FrameCounts, mesh_groups) as u64;
             drawer.draw_mesh_tasks_indirect(&self.pipeline, &buffers, &params, &b.counts, at);
@@ -132,4 +129,14 @@ impl Splat {
             drawer.draw_indirect(&self.pipeline, &buffers, &params, &b.counts, at);
         }
     }
+}
+
+/// The parameters of glsl/quad.glsl, glsl/weight.glsl and glsl/host_depth.glsl.
+pub(crate) fn params(plan: &Plan, origin: [f32; 2], map: Option<DepthMap>) -> [u32; 8] {
+    let [x, y] = origin.map(f32::to_bits);
+    let [_, _, cx, cy] = plan.data.focal;
+    let [cx, cy] = [cx + origin[0], cy + origin[1]].map(f32::to_bits);
+    let sigma = plan.data.sigma.to_bits();
+    let [offset, scale] = map.map_or([0, 0], |map| map.words());
+    [x, y, sigma, plan.cut_stride, cx, cy, offset, scale]
 }

@@ -11,6 +11,7 @@ use crate::passes::clip::Clip;
 use crate::passes::compact::Compact;
 use crate::passes::context::Context;
 use crate::passes::cutoff::Cutoff;
+use crate::passes::depth::{Depth, SplatDepth, SplatDepthKey};
 use crate::passes::plan::Plan;
 use crate::passes::project::{Project, ProjectKey};
 use crate::passes::sort::Sort;
@@ -38,6 +39,8 @@ pub(crate) struct Stages {
     pub(crate) reclip: Option<Reclip>,
     recut: [Option<Recut>; 2],
     pub(crate) composite: Composites,
+    pub(crate) depth: Option<Depth>,
+    splat_depth: HashMap<SplatDepthKey, SplatDepth>,
 }
 
 impl Stages {
@@ -57,6 +60,8 @@ impl Stages {
             reclip: None,
             recut: [None, None],
             composite: HashMap::new(),
+            depth: None,
+            splat_depth: HashMap::new(),
         })
     }
 
@@ -78,6 +83,10 @@ impl Stages {
                     && self.tiles.contains_key(&TilesKey::new(plan))
                     && self.composite.contains_key(&attachments))
             && self.splat.contains_key(&SplatKey::new(plan, attachments))
+            && context.expected_depth.is_none_or(|attachments| {
+                let key = SplatDepthKey::new(plan, attachments);
+                self.depth.is_some() && self.splat_depth.contains_key(&key)
+            })
     }
 
     /// Creates what a plan needs and is not there yet.
@@ -104,6 +113,15 @@ impl Stages {
         let key = SplatKey::new(plan, context.attachments);
         if let Entry::Vacant(missing) = self.splat.entry(key) {
             missing.insert(Splat::new(context, key)?);
+        }
+        if let Some(attachments) = context.expected_depth {
+            if self.depth.is_none() {
+                self.depth = Some(Depth::new(context)?);
+            }
+            let key = SplatDepthKey::new(plan, attachments);
+            if let Entry::Vacant(missing) = self.splat_depth.entry(key) {
+                missing.insert(SplatDepth::new(context, key)?);
+            }
         }
         Ok(())
     }
@@ -169,6 +187,11 @@ impl Stages {
     /// The rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.
     pub(crate) fn splat(&self, plan: &Plan, attachments: Attachments) -> &Splat {
         &self.splat[&SplatKey::new(plan, attachments)]
+    }
+
+    /// The draw of depths for a plan, once [`ensure`](Self::ensure) has seen it.
+    pub(crate) fn splat_depth(&self, plan: &Plan, attachments: Attachments) -> &SplatDepth {
+        &self.splat_depth[&SplatDepthKey::new(plan, attachments)]
     }
 
     /// The tile rasteriser for a plan, once [`ensure`](Self::ensure) has seen it.

@@ -15,6 +15,7 @@ use crate::passes::shaders;
 use crate::passes::sort::Sort;
 use crate::passes::splat::WeightKey;
 use crate::passes::work::Work;
+use crate::settings::Show;
 use crate::types::{self, FrameCounts};
 
 /// Pairs of tile and splat, ordered by tile and within each tile by depth.
@@ -89,6 +90,7 @@ pub(crate) struct TilesKey {
     rows: u32,
     sweep: bool,
     depth: u32,
+    show: Show,
 }
 
 impl TilesKey {
@@ -99,6 +101,7 @@ impl TilesKey {
             rows: plan.tile_rows,
             sweep: matches!(plan.work, Work::Sweep { .. }),
             depth: plan.occluders.map_or(types::DEPTH_NONE, |o| o.form),
+            show: plan.show,
         }
     }
 }
@@ -122,6 +125,7 @@ impl Tiles {
             (6, limits::TILE_HEIGHT / key.rows),
             (7, key.sweep.into()),
             (8, key.depth),
+            (9, (key.show == Show::Weight).into()),
         ];
         Ok(Self {
             pipeline: context.compute("tiles", &shaders::TILES_COMP, &constants)?,

@@ -124,6 +124,8 @@ impl Plan {
     /// Whether the stages of another plan leave the same kinds of things in the same buffers.
     fn goes_the_way_of(&self, other: &Self) -> bool {
         self.raster == other.raster
+            && self.expects_depth == other.expects_depth
+            && self.show == other.show
             && self.sh_format == other.sh_format
             && self.sort_passes == other.sort_passes
     }

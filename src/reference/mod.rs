@@ -9,6 +9,7 @@ pub mod chord;
 pub mod classify;
 pub mod compact;
 pub mod cutoff;
+pub mod depth;
 pub mod exact;
 pub mod footprint;
 pub mod harmonics;

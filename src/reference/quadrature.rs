@@ -39,6 +39,36 @@ pub fn share(
     bundle: Bundle,
     steps: u32,
 ) -> f64 {
+    let [visible, whole, _] = sums(scene, index, camera, clip, position, bundle, steps);
+    visible / whole
+}
+
+/// The mean depth along the view axis of what the clip leaves visible of Gaussian `index` in that pixel, world units. Not a
+/// number if that is nothing.
+pub fn mean_depth(
+    scene: &Gaussians,
+    index: usize,
+    camera: &Camera,
+    clip: &Clip,
+    position: DVec2,
+    bundle: Bundle,
+    steps: u32,
+) -> f64 {
+    let centre = camera.rotation * (scene.positions[index].as_dvec3() - camera.eye);
+    let [visible, _, depth] = sums(scene, index, camera, clip, position, bundle, steps);
+    centre.z + depth / visible
+}
+
+/// The visible part, the whole, and the depth of the visible part counted from the centre times that part.
+fn sums(
+    scene: &Gaussians,
+    index: usize,
+    camera: &Camera,
+    clip: &Clip,
+    position: DVec2,
+    bundle: Bundle,
+    steps: u32,
+) -> [f64; 3] {
     let pixel = Pixel::new(scene, index, camera, position, bundle);
     let (middle, spread) = pixel.densest();
     let planes: Vec<_> = clip
@@ -52,7 +82,7 @@ pub fn share(
     // A grid over the offsets that matter, turned so that no plane's edge lies along its lines.
     let step = 2.0 * EXTENT / f64::from(steps);
     let turn = DVec2::from_angle(0.5);
-    let (mut visible, mut whole) = (0.0, 0.0);
+    let mut total = [0.0; 3];
     for i in 0..steps {
         for j in 0..steps {
             let white = DVec2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) * step - EXTENT;
@@ -61,12 +91,13 @@ pub fn share(
             }
             let white = turn.rotate(white);
             let offset = middle + spread[0] * white.x + spread[1] * white.y;
-            let (part, all) = pixel.integrate(offset, peak, &planes, clip.op, &nodes);
-            visible += part;
-            whole += all;
+            let parts = pixel.integrate(offset, peak, &planes, clip.op, &nodes);
+            for (total, part) in total.iter_mut().zip(parts) {
+                *total += part;
+            }
         }
     }
-    visible / whole
+    total
 }
 
 /// One Gaussian and one pixel.
@@ -193,7 +224,8 @@ impl Pixel {
         (middle, spread)
     }
 
-    /// Integral of the density along one ray of the bundle: the visible part and the whole.
+    /// Integrals of the density along one ray of the bundle: the visible part, the whole, and the visible part's depth times
+    /// it.
     fn integrate(
         &self,
         offset: DVec2,
@@ -201,13 +233,13 @@ impl Pixel {
         planes: &[(DVec3, f64)],
         op: ClipOp,
         nodes: &[(f64, f64); NODES],
-    ) -> (f64, f64) {
+    ) -> [f64; 3] {
         let ray = self.ray(offset);
         let (middle, half) = (ray.densest(), EXTENT / ray.unit_step.length());
         // Only what is in front of the eye.
         let (start, end) = ((middle - half).max(-self.depth), middle + half);
         if start >= end {
-            return (0.0, 0.0);
+            return [0.0; 3];
         }
         let on_ray = |(normal, distance): &(DVec3, f64)| {
             (distance + normal.dot(ray.start), normal.dot(ray.step))
@@ -221,7 +253,7 @@ impl Pixel {
         ends.sort_by(f64::total_cmp);
 
         let weight = 0.5 * offset.length_squared() / f64::from(LOW_PASS) - peak;
-        let (mut visible, mut whole) = (0.0, 0.0);
+        let mut sums = [0.0; 3];
         for stretch in ends.windows(2) {
             let (centre, half) = (
                 0.5 * (stretch[0] + stretch[1]),
@@ -230,19 +262,24 @@ impl Pixel {
             let density = |t: f64| {
                 (-0.5 * (ray.unit_start + ray.unit_step * t).length_squared() - weight).exp()
             };
-            let sum: f64 = nodes
-                .iter()
-                .map(|(node, weight)| weight * density(centre + half * node))
-                .sum();
+            let (mut sum, mut depths) = (0.0, 0.0);
+            for (node, weight) in nodes {
+                let t = centre + half * node;
+                let mass = half * weight * density(t);
+                sum += mass;
+                depths += mass * t;
+            }
             let mut kept = planes.iter().map(|(at, slope)| at + slope * centre >= 0.0);
             let seen = match op {
                 ClipOp::And => kept.all(|k| k),
                 ClipOp::Or => kept.any(|k| k),
             };
-            whole += half * sum;
-            visible += if seen { half * sum } else { 0.0 };
+            let seen = if seen { 1.0 } else { 0.0 };
+            for (total, part) in sums.iter_mut().zip([seen * sum, sum, seen * depths]) {
+                *total += part;
+            }
         }
-        (visible, whole)
+        sums
     }
 }
 

@@ -7,7 +7,7 @@ use super::project::Splat;
 use super::real::Real;
 use super::view::View;
 use crate::limits::{ALPHA_MAX, ALPHA_MIN_INVERSE};
-use crate::{Decay, Picture, Settings};
+use crate::{Decay, Picture, Settings, Show};
 
 /// Rows of the picture that one thread blends at a time.
 const BAND: u32 = 16;
@@ -69,7 +69,11 @@ fn draw_band<T: Real>(
             for (x, pixel) in (first..=last).zip(&mut row[first as usize..]) {
                 let dx = T::of(f64::from(x) + 0.5) - splat.footprint.pixel[0];
                 if let Some(alpha) = alpha(splat, dx, dy, law) {
-                    blend(pixel, alpha, splat.colour);
+                    let colour = match settings.show {
+                        Show::Colour => splat.colour,
+                        Show::Weight => weight_colour(splat, dx, dy),
+                    };
+                    blend(pixel, alpha, colour);
                 }
             }
         }
@@ -94,6 +98,17 @@ pub fn alpha<T: Real>(splat: &Splat<T>, dx: T, dy: T, law: Decay) -> Option<T> {
     match &splat.cut {
         Some(cut) => decayed(whole, cut.weight(dx, dy), law),
         None => Some(whole),
+    }
+}
+
+/// The debug view: blue for a splat that is not cut; for one that is, from red, nothing is kept, to yellow, all is.
+fn weight_colour<T: Real>(splat: &Splat<T>, dx: T, dy: T) -> [T; 3] {
+    match &splat.cut {
+        None => [0.25, 0.45, 0.9].map(T::of),
+        Some(cut) => {
+            let kept = cut.weight(dx, dy).max(T::zero()).min(T::one());
+            [T::one(), kept, T::zero()]
+        }
     }
 }
 

@@ -13,6 +13,7 @@ use crate::limits;
 use crate::passes::{
     Buffers, Context, Kept, Occluders, Plan, SceneBuffers, SceneFacts, Stages, Work,
 };
+use crate::placement::Placement;
 use crate::settings::{Raster, Settings};
 
 impl Renderer {
@@ -22,6 +23,23 @@ impl Renderer {
     /// Where a frame needs more memory than the one before, old and new exist side by side while frames are in flight;
     /// with one frame in flight the old goes first. After an error nothing can be recorded until a call succeeds.
     pub fn configure(
+        &mut self,
+        scene: &SceneBuffers,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<()> {
+        if self.placement == Placement::IDENTITY {
+            return self.configure_in_scene(scene, camera, clip, settings);
+        }
+        let (camera, clip) = (
+            camera.in_scene(&self.placement),
+            clip.in_scene(&self.placement),
+        );
+        self.configure_in_scene(scene, &camera, &clip, settings)
+    }
+
+    fn configure_in_scene(
         &mut self,
         scene: &SceneBuffers,
         camera: &Camera,
@@ -51,7 +69,11 @@ impl Renderer {
             tile_rows: if is_cpu { limits::TILE_HEIGHT } else { 1 },
             pair_capacity: self.pairs.room(),
             redrawn: self.redraws,
-            occluders: self.desc.depth.and_then(|depth| Occluders::of(&depth)),
+            occluders: self
+                .desc
+                .depth
+                .and_then(|depth| Occluders::of(&depth, &self.placement)),
+            expects_depth: self.desc.expected_depth.is_some(),
         };
         let mut plan = Plan::new(facts, camera, clip, settings)?;
         let largest = Buffers::largest(&plan).max(scene.largest());
@@ -101,6 +123,7 @@ impl Renderer {
             device: &self.device,
             bindings: self.bindings,
             attachments: self.desc.attachments(),
+            expected_depth: self.desc.expected_depth(),
         };
         let at = self.bindings as usize;
         let has_all = |stages: &Stages| stages.has(&context, &plan);
@@ -129,7 +152,7 @@ impl Renderer {
             raster: Raster::Quad,
             ..*settings
         };
-        self.configure(scene, camera, clip, &quads)?;
+        self.configure_in_scene(scene, camera, clip, &quads)?;
         self.reason = "the device has no memory for the tiles' lists";
         Ok(())
     }

@@ -14,6 +14,9 @@ pub struct RendererDesc {
     pub color_format: vk::Format,
     /// The depth attachment of the host's scope, which splats are tested against; `None` if it has none.
     pub depth: Option<DepthDesc>,
+    /// The target of [`Renderer::draw_depth`](super::Renderer::draw_depth); `None` where that is not called, and then
+    /// costs nothing.
+    pub expected_depth: Option<ExpectedDepthDesc>,
     /// Samples a pixel of the attachments. A splat's colour is computed once a pixel, its depth is tested for each sample.
     pub samples: vk::SampleCountFlags,
     /// Dynamic rendering, or a classic render pass.
@@ -49,6 +52,25 @@ pub struct DepthDesc {
     pub readable: bool,
 }
 
+/// Where expected depths are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExpectedDepthDesc {
+    /// Format of the scope's only colour attachment, of two channels or more: blendable, and best of 32-bit floats.
+    pub format: vk::Format,
+    /// Dynamic rendering, or a classic render pass of its own.
+    pub target: Target,
+}
+
+impl ExpectedDepthDesc {
+    /// In dynamic rendering.
+    pub const fn new(format: vk::Format) -> Self {
+        Self {
+            format,
+            target: Target::DYNAMIC,
+        }
+    }
+}
+
 impl DepthDesc {
     /// Without stencil, and not readable.
     pub const fn new(format: vk::Format, map: DepthMap) -> Self {
@@ -68,6 +90,7 @@ impl RendererDesc {
         Self {
             color_format,
             depth: None,
+            expected_depth: None,
             samples: vk::SampleCountFlags::TYPE_1,
             target: Target::DYNAMIC,
             bindings: Bindings::Address,
@@ -81,7 +104,6 @@ impl RendererDesc {
     pub(super) fn attachments(&self) -> Attachments {
         Attachments {
             color: self.color_format,
-            second: vk::Format::UNDEFINED,
             depth: self.depth.map(|depth| DepthAttachment {
                 format: depth.format,
                 stencil: depth.stencil,
@@ -92,26 +114,43 @@ impl RendererDesc {
         }
     }
 
+    /// What the pipeline of expected depths draws into.
+    pub(super) fn expected_depth(&self) -> Option<Attachments> {
+        self.expected_depth.map(|expected| Attachments {
+            color: expected.format,
+            target: expected.target,
+            ..self.attachments()
+        })
+    }
+
     /// Whether a device can draw into such attachments; the error says what it cannot.
     pub(super) fn check(&self, device: &Device) -> Result<()> {
+        self.check_color(device, self.color_format)?;
+        if let Some(expected) = self.expected_depth {
+            self.check_color(device, expected.format)?;
+        }
+        let as_depth = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;
+        if let Some(depth) = self.depth {
+            let format = depth.format;
+            if !device.format_features(format).contains(as_depth) {
+                return Err(Error::Device(format!(
+                    "{} cannot test depths in {format:?}; every device can in D16_UNORM and in D32_SFLOAT or X8_D24_UNORM_PACK32",
+                    device.info().name
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_color(&self, device: &Device, color: vk::Format) -> Result<()> {
         let name = &device.info().name;
         let refuse = |what: String| Err(Error::Device(format!("{name} cannot {what}")));
-        let color = self.color_format;
         let blending = vk::FormatFeatureFlags::COLOR_ATTACHMENT
             | vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
         if !device.format_features(color).contains(blending) {
             return refuse(format!(
                 "blend into {color:?}; every device can into R8G8B8A8_UNORM and R16G16B16A16_SFLOAT"
             ));
-        }
-        let as_depth = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;
-        if let Some(depth) = self.depth {
-            let format = depth.format;
-            if !device.format_features(format).contains(as_depth) {
-                return refuse(format!(
-                    "test depths in {format:?}; every device can in D16_UNORM and in D32_SFLOAT or X8_D24_UNORM_PACK32"
-                ));
-            }
         }
         let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT;
         let samples = self.samples;

@@ -11,6 +11,7 @@ use crate::gpu::{
     Bindings, Buffer, BufferDesc, DepthImage, Device, Drawer, Location, Recorder, Timer,
 };
 use crate::passes::{self, Buffers, Kept, PairRoom, Plan, SceneBuffers, Stages, Work};
+use crate::placement::Placement;
 use crate::settings::Raster;
 use crate::types::FrameCounts;
 
@@ -18,7 +19,7 @@ mod configure;
 mod desc;
 mod tell;
 
-pub use desc::{DepthDesc, RendererDesc};
+pub use desc::{DepthDesc, ExpectedDepthDesc, RendererDesc};
 
 /// Draws a scene into the host's rendering scope.
 ///
@@ -52,14 +53,15 @@ pub use desc::{DepthDesc, RendererDesc};
 /// one renderer, whose memory they share; each counts as a frame in flight. Views in one scope need a renderer each:
 /// [`sharing`](Self::sharing) makes one that compiles nothing twice. Scenes are shared in any case.
 ///
-/// **Several scenes.** Each is prepared and drawn for itself, with camera and clip as the scene sees them:
-/// [`Placement`](crate::Placement). They are composited in the order in which they are drawn, the farthest first: where
+/// **Several scenes.** Each is prepared and drawn for itself, where [`set_placement`](Self::set_placement) puts it. They are composited in the order in which they are drawn, the farthest first: where
 /// scenes reach into each other the last one drawn is before all of the others. What has to be right there is one scene:
 /// [`Gaussians::append`](crate::Gaussians::append).
 #[derive(Debug)]
 pub struct Renderer {
     device: Device,
     desc: RendererDesc,
+    /// Where the scene stands in the world of camera, clip and depths.
+    placement: Placement,
     stages: SharedStages,
     buffers: Option<Buffers>,
     /// What frames in flight may still use, with the number of frames prepared when it was replaced.
@@ -143,6 +145,7 @@ impl Renderer {
         Ok(Self {
             device: device.clone(),
             desc,
+            placement: Placement::IDENTITY,
             stages,
             buffers: None,
             retired: Vec::new(),
@@ -158,8 +161,17 @@ impl Renderer {
         })
     }
 
+    /// Where the scene stands in the world, from the next [`configure`](Self::configure) on: camera, clip, the depth map
+    /// and expected depths are the world's. Without it, where it was made.
+    pub fn set_placement(&mut self, placement: Placement) {
+        if self.placement != placement {
+            self.placement = placement;
+            self.plan = None; // what is configured stands in the old place
+        }
+    }
+
     /// Changes what the host's depth buffer holds for a depth, from the next [`configure`](Self::configure) on: where its
-    /// near and far planes move, or for a scene of another scale ([`DepthMap::in_scene`]).
+    /// near and far planes move.
     ///
     /// # Panics
     /// Without [`RendererDesc::depth`].
@@ -336,11 +348,11 @@ impl Renderer {
             return;
         }
         let at = ((self.prepared - 1) % self.slots.len() as u64) as usize;
+        let map = self.depth_map();
         let timer = self.slots[at].timer.as_mut();
         let attachments = self.desc.attachments();
         let splat = stages.splat(plan, attachments);
         let composite = stages.composite.get(&attachments);
-        let map = self.desc.depth.map(|depth| depth.map);
         let tiles = composite.zip(buffers.tiles.as_ref());
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
         let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
@@ -350,5 +362,52 @@ impl Renderer {
                 composite.record(drawer, buffers, t, origin);
             }
         });
+    }
+
+    /// Records the splats' depths inside a rendering scope of their own, with the attachments of
+    /// [`RendererDesc::expected_depth`] and, if there is one, the same depth attachment: blended `over` what is there,
+    /// red is the sum of the depths, each times what its splat adds to the pixel's alpha, green that alpha. Where the host
+    /// has cleared both to 0, red / green is the pixel's expected depth along the view axis, world units; further
+    /// scenes over it keep that meaning. A splat's depth in a pixel is the mean of what the clip leaves of the Gaussian on
+    /// the pixel's line of sight, to first order of perspective; of several planes the strictest that keeps the far side
+    /// counts, and the strictest that keeps the near one. Drawn as quads however the colours are. `origin` as of
+    /// [`draw`](Self::draw).
+    ///
+    /// # Safety
+    /// As of [`draw`](Self::draw), in such a scope.
+    ///
+    /// # Panics
+    /// Without a prepared frame, and without [`RendererDesc::expected_depth`].
+    pub unsafe fn draw_depth(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) {
+        let attachments = self.desc.expected_depth();
+        let attachments =
+            attachments.expect("Renderer::draw_depth needs RendererDesc::expected_depth");
+        let stages = read(&self.stages);
+        let (Some(stages), Some(buffers), Some(plan), true) = (
+            &stages[self.bindings as usize],
+            &self.buffers,
+            &self.plan,
+            self.ready,
+        ) else {
+            panic!("Renderer::draw_depth needs a successful configure() and prepare() before it");
+        };
+        let Some(depths) = buffers.depth.as_ref().filter(|_| plan.gaussians > 0) else {
+            return;
+        };
+        let (map, unit) = (self.depth_map(), self.placement.scale());
+        let splat_depth = stages.splat_depth(plan, attachments);
+        let at = ((self.prepared - 1) % self.slots.len() as u64) as usize;
+        let timer = self.slots[at].timer.as_mut();
+        // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
+        let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
+        drawer.pass("splat_depth", |drawer| {
+            splat_depth.record(drawer, (buffers, depths), plan, origin, map, unit);
+        });
+    }
+
+    /// What the host's depth buffer holds for a depth in the scene's units.
+    fn depth_map(&self) -> Option<DepthMap> {
+        let depth = self.desc.depth?;
+        Some(depth.map.in_scene(&self.placement))
     }
 }

@@ -1,5 +1,6 @@
 //! Tests of the reference by closed forms: nothing in here repeats a formula of the renderer.
 
+mod depths;
 mod invariance;
 mod laws;
 mod pictures;

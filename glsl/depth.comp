@@ -1,0 +1,57 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One invocation a survivor: how deep it is in each pixel, and what of that depends on the clip.
+#include "side.glsl"
+#include "cut.glsl"
+
+layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
+
+BUFFER(readonly, 1, Gaussian, gaussians)
+BUFFER(readonly, 2, uvec2, survivors)
+BUFFER(readonly, 3, FrameCounts, counts)
+BUFFER(writeonly, 4, SplatDepth, depths)
+
+// By how much the mean of a.u changes a pixel, given the pixel: the update of affine_plane in cutoff.comp.
+vec2 slope_of(Footprint f, vec3 c, vec3 a) {
+    vec2 slope = vec2(dot(c, cross(a, f.b2)) + f.low_pass * dot(a, f.b1), -dot(c, cross(a, f.b1)) + f.low_pass * dot(a, f.b2));
+    return slope * (f.scale / f.det);
+}
+
+// The covariance of a.u and b.u given a pixel, times the determinant.
+float covariance(Footprint f, vec3 c, vec3 a, vec3 b) {
+    float across = dot(cross(a, f.b1), cross(b, f.b1)) + dot(cross(a, f.b2), cross(b, f.b2));
+    return dot(a, c) * dot(b, c) + f.low_pass * (across + f.low_pass * dot(a, b));
+}
+
+void main() {
+    uint survivor = LINEAR_GROUP * SURVIVOR_GROUP_SIZE + gl_LocalInvocationIndex;
+    if (survivor >= counts.at[0].visible + counts.at[0].cutoff) {
+        return;
+    }
+    Gaussian gaussian = gaussians.at[survivors.at[survivor].x];
+    Footprint f = footprint(gaussian);
+    vec3 c = cross(f.b1, f.b2);
+    SplatDepth depth;
+    bool is_union = FRAME.op == OP_OR;
+    depth.mean = vec4(f.view.z, slope_of(f, c, f.m3), is_union ? 1.0 : 0.0);
+    depth.far = vec4(8.0, 0.0, 0.0, 0.0);
+    depth.near = depth.far;
+    for (uint plane = 0u; plane < FRAME.plane_count && FRAME.mode >= MODE_RARA; plane++) {
+        float sign = is_union ? -1.0 : 1.0;
+        vec3 normal = sign * unit_normal(plane, f.world_factor);
+        float size = max(largest(normal), 1e-30);
+        vec3 a = normal / size;
+        float distance = sign * plane_distance(plane, gaussian.position_opacity.xyz) / size;
+        float variance = covariance(f, c, a, a);
+        float inverse = inversesqrt(max(variance / f.det, 1e-30));
+        float z = clamp(distance * inverse, -1e20, 1e20);
+        vec4 form = vec4(z, slope_of(f, c, a) * inverse, covariance(f, c, a, f.m3) / f.det * inverse);
+        bool far = keeps_far(dot(a, c), a);
+        if (far && z < depth.far.x) {
+            depth.far = form;
+        } else if (!far && z < depth.near.x) {
+            depth.near = form;
+        }
+    }
+    depths.at[survivor] = depth;
+}

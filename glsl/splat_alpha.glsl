@@ -1,0 +1,31 @@
+// Alpha of a splat in a pixel, by the Cholesky factor of the conic, then, for cut splats only, the clip's weight; 0 where
+// the splat does not count. `kept` is that weight, WHOLE for a splat that is not cut. Included after weight.glsl.
+#ifndef RARA_SPLAT_ALPHA
+#define RARA_SPLAT_ALPHA
+#include "weight_colour.glsl"
+
+float splat_alpha(vec4 centre_conic, vec4 conic_cut, float slope, vec3 curvature, out float kept) {
+    kept = WHOLE;
+    vec2 delta = gl_FragCoord.xy - centre_conic.xy;
+    float u = centre_conic.z * delta.x;
+    float v = centre_conic.w * delta.x + conic_cut.x * delta.y;
+    float alpha = min(ALPHA_MAX, conic_cut.y * exp(-0.5 * (u * u + v * v)));
+    // Thresholds are on the unclipped alpha, so that thin layers do not vanish when they are cut.
+    if (!(alpha >= ALPHA_MIN)) {
+        return 0.0;
+    }
+    if (CLIP_MODE >= MODE_RARA && conic_cut.z < CUT_RANGE) {
+        vec3 plane = vec3(conic_cut.zw, slope);
+        if (CLIP_MODE == MODE_EXACT && plane.x > -CUT_RANGE) {
+            float z = plane.x + delta.x * (plane.y + curvature.x * delta.x + curvature.y * delta.y)
+                + delta.y * (plane.z + curvature.z * delta.y);
+            kept = phi(z);
+        } else {
+            kept = cut_weight(uint(plane.y) | uint(plane.z) << 16, delta, vec2(u, v), gl_FragCoord.xy);
+        }
+        alpha = decayed(alpha, kept);
+    }
+    return alpha;
+}
+
+#endif

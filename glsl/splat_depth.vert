@@ -1,0 +1,25 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One instance a splat, a strip of four corners, for the expected depth.
+#include "quad.glsl"
+
+BUFFER(readonly, 5, SplatDepth, depths)
+
+layout(location = 0) flat out vec4 centre_conic;
+layout(location = 1) flat out vec4 conic_cut;
+layout(location = 2) flat out vec4 slope_curvature;
+layout(location = 3) flat out vec4 mean;
+layout(location = 4) flat out vec4 far;
+layout(location = 5) flat out vec4 near;
+
+void main() {
+    Splat splat = splat_at(gl_InstanceIndex);
+    SplatDepth depth = depths.at[number_at(gl_InstanceIndex)];
+    gl_Position = corner(splat, gl_VertexIndex);
+    centre_conic = fragment_centre(splat);
+    conic_cut = splat.conic_cut;
+    slope_curvature = vec4(splat.colour_cut.w, splat.curvature.xyz);
+    mean = depth.mean;
+    far = depth.far;
+    near = depth.near;
+}

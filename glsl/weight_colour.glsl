@@ -1,0 +1,13 @@
+// The debug view: a splat's class and weight instead of its colour. Twin: src/reference/splat.rs.
+#ifndef RARA_WEIGHT_COLOUR
+#define RARA_WEIGHT_COLOUR
+
+// The weight of a splat that is not cut.
+const float WHOLE = 2.0;
+
+// Blue for what is not cut; for what is, from red, nothing is kept, to yellow, all is.
+vec3 weight_colour(float kept) {
+    return kept == WHOLE ? vec3(0.25, 0.45, 0.9) : vec3(1.0, clamp(kept, 0.0, 1.0), 0.0);
+}
+
+#endif

@@ -1,0 +1,207 @@
+//! Stage `depth`: how deep a splat is in a pixel, on average of what the clip leaves of it, and the depth that a pixel is
+//! to be expected at.
+//!
+//! As in [`exact`](super::exact), u ~ N(0, I) is the Gaussian's unit space, a pixel an observation of two linear functions
+//! of u, and `C = I - B^T S^-1 B` (with `S = B B^T + L`) the covariance that it leaves. The depth is one more linear
+//! function, `Z + m3 . u`: given the pixel it is normal with a mean that is affine in delta, `Z + (S^-1 B m3) . delta`. A
+//! plane function `g + a . u` is normal too, with mean over deviation z and deviation s, and their covariance is
+//! `m3^T C a`. Of a normal pair (d, p) the mean of d where p is positive follows from regressing d on p,
+//! `d = mean + cov / s (p - mean p) / s + rest`, with a rest that does not depend on p, and from the mean of a truncated
+//! normal variable: `E[d | p > 0] = mean + cov / s phi(z) / Phi(z)`, the shift `cov / s` times the inverse of Mills's ratio.
+//!
+//! Several planes are thresholds on the line of sight: the strictest that keeps the far side bounds it from below, the
+//! strictest that keeps the near side from above, each with its own shift:
+//! `E = mean + (shift_far phi(low) + shift_near phi(high)) / (Phi(high) - Phi(low))`. That is exact for one plane, and for
+//! two where both are thresholds in one variable, as on a ray without low-pass. A union leaves out such an interval of its
+//! complements, and what that takes of the whole's mean is left to the rest.
+
+use super::classify::UnitPlane;
+use super::footprint::{Footprint, determinant, scaled};
+use super::real::{Real, Vec3};
+use super::view::View;
+use super::{classify, compact, cutoff, project, sort, splat};
+use crate::{Camera, Clip, ClipOp, Gaussians, Mode, Settings};
+
+/// A linear function of u given a pixel: `at + slope . delta`, over its deviation.
+#[derive(Debug, Clone, Copy)]
+struct Threshold<T> {
+    z: [T; 3],
+    /// Covariance with the depth over the deviation.
+    shift: T,
+}
+
+/// How deep a splat is.
+#[derive(Debug, Clone, Copy)]
+pub struct Depth<T> {
+    /// Of the whole splat: at its centre, and how it changes a pixel across and down.
+    mean: [T; 3],
+    far: Threshold<T>,
+    near: Threshold<T>,
+    op: ClipOp,
+}
+
+/// What a footprint leaves open of u.
+struct Given<T> {
+    gradients: [Vec3<T>; 2],
+    across: Vec3<T>,
+    factor: T,
+    low_pass: T,
+    det: T,
+}
+
+impl<T: Real> Given<T> {
+    fn new(footprint: &Footprint<T>) -> Self {
+        let ([b1, b2], factor, low_pass) = scaled(footprint.gradients);
+        let across = b1.cross(b2);
+        Self {
+            gradients: [b1, b2],
+            across,
+            factor,
+            low_pass,
+            det: determinant([b1, b2], across, low_pass),
+        }
+    }
+
+    /// By how much the mean of `a . u` changes a pixel: `S^-1 B a`.
+    fn slope(&self, a: Vec3<T>) -> [T; 2] {
+        let ([b1, b2], c, l) = (self.gradients, self.across, self.low_pass);
+        let x = c.dot(a.cross(b2)) + l * a.dot(b1);
+        let y = l * a.dot(b2) - c.dot(a.cross(b1));
+        [x, y].map(|v| v * self.factor / self.det)
+    }
+
+    /// Covariance of `a . u` and `b . u`, as a sum of terms that do not cancel where a is b.
+    fn covariance(&self, a: Vec3<T>, b: Vec3<T>) -> T {
+        let ([b1, b2], c, l) = (self.gradients, self.across, self.low_pass);
+        let across = a.cross(b1).dot(b.cross(b1)) + a.cross(b2).dot(b.cross(b2));
+        (a.dot(c) * b.dot(c) + l * (across + l * a.dot(b))) / self.det
+    }
+}
+
+/// Beyond so many deviations a plane is as good as not there.
+const FARTHEST: f64 = 8.0;
+/// Shares below which a pixel shows nothing of a splat.
+const LEAST_SHARE: f64 = 1e-9;
+
+impl<T: Real> Depth<T> {
+    /// For a splat and a clip.
+    pub fn new(
+        scene: &Gaussians,
+        index: usize,
+        footprint: &Footprint<T>,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Self {
+        let given = Given::new(footprint);
+        let m3 = footprint.rows[2];
+        let [x, y] = given.slope(m3);
+        let open = Threshold {
+            z: [T::of(FARTHEST), T::zero(), T::zero()],
+            shift: T::zero(),
+        };
+        let mut depth = Self {
+            mean: [footprint.centre.z, x, y],
+            far: open,
+            near: open,
+            op: clip.op,
+        };
+        if clip.planes.is_empty() || !matches!(settings.mode, Mode::Rara | Mode::Exact) {
+            depth.op = ClipOp::And;
+            return depth;
+        }
+        for plane in &clip.planes {
+            let plane = match clip.op {
+                ClipOp::And => *plane,
+                ClipOp::Or => plane.flipped(),
+            };
+            let plane = UnitPlane::new(scene, index, &footprint.axes, &plane);
+            let size = plane.normal.largest().max(T::of(1e-30));
+            let a = plane.normal * (T::one() / size);
+            let deviation = given.covariance(a, a).max(T::of(1e-30)).sqrt();
+            let z = plane.offset / size / deviation;
+            let [x, y] = given.slope(a).map(|v| v / deviation);
+            let threshold = Threshold {
+                z: [z, x, y],
+                shift: given.covariance(a, m3) / deviation,
+            };
+            let along = [a.dot(given.across), a.x, a.y, a.z];
+            let first = along.into_iter().find(|&v| v != T::zero());
+            let kind = if first.is_none_or(|v| v > T::zero()) {
+                &mut depth.far
+            } else {
+                &mut depth.near
+            };
+            if z < kind.z[0] {
+                *kind = threshold;
+            }
+        }
+        depth
+    }
+
+    /// The mean depth of what is visible at an offset from the splat's centre, pixels.
+    pub fn mean(&self, dx: T, dy: T) -> T {
+        let at = |[a, b, c]: [T; 3]| a + b * dx + c * dy;
+        let farthest = T::of(FARTHEST);
+        let kept = |z: T| z.max(-farthest).min(farthest);
+        let density = |z: T| (T::of(-0.5) * z * z).exp() / T::of(std::f64::consts::TAU.sqrt());
+        let whole = at(self.mean);
+        let (low, high) = (-kept(at(self.far.z)), kept(at(self.near.z)));
+        if low >= high {
+            return whole;
+        }
+        let moment = self.far.shift * density(low) + self.near.shift * density(high);
+        let least = T::of(LEAST_SHARE);
+        match self.op {
+            ClipOp::And if low + high > T::zero() => {
+                whole + moment / ((-low).phi() - (-high).phi()).max(least)
+            }
+            ClipOp::And => whole + moment / (high.phi() - low.phi()).max(least),
+            ClipOp::Or => whole - moment / (low.phi() + (-high).phi()).max(least),
+        }
+    }
+}
+
+/// A picture of expected depths: for each pixel the sum of the splats' depths, each times what its splat adds to the pixel's
+/// alpha, and that alpha.
+pub fn expected<T: Real>(
+    scene: &Gaussians,
+    camera: &Camera,
+    clip: &Clip,
+    settings: &Settings,
+) -> Vec<[f64; 2]> {
+    let view = View::<T>::new(camera);
+    let sides = classify::classify(scene, &view, clip, settings);
+    let drawn = compact::compact(&sides);
+    let splats = drawn.iter().filter_map(|&index| {
+        let index = index as usize;
+        let mut splat = project::project(scene, index, &view, settings)?;
+        splat.cut = cutoff::cutoff(scene, index, &splat.footprint, &view, clip, settings);
+        Some(splat)
+    });
+    let mut splats: Vec<_> = splats.collect();
+    sort::sort(&mut splats);
+    let [width, height] = view.size;
+    let mut pixels = vec![[0.0; 2]; (width * height) as usize];
+    for splat in &splats {
+        let footprint = &splat.footprint;
+        let depth = Depth::new(scene, splat.index as usize, footprint, clip, settings);
+        let span = |axis, size| footprint.span(axis, size, T::one());
+        let (Some((left, right)), Some((top, bottom))) = (span(0, width), span(1, height)) else {
+            continue;
+        };
+        for y in top..=bottom {
+            for x in left..=right {
+                let offset =
+                    |at: u32, axis: usize| T::of(f64::from(at) + 0.5) - footprint.pixel[axis];
+                let (dx, dy) = (offset(x, 0), offset(y, 1));
+                if let Some(alpha) = splat::alpha(splat, dx, dy, settings.decay_law()) {
+                    let [sum, coverage] = &mut pixels[(y * width + x) as usize];
+                    let part = (1.0 - *coverage) * alpha.wide();
+                    *sum += part * depth.mean(dx, dy).wide();
+                    *coverage += part;
+                }
+            }
+        }
+    }
+    pixels
+}

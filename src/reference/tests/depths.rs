@@ -1,0 +1,83 @@
+//! Mean depths of truncated splats by brute numerical integration.
+
+use glam::DVec2;
+
+use super::*;
+use crate::reference::depth::Depth;
+use crate::reference::quadrature::{Bundle, mean_depth};
+
+/// Random splats, planes and a pixel within a footprint: how far the mean depth is from the integrated one, in deviations of
+/// the splat's depth, at worst, and by how much the planes move it.
+fn errors(sigma: f64, op: ClipOp, planes: usize, slab: bool) -> (f64, f64) {
+    let mut dice = Dice(23);
+    let view = camera(64, 64, 100.0);
+    let (mut worst, mut moved) = (0.0_f64, 0.0_f64);
+    for _ in 0..60 {
+        let one = dice.one(sigma, 8.0);
+        let normal = dice.direction();
+        let cutters: Vec<_> = (0..planes)
+            .map(|i| {
+                let turned = if slab && i == 1 {
+                    -normal
+                } else if slab {
+                    normal
+                } else {
+                    dice.direction()
+                };
+                plane_through(&one, turned, dice.between(-0.5, 1.5))
+            })
+            .collect();
+        let clip = clip(op, &cutters);
+        let settings = Settings {
+            trace_all: true,
+            ..mode(Mode::Exact)
+        };
+        let scene = scene(&[one]);
+        let footprint = Footprint::<f64>::new(&scene, 0, &View::new(&view)).expect("in view");
+        let depth = Depth::new(&scene, 0, &footprint, &clip, &settings);
+        let whole = Depth::new(&scene, 0, &footprint, &NO_CLIP, &settings);
+        let [k0, k1, k2] = footprint.factors;
+        // A point within two deviations of the footprint.
+        let (u, v) = (dice.between(-1.4, 1.4), dice.between(-1.4, 1.4));
+        let dx = u / k0;
+        let dy = (v - k1 * dx) / k2;
+        let weight = cutoff::cutoff(&scene, 0, &footprint, &View::new(&view), &clip, &settings);
+        if weight.expect("traced").weight(dx, dy) < 1e-3 {
+            continue;
+        }
+        let at = DVec2::new(footprint.pixel[0] + dx, footprint.pixel[1] + dy);
+        let truth = mean_depth(&scene, 0, &view, &clip, at, Bundle::Parallel, 200);
+        let deviation = footprint.rows[2].length();
+        worst = worst.max((depth.mean(dx, dy) - truth).abs() / deviation);
+        moved = moved.max((depth.mean(dx, dy) - whole.mean(dx, dy)).abs() / deviation);
+    }
+    (worst, moved)
+}
+
+#[test]
+fn one_plane_moves_the_mean_depth_as_integration_says() {
+    // What is left grows with the splat: the form is of first order in sigma over depth.
+    for (sigma, most) in [(0.0002, 0.001), (0.002, 0.005), (0.02, 0.015), (0.1, 0.1)] {
+        let (worst, moved) = errors(sigma, ClipOp::And, 1, false);
+        assert!(worst < most && moved > 0.5, "{sigma}: {worst}");
+    }
+}
+
+#[test]
+fn slabs_and_what_they_leave_out_move_it_likewise() {
+    for (op, least) in [(ClipOp::And, 0.5), (ClipOp::Or, 0.1)] {
+        for (sigma, most) in [(0.02, 0.02), (0.1, 0.05)] {
+            let (worst, moved) = errors(sigma, op, 2, true);
+            assert!(worst < most && moved > least, "{op:?} {sigma}: {worst}");
+        }
+    }
+}
+
+/// Of planes that keep the same side only the strictest at the centre counts.
+#[test]
+fn several_oblique_planes_move_it_about_as_far() {
+    for op in [ClipOp::And, ClipOp::Or] {
+        let (worst, _) = errors(0.05, op, 2, false);
+        assert!(worst < 1.5, "{op:?}: {worst}");
+    }
+}

@@ -185,6 +185,13 @@ typedef struct RaraRendererDesc {
     VkBool32 reuse;
     // How many recorded frames may be unfinished at once, 1 or more. Default: 1.
     uint32_t frames_in_flight;
+    // Format of the target of rara_renderer_draw_depth, two channels or more; VK_FORMAT_UNDEFINED, the default, where that
+    // is not called.
+    VkFormat expected_depth_format;
+    // As render_pass, for that target.
+    VkRenderPass expected_depth_render_pass;
+    // The subpass of expected_depth_render_pass to draw in.
+    uint32_t expected_depth_subpass;
 } RaraRendererDesc;
 
 // A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but
@@ -224,6 +231,9 @@ typedef uint32_t RaraExactForm;
 // How splats become pixels. All give the same picture.
 typedef uint32_t RaraRaster;
 
+// What a frame shows of its splats.
+typedef uint32_t RaraShow;
+
 // RARA_MODE_EXACT only: how the normal distribution's Phi is approximated, and the largest error.
 typedef uint32_t RaraPhiForm;
 
@@ -247,6 +257,8 @@ typedef struct RaraSettings {
     int32_t sh_degree;
     // How splats become pixels.
     RaraRaster raster;
+    // Colours, or a debug view.
+    RaraShow show;
     // RARA_MODE_EXACT: how Phi is approximated. From the preset, like all below.
     RaraPhiForm phi;
     // Most bits of the depths that the sort looks at, 8 to 32.
@@ -442,6 +454,13 @@ typedef struct RaraFrameStats {
 
 // Tiles of pixels in a compute shader.
 #define RARA_RASTER_TILES 3
+
+// Their colours. The default.
+#define RARA_SHOW_COLOUR 0
+
+// What the clip does to them: blue where it leaves them whole; where it cuts, from red (nothing is kept in this pixel) to
+// yellow (all is).
+#define RARA_SHOW_WEIGHT 1
 
 // 1.9e-5.
 #define RARA_PHI_FORM_QUINTIC 0
@@ -648,6 +667,17 @@ RaraResult rara_renderer_prepare_behind(struct RaraRenderer *renderer,
 // `cmd` is inside a rendering scope with the attachments of RaraRendererDesc and no others, one layer and no view mask;
 // viewport and scissor are set; rara_renderer_prepare was recorded for the same frame before it.
 RaraResult rara_renderer_draw(struct RaraRenderer *renderer, VkCommandBuffer cmd, float x, float y);
+
+// Records the splats' depths inside a rendering scope of their own, with a colour attachment of expected_depth_format and,
+// if there is one, the same depth attachment. Where the host has cleared both to 0, red / green is the pixel's expected
+// depth along the view axis, world units, and green its alpha. `x` and `y` as for rara_renderer_draw.
+//
+// # Safety
+// As of rara_renderer_draw, in such a scope.
+RaraResult rara_renderer_draw_depth(struct RaraRenderer *renderer,
+                                    VkCommandBuffer cmd,
+                                    float x,
+                                    float y);
 
 // Forgets what earlier frames have computed, as after a frame that was prepared and not submitted.
 // rara_renderer_configure comes after it.

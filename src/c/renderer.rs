@@ -2,7 +2,7 @@
 
 use rara::ash::vk;
 use rara::gpu::{Bindings, Target};
-use rara::{Renderer, RendererDesc, Result};
+use rara::{ExpectedDepthDesc, Renderer, RendererDesc, Result};
 
 use crate::boundary::{
     RaraResult, Versioned, create, destroy, exclusive, guard, invalid, read, shared, write,
@@ -64,6 +64,13 @@ pub struct RaraRendererDesc {
     pub reuse: vk::Bool32,
     /// How many recorded frames may be unfinished at once, 1 or more. Default: 1.
     pub frames_in_flight: u32,
+    /// Format of the target of rara_renderer_draw_depth, two channels or more; VK_FORMAT_UNDEFINED, the default, where that
+    /// is not called.
+    pub expected_depth_format: vk::Format,
+    /// As render_pass, for that target.
+    pub expected_depth_render_pass: vk::RenderPass,
+    /// The subpass of expected_depth_render_pass to draw in.
+    pub expected_depth_subpass: u32,
 }
 
 // SAFETY: repr(C), numbers, handles and a pointer, the size first.
@@ -84,8 +91,21 @@ impl RaraRendererDesc {
             timing: vk::FALSE,
             reuse: vk::FALSE,
             frames_in_flight: 1,
+            expected_depth_format: vk::Format::UNDEFINED,
+            expected_depth_render_pass: vk::RenderPass::null(),
+            expected_depth_subpass: 0,
         }
     }
+}
+
+/// # Safety
+/// As of [`Target::render_pass`], unless it is null.
+unsafe fn target(render_pass: vk::RenderPass, subpass: u32) -> Target {
+    if render_pass == vk::RenderPass::null() {
+        return Target::DYNAMIC;
+    }
+    // SAFETY: the caller's promise.
+    unsafe { Target::render_pass(render_pass, subpass) }
 }
 
 /// # Safety
@@ -109,12 +129,17 @@ unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<RendererDesc> {
             Some(unsafe { depth::depth_desc(desc.depth) }?)
         },
         samples: desc.samples,
-        target: if desc.render_pass == vk::RenderPass::null() {
-            Target::DYNAMIC
-        } else {
-            // SAFETY: the caller's promise.
-            unsafe { Target::render_pass(desc.render_pass, desc.subpass) }
-        },
+        expected_depth: (desc.expected_depth_format != vk::Format::UNDEFINED).then(|| {
+            ExpectedDepthDesc {
+                format: desc.expected_depth_format,
+                // SAFETY: the caller's promise.
+                target: unsafe {
+                    target(desc.expected_depth_render_pass, desc.expected_depth_subpass)
+                },
+            }
+        }),
+        // SAFETY: the caller's promise.
+        target: unsafe { target(desc.render_pass, desc.subpass) },
         bindings: match desc.bindings {
             RARA_BINDINGS_ADDRESS => Bindings::Address,
             RARA_BINDINGS_BOUND => Bindings::Bound,
@@ -287,6 +312,27 @@ pub unsafe extern "C" fn rara_renderer_draw(
     guard(|| unsafe {
         let renderer = exclusive(renderer, "renderer")?;
         renderer.0.draw(recording(cmd)?, [x, y]);
+        Ok(())
+    })
+}
+
+/// Records the splats' depths inside a rendering scope of their own, with a colour attachment of expected_depth_format and,
+/// if there is one, the same depth attachment. Where the host has cleared both to 0, red / green is the pixel's expected
+/// depth along the view axis, world units, and green its alpha. `x` and `y` as for rara_renderer_draw.
+///
+/// # Safety
+/// As of rara_renderer_draw, in such a scope.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_draw_depth(
+    renderer: *mut RaraRenderer,
+    cmd: vk::CommandBuffer,
+    x: f32,
+    y: f32,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let renderer = exclusive(renderer, "renderer")?;
+        renderer.0.draw_depth(recording(cmd)?, [x, y]);
         Ok(())
     })
 }

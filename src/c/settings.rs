@@ -1,7 +1,9 @@
 //! A frame's settings.
 
 use rara::ash::vk;
-use rara::{Decay, ExactForm, Miss, Mode, PhiForm, Precision, Preset, Raster, Result, Settings};
+use rara::{
+    Decay, ExactForm, Miss, Mode, PhiForm, Precision, Preset, Raster, Result, Settings, Show,
+};
 
 use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
 
@@ -54,6 +56,14 @@ pub const RARA_RASTER_QUAD: RaraRaster = 2;
 /// Tiles of pixels in a compute shader.
 pub const RARA_RASTER_TILES: RaraRaster = 3;
 
+/// What a frame shows of its splats.
+pub type RaraShow = u32;
+/// Their colours. The default.
+pub const RARA_SHOW_COLOUR: RaraShow = 0;
+/// What the clip does to them: blue where it leaves them whole; where it cuts, from red (nothing is kept in this pixel) to
+/// yellow (all is).
+pub const RARA_SHOW_WEIGHT: RaraShow = 1;
+
 /// RARA_MODE_EXACT only: how the normal distribution's Phi is approximated, and the largest error.
 pub type RaraPhiForm = u32;
 /// 1.9e-5.
@@ -94,6 +104,8 @@ pub struct RaraSettings {
     pub sh_degree: i32,
     /// How splats become pixels.
     pub raster: RaraRaster,
+    /// Colours, or a debug view.
+    pub show: RaraShow,
     /// RARA_MODE_EXACT: how Phi is approximated. From the preset, like all below.
     pub phi: RaraPhiForm,
     /// Most bits of the depths that the sort looks at, 8 to 32.
@@ -129,6 +141,7 @@ impl RaraSettings {
             form: RARA_EXACT_FORM_AUTO,
             sh_degree: -1,
             raster: RARA_RASTER_AUTO,
+            show: RARA_SHOW_COLOUR,
             phi: match precision.phi {
                 PhiForm::Quintic => RARA_PHI_FORM_QUINTIC,
                 PhiForm::Cubic => RARA_PHI_FORM_CUBIC,
@@ -180,6 +193,11 @@ impl RaraSettings {
                 RARA_RASTER_QUAD => Raster::Quad,
                 RARA_RASTER_TILES => Raster::Tiles,
                 other => return no("raster", other, "RaraRaster"),
+            },
+            show: match self.show {
+                RARA_SHOW_COLOUR => Show::Colour,
+                RARA_SHOW_WEIGHT => Show::Weight,
+                other => return no("show", other, "RaraShow"),
             },
             precision: Precision {
                 phi: match self.phi {

@@ -146,6 +146,10 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
         rara_renderer_draw(null_mut(), no_cmd, 0.0, 0.0),
         "renderer is null"
     );
+    call!(
+        rara_renderer_draw_depth(null_mut(), no_cmd, 0.0, 0.0),
+        "renderer is null"
+    );
     call!(rara_renderer_forget(null_mut()), "renderer is null");
     call!(
         rara_renderer_stats(null(), null_mut(), 0),

@@ -175,6 +175,8 @@ fn what_is_wrong_is_said() {
         assert_fails(failed, RARA_ERROR_PANIC, "configure()");
         let failed = rara_renderer_draw(renderer, cmd, 0.0, 0.0);
         assert_fails(failed, RARA_ERROR_PANIC, "prepare()");
+        let failed = rara_renderer_draw_depth(renderer, cmd, 0.0, 0.0);
+        assert_fails(failed, RARA_ERROR_PANIC, "expected_depth");
         let plane = RaraPlane {
             normal: [0.0; 3],
             offset: 0.0,

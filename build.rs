@@ -88,6 +88,9 @@ fn provide_spirv(to: &Path) {
         CompileOptions, Compiler, EnvVersion, OptimizationLevel, ResolvedInclude, ShaderKind,
         TargetEnv,
     };
+    // Modules whose GLSL is gone must not be taken for current ones.
+    fs::remove_dir_all(to).expect("OUT_DIR is writable");
+    fs::create_dir_all(to).expect("OUT_DIR is writable");
     let compiler = Compiler::new().expect("shaderc starts");
     for path in entries() {
         let kind = match path.extension().and_then(|e| e.to_str()) {

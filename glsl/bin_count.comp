@@ -25,7 +25,7 @@ void main() {
         uint splat = order.at[i];
         uvec4 tiles = tile_masks.at[splat];
         for (uvec2 mask = tiles.zw; (mask.x | mask.y) != 0u;) {
-            histogram.at[run * DIGITS + digit(next_tile(tiles.x, mask))]++;
+            histogram.at[run * DIGITS + digit(next_tile(tiles.x, mask), 0u)]++;
             found++;
         }
         if (tiles.y == 0u) {
@@ -35,7 +35,7 @@ void main() {
         for (uint row = o.rows.x; row < o.rows.y; row++) {
             uvec2 columns = tiles_in_row(o, row) + row * FRAME.tile_columns;
             for (uint tile = columns.x; tile < columns.y; tile++) {
-                histogram.at[run * DIGITS + digit(tile)]++;
+                histogram.at[run * DIGITS + digit(tile, 0u)]++;
             }
             found += columns.y - columns.x;
         }

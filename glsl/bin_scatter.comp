@@ -15,7 +15,7 @@ BUFFER(readonly, 7, uvec4, tile_masks)
 
 
 void put(uint run, uint tile, uint splat) {
-    uint slot = run * DIGITS + digit(tile);
+    uint slot = run * DIGITS + digit(tile, 0u);
     uint place = histogram.at[slot];
     histogram.at[slot] = place + 1u;
     if (place >= counts.at[0].pairs) {

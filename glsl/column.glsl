@@ -188,6 +188,58 @@ void exact_weights(uint base, uint count, vec2 delta, vec2 place, float alpha[RO
     }
 }
 
+// `rara` with the camera outside the splat: chord_weight of glsl/weight.glsl. `delta` and `place` are the first row's.
+void chord_weights(uint base, uint count, vec2 delta, vec2 place, out float weight[ROWS]) {
+    vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
+    ColumnSight column = column_sight(base, delta + middle, place + middle);
+    Sight s = column.s;
+    vec3 c_step = column.c_step;
+    // |offset|^2 / |c|^2 is the square of the line's distance from the centre, offset x c / |c|^2 its nearest point.
+    vec3 offset = s.delta.x * s.b2 - s.delta.y * s.b1;
+    vec3 offset_step = s.delta.x * column.b2_step - column.delta_y.y * s.b1;
+    vec3 cc = product(s.c, c_step, s.c, c_step);
+    vec3 square = product(offset, offset_step, offset, offset_step);
+    float sigma = uintBitsToFloat(push.param[2]);
+    float inverse[ROWS];
+    float low[ROWS];
+    float high[ROWS];
+    float whole[ROWS];
+    uint inside = (1u << ROWS) - 1u;
+    for (uint row = 0u; row < ROWS; row++) {
+        float y = row_place(row);
+        float length_square = quadratic(cc, y);
+        inverse[row] = length_square > 0.0 ? 1.0 / length_square : 0.0;
+        float half_square = length_square > 0.0 ? sigma * sigma - quadratic(square, y) * inverse[row] : -1.0;
+        high[row] = half_square > 0.0 ? sqrt(half_square) : 0.0;
+        low[row] = -high[row];
+        whole[row] = 2.0 * high[row];
+    }
+    for (uint plane = 0u; plane < count; plane++) {
+        vec4 form = plane_of(base, plane);
+        vec2 along = vec2(dot(form.xyz, s.c), dot(form.xyz, c_step));
+        vec3 nearest = product(offset, offset_step, cross(s.c, form.xyz), cross(c_step, form.xyz));
+        for (uint row = 0u; row < ROWS; row++) {
+            float y = row_place(row);
+            float value = form.w + quadratic(nearest, y) * inverse[row];
+            float slope = (along.x + y * along.y) * sqrt(inverse[row]);
+            if (!(whole[row] > 0.0) || slope == 0.0) {
+                bool is_inside = value > 0.0 || (value == 0.0 && CLIP_OP != OP_OR);
+                inside &= is_inside ? ~0u : ~(1u << row);
+            } else if (slope > 0.0) {
+                low[row] = max(low[row], -value / slope);
+            } else {
+                high[row] = min(high[row], -value / slope);
+            }
+        }
+    }
+    for (uint row = 0u; row < ROWS; row++) {
+        bool miss = !(whole[row] > 0.0);
+        bool is_inside = (inside >> row & 1u) != 0u;
+        float share = !is_inside ? 0.0 : miss ? 1.0 : max(0.0, high[row] - low[row]) / whole[row];
+        weight[row] = !miss || MISS == MISS_PEAK ? combined(share) : MISS == MISS_KEEP ? 1.0 : 0.0;
+    }
+}
+
 // The weight of each pixel of a column. `delta`, `uv` and `place` are the first row's, `v_step` is how much v changes a
 // row.
 void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 place, float alpha[ROWS], out float weight[ROWS]) {
@@ -197,6 +249,8 @@ void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 place, float 
         curve_weights(base, uv.x, uv.y, v_step, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) == 0u) {
         exact_weights(base, flags >> CUT_COUNT_SHIFT, delta, place, alpha, weight);
+    } else if (CLIP_MODE == MODE_RARA && (flags & CUT_FRONT) == 0u) {
+        chord_weights(base, flags >> CUT_COUNT_SHIFT, delta, place, weight);
     } else {
         for (uint row = 0u; row < ROWS; row++) {
             vec2 below = vec2(0.0, float(row));

@@ -14,7 +14,6 @@ BUFFER(readonly, 5, uvec2, block_offsets)
 BUFFER(writeonly, 6, uvec2, survivors)
 BUFFER(writeonly, 7, uint, cutoffs)
 
-
 // Set bits of a block's mask before bit `local`.
 uint rank(uint base, uint local) {
     uint count = 0u;

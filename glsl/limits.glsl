@@ -15,11 +15,8 @@ const float ALPHA_MIN_INVERSE = 255.0;
 const float BEAM_SWITCH = 0.005;
 // What perspective may leave of a splat's depth, as a share, before its band follows from where the eye is in it.
 const float WIDENING_REST = 0.05;
-// Deviations beyond the eye at which a plane cuts nothing off that is in front of it: 1e-9 of the whole, 1e-5 of the least
-// part in front of the eye that counts.
+// Deviations beyond the eye at which a plane cuts nothing off that is in front of it: 2e-9 of that at most.
 const float BEYOND_EYE = 6.0;
-// Share of a splat in front of the eye below which single precision cannot divide by it; the eye is then ignored.
-const float FRONT_MIN = 1e-4;
 // Most half-spaces in a clip. Raising it lengthens the frame's uniform block and the cutoff records of such clips.
 const uint MAX_CLIP_PLANES = 32u;
 // Degree 3: the most coefficients a colour channel has.

@@ -1,8 +1,9 @@
 // The share of a splat that is on the visible side of two or three planes at once. Given a pixel, the planes' distances
-// are correlated normal variables, and the share is the chance that all of them are positive. Included by weight.glsl,
-// after phi. Twin: src/reference/orthant.rs, which also says where the formulas come from.
+// are correlated normal variables, and the share is the chance that all of them are positive. Twin:
+// src/reference/orthant.rs, which also says where the formulas come from and takes more nodes.
 #ifndef RARA_ORTHANT
 #define RARA_ORTHANT
+#include "phi.glsl"
 #include "sight.glsl"
 
 // Beyond this Phi is taken for 0 or 1: off by less than 4e-6, a fifth of what the best approximation is.
@@ -95,18 +96,60 @@ float both_positive(Threshold t, Threshold u) {
     return both_positive(t.z, u.z, phi(t.z), phi(u.z), correlation(t.direction, u.direction));
 }
 
-// The chance that three variables are positive, if what the first leaves of the others is taken for normal.
-float three_positive(Threshold first, Threshold t, Threshold u) {
-    float p = max(phi(first.z), 1e-6);
-    float mean = exp(-0.5 * first.z * first.z) / (ROOT_TAU * p);
-    float shrink = mean * (mean + first.z);
-    float to_t = correlation(first.direction, t.direction).x;
-    float to_u = correlation(first.direction, u.direction).x;
-    vec2 inverse = inversesqrt(max(1.0 - vec2(to_t * to_t, to_u * to_u) * shrink, 1e-4));
-    vec2 z = clamp((vec2(t.z, u.z) + vec2(to_t, to_u) * mean) * inverse, -8.0, 8.0);
-    float between = correlation(t.direction, u.direction).x - to_t * to_u * shrink;
-    float rho = clamp(between * inverse.x * inverse.y, -1.0, 1.0);
-    return p * both_positive(z.x, z.y, phi(z.x), phi(z.y), vec2(rho, 1.0 - rho * rho));
+// Gauss's nodes on [0, 1], six, as the path from independence to the correlations takes them: 2 t - t^2, whose slope
+// 2 - 2 t evens out what grows like 1 / sqrt(1 - rho^2) at the end; the weights hold that slope.
+const uint STEPS = 6u;
+const float STEP[STEPS] = float[](0.06639039, 0.31009584, 0.61645563, 0.85507481, 0.97130523, 0.99885991);
+const float STEP_WEIGHT[STEPS] = float[](0.16553968, 0.29965026, 0.28978359, 0.17813035, 0.06111132, 0.00578481);
+
+// What one of the first variable's two correlations adds along the path: the two's density, times the chance that the third
+// is positive. `r` is theirs, `s` and `q` those of the third with the first and with the other.
+float path_density(float h, float k, float third, float r, float s, float q) {
+    float rest = 1.0 - r * r;
+    float open = max(rest - s * s - q * q + 2.0 * r * s * q, 1e-12);
+    float mean = (s - r * q) * h + (q - r * s) * k;
+    float density = exp((r * h * k - 0.5 * (h * h + k * k)) / rest) * inversesqrt(rest);
+    return density * phi((third * rest - mean) * inversesqrt(rest * open));
+}
+
+// The chance that three variables are positive: from the first one independent of the others along its correlations. The
+// other two are those that depend most on each other.
+float three_positive(Threshold t, Threshold u, Threshold v) {
+    vec2 tu = correlation(t.direction, u.direction);
+    vec2 tv = correlation(t.direction, v.direction);
+    vec2 uv = correlation(u.direction, v.direction);
+    float p = phi(t.z);
+    float q = phi(u.z);
+    float r = phi(v.z);
+    float with_u = both_positive(t.z, u.z, p, q, tu);
+    float with_v = both_positive(t.z, v.z, p, r, tv);
+    float others = both_positive(u.z, v.z, q, r, uv);
+    // Bounds from the pairs; where correlations are full they meet.
+    float high = min(with_u, min(with_v, others));
+    float low = max(with_u + with_v - p, max(with_u + others - q, with_v + others - r));
+    vec3 z = vec3(t.z, u.z, v.z);
+    float first = p;
+    float rest = others;
+    vec3 rho = vec3(tu.x, tv.x, uv.x);
+    if (abs(tu.x) > max(abs(tv.x), abs(uv.x))) {
+        z = z.zxy;
+        first = r;
+        rest = with_u;
+        rho = vec3(tv.x, uv.x, tu.x);
+    } else if (abs(tv.x) > abs(uv.x)) {
+        z = z.yxz;
+        first = q;
+        rest = with_v;
+        rho = vec3(tu.x, uv.x, tv.x);
+    }
+    float sum = 0.0;
+    for (uint i = 0u; i < STEPS; i++) {
+        float a = rho.x * STEP[i];
+        float b = rho.y * STEP[i];
+        sum += STEP_WEIGHT[i] * (rho.x * path_density(z.x, z.y, z.z, a, b, rho.z)
+            + rho.y * path_density(z.x, z.z, z.y, b, a, rho.z));
+    }
+    return min(max(first * rest + INVERSE_TAU * sum, max(low, 0.0)), high);
 }
 
 #endif

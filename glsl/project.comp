@@ -17,7 +17,7 @@ BUFFER(readonly, 3, uvec2, survivors)
 BUFFER(readonly, 4, FrameCounts, counts)
 BUFFER(writeonly, 5, Splat, splats)
 BUFFER(writeonly, 6, uint, keys)
-BUFFER(writeonly, 7, uint, order)
+BUFFER(writeonly, 7, uint, same_keys)
 #include "sh_storage.glsl"
 BUFFER(readonly, 8, vec4, cuts)
 BUFFER(writeonly, 9, uvec4, tile_masks)
@@ -83,6 +83,7 @@ void main() {
     // Positive floats order like their bits. Counted from the nearest depth that the scene's bounds allow they need
     // fewer of them, and fewer passes of the sort; dropping low bits never turns an order round.
     uint depth = max(floatBitsToUint(f.view.z), FRAME.key_near) - FRAME.key_near;
-    keys.at[survivor] = min(depth, FRAME.key_span) >> FRAME.key_shift;
-    order.at[survivor] = survivor;
+    uint key = min(depth, FRAME.key_span) >> FRAME.key_shift;
+    keys.at[survivor] = key;
+    same_keys.at[survivor] = key; // for whichever pass of the sort is the first
 }

@@ -1,16 +1,25 @@
 // Stable least-significant-digit radix sort. Each invocation owns a run of consecutive keys and walks it in order,
-// so equal keys keep their order without any ranking inside a workgroup. Parameter 0 is the digit's first bit; parameter 1
-// says what is sorted: 0 the survivors, 1 the pairs of tile and splat.
+// so equal keys keep their order without any ranking inside a workgroup. Parameter 0 is the pass; parameter 1 says what
+// is sorted: 0 the survivors, 1 the pairs of tile and splat.
+//
+// Of the survivors the first count finds the least and the greatest key. Counted from the least they differ in fewer
+// digits, perhaps, than the scene's bounds allow; the passes too many are the first ones, so that the sorted keys end up
+// in the same buffer. Project writes the keys to both: whichever pass is the first finds them.
 #ifndef RARA_SORT
 #define RARA_SORT
 #include "frame.glsl"
 
 const uint DIGITS = 1u << SORT_BITS;
 
-#define KEY_COUNT (push.param[1] == 0u ? counts.at[0].visible + counts.at[0].cutoff : counts.at[0].pairs)
+#define SURVIVORS (push.param[1] == 0u)
+#define KEY_COUNT (SURVIVORS ? counts.at[0].visible + counts.at[0].cutoff : counts.at[0].pairs)
+// What keys are counted from: a multiple of DIGITS, so that the first count need not know it.
+#define KEY_BASE (SURVIVORS ? counts.at[0].sort_base : 0u)
+// The digit that the pass sorts by.
+#define KEY_DIGIT (push.param[0] - (SURVIVORS ? counts.at[0].sort_skipped : 0u))
 
-uint digit(uint key) {
-    return bitfieldExtract(key, int(push.param[0]), int(SORT_BITS));
+uint digit(uint key, uint number) {
+    return bitfieldExtract(key, int(number * SORT_BITS), int(SORT_BITS));
 }
 
 // First and last key (exclusive) of a run.
@@ -18,6 +27,11 @@ uvec2 run_bounds(uint run, uint count) {
     uint size = (count + FRAME.sort_runs - 1u) / FRAME.sort_runs;
     uint begin = min(run * size, count);
     return uvec2(begin, min(begin + size, count));
+}
+
+// Where the histogram has a run's least and greatest key.
+uint range_place(uint run) {
+    return FRAME.sort_runs * DIGITS + 2u * run;
 }
 
 #endif

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// First step of a pass: how often each run holds each digit. A run's counts lie together, one run after the other.
+// First step of a pass: how often each run holds each digit. A run's counts lie together, one run after the other; behind
+// them all the least and the greatest key of each.
 #include "sort.glsl"
 
 layout(local_size_x = SORT_GROUP_SIZE) in;
@@ -14,8 +15,17 @@ void main() {
     for (uint d = 0u; d < DIGITS; d++) {
         histogram.at[run * DIGITS + d] = 0u;
     }
+    uint number = push.param[0] == 0u ? 0u : KEY_DIGIT;
+    uint base = number == 0u ? 0u : KEY_BASE;
     uvec2 bounds = run_bounds(run, KEY_COUNT);
+    uint least = ~0u;
+    uint greatest = 0u;
     for (uint i = bounds.x; i < bounds.y; i++) {
-        histogram.at[run * DIGITS + digit(keys.at[i])]++;
+        uint key = keys.at[i];
+        histogram.at[run * DIGITS + digit(key - base, number)]++;
+        least = min(least, key);
+        greatest = max(greatest, key);
     }
+    histogram.at[range_place(run)] = least;
+    histogram.at[range_place(run) + 1u] = greatest;
 }

@@ -1,17 +1,53 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Second step of a pass, one workgroup, a digit an invocation: the runs' counts become the places where each run's keys
-// of each digit begin.
+// of each digit begin. The survivors' first one decides which passes there are, of the parameter 2 that there may be.
 #include "sort.glsl"
 
 layout(local_size_x = DIGITS) in;
 
-BUFFER(, 1, uint, histogram)
+BUFFER(, 1, FrameCounts, counts)
+BUFFER(, 2, uint, histogram)
 
 shared uint totals[DIGITS];
+shared uint least;
+shared uint greatest;
+
+void decide(uint d) {
+    if (d == 0u) {
+        least = ~0u;
+        greatest = 0u;
+    }
+    barrier();
+    for (uint run = d; run < FRAME.sort_runs; run += DIGITS) {
+        // The same whatever the order.
+        atomicMin(least, histogram.at[range_place(run)]);
+        atomicMax(greatest, histogram.at[range_place(run) + 1u]);
+    }
+    barrier();
+    if (d != 0u) {
+        return;
+    }
+    uint passes = push.param[2];
+    uint base = least & ~(DIGITS - 1u);
+    // Keys that are all alike are carried to their buffer too.
+    uint digits = uint(max(findMSB(greatest - base), 0)) / SORT_BITS + 1u;
+    uint skipped = passes - min(digits, passes);
+    counts.at[0].sort_base = base;
+    counts.at[0].sort_skipped = skipped;
+    for (uint pass = 0u; pass < passes; pass++) {
+        counts.at[0].sort_pass_groups[pass] = pass < skipped ? uvec4(0u, 1u, 1u, 0u) : counts.at[0].sort_groups;
+    }
+}
 
 void main() {
+    uint pass = push.param[0];
     uint d = gl_LocalInvocationIndex;
+    if (SURVIVORS && pass == 0u) {
+        decide(d);
+    } else if (SURVIVORS && pass <= counts.at[0].sort_skipped) {
+        return; // the first pass that there is has been counted
+    }
     uint total = 0u;
     for (uint run = 0u; run < FRAME.sort_runs; run++) {
         total += histogram.at[run * DIGITS + d];

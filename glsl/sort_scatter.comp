@@ -14,13 +14,16 @@ BUFFER(writeonly, 6, uint, sorted_order)
 
 void main() {
     uint run = gl_GlobalInvocationID.x;
+    uint number = KEY_DIGIT;
+    uint base = KEY_BASE;
+    bool is_first = number == 0u; // the survivors are in their own order
     uvec2 bounds = run_bounds(run, KEY_COUNT);
     for (uint i = bounds.x; i < bounds.y; i++) {
         uint key = keys.at[i];
-        uint slot = run * DIGITS + digit(key);
+        uint slot = run * DIGITS + digit(key - base, number);
         uint place = histogram.at[slot];
         histogram.at[slot] = place + 1u;
         sorted_keys.at[place] = key;
-        sorted_order.at[place] = order.at[i];
+        sorted_order.at[place] = is_first ? i : order.at[i];
     }
 }

@@ -86,6 +86,7 @@ struct FrameCounts {
     uvec4 cutoff_groups; // indirect dispatch over the cutoff Gaussians
     uvec4 recut_groups; // indirect dispatch over the survivors that a moved clip changes; w: how many
     uvec4 sort_groups; // indirect dispatch of the sort's runs
+    uvec4 sort_pass_groups[4]; // the same for each of its passes; none where the keys agree
     uvec4 draw; // indirect draw: vertices, instances, first vertex, first instance
     uvec4 mesh_groups; // indirect mesh tasks; w: survivors
     uvec4 pair_groups; // indirect dispatch of the runs over the pairs of tile and splat
@@ -93,7 +94,8 @@ struct FrameCounts {
     uvec4 composite; // indirect draw of the tiles' picture
     uint pairs; // pairs of tile and splat
     uint tiled; // 1: the pairs have room, and tiles draw the splats
-    uint pad[2]; // unused
+    uint sort_base; // what the sort counts the survivors' keys from
+    uint sort_skipped; // passes of the sort, from the first, that their keys do without
 };
 
 const uint MODE_NONE = 0u;

@@ -2,25 +2,9 @@
 // has declared the buffer `cuts` and the constants CLIP_MODE, CLIP_OP, DECAY, MISS and PHI_FORM.
 #ifndef RARA_WEIGHT
 #define RARA_WEIGHT
-#include "sight.glsl"
-
-// The normal distribution's Phi by a logistic of an odd quintic: absolute error 1.9e-5, and Phi(z) + Phi(-z) = 1 to
-// rounding. Beyond |z| = 8 the quintic would turn back.
-float phi(float z) {
-    float x = clamp(z, -8.0, 8.0);
-    float s = x * x;
-    if (PHI_FORM == PHI_LOGISTIC) {
-        return 1.0 / (1.0 + exp2(-2.4550345 * x)); // 9.5e-3
-    }
-    if (PHI_FORM == PHI_CUBIC) {
-        return 1.0 / (1.0 + exp2(-x * (2.3048539 + s * 0.1018025))); // 1.4e-4
-    }
-    return 1.0 / (1.0 + exp2(-x * (2.3017272 + s * (0.10617733 - 9.1122696e-4 * s))));
-}
-
 #include "orthant.glsl"
 
-// A union is the rest of the complements' intersection, which is why every plane is negated (`sign`) under OP_OR.
+// A union is the rest of the complements' intersection, which is why every plane is negated under OP_OR.
 float complement_sign() {
     return CLIP_OP == OP_OR ? -1.0 : 1.0;
 }
@@ -38,13 +22,24 @@ Sight line_of_sight(uint base, vec2 delta, vec2 place) {
     return sight_through(cuts.at[base], cuts.at[base + 1u], cuts.at[base + 2u], pixel, delta);
 }
 
-// Phi with a relative error of 2e-5 in its lower tail, for shares that are divided by the part in front of the eye.
-float tail_phi(float z) {
-    float x = min(abs(z), 8.0);
+// Phi(z) / Phi(front), at most 1, with a relative error of 4e-5 however little of the normal distribution is left: by
+// Mills's ratio Phi(-x) / exp(-x^2 / 2).
+float mills(float x) {
     float t = 1.0 / (1.0 + 0.37 * x);
-    float series = t * (0.14672541 + t * (0.15906193 + t * (0.0711053 + t * (0.21612205 - 0.09302393 * t))));
-    float tail = exp(-0.5 * x * x) * series;
-    return z < 0.0 ? tail : 1.0 - tail;
+    return t * (0.14672541 + t * (0.15906193 + t * (0.0711053 + t * (0.21612205 - 0.09302393 * t))));
+}
+
+float tail_ratio(float z, float front) {
+    if (z >= front) {
+        return 1.0;
+    }
+    float x = abs(z);
+    float y = abs(front);
+    if (front < 0.0) {
+        return exp(0.5 * (y - x) * (y + x)) * mills(x) / mills(y);
+    }
+    float tail = exp(-0.5 * x * x) * mills(x);
+    return (z < 0.0 ? tail : 1.0 - tail) / (1.0 - exp(-0.5 * y * y) * mills(y));
 }
 
 // A record's plane; under OP_OR its complement.
@@ -60,61 +55,54 @@ Threshold threshold_of(Sight s, float det, uint base, uint plane) {
     return t;
 }
 
-// The strictest plane besides two; `count` where there is none of the kind asked for.
-const uint KIND_NEAR = 0u;
-const uint KIND_FAR = 1u;
-const uint KIND_ANY = 2u;
-
-uint strictest(Sight s, float det, uint base, uint count, uvec2 besides, uint kind) {
-    uint found = count;
-    float least = PHI_ONE;
-    for (uint plane = 0u; plane < count; plane++) {
-        bool far;
-        float z = ray_z(s, det, plane_of(base, plane), far);
-        bool is_asked = kind == KIND_ANY || (kind == KIND_FAR) == far;
-        if (z < least && is_asked && plane != besides.x && plane != besides.y) {
-            least = z;
-            found = plane;
-        }
-    }
-    return found;
-}
-
-// What three and more planes keep that one pixel sees the edges of. No arrays: they would cost every splat their room.
-float corner_weight(Sight s, float det, uint base, uint count) {
-    uint a = strictest(s, det, base, count, uvec2(count), KIND_ANY);
-    Threshold first = threshold_of(s, det, base, a);
-    uint b = strictest(s, det, base, count, uvec2(a), first.far ? KIND_NEAR : KIND_FAR);
-    bool is_mixed = b < count;
-    b = is_mixed ? b : strictest(s, det, base, count, uvec2(a), KIND_ANY);
-    Threshold second = threshold_of(s, det, base, b);
-    uint c = strictest(s, det, base, count, uvec2(a, b), KIND_ANY);
-    float share = three_positive(first, second, threshold_of(s, det, base, c));
-    // Bounds from pairs: the least of them, and what is left when each plane takes what the strictest one of its kind, and
-    // this what the strictest of all, has not taken. Where correlations are full both are the share.
-    float p = phi(first.z);
-    float q = phi(second.z);
-    float high = both_positive(first, second);
-    float low = high;
+// What four and more planes keep that one pixel sees the edges of: as if the pairs' dependences added up, within what the
+// pairs bound: the least of them, and what is left when each plane takes what the strictest one of its kind, and this what
+// the strictest of the other, has not taken. No arrays: they would cost every splat their room.
+float many_weight(Sight s, float det, uint base, uint count) {
+    // Of those that keep the far side, and of the others.
+    uvec2 strictest = uvec2(count);
+    vec2 least = vec2(PHI_ONE);
+    float share = 1.0;
+    float high = 1.0;
     for (uint plane = 0u; plane < count; plane++) {
         Threshold t = threshold_of(s, det, base, plane);
-        if (plane == a || plane == b || t.z >= PHI_ONE) {
+        if (t.z >= PHI_ONE) {
             continue;
         }
-        float with_first = both_positive(first, t);
-        float with_second = both_positive(second, t);
-        high = min(high, min(with_first, with_second));
-        low += is_mixed && t.far == second.far ? with_second - q : with_first - p;
-        // Beyond three planes: as if each depended on the strictest only.
-        share *= plane == c ? 1.0 : with_first / max(p, 1e-6);
+        uint kind = t.far ? 0u : 1u;
+        if (t.z < least[kind]) {
+            least[kind] = t.z;
+            strictest[kind] = plane;
+        }
+        float p = max(phi(t.z), 1e-6);
+        share *= p;
+        for (uint other = 0u; other < plane; other++) {
+            Threshold u = threshold_of(s, det, base, other);
+            if (u.z < PHI_ONE) {
+                float pair = both_positive(t, u);
+                high = min(high, pair);
+                share *= pair / (p * max(phi(u.z), 1e-6));
+            }
+        }
     }
-    return clamp(share, max(low, 0.0), max(high, 0.0));
+    bool is_mixed = strictest.x < count && strictest.y < count;
+    float low = is_mixed
+        ? both_positive(threshold_of(s, det, base, strictest.x), threshold_of(s, det, base, strictest.y))
+        : phi(min(least.x, least.y));
+    for (uint plane = 0u; plane < count; plane++) {
+        Threshold t = threshold_of(s, det, base, plane);
+        uint first = t.far ? strictest.x : strictest.y;
+        if (t.z < PHI_ONE && plane != first && first < count) {
+            low += both_positive(threshold_of(s, det, base, first), t) - phi(t.far ? least.x : least.y);
+        }
+    }
+    return min(max(share, max(low, 0.0)), high);
 }
 
 // What several planes of a record keep together. Few pixels of a splat see the edges of more than one of them.
 float several_weight(Sight s, float det, uint base, uint count) {
-    uvec2 open = uvec2(0u);
-    vec2 z = vec2(0.0);
+    uvec3 open = uvec3(0u);
+    float z;
     uint opens = 0u;
     for (uint plane = 0u; plane < count; plane++) {
         bool far;
@@ -123,19 +111,20 @@ float several_weight(Sight s, float det, uint base, uint count) {
             return 0.0;
         }
         if (here < PHI_ONE) {
-            open = uvec2(open.y, plane);
-            z = vec2(z.y, here);
+            z = here;
+            open = uvec3(open.yz, plane);
             opens++;
         }
     }
     if (opens < 2u) {
-        return opens == 0u ? 1.0 : phi(z.y);
+        return opens == 0u ? 1.0 : phi(z);
     }
-    if (opens > 2u) {
-        return corner_weight(s, det, base, count);
+    if (opens > 3u) {
+        return many_weight(s, det, base, count);
     }
-    vec2 rho = correlation(direction(s, plane_of(base, open.x).xyz), direction(s, plane_of(base, open.y).xyz));
-    return both_positive(z.x, z.y, phi(z.x), phi(z.y), rho);
+    Threshold t = threshold_of(s, det, base, open.y);
+    Threshold u = threshold_of(s, det, base, open.z);
+    return opens == 2u ? both_positive(t, u) : three_positive(threshold_of(s, det, base, open.x), t, u);
 }
 
 // `exact`, with the planes of a record.
@@ -155,23 +144,19 @@ float exact_weight(uint base, uint count, vec2 delta, vec2 place) {
 float front_weight(uint base, uint count, vec2 delta, vec2 place) {
     Sight s = line_of_sight(base, delta, place);
     float det = determinant(s);
-    float sign = complement_sign();
     float far = 1.0;
     float gone = 0.0;
     bool keeps;
+    float front = ray_z(s, det, cuts.at[base + CUT_HEADER + count], keeps);
     for (uint plane = 0u; plane < count; plane++) {
-        float z = sign * ray_z(s, det, cuts.at[base + CUT_HEADER + plane], keeps);
-        if (keeps == (CLIP_OP != OP_OR)) {
-            far = min(far, tail_phi(z));
+        float z = ray_z(s, det, plane_of(base, plane), keeps);
+        if (keeps) {
+            far = min(far, tail_ratio(z, front));
         } else {
-            gone = max(gone, tail_phi(-z));
+            gone = max(gone, tail_ratio(-z, front));
         }
     }
-    float whole = tail_phi(ray_z(s, det, cuts.at[base + CUT_HEADER + count], keeps));
-    if (whole < FRONT_MIN) {
-        return combined(max(0.0, far - gone));
-    }
-    return combined(max(0.0, min(far, whole) - gone) / whole);
+    return combined(max(0.0, far - gone));
 }
 
 // `rara`: the visible share of the chord that the ray cuts out of the ellipsoid (paper section 3.3 and eq. 11). The
@@ -199,10 +184,9 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place
     if (miss && MISS != MISS_PEAK) {
         return MISS == MISS_KEEP ? 1.0 : 0.0;
     }
-    float sign = complement_sign();
     bool inside = true;
     for (uint plane = 0u; plane < count; plane++) {
-        vec4 form = sign * cuts.at[base + CUT_HEADER + plane];
+        vec4 form = plane_of(base, plane);
         float value = form.w + dot(form.xyz, nearest);
         float slope = dot(form.xyz, direction);
         if (miss || slope == 0.0) {

@@ -311,7 +311,7 @@ impl Drop for Headless {
 }
 
 /// Vulkan promises blending into every format here but 32-bit floats.
-fn check_blending(device: &Device, format: TargetFormat) -> Result<()> {
+pub(crate) fn check_blending(device: &Device, format: TargetFormat) -> Result<()> {
     let features = device.format_features(format.vulkan());
     let blends = vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
     if features.contains(blends) {
@@ -324,51 +324,4 @@ fn check_blending(device: &Device, format: TargetFormat) -> Result<()> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::clip::{ClipOp, Plane};
-    use crate::scene::{Bounds, Kind, generate};
-    use crate::settings::Raster;
-    use glam::DVec3;
-
-    #[test]
-    fn what_tiles_never_have_room_for_is_drawn_as_quads() {
-        let desc = HeadlessDesc {
-            device: std::env::var("RARA_TEST_DEVICE").ok(),
-            validation: true,
-            ..HeadlessDesc::default()
-        };
-        let mut headless = Headless::new(&desc).expect("a device and the validation layer");
-        let scene = generate(Kind::General, 3_000, 1);
-        headless.load(&scene).expect("uploads");
-        headless.renderer.limit_pairs(1 << 11);
-        let bounds = Bounds::of(&scene);
-        let camera = Camera::frame(&bounds, -DVec3::Y, 50.0, (200, 150)).expect("a view");
-        // The second and the third are a sweep, whose base has no room either.
-        for offset in [0.0, 0.1, 0.2] {
-            let clip = Clip {
-                planes: vec![Plane::new(DVec3::X, offset).expect("a finite normal")],
-                op: ClipOp::And,
-            };
-            let draw = |headless: &mut Headless, raster| {
-                let settings = Settings {
-                    raster,
-                    ..Settings::default()
-                };
-                let stats = headless.render(&camera, &clip, &settings).expect("renders");
-                (stats.raster.path, headless.picture().expect("reads back"))
-            };
-            let (path, picture) = draw(&mut headless, Raster::Tiles);
-            assert_eq!(path, "quad");
-            assert!(picture.pixels.iter().any(|pixel| pixel[3] > 0.5));
-            assert!(
-                picture == draw(&mut headless, Raster::Tiles).1,
-                "drawn again"
-            );
-            headless.forget();
-            assert!(picture == draw(&mut headless, Raster::Quad).1, "{offset}");
-            headless.forget();
-            draw(&mut headless, Raster::Tiles);
-        }
-    }
-}
+mod tests;

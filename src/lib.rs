@@ -24,6 +24,8 @@ pub mod settings;
 pub mod stats;
 pub mod stress;
 pub mod types;
+#[cfg(feature = "view")]
+pub mod windowed;
 
 /// The versions that this crate's interface is made of.
 pub use {ash, glam};
@@ -42,3 +44,5 @@ pub use renderer::{DepthDesc, ExpectedDepthDesc, Renderer, RendererDesc};
 pub use scene::Gaussians;
 pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
 pub use stats::{Counts, FrameStats, PassTime, RasterChoice};
+#[cfg(feature = "view")]
+pub use windowed::Windowed;

@@ -4,10 +4,14 @@ use std::path::Path;
 
 #[path = "../tools/benchmark/callgrind.rs"]
 mod callgrind;
+#[path = "../tools/benchmark/fragments.rs"]
+mod fragments;
 #[path = "../tools/benchmark/statistics.rs"]
 mod statistics;
 
 use callgrind::{Counted, read};
+use rara::glam::{DVec3, Quat, Vec3};
+use rara::{Camera, Gaussians, Settings};
 use statistics::{Summary, ratios};
 
 fn of(values: &[f64]) -> (usize, f64, f64, f64) {
@@ -77,4 +81,27 @@ totals: 1165
         }
     );
     assert_eq!(read("", Path::new("/bin/ours")), Counted::default());
+}
+
+#[test]
+fn fragments_count_until_a_pixel_is_saturated() {
+    let eye = DVec3::new(0.0, 0.0, -4.0);
+    let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, (37, 41)).expect("a view");
+    let count = |copies, scale, opacity| {
+        let scene = Gaussians {
+            positions: vec![Vec3::ZERO; copies],
+            scales: vec![Vec3::splat(scale); copies],
+            rotations: vec![Quat::IDENTITY; copies],
+            opacities: vec![opacity; copies],
+            sh_degree: 0,
+            sh: vec![0.0; 3 * copies],
+        };
+        fragments::count(&scene, &camera, &Settings::default())
+    };
+    // Larger than the picture: 1/100 of the light is left, then 1e-4, then 1e-6, where 4e-6 are enough.
+    assert_eq!(count(10, 200.0, 1.0), 3 * 37 * 41);
+    assert_eq!(count(10, 200.0, 0.1), 10 * 37 * 41);
+    let small = count(1, 0.1, 0.5);
+    assert!((10..200).contains(&small), "{small}");
+    assert_eq!(count(5, 0.1, 0.003), 0, "below 1/255");
 }

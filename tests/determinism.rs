@@ -188,3 +188,45 @@ fn splats_of_one_depth_keep_the_order_of_the_file() {
         }
     }
 }
+
+/// The sort leaves out passes in which all keys agree; how many there would be follows from the box around all centres.
+#[test]
+fn a_scene_with_a_wider_box_is_sorted_alike() {
+    let mut headless = common::headless();
+    let eye = DVec3::new(0.0, 0.0, -5.0);
+    let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, SIZE).expect("a view");
+    let scene = generate(Kind::General, 3_000, 4);
+    // From one depth for all to depths that differ in three digits of a key and, around the eye, in four.
+    for (thickness, shift) in [
+        (0.0, 0.0),
+        (1e-6, 0.0),
+        (1e-3, 0.0),
+        (1.0, 0.0),
+        (4.0, -4.7),
+    ] {
+        let mut thin = scene.clone();
+        for position in &mut thin.positions {
+            position.z = position.z * thickness + shift;
+        }
+        // One that nobody sees, beside the others, behind them and a long way behind.
+        for raster in [Raster::Tiles, Raster::Quad] {
+            let settings = Settings {
+                raster,
+                ..Settings::default()
+            };
+            let pictures = [0.0, 0.05, 5.0, 1e6].map(|behind| {
+                thin.opacities[7] = 0.0;
+                thin.positions[7] = glam::Vec3::new(0.0, 0.0, behind + shift);
+                headless.load(&thin).expect("uploads");
+                let rendered = headless.render(&camera, &Clip::default(), &settings);
+                assert!(rendered.expect("renders").counts.drawn > 1000);
+                headless.picture().expect("reads back")
+            });
+            let first = &pictures[0];
+            assert!(
+                pictures.iter().all(|picture| picture == first),
+                "{thickness}, {raster:?}"
+            );
+        }
+    }
+}

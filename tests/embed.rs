@@ -208,18 +208,28 @@ fn a_host_whose_frames_take_over_from_each_other_gets_the_same_pictures() {
             headless.picture().expect("reads back")
         })
         .collect();
-    for raster in [Raster::Tiles, Raster::Quad] {
+    let mut rasters = vec![Raster::Tiles, Raster::Quad];
+    if headless.device().support().mesh_shader {
+        rasters.push(Raster::Mesh);
+    } else {
+        eprintln!("SKIPPED: this device has no mesh shaders");
+    }
+    let bindings = [Bindings::Bound, Bindings::Address];
+    let ways = rasters
+        .iter()
+        .flat_map(|raster| bindings.map(|bindings| (*raster, bindings)));
+    for (raster, bindings) in ways {
         let mut host = host(FLOATS, VIEW, true);
         let device = adopt(&host);
         let buffers =
             SceneBuffers::upload(&device, &scene, rara::ShFormat::Float).expect("uploads");
         let desc = RendererDesc {
             reuse: true,
-            ..in_flight(FLOATS, Bindings::Bound)
+            ..in_flight(FLOATS, bindings)
         };
         let mut renderer = Renderer::new(&device, desc).expect("a renderer");
         let check = |host: &Host, pixels: &[[f32; 4]], frame: usize| {
-            let what = format!("{raster:?}, frame {frame}");
+            let what = format!("{raster:?}, {bindings:?}, frame {frame}");
             assert_shows(&what, FLOATS, pixels, &expected(host, &truth[frame], 0));
         };
         let mut reused = 0;

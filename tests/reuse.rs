@@ -5,7 +5,10 @@ mod common;
 
 use glam::DVec3;
 use rara::gpu::Bindings;
-use rara::{Camera, Clip, ClipOp, Decay, Gaussians, Headless, Mode, Plane, Raster, Settings};
+use rara::{
+    Camera, Clip, ClipOp, Decay, ExactForm, Gaussians, Headless, Mode, Plane, Raster, Settings,
+    TargetFormat,
+};
 
 const SIZE: (u32, u32) = (250, 190);
 /// All that comes before the pixels.
@@ -19,8 +22,12 @@ struct Pair {
 
 impl Pair {
     fn new(scene: &Gaussians) -> Self {
+        Self::by(Bindings::Bound, scene)
+    }
+
+    fn by(bindings: Bindings, scene: &Gaussians) -> Self {
         let [keeps, forgets] = [(); 2].map(|()| {
-            let mut headless = common::headless_by(Bindings::Bound);
+            let mut headless = common::headless_by(bindings);
             headless.load(scene).expect("uploads");
             headless
         });
@@ -148,6 +155,45 @@ fn a_camera_that_moves_keeps_the_clips_classes() {
     }
 }
 
+/// A frame of a walk: each differs from the one before in one thing, mostly in where the clip is.
+#[derive(Clone)]
+struct Frame {
+    settings: Settings,
+    size: (u32, u32),
+    camera: usize,
+    share: f64,
+    planes: usize,
+    op: ClipOp,
+}
+
+impl Frame {
+    fn step(&mut self, rasters: &[Raster], pick: &mut impl FnMut(usize) -> usize) {
+        let settings = &mut self.settings;
+        match pick(24) {
+            0 => self.camera = pick(3),
+            1 => self.size = common::scaled([SIZE, (97, 301), (8, 8)][pick(3)]),
+            2 => settings.mode = [Mode::None, Mode::Hard, Mode::Rara, Mode::Exact][pick(4)],
+            3 => settings.raster = rasters[pick(rasters.len())],
+            4 => settings.decay = [None, Some(Decay::Linear), Some(Decay::Depth)][pick(3)],
+            5 => {
+                settings.form = [ExactForm::Auto, ExactForm::Beam, ExactForm::Affine][pick(3)];
+            }
+            6 => {
+                let formats = [
+                    TargetFormat::Unorm8,
+                    TargetFormat::Half,
+                    TargetFormat::Float,
+                ];
+                settings.precision.target = formats[pick(3)];
+            }
+            7 => self.planes = 1 + pick(2),
+            8 => settings.trace_all = pick(3) == 0,
+            9 => self.op = [ClipOp::And, ClipOp::Or][pick(2)],
+            _ => self.share = [0.2, 0.4, 0.5, 0.55, 0.8][pick(5)],
+        }
+    }
+}
+
 #[test]
 fn whatever_changes_the_bytes_are_those_of_a_whole_frame() {
     let mut state = 11_u64;
@@ -157,32 +203,40 @@ fn whatever_changes_the_bytes_are_those_of_a_whole_frame() {
             .wrapping_add(1);
         (state >> 33) as usize % count
     };
+    let normals = [DVec3::X, DVec3::new(0.1, 0.9, -0.3).normalize()];
+    let steps = (80.0 * common::scale()) as usize;
     for (_, scene) in common::generated_scenes(4_000) {
-        let mut pair = Pair::new(&scene);
-        let mut cameras = common::views(&scene, 3, SIZE);
-        // Inside the scene, where splats are large, beside the picture and behind the eye.
-        cameras[2].eye = rara::scene::Bounds::of(&scene).centre();
-        let normals = [DVec3::X, DVec3::new(0.1, 0.9, -0.3).normalize()];
-        let (mut camera, mut share, mut settings) = (0, 0.5, Settings::default());
-        let mut planes = 1;
-        for _ in 0..40 {
-            match pick(8) {
-                0 => camera = pick(3),
-                1 => settings.mode = [Mode::None, Mode::Hard, Mode::Rara, Mode::Exact][pick(4)],
-                2 => settings.raster = rasters(&pair.keeps)[pick(2)],
-                3 => settings.decay = [None, Some(Decay::Linear), Some(Decay::Depth)][pick(3)],
-                4 => planes = 1 + pick(2),
-                5 => settings.trace_all = pick(3) == 0,
-                _ => share = [0.2, 0.4, 0.5, 0.55, 0.8][pick(5)],
-            }
-            let clip = Clip {
-                planes: normals[..planes]
-                    .iter()
-                    .map(|&normal| plane(&scene, normal, share))
-                    .collect(),
-                op: [ClipOp::And, ClipOp::Or][pick(2)],
+        for bindings in [Bindings::Bound, Bindings::Address] {
+            let mut pair = Pair::by(bindings, &scene);
+            let rasters = rasters(&pair.keeps);
+            let mut frame = Frame {
+                settings: Settings::default(),
+                size: common::scaled(SIZE),
+                camera: 0,
+                share: 0.5,
+                planes: 1,
+                op: ClipOp::And,
             };
-            pair.draw(&cameras[camera], &clip, &settings);
+            let mut sweeps = 0;
+            for _ in 0..steps {
+                frame.step(&rasters, &mut pick);
+                let mut cameras = common::views(&scene, 3, frame.size);
+                // Inside the scene, where splats are large, beside the picture and behind the eye.
+                cameras[2].eye = rara::scene::Bounds::of(&scene).centre();
+                let clip = Clip {
+                    planes: normals[..frame.planes]
+                        .iter()
+                        .map(|&normal| plane(&scene, normal, frame.share))
+                        .collect(),
+                    op: frame.op,
+                };
+                let skipped = pair.draw(&cameras[frame.camera], &clip, &frame.settings);
+                sweeps += usize::from(skipped.contains(&"project") && !skipped.contains(&"splat"));
+            }
+            assert!(
+                sweeps > steps / 6,
+                "only {sweeps} frames were those of a sweep"
+            );
         }
     }
 }

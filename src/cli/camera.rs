@@ -48,7 +48,7 @@ pub(super) struct CameraArgs {
     /// One camera: JSON with width, height, fx, fy, cx, cy, world_to_camera (16 numbers, row-major)
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
-    /// Picture size [default: 1024x1024, or the camera file's own]
+    /// Picture size [default: 1024x1024, or the camera file's own; a window's: 1280x720]
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     size: Option<(u32, u32)>,
 }
@@ -82,6 +82,23 @@ impl CameraArgs {
     /// Whether `--view all` was typed: a run of several frames, however many there are.
     pub(super) fn all(&self) -> bool {
         self.view == "all"
+    }
+
+    /// The same flags for a command with another default size than the usual.
+    #[cfg(feature = "view")]
+    pub(super) fn sized_by_default(self, size: (u32, u32)) -> Self {
+        let from_file = self.camera.is_some() || self.cameras.is_some();
+        Self {
+            size: self.size.or((!from_file).then_some(size)),
+            ..self
+        }
+    }
+
+    /// The world's up direction, where it is not a file that places the camera.
+    #[cfg(feature = "view")]
+    pub(super) fn up(&self) -> Option<DVec3> {
+        let from_file = self.camera.is_some() || self.cameras.is_some();
+        (!from_file).then_some(self.up)
     }
 
     /// The cameras that were meant; reads their files.

@@ -26,6 +26,8 @@ mod sheet;
 mod stress;
 mod sweep;
 mod values;
+#[cfg(feature = "view")]
+mod view;
 
 use std::process::ExitCode;
 
@@ -58,6 +60,8 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Render(render::Render),
+    #[cfg(feature = "view")]
+    View(view::View),
     Sweep(sweep::Sweep),
     Ablate(ablate::Ablate),
     Bench(bench::Bench),
@@ -73,6 +77,8 @@ impl Command {
     fn run(self) -> Result<(), Failure> {
         match self {
             Self::Render(command) => command.run(),
+            #[cfg(feature = "view")]
+            Self::View(command) => command.run(),
             Self::Sweep(command) => command.run(),
             Self::Ablate(command) => command.run(),
             Self::Bench(command) => command.run(),

@@ -38,8 +38,8 @@ pub(super) struct Inner {
     allocated_at_most: AtomicU64,
     /// Idle command buffers of [`Device::submit_and_wait`].
     pub(super) idle: Mutex<Vec<OneOff>>,
-    /// `None` for a host's device, which is never destroyed here.
-    owned: Option<Instance>,
+    /// `None` for a host's device, which is never destroyed here. Shared with a window's surface.
+    owned: Option<Arc<Instance>>,
 }
 
 impl Device {
@@ -49,7 +49,7 @@ impl Device {
         info: DeviceInfo,
         support: Support,
         allocator: Allocator,
-        owned: Option<Instance>,
+        owned: Option<Arc<Instance>>,
     ) -> Self {
         let (instance, raw) = (desc.instance, desc.device);
         Self {
@@ -119,6 +119,11 @@ impl Device {
             )
         };
         found.map(|found| found.sample_counts).unwrap_or_default()
+    }
+
+    #[cfg(feature = "view")]
+    pub(super) fn physical(&self) -> vk::PhysicalDevice {
+        self.inner.physical
     }
 
     pub(super) fn properties(&self) -> vk::PhysicalDeviceProperties {

@@ -98,7 +98,7 @@ pub(crate) unsafe fn describe(
 
 /// Every device that Vulkan finds on this machine, the unusable ones with the reason.
 pub fn list_devices() -> Result<Vec<DeviceInfo>> {
-    let instance = Instance::new("rara", false)?;
+    let instance = Instance::new("rara", false, &[])?;
     Ok(instance
         .devices()?
         .into_iter()

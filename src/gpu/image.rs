@@ -33,8 +33,8 @@ pub struct Image {
     allocation: Option<Allocation>,
 }
 
-/// Every image here has one level and one layer of colour.
-const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
+/// Every target has one level and one layer of colour.
+pub(super) const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
     aspect_mask: vk::ImageAspectFlags::COLOR,
     base_mip_level: 0,
     level_count: 1,
@@ -164,22 +164,10 @@ impl Image {
             // Undefined forgets the old contents, which the clear would anyway.
             .old_layout(vk::ImageLayout::UNDEFINED)
             .new_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
-        let attachments = [vk::RenderingAttachmentInfo::default()
-            .image_view(self.view)
-            .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
-            .load_op(vk::AttachmentLoadOp::CLEAR)
-            .store_op(vk::AttachmentStoreOp::STORE)
-            .clear_value(vk::ClearValue {
-                color: vk::ClearColorValue { float32: clear },
-            })];
-        let info = vk::RenderingInfo::default()
-            .render_area(self.extent.into())
-            .layer_count(1)
-            .color_attachments(&attachments);
         // SAFETY: the caller vouches for `cmd`; the view is the image's own and covers the render area.
         unsafe {
-            self.barrier(cmd, to_draw);
-            self.device.raw().cmd_begin_rendering(cmd, &info);
+            barrier(&self.device, cmd, self.handle, to_draw);
+            begin_rendering(&self.device, cmd, (self.view, self.extent), clear);
         }
     }
 
@@ -199,7 +187,7 @@ impl Image {
         // SAFETY: the caller vouches for `cmd`, and that the image is being rendered to.
         unsafe {
             self.device.raw().cmd_end_rendering(cmd);
-            self.barrier(cmd, to_copy);
+            barrier(&self.device, cmd, self.handle, to_copy);
         }
     }
 
@@ -237,20 +225,55 @@ impl Image {
             self.device.raw().cmd_pipeline_barrier2(cmd, &info);
         }
     }
+}
 
-    /// # Safety
-    ///
-    /// `cmd` must be recording on this image's device, outside rendering.
-    unsafe fn barrier(&self, cmd: vk::CommandBuffer, barrier: vk::ImageMemoryBarrier2<'_>) {
-        let barriers = [barrier
-            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .image(self.handle)
-            .subresource_range(WHOLE)];
-        let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
-        // SAFETY: the caller vouches for `cmd`.
-        unsafe { self.device.raw().cmd_pipeline_barrier2(cmd, &info) };
-    }
+/// Records a target's way from one layout and use to the next.
+///
+/// # Safety
+///
+/// `cmd` must be recording on the device, outside rendering, and the image must outlive its execution.
+pub(super) unsafe fn barrier(
+    device: &Device,
+    cmd: vk::CommandBuffer,
+    image: vk::Image,
+    barrier: vk::ImageMemoryBarrier2<'_>,
+) {
+    let barriers = [barrier
+        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .image(image)
+        .subresource_range(WHOLE)];
+    let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
+    // SAFETY: the caller vouches for `cmd` and image.
+    unsafe { device.raw().cmd_pipeline_barrier2(cmd, &info) };
+}
+
+/// Clears a target and begins rendering to all of it.
+///
+/// # Safety
+///
+/// `cmd` must be recording on the device, outside rendering; the view is of a target of this extent, ready to be drawn
+/// into, and outlives the execution.
+pub(super) unsafe fn begin_rendering(
+    device: &Device,
+    cmd: vk::CommandBuffer,
+    (view, extent): (vk::ImageView, vk::Extent2D),
+    clear: [f32; 4],
+) {
+    let attachments = [vk::RenderingAttachmentInfo::default()
+        .image_view(view)
+        .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
+        .load_op(vk::AttachmentLoadOp::CLEAR)
+        .store_op(vk::AttachmentStoreOp::STORE)
+        .clear_value(vk::ClearValue {
+            color: vk::ClearColorValue { float32: clear },
+        })];
+    let info = vk::RenderingInfo::default()
+        .render_area(extent.into())
+        .layer_count(1)
+        .color_attachments(&attachments);
+    // SAFETY: the caller vouches for `cmd` and the view.
+    unsafe { device.raw().cmd_begin_rendering(cmd, &info) };
 }
 
 impl Drop for Image {

@@ -17,12 +17,17 @@ pub(crate) struct Instance {
     /// Debug labels and names reach a layer, a capture tool or nobody.
     pub(crate) debug_utils: bool,
     /// Keeps the loader's library open.
-    _entry: ash::Entry,
+    pub(super) entry: ash::Entry,
 }
 
 impl Instance {
-    /// Loads Vulkan and creates an instance, with the validation layer where asked for.
-    pub(crate) fn new(application_name: &str, with_validation: bool) -> Result<Self> {
+    /// Loads Vulkan and creates an instance, with the validation layer where asked for. `needed` are extensions without
+    /// which there is none: a window's.
+    pub(crate) fn new(
+        application_name: &str,
+        with_validation: bool,
+        needed: &[&'static CStr],
+    ) -> Result<Self> {
         // SAFETY: the system's Vulkan loader has no initialisation that could break the process.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| {
             Error::Device(format!(
@@ -43,6 +48,16 @@ impl Instance {
         let portability = has(khr::portability_enumeration::NAME);
 
         let mut extensions = Vec::new();
+        for name in needed {
+            if !has(name) {
+                return Err(Error::Device(format!(
+                    "Vulkan on this machine cannot draw into windows: neither its loader nor a driver offers {}; \
+                     install the graphics card's own driver, or draw without a window (rara render)",
+                    name.to_string_lossy()
+                )));
+            }
+            extensions.push(name.as_ptr());
+        }
         for (wanted, name) in [
             (debug_utils, ext::debug_utils::NAME),
             (portability, khr::portability_enumeration::NAME),
@@ -90,11 +105,11 @@ impl Instance {
             raw,
             validation: None,
             debug_utils,
-            _entry: entry,
+            entry,
         };
         if with_validation {
             instance.validation = Some(Validation::new(
-                &instance._entry,
+                &instance.entry,
                 &instance.raw,
                 messages.clone(),
             )?);

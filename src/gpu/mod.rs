@@ -1,7 +1,8 @@
 //! Vulkan without a single Gaussian: device, memory, accesses and barriers, recording, pipelines, timing.
 //!
 //! Everything here records into a command buffer that somebody else submits, except [`Device::headless`],
-//! [`Device::submit_and_wait`] and the uploads and downloads built on it.
+//! [`Device::submit_and_wait`] and the uploads and downloads built on it, and what a window needs: surface, swapchain
+//! and frames in flight.
 
 mod access;
 mod attachments;
@@ -10,6 +11,8 @@ mod devices;
 mod draw;
 mod failure;
 mod image;
+#[cfg(feature = "view")]
+mod in_flight;
 mod instance;
 mod layout;
 mod memory;
@@ -21,6 +24,10 @@ mod recorder;
 mod requirements;
 mod shader;
 mod submit;
+#[cfg(feature = "view")]
+mod surface;
+#[cfg(feature = "view")]
+mod swapchain;
 mod timer;
 mod tracker;
 mod upload;
@@ -32,6 +39,8 @@ pub use device::Device;
 pub use devices::{DeviceInfo, list_devices};
 pub use draw::Drawer;
 pub use image::{Image, ImageDesc};
+#[cfg(feature = "view")]
+pub(crate) use in_flight::{FRAMES, InFlight};
 pub use layout::Bindings;
 pub use memory::{Buffer, BufferDesc, Location};
 pub use open::{AdoptDesc, DeviceDesc};
@@ -42,5 +51,9 @@ pub(crate) use pipeline_file::PipelineFile;
 pub use recorder::{DepthImage, Groups, Recorder, group_grid};
 pub use requirements::{Features, Support, check};
 pub use shader::{BufferAccess, BufferUse, MAX_BUFFERS, MAX_PARAMS, Shader};
+#[cfg(feature = "view")]
+pub(crate) use surface::{Surface, Window};
+#[cfg(feature = "view")]
+pub(crate) use swapchain::Swapchain;
 pub use timer::Timer;
 pub use tracker::Tracker;

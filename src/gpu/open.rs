@@ -1,12 +1,15 @@
 //! Two ways to a device: headless use opens one of its own, a host lends one.
 
+use std::ffi::CStr;
+use std::sync::Arc;
+
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use gpu_allocator::{AllocationSizes, AllocatorDebugSettings};
 
 use super::failure::failed;
 use super::instance::Instance;
-use super::{Device, devices, requirements};
+use super::{Device, DeviceInfo, devices, requirements};
 use crate::{Error, Result};
 
 /// What [`Device::headless`] opens.
@@ -65,8 +68,19 @@ impl std::fmt::Debug for AdoptDesc {
 impl Device {
     /// Opens a device of its own, without a window.
     pub fn headless(desc: &DeviceDesc) -> Result<Self> {
-        let owned = Instance::new(&desc.application_name, desc.validation)?;
-        let (physical, infos): (Vec<_>, Vec<_>) = owned.devices()?.into_iter().unzip();
+        let instance = Instance::new(&desc.application_name, desc.validation, &[])?;
+        let candidates = instance.devices()?;
+        Self::open(Arc::new(instance), candidates, desc, &[])
+    }
+
+    /// Opens the one of the instance's devices that is meant, with extensions that all usable ones among them offer.
+    pub(super) fn open(
+        owned: Arc<Instance>,
+        candidates: Vec<(vk::PhysicalDevice, DeviceInfo)>,
+        desc: &DeviceDesc,
+        needed: &[&'static CStr],
+    ) -> Result<Self> {
+        let (physical, infos): (Vec<_>, Vec<_>) = candidates.into_iter().unzip();
         let chosen = devices::choose(&infos, desc.selector.as_deref())?;
         let (physical, info) = (physical[chosen], infos[chosen].clone());
         let support = info.support.clone().map_err(Error::Device)?;
@@ -78,6 +92,7 @@ impl Device {
         let extensions: Vec<_> = support
             .extensions()
             .iter()
+            .chain(needed)
             .map(|name| name.as_ptr())
             .collect();
         let mut features = support.features();

@@ -152,7 +152,7 @@ impl Buffers {
             splats: gpu("splats", n * size_of::<Splat>() as u64)?,
             keys: [gpu("keys", n * 4)?, gpu("sorted_keys", n * 4)?],
             order: [gpu("order", n * 4)?, gpu("sorted_order", n * 4)?],
-            histogram: gpu("histogram", digits * sizes.sort_runs * 4)?,
+            histogram: gpu("histogram", (digits + 2) * sizes.sort_runs * 4)?,
             tile_masks: gpu("tile_masks", sizes.masks * 16)?,
             tiles: if plan.raster == Raster::Tiles {
                 Some(TileBuffers {

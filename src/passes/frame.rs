@@ -92,9 +92,7 @@ fn view(
     // Conic, quad, colour and depth key of the survivors.
     recorder.pass("project", |r| stages.project(plan).record(r, scene, b));
     // Their order.
-    if plan.sort_passes > 0 {
-        recorder.pass("sort", |r| stages.sort.record(r, scene, b, plan));
-    }
+    recorder.pass("sort", |r| stages.sort.record(r, scene, b, plan));
     let tiles = stages.bin.as_ref().zip(b.tiles.as_ref());
     if let Some((bin, t)) = tiles.filter(|_| plan.raster == Raster::Tiles) {
         // Which of them each tile of pixels holds.

@@ -35,7 +35,7 @@ pub(crate) struct Plan {
     pub(crate) miss: u32,
     /// `PHI_*`.
     pub(crate) phi: u32,
-    /// Passes of the sort.
+    /// Passes of the sort that the scene's bounds ask for, at least one.
     pub(crate) sort_passes: u32,
     /// Invocations of the sort.
     pub(crate) sort_runs: u32,
@@ -200,11 +200,7 @@ impl Plan {
                 Miss::Peak => types::MISS_PEAK,
             },
             phi: settings.precision.phi.code(),
-            sort_passes: if scene.gaussians > 1 {
-                keys.passes()
-            } else {
-                0
-            },
+            sort_passes: keys.passes(),
             sort_runs: scene.sort_runs,
             raster: scene.raster,
             tile_digits: digits(data.tile_count),
@@ -252,7 +248,6 @@ impl Plan {
             Work::Sweep { base, .. } => (false, base, true),
             Work::Draw => (false, false, false),
         };
-        let sort = view && self.gaussians > 1;
         let tiled = self.raster == Raster::Tiles || is_empty;
         let stages = [
             ("clip", clip, true),
@@ -261,7 +256,7 @@ impl Plan {
             ("compact", view, true),
             ("cutoff", cut && self.cutoff, true),
             ("project", view, true),
-            ("sort", sort, true),
+            ("sort", view, true),
             ("bin", view, tiled),
             ("tiles", cut, tiled),
             ("splat", true, true),
@@ -311,11 +306,22 @@ fn camera_constants(data: &mut FrameData, camera: &Camera) {
 /// precision's range.
 const FARTHEST: f64 = (1_u128 << 126) as f64;
 
-/// The planes without repetitions: cutting twice is cutting once, and a splat that one plane cuts costs less.
+/// The planes without repetitions, since cutting twice is cutting once, and in an order of their own: to the bit no
+/// picture depends on the order in which planes are given.
 fn distinct(planes: &[Plane]) -> Vec<Plane> {
-    let is_first = |&(index, plane): &(usize, &Plane)| !planes[..index].contains(plane);
-    let first = planes.iter().enumerate().filter(is_first);
-    first.map(|(_, plane)| *plane).collect()
+    let key = |plane: &Plane| {
+        let [x, y, z] = plane.normal().to_array();
+        [x, y, z, plane.offset()]
+    };
+    let mut planes = planes.to_vec();
+    planes.sort_by(|a, b| {
+        let pairs = key(a).into_iter().zip(key(b));
+        pairs.fold(std::cmp::Ordering::Equal, |order, (a, b)| {
+            order.then((a + 0.0).total_cmp(&(b + 0.0))) // -0 is 0
+        })
+    });
+    planes.dedup();
+    planes
 }
 
 /// A vector as the sum of two single-precision ones.

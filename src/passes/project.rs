@@ -51,7 +51,7 @@ impl Project {
     }
 
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, b: &Buffers) {
-        let (keys, order) = (&b.keys[0], &b.order[0]);
+        let [keys, same_keys] = &b.keys;
         let buffers = [
             &b.frame,
             &scene.gaussians,
@@ -60,7 +60,7 @@ impl Project {
             &b.counts,
             &b.splats,
             keys,
-            order,
+            same_keys,
             &b.cuts,
             &b.tile_masks,
         ];

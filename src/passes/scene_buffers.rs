@@ -89,6 +89,18 @@ impl SceneBuffers {
         self.gaussians.size() + self.sh.size() + self.blocks.size()
     }
 
+    /// Bounds that settle nothing: each Gaussian is looked at for itself.
+    #[cfg(test)]
+    pub(crate) fn undecide(&self, device: &Device) -> Result<()> {
+        const FAR: f32 = 1e30;
+        let anywhere = crate::types::Block {
+            low_reach: [-FAR, -FAR, -FAR, FAR],
+            high_sigma: [FAR, FAR, FAR, -FAR],
+        };
+        let count = self.count.div_ceil(crate::limits::BLOCK_SIZE) as usize;
+        device.upload(&self.blocks, 0, cast_slice(&vec![anywhere; count]))
+    }
+
     /// The largest buffer, bytes; the blocks' is never that.
     pub(crate) fn largest(&self) -> u64 {
         self.gaussians.size().max(self.sh.size())

@@ -12,6 +12,13 @@ use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::shaders;
 use crate::types::FrameCounts;
 
+/// What is sorted, as the shaders know it.
+const SURVIVORS: u32 = 0;
+const PAIRS: u32 = 1;
+
+// So many passes have indirect commands of their own in FrameCounts.
+const _: () = assert!(u32::BITS.div_ceil(limits::SORT_BITS) <= 4);
+
 #[derive(Debug)]
 pub(crate) struct Sort {
     count: ComputePipeline,
@@ -31,7 +38,8 @@ impl Sort {
     }
 
     /// Sorts the survivors by their depths, and those of one depth by their number in the file; the result is in
-    /// `keys[plan.sorted()]` and `order[plan.sorted()]`.
+    /// `keys[plan.sorted()]` and `order[plan.sorted()]`. Of the passes that the scene's bounds ask for the device leaves
+    /// out the first ones, as many as there are leading digits in which the keys agree (sort.glsl).
     pub(crate) fn record(
         &self,
         recorder: &mut Recorder<'_>,
@@ -39,9 +47,20 @@ impl Sort {
         b: &Buffers,
         plan: &Plan,
     ) {
-        let groups = offset_of!(FrameCounts, sort_groups) as u64;
+        let sorts = |pass: usize| {
+            let size = size_of::<[u32; 4]>();
+            let at = offset_of!(FrameCounts, sort_pass_groups) + pass * size;
+            Groups::Indirect(&b.counts, at as u64)
+        };
+        let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, sort_groups) as u64);
         let pairs = [(&b.keys[0], &b.order[0]), (&b.keys[1], &b.order[1])];
-        self.passes(recorder, b, [0, groups as u32], pairs, 0..plan.sort_passes);
+        for pass in 0..plan.sort_passes as usize {
+            let params = [pass as u32, SURVIVORS, plan.sort_passes];
+            let (from, to) = (pairs[pass % 2], pairs[(pass % 2) ^ 1]);
+            // What the first pass that there is sorts by has been counted before anybody knew which one it is.
+            let counts = if pass == 0 { groups } else { sorts(pass - 1) };
+            self.pass(recorder, b, params, [from, to], [counts, sorts(pass)]);
+        }
         if scene.reordered {
             let sorted = plan.sorted();
             let ties = [
@@ -52,12 +71,7 @@ impl Sort {
                 &b.order[sorted ^ 1],
                 &b.splats,
             ];
-            recorder.dispatch(
-                &self.ties,
-                &ties,
-                &[0, 0],
-                Groups::Indirect(&b.counts, groups),
-            );
+            recorder.dispatch(&self.ties, &ties, &[0, SURVIVORS], groups);
         }
     }
 
@@ -69,42 +83,39 @@ impl Sort {
         t: &TileBuffers,
         digits: u32,
     ) {
-        let groups = offset_of!(FrameCounts, pair_groups) as u64;
+        let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, pair_groups) as u64);
         let pairs = [
             (&t.pair_tiles[0], &t.pair_splats[0]),
             (&t.pair_tiles[1], &t.pair_splats[1]),
         ];
-        self.passes(recorder, b, [1, groups as u32], pairs, 1..digits);
+        for (pass, digit) in (1..digits).enumerate() {
+            let (from, to) = (pairs[pass % 2], pairs[(pass % 2) ^ 1]);
+            self.pass(recorder, b, [digit, PAIRS, 0], [from, to], [groups, groups]);
+        }
     }
 
-    /// What is sorted, as the shaders know it, and where its indirect dispatch stands; the first pass reads `pairs[0]`.
-    fn passes(
+    /// Counts, scans and scatters.
+    fn pass(
         &self,
         recorder: &mut Recorder<'_>,
         b: &Buffers,
-        [what, groups]: [u32; 2],
-        pairs: [(&Buffer, &Buffer); 2],
-        digits: std::ops::Range<u32>,
+        params: [u32; 3],
+        [(keys, order), (sorted_keys, sorted_order)]: [(&Buffer, &Buffer); 2],
+        [counts, scatters]: [Groups<'_>; 2],
     ) {
-        let runs = Groups::Indirect(&b.counts, groups.into());
-        for (pass, digit) in digits.enumerate() {
-            let first_bit = [digit * limits::SORT_BITS, what];
-            let ((keys, order), (sorted_keys, sorted_order)) =
-                (pairs[pass % 2], pairs[(pass % 2) ^ 1]);
-            let count = [&b.frame, &b.counts, keys, &b.histogram];
-            recorder.dispatch(&self.count, &count, &first_bit, runs);
-            let scan = [&b.frame, &b.histogram];
-            recorder.dispatch(&self.scan, &scan, &first_bit, Groups::Count(1));
-            let scatter = [
-                &b.frame,
-                &b.counts,
-                keys,
-                order,
-                &b.histogram,
-                sorted_keys,
-                sorted_order,
-            ];
-            recorder.dispatch(&self.scatter, &scatter, &first_bit, runs);
-        }
+        let count = [&b.frame, &b.counts, keys, &b.histogram];
+        recorder.dispatch(&self.count, &count, &params, counts);
+        let scan = [&b.frame, &b.counts, &b.histogram];
+        recorder.dispatch(&self.scan, &scan, &params, Groups::Count(1));
+        let scatter = [
+            &b.frame,
+            &b.counts,
+            keys,
+            order,
+            &b.histogram,
+            sorted_keys,
+            sorted_order,
+        ];
+        recorder.dispatch(&self.scatter, &scatter, &params, scatters);
     }
 }

@@ -14,7 +14,6 @@ use super::orthant::{Direction, Threshold, orthant};
 use super::real::{Real, Vec3};
 use super::view::View;
 use crate::ClipOp;
-use crate::limits::FRONT_MIN;
 
 /// The plane function given a pixel: normal with mean `mean[0] + mean[1] dx + mean[2] dy`.
 #[derive(Debug, Clone, Copy)]
@@ -165,9 +164,8 @@ impl<T: Real> Beam<T> {
         let ray = [b1 - self.lean * dx, b2 - self.lean * dy];
         let threshold = |plane: &UnitPlane<T>| AffinePlane::new(ray, plane).threshold(dx, dy);
         let planes = self.planes.iter().map(threshold);
-        let front = self.front.as_ref().map(|plane| threshold(plane).z.phi());
-        match front.filter(|&front| front >= T::of(f64::from(FRONT_MIN))) {
-            Some(front) => in_front(self.op, planes, front),
+        match &self.front {
+            Some(front) => in_front(self.op, planes, threshold(front).z),
             None => combine(self.op, planes),
         }
     }
@@ -186,26 +184,41 @@ pub fn combine<T: Real>(op: ClipOp, planes: impl Iterator<Item = Threshold<T>>) 
     }
 }
 
-/// The same where the eye is within the splat and only the share `front` is before it: of that share.
+/// The same where the eye is within the splat: of what is before it, the part beyond `front` on the ray.
 ///
 /// Such a splat is so large that the low-pass is nothing. On one ray every plane is a threshold in the same normal
 /// variable: "far" planes keep what lies beyond theirs, "near" ones what lies before. Of each kind only the strictest
-/// matters, and the two kinds overlap in what is left of 1; the eye is one more far threshold.
+/// matters, and the eye is one more far threshold.
 fn in_front<T: Real>(op: ClipOp, planes: impl Iterator<Item = Threshold<T>>, front: T) -> T {
     let (zero, one) = (T::zero(), T::one());
     let of = |planes: &mut dyn Iterator<Item = Threshold<T>>| {
-        let (mut far, mut gone) = (front, zero);
+        let (mut far, mut gone) = (one, zero);
         for plane in planes {
             if plane.far {
-                far = far.min(plane.z.phi());
+                far = far.min(tail_ratio(plane.z, front));
             } else {
-                gone = gone.max((-plane.z).phi());
+                gone = gone.max(tail_ratio(-plane.z, front));
             }
         }
-        (far - gone).max(zero) / front
+        (far - gone).max(zero)
     };
     match op {
         ClipOp::And => of(&mut { planes }),
         ClipOp::Or => one - of(&mut planes.map(Threshold::complement)),
     }
+}
+
+/// `Phi(z) / Phi(front)`, at most 1, however little of the normal distribution is left.
+fn tail_ratio<T: Real>(z: T, front: T) -> T {
+    if z >= front {
+        return T::one();
+    }
+    let (z, front) = (z.wide(), front.wide());
+    T::of(if front > -30.0 {
+        z.phi() / front.phi()
+    } else {
+        // Mills's ratio, of which the next term is 3 / x^4.
+        let mills = |x: f64| (1.0 - 1.0 / (x * x)) / x;
+        (0.5 * (front - z) * (front + z)).exp() * mills(-z) / mills(-front)
+    })
 }

@@ -10,10 +10,13 @@
 //! that there is. Near dependence its edge `exp(-(h - k)^2 / 2 c^2)` at `c = sqrt(1 - rho^2)` is integrated in closed
 //! form, and by nodes only what smoothly changes beside it, as Drezner and Wesolowsky do (1990).
 //!
-//! Three and more have no such form. As Mendell and Elston do (1974), what the strictest leaves of the next two is taken
-//! for normal again, and from the fourth on each is taken to depend on the strictest only. That errs by some hundredths at
-//! most; the chances of pairs bound it from both sides (from below by Hunter's tree, 1976), and where the correlations are
-//! full the bounds meet in the share.
+//! Three: the same identity along a path from the first variable independent of the other two, which are those that
+//! depend most on each other, to the correlations that there are; each of the two that grow adds its bivariate density times
+//! the chance that the third is positive (Genz, 2004).
+//!
+//! Four and more, on one pixel of one splat, are met at the ends of small boxes only: the pairs' dependences are taken to
+//! add up (Kirkwood's superposition), between bounds that the pairs give (from below Hunter's tree, 1976), which meet in
+//! the share where correlations are full.
 
 use super::real::{Real, Vec3};
 
@@ -124,7 +127,8 @@ pub fn orthant<T: Real>(thresholds: impl Iterator<Item = Threshold<T>>) -> T {
         [] => one,
         [one] => one.z.phi(),
         [a, b] => both_positive(a.z, b.z, Correlation::of(a, b)),
-        several => several_positive(several),
+        [a, b, c] => three_positive([a, b, c]),
+        many => many_positive(many),
     }
 }
 
@@ -189,60 +193,78 @@ fn both_positive<T: Real>(h: T, k: T, correlation: Correlation<T>) -> T {
     share.max(bounds[0]).min(bounds[1])
 }
 
-/// The chance that three and more variables are positive; the strictest first.
-fn several_positive<T: Real>(open: &[Threshold<T>]) -> T {
-    let (one, tiny) = (T::one(), T::of(1e-6));
-    let first = &open[0];
-    // The strictest of the other kind, if there is one.
-    let other = open.iter().position(|t| t.far != first.far);
-    let second = other.unwrap_or(1);
-    let rest = || (1..open.len()).filter(|&i| i != second);
-    let joint = |i: usize, j: usize| {
-        both_positive(open[i].z, open[j].z, Correlation::of(&open[i], &open[j]))
-    };
-    let mut high = joint(0, second);
-    let mut low = high;
-    let mut share = one;
-    for (at, i) in rest().enumerate() {
-        let (with_first, with_second) = (joint(0, i), joint(second, i));
-        high = high.min(with_first).min(with_second);
-        // A tree: each one hangs on the strictest of its kind, and that of one kind on that of the other.
-        low = low
-            + if other.is_some() && open[i].far == open[second].far {
-                with_second - open[second].z.phi()
-            } else {
-                with_first - first.z.phi()
-            };
-        share = share
-            * if at == 0 {
-                three_positive(first, &open[second], &open[i])
-            } else {
-                with_first / first.z.phi().max(tiny)
-            };
+/// The chance that three variables are positive.
+fn three_positive<T: Real>(open: [&Threshold<T>; 3]) -> T {
+    let (zero, one) = (T::zero(), T::one());
+    let joint = |i: usize, j: usize| Correlation::of(open[i], open[j]);
+    let both = |i: usize, j: usize| both_positive(open[i].z, open[j].z, joint(i, j));
+    let share = |i: usize| open[i].z.phi();
+    // The first is the one whose two others depend most on each other.
+    let orders = [[0, 1, 2], [1, 0, 2], [2, 0, 1]];
+    let dependence = |order: &[usize; 3]| joint(order[1], order[2]).rho.abs();
+    let mut best = orders[0];
+    for order in orders {
+        if dependence(&order) > dependence(&best) {
+            best = order;
+        }
     }
-    share.max(low).max(T::zero()).min(high)
+    let [z0, z1, z2] = best.map(|i| open[i].z);
+    let rho = [(0, 1), (0, 2), (1, 2)].map(|(i, j)| joint(best[i], best[j]).rho);
+    // What one of the first variable's correlations, r, adds: the density of the two, times the chance that the third,
+    // of correlations s and q with them, is positive.
+    let density = |h: T, k: T, third: T, [r, s, q]: [T; 3]| {
+        let rest = one - r * r;
+        let open = (rest - s * s - q * q + T::of(2.0) * r * s * q).max(T::of(1e-12));
+        let mean = (s - r * q) * h + (q - r * s) * k;
+        let density = ((r * h * k - T::of(0.5) * (h * h + k * k)) / rest).exp() / rest.sqrt();
+        density * ((third * rest - mean) / (rest * open).sqrt()).phi()
+    };
+    let mut sum = zero;
+    for (node, weight) in NODES {
+        // Both halves of the path 2 t - t^2, whose slope evens out what grows like 1 / sqrt(1 - rho^2) at its end.
+        for t in [0.5 * node, 0.5 + 0.5 * node] {
+            let (step, slope) = (T::of(2.0 * t - t * t), T::of(weight * (1.0 - t)));
+            let (a, b) = (rho[0] * step, rho[1] * step);
+            let first = rho[0] * density(z0, z1, z2, [a, b, rho[2]]);
+            let second = rho[1] * density(z0, z2, z1, [b, a, rho[2]]);
+            sum = sum + slope * (first + second);
+        }
+    }
+    let [i, j, k] = best;
+    let pairs = [both(i, j), both(i, k), both(j, k)];
+    let high = pairs[0].min(pairs[1]).min(pairs[2]);
+    let low = (pairs[0] + pairs[1] - share(i))
+        .max(pairs[0] + pairs[2] - share(j))
+        .max(pairs[1] + pairs[2] - share(k));
+    let estimate = z0.phi() * pairs[2] + sum / T::of(std::f64::consts::TAU);
+    estimate.max(low).max(zero).min(high)
 }
 
-/// The chance that three variables are positive, if what the first leaves of the others is taken for normal.
-fn three_positive<T: Real>(first: &Threshold<T>, t: &Threshold<T>, u: &Threshold<T>) -> T {
-    let one = T::one();
-    let p = first.z.phi().max(T::of(1e-6));
-    let density = (T::of(-0.5) * first.z * first.z).exp() / T::of(std::f64::consts::TAU).sqrt();
-    let mean = density / p;
-    let shrink = mean * (mean + first.z);
-    let to = [t, u].map(|other| Correlation::of(first, other).rho);
-    let deviation = to.map(|r| (one - r * r * shrink).max(T::of(1e-4)).sqrt());
-    let z = |i: usize, z: T| {
-        let shifted = (z + to[i] * mean) / deviation[i];
-        shifted.max(T::of(-8.0)).min(T::of(8.0))
+/// The chance that four and more variables are positive; the strictest first.
+fn many_positive<T: Real>(open: &[Threshold<T>]) -> T {
+    let tiny = T::of(1e-6);
+    let both = |i: usize, j: usize| {
+        both_positive(open[i].z, open[j].z, Correlation::of(&open[i], &open[j]))
     };
-    let between = Correlation::of(t, u).rho - to[0] * to[1] * shrink;
-    let rho = (between / (deviation[0] * deviation[1])).max(-one).min(one);
-    let correlation = Correlation {
-        rho,
-        rest: one - rho * rho,
-    };
-    p * both_positive(z(0, t.z), z(1, u.z), correlation)
+    // The strictest of the other kind, if there is one.
+    let other = open.iter().position(|t| t.far != open[0].far);
+    let mut low = other.map_or(open[0].z.phi(), |other| both(0, other));
+    let (mut high, mut share) = (T::one(), T::one());
+    for (j, t) in open.iter().enumerate() {
+        let p = t.z.phi().max(tiny);
+        share = share * p;
+        for (i, before) in open[..j].iter().enumerate() {
+            let pair = both(i, j);
+            high = high.min(pair);
+            share = share * pair / (p * before.z.phi().max(tiny));
+        }
+        // A tree: each one hangs on the strictest of its kind, and that of one kind on that of the other.
+        let first = if t.far == open[0].far { Some(0) } else { other };
+        if let Some(first) = first.filter(|&first| first != j) {
+            low = low + both(first, j) - open[first].z.phi();
+        }
+    }
+    share.max(low).max(T::zero()).min(high)
 }
 
 #[cfg(test)]

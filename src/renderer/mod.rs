@@ -215,6 +215,17 @@ impl Renderer {
         self.pairs = PairRoom::limited(most);
     }
 
+    /// What view and clip have said of each block.
+    #[cfg(test)]
+    pub(crate) fn block_sides(&self) -> Vec<u32> {
+        let buffers = self.buffers.as_ref().expect("a frame was drawn");
+        let bytes = self
+            .device
+            .download(&buffers.block_sides)
+            .expect("reads back");
+        bytemuck::pod_collect_to_vec(&bytes)
+    }
+
     /// Pairs of tile and splat that the configured frame has room for.
     pub(crate) fn pair_room(&self) -> u32 {
         self.pairs.room()

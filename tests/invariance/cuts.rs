@@ -27,8 +27,7 @@ fn cutting_twice_is_cutting_once_and_the_order_of_planes_is_nobodys_business() {
             let mut picture =
                 |planes: Vec<Plane>| draw(headless, &camera, &Clip { planes, op }, &settings);
             let expected = picture(planes.clone());
-            // A plane given twice is the plane once, and smallest and largest shares are picked, never summed: not a bit
-            // may differ.
+            // A plane given twice is the plane once, and planes are put into an order of their own: not a bit may differ.
             let mut doubled = planes.clone();
             doubled.push(planes[again.index(planes.len())]);
             prop_assert!(picture(doubled) == expected, "{mode:?}: twice");

@@ -16,6 +16,7 @@ use rara::scene::{Kind, generate};
 use rara::{Camera, Clip, ClipOp, Gaussians, Headless, Picture, Plane, Settings};
 
 const SIZE: (u32, u32) = (101, 77);
+/// Cases of each property, but for `PROPTEST_CASES`.
 const CASES: u32 = 12;
 
 /// Runs a check on `CASES` values, with one device for all.
@@ -28,7 +29,9 @@ fn check<S: Strategy>(
         failure_persistence: None,
         // A case is some ten frames; what a shrunk one would show, its message shows too.
         max_shrink_iters: 20,
-        ..Config::with_cases(CASES)
+        cases: std::env::var("PROPTEST_CASES")
+            .map_or(CASES, |cases| cases.parse().expect("a number")),
+        ..Config::default()
     };
     TestRunner::new(config)
         .run(&strategy, |value| check(&mut headless.borrow_mut(), value))

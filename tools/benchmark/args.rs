@@ -68,6 +68,8 @@ pub(crate) enum Section {
     Correct,
     /// Each stage, by Gaussians, picture size, mode and raster path
     Passes,
+    /// A frame against what it cannot do without: bytes, fragments and keys at the device's own rates
+    Bound,
     /// 30 frames of a moving plane, the camera fixed
     Sweep,
     /// Frames that show a hundredth of a scene
@@ -84,6 +86,7 @@ impl Section {
         match self {
             Self::Correct => "correct",
             Self::Passes => "passes",
+            Self::Bound => "bound",
             Self::Sweep => "sweep",
             Self::Proportion => "proportion",
             Self::Start => "start",
@@ -113,6 +116,7 @@ impl Args {
         let usual: &[u32] = match section {
             _ if self.quick => &[2000],
             Section::Passes => &[100_000, 500_000, 1_000_000, 2_000_000, 5_000_000],
+            Section::Bound => &[100_000, 1_000_000, 5_000_000],
             Section::Proportion => &[2_000_000, 5_000_000],
             Section::Correct => &[5000],
             _ => &[500_000],

@@ -1,14 +1,17 @@
 //! What rara's frames take: the program behind `tools/bench`. A file a section; each measures and tells.
 
 mod args;
+mod bound;
 mod callgrind;
 mod child;
 mod correct;
+mod fragments;
 mod frame;
 mod instructions;
 mod memory;
 mod passes;
 mod proportion;
+mod rates;
 mod report;
 mod scratch;
 mod start;
@@ -88,8 +91,9 @@ fn measure(args: Args) -> Result<bool> {
         wrong: Wrong::default(),
     };
     correct::run(&mut bench)?;
-    let sections: [(Section, Run); 5] = [
+    let sections: [(Section, Run); 6] = [
         (Section::Passes, passes::run),
+        (Section::Bound, bound::run),
         (Section::Sweep, sweep::run),
         (Section::Proportion, proportion::run),
         (Section::Start, start::run),

@@ -7,12 +7,12 @@ use glam::Quat;
 use proptest::prelude::*;
 
 /// How far two halves may be from the whole, as alpha or as weight. Doubles: rounding. Singles: each half is rounded
-/// to 6e-8 of itself, and so is what it is computed from. Where the eye is within the splat both are divided by the
-/// share in front of it, which is at least `FRONT_MIN`.
+/// to 6e-8 of itself, and so is what it is computed from. Where the eye is within the splat a plane's distance counts
+/// against how fast the tail in front of it falls.
 fn tolerance<T: Real>(cut: &Cut<T>) -> f64 {
     let rounding = if size_of::<T>() == 4 { 2e-7 } else { 1e-14 };
     match cut {
-        Cut::Beam(beam) if beam.front.is_some() => rounding / f64::from(crate::limits::FRONT_MIN),
+        Cut::Beam(beam) if beam.front.is_some() => 1e4 * rounding,
         _ => rounding,
     }
 }

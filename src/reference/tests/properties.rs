@@ -151,7 +151,12 @@ proptest! {
         let extent = f64::from(case.one.scale.into_iter().fold(1e-3_f32, f32::max));
         moved[0] = Plane::new(planes[0].normal(), planes[0].offset() + step * extent).unwrap();
         if let (Some(before), Some(after)) = (case.weight::<f64>(&planes), case.weight::<f64>(&moved)) {
-            prop_assert!(after >= before - 1e-12, "{before}, then {after}");
+            // Two and three planes are integrated to 1e-6; four and more, which do not occur here, are estimated.
+            let most = match planes.len() {
+                1 => 1e-12,
+                _ => 1e-6,
+            };
+            prop_assert!(after >= before - most, "{before}, then {after}");
         }
     }
 

@@ -239,9 +239,9 @@ fn the_affine_form_is_close_for_small_splats_and_auto_for_all() {
 }
 
 #[test]
-fn two_oblique_planes_are_as_exact_as_one_and_more_nearly_so() {
+fn two_and_three_oblique_planes_are_as_exact_as_one_and_more_nearly_so() {
     for op in [ClipOp::And, ClipOp::Or] {
-        for (planes, limits) in [(2, [4e-4, 4e-4, 1e-4]), (3, [2e-3, 1e-3, 1e-4])] {
+        for (planes, limits) in [(2, [1e-4; 3]), (3, [1e-4; 3]), (5, [0.015, 3e-3, 1e-4])] {
             for (pixels, limit) in [[0.02, 0.2], [1.0, 5.0], [30.0, 300.0]]
                 .into_iter()
                 .zip(limits)
@@ -290,6 +290,49 @@ fn an_eye_within_the_splat_sees_its_front_part_only() {
                 );
             }
         }
+    }
+}
+
+/// Seen from within a splat, towards its back: there is hardly any of it in front of the eye, and that little is cut.
+#[test]
+fn the_last_of_a_splat_in_front_of_the_eye_is_cut_like_the_rest() {
+    let camera = camera(481, 381, 100.0);
+    let one = One {
+        position: [0.0753, -0.045, 3.5259],
+        scale: [0.3065, 1.35, 6.193],
+        rotation: glam::Quat::from_xyzw(0.28725, -0.29058, 0.1869, -0.89338).normalize(),
+        opacity: 0.573,
+        ..One::default()
+    };
+    let scene = scene(&[one]);
+    let view = View::<f64>::new(&camera);
+    let footprint = Footprint::new(&scene, 0, &view).expect("in view");
+    let clip = clip(
+        ClipOp::And,
+        &[plane([0.91813, -0.38106, -0.10876], 3.48262)],
+    );
+    let settings = mode(Mode::Exact);
+    let cut = cutoff::cutoff(&scene, 0, &footprint, &view, &clip, &settings).expect("cut");
+    let mut last: Option<f64> = None;
+    for x in (10..480).step_by(5) {
+        let position = DVec2::new(f64::from(x) + 0.5, 264.5);
+        let [dx, dy] = [
+            position.x - footprint.pixel[0],
+            position.y - footprint.pixel[1],
+        ];
+        let weight = cut.weight(dx, dy);
+        let truth = quadrature::share(&scene, 0, &camera, &clip, position, Bundle::Parallel, 64);
+        // Behind the eye's tail quadrature has nothing to sum up.
+        if truth.is_finite() {
+            assert!((weight - truth).abs() < 2e-3, "{x}: {weight}, {truth}");
+        }
+        if let Some(last) = last {
+            assert!(
+                (weight - last).abs() < 0.1,
+                "a seam at {x}: {last}, {weight}"
+            );
+        }
+        last = Some(weight);
     }
 }
 

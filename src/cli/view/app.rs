@@ -1,0 +1,314 @@
+//! The event loop: a window is opened, events become actions, and a frame is drawn when something has changed. Without
+//! events and a script to follow it sleeps.
+
+use std::collections::VecDeque;
+use std::panic::{self, AssertUnwindSafe};
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use glam::DVec2;
+use rara::{Error, Gaussians, HeadlessDesc, ShFormat, Windowed};
+use winit::application::ApplicationHandler;
+use winit::dpi::PhysicalSize;
+use winit::event::WindowEvent;
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::window::{Window, WindowId};
+
+use super::action::Action;
+use super::input::Input;
+use super::script;
+use super::stage::{Scenery, Stage};
+use crate::cli::failure::Failure;
+use crate::cli::output::say;
+
+/// What standard input, followed as a script, sends to the event loop.
+pub(super) type Sent = Result<Vec<Action>, Failure>;
+
+/// What a window is opened with.
+pub(super) struct Start {
+    pub(super) device: HeadlessDesc,
+    pub(super) scene: Gaussians,
+    pub(super) sh: ShFormat,
+    pub(super) size: (u32, u32),
+    pub(super) scenery: Scenery,
+    /// What a script says to do first.
+    pub(super) script: Vec<Action>,
+    /// Standard input says what to do after it.
+    pub(super) follow: bool,
+}
+
+struct App {
+    start: Option<Start>,
+    stage: Option<Stage>,
+    input: Input,
+    script: VecDeque<Action>,
+    /// The script goes on when the window has this size, or fails at that time.
+    resizing: Option<((u32, u32), Instant)>,
+    /// When held keys last moved the view.
+    moved_at: Option<Instant>,
+    failure: Option<Failure>,
+}
+
+/// Window managers may take their time with a new size.
+const RESIZE_PATIENCE: Duration = Duration::from_secs(5);
+/// A frame that took longer moves the view no farther than this.
+const LONGEST_STEP: Duration = Duration::from_millis(100);
+
+/// Connects to the display; before anything slow, as there may be none.
+pub(super) fn connect() -> Result<EventLoop<Sent>, Failure> {
+    let remedy = "start rara view in a desktop session (DISPLAY names an X server or XWayland), install libx11-6, \
+                  libx11-xcb1, libxcursor1, libxi6 and libxkbcommon-x11-0 where one of them is missing, or draw \
+                  without a window (rara render)";
+    // winit panics where it misses a library, and its message would go to the terminal.
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| ()));
+    let made = panic::catch_unwind(AssertUnwindSafe(|| EventLoop::with_user_event().build()));
+    panic::set_hook(hook);
+    match made {
+        Ok(Ok(events)) => Ok(events),
+        Ok(Err(error)) => {
+            let display = std::env::var("DISPLAY").unwrap_or_default();
+            let reason = if cfg!(target_os = "linux") && display.is_empty() {
+                "DISPLAY is not set".to_owned()
+            } else {
+                without_place(&error.to_string()).to_owned()
+            };
+            Err(Error::Device(format!("no window can be opened: {reason}; {remedy}")).into())
+        }
+        Err(_) => Err(Error::Device(format!(
+            "no window can be opened: a library for windows is missing; {remedy}"
+        ))
+        .into()),
+    }
+}
+
+/// winit begins its messages with where in its own sources they come from.
+fn without_place(message: &str) -> &str {
+    let place = message.split_once(".rs:");
+    let reason = place.and_then(|(_, rest)| rest.split_once(": "));
+    reason.map_or(message, |(_, reason)| reason)
+}
+
+/// Opens the window and stays until it is closed.
+pub(super) fn run(events: EventLoop<Sent>, mut start: Start) -> Result<(), Failure> {
+    if start.follow {
+        let proxy = events.create_proxy();
+        // It ends with standard input, or with the program.
+        thread::spawn(move || script::follow(|actions| proxy.send_event(actions).is_ok()));
+    }
+    let mut app = App {
+        script: std::mem::take(&mut start.script).into(),
+        start: Some(start),
+        stage: None,
+        input: Input::default(),
+        resizing: None,
+        moved_at: None,
+        failure: None,
+    };
+    let ran = events.run_app(&mut app);
+    if let Some(failure) = app.failure {
+        return Err(failure);
+    }
+    ran.map_err(|error| Error::Device(format!("the window's events ended: {error}")).into())
+}
+
+impl App {
+    fn open(&mut self, events: &ActiveEventLoop, start: Start) -> Result<(), Failure> {
+        let (width, height) = start.size;
+        let attributes = Window::default_attributes()
+            .with_title("rara")
+            .with_inner_size(PhysicalSize::new(width, height));
+        let window = events.create_window(attributes).map_err(|error| {
+            Error::Device(format!(
+                "a window of {width}x{height} pixels could not be opened ({}); try a smaller --size, or draw without a \
+                 window (rara render)",
+                without_place(&error.to_string())
+            ))
+        })?;
+        let window = Arc::new(window);
+        let mut windowed = Windowed::new(&start.device, window.clone())?;
+        windowed.load_as(&start.scene, start.sh)?;
+        say(format_args!(
+            "device   {} ({}), {:?}; H lists the keys",
+            windowed.device().info().name,
+            windowed.device().info().driver,
+            windowed.format()
+        ));
+        self.stage = Some(Stage::new(windowed, window, start.scenery));
+        Ok(())
+    }
+
+    /// Keeps a failure and ends; the first one is told.
+    fn end(&mut self, events: &ActiveEventLoop, outcome: Result<(), Failure>) {
+        if let Err(failure) = outcome {
+            self.failure.get_or_insert(failure);
+            events.exit();
+        }
+    }
+
+    fn handle(&mut self, events: &ActiveEventLoop, event: WindowEvent) -> Result<(), Failure> {
+        let Some(stage) = &mut self.stage else {
+            return Ok(());
+        };
+        let action = match event {
+            WindowEvent::CloseRequested | WindowEvent::Destroyed => Some(Action::Quit),
+            WindowEvent::RedrawRequested => {
+                if stage.visible() {
+                    stage.draw()?;
+                }
+                None
+            }
+            WindowEvent::Resized(size) => {
+                let size = (size.width, size.height);
+                self.resizing = self.resizing.filter(|(wanted, _)| *wanted != size);
+                stage.changed()?;
+                None
+            }
+            WindowEvent::Occluded(occluded) => {
+                stage.occluded = occluded;
+                stage.changed()?;
+                None
+            }
+            WindowEvent::Focused(false) => {
+                self.input.release();
+                None
+            }
+            WindowEvent::ModifiersChanged(modifiers) => {
+                self.input.modifiers(modifiers.state());
+                None
+            }
+            WindowEvent::KeyboardInput { event, .. } => self.input.key(
+                &event.logical_key,
+                event.physical_key,
+                event.state,
+                event.repeat,
+            ),
+            WindowEvent::MouseInput { state, button, .. } => {
+                self.input.button(button, state);
+                None
+            }
+            WindowEvent::CursorMoved { position, .. } => {
+                let to = DVec2::new(position.x, position.y);
+                self.input.cursor(to, stage.size().1)
+            }
+            WindowEvent::MouseWheel { delta, .. } => Some(self.input.wheel(delta)),
+            _ => None,
+        };
+        match action {
+            Some(Action::Quit) => events.exit(),
+            Some(action @ Action::Screenshot(_)) => {
+                // A full disk is no reason to close the window.
+                if let Err(failure) = stage.act(action) {
+                    say(failure);
+                }
+            }
+            Some(action) => stage.act(action)?,
+            None => {}
+        }
+        Ok(())
+    }
+
+    /// Does what the script says, as far as what it did before is on the screen.
+    fn follow(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
+        let Some(stage) = &mut self.stage else {
+            return Ok(());
+        };
+        while self.resizing.is_none() && !(stage.dirty && stage.visible()) {
+            let waits = |action: &Action| stage.unsettled && stage.visible() && !action.moves();
+            if self.script.front().is_some_and(waits) {
+                break;
+            }
+            match self.script.pop_front() {
+                None => break,
+                Some(Action::Quit) => {
+                    self.script.clear();
+                    events.exit();
+                }
+                Some(Action::Resize(size)) if !stage.resize(size) => {
+                    self.resizing = Some((size, Instant::now() + RESIZE_PATIENCE));
+                }
+                Some(Action::Resize(_)) => stage.changed()?,
+                Some(action) => stage.act(action)?,
+            }
+        }
+        match self.resizing {
+            Some(((width, height), until)) if Instant::now() >= until => {
+                let (w, h) = stage.size();
+                Err(Failure::Work(Error::Device(format!(
+                    "--script: resize {width}x{height}: the window stays {w}x{h}; its display or window manager allows \
+                     no other size"
+                ))))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Moves the view while keys are held.
+    fn fly(&mut self) {
+        let direction = self.input.direction();
+        let now = Instant::now();
+        let before = self.moved_at.take();
+        if let Some(stage) = self.stage.as_mut().filter(|stage| stage.visible())
+            && direction != glam::DVec3::ZERO
+        {
+            // Once a frame: what has moved is drawn first.
+            if stage.dirty {
+                self.moved_at = before.or(Some(now));
+                return;
+            }
+            let time = before.map_or(Duration::from_millis(16), |at| (now - at).min(LONGEST_STEP));
+            stage.fly(direction, time);
+            self.moved_at = Some(now);
+        }
+    }
+}
+
+impl ApplicationHandler<Sent> for App {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        if let Some(start) = self.start.take() {
+            let opened = self.open(events, start);
+            self.end(events, opened);
+        }
+    }
+
+    fn user_event(&mut self, events: &ActiveEventLoop, sent: Sent) {
+        match sent {
+            Ok(actions) => self.script.extend(actions),
+            Err(failure) => self.end(events, Err(failure)),
+        }
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let handled = self.handle(events, event);
+        self.end(events, handled);
+    }
+
+    fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        if events.exiting() {
+            return;
+        }
+        self.fly();
+        let followed = self.follow(events);
+        self.end(events, followed);
+        if let Some(stage) = &self.stage
+            && stage.visible()
+            && (stage.dirty || stage.unsettled)
+        {
+            stage.window.request_redraw();
+        }
+        events.set_control_flow(match self.resizing {
+            Some((_, until)) => ControlFlow::WaitUntil(until),
+            None => ControlFlow::Wait,
+        });
+    }
+
+    /// While the display is still there.
+    fn exiting(&mut self, _: &ActiveEventLoop) {
+        if let Some(stage) = self.stage.take()
+            && let Err(failure) = stage.close()
+        {
+            self.failure.get_or_insert(failure);
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! The clip that is shown, and the one of its planes that is moved.
+
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use glam::{DQuat, DVec2, DVec3};
+use rara::{Camera, Clip, ClipOp, Plane};
+
+/// The planes, which of them is held, and whether they cut at all.
+#[derive(Debug, Clone)]
+pub(super) struct Cut {
+    pub(super) on: bool,
+    planes: Vec<Plane>,
+    op: ClipOp,
+    held: usize,
+    /// The scene's middle.
+    centre: DVec3,
+}
+
+impl Cut {
+    /// The clip that was typed; without one a plane through the middle of the scene, not yet on.
+    pub(super) fn new(clip: Clip, centre: DVec3) -> Self {
+        let mut this = Self {
+            on: !clip.planes.is_empty(),
+            planes: clip.planes,
+            op: clip.op,
+            held: 0,
+            centre,
+        };
+        if !this.on {
+            this.planes.push(this.middle(DVec3::X));
+        }
+        this
+    }
+
+    /// What is cut away now.
+    pub(super) fn clip(&self) -> Clip {
+        if self.on {
+            Clip {
+                planes: self.planes.clone(),
+                op: self.op,
+            }
+        } else {
+            Clip::default()
+        }
+    }
+
+    /// How the planes combine.
+    pub(super) fn op(&self) -> ClipOp {
+        self.op
+    }
+
+    /// The plane that is held.
+    pub(super) fn plane(&self) -> Plane {
+        self.planes[self.held]
+    }
+
+    /// Holds the next plane.
+    pub(super) fn next(&mut self) {
+        self.held = (self.held + 1) % self.planes.len();
+    }
+
+    /// Puts another plane in the held one's place.
+    pub(super) fn set(&mut self, plane: Plane) {
+        self.planes[self.held] = plane;
+        self.on = true;
+    }
+
+    /// Keeps the other side of the held plane.
+    pub(super) fn flip(&mut self) {
+        self.set(self.plane().flipped());
+    }
+
+    /// Puts the held plane through the middle of the scene, across an axis.
+    pub(super) fn align(&mut self, axis: DVec3) {
+        self.set(self.middle(axis));
+    }
+
+    /// Moves the held plane along its normal, world units.
+    pub(super) fn go(&mut self, by: f64) {
+        let plane = self.plane();
+        self.place(plane.normal(), plane.offset() - by);
+    }
+
+    /// Moves the held plane along its normal so that it follows the mouse; where its normal points at the eye or away
+    /// from it, upwards is away.
+    pub(super) fn drag(&mut self, pixels: DVec2, camera: &Camera) {
+        let normal = camera.rotation * self.plane().normal();
+        let mut at = camera.rotation * (self.foot() - camera.eye);
+        // What is behind the eye is nowhere in the picture.
+        at.z = at.z.max(1e-2 * at.length()).max(f64::MIN_POSITIVE);
+        let focal = DVec2::new(camera.fx, camera.fy);
+        // Where the foot goes in the picture, for each unit along the normal.
+        let across = focal * (normal.truncate() - at.truncate() / at.z * normal.z) / at.z;
+        let unit = camera.fy / at.z;
+        let by = if across.length() > (1.0 - FRAC_1_SQRT_2) * unit {
+            pixels.dot(across) / across.length_squared()
+        } else {
+            -pixels.y / unit * normal.z.signum()
+        };
+        self.go(by);
+    }
+
+    /// Turns the held plane about its point nearest to the middle of the scene, so that what of its normal points to the
+    /// eye goes right and down by so many degrees.
+    pub(super) fn tilt(&mut self, degrees: DVec2, camera: &Camera) {
+        let axes = camera.rotation.transpose();
+        let turn = DQuat::from_axis_angle(-axes.y_axis, degrees.x.to_radians())
+            * DQuat::from_axis_angle(axes.x_axis, degrees.y.to_radians());
+        let foot = self.foot();
+        let normal = turn * self.plane().normal();
+        self.place(normal, -normal.dot(foot));
+    }
+
+    /// The plane's point nearest to the middle of the scene.
+    fn foot(&self) -> DVec3 {
+        let plane = self.plane();
+        self.centre - plane.normal() * plane.distance(self.centre)
+    }
+
+    fn middle(&self, axis: DVec3) -> Plane {
+        Plane::new(axis, -axis.dot(self.centre)).expect("an axis is finite and not zero")
+    }
+
+    fn place(&mut self, normal: DVec3, offset: f64) {
+        // A plane beyond all numbers stays where it was.
+        if let Ok(plane) = Plane::new(normal, offset) {
+            self.set(plane);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CENTRE: DVec3 = DVec3::new(1.0, 2.0, 3.0);
+
+    fn cut() -> Cut {
+        Cut::new(Clip::default(), CENTRE)
+    }
+
+    fn camera(from: DVec3) -> Camera {
+        let eye = CENTRE + 5.0 * from;
+        Camera::look_at(eye, CENTRE, DVec3::NEG_Y, 50.0, (800, 600)).unwrap()
+    }
+
+    #[test]
+    fn without_a_clip_nothing_is_cut_until_a_plane_is_touched() {
+        let mut cut = cut();
+        assert_eq!(cut.clip(), Clip::default());
+        cut.go(0.25);
+        let planes = cut.clip().planes;
+        assert_eq!(planes.len(), 1);
+        assert!(
+            (planes[0].distance(CENTRE) + 0.25).abs() < 1e-12,
+            "{planes:?}"
+        );
+    }
+
+    #[test]
+    fn planes_that_were_typed_are_held_in_turn() {
+        let planes = vec![
+            Plane::new(DVec3::X, 0.0).unwrap(),
+            Plane::new(DVec3::Y, 0.0).unwrap(),
+        ];
+        let clip = Clip {
+            planes,
+            op: ClipOp::Or,
+        };
+        let mut cut = Cut::new(clip.clone(), CENTRE);
+        assert_eq!(cut.clip(), clip);
+        cut.next();
+        cut.flip();
+        assert_eq!(cut.clip().planes[1].normal(), -DVec3::Y);
+        assert_eq!(cut.clip().planes[0], clip.planes[0]);
+        cut.next();
+        assert_eq!(cut.plane(), clip.planes[0]);
+    }
+
+    #[test]
+    fn a_dragged_plane_follows_the_mouse() {
+        let camera = camera(DVec3::new(0.2, -0.1, -1.0).normalize());
+        let mut cut = cut();
+        let pixel = |point: DVec3| {
+            let p = camera.rotation * (point - camera.eye);
+            DVec2::new(camera.fx * p.x / p.z, camera.fy * p.y / p.z)
+        };
+        let before = pixel(cut.foot());
+        cut.drag(DVec2::new(2.0, 0.0), &camera);
+        let along = pixel(cut.foot()) - before;
+        assert!((along.x - 2.0).abs() < 0.1, "{along}");
+    }
+
+    #[test]
+    fn a_plane_that_faces_the_eye_goes_away_when_dragged_up() {
+        for normal in [DVec3::Z, -DVec3::Z] {
+            let camera = camera(-DVec3::Z);
+            let mut cut = cut();
+            cut.align(normal);
+            cut.drag(DVec2::new(40.0, -10.0), &camera);
+            let depth = (camera.rotation * (cut.foot() - camera.eye)).z;
+            assert!((depth - 5.0 - 50.0 / camera.fy).abs() < 1e-9, "{depth}");
+        }
+    }
+
+    #[test]
+    fn a_plane_behind_the_eye_can_be_dragged_too() {
+        let mut camera = camera(-DVec3::Z);
+        camera.eye += DVec3::Z * 20.0;
+        let mut cut = cut();
+        cut.drag(DVec2::new(5.0, 5.0), &camera);
+        assert!(cut.plane().offset().is_finite());
+        camera.eye = cut.foot();
+        cut.drag(DVec2::new(5.0, 5.0), &camera);
+        assert!(cut.plane().offset().is_finite());
+    }
+
+    #[test]
+    fn tilting_turns_about_the_point_nearest_to_the_middle() {
+        let camera = camera(-DVec3::Z);
+        let mut cut = cut();
+        cut.align(-DVec3::Z);
+        cut.go(0.5);
+        let foot = cut.foot();
+        cut.tilt(DVec2::new(30.0, 0.0), &camera);
+        assert!(cut.plane().distance(foot).abs() < 1e-12);
+        // The normal pointed at the eye; now also to the right.
+        let normal = cut.plane().normal();
+        assert!(
+            (normal - DVec3::new(0.5, 0.0, -0.75_f64.sqrt())).length() < 1e-12,
+            "{normal}"
+        );
+        cut.tilt(DVec2::new(0.0, 30.0), &camera);
+        assert!(
+            cut.plane().normal().y > 0.1,
+            "down: {}",
+            cut.plane().normal()
+        );
+    }
+}

@@ -1,0 +1,273 @@
+//! Keys and mouse to actions; `KEYS` tells people.
+
+use std::collections::HashSet;
+
+use glam::{DVec2, DVec3};
+use winit::event::{ElementState, MouseButton, MouseScrollDelta};
+use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
+
+use super::action::{Action, PlaneAction};
+use crate::cli::settings::ModeArg;
+
+/// What `--help` and the key H say.
+pub(super) const KEYS: &str = "\
+Mouse:
+  left drag                    turn the view
+  middle or Shift+left drag    move sideways
+  wheel                        nearer, farther; in fly mode faster, slower
+  right drag                   the clip plane along its normal
+  Shift+right drag             tilt the clip plane
+Keys:
+  Tab                          orbit about the scene, or fly
+  W A S D Q E                  forward, left, back, right, down, up (Shift: slowly)
+  arrows                       turn the view; with Shift tilt the clip plane
+  + -                          nearer, farther
+  R, N                         back to the start; the next camera of --view all
+  0 1 2 3                      mode none, hard, rara, exact
+  P, I                         clip planes on or off; the other side of the plane
+  X Y Z                        the plane across an axis, through the middle
+  Page Up, Page Down           the plane along its normal (Shift: a tenth)
+  G                            take hold of the next plane
+  C or F12                     screenshot
+  T                            stage times and counts on the terminal
+  H                            this list
+  Esc                          quit";
+
+/// Degrees of an arrow key.
+const ARROW: f64 = 5.0;
+
+/// What is held down, and where the mouse is.
+#[derive(Debug, Default)]
+pub(super) struct Input {
+    modifiers: ModifiersState,
+    buttons: HashSet<MouseButton>,
+    cursor: Option<DVec2>,
+    /// Keys that move for as long as they are held.
+    held: HashSet<KeyCode>,
+}
+
+impl Input {
+    pub(super) fn modifiers(&mut self, modifiers: ModifiersState) {
+        self.modifiers = modifiers;
+    }
+
+    /// A key goes down, or up, or repeats.
+    pub(super) fn key(
+        &mut self,
+        logical: &Key,
+        physical: PhysicalKey,
+        state: ElementState,
+        repeat: bool,
+    ) -> Option<Action> {
+        if let PhysicalKey::Code(code) = physical
+            && direction(code) != DVec3::ZERO
+        {
+            // Where the key is counts, not what stands on it.
+            match state {
+                ElementState::Pressed if !self.modifiers.control_key() => self.held.insert(code),
+                _ => self.held.remove(&code),
+            };
+            return None;
+        }
+        if state == ElementState::Released {
+            return None;
+        }
+        let shift = self.modifiers.shift_key();
+        let action = match logical {
+            Key::Named(key) => named(*key, shift)?,
+            Key::Character(text) => letter(text)?,
+            _ => return None,
+        };
+        // What is held down moves on; it does not switch to and fro.
+        let repeats = action.moves()
+            && !matches!(
+                action,
+                Action::Plane(PlaneAction::Toggle | PlaneAction::Flip | PlaneAction::Next)
+            );
+        (repeats || !repeat).then_some(action)
+    }
+
+    /// A mouse button goes down or up.
+    pub(super) fn button(&mut self, button: MouseButton, state: ElementState) {
+        match state {
+            ElementState::Pressed => self.buttons.insert(button),
+            ElementState::Released => self.buttons.remove(&button),
+        };
+    }
+
+    /// The mouse moves, in a window of this height.
+    pub(super) fn cursor(&mut self, to: DVec2, height: u32) -> Option<Action> {
+        let by = to - self.cursor.replace(to)?;
+        // A drag over the whole window is half a turn.
+        let degrees = by * 180.0 / f64::from(height.max(1));
+        let down = |button| self.buttons.contains(&button);
+        let shift = self.modifiers.shift_key();
+        if down(MouseButton::Right) {
+            let action = if shift {
+                PlaneAction::Tilt(degrees)
+            } else {
+                PlaneAction::Drag(by)
+            };
+            return Some(Action::Plane(action));
+        }
+        if down(MouseButton::Middle) || down(MouseButton::Left) && shift {
+            return Some(Action::Shift(by));
+        }
+        down(MouseButton::Left).then_some(Action::Turn(degrees))
+    }
+
+    /// The wheel turns.
+    pub(super) fn wheel(&self, delta: MouseScrollDelta) -> Action {
+        Action::Zoom(match delta {
+            MouseScrollDelta::LineDelta(_, lines) => f64::from(lines),
+            // A touchpad's: about as far as a line of text.
+            MouseScrollDelta::PixelDelta(pixels) => pixels.y / 20.0,
+        })
+    }
+
+    /// Nothing is held any more: another window has the keyboard.
+    pub(super) fn release(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Where the held keys lead: right, down, forward.
+    pub(super) fn direction(&self) -> DVec3 {
+        let sum: DVec3 = self.held.iter().map(|code| direction(*code)).sum();
+        let slowly = if self.modifiers.shift_key() { 0.2 } else { 1.0 };
+        sum.normalize_or_zero() * slowly
+    }
+}
+
+fn direction(code: KeyCode) -> DVec3 {
+    match code {
+        KeyCode::KeyW => DVec3::Z,
+        KeyCode::KeyS => DVec3::NEG_Z,
+        KeyCode::KeyD => DVec3::X,
+        KeyCode::KeyA => DVec3::NEG_X,
+        KeyCode::KeyQ => DVec3::Y,
+        KeyCode::KeyE => DVec3::NEG_Y,
+        _ => DVec3::ZERO,
+    }
+}
+
+fn named(key: NamedKey, shift: bool) -> Option<Action> {
+    let arrow = |x: f64, y: f64| {
+        let degrees = ARROW * DVec2::new(x, y);
+        if shift {
+            Action::Plane(PlaneAction::Tilt(degrees))
+        } else {
+            Action::Turn(degrees)
+        }
+    };
+    let step = if shift { 0.1 } else { 1.0 };
+    Some(match key {
+        NamedKey::ArrowLeft => arrow(-1.0, 0.0),
+        NamedKey::ArrowRight => arrow(1.0, 0.0),
+        NamedKey::ArrowUp => arrow(0.0, -1.0),
+        NamedKey::ArrowDown => arrow(0.0, 1.0),
+        NamedKey::PageUp => Action::Plane(PlaneAction::Step(step)),
+        NamedKey::PageDown => Action::Plane(PlaneAction::Step(-step)),
+        NamedKey::Tab => Action::OtherWalk,
+        NamedKey::F12 => Action::Screenshot(None),
+        NamedKey::Escape => Action::Quit,
+        _ => return None,
+    })
+}
+
+fn letter(text: &str) -> Option<Action> {
+    let plane = Action::Plane;
+    Some(match text.to_lowercase().as_str() {
+        "0" => Action::Mode(ModeArg::None),
+        "1" => Action::Mode(ModeArg::Hard),
+        "2" => Action::Mode(ModeArg::Rara),
+        "3" => Action::Mode(ModeArg::Exact),
+        "+" | "=" => Action::Zoom(1.0),
+        "-" => Action::Zoom(-1.0),
+        "p" => plane(PlaneAction::Toggle),
+        "i" => plane(PlaneAction::Flip),
+        "g" => plane(PlaneAction::Next),
+        "x" => plane(PlaneAction::Align(DVec3::X)),
+        "y" => plane(PlaneAction::Align(DVec3::Y)),
+        "z" => plane(PlaneAction::Align(DVec3::Z)),
+        "r" => Action::Reset,
+        "n" => Action::NextView,
+        "c" => Action::Screenshot(None),
+        "t" => Action::Timings,
+        "h" => Action::Help,
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ElementState::{Pressed, Released};
+
+    fn press(input: &mut Input, text: &str, repeat: bool) -> Option<Action> {
+        let key = Key::Character(text.into());
+        input.key(&key, PhysicalKey::Code(KeyCode::F20), Pressed, repeat)
+    }
+
+    #[test]
+    fn drags_mean_what_button_and_modifier_say() {
+        let at = |x, y| DVec2::new(x, y);
+        let mut input = Input::default();
+        assert_eq!(input.cursor(at(10.0, 10.0), 360), None);
+        assert_eq!(input.cursor(at(20.0, 10.0), 360), None, "no button");
+        input.button(MouseButton::Left, Pressed);
+        let turn = Action::Turn(at(5.0, -2.5));
+        assert_eq!(input.cursor(at(30.0, 5.0), 360), Some(turn));
+        input.modifiers(ModifiersState::SHIFT);
+        assert_eq!(
+            input.cursor(at(31.0, 5.0), 360),
+            Some(Action::Shift(at(1.0, 0.0)))
+        );
+        input.button(MouseButton::Left, Released);
+        input.button(MouseButton::Right, Pressed);
+        let tilt = Action::Plane(PlaneAction::Tilt(at(0.0, 1.0)));
+        assert_eq!(input.cursor(at(31.0, 7.0), 360), Some(tilt));
+        input.modifiers(ModifiersState::empty());
+        let drag = Action::Plane(PlaneAction::Drag(at(0.0, -3.0)));
+        assert_eq!(input.cursor(at(31.0, 4.0), 360), Some(drag));
+    }
+
+    #[test]
+    fn switches_do_not_repeat_but_moves_do() {
+        let mut input = Input::default();
+        let toggle = Some(Action::Plane(PlaneAction::Toggle));
+        assert_eq!(press(&mut input, "p", false), toggle);
+        assert_eq!(press(&mut input, "P", true), None);
+        assert_eq!(press(&mut input, "c", true), None);
+        assert_eq!(press(&mut input, "+", true), Some(Action::Zoom(1.0)));
+        assert_eq!(
+            press(&mut input, "2", false),
+            Some(Action::Mode(ModeArg::Rara))
+        );
+        assert_eq!(press(&mut input, "?", false), None);
+    }
+
+    #[test]
+    fn shift_takes_the_arrows_to_the_plane() {
+        let turn = named(NamedKey::ArrowLeft, false);
+        assert_eq!(turn, Some(Action::Turn(DVec2::new(-5.0, 0.0))));
+        let tilt = PlaneAction::Tilt(DVec2::new(-5.0, 0.0));
+        assert_eq!(named(NamedKey::ArrowLeft, true), Some(Action::Plane(tilt)));
+    }
+
+    #[test]
+    fn held_keys_lead_somewhere_until_they_are_let_go() {
+        let mut input = Input::default();
+        let mut key = |code, state| {
+            let key = Key::Character("?".into());
+            let none = input.key(&key, PhysicalKey::Code(code), state, false);
+            assert_eq!(none, None);
+            input.direction()
+        };
+        assert_eq!(key(KeyCode::KeyW, Pressed), DVec3::Z);
+        let both = key(KeyCode::KeyD, Pressed);
+        assert!((both - DVec3::new(1.0, 0.0, 1.0).normalize()).length() < 1e-12);
+        assert_eq!(key(KeyCode::KeyW, Released), DVec3::X);
+        input.release();
+        assert_eq!(input.direction(), DVec3::ZERO);
+    }
+}

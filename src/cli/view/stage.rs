@@ -1,0 +1,269 @@
+//! An open window with a scene in it: what can be done to it, and its frames.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
+use rara::windowed::Shown;
+use rara::{Camera, Settings, Windowed};
+use winit::dpi::PhysicalSize;
+use winit::window::Window;
+
+use super::action::{Action, PlaneAction};
+use super::cut::Cut;
+use super::input::KEYS;
+use super::shots::{self, Shots};
+use super::title;
+use super::viewpoint::{Viewpoint, Walk};
+use crate::cli::failure::Failure;
+use crate::cli::output::say;
+use crate::cli::settings::ModeArg;
+
+/// What is shown, and how it is moved.
+#[derive(Debug)]
+pub(super) struct Scenery {
+    /// The scene's name, for the title.
+    pub(super) name: String,
+    /// The cameras to choose from, each with its up direction; the first is the start.
+    pub(super) views: Vec<(Camera, DVec3)>,
+    pub(super) cut: Cut,
+    pub(super) settings: Settings,
+    pub(super) mode: ModeArg,
+    pub(super) centre: DVec3,
+    pub(super) radius: f64,
+    pub(super) shots: Shots,
+}
+
+/// The open window.
+pub(super) struct Stage {
+    windowed: Windowed,
+    pub(super) window: Arc<Window>,
+    scenery: Scenery,
+    view: usize,
+    viewpoint: Viewpoint,
+    /// Share of the scene's radius that a second of flying goes.
+    speed: f64,
+    minimised: bool,
+    /// Nothing of it is visible.
+    pub(super) occluded: bool,
+    /// What is shown is not what should be.
+    pub(super) dirty: bool,
+    /// The last frame's numbers are not known yet.
+    pub(super) unsettled: bool,
+    /// When the last frame was shown, if the next one follows at once.
+    shown_at: Option<Instant>,
+    intervals: Vec<Duration>,
+    titled_at: Option<Instant>,
+}
+
+/// The title changes no more often than this: it costs the window system a message.
+const TITLE_PAUSE: Duration = Duration::from_millis(200);
+/// Times between frames that are kept.
+const INTERVALS: usize = 10_000;
+
+impl Stage {
+    pub(super) fn new(windowed: Windowed, window: Arc<Window>, scenery: Scenery) -> Self {
+        let viewpoint = scenery.viewpoint(0);
+        Self {
+            windowed,
+            window,
+            scenery,
+            view: 0,
+            viewpoint,
+            speed: 0.5,
+            minimised: false,
+            occluded: false,
+            dirty: true,
+            unsettled: false,
+            shown_at: None,
+            intervals: Vec::new(),
+            titled_at: None,
+        }
+    }
+
+    /// Its pixels; none while it is minimised.
+    pub(super) fn size(&self) -> (u32, u32) {
+        if self.minimised {
+            return (0, 0);
+        }
+        let size = self.window.inner_size();
+        (size.width, size.height)
+    }
+
+    /// Whether a frame would be seen.
+    pub(super) fn visible(&self) -> bool {
+        let (width, height) = self.size();
+        !self.occluded && width > 0 && height > 0
+    }
+
+    /// The window has another size, or is to be drawn for another reason.
+    pub(super) fn changed(&mut self) -> Result<(), Failure> {
+        self.dirty = true;
+        if !self.visible() {
+            self.windowed.fit(self.size())?;
+        }
+        Ok(())
+    }
+
+    /// Goes right, down and forward for a time, at the speed of flying.
+    pub(super) fn fly(&mut self, direction: DVec3, time: Duration) {
+        let by = self.speed * self.scenery.radius * time.as_secs_f64();
+        self.viewpoint.go(direction * by);
+        self.dirty = true;
+    }
+
+    /// Does what is asked, but for quitting and resizing, which take more than the stage.
+    pub(super) fn act(&mut self, action: Action) -> Result<(), Failure> {
+        let height = self.picture_size().1;
+        match action {
+            Action::Turn(degrees) => self.viewpoint.turn(degrees),
+            Action::Shift(pixels) => self.viewpoint.shift(pixels, height),
+            Action::Zoom(steps) if self.viewpoint.walk == Walk::Fly => {
+                self.speed *= 1.25_f64.powf(steps);
+                return Ok(());
+            }
+            Action::Zoom(steps) => self.viewpoint.zoom(steps),
+            Action::Go(by) => self.viewpoint.go(by),
+            Action::Walk(walk) => {
+                self.viewpoint.walk = walk;
+                return Ok(());
+            }
+            Action::OtherWalk => {
+                return self.act(Action::Walk(match self.viewpoint.walk {
+                    Walk::Orbit => Walk::Fly,
+                    Walk::Fly => Walk::Orbit,
+                }));
+            }
+            Action::Reset => self.viewpoint.reset(),
+            Action::NextView => {
+                let walk = self.viewpoint.walk;
+                self.view = (self.view + 1) % self.scenery.views.len();
+                self.viewpoint = self.scenery.viewpoint(self.view);
+                self.viewpoint.walk = walk;
+            }
+            Action::Plane(action) => self.act_on_plane(action),
+            Action::Mode(mode) => {
+                self.scenery.mode = mode;
+                self.scenery.settings.mode = mode.mode();
+            }
+            Action::Screenshot(path) => return self.screenshot(path),
+            Action::Minimise | Action::Restore => {
+                self.minimised = action == Action::Minimise;
+                self.window.set_minimized(self.minimised);
+                return self.changed();
+            }
+            Action::Timings => {
+                let told = self.windowed.told();
+                say(title::lines(self.size(), told, &mut self.intervals));
+                self.intervals.clear();
+                self.shown_at = None;
+                return Ok(());
+            }
+            Action::Help => {
+                say(KEYS);
+                return Ok(());
+            }
+            Action::Resize(_) | Action::Quit => return Ok(()),
+        }
+        self.dirty = true;
+        Ok(())
+    }
+
+    fn act_on_plane(&mut self, action: PlaneAction) {
+        let camera = self.viewpoint.camera(self.picture_size());
+        let radius = self.scenery.radius;
+        let cut = &mut self.scenery.cut;
+        match action {
+            PlaneAction::On(on) => cut.on = on,
+            PlaneAction::Toggle => cut.on = !cut.on,
+            PlaneAction::Flip => cut.flip(),
+            PlaneAction::Next => cut.next(),
+            PlaneAction::Align(axis) => cut.align(axis),
+            PlaneAction::Set(plane) => cut.set(plane),
+            PlaneAction::Go(by) => cut.go(by),
+            PlaneAction::Step(steps) => cut.go(0.01 * steps * radius),
+            PlaneAction::Drag(pixels) => cut.drag(pixels, &camera),
+            PlaneAction::Tilt(degrees) => cut.tilt(degrees, &camera),
+        }
+    }
+
+    /// The size of what is shown, or would be if it were not minimised.
+    fn picture_size(&self) -> (u32, u32) {
+        let size = self.window.inner_size();
+        (size.width.max(1), size.height.max(1))
+    }
+
+    fn screenshot(&mut self, path: Option<PathBuf>) -> Result<(), Failure> {
+        let camera = self.viewpoint.camera(self.picture_size());
+        let Scenery {
+            cut,
+            settings,
+            mode,
+            shots,
+            ..
+        } = &mut self.scenery;
+        let path = path.unwrap_or_else(|| shots.next());
+        let picture = self.windowed.picture(&camera, &cut.clip(), settings)?;
+        shots::save(&picture, &camera, &path)?;
+        say(shots::told(&path, cut, mode.name()));
+        self.shown_at = None; // the next frame does not follow at once
+        Ok(())
+    }
+
+    /// Draws a frame and shows it.
+    pub(super) fn draw(&mut self) -> Result<(), Failure> {
+        let Some(size) = self.windowed.fit(self.size())? else {
+            // Its next size is an event.
+            (self.dirty, self.unsettled) = (false, false);
+            return Ok(());
+        };
+        let camera = self.viewpoint.camera(size);
+        let Scenery { cut, settings, .. } = &self.scenery;
+        let shown = self.windowed.show(&camera, &cut.clip(), settings)?;
+        self.dirty = shown == Shown::Missed;
+        self.unsettled = shown == Shown::Unsettled;
+        let now = Instant::now();
+        // The frame that only asks for numbers is none that anybody waits for.
+        if let Some(before) = self.shown_at.take().filter(|_| shown == Shown::Unsettled)
+            && self.intervals.len() < INTERVALS
+        {
+            self.intervals.push(now - before);
+        }
+        if shown == Shown::Unsettled {
+            self.shown_at = Some(now);
+        }
+        if shown == Shown::Settled || self.titled_at.is_none_or(|at| now - at >= TITLE_PAUSE) {
+            self.titled_at = Some(now);
+            self.entitle();
+        }
+        Ok(())
+    }
+
+    fn entitle(&self) {
+        let Scenery {
+            name, mode, cut, ..
+        } = &self.scenery;
+        let offset = cut.on.then(|| cut.plane().offset());
+        let text = title::title(name, mode.name(), offset, self.windowed.told());
+        self.window.set_title(&text);
+    }
+
+    /// Asks the window for another size; whether it has it already.
+    pub(super) fn resize(&self, (width, height): (u32, u32)) -> bool {
+        let wanted = PhysicalSize::new(width, height);
+        self.window.inner_size() == wanted || self.window.request_inner_size(wanted) == Some(wanted)
+    }
+
+    /// Frees everything; the error is what validation says of it.
+    pub(super) fn close(self) -> Result<(), Failure> {
+        Ok(self.windowed.close()?)
+    }
+}
+
+impl Scenery {
+    fn viewpoint(&self, view: usize) -> Viewpoint {
+        let (camera, up) = &self.views[view];
+        Viewpoint::new(camera, *up, self.centre, self.radius)
+    }
+}

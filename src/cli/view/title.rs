@@ -1,0 +1,118 @@
+//! What a viewer tells about its frames: shortly in the window's title, at length on the terminal.
+
+use std::fmt::Write;
+use std::time::Duration;
+
+use rara::windowed::Told;
+
+use crate::cli::output::grouped;
+
+/// The title: what is shown, how it is cut, and where the last frame's time went on the device.
+pub(super) fn title(scene: &str, mode: &str, cut: Option<f64>, told: Option<&Told>) -> String {
+    let mut text = format!("rara: {scene}, {mode}");
+    if let Some(offset) = cut {
+        let _ = write!(text, ", plane at {offset:.4}");
+    }
+    let Some(told) = told.filter(|told| !told.passes.is_empty()) else {
+        return text;
+    };
+    let total: f64 = told.passes.iter().map(|pass| pass.ms).sum();
+    let mut passes: Vec<_> = told.passes.iter().collect();
+    passes.sort_by(|a, b| b.ms.total_cmp(&a.ms));
+    let most: Vec<_> = passes
+        .iter()
+        .take(3)
+        .map(|pass| format!("{} {:.1}", pass.name, pass.ms))
+        .collect();
+    let _ = write!(text, "; {total:.1} ms ({})", most.join(", "));
+    text
+}
+
+/// The lines of the key T: the last frame that computed anything, and the time between frames since the last time.
+pub(super) fn lines(size: (u32, u32), told: Option<&Told>, intervals: &mut [Duration]) -> String {
+    let mut text = format!("window   {}x{}", size.0, size.1);
+    if let Some(told) = told {
+        let counts = &told.counts;
+        let _ = write!(
+            text,
+            "\ncounts   {} visible, {} cut, {} invisible, {} culled",
+            grouped(counts.visible.into()),
+            grouped(counts.cutoff.into()),
+            grouped(counts.invisible.into()),
+            grouped(counts.culled.into())
+        );
+        text += "\npasses  ";
+        for pass in &told.passes {
+            let _ = write!(text, " {} {:.2}", pass.name, pass.ms);
+        }
+        if !told.skipped.is_empty() {
+            let _ = write!(text, " (skipped: {})", told.skipped.join(", "));
+        }
+        let total: f64 = told.passes.iter().map(|pass| pass.ms).sum();
+        let _ = write!(
+            text,
+            "\ntime     {total:.2} ms on the device, as {} ({})",
+            told.raster.path, told.raster.reason
+        );
+    }
+    if intervals.is_empty() {
+        return text;
+    }
+    intervals.sort();
+    let ms = |at: usize| intervals[at].as_secs_f64() * 1e3;
+    let middle = ms(intervals.len() / 2);
+    let _ = write!(
+        text,
+        "\nframes   {} in a row, {middle:.2} ms from one to the next at the median ({:.2} at least, {:.2} at most): {:.1} \
+         a second",
+        intervals.len(),
+        ms(0),
+        ms(intervals.len() - 1),
+        1e3 / middle.max(1e-3)
+    );
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rara::PassTime;
+
+    fn told() -> Told {
+        let pass = |name, ms| PassTime { name, ms };
+        Told {
+            passes: vec![
+                pass("clip", 0.4),
+                pass("project", 5.85),
+                pass("sort", 3.0),
+                pass("tiles", 14.25),
+            ],
+            ..Told::default()
+        }
+    }
+
+    #[test]
+    fn the_title_names_the_longest_stages() {
+        let text = title("hair.ply", "exact", Some(-0.5), Some(&told()));
+        assert_eq!(
+            text,
+            "rara: hair.ply, exact, plane at -0.5000; 23.5 ms (tiles 14.2, project 5.8, sort 3.0)"
+        );
+        assert_eq!(title("a.ply", "hard", None, None), "rara: a.ply, hard");
+    }
+
+    #[test]
+    fn frames_in_a_row_are_told_by_their_median() {
+        let mut intervals = [40, 10, 20].map(Duration::from_millis);
+        let text = lines((640, 480), Some(&told()), &mut intervals);
+        assert!(
+            text.contains("window   640x480") && text.contains("tiles 14.25"),
+            "{text}"
+        );
+        assert!(
+            text.contains("20.00 ms") && text.contains("50.0 a second"),
+            "{text}"
+        );
+        assert!(!lines((1, 1), None, &mut []).contains("frames"));
+    }
+}

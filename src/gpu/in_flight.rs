@@ -1,0 +1,172 @@
+//! Frames that are recorded while earlier ones are still drawn.
+
+use std::sync::PoisonError;
+
+use ash::vk;
+
+use super::Device;
+use super::failure::failed;
+use crate::Result;
+
+/// How many frames may be unfinished at once: one is drawn while the next is recorded.
+pub(crate) const FRAMES: usize = 2;
+
+/// Command buffers, fences and semaphores of the frames in flight.
+pub(crate) struct InFlight {
+    slots: Vec<Slot>,
+    /// The slot of the next frame.
+    next: usize,
+    device: Device,
+}
+
+#[derive(Default)]
+struct Slot {
+    pool: vk::CommandPool,
+    cmd: vk::CommandBuffer,
+    fence: vk::Fence,
+    /// Signalled when the frame's image may be drawn into.
+    acquired: vk::Semaphore,
+    /// Whether a submission will signal, or has signalled, the fence.
+    submitted: bool,
+}
+
+impl InFlight {
+    pub(crate) fn new(device: &Device) -> Result<Self> {
+        // From here on dropping `this` cleans up.
+        let mut this = Self {
+            slots: Vec::new(),
+            next: 0,
+            device: device.clone(),
+        };
+        for _ in 0..FRAMES {
+            this.slots.push(Slot::default());
+            let slot = this.slots.last_mut().expect("pushed above");
+            let raw = device.raw();
+            let info = vk::CommandPoolCreateInfo::default()
+                .flags(vk::CommandPoolCreateFlags::TRANSIENT)
+                .queue_family_index(device.queue_family());
+            // SAFETY: the device is alive as long as `this`, also for the calls below.
+            slot.pool = unsafe { raw.create_command_pool(&info, None) }
+                .map_err(failed("vkCreateCommandPool"))?;
+            let info = vk::CommandBufferAllocateInfo::default()
+                .command_pool(slot.pool)
+                .command_buffer_count(1);
+            // SAFETY: the pool was created just now.
+            slot.cmd = unsafe { raw.allocate_command_buffers(&info) }
+                .map_err(failed("vkAllocateCommandBuffers"))?[0];
+            // SAFETY: as above.
+            slot.fence = unsafe { raw.create_fence(&vk::FenceCreateInfo::default(), None) }
+                .map_err(failed("vkCreateFence"))?;
+            // SAFETY: as above.
+            slot.acquired =
+                unsafe { raw.create_semaphore(&vk::SemaphoreCreateInfo::default(), None) }
+                    .map_err(failed("vkCreateSemaphore"))?;
+            device.set_name(slot.cmd, "frame");
+            device.set_name(slot.acquired, "acquired");
+        }
+        Ok(this)
+    }
+
+    /// Waits for the oldest frame, so that the next one may take over what it has used.
+    pub(crate) fn wait(&mut self) -> Result<()> {
+        self.wait_for(self.next)
+    }
+
+    /// Waits for all frames.
+    pub(crate) fn wait_for_all(&mut self) -> Result<()> {
+        (0..FRAMES).try_for_each(|slot| self.wait_for(slot))
+    }
+
+    fn wait_for(&mut self, slot: usize) -> Result<()> {
+        let slot = &mut self.slots[slot];
+        if !slot.submitted {
+            return Ok(());
+        }
+        let raw = self.device.raw();
+        // SAFETY: the fence belongs to a submission; after the wait it is signalled and nothing waits for it.
+        unsafe { raw.wait_for_fences(&[slot.fence], true, u64::MAX) }
+            .map_err(failed("vkWaitForFences"))?;
+        slot.submitted = false;
+        // SAFETY: as above.
+        unsafe { raw.reset_fences(&[slot.fence]) }.map_err(failed("vkResetFences"))
+    }
+
+    /// What the next frame's image is acquired with, after [`wait`](Self::wait).
+    pub(crate) fn acquired(&self) -> vk::Semaphore {
+        self.slots[self.next].acquired
+    }
+
+    /// Records the next frame and submits it; `drawn` is signalled when its image is complete.
+    ///
+    /// # Safety
+    /// [`wait`](Self::wait) was called before, an image acquired with [`acquired`](Self::acquired), and what `record`
+    /// records lives until the frame has been waited for. It leaves `cmd` outside rendering. `drawn` is unsignalled.
+    pub(crate) unsafe fn submit(
+        &mut self,
+        drawn: vk::Semaphore,
+        record: impl FnOnce(vk::CommandBuffer),
+    ) -> Result<()> {
+        let raw = self.device.raw();
+        let slot = &mut self.slots[self.next];
+        let begin = vk::CommandBufferBeginInfo::default()
+            .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        // SAFETY: the slot's last submission was waited for, says the caller.
+        unsafe { raw.reset_command_pool(slot.pool, vk::CommandPoolResetFlags::empty()) }
+            .map_err(failed("vkResetCommandPool"))?;
+        // SAFETY: as above, the command buffer is initial.
+        unsafe { raw.begin_command_buffer(slot.cmd, &begin) }
+            .map_err(failed("vkBeginCommandBuffer"))?;
+        record(slot.cmd);
+        // SAFETY: it is recording.
+        unsafe { raw.end_command_buffer(slot.cmd) }.map_err(failed("vkEndCommandBuffer"))?;
+        let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(slot.cmd)];
+        // What comes before the image is drawn into need not wait for it.
+        let waits = [vk::SemaphoreSubmitInfo::default()
+            .semaphore(slot.acquired)
+            .stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)];
+        // Everything: the image's way to the layout that is shown is in no other stage.
+        let signals = [vk::SemaphoreSubmitInfo::default()
+            .semaphore(drawn)
+            .stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)];
+        let submit = [vk::SubmitInfo2::default()
+            .wait_semaphore_infos(&waits)
+            .command_buffer_infos(&commands)
+            .signal_semaphore_infos(&signals)];
+        let queue = self
+            .device
+            .inner
+            .queue
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        // SAFETY: the lock keeps our threads from the queue; the fence is unsignalled, the command buffer executable, and
+        // the caller vouches for the semaphores.
+        unsafe { raw.queue_submit2(*queue, &submit, slot.fence) }
+            .map_err(failed("vkQueueSubmit2"))?;
+        drop(queue);
+        slot.submitted = true;
+        self.next = (self.next + 1) % FRAMES;
+        Ok(())
+    }
+}
+
+impl Drop for InFlight {
+    fn drop(&mut self) {
+        let _queue = self
+            .device
+            .inner
+            .queue
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let raw = self.device.raw();
+        // SAFETY: the device's only queue is locked, and nothing is in use after the first call, or the device is lost;
+        // null handles are ignored.
+        unsafe {
+            let _ = raw.device_wait_idle();
+            for slot in &self.slots {
+                raw.destroy_command_pool(slot.pool, None);
+                raw.destroy_fence(slot.fence, None);
+                raw.destroy_semaphore(slot.acquired, None);
+            }
+        }
+    }
+}

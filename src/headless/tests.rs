@@ -1,0 +1,199 @@
+//! What needs a look inside: seams that only these tests have.
+
+use super::*;
+use crate::clip::{ClipOp, Plane};
+use crate::limits;
+use crate::scene::{Bounds, Kind, extent_along, generate};
+use crate::settings::{ExactForm, Mode, Raster};
+use glam::{DVec3, Vec3};
+
+fn headless() -> Headless {
+    let desc = HeadlessDesc {
+        device: std::env::var("RARA_TEST_DEVICE").ok(),
+        validation: true,
+        ..HeadlessDesc::default()
+    };
+    Headless::new(&desc).expect("a device and the validation layer")
+}
+
+#[test]
+fn what_tiles_never_have_room_for_is_drawn_as_quads() {
+    let mut headless = headless();
+    let scene = generate(Kind::General, 3_000, 1);
+    headless.load(&scene).expect("uploads");
+    headless.renderer.limit_pairs(1 << 11);
+    let bounds = Bounds::of(&scene);
+    let camera = Camera::frame(&bounds, -DVec3::Y, 50.0, (200, 150)).expect("a view");
+    // The second and the third are a sweep, whose base has no room either.
+    for offset in [0.0, 0.1, 0.2] {
+        let clip = Clip {
+            planes: vec![Plane::new(DVec3::X, offset).expect("a finite normal")],
+            op: ClipOp::And,
+        };
+        let draw = |headless: &mut Headless, raster| {
+            let settings = Settings {
+                raster,
+                ..Settings::default()
+            };
+            let stats = headless.render(&camera, &clip, &settings).expect("renders");
+            (stats.raster.path, headless.picture().expect("reads back"))
+        };
+        let (path, picture) = draw(&mut headless, Raster::Tiles);
+        assert_eq!(path, "quad");
+        assert!(picture.pixels.iter().any(|pixel| pixel[3] > 0.5));
+        assert!(
+            picture == draw(&mut headless, Raster::Tiles).1,
+            "drawn again"
+        );
+        headless.forget();
+        assert!(picture == draw(&mut headless, Raster::Quad).1, "{offset}");
+        headless.forget();
+        draw(&mut headless, Raster::Tiles);
+    }
+}
+
+/// Scenes of many blocks: neighbours alike, ones that leave their block to be looked at, and blocks whose Gaussians are
+/// one and the same, so that their bounds are no wider than they.
+fn scenes_of_blocks() -> [Gaussians; 4] {
+    let general = generate(Kind::General, 5_000, 3);
+    let mut small = general.clone();
+    for (scale, opacity) in small.scales.iter_mut().zip(&mut small.opacities) {
+        *scale *= 0.02;
+        *opacity = opacity.max(0.01);
+    }
+    let mut odd = general.clone();
+    for index in 0..odd.len() {
+        odd.scales[index] = match index {
+            _ if index % 7 == 0 => Vec3::ZERO,
+            _ if index % 301 == 0 => Vec3::splat(50.0),
+            _ if index % 2003 == 0 => Vec3::splat(1e36),
+            _ => odd.scales[index],
+        };
+        if index % 5 == 0 {
+            odd.opacities[index] = limits::ALPHA_MIN * (1.0 + 1e-5 * (index as f32 - 2500.0));
+        }
+        if index % 1999 == 0 {
+            odd.positions[index] = Vec3::splat(1e36);
+        }
+    }
+    let mut tight = general.clone();
+    for index in 0..tight.len() {
+        let first = index / limits::BLOCK_SIZE as usize * limits::BLOCK_SIZE as usize;
+        tight.positions[index] = general.positions[first];
+        tight.scales[index] = Vec3::splat([0.0005, 0.05][first / limits::BLOCK_SIZE as usize % 2]);
+        tight.opacities[index] = 0.9;
+    }
+    [general, small, odd, tight]
+}
+
+/// From outside, from within and with a long lens, aside and askew.
+fn views_of_blocks(bounds: &Bounds) -> Vec<Camera> {
+    let centre = bounds.centre();
+    let beside = |way: DVec3, size| {
+        let eye = centre + 2.2 * bounds.radius() * way.normalize();
+        Camera::look_at(eye, centre, -DVec3::Y, 50.0, size).expect("a view from outside")
+    };
+    let first = beside(DVec3::new(1.0, -0.3, 0.4), (125, 95));
+    let second = beside(DVec3::new(-0.2, 0.5, -1.0), (64, 48));
+    let changed = |change: fn(&mut Camera)| {
+        let mut camera = first;
+        change(&mut camera);
+        camera
+    };
+    let mut within = second;
+    within.eye = centre;
+    vec![
+        first,
+        second,
+        within,
+        changed(|c| (c.fx, c.fy) = (300.0 * c.fx, 300.0 * c.fy)),
+        changed(|c| (c.fx, c.fy) = (0.02 * c.fx, 0.1 * c.fy)),
+        changed(|c| (c.fx, c.cx, c.cy) = (4.0 * c.fx, -400.0, 150.0)),
+        changed(|c| (c.fx, c.fy, c.cx) = (1e5, 30.0, 1e5)),
+    ]
+}
+
+/// The same view with a point so many pixels right of the picture's left edge, where blocks come into view.
+fn at_the_edge(camera: Camera, point: Vec3, pixels: f64) -> Camera {
+    let seen = camera.rotation * (point.as_dvec3() - camera.eye);
+    Camera {
+        cx: pixels - camera.fx * seen.x / seen.z,
+        ..camera
+    }
+}
+
+/// What is settled for a block at once is what its Gaussians would each be found to be: the same counts, the same bytes.
+#[test]
+fn blocks_change_nothing() {
+    let mut state = 5_u64;
+    let mut pick = |count: usize| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 33) as usize % count
+    };
+    let (mut settles, mut looks) = (headless(), headless());
+    let mut settled = 0;
+    for scene in scenes_of_blocks() {
+        settles.load(&scene).expect("uploads");
+        looks.load(&scene).expect("uploads");
+        let buffers = looks.scene.as_ref().expect("loaded");
+        buffers.undecide(&looks.device).expect("uploads");
+        let views = views_of_blocks(&Bounds::of(&scene));
+        for step in 0..16 {
+            let camera = match views.get(step) {
+                Some(camera) => *camera,
+                None => {
+                    let point = scene.positions[pick(scene.len())];
+                    at_the_edge(views[pick(2)], point, -2.0 + 0.5 * pick(9) as f64)
+                }
+            };
+            let mut settings = Settings {
+                mode: [Mode::Hard, Mode::Rara, Mode::Exact, Mode::Exact][pick(4)],
+                form: [ExactForm::Auto, ExactForm::Beam, ExactForm::Affine][pick(3)],
+                raster: [Raster::Tiles, Raster::Quad][pick(2)],
+                trace_all: pick(8) == 0,
+                ..Settings::default()
+            };
+            settings.precision.beam_switch = [0.0, 0.005, 0.05][pick(3)];
+            let normals = [
+                DVec3::X,
+                DVec3::new(0.1, 0.9, -0.3),
+                DVec3::new(-0.4, -0.2, 0.7),
+            ];
+            let (planes, op) = (pick(4), [ClipOp::And, ClipOp::Or][pick(2)]);
+            // The second begins a sweep, the third goes on with it.
+            for share in [0.02, 0.5, 0.8].map(|share| share + 0.01 * pick(10) as f64) {
+                let plane = |&normal: &DVec3| {
+                    let (low, high) = extent_along(&scene, normal);
+                    Plane::new(normal, -(low + share * (high - low))).expect("a finite normal")
+                };
+                let clip = Clip {
+                    planes: normals[..planes].iter().map(plane).collect(),
+                    op,
+                };
+                let draw = |headless: &mut Headless| {
+                    let stats = headless.render(&camera, &clip, &settings).expect("renders");
+                    let picture = headless.picture().expect("reads back");
+                    (stats.counts, picture, headless.renderer.block_sides())
+                };
+                let (counts, picture, sides) = draw(&mut settles);
+                let (each, truth, unsettled) = draw(&mut looks);
+                let bits =
+                    |picture: &Picture| bytemuck::cast_slice::<_, u32>(&picture.pixels).to_vec();
+                let same = counts == each && bits(&picture) == bits(&truth);
+                assert!(
+                    same,
+                    "step {step}: {counts:?}, {each:?}: {camera:?} {clip:?} {settings:?}"
+                );
+                assert!(unsettled.iter().all(|side| *side == unsettled[0]));
+                settled += sides.iter().filter(|side| **side != unsettled[0]).count();
+                looks.forget();
+            }
+        }
+    }
+    assert!(
+        settled > 1000,
+        "only {settled} blocks were settled as a whole"
+    );
+}

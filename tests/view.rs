@@ -1,0 +1,424 @@
+//! `rara view` on a display of its own: Xvfb is started here, a script drives the window, and what the X server holds is
+//! what must be seen. Under validation throughout.
+#![cfg(feature = "view")]
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use rara::Picture;
+
+/// The X server's screen; the windows are smaller.
+const SCREEN: &str = "640x480x24";
+const BACKGROUND: [f32; 3] = [0.2, 0.4, 0.6];
+
+/// A child process that does not outlive the test.
+struct Owned(Child);
+
+impl Drop for Owned {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// An X server without a screen to look at. It keeps what would be on it in a file.
+struct Display {
+    _server: Owned,
+    name: String,
+    frame_buffer: PathBuf,
+}
+
+impl Display {
+    /// Says so loudly, and is none, where Xvfb is missing.
+    fn start(folder: &Path) -> Option<Self> {
+        let server = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-nolisten", "tcp", "-noreset"])
+            .args(["-screen", "0", SCREEN, "-fbdir"])
+            .arg(folder)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn();
+        let mut server = match server {
+            Ok(server) => Owned(server),
+            Err(error) => {
+                eprintln!("SKIPPED: Xvfb does not start ({error}); tools/setup test installs it");
+                return None;
+            }
+        };
+        let mut number = String::new();
+        let pipe = server.0.stdout.take().expect("it is piped");
+        let read = BufReader::new(pipe).read_line(&mut number);
+        read.expect("Xvfb says which display it has");
+        assert!(!number.trim().is_empty(), "Xvfb found no free display");
+        let this = Self {
+            _server: server,
+            name: format!(":{}", number.trim()),
+            frame_buffer: folder.join("Xvfb_screen0"),
+        };
+        this.can_be_drawn_to(folder).then_some(this)
+    }
+
+    /// Whether the driver under test knows windows at all; SwiftShader as Chromium ships it does not.
+    fn can_be_drawn_to(&self, folder: &Path) -> bool {
+        if std::env::var_os("RARA_TEST_DEVICE").is_none() {
+            return true;
+        }
+        fs::write(folder.join("quit.txt"), "quit").expect("a script");
+        let mut command = rara(folder, "view @/scene.ply --script @/quit.txt");
+        let output = command.env("DISPLAY", &self.name).output();
+        let told = stderr(&output.expect("the rara binary runs"));
+        let lacks =
+            told.contains("cannot draw into windows") || told.contains("cannot be used here");
+        if lacks {
+            eprintln!("SKIPPED: {}", told.trim_end());
+        }
+        !lacks
+    }
+
+    /// The upper left corner of the screen, where a window without a window manager is.
+    fn corner(&self, width: u32, height: u32) -> Picture {
+        let bytes = fs::read(&self.frame_buffer).expect("Xvfb keeps its screen in a file");
+        // An XWD file: a header of big-endian words, 12 bytes for each colour of a map, rows.
+        let word = |at: usize| {
+            let bytes = bytes[4 * at..][..4].try_into().expect("four bytes");
+            u32::from_be_bytes(bytes) as usize
+        };
+        let (header, little_endian, bits, row, colours) =
+            (word(0), word(7) == 0, word(11), word(12), word(19));
+        assert!(
+            little_endian && bits == 32,
+            "pixels are blue, green, red, -"
+        );
+        let pixel = |i: u32| {
+            let (x, y) = ((i % width) as usize, (i / width) as usize);
+            let at = header + 12 * colours + y * row + 4 * x;
+            let [b, g, r] = [0, 1, 2].map(|c| f32::from(bytes[at + c]) / 255.0);
+            [r, g, b, 1.0]
+        };
+        Picture {
+            width,
+            height,
+            pixels: (0..width * height).map(pixel).collect(),
+        }
+    }
+}
+
+/// `rara view`, following a script line by line.
+struct Viewer<'a> {
+    child: Owned,
+    display: &'a Display,
+    folder: &'a Path,
+}
+
+impl<'a> Viewer<'a> {
+    fn start(display: &'a Display, folder: &'a Path, words: &str) -> Self {
+        let mut command = rara(
+            folder,
+            &format!("view @/scene.ply --script - --validation {words}"),
+        );
+        command
+            .env("DISPLAY", &display.name)
+            .stdin(Stdio::piped())
+            .stderr(Stdio::piped());
+        Self {
+            child: Owned(command.spawn().expect("the rara binary runs")),
+            display,
+            folder,
+        }
+    }
+
+    fn say(&mut self, lines: &str) {
+        let stdin = self.child.0.stdin.as_mut().expect("it is piped");
+        // If it ended, `end` says why.
+        let _ = writeln!(
+            stdin,
+            "{}",
+            lines.replace('@', self.folder.to_str().expect("text"))
+        );
+    }
+
+    /// A screenshot by that name; a failure shows what the viewer had to say.
+    fn screenshot(&mut self, name: &str) -> Picture {
+        self.say(&format!("screenshot @/{name}.png"));
+        let path = self.folder.join(name);
+        let until = Instant::now() + Duration::from_secs(60);
+        // The camera is written last.
+        while !path.with_extension("json").exists() {
+            if let Some(status) = self.child.0.try_wait().expect("it can be asked") {
+                panic!("{status}: {}", self.told());
+            }
+            assert!(Instant::now() < until, "no screenshot in a minute");
+            sleep(Duration::from_millis(20));
+        }
+        Picture::load(path.with_extension("png")).expect("a picture")
+    }
+
+    /// Waits until the window shows a picture, to 1/255.
+    fn shows(&self, what: &str, picture: &Picture) {
+        let until = Instant::now() + Duration::from_secs(20);
+        loop {
+            let seen = self.display.corner(picture.width, picture.height);
+            let off = apart(&seen, picture);
+            if off <= 1.01 {
+                return;
+            }
+            if Instant::now() > until {
+                let _ = seen.save(self.folder.join("seen.png"));
+                panic!(
+                    "{what}: the window is off by {off}/255; {}/seen.png",
+                    self.folder.display()
+                );
+            }
+            sleep(Duration::from_millis(50));
+        }
+    }
+
+    fn told(&mut self) -> String {
+        let mut text = String::new();
+        let mut stderr = self.child.0.stderr.take().expect("it is piped");
+        stderr
+            .read_to_string(&mut text)
+            .expect("messages are UTF-8");
+        text
+    }
+
+    /// Quits; what it has told. No message of the validation layer, no failure.
+    fn quit(mut self) -> String {
+        self.say("quit");
+        let told = self.told();
+        let status = self.child.0.wait().expect("it ends");
+        assert!(status.success(), "{status}: {told}");
+        assert!(!told.contains("validation"), "{told}");
+        told
+    }
+
+    /// Processor time so far, hundredths of a second.
+    #[cfg(target_os = "linux")]
+    fn ticks(&self) -> u64 {
+        let stat = fs::read_to_string(format!("/proc/{}/stat", self.child.0.id()));
+        let stat = stat.expect("the process is there");
+        let fields: Vec<_> = stat
+            .rsplit(')')
+            .next()
+            .expect("fields")
+            .split(' ')
+            .collect();
+        fields[12].parse::<u64>().expect("user") + fields[13].parse::<u64>().expect("system")
+    }
+
+    /// That it sleeps.
+    fn sleeps(&self, when: &str) {
+        #[cfg(target_os = "linux")]
+        {
+            sleep(Duration::from_millis(300)); // the last frame's numbers
+            let before = self.ticks();
+            sleep(Duration::from_secs(1));
+            let busy = self.ticks() - before;
+            assert!(busy <= 5, "{when}: busy for {busy} hundredths of a second");
+        }
+    }
+}
+
+fn rara(folder: &Path, words: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rara"));
+    for word in words.split_whitespace() {
+        command.arg(word.replace('@', folder.to_str().expect("the folder's name is text")));
+    }
+    if let Ok(device) = std::env::var("RARA_TEST_DEVICE")
+        && !words.starts_with("generate")
+    {
+        command.args(["--device", &device]);
+    }
+    // The user's own cache and display are not the tests' business.
+    command.env("RARA_CACHE", "");
+    command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
+    command
+}
+
+fn done(mut command: Command) {
+    let output = command.output().expect("the rara binary runs");
+    assert!(output.status.success(), "{}", stderr(&output));
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// A folder of the test's own with a small scene in it.
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("view")
+        .join(test);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("the target folder is writable");
+    done(rara(
+        &folder,
+        "generate general -n 3000 --seed 3 -o @/scene.ply",
+    ));
+    folder
+}
+
+/// The largest difference, in units of 1/255, of what is beyond white too.
+fn apart(a: &Picture, b: &Picture) -> f32 {
+    assert_eq!((a.width, a.height), (b.width, b.height));
+    let pairs = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
+    pairs.fold(0.0, |most: f32, (a, b)| most.max(255.0 * (a - b).abs()))
+}
+
+fn background() -> String {
+    let [r, g, b] = BACKGROUND;
+    format!("--background {r},{g},{b}")
+}
+
+/// The picture that `rara render` makes of a screenshot's camera.
+fn rendered(folder: &Path, name: &str, words: &str) -> Picture {
+    let line = format!(
+        "render @/scene.ply -o @/{name}_rendered.png --camera @/{name}.json {} {words}",
+        background()
+    );
+    done(rara(folder, &line));
+    Picture::load(folder.join(format!("{name}_rendered.png"))).expect("a picture")
+}
+
+#[test]
+fn a_plane_is_moved_and_what_is_seen_is_what_render_draws() {
+    let folder = folder("plane");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    let words = format!("--size 320x240 --clip plane:1,0,0,0.1 {}", background());
+    let mut viewer = Viewer::start(&display, &folder, &words);
+    let first = viewer.screenshot("first");
+    viewer.shows("the start", &first);
+
+    viewer.say("plane +0.3");
+    let moved = viewer.screenshot("moved");
+    viewer.shows("the moved plane", &moved);
+    assert!(apart(&first, &moved) > 50.0, "the plane has moved");
+    viewer.sleeps("nothing changes");
+
+    viewer.say("mode hard");
+    let hard = viewer.screenshot("hard");
+    viewer.shows("mode hard", &hard);
+    viewer.say(
+        "mode exact\nplane flip\nrepeat 20 plane +0.01\ntilt 10,20\nrepeat 5 turn 4,-3\nzoom 2",
+    );
+    let turned = viewer.screenshot("turned");
+    viewer.shows("another view", &turned);
+    viewer.say("plane 0,0,1,0.2\ncamera fly\nturn 3,3\nmove 0.1,0,0.2");
+    let flown = viewer.screenshot("flown");
+    viewer.shows("from elsewhere", &flown);
+    viewer.say("plane off\ntimings");
+    let whole = viewer.screenshot("whole");
+    viewer.shows("nothing cut", &whole);
+    let told = viewer.quit();
+    assert!(
+        told.contains("tiles") && told.contains("on the device"),
+        "{told}"
+    );
+
+    for (name, shot) in [
+        ("first", first),
+        ("moved", moved),
+        ("hard", hard),
+        ("turned", turned),
+        ("flown", flown),
+        ("whole", whole),
+    ] {
+        // What the viewer itself says draws it again.
+        let flags = told.lines().find_map(|line| {
+            let (_, flags) = line.split_once(&format!("{name}.json"))?;
+            Some(flags.to_owned())
+        });
+        let flags = flags.unwrap_or_else(|| panic!("{name} is not in {told}"));
+        let off = apart(&shot, &rendered(&folder, name, &flags));
+        assert!(off <= 1.01, "{name}, {flags}: off by {off}/255");
+    }
+}
+
+#[test]
+fn a_window_may_change_its_size_and_vanish_for_a_while() {
+    let folder = folder("size");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    let words = format!("--size 300x200 --clip plane:0,1,0,0 {}", background());
+    let mut viewer = Viewer::start(&display, &folder, &words);
+    let mut seen = Vec::new();
+    for (width, height) in [(300, 200), (517, 401), (64, 300), (1, 1), (400, 300)] {
+        viewer.say(&format!("resize {width}x{height}\nplane +0.01"));
+        let shot = viewer.screenshot(&format!("at_{width}"));
+        assert_eq!((shot.width, shot.height), (width, height));
+        viewer.shows(&format!("{width}x{height}"), &shot);
+        seen.push(shot);
+    }
+    // Minimised it draws nothing and waits for nothing; screenshots are still possible.
+    viewer.say("minimise\nrepeat 30 plane +0.005");
+    let hidden = viewer.screenshot("hidden");
+    assert!(apart(&hidden, &seen[4]) > 20.0, "the plane has moved");
+    viewer.sleeps("minimised");
+    viewer.shows("what it was before", &seen[4]);
+    viewer.say("restore");
+    viewer.shows("what it is now", &hidden);
+    viewer.quit();
+    let off = apart(
+        &hidden,
+        &rendered(&folder, "hidden", "--clip plane:0,1,0,-0.2"),
+    );
+    assert!(off <= 1.01, "off by {off}/255");
+}
+
+#[test]
+fn a_screenshot_replaces_nothing_and_a_script_that_fails_ends_the_viewer() {
+    let folder = folder("script");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    let mut viewer = Viewer::start(&display, &folder, "--size 64x64 -o @/shot_{}.png");
+    viewer.say("screenshot\nscreenshot");
+    viewer.screenshot("own");
+    assert!(folder.join("shot_001.png").is_file() && folder.join("shot_002.json").is_file());
+    viewer.say("screenshot @/own.png");
+    let told = viewer.told();
+    assert!(
+        told.contains("own.png") && told.contains("replaces nothing"),
+        "{told}"
+    );
+    assert_eq!(viewer.child.0.wait().expect("it ends").code(), Some(1));
+
+    let mut viewer = Viewer::start(&display, &folder, "--size 64x64");
+    viewer.say("# a comment\nleap");
+    let told = viewer.told();
+    assert!(told.contains("line 2: \"leap\" is no action"), "{told}");
+    assert_eq!(viewer.child.0.wait().expect("it ends").code(), Some(2));
+}
+
+#[test]
+fn what_cannot_work_is_said_in_a_line() {
+    let folder = folder("refused");
+    fs::write(folder.join("wrong.txt"), "plane +0.1\nplane sideways\n").expect("a script");
+    for (words, status, says) in [
+        ("view @/scene.ply", 1, "rara render"),
+        (
+            "view @/scene.ply --script @/wrong.txt",
+            2,
+            "wrong.txt, line 2",
+        ),
+        ("view @/scene.ply --script @/none.txt", 1, "none.txt"),
+        ("view @/scene.ply -o @/one.png", 2, "{}"),
+    ] {
+        let output = rara(&folder, words).output().expect("the rara binary runs");
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(status), "{words}: {message}");
+        assert!(
+            message.starts_with("rara: ") && message.contains(says),
+            "{words}: {message}"
+        );
+        assert_eq!(message.trim_end().lines().count(), 1, "{words}: {message}");
+    }
+}

@@ -1,0 +1,84 @@
+//! How many fragments of a frame count, by the reference in single precision: alpha of 1/255 or more, in a pixel that what
+//! lies before has not saturated.
+
+use std::sync::Mutex;
+
+use rara::reference::{Splat, View, classify, compact, project, sort, splat};
+use rara::{Camera, Clip, Decay, Gaussians, Settings};
+
+/// Rows that a thread counts in at a time.
+const BAND: u32 = 16;
+
+/// Of a frame without a clip.
+pub(crate) fn count(scene: &Gaussians, camera: &Camera, settings: &Settings) -> u64 {
+    let view = View::<f32>::new(camera);
+    let sides = classify::classify(scene, &view, &Clip::default(), settings);
+    let drawn = compact::compact(&sides);
+    let project = |&index: &u32| project::project(scene, index as usize, &view, settings);
+    let mut splats: Vec<_> = drawn.iter().filter_map(project).collect();
+    sort::sort(&mut splats);
+
+    let [width, height] = view.size;
+    let mut members = vec![Vec::new(); height.div_ceil(BAND) as usize];
+    for splat in &splats {
+        if let Some((first, last)) = splat.footprint.span(1, height, 0.0) {
+            for band in first / BAND..=last / BAND {
+                members[band as usize].push(splat);
+            }
+        }
+    }
+    let queue = Mutex::new((0..height).step_by(BAND as usize).zip(&members));
+    let work = || {
+        let mut sum = 0;
+        loop {
+            let next = queue.lock().expect("no thread panics").next();
+            let Some((top, splats)) = next else {
+                return sum;
+            };
+            let bottom = height.min(top + BAND);
+            sum += in_band(splats, top..bottom, width, settings);
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        let counts = threads.into_iter().map(|thread| thread.join());
+        counts.map(|count| count.expect("no thread panics")).sum()
+    })
+}
+
+/// Of splats that are sorted front to back.
+fn in_band(
+    splats: &[&Splat<f32>],
+    rows: std::ops::Range<u32>,
+    width: u32,
+    settings: &Settings,
+) -> u64 {
+    let saturated = settings.precision.transmittance_min;
+    let mut light = vec![1.0_f32; (width * (rows.end - rows.start)) as usize];
+    let mut count = 0;
+    for splat in splats {
+        let (footprint, [x, y]) = (&splat.footprint, splat.footprint.pixel);
+        let spans = (
+            footprint.span(0, width, 0.0),
+            footprint.span(1, rows.end, 0.0),
+        );
+        let (Some((left, right)), Some((top, bottom))) = spans else {
+            continue;
+        };
+        for row in top.max(rows.start)..=bottom {
+            for column in left..=right {
+                let light = &mut light[((row - rows.start) * width + column) as usize];
+                let at = [column as f32 + 0.5 - x, row as f32 + 0.5 - y];
+                if *light < saturated {
+                    continue;
+                }
+                if let Some(alpha) = splat::alpha(splat, at[0], at[1], Decay::Depth) {
+                    *light *= 1.0 - alpha;
+                    count += 1;
+                }
+            }
+        }
+    }
+    count
+}

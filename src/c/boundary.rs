@@ -1,0 +1,240 @@
+//! The boundary itself: codes and messages, panics, null pointers, structs of other versions.
+
+use std::any::Any;
+use std::cell::RefCell;
+use std::ffi::{CStr, CString, c_char};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use rara::{Error, Result};
+
+/// What every function that can fail returns. Of anything but RARA_OK rara_last_error_message says more.
+pub type RaraResult = i32;
+/// Done.
+pub const RARA_OK: RaraResult = 0;
+/// An argument is not possible: null, a plane without a normal, a picture of no size. The message names it.
+pub const RARA_ERROR_INVALID: RaraResult = 1;
+/// A file could not be opened or read.
+pub const RARA_ERROR_IO: RaraResult = 2;
+/// A file was read, and is no scene.
+pub const RARA_ERROR_FORMAT: RaraResult = 3;
+/// The device lacks something, or was lost.
+pub const RARA_ERROR_DEVICE: RaraResult = 4;
+/// There is not enough memory, on the device or the host.
+pub const RARA_ERROR_MEMORY: RaraResult = 5;
+/// A Vulkan call failed for another reason.
+pub const RARA_ERROR_VULKAN: RaraResult = 6;
+/// A panic was stopped: calls came in the wrong order, or rara has a bug; the message says which. Of the handles that
+/// the call was given, only destroying is sure to work.
+pub const RARA_ERROR_PANIC: RaraResult = 7;
+
+/// The version of this header. It changes when a host must be compiled anew; structs that grow at their end and functions
+/// that are added do not change it.
+pub const RARA_ABI_VERSION: u32 = 1;
+
+/// The version of the library that is linked: RARA_ABI_VERSION of its header.
+#[unsafe(no_mangle)]
+pub extern "C" fn rara_abi_version() -> u32 {
+    RARA_ABI_VERSION
+}
+
+thread_local! {
+    static MESSAGE: RefCell<CString> = RefCell::default();
+}
+
+/// What the last call of this thread that failed has to say: one or two sentences in UTF-8, "" if none has failed.
+/// Valid until this thread's next call that fails.
+#[unsafe(no_mangle)]
+pub extern "C" fn rara_last_error_message() -> *const c_char {
+    let message = MESSAGE.try_with(|message| message.borrow().as_ptr());
+    message.unwrap_or(c"".as_ptr()) // the thread is ending
+}
+
+/// Runs what a function does: whatever happens in it becomes a code, and a message to ask for.
+pub(crate) fn guard(run: impl FnOnce() -> Result<()>) -> RaraResult {
+    let run = || {
+        #[cfg(test)]
+        crate::tests::panic_if_asked();
+        run()
+    };
+    // Handles are not unwind safe in Rust's sense; RARA_ERROR_PANIC says what is left of them.
+    match catch_unwind(AssertUnwindSafe(run)) {
+        Ok(Ok(())) => RARA_OK,
+        Ok(Err(error)) => fail(code(&error), &error.to_string()),
+        Err(payload) => fail(RARA_ERROR_PANIC, &text_of(payload)),
+    }
+}
+
+fn fail(code: RaraResult, message: &str) -> RaraResult {
+    let message = CString::new(message.replace('\0', "\u{fffd}")).unwrap_or_default();
+    // Without effect while the thread is ending.
+    let _ = MESSAGE.try_with(|last| last.replace(message));
+    code
+}
+
+fn code(error: &Error) -> RaraResult {
+    match error {
+        Error::Invalid(_) => RARA_ERROR_INVALID,
+        Error::Io { .. } => RARA_ERROR_IO,
+        Error::Format { .. } => RARA_ERROR_FORMAT,
+        Error::Device(_) => RARA_ERROR_DEVICE,
+        Error::Memory(_) => RARA_ERROR_MEMORY,
+        Error::Vulkan { .. } | Error::Validation(_) => RARA_ERROR_VULKAN,
+    }
+}
+
+fn text_of(payload: Box<dyn Any + Send>) -> String {
+    let text = payload.downcast_ref::<String>().cloned();
+    let text = text.or_else(|| Some((*payload.downcast_ref::<&str>()?).to_owned()));
+    // Dropping it may panic once more.
+    std::mem::forget(payload);
+    text.unwrap_or_else(|| "a panic without a message".into())
+}
+
+pub(crate) fn invalid<T>(message: impl Into<String>) -> Result<T> {
+    Err(Error::Invalid(message.into()))
+}
+
+/// What an argument points to.
+///
+/// # Safety
+/// `pointer` is null, or points to a `T` that nobody changes for `'a`.
+pub(crate) unsafe fn shared<'a, T>(pointer: *const T, name: &str) -> Result<&'a T> {
+    // SAFETY: the caller's promise.
+    match unsafe { pointer.as_ref() } {
+        Some(value) => Ok(value),
+        None => invalid(format!("{name} is null")),
+    }
+}
+
+/// What an argument points to, to be changed.
+///
+/// # Safety
+/// `pointer` is null, or points to a `T` that nobody else uses for `'a`.
+pub(crate) unsafe fn exclusive<'a, T>(pointer: *mut T, name: &str) -> Result<&'a mut T> {
+    // SAFETY: the caller's promise.
+    match unsafe { pointer.as_mut() } {
+        Some(value) => Ok(value),
+        None => invalid(format!("{name} is null")),
+    }
+}
+
+/// Several things one after the other; no pointer is needed to none.
+///
+/// # Safety
+/// `first` is null, or points to `count` of them that nobody changes for `'a`.
+pub(crate) unsafe fn list<'a, T>(first: *const T, count: usize, name: &str) -> Result<&'a [T]> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    if count > isize::MAX as usize / size_of::<T>().max(1) {
+        return invalid(format!(
+            "{name}: {count} of them are more than memory holds"
+        ));
+    }
+    // SAFETY: the caller's promise.
+    unsafe { shared(first, name) }?;
+    // SAFETY: as above, and not null.
+    Ok(unsafe { std::slice::from_raw_parts(first, count) })
+}
+
+/// A string's bytes, without the NUL at its end.
+///
+/// # Safety
+/// `text` is null, or a string that ends in NUL and that nobody changes for `'a`.
+pub(crate) unsafe fn string<'a>(text: *const c_char, name: &str) -> Result<&'a CStr> {
+    // SAFETY: the caller's promise.
+    unsafe { shared(text, name) }?;
+    // SAFETY: as above, and not null.
+    Ok(unsafe { CStr::from_ptr(text) })
+}
+
+/// Makes a handle: `*out` is null if `make` fails.
+///
+/// # Safety
+/// `out` is null, or points to a pointer that may be overwritten.
+pub(crate) unsafe fn create<T>(
+    out: *mut *mut T,
+    name: &str,
+    make: impl FnOnce() -> Result<T>,
+) -> Result<()> {
+    // SAFETY: the caller's promise.
+    let out = unsafe { exclusive(out, name) }?;
+    *out = std::ptr::null_mut();
+    *out = Box::into_raw(Box::new(make()?));
+    Ok(())
+}
+
+/// Ends a handle; null is none.
+///
+/// # Safety
+/// `handle` is null, or came from [`create`], and is not used any more.
+pub(crate) unsafe fn destroy<T>(handle: *mut T) {
+    guard(|| {
+        if !handle.is_null() {
+            // SAFETY: the caller's promise.
+            drop(unsafe { Box::from_raw(handle) });
+        }
+        Ok(())
+    });
+}
+
+/// Structs that may grow at their end. A host says how large its own are, so that each side can be the newer one.
+///
+/// # Safety
+/// The struct is `repr(C)`, begins with its size, may hold any bytes, and only ever grows at its end.
+pub(crate) unsafe trait Versioned: Copy {
+    /// Its name in C.
+    const NAME: &'static str;
+}
+
+/// A host's struct; what its version does not have yet is as in `default`.
+///
+/// # Safety
+/// `pointer` is null, or points to a size and as many bytes as that says, the size included.
+pub(crate) unsafe fn read<T: Versioned>(pointer: *const T, default: T, name: &str) -> Result<T> {
+    // SAFETY: the caller's promise.
+    let size = *unsafe { shared(pointer.cast::<usize>(), name) }?;
+    if size < size_of::<usize>() || size > size_of::<T>() {
+        return invalid(format!(
+            "{name}->struct_size is {size}, and this library's {} has {} bytes: set it to sizeof({}), and link a library \
+             that is not older than its header",
+            T::NAME,
+            size_of::<T>(),
+            T::NAME,
+        ));
+    }
+    let mut value = default;
+    // SAFETY: as above; the struct may hold any bytes, and is no smaller.
+    unsafe {
+        std::ptr::copy_nonoverlapping(
+            pointer.cast::<u8>(),
+            std::ptr::from_mut(&mut value).cast(),
+            size,
+        );
+    }
+    Ok(value)
+}
+
+/// As much of a struct as the host's has room for.
+///
+/// # Safety
+/// `pointer` is null, or points to `size` bytes that may be overwritten, aligned as a `T`.
+pub(crate) unsafe fn write<T: Versioned>(
+    pointer: *mut T,
+    size: usize,
+    value: &T,
+    name: &str,
+) -> Result<()> {
+    if size < size_of::<usize>() {
+        return invalid(format!("{name} of {size} bytes: give sizeof({})", T::NAME));
+    }
+    // SAFETY: the caller's promise.
+    unsafe { shared(pointer.cast_const().cast::<u8>(), name) }?;
+    let size = size.min(size_of::<T>());
+    // SAFETY: as above; the size comes first.
+    unsafe {
+        std::ptr::copy_nonoverlapping(std::ptr::from_ref(value).cast(), pointer.cast::<u8>(), size);
+        pointer.cast::<usize>().write(size);
+    }
+    Ok(())
+}

@@ -1,0 +1,342 @@
+//! Requirements before there is a device, and the host's own device lent to rara.
+
+use std::ffi::{CStr, c_char};
+
+use rara::ash::{self, vk};
+use rara::gpu::{self, AdoptDesc, Device, Support};
+use rara::{Error, Result};
+
+use crate::boundary::{
+    RaraResult, Versioned, create, destroy, exclusive, guard, invalid, read, shared, write,
+};
+
+/// `vkGetInstanceProcAddr`, or null.
+#[allow(non_camel_case_types)] // Vulkan's name
+pub type PFN_vkGetInstanceProcAddr = Option<vk::PFN_vkGetInstanceProcAddr>;
+
+/// Room for the names of extensions in RaraSupport.
+pub const RARA_MAX_EXTENSIONS: usize = 8;
+
+/// What a physical device that will do offers beyond what must be there. What must is Vulkan 1.3 with the features
+/// bufferDeviceAddress, synchronization2 and dynamicRendering, and a queue family with graphics and compute.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RaraSupport {
+    /// Set by rara_check.
+    pub struct_size: usize,
+    /// The first queue family with graphics and compute. Any other with both will do too.
+    pub queue_family: u32,
+    /// VK_EXT_mesh_shader with meshShader and taskShader. Optional: splats can be drawn without.
+    pub mesh_shader: vk::Bool32,
+    /// VK_KHR_push_descriptor. Optional: RARA_BINDINGS_BOUND needs it.
+    pub push_descriptor: vk::Bool32,
+    /// VK_KHR_portability_subset. A host must enable it where it is there.
+    pub portability_subset: vk::Bool32,
+    /// Nanoseconds a tick of a timestamp, 0 where the queue family has none: then frames have no times.
+    pub timestamp_period: f32,
+    /// Number of extensions.
+    pub extension_count: u32,
+    /// The extensions from above that are there, to be added to ppEnabledExtensionNames; the strings live as long as the
+    /// library.
+    pub extensions: [*const c_char; RARA_MAX_EXTENSIONS],
+    /// Bytes of the largest buffer: what a scene's spherical harmonics may take.
+    pub max_buffer_size: u64,
+    /// Pixels along a side of an image.
+    pub max_image_size: u32,
+}
+
+// SAFETY: repr(C), plain numbers and pointers that are not followed, the size first.
+unsafe impl Versioned for RaraSupport {
+    const NAME: &'static str = "RaraSupport";
+}
+
+impl RaraSupport {
+    fn of(support: &Support) -> Self {
+        let mut extensions = [std::ptr::null(); RARA_MAX_EXTENSIONS];
+        let names = support.extensions();
+        for (to, name) in extensions.iter_mut().zip(&names) {
+            *to = name.as_ptr();
+        }
+        Self {
+            struct_size: size_of::<Self>(),
+            queue_family: support.queue_family,
+            mesh_shader: support.mesh_shader.into(),
+            push_descriptor: support.push_descriptor.into(),
+            portability_subset: support.portability_subset.into(),
+            timestamp_period: support.timestamp_period,
+            extension_count: names.len().min(RARA_MAX_EXTENSIONS) as u32,
+            extensions,
+            max_buffer_size: support.max_buffer_size,
+            max_image_size: support.max_image_size,
+        }
+    }
+}
+
+/// Whether a physical device will do, asked before there is a device. RARA_ERROR_DEVICE if not: the message names what is
+/// missing.
+///
+/// `support_size` is sizeof *support.
+///
+/// # Safety
+/// `instance` is alive and was created for Vulkan 1.3 or later, `physical_device` is one of its own, and
+/// `get_instance_proc_addr` is the loader's. `support` has room for `support_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_check(
+    get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
+    instance: vk::Instance,
+    physical_device: vk::PhysicalDevice,
+    support: *mut RaraSupport,
+    support_size: usize,
+) -> RaraResult {
+    guard(|| {
+        // SAFETY: the caller's promises.
+        unsafe {
+            let instance = load_instance(get_instance_proc_addr, instance, physical_device)?;
+            let found = RaraSupport::of(&gpu::check(&instance, physical_device)?);
+            write(support, support_size, &found, "support")
+        }
+    })
+}
+
+/// Sets what rara needs in the host's own feature structs, which then go into the pNext chain of VkDeviceCreateInfo; it
+/// sets fields to VK_TRUE and touches no others. `mesh_shader` may be null for a host that does without mesh shaders.
+///
+/// A host that chains the structs of single features instead of those of 1.2 and 1.3 sets bufferDeviceAddress,
+/// synchronization2 and dynamicRendering there itself.
+///
+/// # Safety
+/// `support` is what rara_check has filled; the others are structs that may be changed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_support_features(
+    support: *const RaraSupport,
+    vulkan12: *mut vk::PhysicalDeviceVulkan12Features<'_>,
+    vulkan13: *mut vk::PhysicalDeviceVulkan13Features<'_>,
+    mesh_shader: *mut vk::PhysicalDeviceMeshShaderFeaturesEXT<'_>,
+) -> RaraResult {
+    guard(|| {
+        // SAFETY: the caller's promises.
+        unsafe {
+            let default = RaraSupport::of(&Support::default());
+            let support = read(support, default, "support")?;
+            let vulkan12 = exclusive(vulkan12, "vulkan12")?;
+            let vulkan13 = exclusive(vulkan13, "vulkan13")?;
+            vulkan12.buffer_device_address = vk::TRUE;
+            vulkan13.synchronization2 = vk::TRUE;
+            vulkan13.dynamic_rendering = vk::TRUE;
+            if let Some(mesh) = mesh_shader.as_mut().filter(|_| support.mesh_shader != 0) {
+                mesh.mesh_shader = vk::TRUE;
+                mesh.task_shader = vk::TRUE;
+            }
+            Ok(())
+        }
+    })
+}
+
+/// A host's device as rara uses it. May be used by several threads at once.
+pub struct RaraDevice(pub(crate) Device);
+
+/// A host's own Vulkan, for rara_device_adopt. All of it stays the host's.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RaraAdoptDesc {
+    /// Set by rara_adopt_desc_default.
+    pub struct_size: usize,
+    /// The loader's vkGetInstanceProcAddr.
+    pub get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
+    /// Created for Vulkan 1.3 or later.
+    pub instance: vk::Instance,
+    /// The device below was made from it.
+    pub physical_device: vk::PhysicalDevice,
+    /// Created with what rara_support_features sets.
+    pub device: vk::Device,
+    /// With graphics and compute; everything that rara records goes to it.
+    pub queue: vk::Queue,
+    /// The queue's family.
+    pub queue_family: u32,
+    /// VK_EXT_mesh_shader, meshShader and taskShader were enabled. Default: no.
+    pub mesh_shader: vk::Bool32,
+    /// VK_KHR_push_descriptor was enabled. Default: no.
+    pub push_descriptor: vk::Bool32,
+    /// VK_EXT_debug_utils was enabled on the instance: rara names its objects and labels its stages. Default: no.
+    pub debug_utils: vk::Bool32,
+    /// Where compiled pipelines are looked up and kept. Default: null, nowhere.
+    pub pipeline_cache: vk::PipelineCache,
+}
+
+// SAFETY: repr(C), handles and numbers, the size first.
+unsafe impl Versioned for RaraAdoptDesc {
+    const NAME: &'static str = "RaraAdoptDesc";
+}
+
+impl RaraAdoptDesc {
+    fn new() -> Self {
+        Self {
+            struct_size: size_of::<Self>(),
+            get_instance_proc_addr: None,
+            instance: vk::Instance::null(),
+            physical_device: vk::PhysicalDevice::null(),
+            device: vk::Device::null(),
+            queue: vk::Queue::null(),
+            queue_family: 0,
+            mesh_shader: vk::FALSE,
+            push_descriptor: vk::FALSE,
+            debug_utils: vk::FALSE,
+            pipeline_cache: vk::PipelineCache::null(),
+        }
+    }
+}
+
+/// Nothing optional, and null handles that the host replaces. `desc_size` is sizeof *desc.
+///
+/// # Safety
+/// `desc` has room for `desc_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_adopt_desc_default(
+    desc: *mut RaraAdoptDesc,
+    desc_size: usize,
+) -> RaraResult {
+    // SAFETY: the caller's promise.
+    guard(|| unsafe { write(desc, desc_size, &RaraAdoptDesc::new(), "desc") })
+}
+
+/// Works with the host's device. Of what is in `desc` nothing is ever destroyed, and nothing is submitted to the queue but
+/// by rara_scene_buffers_upload.
+///
+/// # Safety
+/// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_device_adopt(
+    desc: *const RaraAdoptDesc,
+    device: *mut *mut RaraDevice,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        create(device, "device", || {
+            let desc = read(desc, RaraAdoptDesc::new(), "desc")?;
+            let instance = load_instance(
+                desc.get_instance_proc_addr,
+                desc.instance,
+                desc.physical_device,
+            )?;
+            let adopt = AdoptDesc {
+                device: load_device(&instance, &desc)?,
+                instance,
+                physical_device: desc.physical_device,
+                queue: desc.queue,
+                queue_family: desc.queue_family,
+                mesh_shader: desc.mesh_shader != 0,
+                push_descriptor: desc.push_descriptor != 0,
+                debug_utils: desc.debug_utils != 0,
+                pipeline_cache: desc.pipeline_cache,
+            };
+            Device::adopt(adopt).map(RaraDevice)
+        })
+    })
+}
+
+/// Bytes of device memory that rara has allocated on it, 0 for null.
+///
+/// # Safety
+/// `device` is null or alive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_device_bytes(device: *const RaraDevice) -> u64 {
+    let mut bytes = 0;
+    guard(|| {
+        // SAFETY: the caller's promise.
+        bytes = unsafe { shared(device, "device") }?.0.device_bytes();
+        Ok(())
+    });
+    bytes
+}
+
+/// Gives the device back; the VkDevice lives on. What was made from it may be destroyed later, but before the VkDevice.
+/// Null is ignored.
+///
+/// # Safety
+/// `device` is null, or alive and not used any more.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_device_destroy(device: *mut RaraDevice) {
+    // SAFETY: the caller's promise.
+    unsafe { destroy(device) };
+}
+
+/// The instance's functions. Those of 1.1 must be there: ash would abort where one is missing.
+///
+/// # Safety
+/// The handles are null, or belong together and are alive.
+unsafe fn load_instance(
+    get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
+    instance: vk::Instance,
+    physical_device: vk::PhysicalDevice,
+) -> Result<ash::Instance> {
+    let Some(get_instance_proc_addr) = get_instance_proc_addr else {
+        return invalid("get_instance_proc_addr is null");
+    };
+    if instance == vk::Instance::null() {
+        return invalid("instance is null");
+    }
+    if physical_device == vk::PhysicalDevice::null() {
+        return invalid("physical_device is null");
+    }
+    for name in [
+        c"vkGetPhysicalDeviceFeatures2",
+        c"vkGetPhysicalDeviceProperties2",
+    ] {
+        // SAFETY: the instance is alive, as the caller promises.
+        if unsafe { get_instance_proc_addr(instance, name.as_ptr()) }.is_none() {
+            return Err(Error::Device(
+                "the instance was not created for Vulkan 1.3: set VkApplicationInfo::apiVersion to VK_API_VERSION_1_3"
+                    .into(),
+            ));
+        }
+    }
+    let functions = ash::StaticFn {
+        get_instance_proc_addr,
+    };
+    // SAFETY: as above.
+    Ok(unsafe { ash::Instance::load(&functions, instance) })
+}
+
+/// The device's functions, those of extensions too that the host says it has enabled.
+///
+/// # Safety
+/// The handles of the description are null, or belong together and are alive.
+unsafe fn load_device(instance: &ash::Instance, desc: &RaraAdoptDesc) -> Result<ash::Device> {
+    if desc.device == vk::Device::null() {
+        return invalid("desc->device is null");
+    }
+    if desc.queue == vk::Queue::null() {
+        return invalid("desc->queue is null");
+    }
+    let needed: [(vk::Bool32, &CStr, &str); 5] = [
+        (vk::TRUE, c"vkCmdPipelineBarrier2", "Vulkan 1.3"),
+        (vk::TRUE, c"vkGetBufferDeviceAddress", "Vulkan 1.3"),
+        (
+            desc.mesh_shader,
+            c"vkCmdDrawMeshTasksEXT",
+            "VK_EXT_mesh_shader",
+        ),
+        (
+            desc.push_descriptor,
+            c"vkCmdPushDescriptorSetKHR",
+            "VK_KHR_push_descriptor",
+        ),
+        (
+            desc.debug_utils,
+            c"vkSetDebugUtilsObjectNameEXT",
+            "VK_EXT_debug_utils",
+        ),
+    ];
+    for (wanted, function, of) in needed {
+        // SAFETY: both handles are alive, as the caller promises.
+        let found = unsafe { instance.get_device_proc_addr(desc.device, function.as_ptr()) };
+        if wanted != 0 && found.is_none() {
+            return invalid(format!(
+                "desc->device was created without {of}: it has no {}",
+                function.to_string_lossy()
+            ));
+        }
+    }
+    // SAFETY: as above.
+    Ok(unsafe { ash::Device::load(instance.fp_v1_0(), desc.device) })
+}

@@ -1,0 +1,20 @@
+//! rara for C and C++: the functions and structs of `rara.h`, which `cbindgen` makes of this crate.
+//!
+//! Names are those of the Rust crate with a prefix: [`Renderer`](rara::Renderer) is `RaraRenderer`. Nothing is decided
+//! here: a function checks what it was given, translates it, and calls its namesake. [`boundary`] is where panics end,
+//! where errors become codes, and where structs of other versions are read.
+
+#[cfg(not(panic = "unwind"))]
+compile_error!("rara-c stops panics at its boundary, and needs panic = \"unwind\" for that");
+
+pub mod boundary;
+pub mod camera;
+pub mod clip;
+pub mod depth;
+pub mod device;
+pub mod renderer;
+pub mod scene;
+pub mod settings;
+pub mod stats;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,768 @@
+/* rara for C and C++: splats in a Vulkan host's own frames.
+ *
+ * Made by cbindgen from src/c, whose test c_header writes it anew with RARA_WRITE_HEADER=1; not to be edited.
+ *
+ * Every function that can fail returns a RaraResult; rara_last_error_message says what is wrong. Nothing is thrown and
+ * nothing panics across this boundary. Structs that begin with struct_size may grow in later versions: those that go in
+ * are filled by their rara_..._default first, those that come out are asked for with their size. Handles come from a
+ * function that makes them and end with their rara_..._destroy; "alive" is the time between.
+ */
+
+#ifndef RARA_H
+#define RARA_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <vulkan/vulkan_core.h>
+
+// The version of this header. It changes when a host must be compiled anew; structs that grow at their end and functions
+// that are added do not change it.
+#define RARA_ABI_VERSION 1
+
+// Room for the names of extensions in RaraSupport.
+#define RARA_MAX_EXTENSIONS 8
+
+// Room for a stage's name, the NUL at its end included.
+#define RARA_NAME_SIZE 16
+
+// Room for a reason, the NUL at its end included.
+#define RARA_REASON_SIZE 96
+
+// Room for the stages of a frame.
+#define RARA_MAX_PASSES 32
+
+// A host's device as rara uses it. May be used by several threads at once.
+typedef struct RaraDevice RaraDevice;
+
+// A scene in the host's memory. It may be destroyed when it is on the device. May be read by several threads at once.
+typedef struct RaraGaussians RaraGaussians;
+
+// Draws scenes into the host's rendering scopes. Used by one thread at a time.
+//
+// A frame is three calls: rara_renderer_configure allocates and compiles what is new; rara_renderer_prepare records
+// compute stages, outside any rendering scope; rara_renderer_draw records the splats inside one. The host submits both in
+// this order, to the queue that it lent.
+//
+// Frames in flight: before it configures frame n the host has waited for frame n - frames_in_flight, and before it
+// destroys the renderer for all of its frames.
+//
+// Synchronisation: none is needed between the two calls, nor for the buffers of renderer and scene; the attachments are
+// the host's to synchronise, as for any draw of its own.
+//
+// The calls bind pipelines, push constants and, with RARA_BINDINGS_BOUND, push descriptor set 0: the host binds its own
+// again. No other state, no image and no layout is touched.
+typedef struct RaraRenderer RaraRenderer;
+
+// A scene in device memory. May be used by several threads and renderers at once.
+typedef struct RaraSceneBuffers RaraSceneBuffers;
+
+// What every function that can fail returns. Of anything but RARA_OK rara_last_error_message says more.
+typedef int32_t RaraResult;
+
+// A pinhole camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers.
+typedef struct RaraCamera {
+    // Picture width, pixels.
+    uint32_t width;
+    // Picture height, pixels.
+    uint32_t height;
+    // Focal length along x, pixels.
+    double fx;
+    // Focal length along y, pixels.
+    double fy;
+    // Principal point, pixels from the picture's left edge; width / 2 is the middle.
+    double cx;
+    // Principal point, pixels from the picture's top edge; height / 2 is the middle.
+    double cy;
+    // Where the eye stands, world units.
+    double eye[3];
+    // World to camera rotation, row-major: the rows are the camera's right, down and forward axes in the world.
+    double rotation[9];
+} RaraCamera;
+
+// What a depth buffer holds: of every perspective projection into depths from 0 to 1.
+typedef struct RaraDepthMap {
+    // Depth along the view axis that becomes 0, or 1 if reversed, world units above 0.
+    double z_near;
+    // Depth along the view axis that becomes 1, or 0 if reversed; beyond z_near, INFINITY too.
+    double z_far;
+    // Nearer is more.
+    VkBool32 reversed;
+} RaraDepthMap;
+
+// The host's depth attachment. Splats behind what it holds are hidden, none is written into it. A splat is at one depth,
+// that of its centre, in all of its pixels. Opaque things go first, then splats.
+typedef struct RaraDepthDesc {
+    // Set by rara_depth_desc_default.
+    size_t struct_size;
+    // Its format, with or without stencil.
+    VkFormat format;
+    // Whether a dynamic rendering scope has the same image as stencil attachment too. Default: no.
+    VkBool32 stencil;
+    // Whether the host shows each frame's depth to rara_renderer_prepare_behind. Tiles need that; without it they are
+    // replaced by quads. Default: no.
+    VkBool32 readable;
+    // What it holds for a depth; rara_renderer_set_depth_map changes it from frame to frame.
+    struct RaraDepthMap map;
+} RaraDepthDesc;
+
+// What a physical device that will do offers beyond what must be there. What must is Vulkan 1.3 with the features
+// bufferDeviceAddress, synchronization2 and dynamicRendering, and a queue family with graphics and compute.
+typedef struct RaraSupport {
+    // Set by rara_check.
+    size_t struct_size;
+    // The first queue family with graphics and compute. Any other with both will do too.
+    uint32_t queue_family;
+    // VK_EXT_mesh_shader with meshShader and taskShader. Optional: splats can be drawn without.
+    VkBool32 mesh_shader;
+    // VK_KHR_push_descriptor. Optional: RARA_BINDINGS_BOUND needs it.
+    VkBool32 push_descriptor;
+    // VK_KHR_portability_subset. A host must enable it where it is there.
+    VkBool32 portability_subset;
+    // Nanoseconds a tick of a timestamp, 0 where the queue family has none: then frames have no times.
+    float timestamp_period;
+    // Number of extensions.
+    uint32_t extension_count;
+    // The extensions from above that are there, to be added to ppEnabledExtensionNames; the strings live as long as the
+    // library.
+    const char *extensions[RARA_MAX_EXTENSIONS];
+    // Bytes of the largest buffer: what a scene's spherical harmonics may take.
+    uint64_t max_buffer_size;
+    // Pixels along a side of an image.
+    uint32_t max_image_size;
+} RaraSupport;
+
+// A host's own Vulkan, for rara_device_adopt. All of it stays the host's.
+typedef struct RaraAdoptDesc {
+    // Set by rara_adopt_desc_default.
+    size_t struct_size;
+    // The loader's vkGetInstanceProcAddr.
+    PFN_vkGetInstanceProcAddr get_instance_proc_addr;
+    // Created for Vulkan 1.3 or later.
+    VkInstance instance;
+    // The device below was made from it.
+    VkPhysicalDevice physical_device;
+    // Created with what rara_support_features sets.
+    VkDevice device;
+    // With graphics and compute; everything that rara records goes to it.
+    VkQueue queue;
+    // The queue's family.
+    uint32_t queue_family;
+    // VK_EXT_mesh_shader, meshShader and taskShader were enabled. Default: no.
+    VkBool32 mesh_shader;
+    // VK_KHR_push_descriptor was enabled. Default: no.
+    VkBool32 push_descriptor;
+    // VK_EXT_debug_utils was enabled on the instance: rara names its objects and labels its stages. Default: no.
+    VkBool32 debug_utils;
+    // Where compiled pipelines are looked up and kept. Default: null, nowhere.
+    VkPipelineCache pipeline_cache;
+} RaraAdoptDesc;
+
+// How shaders reach buffers.
+typedef uint32_t RaraBindings;
+
+// What a renderer is created with.
+typedef struct RaraRendererDesc {
+    // Set by rara_renderer_desc_default.
+    size_t struct_size;
+    // Format of the colour attachment. Splats are blended as stored, premultiplied, so sRGB formats give another picture.
+    VkFormat color_format;
+    // Samples a pixel of the attachments. Default: 1.
+    VkSampleCountFlagBits samples;
+    // The depth attachment that splats are tested against; null, the default, if the scope has none. Read by the call
+    // alone.
+    const struct RaraDepthDesc *depth;
+    // A classic render pass, or one compatible with it, that lives until the last rara_renderer_configure; null, the
+    // default, is dynamic rendering.
+    VkRenderPass render_pass;
+    // The subpass of render_pass to draw in.
+    uint32_t subpass;
+    // How shaders reach buffers.
+    RaraBindings bindings;
+    // Whether to take timestamps, for the times in RaraFrameStats. Default: no.
+    VkBool32 timing;
+    // Whether a frame takes over what the one before has computed and it would compute again. The host then submits every
+    // frame that it prepares, in order, or calls rara_renderer_forget. Default: no.
+    VkBool32 reuse;
+    // How many recorded frames may be unfinished at once, 1 or more. Default: 1.
+    uint32_t frames_in_flight;
+    // Format of the target of rara_renderer_draw_depth, two channels or more; VK_FORMAT_UNDEFINED, the default, where that
+    // is not called.
+    VkFormat expected_depth_format;
+    // As render_pass, for that target.
+    VkRenderPass expected_depth_render_pass;
+    // The subpass of expected_depth_render_pass to draw in.
+    uint32_t expected_depth_subpass;
+} RaraRendererDesc;
+
+// A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but
+// some length.
+typedef struct RaraPlane {
+    // Points to the visible side.
+    double normal[3];
+    // World units times the normal's length.
+    double offset;
+} RaraPlane;
+
+// How several planes combine.
+typedef uint32_t RaraClipOp;
+
+// The region that stays visible. Where a function takes one, null means everything.
+typedef struct RaraClip {
+    // The half-spaces; read by the call alone.
+    const struct RaraPlane *planes;
+    // How many of them, at most 32. None means that everything is visible.
+    size_t plane_count;
+    // How they combine.
+    RaraClipOp op;
+} RaraClip;
+
+// How a clip treats the Gaussians that it cuts.
+typedef uint32_t RaraMode;
+
+// What the weight w of a cut splat scales.
+typedef uint32_t RaraDecay;
+
+// RARA_MODE_RARA only: what a cut splat keeps in a pixel whose ray misses the traced ellipsoid.
+typedef uint32_t RaraMiss;
+
+// RARA_MODE_EXACT only: the form of the weight.
+typedef uint32_t RaraExactForm;
+
+// How splats become pixels. All give the same picture.
+typedef uint32_t RaraRaster;
+
+// What a frame shows of its splats.
+typedef uint32_t RaraShow;
+
+// RARA_MODE_EXACT only: how the normal distribution's Phi is approximated, and the largest error.
+typedef uint32_t RaraPhiForm;
+
+// The options of a frame, apart from scene, camera and clip.
+typedef struct RaraSettings {
+    // Set by rara_settings_default.
+    size_t struct_size;
+    // How cut Gaussians are treated.
+    RaraMode mode;
+    // What the weight scales.
+    RaraDecay decay;
+    // RARA_MODE_RARA: the traced ellipsoid, in standard deviations. Default: 3.
+    float sigma;
+    // RARA_MODE_RARA: what a missed pixel keeps.
+    RaraMiss miss;
+    // Ablation: treat every Gaussian as cut. Default: no.
+    VkBool32 trace_all;
+    // RARA_MODE_EXACT: the form of the weight.
+    RaraExactForm form;
+    // Highest spherical-harmonics degree to evaluate; -1 is the scene's own, and the default.
+    int32_t sh_degree;
+    // How splats become pixels.
+    RaraRaster raster;
+    // Colours, or a debug view.
+    RaraShow show;
+    // RARA_MODE_EXACT: how Phi is approximated. From the preset, like all below.
+    RaraPhiForm phi;
+    // Most bits of the depths that the sort looks at, 8 to 32.
+    uint32_t key_bits;
+    // RARA_MODE_EXACT: a cut splat is perspective-exact where its largest deviation over its depth exceeds this. Zero is
+    // the exact form for all.
+    float beam_switch;
+    // Tiles only: a pixel with less transmittance than this is saturated. Zero blends everything.
+    float transmittance_min;
+} RaraSettings;
+
+// A host's depth image, of one sample and created with VK_IMAGE_USAGE_TRANSFER_SRC_BIT.
+typedef struct RaraDepthImage {
+    // The image, whose level 0 is read.
+    VkImage image;
+    // Its layout at that time: TRANSFER_SRC_OPTIMAL or GENERAL.
+    VkImageLayout layout;
+    // Its width, pixels.
+    uint32_t width;
+    // Its height, pixels.
+    uint32_t height;
+    // The layer to read.
+    uint32_t layer;
+    // The viewport's left edge in it, pixels.
+    int32_t x;
+    // The viewport's top edge in it, pixels.
+    int32_t y;
+} RaraDepthImage;
+
+// What a scene is, and what of its file could not be used.
+typedef struct RaraGaussiansInfo {
+    // Set by rara_gaussians_info.
+    size_t struct_size;
+    // Gaussians in the scene.
+    uint64_t count;
+    // Elements of the file that were left out: numbers that are not finite.
+    uint64_t dropped;
+    // Elements that were kept with a value put right.
+    uint64_t repaired;
+    // Degree of its spherical harmonics, 0 to 3.
+    uint32_t sh_degree;
+    // The corner of the scene's box with the smallest coordinates. The box holds all but the outermost percent of the
+    // centres at each end of each axis.
+    double bounds_min[3];
+    // The corner with the largest coordinates.
+    double bounds_max[3];
+} RaraGaussiansInfo;
+
+// How spherical harmonics lie in device memory; bytes are of a Gaussian of degree 3.
+typedef uint32_t RaraShFormat;
+
+// A choice of all that is given up for time: phi, key_bits, beam_switch and transmittance_min.
+typedef uint32_t RaraPreset;
+
+// GPU time of one stage.
+typedef struct RaraPassTime {
+    // The stage: the same name as its shader and its debug label.
+    char name[RARA_NAME_SIZE];
+    // Milliseconds between its timestamps.
+    double ms;
+} RaraPassTime;
+
+// The statistics of a frame. Counts and times are of the oldest frame in flight, the last one where there is one; raster
+// and skipped are of the one that is configured.
+typedef struct RaraFrameStats {
+    // Set by rara_renderer_stats.
+    size_t struct_size;
+    // Gaussians in view and untouched by the clip.
+    uint32_t visible;
+    // Gaussians in view and cut by the clip.
+    uint32_t cutoff;
+    // Gaussians in view but wholly clipped away.
+    uint32_t invisible;
+    // Gaussians outside the view or too faint, whatever the clip says.
+    uint32_t culled;
+    // Splats handed to the rasteriser.
+    uint32_t drawn;
+    // How splats become pixels; RARA_RASTER_AUTO before the first frame.
+    RaraRaster raster;
+    // Why in that way.
+    char raster_reason[RARA_REASON_SIZE];
+    // Whether tiles had no room for their lists, so that the frame was drawn as quads: the same picture, but slower. The
+    // next rara_renderer_configure makes the room.
+    VkBool32 fell_back;
+    // Number of passes; 0 without RaraRendererDesc's timing.
+    uint32_t pass_count;
+    // GPU time of each stage, in order.
+    struct RaraPassTime passes[RARA_MAX_PASSES];
+    // GPU time of the frame, milliseconds.
+    double gpu_ms;
+    // Number of skipped stages.
+    uint32_t skipped_count;
+    // The stages that the frame does not need.
+    char skipped[RARA_MAX_PASSES][RARA_NAME_SIZE];
+} RaraFrameStats;
+
+// Done.
+#define RARA_OK 0
+
+// An argument is not possible: null, a plane without a normal, a picture of no size. The message names it.
+#define RARA_ERROR_INVALID 1
+
+// A file could not be opened or read.
+#define RARA_ERROR_IO 2
+
+// A file was read, and is no scene.
+#define RARA_ERROR_FORMAT 3
+
+// The device lacks something, or was lost.
+#define RARA_ERROR_DEVICE 4
+
+// There is not enough memory, on the device or the host.
+#define RARA_ERROR_MEMORY 5
+
+// A Vulkan call failed for another reason.
+#define RARA_ERROR_VULKAN 6
+
+// A panic was stopped: calls came in the wrong order, or rara has a bug; the message says which. Of the handles that
+// the call was given, only destroying is sure to work.
+#define RARA_ERROR_PANIC 7
+
+// Visible where every plane keeps it.
+#define RARA_CLIP_OP_AND 0
+
+// Visible where any plane keeps it.
+#define RARA_CLIP_OP_OR 1
+
+// By address: fast. The default.
+#define RARA_BINDINGS_ADDRESS 0
+
+// Bound, so that the validation layer can watch them; needs VK_KHR_push_descriptor, and is by address without.
+#define RARA_BINDINGS_BOUND 1
+
+// 8 bits a coefficient: 56 bytes.
+#define RARA_SH_FORMAT_BYTE 0
+
+// 10 to 11 bits a coefficient: 68 bytes. What the preset balanced uses.
+#define RARA_SH_FORMAT_PACKED 1
+
+// 16-bit floats: 96 bytes.
+#define RARA_SH_FORMAT_HALF 2
+
+// 32-bit floats: 192 bytes.
+#define RARA_SH_FORMAT_FLOAT 3
+
+// No clipping.
+#define RARA_MODE_NONE 0
+
+// Keep or drop by the centre.
+#define RARA_MODE_HARD 1
+
+// The paper's length ratio along each pixel's ray.
+#define RARA_MODE_RARA 2
+
+// The exact visible share of the splat, the low-pass of 3DGS included. The default.
+#define RARA_MODE_EXACT 3
+
+// The mode's own: linear for RARA_MODE_RARA, depth for RARA_MODE_EXACT. The default.
+#define RARA_DECAY_AUTO 0
+
+// Alpha: alpha' = alpha w (the paper).
+#define RARA_DECAY_LINEAR 1
+
+// Optical depth: alpha' = 1 - (1 - alpha)^w. Complementary halves rebuild the whole.
+#define RARA_DECAY_DEPTH 2
+
+// Everything (the paper's text).
+#define RARA_MISS_KEEP 0
+
+// Nothing (the paper's released code).
+#define RARA_MISS_DROP 1
+
+// All or nothing, by the side on which the ray's densest point lies. The default.
+#define RARA_MISS_PEAK 2
+
+// Affine in the pixel for small splats, perspective-exact for large ones (beam_switch). The default.
+#define RARA_EXACT_FORM_AUTO 0
+
+// Perspective-exact for every cut splat.
+#define RARA_EXACT_FORM_BEAM 1
+
+// Affine for every cut splat.
+#define RARA_EXACT_FORM_AFFINE 2
+
+// The faster one on the device at hand. The default.
+#define RARA_RASTER_AUTO 0
+
+// VK_EXT_mesh_shader.
+#define RARA_RASTER_MESH 1
+
+// Instanced quads.
+#define RARA_RASTER_QUAD 2
+
+// Tiles of pixels in a compute shader.
+#define RARA_RASTER_TILES 3
+
+// Their colours. The default.
+#define RARA_SHOW_COLOUR 0
+
+// What the clip does to them: blue where it leaves them whole; where it cuts, from red (nothing is kept in this pixel) to
+// yellow (all is).
+#define RARA_SHOW_WEIGHT 1
+
+// 1.9e-5.
+#define RARA_PHI_FORM_QUINTIC 0
+
+// 1.4e-4.
+#define RARA_PHI_FORM_CUBIC 1
+
+// 9.5e-3, two levels of 255.
+#define RARA_PHI_FORM_LOGISTIC 2
+
+// Nothing is given up. Scenes go with RARA_SH_FORMAT_FLOAT.
+#define RARA_PRESET_EXACT 0
+
+// What no picture shows is given up: the usual choice. Scenes go with RARA_SH_FORMAT_PACKED.
+#define RARA_PRESET_BALANCED 1
+
+// What pictures hardly show is given up. Scenes go with RARA_SH_FORMAT_PACKED.
+#define RARA_PRESET_FAST 2
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// The version of the library that is linked: RARA_ABI_VERSION of its header.
+uint32_t rara_abi_version(void);
+
+// What the last call of this thread that failed has to say: one or two sentences in UTF-8, "" if none has failed.
+// Valid until this thread's next call that fails.
+const char *rara_last_error_message(void);
+
+// A camera at `eye` that looks at `target`, each three numbers in world units. `up` points up in the picture; in the
+// usual world, where y is down, that is 0, -1, 0. `fov_y` is the full vertical field of view in degrees.
+//
+// # Safety
+// `eye`, `target` and `up` point to three numbers each; `camera` may be overwritten.
+RaraResult rara_camera_look_at(const double *eye,
+                               const double *target,
+                               const double *up,
+                               double fov_y,
+                               uint32_t width,
+                               uint32_t height,
+                               struct RaraCamera *camera);
+
+// A camera from a rigid world-to-camera matrix: 16 numbers, row-major, so that the translation is in numbers 3, 7
+// and 11. Focal lengths and principal point are in pixels.
+//
+// # Safety
+// `matrix` points to 16 numbers; `camera` may be overwritten.
+RaraResult rara_camera_from_world_to_camera(const double *matrix,
+                                            double fx,
+                                            double fy,
+                                            double cx,
+                                            double cy,
+                                            uint32_t width,
+                                            uint32_t height,
+                                            struct RaraCamera *camera);
+
+// A camera that shows a scene from the front, the right and above, as near as fills the picture. `up` and `fov_y` as for
+// rara_camera_look_at.
+//
+// # Safety
+// `gaussians` is alive; `up` points to three numbers; `camera` may be overwritten.
+RaraResult rara_camera_frame(const struct RaraGaussians *gaussians,
+                             const double *up,
+                             double fov_y,
+                             uint32_t width,
+                             uint32_t height,
+                             struct RaraCamera *camera);
+
+// A depth attachment without stencil, not readable. `desc_size` is sizeof *desc.
+//
+// # Safety
+// `desc` has room for `desc_size` bytes.
+RaraResult rara_depth_desc_default(struct RaraDepthDesc *desc,
+                                   size_t desc_size,
+                                   VkFormat format,
+                                   struct RaraDepthMap map);
+
+// Whether a physical device will do, asked before there is a device. RARA_ERROR_DEVICE if not: the message names what is
+// missing.
+//
+// `support_size` is sizeof *support.
+//
+// # Safety
+// `instance` is alive and was created for Vulkan 1.3 or later, `physical_device` is one of its own, and
+// `get_instance_proc_addr` is the loader's. `support` has room for `support_size` bytes.
+RaraResult rara_check(PFN_vkGetInstanceProcAddr get_instance_proc_addr,
+                      VkInstance instance,
+                      VkPhysicalDevice physical_device,
+                      struct RaraSupport *support,
+                      size_t support_size);
+
+// Sets what rara needs in the host's own feature structs, which then go into the pNext chain of VkDeviceCreateInfo; it
+// sets fields to VK_TRUE and touches no others. `mesh_shader` may be null for a host that does without mesh shaders.
+//
+// A host that chains the structs of single features instead of those of 1.2 and 1.3 sets bufferDeviceAddress,
+// synchronization2 and dynamicRendering there itself.
+//
+// # Safety
+// `support` is what rara_check has filled; the others are structs that may be changed.
+RaraResult rara_support_features(const struct RaraSupport *support,
+                                 VkPhysicalDeviceVulkan12Features *vulkan12,
+                                 VkPhysicalDeviceVulkan13Features *vulkan13,
+                                 VkPhysicalDeviceMeshShaderFeaturesEXT *mesh_shader);
+
+// Nothing optional, and null handles that the host replaces. `desc_size` is sizeof *desc.
+//
+// # Safety
+// `desc` has room for `desc_size` bytes.
+RaraResult rara_adopt_desc_default(struct RaraAdoptDesc *desc, size_t desc_size);
+
+// Works with the host's device. Of what is in `desc` nothing is ever destroyed, and nothing is submitted to the queue but
+// by rara_scene_buffers_upload.
+//
+// # Safety
+// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice.
+RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc,
+                             struct RaraDevice **device);
+
+// Bytes of device memory that rara has allocated on it, 0 for null.
+//
+// # Safety
+// `device` is null or alive.
+uint64_t rara_device_bytes(const struct RaraDevice *device);
+
+// Gives the device back; the VkDevice lives on. What was made from it may be destroyed later, but before the VkDevice.
+// Null is ignored.
+//
+// # Safety
+// `device` is null, or alive and not used any more.
+void rara_device_destroy(struct RaraDevice *device);
+
+// One colour attachment of one sample in dynamic rendering, no timestamps, nothing reused, one frame in flight.
+// `desc_size` is sizeof *desc.
+//
+// # Safety
+// `desc` has room for `desc_size` bytes.
+RaraResult rara_renderer_desc_default(struct RaraRendererDesc *desc, size_t desc_size, VkFormat color_format);
+
+// A renderer. Pipelines and buffers come with the first frame that needs them. RARA_ERROR_DEVICE where the device cannot
+// draw into such attachments.
+//
+// # Safety
+// `device` is alive, `desc` is as it says, and `renderer` may be overwritten.
+RaraResult rara_renderer_create(const struct RaraDevice *device,
+                                const struct RaraRendererDesc *desc,
+                                struct RaraRenderer **renderer);
+
+// Another renderer on the same device that shares the compiled pipelines of `other`: one for each view that is drawn in
+// the same scope. Working memory is its own.
+//
+// # Safety
+// `other` is alive, `desc` is as it says, and `renderer` may be overwritten.
+RaraResult rara_renderer_create_sharing(const struct RaraRenderer *other,
+                                        const struct RaraRendererDesc *desc,
+                                        struct RaraRenderer **renderer);
+
+// Changes what the host's depth buffer holds for a depth, from the next rara_renderer_configure on.
+//
+// # Safety
+// `renderer` is alive, was created with a depth attachment, and is not used by another thread; `map` points to one.
+RaraResult rara_renderer_set_depth_map(struct RaraRenderer *renderer, const struct RaraDepthMap *map);
+
+// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the viewport of
+// rara_renderer_draw. `clip` may be null for none, `settings` for the defaults. After an error nothing can be recorded
+// until a call succeeds.
+//
+// # Safety
+// `renderer` and `scene` are alive and of one device; no other thread uses `renderer`; the others are null or as they
+// say. The host has waited for the frames that RaraRenderer says.
+RaraResult rara_renderer_configure(struct RaraRenderer *renderer,
+                                   const struct RaraSceneBuffers *scene,
+                                   const struct RaraCamera *camera,
+                                   const struct RaraClip *clip,
+                                   const struct RaraSettings *settings);
+
+// Records the stages up to the draw, outside any rendering scope.
+//
+// # Safety
+// `cmd` is recording outside a rendering scope, and will be submitted to the device's queue, or never. `scene` is the one
+// given to rara_renderer_configure, and lives until the commands have executed.
+RaraResult rara_renderer_prepare(struct RaraRenderer *renderer,
+                                 VkCommandBuffer cmd,
+                                 const struct RaraSceneBuffers *scene);
+
+// As rara_renderer_prepare, for a renderer whose RaraDepthDesc is readable: with what the host has drawn already, so that
+// tiles leave out the splats behind it.
+//
+// The part of the image under the viewport is copied, at VK_PIPELINE_STAGE_2_COPY_BIT by VK_ACCESS_2_TRANSFER_READ_BIT:
+// the host's barrier before makes its depths visible to that, its barrier after waits for it.
+//
+// # Safety
+// As for rara_renderer_prepare; and `depth` is as it says, visible to the copy, and lives until the commands have executed.
+RaraResult rara_renderer_prepare_behind(struct RaraRenderer *renderer,
+                                        VkCommandBuffer cmd,
+                                        const struct RaraSceneBuffers *scene,
+                                        const struct RaraDepthImage *depth);
+
+// Records the splats inside the host's rendering scope, premultiplied and over what is there. `x` and `y` are the
+// viewport's upper left corner in the attachment, whole pixels; the viewport has the camera's size, and depths from 0
+// to 1. May be recorded more than once for a prepared frame.
+//
+// # Safety
+// `cmd` is inside a rendering scope with the attachments of RaraRendererDesc and no others, one layer and no view mask;
+// viewport and scissor are set; rara_renderer_prepare was recorded for the same frame before it.
+RaraResult rara_renderer_draw(struct RaraRenderer *renderer, VkCommandBuffer cmd, float x, float y);
+
+// Records the splats' depths inside a rendering scope of their own, with a colour attachment of expected_depth_format and,
+// if there is one, the same depth attachment. Where the host has cleared both to 0, red / green is the pixel's expected
+// depth along the view axis, world units, and green its alpha. `x` and `y` as for rara_renderer_draw.
+//
+// # Safety
+// As of rara_renderer_draw, in such a scope.
+RaraResult rara_renderer_draw_depth(struct RaraRenderer *renderer,
+                                    VkCommandBuffer cmd,
+                                    float x,
+                                    float y);
+
+// Forgets what earlier frames have computed, as after a frame that was prepared and not submitted.
+// rara_renderer_configure comes after it.
+//
+// # Safety
+// `renderer` is alive, and no other thread uses it.
+RaraResult rara_renderer_forget(struct RaraRenderer *renderer);
+
+// Frees a renderer's memory and pipelines; null is ignored. The host has waited for all of its frames.
+//
+// # Safety
+// `renderer` is null, or alive and not used any more, by the device neither.
+void rara_renderer_destroy(struct RaraRenderer *renderer);
+
+// Loads a 3DGS .ply file: ascii or binary, spherical harmonics of degree 0 to 3.
+//
+// `path` is UTF-8, on Unix whatever the file system takes.
+//
+// # Safety
+// `path` ends in NUL; `gaussians` may be overwritten.
+RaraResult rara_gaussians_load(const char *path, struct RaraGaussians **gaussians);
+
+// Loads a 3DGS .ply file that is in memory, such as an archive's entry. `name` stands for it in messages.
+//
+// # Safety
+// `data` points to `size` bytes, which are not used afterwards; `name` ends in NUL; `gaussians` may be overwritten.
+RaraResult rara_gaussians_load_from(const uint8_t *data,
+                                    size_t size,
+                                    const char *name,
+                                    struct RaraGaussians **gaussians);
+
+// Adds another scene to one, so that both are sorted and composited as one.
+//
+// # Safety
+// Both are alive and not the same; nobody else uses `gaussians` meanwhile.
+RaraResult rara_gaussians_append(struct RaraGaussians *gaussians, const struct RaraGaussians *other);
+
+// What a scene is. `info_size` is sizeof *info.
+//
+// # Safety
+// `gaussians` is alive; `info` has room for `info_size` bytes.
+RaraResult rara_gaussians_info(const struct RaraGaussians *gaussians, struct RaraGaussiansInfo *info, size_t info_size);
+
+// Frees a scene's memory; null is ignored.
+//
+// # Safety
+// `gaussians` is null, or alive and not used any more.
+void rara_gaussians_destroy(struct RaraGaussians *gaussians);
+
+// Uploads a scene. This is the one function that submits to the host's queue, and waits.
+//
+// # Safety
+// `device` and `gaussians` are alive; nobody else uses the queue meanwhile; `scene` may be overwritten.
+RaraResult rara_scene_buffers_upload(const struct RaraDevice *device,
+                                     const struct RaraGaussians *gaussians,
+                                     RaraShFormat sh_format,
+                                     struct RaraSceneBuffers **scene);
+
+// Bytes of device memory that a scene takes, 0 for null.
+//
+// # Safety
+// `scene` is null or alive.
+uint64_t rara_scene_buffers_bytes(const struct RaraSceneBuffers *scene);
+
+// Frees a scene's device memory; null is ignored. The host has waited for the frames that use it.
+//
+// # Safety
+// `scene` is null, or alive and not used any more, by the device neither.
+void rara_scene_buffers_destroy(struct RaraSceneBuffers *scene);
+
+// The usual settings, as exact as a preset has it. `settings_size` is sizeof *settings.
+//
+// # Safety
+// `settings` has room for `settings_size` bytes.
+RaraResult rara_settings_default(struct RaraSettings *settings, size_t settings_size, RaraPreset preset);
+
+// What a frame tells about itself; ask after waiting for it, before the next rara_renderer_prepare. `stats_size` is
+// sizeof *stats.
+//
+// # Safety
+// `renderer` is alive, and no other thread changes it; `stats` has room for `stats_size` bytes.
+RaraResult rara_renderer_stats(const struct RaraRenderer *renderer, struct RaraFrameStats *stats, size_t stats_size);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* RARA_H */

@@ -1,0 +1,376 @@
+//! The renderer: a host's frame in three calls.
+
+use rara::ash::vk;
+use rara::gpu::{Bindings, Target};
+use rara::{ExpectedDepthDesc, Renderer, RendererDesc, Result};
+
+use crate::boundary::{
+    RaraResult, Versioned, create, destroy, exclusive, guard, invalid, read, shared, write,
+};
+use crate::camera::RaraCamera;
+use crate::clip::{self, RaraClip};
+use crate::depth::{self, RaraDepthDesc, RaraDepthImage, RaraDepthMap};
+use crate::device::RaraDevice;
+use crate::scene::RaraSceneBuffers;
+use crate::settings::{self, RaraSettings};
+
+/// Draws scenes into the host's rendering scopes. Used by one thread at a time.
+///
+/// A frame is three calls: rara_renderer_configure allocates and compiles what is new; rara_renderer_prepare records
+/// compute stages, outside any rendering scope; rara_renderer_draw records the splats inside one. The host submits both in
+/// this order, to the queue that it lent.
+///
+/// Frames in flight: before it configures frame n the host has waited for frame n - frames_in_flight, and before it
+/// destroys the renderer for all of its frames.
+///
+/// Synchronisation: none is needed between the two calls, nor for the buffers of renderer and scene; the attachments are
+/// the host's to synchronise, as for any draw of its own.
+///
+/// The calls bind pipelines, push constants and, with RARA_BINDINGS_BOUND, push descriptor set 0: the host binds its own
+/// again. No other state, no image and no layout is touched.
+pub struct RaraRenderer(Renderer);
+
+/// How shaders reach buffers.
+pub type RaraBindings = u32;
+/// By address: fast. The default.
+pub const RARA_BINDINGS_ADDRESS: RaraBindings = 0;
+/// Bound, so that the validation layer can watch them; needs VK_KHR_push_descriptor, and is by address without.
+pub const RARA_BINDINGS_BOUND: RaraBindings = 1;
+
+/// What a renderer is created with.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RaraRendererDesc {
+    /// Set by rara_renderer_desc_default.
+    pub struct_size: usize,
+    /// Format of the colour attachment. Splats are blended as stored, premultiplied, so sRGB formats give another picture.
+    pub color_format: vk::Format,
+    /// Samples a pixel of the attachments. Default: 1.
+    pub samples: vk::SampleCountFlags,
+    /// The depth attachment that splats are tested against; null, the default, if the scope has none. Read by the call
+    /// alone.
+    pub depth: *const RaraDepthDesc,
+    /// A classic render pass, or one compatible with it, that lives until the last rara_renderer_configure; null, the
+    /// default, is dynamic rendering.
+    pub render_pass: vk::RenderPass,
+    /// The subpass of render_pass to draw in.
+    pub subpass: u32,
+    /// How shaders reach buffers.
+    pub bindings: RaraBindings,
+    /// Whether to take timestamps, for the times in RaraFrameStats. Default: no.
+    pub timing: vk::Bool32,
+    /// Whether a frame takes over what the one before has computed and it would compute again. The host then submits every
+    /// frame that it prepares, in order, or calls rara_renderer_forget. Default: no.
+    pub reuse: vk::Bool32,
+    /// How many recorded frames may be unfinished at once, 1 or more. Default: 1.
+    pub frames_in_flight: u32,
+    /// Format of the target of rara_renderer_draw_depth, two channels or more; VK_FORMAT_UNDEFINED, the default, where that
+    /// is not called.
+    pub expected_depth_format: vk::Format,
+    /// As render_pass, for that target.
+    pub expected_depth_render_pass: vk::RenderPass,
+    /// The subpass of expected_depth_render_pass to draw in.
+    pub expected_depth_subpass: u32,
+}
+
+// SAFETY: repr(C), numbers, handles and a pointer, the size first.
+unsafe impl Versioned for RaraRendererDesc {
+    const NAME: &'static str = "RaraRendererDesc";
+}
+
+impl RaraRendererDesc {
+    fn new(color_format: vk::Format) -> Self {
+        Self {
+            struct_size: size_of::<Self>(),
+            color_format,
+            samples: vk::SampleCountFlags::TYPE_1,
+            depth: std::ptr::null(),
+            render_pass: vk::RenderPass::null(),
+            subpass: 0,
+            bindings: RARA_BINDINGS_ADDRESS,
+            timing: vk::FALSE,
+            reuse: vk::FALSE,
+            frames_in_flight: 1,
+            expected_depth_format: vk::Format::UNDEFINED,
+            expected_depth_render_pass: vk::RenderPass::null(),
+            expected_depth_subpass: 0,
+        }
+    }
+}
+
+/// # Safety
+/// As of [`Target::render_pass`], unless it is null.
+unsafe fn target(render_pass: vk::RenderPass, subpass: u32) -> Target {
+    if render_pass == vk::RenderPass::null() {
+        return Target::DYNAMIC;
+    }
+    // SAFETY: the caller's promise.
+    unsafe { Target::render_pass(render_pass, subpass) }
+}
+
+/// # Safety
+/// `desc` is null or points to one, whose depth is null or points to one, and whose render pass is as it says.
+unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<RendererDesc> {
+    let default = RaraRendererDesc::new(vk::Format::UNDEFINED);
+    // SAFETY: the caller's promise.
+    let desc = unsafe { read(desc, default, "desc") }?;
+    if desc.color_format == vk::Format::UNDEFINED {
+        return invalid("desc->color_format is VK_FORMAT_UNDEFINED");
+    }
+    if desc.frames_in_flight == 0 {
+        return invalid("desc->frames_in_flight is 0: a renderer needs at least one");
+    }
+    Ok(RendererDesc {
+        color_format: desc.color_format,
+        depth: if desc.depth.is_null() {
+            None
+        } else {
+            // SAFETY: the caller's promise.
+            Some(unsafe { depth::depth_desc(desc.depth) }?)
+        },
+        samples: desc.samples,
+        expected_depth: (desc.expected_depth_format != vk::Format::UNDEFINED).then(|| {
+            ExpectedDepthDesc {
+                format: desc.expected_depth_format,
+                // SAFETY: the caller's promise.
+                target: unsafe {
+                    target(desc.expected_depth_render_pass, desc.expected_depth_subpass)
+                },
+            }
+        }),
+        // SAFETY: the caller's promise.
+        target: unsafe { target(desc.render_pass, desc.subpass) },
+        bindings: match desc.bindings {
+            RARA_BINDINGS_ADDRESS => Bindings::Address,
+            RARA_BINDINGS_BOUND => Bindings::Bound,
+            other => return invalid(format!("desc->bindings {other} is no RaraBindings")),
+        },
+        timing: desc.timing != 0,
+        reuse: desc.reuse != 0,
+        frames_in_flight: desc.frames_in_flight,
+    })
+}
+
+/// One colour attachment of one sample in dynamic rendering, no timestamps, nothing reused, one frame in flight.
+/// `desc_size` is sizeof *desc.
+///
+/// # Safety
+/// `desc` has room for `desc_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_desc_default(
+    desc: *mut RaraRendererDesc,
+    desc_size: usize,
+    color_format: vk::Format,
+) -> RaraResult {
+    let default = RaraRendererDesc::new(color_format);
+    // SAFETY: the caller's promise.
+    guard(|| unsafe { write(desc, desc_size, &default, "desc") })
+}
+
+/// A renderer. Pipelines and buffers come with the first frame that needs them. RARA_ERROR_DEVICE where the device cannot
+/// draw into such attachments.
+///
+/// # Safety
+/// `device` is alive, `desc` is as it says, and `renderer` may be overwritten.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_create(
+    device: *const RaraDevice,
+    desc: *const RaraRendererDesc,
+    renderer: *mut *mut RaraRenderer,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        create(renderer, "renderer", || {
+            let device = &shared(device, "device")?.0;
+            Renderer::new(device, renderer_desc(desc)?).map(RaraRenderer)
+        })
+    })
+}
+
+/// Another renderer on the same device that shares the compiled pipelines of `other`: one for each view that is drawn in
+/// the same scope. Working memory is its own.
+///
+/// # Safety
+/// `other` is alive, `desc` is as it says, and `renderer` may be overwritten.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_create_sharing(
+    other: *const RaraRenderer,
+    desc: *const RaraRendererDesc,
+    renderer: *mut *mut RaraRenderer,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        create(renderer, "renderer", || {
+            let other = &shared(other, "other")?.0;
+            other.sharing(renderer_desc(desc)?).map(RaraRenderer)
+        })
+    })
+}
+
+/// Changes what the host's depth buffer holds for a depth, from the next rara_renderer_configure on.
+///
+/// # Safety
+/// `renderer` is alive, was created with a depth attachment, and is not used by another thread; `map` points to one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_set_depth_map(
+    renderer: *mut RaraRenderer,
+    map: *const RaraDepthMap,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let renderer = exclusive(renderer, "renderer")?;
+        renderer.0.set_depth_map(shared(map, "map")?.map()?);
+        Ok(())
+    })
+}
+
+/// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the viewport of
+/// rara_renderer_draw. `clip` may be null for none, `settings` for the defaults. After an error nothing can be recorded
+/// until a call succeeds.
+///
+/// # Safety
+/// `renderer` and `scene` are alive and of one device; no other thread uses `renderer`; the others are null or as they
+/// say. The host has waited for the frames that RaraRenderer says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_configure(
+    renderer: *mut RaraRenderer,
+    scene: *const RaraSceneBuffers,
+    camera: *const RaraCamera,
+    clip: *const RaraClip,
+    settings: *const RaraSettings,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let renderer = exclusive(renderer, "renderer")?;
+        let scene = shared(scene, "scene")?;
+        let camera = shared(camera, "camera")?.camera()?;
+        let (clip, settings) = (clip::clip(clip)?, settings::settings(settings)?);
+        renderer.0.configure(&scene.0, &camera, &clip, &settings)
+    })
+}
+
+/// Records the stages up to the draw, outside any rendering scope.
+///
+/// # Safety
+/// `cmd` is recording outside a rendering scope, and will be submitted to the device's queue, or never. `scene` is the one
+/// given to rara_renderer_configure, and lives until the commands have executed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_prepare(
+    renderer: *mut RaraRenderer,
+    cmd: vk::CommandBuffer,
+    scene: *const RaraSceneBuffers,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let renderer = exclusive(renderer, "renderer")?;
+        let scene = shared(scene, "scene")?;
+        renderer.0.prepare(recording(cmd)?, &scene.0);
+        Ok(())
+    })
+}
+
+/// As rara_renderer_prepare, for a renderer whose RaraDepthDesc is readable: with what the host has drawn already, so that
+/// tiles leave out the splats behind it.
+///
+/// The part of the image under the viewport is copied, at VK_PIPELINE_STAGE_2_COPY_BIT by VK_ACCESS_2_TRANSFER_READ_BIT:
+/// the host's barrier before makes its depths visible to that, its barrier after waits for it.
+///
+/// # Safety
+/// As for rara_renderer_prepare; and `depth` is as it says, visible to the copy, and lives until the commands have executed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_prepare_behind(
+    renderer: *mut RaraRenderer,
+    cmd: vk::CommandBuffer,
+    scene: *const RaraSceneBuffers,
+    depth: *const RaraDepthImage,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let renderer = exclusive(renderer, "renderer")?;
+        let scene = shared(scene, "scene")?;
+        let depth = depth::depth_image(depth)?;
+        renderer.0.prepare_behind(recording(cmd)?, &scene.0, &depth);
+        Ok(())
+    })
+}
+
+/// Records the splats inside the host's rendering scope, premultiplied and over what is there. `x` and `y` are the
+/// viewport's upper left corner in the attachment, whole pixels; the viewport has the camera's size, and depths from 0
+/// to 1. May be recorded more than once for a prepared frame.
+///
+/// # Safety
+/// `cmd` is inside a rendering scope with the attachments of RaraRendererDesc and no others, one layer and no view mask;
+/// viewport and scissor are set; rara_renderer_prepare was recorded for the same frame before it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_draw(
+    renderer: *mut RaraRenderer,
+    cmd: vk::CommandBuffer,
+    x: f32,
+    y: f32,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let renderer = exclusive(renderer, "renderer")?;
+        renderer.0.draw(recording(cmd)?, [x, y]);
+        Ok(())
+    })
+}
+
+/// Records the splats' depths inside a rendering scope of their own, with a colour attachment of expected_depth_format and,
+/// if there is one, the same depth attachment. Where the host has cleared both to 0, red / green is the pixel's expected
+/// depth along the view axis, world units, and green its alpha. `x` and `y` as for rara_renderer_draw.
+///
+/// # Safety
+/// As of rara_renderer_draw, in such a scope.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_draw_depth(
+    renderer: *mut RaraRenderer,
+    cmd: vk::CommandBuffer,
+    x: f32,
+    y: f32,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let renderer = exclusive(renderer, "renderer")?;
+        renderer.0.draw_depth(recording(cmd)?, [x, y]);
+        Ok(())
+    })
+}
+
+/// Forgets what earlier frames have computed, as after a frame that was prepared and not submitted.
+/// rara_renderer_configure comes after it.
+///
+/// # Safety
+/// `renderer` is alive, and no other thread uses it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_forget(renderer: *mut RaraRenderer) -> RaraResult {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        unsafe { exclusive(renderer, "renderer") }?.0.forget();
+        Ok(())
+    })
+}
+
+/// Frees a renderer's memory and pipelines; null is ignored. The host has waited for all of its frames.
+///
+/// # Safety
+/// `renderer` is null, or alive and not used any more, by the device neither.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_destroy(renderer: *mut RaraRenderer) {
+    // SAFETY: the caller's promise.
+    unsafe { destroy(renderer) };
+}
+
+impl RaraRenderer {
+    /// The renderer itself.
+    pub(crate) fn inner(&self) -> &Renderer {
+        &self.0
+    }
+}
+
+fn recording(cmd: vk::CommandBuffer) -> Result<vk::CommandBuffer> {
+    if cmd == vk::CommandBuffer::null() {
+        return invalid("cmd is null");
+    }
+    Ok(cmd)
+}

@@ -1,0 +1,251 @@
+//! A frame's settings.
+
+use rara::ash::vk;
+use rara::{
+    Decay, ExactForm, Miss, Mode, PhiForm, Precision, Preset, Raster, Result, Settings, Show,
+};
+
+use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
+
+/// How a clip treats the Gaussians that it cuts.
+pub type RaraMode = u32;
+/// No clipping.
+pub const RARA_MODE_NONE: RaraMode = 0;
+/// Keep or drop by the centre.
+pub const RARA_MODE_HARD: RaraMode = 1;
+/// The paper's length ratio along each pixel's ray.
+pub const RARA_MODE_RARA: RaraMode = 2;
+/// The exact visible share of the splat, the low-pass of 3DGS included. The default.
+pub const RARA_MODE_EXACT: RaraMode = 3;
+
+/// What the weight w of a cut splat scales.
+pub type RaraDecay = u32;
+/// The mode's own: linear for RARA_MODE_RARA, depth for RARA_MODE_EXACT. The default.
+pub const RARA_DECAY_AUTO: RaraDecay = 0;
+/// Alpha: alpha' = alpha w (the paper).
+pub const RARA_DECAY_LINEAR: RaraDecay = 1;
+/// Optical depth: alpha' = 1 - (1 - alpha)^w. Complementary halves rebuild the whole.
+pub const RARA_DECAY_DEPTH: RaraDecay = 2;
+
+/// RARA_MODE_RARA only: what a cut splat keeps in a pixel whose ray misses the traced ellipsoid.
+pub type RaraMiss = u32;
+/// Everything (the paper's text).
+pub const RARA_MISS_KEEP: RaraMiss = 0;
+/// Nothing (the paper's released code).
+pub const RARA_MISS_DROP: RaraMiss = 1;
+/// All or nothing, by the side on which the ray's densest point lies. The default.
+pub const RARA_MISS_PEAK: RaraMiss = 2;
+
+/// RARA_MODE_EXACT only: the form of the weight.
+pub type RaraExactForm = u32;
+/// Affine in the pixel for small splats, perspective-exact for large ones (beam_switch). The default.
+pub const RARA_EXACT_FORM_AUTO: RaraExactForm = 0;
+/// Perspective-exact for every cut splat.
+pub const RARA_EXACT_FORM_BEAM: RaraExactForm = 1;
+/// Affine for every cut splat.
+pub const RARA_EXACT_FORM_AFFINE: RaraExactForm = 2;
+
+/// How splats become pixels. All give the same picture.
+pub type RaraRaster = u32;
+/// The faster one on the device at hand. The default.
+pub const RARA_RASTER_AUTO: RaraRaster = 0;
+/// VK_EXT_mesh_shader.
+pub const RARA_RASTER_MESH: RaraRaster = 1;
+/// Instanced quads.
+pub const RARA_RASTER_QUAD: RaraRaster = 2;
+/// Tiles of pixels in a compute shader.
+pub const RARA_RASTER_TILES: RaraRaster = 3;
+
+/// What a frame shows of its splats.
+pub type RaraShow = u32;
+/// Their colours. The default.
+pub const RARA_SHOW_COLOUR: RaraShow = 0;
+/// What the clip does to them: blue where it leaves them whole; where it cuts, from red (nothing is kept in this pixel) to
+/// yellow (all is).
+pub const RARA_SHOW_WEIGHT: RaraShow = 1;
+
+/// RARA_MODE_EXACT only: how the normal distribution's Phi is approximated, and the largest error.
+pub type RaraPhiForm = u32;
+/// 1.9e-5.
+pub const RARA_PHI_FORM_QUINTIC: RaraPhiForm = 0;
+/// 1.4e-4.
+pub const RARA_PHI_FORM_CUBIC: RaraPhiForm = 1;
+/// 9.5e-3, two levels of 255.
+pub const RARA_PHI_FORM_LOGISTIC: RaraPhiForm = 2;
+
+/// A choice of all that is given up for time: phi, key_bits, beam_switch and transmittance_min.
+pub type RaraPreset = u32;
+/// Nothing is given up. Scenes go with RARA_SH_FORMAT_FLOAT.
+pub const RARA_PRESET_EXACT: RaraPreset = 0;
+/// What no picture shows is given up: the usual choice. Scenes go with RARA_SH_FORMAT_PACKED.
+pub const RARA_PRESET_BALANCED: RaraPreset = 1;
+/// What pictures hardly show is given up. Scenes go with RARA_SH_FORMAT_PACKED.
+pub const RARA_PRESET_FAST: RaraPreset = 2;
+
+/// The options of a frame, apart from scene, camera and clip.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RaraSettings {
+    /// Set by rara_settings_default.
+    pub struct_size: usize,
+    /// How cut Gaussians are treated.
+    pub mode: RaraMode,
+    /// What the weight scales.
+    pub decay: RaraDecay,
+    /// RARA_MODE_RARA: the traced ellipsoid, in standard deviations. Default: 3.
+    pub sigma: f32,
+    /// RARA_MODE_RARA: what a missed pixel keeps.
+    pub miss: RaraMiss,
+    /// Ablation: treat every Gaussian as cut. Default: no.
+    pub trace_all: vk::Bool32,
+    /// RARA_MODE_EXACT: the form of the weight.
+    pub form: RaraExactForm,
+    /// Highest spherical-harmonics degree to evaluate; -1 is the scene's own, and the default.
+    pub sh_degree: i32,
+    /// How splats become pixels.
+    pub raster: RaraRaster,
+    /// Colours, or a debug view.
+    pub show: RaraShow,
+    /// RARA_MODE_EXACT: how Phi is approximated. From the preset, like all below.
+    pub phi: RaraPhiForm,
+    /// Most bits of the depths that the sort looks at, 8 to 32.
+    pub key_bits: u32,
+    /// RARA_MODE_EXACT: a cut splat is perspective-exact where its largest deviation over its depth exceeds this. Zero is
+    /// the exact form for all.
+    pub beam_switch: f32,
+    /// Tiles only: a pixel with less transmittance than this is saturated. Zero blends everything.
+    pub transmittance_min: f32,
+}
+
+// SAFETY: repr(C), plain numbers, the size first.
+unsafe impl Versioned for RaraSettings {
+    const NAME: &'static str = "RaraSettings";
+}
+
+impl RaraSettings {
+    fn new(preset: Preset) -> Self {
+        let settings = Settings::default();
+        let precision = preset.precision();
+        Self {
+            struct_size: size_of::<Self>(),
+            mode: match settings.mode {
+                Mode::None => RARA_MODE_NONE,
+                Mode::Hard => RARA_MODE_HARD,
+                Mode::Rara => RARA_MODE_RARA,
+                Mode::Exact => RARA_MODE_EXACT,
+            },
+            decay: RARA_DECAY_AUTO,
+            sigma: settings.sigma,
+            miss: RARA_MISS_PEAK,
+            trace_all: vk::FALSE,
+            form: RARA_EXACT_FORM_AUTO,
+            sh_degree: -1,
+            raster: RARA_RASTER_AUTO,
+            show: RARA_SHOW_COLOUR,
+            phi: match precision.phi {
+                PhiForm::Quintic => RARA_PHI_FORM_QUINTIC,
+                PhiForm::Cubic => RARA_PHI_FORM_CUBIC,
+                PhiForm::Logistic => RARA_PHI_FORM_LOGISTIC,
+            },
+            key_bits: precision.key_bits,
+            beam_switch: precision.beam_switch,
+            transmittance_min: precision.transmittance_min,
+        }
+    }
+
+    fn settings(&self) -> Result<Settings> {
+        fn no<T>(field: &str, value: u32, kind: &str) -> Result<T> {
+            invalid(format!("settings->{field} {value} is no {kind}"))
+        }
+        Ok(Settings {
+            mode: match self.mode {
+                RARA_MODE_NONE => Mode::None,
+                RARA_MODE_HARD => Mode::Hard,
+                RARA_MODE_RARA => Mode::Rara,
+                RARA_MODE_EXACT => Mode::Exact,
+                other => return no("mode", other, "RaraMode"),
+            },
+            decay: match self.decay {
+                RARA_DECAY_AUTO => None,
+                RARA_DECAY_LINEAR => Some(Decay::Linear),
+                RARA_DECAY_DEPTH => Some(Decay::Depth),
+                other => return no("decay", other, "RaraDecay"),
+            },
+            sigma: self.sigma,
+            miss: match self.miss {
+                RARA_MISS_KEEP => Miss::Keep,
+                RARA_MISS_DROP => Miss::Drop,
+                RARA_MISS_PEAK => Miss::Peak,
+                other => return no("miss", other, "RaraMiss"),
+            },
+            trace_all: self.trace_all != 0,
+            form: match self.form {
+                RARA_EXACT_FORM_AUTO => ExactForm::Auto,
+                RARA_EXACT_FORM_BEAM => ExactForm::Beam,
+                RARA_EXACT_FORM_AFFINE => ExactForm::Affine,
+                other => return no("form", other, "RaraExactForm"),
+            },
+            background: None,
+            sh_degree: u32::try_from(self.sh_degree).ok(),
+            raster: match self.raster {
+                RARA_RASTER_AUTO => Raster::Auto,
+                RARA_RASTER_MESH => Raster::Mesh,
+                RARA_RASTER_QUAD => Raster::Quad,
+                RARA_RASTER_TILES => Raster::Tiles,
+                other => return no("raster", other, "RaraRaster"),
+            },
+            show: match self.show {
+                RARA_SHOW_COLOUR => Show::Colour,
+                RARA_SHOW_WEIGHT => Show::Weight,
+                other => return no("show", other, "RaraShow"),
+            },
+            precision: Precision {
+                phi: match self.phi {
+                    RARA_PHI_FORM_QUINTIC => PhiForm::Quintic,
+                    RARA_PHI_FORM_CUBIC => PhiForm::Cubic,
+                    RARA_PHI_FORM_LOGISTIC => PhiForm::Logistic,
+                    other => return no("phi", other, "RaraPhiForm"),
+                },
+                key_bits: self.key_bits,
+                beam_switch: self.beam_switch,
+                transmittance_min: self.transmittance_min,
+                // Of the scene and the target, which are not a frame's.
+                ..Precision::default()
+            },
+        })
+    }
+}
+
+/// # Safety
+/// `settings` is null, for the defaults, or points to them.
+pub(crate) unsafe fn settings(settings: *const RaraSettings) -> Result<Settings> {
+    let default = RaraSettings::new(Preset::default());
+    if settings.is_null() {
+        return default.settings();
+    }
+    // SAFETY: the caller's promise.
+    unsafe { read(settings, default, "settings") }?.settings()
+}
+
+/// The usual settings, as exact as a preset has it. `settings_size` is sizeof *settings.
+///
+/// # Safety
+/// `settings` has room for `settings_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_settings_default(
+    settings: *mut RaraSettings,
+    settings_size: usize,
+    preset: RaraPreset,
+) -> RaraResult {
+    guard(|| {
+        let preset = match preset {
+            RARA_PRESET_EXACT => Preset::Exact,
+            RARA_PRESET_BALANCED => Preset::Balanced,
+            RARA_PRESET_FAST => Preset::Fast,
+            other => return invalid(format!("preset {other} is no RaraPreset")),
+        };
+        let default = RaraSettings::new(preset);
+        // SAFETY: the caller's promise.
+        unsafe { write(settings, settings_size, &default, "settings") }
+    })
+}

@@ -1,0 +1,130 @@
+//! What a frame tells about itself.
+
+use std::ffi::c_char;
+
+use rara::ash::vk;
+
+use crate::boundary::{RaraResult, Versioned, guard, shared, write};
+use crate::renderer::RaraRenderer;
+use crate::settings::{
+    RARA_RASTER_AUTO, RARA_RASTER_MESH, RARA_RASTER_QUAD, RARA_RASTER_TILES, RaraRaster,
+};
+
+/// Room for a stage's name, the NUL at its end included.
+pub const RARA_NAME_SIZE: usize = 16;
+/// Room for a reason, the NUL at its end included.
+pub const RARA_REASON_SIZE: usize = 96;
+/// Room for the stages of a frame.
+pub const RARA_MAX_PASSES: usize = 32;
+
+/// GPU time of one stage.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RaraPassTime {
+    /// The stage: the same name as its shader and its debug label.
+    pub name: [c_char; RARA_NAME_SIZE],
+    /// Milliseconds between its timestamps.
+    pub ms: f64,
+}
+
+/// The statistics of a frame. Counts and times are of the oldest frame in flight, the last one where there is one; raster
+/// and skipped are of the one that is configured.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RaraFrameStats {
+    /// Set by rara_renderer_stats.
+    pub struct_size: usize,
+    /// Gaussians in view and untouched by the clip.
+    pub visible: u32,
+    /// Gaussians in view and cut by the clip.
+    pub cutoff: u32,
+    /// Gaussians in view but wholly clipped away.
+    pub invisible: u32,
+    /// Gaussians outside the view or too faint, whatever the clip says.
+    pub culled: u32,
+    /// Splats handed to the rasteriser.
+    pub drawn: u32,
+    /// How splats become pixels; RARA_RASTER_AUTO before the first frame.
+    pub raster: RaraRaster,
+    /// Why in that way.
+    pub raster_reason: [c_char; RARA_REASON_SIZE],
+    /// Whether tiles had no room for their lists, so that the frame was drawn as quads: the same picture, but slower. The
+    /// next rara_renderer_configure makes the room.
+    pub fell_back: vk::Bool32,
+    /// Number of passes; 0 without RaraRendererDesc's timing.
+    pub pass_count: u32,
+    /// GPU time of each stage, in order.
+    pub passes: [RaraPassTime; RARA_MAX_PASSES],
+    /// GPU time of the frame, milliseconds.
+    pub gpu_ms: f64,
+    /// Number of skipped stages.
+    pub skipped_count: u32,
+    /// The stages that the frame does not need.
+    pub skipped: [[c_char; RARA_NAME_SIZE]; RARA_MAX_PASSES],
+}
+
+// SAFETY: repr(C), plain numbers, the size first.
+unsafe impl Versioned for RaraFrameStats {
+    const NAME: &'static str = "RaraFrameStats";
+}
+
+/// What a frame tells about itself; ask after waiting for it, before the next rara_renderer_prepare. `stats_size` is
+/// sizeof *stats.
+///
+/// # Safety
+/// `renderer` is alive, and no other thread changes it; `stats` has room for `stats_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_stats(
+    renderer: *const RaraRenderer,
+    stats: *mut RaraFrameStats,
+    stats_size: usize,
+) -> RaraResult {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let renderer = unsafe { shared(renderer, "renderer") }?.inner();
+        let (counts, raster) = (renderer.counts(), renderer.raster());
+        let (times, skipped) = (renderer.pass_times(), renderer.skipped());
+        let mut found = RaraFrameStats {
+            struct_size: size_of::<RaraFrameStats>(),
+            visible: counts.visible,
+            cutoff: counts.cutoff,
+            invisible: counts.invisible,
+            culled: counts.culled,
+            drawn: counts.drawn,
+            raster: match raster.path {
+                "mesh" => RARA_RASTER_MESH,
+                "quad" => RARA_RASTER_QUAD,
+                "tiles" => RARA_RASTER_TILES,
+                _ => RARA_RASTER_AUTO,
+            },
+            raster_reason: text(raster.reason),
+            fell_back: renderer.fell_back().into(),
+            pass_count: times.len().min(RARA_MAX_PASSES) as u32,
+            passes: [RaraPassTime {
+                name: text(""),
+                ms: 0.0,
+            }; RARA_MAX_PASSES],
+            gpu_ms: times.iter().map(|pass| pass.ms).sum(),
+            skipped_count: skipped.len().min(RARA_MAX_PASSES) as u32,
+            skipped: [text(""); RARA_MAX_PASSES],
+        };
+        for (to, from) in found.passes.iter_mut().zip(&times) {
+            to.name = text(from.name);
+            to.ms = from.ms;
+        }
+        for (to, from) in found.skipped.iter_mut().zip(&skipped) {
+            *to = text(from);
+        }
+        // SAFETY: the caller's promise.
+        unsafe { write(stats, stats_size, &found, "stats") }
+    })
+}
+
+/// As much of a text as there is room for, and a NUL.
+fn text<const N: usize>(from: &str) -> [c_char; N] {
+    let mut to = [0; N];
+    for (to, from) in to[..N - 1].iter_mut().zip(from.bytes()) {
+        *to = from as c_char;
+    }
+    to
+}

@@ -1,0 +1,417 @@
+//! What a host can do wrong without a device: null pointers, impossible arguments, other versions; and panics, which every
+//! function stops.
+
+use std::cell::Cell;
+use std::ffi::{CStr, CString};
+use std::ptr::{null, null_mut};
+
+use rara::ash::vk;
+
+use crate::boundary::*;
+use crate::camera::*;
+use crate::clip::*;
+use crate::depth::*;
+use crate::device::*;
+use crate::renderer::*;
+use crate::scene::*;
+use crate::settings::*;
+use crate::stats::*;
+
+thread_local! {
+    static PANIC: Cell<bool> = const { Cell::new(false) };
+}
+
+/// What a test puts into every function.
+pub(crate) fn panic_if_asked() {
+    assert!(!PANIC.get(), "injected");
+}
+
+fn message() -> String {
+    // SAFETY: a string of this thread, copied before its next call.
+    let text = unsafe { CStr::from_ptr(rara_last_error_message()) };
+    text.to_str().expect("UTF-8").to_owned()
+}
+
+#[track_caller]
+fn assert_fails(result: RaraResult, code: RaraResult, part: &str) {
+    let message = message();
+    assert!(
+        result == code && message.contains(part),
+        "{result}: {message}"
+    );
+}
+
+/// Each function with null for every pointer and handle, and what it says then.
+fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
+    let mut called = Vec::new();
+    macro_rules! call {
+        ($function:ident($($argument:expr),*), $says:literal) => {
+            // SAFETY: null is what every function must stand.
+            called.push((unsafe { $function($($argument),*) }, stringify!($function), $says));
+            assert!(called.last().is_none_or(|(_, name, _)| PANIC.get() || {
+                let says = message();
+                let is_right = says.contains($says);
+                if !is_right { eprintln!("{name}: {says}"); }
+                is_right
+            }));
+        };
+    }
+    let map = RaraDepthMap {
+        z_near: 1.0,
+        z_far: 2.0,
+        reversed: 0,
+    };
+    let format = vk::Format::R8G8B8A8_UNORM;
+    let no_device = vk::PhysicalDevice::null();
+    let no_cmd = vk::CommandBuffer::null();
+    call!(
+        rara_check(None, vk::Instance::null(), no_device, null_mut(), 0),
+        "get_instance_proc_addr"
+    );
+    call!(
+        rara_support_features(null(), null_mut(), null_mut(), null_mut()),
+        "support is null"
+    );
+    call!(
+        rara_adopt_desc_default(null_mut(), size_of::<RaraAdoptDesc>()),
+        "desc is null"
+    );
+    call!(rara_device_adopt(null(), null_mut()), "device is null");
+    call!(rara_gaussians_load(null(), null_mut()), "gaussians is null");
+    call!(
+        rara_gaussians_load_from(null(), 0, null(), null_mut()),
+        "gaussians is null"
+    );
+    call!(
+        rara_gaussians_append(null_mut(), null()),
+        "gaussians is null"
+    );
+    call!(
+        rara_gaussians_info(null(), null_mut(), 0),
+        "gaussians is null"
+    );
+    call!(
+        rara_scene_buffers_upload(null(), null(), 0, null_mut()),
+        "scene is null"
+    );
+    call!(
+        rara_camera_look_at(null(), null(), null(), 50.0, 8, 8, null_mut()),
+        "camera is null"
+    );
+    call!(
+        rara_camera_from_world_to_camera(null(), 1.0, 1.0, 0.0, 0.0, 8, 8, null_mut()),
+        "camera is null"
+    );
+    call!(
+        rara_camera_frame(null(), null(), 50.0, 8, 8, null_mut()),
+        "camera is null"
+    );
+    call!(
+        rara_depth_desc_default(null_mut(), size_of::<RaraDepthDesc>(), format, map),
+        "desc is null"
+    );
+    call!(
+        rara_settings_default(null_mut(), size_of::<RaraSettings>(), 0),
+        "settings is null"
+    );
+    call!(
+        rara_renderer_desc_default(null_mut(), size_of::<RaraRendererDesc>(), format),
+        "desc is null"
+    );
+    call!(
+        rara_renderer_create(null(), null(), null_mut()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_create_sharing(null(), null(), null_mut()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_set_depth_map(null_mut(), null()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_configure(null_mut(), null(), null(), null(), null()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_prepare(null_mut(), no_cmd, null()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_prepare_behind(null_mut(), no_cmd, null(), null()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_draw(null_mut(), no_cmd, 0.0, 0.0),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_draw_depth(null_mut(), no_cmd, 0.0, 0.0),
+        "renderer is null"
+    );
+    call!(rara_renderer_forget(null_mut()), "renderer is null");
+    call!(
+        rara_renderer_stats(null(), null_mut(), 0),
+        "renderer is null"
+    );
+    called
+}
+
+#[test]
+fn null_is_named() {
+    for (result, function, _) in calls() {
+        assert_eq!(result, RARA_ERROR_INVALID, "{function}");
+    }
+    // SAFETY: null is what these ignore.
+    unsafe {
+        rara_gaussians_destroy(null_mut());
+        rara_scene_buffers_destroy(null_mut());
+        rara_renderer_destroy(null_mut());
+        rara_device_destroy(null_mut());
+        assert_eq!(
+            rara_device_bytes(null()) + rara_scene_buffers_bytes(null()),
+            0
+        );
+    }
+}
+
+#[test]
+fn no_panic_crosses() {
+    PANIC.set(true);
+    for (result, function, _) in calls() {
+        assert_eq!(result, RARA_ERROR_PANIC, "{function}");
+        assert_eq!(message(), "injected");
+    }
+    // SAFETY: null is what these ignore.
+    unsafe {
+        rara_gaussians_destroy(null_mut());
+        rara_scene_buffers_destroy(null_mut());
+        rara_renderer_destroy(null_mut());
+        rara_device_destroy(null_mut());
+        assert_eq!(
+            rara_device_bytes(null()) + rara_scene_buffers_bytes(null()),
+            0
+        );
+    }
+    PANIC.set(false);
+    let odd = guard(|| std::panic::panic_any(7));
+    assert_fails(odd, RARA_ERROR_PANIC, "without a message");
+}
+
+#[test]
+fn every_function_is_called_here() {
+    let header = include_str!("rara.h");
+    let called: Vec<_> = calls().into_iter().map(|(_, name, _)| name).collect();
+    for line in header
+        .lines()
+        .filter(|line| line.starts_with("RaraResult rara_"))
+    {
+        let name = line["RaraResult ".len()..].split('(').next();
+        let name = name.expect("a function");
+        assert!(called.contains(&name), "{name} is not in calls()");
+    }
+}
+
+#[test]
+fn messages_are_a_threads_own() {
+    assert_eq!(message(), "");
+    std::thread::spawn(|| {
+        let failed = guard(|| invalid("another thread's\0, with a NUL"));
+        assert_fails(failed, RARA_ERROR_INVALID, "another thread's\u{fffd}, with");
+    })
+    .join()
+    .expect("no panic");
+    assert_eq!(message(), "");
+    assert_eq!(rara_abi_version(), RARA_ABI_VERSION);
+}
+
+#[test]
+fn structs_of_other_versions() {
+    let preset = RARA_PRESET_FAST;
+    // SAFETY: the struct has the room that is said; it may hold any bytes.
+    unsafe {
+        let mut settings: RaraSettings = std::mem::zeroed();
+        // An older host, whose struct ended after `sigma`.
+        let older = std::mem::offset_of!(RaraSettings, miss);
+        settings.miss = 77;
+        assert_eq!(rara_settings_default(&mut settings, older, preset), RARA_OK);
+        assert_eq!(
+            (settings.struct_size, settings.miss),
+            (older, 77),
+            "left alone"
+        );
+        settings.mode = RARA_MODE_HARD;
+        let read = crate::settings::settings(&settings).expect("is filled up");
+        assert_eq!(read.mode, rara::Mode::Hard);
+        assert_eq!(read.miss, rara::Miss::Peak, "the default");
+        // A newer one.
+        settings.struct_size = size_of::<RaraSettings>() + 8;
+        let error = crate::settings::settings(&settings).expect_err("is not understood");
+        assert!(
+            error.to_string().contains("settings->struct_size is "),
+            "{error}"
+        );
+        settings.struct_size = 0;
+        assert!(
+            crate::settings::settings(&settings).is_err(),
+            "never filled"
+        );
+        let nothing = rara_settings_default(&mut settings, 3, preset);
+        assert_fails(nothing, RARA_ERROR_INVALID, "sizeof(RaraSettings)");
+        let size = size_of::<RaraSettings>();
+        assert_fails(
+            rara_settings_default(&mut settings, size, 9),
+            RARA_ERROR_INVALID,
+            "preset 9",
+        );
+        assert_eq!(
+            rara_settings_default(&mut settings, size, RARA_PRESET_BALANCED),
+            RARA_OK
+        );
+        let read = crate::settings::settings(&settings).expect("the defaults");
+        assert_eq!(read, rara::Settings::default());
+        settings.raster = 12;
+        let error = crate::settings::settings(&settings).expect_err("no raster");
+        assert_eq!(error.to_string(), "settings->raster 12 is no RaraRaster");
+    }
+}
+
+#[test]
+fn planes() {
+    let plane = |x| RaraPlane {
+        normal: [x, 0.0, 0.0],
+        offset: 1.0,
+    };
+    let planes = [plane(1.0), plane(0.0)];
+    let mut given = RaraClip {
+        planes: planes.as_ptr(),
+        plane_count: 2,
+        op: RARA_CLIP_OP_AND,
+    };
+    // SAFETY: the planes are there, or the pointer is null.
+    let clip =
+        |given: &RaraClip| unsafe { super::clip::clip(given) }.map_err(|error| error.to_string());
+    let error = clip(&given).expect_err("a plane without a normal");
+    assert!(
+        error.starts_with("clip->planes[1]: the clip plane 0,0,0,1"),
+        "{error}"
+    );
+    given.plane_count = 1;
+    assert_eq!(clip(&given).expect("one plane").planes.len(), 1);
+    given.op = 2;
+    assert_eq!(
+        clip(&given).expect_err("no op"),
+        "clip->op 2 is no RaraClipOp"
+    );
+    given.plane_count = 33;
+    assert!(clip(&given).expect_err("too many").contains("at most 32"));
+    (given.plane_count, given.planes) = (1, null());
+    assert_eq!(clip(&given).expect_err("no planes"), "clip->planes is null");
+    // SAFETY: null is no clip.
+    let none = unsafe { super::clip::clip(null()) };
+    assert!(none.expect("everything").planes.is_empty());
+}
+
+#[test]
+fn cameras() {
+    let (eye, target, up) = ([1.0, -2.0, -5.0], [0.0; 3], [0.0, -1.0, 0.0]);
+    // SAFETY: three numbers each; the struct may hold any bytes.
+    unsafe {
+        let mut camera: RaraCamera = std::mem::zeroed();
+        let look = |eye: &[f64; 3], width, camera: &mut RaraCamera| {
+            rara_camera_look_at(
+                eye.as_ptr(),
+                target.as_ptr(),
+                up.as_ptr(),
+                50.0,
+                width,
+                60,
+                camera,
+            )
+        };
+        assert_fails(
+            look(&target, 90, &mut camera),
+            RARA_ERROR_INVALID,
+            "the same point",
+        );
+        assert_fails(look(&eye, 0, &mut camera), RARA_ERROR_INVALID, "0x60");
+        assert_eq!(look(&eye, 90, &mut camera), RARA_OK);
+        let (from, to) = (eye.into(), target.into());
+        let made = rara::Camera::look_at(from, to, up.into(), 50.0, (90, 60)).expect("a view");
+        assert_eq!(camera.camera().expect("a camera"), made, "to the last bit");
+        let matrix = made.world_to_camera().transpose().to_cols_array();
+        let mut again: RaraCamera = std::mem::zeroed();
+        let result = rara_camera_from_world_to_camera(
+            matrix.as_ptr(),
+            made.fx,
+            made.fy,
+            made.cx,
+            made.cy,
+            90,
+            60,
+            &mut again,
+        );
+        assert_eq!(result, RARA_OK);
+        assert!(again.camera().expect("a camera").eye.distance(made.eye) < 1e-12);
+        camera.rotation[4] = 7.0;
+        assert!(camera.camera().is_err(), "no rotation");
+        let nan = RaraCamera {
+            eye: [f64::NAN; 3],
+            ..again
+        };
+        assert!(nan.camera().is_err(), "nowhere");
+    }
+}
+
+#[test]
+fn scenes() {
+    let mut scene = null_mut();
+    // SAFETY: strings that end in NUL, bytes that are there, a pointer that is overwritten, handles that are alive.
+    unsafe {
+        let result = rara_gaussians_load(c"no/such.ply".as_ptr(), &mut scene);
+        assert_fails(result, RARA_ERROR_IO, "no/such.ply");
+        assert!(scene.is_null());
+        let load = |bytes: &[u8], scene: *mut *mut RaraGaussians| {
+            rara_gaussians_load_from(bytes.as_ptr(), bytes.len(), c"entry".as_ptr(), scene)
+        };
+        assert_fails(load(b"nonsense", &mut scene), RARA_ERROR_FORMAT, "entry: ");
+        assert_fails(load(b"", &mut scene), RARA_ERROR_FORMAT, "entry: ");
+        let nothing = rara_gaussians_load_from(null(), 9, c"entry".as_ptr(), &mut scene);
+        assert_fails(nothing, RARA_ERROR_INVALID, "data is null");
+
+        let made = rara::scene::generate(rara::scene::Kind::General, 50, 1);
+        let path = std::env::temp_dir().join(format!("rara-c-{}.ply", std::process::id()));
+        rara::scene::save_ply(&path, &made).expect("a temporary file");
+        let name = CString::new(path.to_str().expect("UTF-8")).expect("no NUL");
+        let mut other = null_mut();
+        assert_eq!(rara_gaussians_load(name.as_ptr(), &mut scene), RARA_OK);
+        assert_eq!(
+            load(&std::fs::read(&path).expect("reads"), &mut other),
+            RARA_OK
+        );
+        std::fs::remove_file(&path).expect("is there");
+        assert_eq!(rara_gaussians_append(scene, other), RARA_OK);
+        assert_fails(
+            rara_gaussians_append(scene, scene),
+            RARA_ERROR_INVALID,
+            "the same",
+        );
+        let mut info: RaraGaussiansInfo = std::mem::zeroed();
+        let size = size_of_val(&info);
+        assert_eq!(rara_gaussians_info(scene, &mut info, size), RARA_OK);
+        assert_eq!(
+            (info.struct_size, info.count, info.sh_degree),
+            (size, 100, made.sh_degree)
+        );
+        assert!(info.bounds_min[0] < info.bounds_max[0]);
+        let mut camera: RaraCamera = std::mem::zeroed();
+        let framed = rara_camera_frame(scene, [0.0, -1.0, 0.0].as_ptr(), 50.0, 90, 60, &mut camera);
+        assert_eq!(framed, RARA_OK);
+        assert!(camera.camera().is_ok());
+        let upload = rara_scene_buffers_upload(null(), scene, 0, &mut null_mut());
+        assert_fails(upload, RARA_ERROR_INVALID, "device is null");
+        rara_gaussians_destroy(scene);
+        rara_gaussians_destroy(other);
+    }
+}

@@ -1,0 +1,215 @@
+//! The functions of `rara.h` on a device: what a host can do wrong there has a message, and what it does right is drawn by
+//! `tests/c/host.rs`.
+
+#[allow(dead_code)] // its frames are for the hosts that draw
+#[path = "../../tools/examples/host.rs"]
+mod host;
+
+use std::ffi::CStr;
+use std::ptr::{null, null_mut};
+
+use host::{Host, HostDesc};
+use rara::ash::{Entry, vk};
+use rara_c::boundary::*;
+use rara_c::camera::*;
+use rara_c::clip::*;
+use rara_c::depth::*;
+use rara_c::device::*;
+use rara_c::renderer::*;
+use rara_c::scene::*;
+use rara_c::stats::*;
+
+#[track_caller]
+fn assert_fails(result: RaraResult, code: RaraResult, part: &str) {
+    // SAFETY: a string of this thread, used before its next call.
+    let message = unsafe { CStr::from_ptr(rara_last_error_message()) };
+    let message = message.to_str().expect("UTF-8");
+    assert!(
+        result == code && message.contains(part),
+        "{result}: {message}"
+    );
+}
+
+#[track_caller]
+fn assert_ok(result: RaraResult) {
+    if result != RARA_OK {
+        assert_fails(result, RARA_OK, "");
+    }
+}
+
+const FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+
+/// A scene of one Gaussian.
+const SCENE: &[u8] =
+    b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z
+property float f_dc_0\nproperty float f_dc_1\nproperty float f_dc_2\nproperty float opacity
+property float scale_0\nproperty float scale_1\nproperty float scale_2
+property float rot_0\nproperty float rot_1\nproperty float rot_2\nproperty float rot_3\nend_header
+0 0 0 1 1 1 2 -1 -1 -1 1 0 0 0\n";
+
+#[test]
+fn what_is_wrong_is_said() {
+    let name = std::env::var("RARA_TEST_DEVICE").ok();
+    let extent = vk::Extent2D {
+        width: 1,
+        height: 1,
+    };
+    let desc = HostDesc {
+        device: name.as_deref(),
+        validation: true,
+        optional: false,
+        extent,
+        format: FORMAT,
+    };
+    let host = Host::new(&desc);
+    let host = host.expect("a Vulkan device and the validation layer (tools/test installs both)");
+    let ours = host.lend();
+    // SAFETY: the system's loader; every handle and pointer below is alive, null, or to be overwritten.
+    unsafe {
+        let entry = Entry::load().expect("a Vulkan loader");
+        let loader = entry.static_fn().get_instance_proc_addr;
+        let mut support: RaraSupport = std::mem::zeroed();
+        let size = size_of_val(&support);
+        let (instance, physical) = (ours.instance.handle(), ours.physical_device);
+        let check = |physical, support: &mut RaraSupport| {
+            rara_check(Some(loader), instance, physical, support, size)
+        };
+        let nothing = check(vk::PhysicalDevice::null(), &mut support);
+        assert_fails(nothing, RARA_ERROR_INVALID, "physical_device is null");
+        assert_ok(check(physical, &mut support));
+        assert_eq!(support.struct_size, size);
+        for name in &support.extensions[..support.extension_count as usize] {
+            assert!(CStr::from_ptr(*name).to_bytes().starts_with(b"VK_"));
+        }
+        let mut vulkan12 = vk::PhysicalDeviceVulkan12Features::default().timeline_semaphore(true);
+        let mut vulkan13 = vk::PhysicalDeviceVulkan13Features::default();
+        let set = rara_support_features(&support, &mut vulkan12, &mut vulkan13, null_mut());
+        assert_ok(set);
+        assert_eq!(
+            vulkan12.buffer_device_address + vulkan12.timeline_semaphore,
+            2
+        );
+        assert_eq!(vulkan13.synchronization2 + vulkan13.dynamic_rendering, 2);
+        assert_eq!(vulkan13.maintenance4, vk::FALSE, "not asked for");
+
+        let mut desc: RaraAdoptDesc = std::mem::zeroed();
+        assert_ok(rara_adopt_desc_default(&mut desc, size_of_val(&desc)));
+        desc.get_instance_proc_addr = Some(loader);
+        (desc.instance, desc.physical_device) = (instance, physical);
+        desc.queue_family = ours.queue_family;
+        let mut device = null_mut();
+        let failed = rara_device_adopt(&desc, &mut device);
+        assert_fails(failed, RARA_ERROR_INVALID, "desc->device is null");
+        (desc.device, desc.queue) = (ours.device.handle(), ours.queue);
+        if support.mesh_shader != 0 {
+            desc.mesh_shader = vk::TRUE; // the host has not enabled it
+            let failed = rara_device_adopt(&desc, &mut device);
+            assert_fails(failed, RARA_ERROR_INVALID, "without VK_EXT_mesh_shader");
+            desc.mesh_shader = vk::FALSE;
+        }
+        desc.queue_family = 99;
+        let failed = rara_device_adopt(&desc, &mut device);
+        assert_fails(failed, RARA_ERROR_INVALID, "no queue family 99");
+        assert!(device.is_null());
+        desc.queue_family = ours.queue_family;
+        assert_ok(rara_device_adopt(&desc, &mut device));
+
+        let (mut gaussians, mut scene) = (null_mut(), null_mut());
+        let loaded =
+            rara_gaussians_load_from(SCENE.as_ptr(), SCENE.len(), c"one".as_ptr(), &mut gaussians);
+        assert_ok(loaded);
+        let failed = rara_scene_buffers_upload(device, gaussians, 4, &mut scene);
+        assert_fails(failed, RARA_ERROR_INVALID, "sh_format 4");
+        let uploaded =
+            rara_scene_buffers_upload(device, gaussians, RARA_SH_FORMAT_FLOAT, &mut scene);
+        assert_ok(uploaded);
+        assert!(rara_scene_buffers_bytes(scene) > 0);
+        let mut camera: RaraCamera = std::mem::zeroed();
+        let up = [0.0, -1.0, 0.0];
+        assert_ok(rara_camera_frame(
+            gaussians,
+            up.as_ptr(),
+            50.0,
+            90,
+            60,
+            &mut camera,
+        ));
+        rara_gaussians_destroy(gaussians);
+
+        let mut desc: RaraRendererDesc = std::mem::zeroed();
+        let size = size_of_val(&desc);
+        assert_ok(rara_renderer_desc_default(&mut desc, size, FORMAT));
+        let mut renderer = null_mut();
+        desc.frames_in_flight = 0;
+        let failed = rara_renderer_create(device, &desc, &mut renderer);
+        assert_fails(failed, RARA_ERROR_INVALID, "frames_in_flight");
+        desc.frames_in_flight = 1;
+        desc.color_format = vk::Format::BC1_RGB_UNORM_BLOCK;
+        let failed = rara_renderer_create(device, &desc, &mut renderer);
+        assert_fails(failed, RARA_ERROR_DEVICE, "BC1_RGB_UNORM_BLOCK");
+        desc.color_format = FORMAT;
+        let mut depth: RaraDepthDesc = std::mem::zeroed();
+        let mut map = RaraDepthMap {
+            z_near: 0.0,
+            z_far: 9.0,
+            reversed: vk::TRUE,
+        };
+        let size = size_of_val(&depth);
+        let filled = rara_depth_desc_default(&mut depth, size, vk::Format::D32_SFLOAT, map);
+        assert_ok(filled);
+        desc.depth = &depth;
+        let failed = rara_renderer_create(device, &desc, &mut renderer);
+        assert_fails(failed, RARA_ERROR_INVALID, "0 < near < far");
+        desc.depth = null();
+        assert_ok(rara_renderer_create(device, &desc, &mut renderer));
+        map.z_near = 1.0;
+        let failed = rara_renderer_set_depth_map(renderer, &map);
+        assert_fails(failed, RARA_ERROR_PANIC, "depth attachment");
+
+        let cmd = vk::CommandBuffer::null();
+        let failed = rara_renderer_prepare(renderer, cmd, scene);
+        assert_fails(failed, RARA_ERROR_INVALID, "cmd is null");
+        // Never recorded into: the renderer sees before that nothing is configured.
+        let cmd = <vk::CommandBuffer as vk::Handle>::from_raw(8);
+        let failed = rara_renderer_prepare(renderer, cmd, scene);
+        assert_fails(failed, RARA_ERROR_PANIC, "configure()");
+        let failed = rara_renderer_draw(renderer, cmd, 0.0, 0.0);
+        assert_fails(failed, RARA_ERROR_PANIC, "prepare()");
+        let failed = rara_renderer_draw_depth(renderer, cmd, 0.0, 0.0);
+        assert_fails(failed, RARA_ERROR_PANIC, "expected_depth");
+        let plane = RaraPlane {
+            normal: [0.0; 3],
+            offset: 0.0,
+        };
+        let clip = RaraClip {
+            planes: &plane,
+            plane_count: 1,
+            op: RARA_CLIP_OP_AND,
+        };
+        let failed = rara_renderer_configure(renderer, scene, &camera, &clip, null());
+        assert_fails(failed, RARA_ERROR_INVALID, "clip->planes[0]");
+        let configured = rara_renderer_configure(renderer, scene, &camera, null(), null());
+        assert_ok(configured);
+        let mut stats: RaraFrameStats = std::mem::zeroed();
+        let told = rara_renderer_stats(renderer, &mut stats, size_of_val(&stats));
+        assert_ok(told);
+        let reason = CStr::from_ptr(stats.raster_reason.as_ptr());
+        assert!(!reason.is_empty() && stats.drawn == 0 && stats.skipped_count > 0);
+        let first = CStr::from_ptr(stats.skipped[0].as_ptr());
+        assert_eq!(first, c"clip");
+        assert_ok(rara_renderer_forget(renderer));
+        let mut second = null_mut();
+        assert_ok(rara_renderer_create_sharing(renderer, &desc, &mut second));
+
+        rara_renderer_destroy(second);
+        rara_renderer_destroy(renderer);
+        rara_scene_buffers_destroy(scene);
+        assert_eq!(
+            rara_device_bytes(device),
+            0,
+            "everything allocated was freed"
+        );
+        rara_device_destroy(device);
+    }
+    assert_eq!(host.close(), Vec::<String>::new());
+}

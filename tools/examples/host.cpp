@@ -1,0 +1,163 @@
+// A host in C++17 with a Vulkan device of its own: a depth-tested mesh, and splats of rara among it (src/c/rara.h).
+//   host SCENE.ply PICTURE.ppm [both|mesh|splats]
+// RARA_DEVICE: part of the device's name. RARA_VALIDATION: load the Khronos layer; any message is exit status 1.
+#include "rara.h"
+#include "engine.h"
+#include <cstring>
+
+#define RARA(call) check((call) == RARA_OK, rara_last_error_message())
+constexpr RaraDepthMap REVERSED{0.05, INFINITY, VK_TRUE};  // 1 at 0.05, 0 at infinity
+
+int main(int count, char **arguments) {
+    check(count >= 3, "usage: host SCENE.ply PICTURE.ppm [both|mesh|splats]");
+    const std::string what = count > 3 ? arguments[3] : "both";
+    const bool validation = getenv("RARA_VALIDATION") != nullptr;
+    check(rara_abi_version() == RARA_ABI_VERSION, "rara.h and the library are of different versions");
+
+    VkInstance instance = make_instance(validation);
+
+    // Which device will do, asked before there is one, and what rara wants of it added to what the host enables.
+    uint32_t devices = 16;
+    VkPhysicalDevice all[16];
+    VkResult listed = vkEnumeratePhysicalDevices(instance, &devices, all);
+    check(listed == VK_SUCCESS || listed == VK_INCOMPLETE, "vkEnumeratePhysicalDevices failed");
+    RaraSupport support{};
+    std::string why = "no Vulkan device of this name";
+    for (uint32_t i = 0; i < devices && !physical; i++) {
+        VkPhysicalDeviceProperties properties;
+        vkGetPhysicalDeviceProperties(all[i], &properties);
+        const char *name = getenv("RARA_DEVICE");
+        if (name && !strstr(properties.deviceName, name)) continue;
+        if (rara_check(vkGetInstanceProcAddr, instance, all[i], &support, sizeof support) == RARA_OK) physical = all[i];
+        else why = rara_last_error_message();
+    }
+    check(physical, why);
+    VkPhysicalDeviceMeshShaderFeaturesEXT mesh_shader{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT};
+    VkPhysicalDeviceVulkan13Features vulkan13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, support.mesh_shader ? &mesh_shader : nullptr};
+    VkPhysicalDeviceVulkan12Features vulkan12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &vulkan13};
+    RARA(rara_support_features(&support, &vulkan12, &vulkan13, &mesh_shader));
+    const float priority = 1;
+    VkDeviceQueueCreateInfo queue_info{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, support.queue_family, 1, &priority};
+    VkDeviceCreateInfo device_info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &vulkan12, 0, 1, &queue_info, 0, nullptr, support.extension_count, support.extensions};
+    VK(vkCreateDevice(physical, &device_info, nullptr, &device));
+    VkQueue queue;
+    vkGetDeviceQueue(device, support.queue_family, 0, &queue);
+
+    // The host's targets, mesh and command buffer.
+    Image colour = make_image(COLOUR, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
+    Image depth = make_image(DEPTH, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
+    Readback readback = make_readback();
+    VkPushConstantRange range{VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(Push)};
+    VkPipelineLayoutCreateInfo layout_info{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, nullptr, 0, 0, nullptr, 1, &range};
+    VkPipelineLayout layout;
+    VK(vkCreatePipelineLayout(device, &layout_info, nullptr, &layout));
+    VkPipeline pipeline = mesh_pipeline(layout);
+    VkCommandPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr, 0, support.queue_family};
+    VkCommandPool pool;
+    VK(vkCreateCommandPool(device, &pool_info, nullptr, &pool));
+    VkCommandBufferAllocateInfo cmd_info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool, VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+    VkCommandBuffer cmd;
+    VK(vkAllocateCommandBuffers(device, &cmd_info, &cmd));
+
+    // rara: the device is lent, a scene loaded and uploaded, a renderer made for the host's attachments.
+    RaraAdoptDesc adopt;
+    RARA(rara_adopt_desc_default(&adopt, sizeof adopt));
+    adopt.get_instance_proc_addr = vkGetInstanceProcAddr;
+    adopt.instance = instance, adopt.physical_device = physical, adopt.device = device;
+    adopt.queue = queue, adopt.queue_family = support.queue_family;
+    adopt.mesh_shader = support.mesh_shader, adopt.push_descriptor = support.push_descriptor, adopt.debug_utils = validation;
+    RaraDevice *lent;
+    RARA(rara_device_adopt(&adopt, &lent));
+    RaraGaussians *gaussians;
+    RARA(rara_gaussians_load(arguments[1], &gaussians));
+    RaraGaussiansInfo scene_info;
+    RARA(rara_gaussians_info(gaussians, &scene_info, sizeof scene_info));
+    RaraCamera camera;
+    const double up[3]{0, -1, 0};
+    RARA(rara_camera_frame(gaussians, up, 50, W, H, &camera));
+    RaraSceneBuffers *scene;
+    RARA(rara_scene_buffers_upload(lent, gaussians, RARA_SH_FORMAT_PACKED, &scene));
+    rara_gaussians_destroy(gaussians);
+    RaraDepthDesc tested;
+    RARA(rara_depth_desc_default(&tested, sizeof tested, DEPTH, REVERSED));
+    RaraRendererDesc desc;
+    RARA(rara_renderer_desc_default(&desc, sizeof desc, COLOUR));
+    desc.depth = &tested, desc.timing = VK_TRUE;
+    desc.bindings = validation ? RARA_BINDINGS_BOUND : RARA_BINDINGS_ADDRESS;  // bound, the layer can watch
+    RaraRenderer *renderer;
+    RARA(rara_renderer_create(lent, &desc, &renderer));
+
+    // The scene cut through its middle, and a mesh there.
+    double centre[3], size = 0;
+    Push push{};
+    for (int i = 0; i < 3; i++) {
+        centre[i] = (scene_info.bounds_min[i] + scene_info.bounds_max[i]) / 2;
+        push.centre_radius[i] = float(centre[i]);
+        size = std::max(size, scene_info.bounds_max[i] - scene_info.bounds_min[i]);
+    }
+    push.centre_radius[3] = float(0.4 * size);
+    RaraPlane plane{{-0.28, 0, 0.96}, -(-0.28 * centre[0] + 0.96 * centre[2])};
+    RaraClip clip{&plane, 1, RARA_CLIP_OP_AND};
+    for (int column = 0; column < 4; column++) {
+        double p[3]{};
+        for (int row = 0; row < 3; row++)
+            for (int i = 0; i < 3; i++) p[row] += camera.rotation[3 * row + i] * (column < 3 ? i == column : -camera.eye[i]);
+        push.world_to_clip[4 * column] = float(2 * camera.fx / W * p[0] + (2 * camera.cx / W - 1) * p[2]);
+        push.world_to_clip[4 * column + 1] = float(2 * camera.fy / H * p[1] + (2 * camera.cy / H - 1) * p[2]);
+        push.world_to_clip[4 * column + 2] = column < 3 ? 0 : float(REVERSED.z_near);
+        push.world_to_clip[4 * column + 3] = float(p[2]);
+    }
+
+    // A frame: stages before the host's rendering scope, then the mesh and the splats inside it.
+    RARA(rara_renderer_configure(renderer, scene, &camera, &clip, nullptr));
+    VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr, VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+    VK(vkBeginCommandBuffer(cmd, &begin));
+    RARA(rara_renderer_prepare(renderer, cmd, scene));
+    barrier(cmd, colour.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    barrier(cmd, depth.image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+    VkRenderingAttachmentInfo onto{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO, nullptr, colour.view, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    onto.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR, onto.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    VkRenderingAttachmentInfo behind = onto;
+    behind.imageView = depth.view, behind.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+    behind.clearValue.depthStencil = {0, 0};
+    onto.clearValue.color = {{0, 0, 0, 1}};
+    VkRenderingInfo scope{VK_STRUCTURE_TYPE_RENDERING_INFO, nullptr, 0, {{0, 0}, {W, H}}, 1, 0, 1, &onto, &behind};
+    vkCmdBeginRendering(cmd, &scope);
+    VkViewport viewport{0, 0, W, H, 0, 1};
+    vkCmdSetViewport(cmd, 0, 1, &viewport);
+    vkCmdSetScissor(cmd, 0, 1, &scope.renderArea);
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+    vkCmdPushConstants(cmd, layout, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);
+    if (what != "splats") vkCmdDraw(cmd, 24, 1, 0, 0);
+    if (what != "mesh") RARA(rara_renderer_draw(renderer, cmd, 0, 0));
+    vkCmdEndRendering(cmd);
+    barrier(cmd, colour.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    copy(cmd, colour.image, readback);
+    VK(vkEndCommandBuffer(cmd));
+    VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO, nullptr, 0, nullptr, nullptr, 1, &cmd};
+    VK(vkQueueSubmit(queue, 1, &submit, nullptr));
+    VK(vkQueueWaitIdle(queue));
+
+    // The picture, and what the frame tells about itself.
+    save(arguments[2], readback);
+    RaraFrameStats stats;
+    RARA(rara_renderer_stats(renderer, &stats, sizeof stats));
+    printf("%u visible, %u cut, %u clipped away, %u culled; %.2f ms:", stats.visible, stats.cutoff, stats.invisible, stats.culled, stats.gpu_ms);
+    for (uint32_t i = 0; i < stats.pass_count; i++) printf(" %s %.2f", stats.passes[i].name, stats.passes[i].ms);
+    printf("\n");
+
+    // What is rara's goes first, what is the host's is the host's to destroy.
+    rara_renderer_destroy(renderer);
+    rara_scene_buffers_destroy(scene);
+    check(rara_device_bytes(lent) == 0, "rara kept memory");
+    rara_device_destroy(lent);
+    vkDestroyCommandPool(device, pool, nullptr);
+    vkDestroyPipeline(device, pipeline, nullptr);
+    vkDestroyPipelineLayout(device, layout, nullptr);
+    destroy(readback);
+    destroy(colour);
+    destroy(depth);
+    vkDestroyDevice(device, nullptr);
+    destroy(instance);
+    return messages ? 1 : 0;
+}

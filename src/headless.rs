@@ -65,6 +65,11 @@ impl Headless {
             validation: desc.validation,
             application_name: "rara".into(),
         })?;
+        Self::on(device, desc)
+    }
+
+    /// On a device that is open.
+    fn on(device: Device, desc: &HeadlessDesc) -> Result<Self> {
         let pipelines = PipelineFile::open(&desc.pipeline_cache, &device);
         let kept_pipeline_bytes = pipelines.as_ref().map_or(0, PipelineFile::held_bytes);
         let bindings = desc.bindings.unwrap_or(if desc.validation {
@@ -323,5 +328,7 @@ fn check_blending(device: &Device, format: TargetFormat) -> Result<()> {
     )))
 }
 
+#[cfg(test)]
+mod faults;
 #[cfg(test)]
 mod tests;

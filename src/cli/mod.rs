@@ -100,6 +100,7 @@ pub(crate) fn main() -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
+            failure.details().for_each(output::say);
             output::say(&failure);
             failure.exit_code()
         }

@@ -174,9 +174,9 @@ impl Device {
     }
 
     /// Names an object of this device for debuggers and validation messages.
-    pub(crate) fn set_name<H: vk::Handle>(&self, object: H, name: &str) {
-        let Some(debug) = self.debug_utils() else {
-            return;
+    pub(crate) fn set_name<H: vk::Handle + Copy>(&self, object: H, name: &str) {
+        let Some(debug) = self.debug_utils().filter(|_| object.as_raw() != 0) else {
+            return; // a cache need not exist
         };
         let name = CString::new(name.replace('\0', "")).expect("no NUL is left");
         let info = vk::DebugUtilsObjectNameInfoEXT::default()

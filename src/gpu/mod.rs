@@ -8,6 +8,8 @@ mod device;
 mod devices;
 mod draw;
 mod failure;
+#[cfg(test)]
+pub(crate) mod faults;
 mod image;
 mod instance;
 mod layout;

@@ -65,7 +65,14 @@ impl std::fmt::Debug for AdoptDesc {
 impl Device {
     /// Opens a device of its own, without a window.
     pub fn headless(desc: &DeviceDesc) -> Result<Self> {
-        let owned = Instance::new(&desc.application_name, desc.validation)?;
+        Self::open(
+            Instance::new(&desc.application_name, desc.validation)?,
+            desc,
+        )
+    }
+
+    /// Opens a device of an instance, which it will own.
+    pub(crate) fn open(owned: Instance, desc: &DeviceDesc) -> Result<Self> {
         let (physical, infos): (Vec<_>, Vec<_>) = owned.devices()?.into_iter().unzip();
         let chosen = devices::choose(&infos, desc.selector.as_deref())?;
         let (physical, info) = (physical[chosen], infos[chosen].clone());
@@ -111,7 +118,10 @@ impl Device {
                 raw.destroy_device(None);
             }
         })?;
-        Ok(Self::new(adopt, info, support, allocator, Some(owned)))
+        let device = Self::new(adopt, info, support, allocator, Some(owned));
+        device.set_name(pipeline_cache, "pipelines");
+        device.set_name(queue, "queue");
+        Ok(device)
     }
 
     /// Works with a host's device. The host keeps owning it: nothing of the description is ever destroyed here.

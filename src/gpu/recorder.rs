@@ -94,6 +94,14 @@ impl<'a> Recorder<'a> {
         result
     }
 
+    /// Records `record` under a debug label, without timestamps: for what is no pass.
+    pub fn label<R>(&mut self, name: &str, record: impl FnOnce(&mut Self) -> R) -> R {
+        begin_label(self.device, self.cmd, name);
+        let result = record(self);
+        end_label(self.device, self.cmd);
+        result
+    }
+
     /// Dispatches a compute shader. `buffers[i]` is the buffer of binding `i`; what the shader declares of each decides
     /// the barrier.
     pub fn dispatch(
@@ -208,6 +216,33 @@ impl<'a> Recorder<'a> {
             self.device
                 .raw()
                 .cmd_copy_buffer(self.cmd, source.handle(), target.handle(), regions)
+        };
+    }
+
+    /// Copies from the beginning at `offset` of a buffer that is not ours, to the beginning of one that is.
+    ///
+    /// # Safety
+    ///
+    /// `source` must be this device's, hold `size` bytes there, be made to be copied from, and outlive the execution;
+    /// what writes it must be visible by then.
+    pub unsafe fn copy_from(
+        &mut self,
+        source: vk::Buffer,
+        offset: u64,
+        target: &Buffer,
+        size: u64,
+    ) {
+        target.check_range(0, size);
+        if size == 0 {
+            return;
+        }
+        self.before(&[(target.handle(), Access::TransferWrite)]);
+        let region = vk::BufferCopy::default().src_offset(offset).size(size);
+        // SAFETY: `begin`'s contract covers `cmd` and `target`, the caller vouches for `source`.
+        unsafe {
+            self.device
+                .raw()
+                .cmd_copy_buffer(self.cmd, source, target.handle(), &[region])
         };
     }
 

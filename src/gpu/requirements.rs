@@ -4,6 +4,7 @@ use std::ffi::CStr;
 
 use ash::{ext, khr, vk};
 
+use super::failure::failed;
 use crate::{Error, Result};
 
 /// What a physical device that meets the requirements offers beyond them.
@@ -126,7 +127,7 @@ pub unsafe fn check(instance: &ash::Instance, physical: vk::PhysicalDevice) -> R
 
     // SAFETY: as above.
     let extensions = unsafe { instance.enumerate_device_extension_properties(physical) }
-        .map_err(Error::vulkan("vkEnumerateDeviceExtensionProperties"))?;
+        .map_err(failed("vkEnumerateDeviceExtensionProperties"))?;
     let has = |wanted: &CStr| {
         extensions
             .iter()

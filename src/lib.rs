@@ -31,7 +31,7 @@ pub use clip::{Clip, ClipOp, Plane};
 pub use error::{Error, Result};
 pub use gpu::PipelineCache;
 pub use headless::{Headless, HeadlessDesc};
-pub use passes::SceneBuffers;
+pub use passes::{SceneBuffers, Staging};
 pub use picture::Picture;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 pub use renderer::{Renderer, RendererDesc};

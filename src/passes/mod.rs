@@ -28,6 +28,6 @@ pub(crate) use context::Context;
 pub(crate) use frame::record;
 pub(crate) use pair_room::PairRoom;
 pub(crate) use plan::{Plan, SceneFacts};
-pub use scene_buffers::SceneBuffers;
+pub use scene_buffers::{SceneBuffers, Staging};
 pub(crate) use stages::Stages;
 pub(crate) use work::{Kept, Work};

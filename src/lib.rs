@@ -21,6 +21,7 @@ pub mod scene;
 pub mod settings;
 pub mod stats;
 pub mod stress;
+pub mod trace;
 pub mod types;
 
 /// The versions that this crate's interface is made of.
@@ -37,4 +38,5 @@ pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 pub use renderer::{Renderer, RendererDesc};
 pub use scene::Gaussians;
 pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings};
-pub use stats::{Counts, FrameStats, PassTime, RasterChoice};
+pub use stats::{Counts, FrameStats, PassStatistics, PassTime, RasterChoice};
+pub use trace::Trace;

@@ -17,6 +17,7 @@ mod info;
 mod ink;
 mod output;
 mod precision;
+mod profile;
 mod render;
 mod report;
 mod scenes;

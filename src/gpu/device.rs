@@ -8,10 +8,11 @@ use ash::{ext, khr, vk};
 use gpu_allocator::AllocationError;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, Allocator};
 
+use super::clock::Clock;
 use super::instance::Instance;
 use super::submit::OneOff;
 use super::validation::Messages;
-use super::{AdoptDesc, Buffer, BufferDesc, DeviceInfo, Image, ImageDesc, Support};
+use super::{AdoptDesc, Buffer, BufferDesc, Calibration, DeviceInfo, Image, ImageDesc, Support};
 use crate::Result;
 
 /// A device, shared by everything made from it; clones are the same device.
@@ -40,6 +41,15 @@ pub(super) struct Inner {
     pub(super) idle: Mutex<Vec<OneOff>>,
     /// `None` for a host's device, which is never destroyed here.
     owned: Option<Instance>,
+}
+
+/// What a buffer or an image is for, and the device memory that it takes.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct NamedBytes {
+    /// Its name: what it is for.
+    pub name: String,
+    /// Its size.
+    pub bytes: u64,
 }
 
 impl Device {
@@ -95,6 +105,11 @@ impl Device {
         &self.inner.raw
     }
 
+    /// The ash instance.
+    pub fn instance(&self) -> &ash::Instance {
+        &self.inner.instance
+    }
+
     /// What optimally tiled images of a format can do.
     pub fn format_features(&self, format: vk::Format) -> vk::FormatFeatureFlags {
         let (instance, physical) = (&self.inner.instance, self.inner.physical);
@@ -134,6 +149,37 @@ impl Device {
         self.inner.allocated_at_most.load(Ordering::Relaxed)
     }
 
+    /// What live buffers and images take, by name, the largest first and with what alignment adds; those of one name are
+    /// added up.
+    pub fn memory_by_name(&self) -> Vec<NamedBytes> {
+        let allocator = self
+            .inner
+            .allocator
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let report = allocator
+            .as_ref()
+            .expect("taken only by drop")
+            .generate_report();
+        let mut sums: Vec<NamedBytes> = Vec::new();
+        for allocation in report.allocations {
+            match sums.iter_mut().find(|sum| sum.name == allocation.name) {
+                Some(sum) => sum.bytes += allocation.size,
+                None => sums.push(NamedBytes {
+                    name: allocation.name,
+                    bytes: allocation.size,
+                }),
+            }
+        }
+        sums.sort_by(|a, b| b.bytes.cmp(&a.bytes).then(a.name.cmp(&b.name)));
+        sums
+    }
+
+    /// What the device's clock shows now; `None` where that cannot be asked.
+    pub fn calibrate(&self) -> Option<Calibration> {
+        Clock::new(self, &self.inner.instance)?.read()
+    }
+
     /// Takes the validation layer's warnings and errors since the last call, from all threads. Empty without the
     /// layer, and for a host's device, whose messages go to the host.
     pub fn validation_messages(&self) -> Vec<String> {
@@ -150,6 +196,12 @@ impl Device {
         messages
             .map(|messages| messages.drain())
             .unwrap_or_default()
+    }
+
+    /// Whether the validation layer's messages come to us.
+    pub(super) fn validates(&self) -> bool {
+        let owned = self.inner.owned.as_ref();
+        owned.is_some_and(|instance| instance.validation.is_some())
     }
 
     fn messages(&self) -> Option<Arc<Messages>> {

@@ -43,8 +43,10 @@ struct State {
     fault: Option<Fault>,
     /// The calls that the fault is about.
     among: &'static [&'static str],
-    /// Fallible calls since the fault was set.
+    /// Calls among them since the fault was set.
     calls: usize,
+    /// All fallible calls since then.
+    counts: HashMap<&'static str, usize>,
     fired: Option<&'static str>,
     /// Objects by handle, with the call that made them.
     made: BTreeMap<u64, &'static str>,
@@ -103,12 +105,18 @@ pub(crate) fn set_among(among: &'static [&'static str], fault: Option<Fault>) {
     with(|state| {
         (state.fault, state.among) = (fault, among);
         (state.calls, state.fired) = (0, None);
+        state.counts.clear();
     });
 }
 
 /// The call that has failed first since [`set_among`].
 pub(crate) fn fired() -> Option<&'static str> {
     with(|state| state.fired)
+}
+
+/// How often a call was made since [`set_among`].
+pub(crate) fn count(call: &str) -> usize {
+    with(|state| state.counts.get(call).copied().unwrap_or(0))
 }
 
 /// Objects without a name, by the call that made them.
@@ -129,6 +137,7 @@ pub(crate) fn labels() -> (Vec<String>, Vec<&'static str>) {
 /// What `call` has to return instead of being called.
 fn due(call: &'static str) -> Option<vk::Result> {
     with(|state| {
+        *state.counts.entry(call).or_insert(0) += 1;
         let fault = state.fault?;
         if !state.among.contains(&call) {
             return None;

@@ -4,6 +4,7 @@
 //! [`Device::submit_and_wait`] and the uploads and downloads built on it.
 
 mod access;
+mod clock;
 mod device;
 mod devices;
 mod draw;
@@ -28,7 +29,8 @@ mod upload;
 mod validation;
 
 pub use access::Access;
-pub use device::Device;
+pub use clock::Calibration;
+pub use device::{Device, NamedBytes};
 pub use devices::{DeviceInfo, list_devices};
 pub use draw::Drawer;
 pub use image::{Image, ImageDesc};
@@ -42,5 +44,5 @@ pub(crate) use pipeline_file::PipelineFile;
 pub use recorder::{Groups, Recorder, group_grid};
 pub use requirements::{Features, Support, check};
 pub use shader::{BufferAccess, BufferUse, MAX_BUFFERS, MAX_PARAMS, Shader};
-pub use timer::Timer;
+pub use timer::{PassSpan, Timer};
 pub use tracker::Tracker;

@@ -16,6 +16,8 @@ pub struct DeviceDesc {
     pub selector: Option<String>,
     /// Load the Khronos validation layer with synchronisation checks.
     pub validation: bool,
+    /// Enable pipeline statistics where the device has them.
+    pub statistics: bool,
     /// What drivers and capture tools are told.
     pub application_name: String,
 }
@@ -25,6 +27,7 @@ impl Default for DeviceDesc {
         Self {
             selector: None,
             validation: false,
+            statistics: false,
             application_name: "rara".into(),
         }
     }
@@ -76,7 +79,8 @@ impl Device {
         let (physical, infos): (Vec<_>, Vec<_>) = owned.devices()?.into_iter().unzip();
         let chosen = devices::choose(&infos, desc.selector.as_deref())?;
         let (physical, info) = (physical[chosen], infos[chosen].clone());
-        let support = info.support.clone().map_err(Error::Device)?;
+        let mut support = info.support.clone().map_err(Error::Device)?;
+        support.pipeline_statistics &= desc.statistics;
 
         let family = support.queue_family;
         let queues = [vk::DeviceQueueCreateInfo::default()
@@ -85,10 +89,14 @@ impl Device {
         let extensions: Vec<_> = support
             .extensions()
             .iter()
+            .chain(&support.calibrated_timestamps)
             .map(|name| name.as_ptr())
             .collect();
         let mut features = support.features();
+        let core = vk::PhysicalDeviceFeatures::default()
+            .pipeline_statistics_query(support.pipeline_statistics);
         let create = vk::DeviceCreateInfo::default()
+            .enabled_features(&core)
             .queue_create_infos(&queues)
             .enabled_extension_names(&extensions);
         let create = features.chain(create);
@@ -160,6 +168,9 @@ impl Device {
         }
         support.mesh_shader &= desc.mesh_shader;
         support.push_descriptor &= desc.push_descriptor;
+        // What nobody has said that it was enabled.
+        support.pipeline_statistics = false;
+        support.calibrated_timestamps = None;
         // SAFETY: as above.
         let info = unsafe { devices::describe(&desc.instance, desc.physical_device) };
         let allocator = allocator(&desc)?;

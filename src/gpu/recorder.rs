@@ -4,6 +4,7 @@ use std::ffi::CStr;
 
 use ash::vk;
 
+use super::validation;
 use super::{Access, Buffer, ComputePipeline, Device, MAX_BUFFERS, Timer, Tracker};
 use crate::limits::GROUP_COLUMNS;
 
@@ -295,6 +296,9 @@ pub(super) fn begin_label(device: &Device, cmd: vk::CommandBuffer, name: &str) {
     let Some(debug) = device.debug_utils() else {
         return;
     };
+    if device.validates() {
+        validation::enter(name);
+    }
     // On the stack, as recording does not allocate; a longer name is cut.
     let mut text = [0_u8; 64];
     let length = name.len().min(text.len() - 1);
@@ -310,6 +314,9 @@ pub(super) fn end_label(device: &Device, cmd: vk::CommandBuffer) {
     if let Some(debug) = device.debug_utils() {
         // SAFETY: as in `begin_label`, which callers call first.
         unsafe { debug.cmd_end_debug_utils_label(cmd) };
+        if device.validates() {
+            validation::leave();
+        }
     }
 }
 

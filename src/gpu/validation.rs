@@ -1,5 +1,6 @@
 //! The Khronos validation layer with synchronisation checks, and the messages it has sent.
 
+use std::cell::RefCell;
 use std::ffi::{CStr, c_void};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -119,7 +120,7 @@ unsafe extern "system" fn collect(
     user: *mut c_void,
 ) -> vk::Bool32 {
     // SAFETY: Vulkan passes a valid struct for the length of the call, and whatever it points to.
-    let text = unsafe { describe(&*data) };
+    let text = PASSES.with_borrow(|passes| unsafe { describe(&*data, passes) });
     if kind == vk::DebugUtilsMessageTypeFlagsEXT::GENERAL {
         log::debug!("Vulkan loader, {severity:?}: {text}");
     } else {
@@ -130,12 +131,29 @@ unsafe extern "system" fn collect(
     vk::FALSE
 }
 
-/// The message behind the pass that it is about, the outermost label first, and the objects that have a name.
+thread_local! {
+    /// The labels that are open where this thread records. The layer speaks on the recording thread, and not all of its
+    /// messages (in 1.3.239 none about synchronisation) come with the command buffer's labels.
+    static PASSES: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
+}
+
+/// A label was opened on this thread, under validation.
+pub(super) fn enter(pass: &str) {
+    PASSES.with_borrow_mut(|passes| passes.push(pass.to_owned()));
+}
+
+/// The last one was closed.
+pub(super) fn leave() {
+    PASSES.with_borrow_mut(|passes| passes.pop());
+}
+
+/// The message behind the pass that it is about, the outermost label first, and the objects that have a name. `passes` are
+/// those of this thread, for a message that comes without labels.
 ///
 /// # Safety
 ///
 /// All that `data` points to must be valid, as it is in the messenger's callback.
-unsafe fn describe(data: &vk::DebugUtilsMessengerCallbackDataEXT<'_>) -> String {
+unsafe fn describe(data: &vk::DebugUtilsMessengerCallbackDataEXT<'_>, passes: &[String]) -> String {
     let text = |text: Option<&CStr>| text.map(|text| text.to_string_lossy().into_owned());
     // SAFETY: the caller vouches for the struct's pointers and counts; null arrays have a count of zero.
     let (message, labels, objects) = unsafe {
@@ -153,6 +171,7 @@ unsafe fn describe(data: &vk::DebugUtilsMessengerCallbackDataEXT<'_>) -> String 
             objects.iter().filter_map(named).collect::<Vec<_>>(),
         )
     };
+    let labels = if labels.is_empty() { passes } else { &labels };
     let pass = (!labels.is_empty()).then(|| format!("in pass {}", labels.join(" > ")));
     let objects = (!objects.is_empty()).then(|| objects.join(", "));
     let parts = [pass, objects, Some(message)].into_iter().flatten();
@@ -194,9 +213,12 @@ mod tests {
         let data = vk::DebugUtilsMessengerCallbackDataEXT::default().message(c"a hazard");
         let told = |data: vk::DebugUtilsMessengerCallbackDataEXT<'_>| {
             // SAFETY: the struct was filled by its own setters.
-            unsafe { describe(&data) }
+            unsafe { describe(&data, &[]) }
         };
         assert_eq!(told(data), "a hazard");
+        // SAFETY: as above.
+        let recording = unsafe { describe(&data, &["tiles".into()]) };
+        assert_eq!(recording, "in pass tiles: a hazard");
         assert_eq!(
             told(data.cmd_buf_labels(&labels)),
             "in pass sort > step: a hazard"

@@ -29,6 +29,8 @@ pub struct RendererDesc {
     pub bindings: Bindings,
     /// Whether to take timestamps around the stages.
     pub timing: bool,
+    /// Whether to count what the stages do, too, where the device was opened for it; only with `timing`.
+    pub statistics: bool,
     /// Whether a frame takes over what the one before has computed and this one would compute again, to the same bytes.
     /// The host then submits every frame that it prepares, in order, or calls [`Renderer::forget`].
     pub reuse: bool,
@@ -43,6 +45,7 @@ impl RendererDesc {
             color_format,
             bindings: Bindings::Address,
             timing: false,
+            statistics: false,
             reuse: false,
             frames_in_flight: 1,
         }
@@ -100,16 +103,20 @@ struct Slot {
 }
 
 impl Slot {
-    fn new(device: &Device, timing: bool) -> Result<Self> {
+    fn new(device: &Device, timing: bool, statistics: bool) -> Result<Self> {
         let mut counts = device.create_buffer(&BufferDesc {
             name: "counts_readback",
             size: size_of::<FrameCounts>() as u64,
             location: Location::Readback,
         })?;
+        // The stages of a frame, with room for several draws.
+        let timer = || match (Timer::new(device, 16), statistics) {
+            (Ok(timer), true) => timer.with_statistics(),
+            (timer, _) => timer,
+        };
         counts.mapped_mut().fill(0); // what a frame that is never submitted would tell
         Ok(Self {
-            // The stages of a frame, with room for several draws.
-            timer: timing.then(|| Timer::new(device, 16)).transpose()?,
+            timer: timing.then(timer).transpose()?,
             counts,
             empty: true,
         })
@@ -132,7 +139,8 @@ impl Renderer {
                 desc.color_format
             )));
         }
-        let slots = (0..desc.frames_in_flight).map(|_| Slot::new(device, desc.timing));
+        let slots =
+            (0..desc.frames_in_flight).map(|_| Slot::new(device, desc.timing, desc.statistics));
         Ok(Self {
             device: device.clone(),
             desc,

@@ -18,6 +18,9 @@ use crate::renderer::{Renderer, RendererDesc};
 use crate::scene::Gaussians;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
+use crate::trace::{self, Trace};
+
+mod spans;
 
 /// What a headless renderer is created with.
 #[derive(Debug, Clone, Default)]
@@ -31,6 +34,10 @@ pub struct HeadlessDesc {
     pub bindings: Option<Bindings>,
     /// Where compiled pipelines are kept from one run to the next.
     pub pipeline_cache: PipelineCache,
+    /// Where to note what takes how long on the processor and on the device.
+    pub trace: Option<Trace>,
+    /// Count what the stages do, where the device can.
+    pub statistics: bool,
 }
 
 /// A renderer that owns its device and draws into an offscreen picture, of 32-bit floats unless the settings say
@@ -43,6 +50,7 @@ pub struct Headless {
     /// What the target holds: the frame's background, if it is the renderer's last frame.
     drawn: Option<Option<[u32; 3]>>,
     pipelines: Option<PipelineFile>,
+    trace: Option<Trace>,
     /// Bytes of compiled pipelines that were there at the start.
     kept_pipeline_bytes: u64,
     // Last, so that everything above is freed before the device.
@@ -60,11 +68,19 @@ impl Headless {
     /// Opens the device.
     pub fn new(desc: &HeadlessDesc) -> Result<Self> {
         let selector = desc.device.clone();
-        let device = Device::headless(&DeviceDesc {
-            selector,
-            validation: desc.validation,
-            application_name: "rara".into(),
-        })?;
+        let open = || {
+            Device::headless(&DeviceDesc {
+                selector,
+                validation: desc.validation,
+                statistics: desc.statistics,
+                application_name: "rara".into(),
+            })
+        };
+        Self::on(trace::span(desc.trace.as_ref(), "open", open)?, desc)
+    }
+
+    /// On a device that is open.
+    fn on(device: Device, desc: &HeadlessDesc) -> Result<Self> {
         let pipelines = PipelineFile::open(&desc.pipeline_cache, &device);
         let kept_pipeline_bytes = pipelines.as_ref().map_or(0, PipelineFile::held_bytes);
         let bindings = desc.bindings.unwrap_or(if desc.validation {
@@ -77,6 +93,7 @@ impl Headless {
             RendererDesc {
                 bindings,
                 timing: true,
+                statistics: desc.statistics,
                 reuse: true,
                 ..RendererDesc::new(TargetFormat::default().vulkan())
             },
@@ -87,6 +104,7 @@ impl Headless {
             target: None,
             drawn: None,
             pipelines,
+            trace: desc.trace.clone(),
             kept_pipeline_bytes,
             device,
         })
@@ -132,7 +150,8 @@ impl Headless {
     pub fn load_as(&mut self, scene: &Gaussians, format: ShFormat) -> Result<()> {
         // Free first: both together may not fit.
         self.scene = None;
-        self.scene = Some(SceneBuffers::upload(&self.device, scene, format)?);
+        let upload = || SceneBuffers::upload(&self.device, scene, format);
+        self.scene = Some(trace::span(self.trace.as_ref(), "upload", upload)?);
         Ok(())
     }
 
@@ -151,6 +170,19 @@ impl Headless {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<FrameStats> {
+        let trace = self.trace.clone();
+        trace::span(trace.as_ref(), "render", || {
+            self.render_frame(camera, clip, settings)
+        })
+    }
+
+    fn render_frame(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<FrameStats> {
+        let trace = self.trace.as_ref();
         let scene = self
             .scene
             .as_ref()
@@ -158,7 +190,9 @@ impl Headless {
         let format = settings.precision.target;
         self.renderer.set_color_format(format.vulkan());
         self.renderer.set_redraws(true);
-        self.renderer.configure(scene, camera, clip, settings)?;
+        trace::span(trace, "configure", || {
+            self.renderer.configure(scene, camera, clip, settings)
+        })?;
         let extent = vk::Extent2D {
             width: camera.width,
             height: camera.height,
@@ -201,11 +235,14 @@ impl Headless {
                 wall_ms: begin.elapsed().as_secs_f64() * 1e3,
                 skipped,
                 raster: self.renderer.raster(),
+                statistics: Vec::new(),
             });
         }
         self.drawn = None;
         let mut quads = false;
         loop {
+            let recording = Instant::now();
+            let mut recorded = recording;
             let submitted = self.device.submit_and_wait(|cmd| {
                 // SAFETY: `cmd` is recording and `scene`, the target and the renderer outlive the wait for it; the
                 // rendering scope is opened and closed here around the draw, on an attachment of the renderer's format.
@@ -220,8 +257,14 @@ impl Headless {
                     self.renderer.draw(cmd, [0.0, 0.0]);
                     target.image.end_rendering(cmd);
                 }
+                recorded = Instant::now();
                 Ok(())
             });
+            if let Some(trace) = trace {
+                trace.cpu("record", recording, recorded);
+                trace.cpu("submit and wait", recorded, Instant::now());
+                spans::add(trace, &self.device, &self.renderer, recorded);
+            }
             if submitted.is_err() {
                 self.renderer.forget(); // what it would have computed is not there
             }
@@ -234,7 +277,9 @@ impl Headless {
             if quads {
                 break; // they are the picture
             }
-            self.renderer.configure(scene, camera, clip, settings)?;
+            trace::span(trace, "configure", || {
+                self.renderer.configure(scene, camera, clip, settings)
+            })?;
             if self.renderer.pair_room() <= room {
                 // There is no more to be had.
                 quads = true;
@@ -256,11 +301,17 @@ impl Headless {
             wall_ms,
             skipped,
             raster: self.renderer.raster(),
+            statistics: self.renderer.pass_statistics(),
         })
     }
 
     /// Reads the picture of the last frame back.
     pub fn picture(&mut self) -> Result<Picture> {
+        let trace = self.trace.clone();
+        trace::span(trace.as_ref(), "readback", || self.read_back())
+    }
+
+    fn read_back(&mut self) -> Result<Picture> {
         let target = self
             .target
             .as_mut()
@@ -323,5 +374,7 @@ pub(crate) fn check_blending(device: &Device, format: TargetFormat) -> Result<()
     )))
 }
 
+#[cfg(test)]
+mod faults;
 #[cfg(test)]
 mod tests;

@@ -23,6 +23,7 @@ pub mod scene;
 pub mod settings;
 pub mod stats;
 pub mod stress;
+pub mod trace;
 pub mod types;
 #[cfg(feature = "view")]
 pub mod windowed;
@@ -36,13 +37,14 @@ pub use depth::DepthMap;
 pub use error::{Error, Result};
 pub use gpu::PipelineCache;
 pub use headless::{Headless, HeadlessDesc};
-pub use passes::SceneBuffers;
+pub use passes::{SceneBuffers, Staging};
 pub use picture::Picture;
 pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 pub use renderer::{DepthDesc, ExpectedDepthDesc, Renderer, RendererDesc};
 pub use scene::Gaussians;
 pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
-pub use stats::{Counts, FrameStats, PassTime, RasterChoice};
+pub use stats::{Counts, FrameStats, PassStatistics, PassTime, RasterChoice};
+pub use trace::Trace;
 #[cfg(feature = "view")]
 pub use windowed::Windowed;

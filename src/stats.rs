@@ -26,6 +26,21 @@ pub struct PassTime {
     pub ms: f64,
 }
 
+/// What one stage did, as the device has counted it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct PassStatistics {
+    /// The stage.
+    pub name: &'static str,
+    /// Compute shader invocations.
+    pub compute_invocations: u64,
+    /// Vertex shader invocations; mesh shaders have none.
+    pub vertex_invocations: u64,
+    /// Primitives that clipping has left.
+    pub primitives: u64,
+    /// Fragment shader invocations.
+    pub fragment_invocations: u64,
+}
+
 /// Which way of turning splats into pixels a frame took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct RasterChoice {
@@ -50,4 +65,7 @@ pub struct FrameStats {
     pub skipped: Vec<&'static str>,
     /// How splats became pixels, and why in that way.
     pub raster: RasterChoice,
+    /// What each stage did, where that was asked for and the device counts it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub statistics: Vec<PassStatistics>,
 }

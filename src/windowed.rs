@@ -79,6 +79,7 @@ impl Windowed {
             selector: desc.device.clone(),
             validation: desc.validation,
             application_name: "rara".into(),
+            statistics: false,
         };
         let window: Arc<dyn Window> = window;
         let (device, surface) = Surface::open(&open, window)?;

@@ -407,6 +407,72 @@ fn a_missing_barrier_is_seen() {
 }
 
 #[test]
+fn messages_name_the_pass_and_the_objects() {
+    let device = open();
+    let splats = on_device(&device, "splats", &[1; 64]);
+    let keys = on_device(&device, "keys", &[2; 64]);
+    record(&device, None, |recorder| {
+        recorder.pass("sort", |recorder| {
+            recorder.pass("digit", |recorder| {
+                let (raw, cmd) = (device.raw(), recorder.cmd());
+                let region = [vk::BufferCopy::default().size(256)];
+                // SAFETY: `cmd` is recording and the buffers outlive it; the missing barrier is the point.
+                unsafe {
+                    raw.cmd_fill_buffer(cmd, splats.handle(), 0, 256, 0);
+                    raw.cmd_copy_buffer(cmd, splats.handle(), keys.handle(), &region);
+                }
+            });
+        });
+    });
+    let messages = device.validation_messages();
+    let hazard = messages.iter().find(|text| text.contains("HAZARD"));
+    let hazard = hazard.expect("a hazard");
+    assert!(hazard.starts_with("in pass sort > digit: "), "{hazard}");
+    assert!(hazard.contains("splats"), "{hazard}");
+
+    // What a layer sends comes as it was sent.
+    // SAFETY: loader and library stay loaded, the instance is this test's, and what is pointed to outlives the calls.
+    unsafe {
+        let entry = ash::Entry::load().unwrap();
+        let raw_instance = device.instance().handle();
+        let instance = ash::Instance::load(entry.static_fn(), raw_instance);
+        let debug = ash::ext::debug_utils::Instance::new(&entry, &instance);
+        let labels = [vk::DebugUtilsLabelEXT::default().label_name(c"project")];
+        let objects = [vk::DebugUtilsObjectNameInfoEXT::default()
+            .object_handle(splats.handle())
+            .object_name(c"splats")];
+        let data = vk::DebugUtilsMessengerCallbackDataEXT::default()
+            .cmd_buf_labels(&labels)
+            .objects(&objects)
+            .message(c"only a test");
+        debug.submit_debug_utils_message(
+            vk::DebugUtilsMessageSeverityFlagsEXT::WARNING,
+            vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION,
+            &data,
+        );
+    }
+    assert_eq!(
+        device.validation_messages(),
+        ["in pass project: buffer splats: only a test"]
+    );
+}
+
+#[test]
+fn memory_is_told_by_name() {
+    clean(|device| {
+        let _one = buffer(device, "pairs", 1 << 20, Location::GpuOnly);
+        let _other = buffer(device, "pairs", 17 << 20, Location::GpuOnly);
+        let _small = buffer(device, "counts", 64, Location::Readback);
+        let told = device.memory_by_name();
+        let names: Vec<_> = told.iter().map(|of| of.name.as_str()).collect();
+        assert_eq!(names, ["pairs", "counts"]);
+        assert!(told[0].bytes >= 18 << 20, "{told:?}");
+        let sum: u64 = told.iter().map(|of| of.bytes).sum();
+        assert_eq!(sum, device.device_bytes());
+    });
+}
+
+#[test]
 #[should_panic(expected = "\"add\" was given 1 buffers and its shaders declare 2")]
 fn a_wrong_number_of_buffers_is_refused() {
     let device = open();

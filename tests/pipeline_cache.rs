@@ -18,6 +18,7 @@ fn run(pipeline_cache: PipelineCache) -> (Picture, u64) {
         validation: true,
         bindings: Some(Bindings::Address),
         pipeline_cache,
+        ..HeadlessDesc::default()
     };
     let mut headless = Headless::new(&desc).expect("a Vulkan device");
     headless.load(&scene).expect("uploads");

@@ -146,6 +146,7 @@ unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<RendererDesc> {
             other => return invalid(format!("desc->bindings {other} is no RaraBindings")),
         },
         timing: desc.timing != 0,
+        statistics: false, // needs a device that rara has opened itself
         reuse: desc.reuse != 0,
         frames_in_flight: desc.frames_in_flight,
     })

@@ -71,6 +71,11 @@ pub(super) fn combine(frames: &[FrameStats], how: Combine) -> FrameStats {
         wall_ms: value(&|frame| frame.wall_ms),
         skipped,
         raster: frames.last().map(|frame| frame.raster).unwrap_or_default(),
+        // The last one's: they are for looking into a frame, and no measure of many.
+        statistics: frames
+            .last()
+            .map(|f| f.statistics.clone())
+            .unwrap_or_default(),
     }
 }
 

@@ -20,6 +20,17 @@ impl Failure {
         Self::Usage(error.to_string())
     }
 
+    /// What is said before the failure itself, a line each: every message of the validation layer.
+    pub(super) fn details(&self) -> impl Iterator<Item = String> {
+        let messages = match self {
+            Self::Work(rara::Error::Validation(messages)) => messages.as_slice(),
+            _ => &[],
+        };
+        messages
+            .iter()
+            .map(|message| format!("validation: {}", folded(message)))
+    }
+
     pub(super) fn exit_code(&self) -> ExitCode {
         match self {
             Self::Usage(_) | Self::Help(_) => ExitCode::from(2),
@@ -48,6 +59,12 @@ impl fmt::Display for Failure {
         match self {
             Self::Usage(message) => write!(f, "rara: {message}"),
             Self::Help(help) => write!(f, "{help}"),
+            Self::Work(rara::Error::Validation(messages)) => write!(
+                f,
+                "rara: the validation layer had something to say, {} time(s), see above; this is a fault of rara or of \
+                 the driver: please report it",
+                messages.len()
+            ),
             Self::Work(error) => write!(f, "rara: {}", chain(error)),
         }
     }
@@ -59,11 +76,14 @@ fn one_line(message: &str) -> String {
     let parts = message
         .split("\n\n")
         .filter(|part| !part.starts_with("Usage:") && !part.starts_with("For more information"));
-    let lines: Vec<String> = parts
-        .map(|part| part.split_whitespace().collect::<Vec<_>>().join(" "))
-        .filter(|part| !part.is_empty())
-        .collect();
+    let lines: Vec<String> = parts.map(folded).filter(|part| !part.is_empty()).collect();
     lines.join("; ")
+}
+
+/// A text on one line.
+fn folded(text: impl AsRef<str>) -> String {
+    let words: Vec<_> = text.as_ref().split_whitespace().collect();
+    words.join(" ")
 }
 
 /// An error and its causes on one line; a cause that its effect already quotes is not repeated.
@@ -91,6 +111,22 @@ mod tests {
             one_line(message),
             "unexpected argument '--mod' found; tip: a similar argument exists: '--mode'"
         );
+    }
+
+    #[test]
+    fn each_validation_message_is_a_line_of_its_own() {
+        let messages = vec!["in pass sort: buffer splats:\n a hazard".into(), "b".into()];
+        let failure = Failure::from(rara::Error::Validation(messages));
+        let lines: Vec<_> = failure.details().collect();
+        assert_eq!(
+            lines,
+            [
+                "validation: in pass sort: buffer splats: a hazard",
+                "validation: b"
+            ]
+        );
+        assert!(failure.to_string().contains("2 time(s)"));
+        assert_eq!(Failure::Usage("no".into()).details().count(), 0);
     }
 
     #[test]

@@ -17,6 +17,7 @@ mod info;
 mod ink;
 mod output;
 mod precision;
+mod profile;
 mod render;
 mod report;
 mod scenes;
@@ -106,6 +107,7 @@ pub(crate) fn main() -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
+            failure.details().for_each(output::say);
             output::say(&failure);
             failure.exit_code()
         }

@@ -8,6 +8,7 @@ use super::camera::{CameraArgs, View, Views};
 use super::clip::ClipArgs;
 use super::failure::Failure;
 use super::output::{self, Progress, say};
+use super::profile::ProfileArgs;
 use super::report::{self, Report};
 use super::session::Session;
 use super::settings::{DeviceArgs, SettingsArgs};
@@ -47,6 +48,8 @@ pub(super) struct Render {
     settings: SettingsArgs,
     #[command(flatten)]
     device: DeviceArgs,
+    #[command(flatten)]
+    profile: ProfileArgs,
 }
 
 impl Render {
@@ -56,13 +59,15 @@ impl Render {
         let views = self.camera.meant()?;
         self.check_output(&views)?;
 
-        let scene = scenes::load(&self.scenes)?;
+        let profile = self.profile.begin()?;
+        let scene = profile.span("load", || scenes::load(&self.scenes))?;
         let views = views.of(&scene.gaussians)?;
         let mut session = Session::open(
-            &self.device.meant(),
+            &profile.of(self.device.meant()),
             &scene.gaussians,
             settings.precision.sh,
         )?;
+        profile.check(&session);
         let mut frames = Vec::new();
         let mut written = Vec::new();
         let mut progress = Progress::new("rendering");
@@ -71,11 +76,13 @@ impl Render {
             frames.push(session.frame(&view.camera, &clip, &settings, self.repeat)?);
             if let Some(pattern) = &self.output {
                 let path = numbered(pattern, view.number);
-                session.last_picture()?.save(&path)?;
+                let picture = session.last_picture()?;
+                profile.span("encode", || picture.save(&path))?;
                 written.push(path);
             }
         }
         drop(progress);
+        profile.end()?;
 
         let size = views
             .first()

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use rara::gpu::NamedBytes;
 use rara::{Counts, FrameStats};
 use serde::Serialize;
 
@@ -43,6 +44,8 @@ struct Memory {
     /// The scene's, a Gaussian.
     scene_bytes_per_gaussian: f64,
     peak_rss_bytes: u64,
+    /// The device's, by what it is for, the largest first.
+    purposes: Vec<NamedBytes>,
 }
 
 impl Report {
@@ -73,6 +76,7 @@ impl Report {
                 scene_bytes,
                 scene_bytes_per_gaussian: scene_bytes as f64 / scene.gaussians.len().max(1) as f64,
                 peak_rss_bytes: peak_rss_bytes(),
+                purposes: session.memory_by_name(),
             },
             frames: Vec::new(),
             mean: None,
@@ -133,6 +137,17 @@ impl fmt::Display for Report {
         }
         if !stats.skipped.is_empty() {
             write!(f, " (skipped: {})", stats.skipped.join(", "))?;
+        }
+        for pass in &stats.statistics {
+            write!(
+                f,
+                "\n  {:<9} {} compute, {} vertex and {} fragment invocations, {} primitives",
+                pass.name,
+                grouped(pass.compute_invocations),
+                grouped(pass.vertex_invocations),
+                grouped(pass.fragment_invocations),
+                grouped(pass.primitives)
+            )?;
         }
         writeln!(
             f,

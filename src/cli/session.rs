@@ -73,6 +73,16 @@ impl Session {
         self.headless.device().info().kind_name() == "cpu"
     }
 
+    /// Whether the device counts what the stages do.
+    pub(super) fn has_statistics(&self) -> bool {
+        self.headless.device().support().pipeline_statistics
+    }
+
+    /// Device memory by what it is for, the largest first.
+    pub(super) fn memory_by_name(&self) -> Vec<rara::gpu::NamedBytes> {
+        self.headless.device().memory_by_name()
+    }
+
     /// Device memory that the scene takes.
     pub(super) fn scene_bytes(&self) -> u64 {
         self.headless.scene_bytes()

@@ -196,12 +196,12 @@ impl DeviceArgs {
         HeadlessDesc {
             device: self.device.clone(),
             validation: self.validation,
-            bindings: None,
             pipeline_cache: if self.no_pipeline_cache {
                 PipelineCache::Off
             } else {
                 PipelineCache::User
             },
+            ..HeadlessDesc::default()
         }
     }
 }

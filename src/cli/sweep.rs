@@ -10,6 +10,7 @@ use super::camera::CameraArgs;
 use super::clip::ClipArgs;
 use super::failure::Failure;
 use super::output::{self, Progress, say};
+use super::profile::ProfileArgs;
 use super::report::{self, Report};
 use super::session::Session;
 use super::settings::{DeviceArgs, SettingsArgs};
@@ -57,6 +58,8 @@ pub(super) struct Sweep {
     settings: SettingsArgs,
     #[command(flatten)]
     device: DeviceArgs,
+    #[command(flatten)]
+    profile: ProfileArgs,
 }
 
 impl Sweep {
@@ -78,14 +81,16 @@ impl Sweep {
             output::make_folder(folder)?;
         }
 
-        let scene = scenes::load(&self.scenes)?;
+        let profile = self.profile.begin()?;
+        let scene = profile.span("load", || scenes::load(&self.scenes))?;
         let camera = views.of(&scene.gaussians)?.remove(0).camera;
         let range = extent_along(&scene.gaussians, normal);
         let mut session = Session::open(
-            &self.device.meant(),
+            &profile.of(self.device.meant()),
             &scene.gaussians,
             settings.precision.sh,
         )?;
+        profile.check(&session);
         let mut frames = Vec::new();
         let mut written = Vec::new();
         let mut progress = Progress::new("sweeping");
@@ -102,11 +107,13 @@ impl Sweep {
             });
             if let Some(folder) = &self.output {
                 let path = folder.join(format!("frame_{index:03}.png"));
-                session.last_picture()?.save(&path)?;
+                let picture = session.last_picture()?;
+                profile.span("encode", || picture.save(&path))?;
                 written.push(path);
             }
         }
         drop(progress);
+        profile.end()?;
 
         let size = (camera.width, camera.height);
         let report = Report::new(&session, &scene, size, self.settings.mode.name(), &frames);

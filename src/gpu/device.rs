@@ -8,10 +8,11 @@ use ash::{ext, khr, vk};
 use gpu_allocator::AllocationError;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, Allocator};
 
+use super::clock::Clock;
 use super::instance::Instance;
 use super::submit::OneOff;
 use super::validation::Messages;
-use super::{AdoptDesc, Buffer, BufferDesc, DeviceInfo, Image, ImageDesc, Support};
+use super::{AdoptDesc, Buffer, BufferDesc, Calibration, DeviceInfo, Image, ImageDesc, Support};
 use crate::Result;
 
 /// A device, shared by everything made from it; clones are the same device.
@@ -40,6 +41,15 @@ pub(super) struct Inner {
     pub(super) idle: Mutex<Vec<OneOff>>,
     /// `None` for a host's device, which is never destroyed here. Shared with a window's surface.
     owned: Option<Arc<Instance>>,
+}
+
+/// What a buffer or an image is for, and the device memory that it takes.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct NamedBytes {
+    /// Its name: what it is for.
+    pub name: String,
+    /// Its size.
+    pub bytes: u64,
 }
 
 impl Device {
@@ -93,6 +103,11 @@ impl Device {
     /// The ash device.
     pub fn raw(&self) -> &ash::Device {
         &self.inner.raw
+    }
+
+    /// The ash instance.
+    pub fn instance(&self) -> &ash::Instance {
+        &self.inner.instance
     }
 
     /// What optimally tiled images of a format can do.
@@ -157,6 +172,37 @@ impl Device {
         self.inner.allocated_at_most.load(Ordering::Relaxed)
     }
 
+    /// What live buffers and images take, by name, the largest first and with what alignment adds; those of one name are
+    /// added up.
+    pub fn memory_by_name(&self) -> Vec<NamedBytes> {
+        let allocator = self
+            .inner
+            .allocator
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let report = allocator
+            .as_ref()
+            .expect("taken only by drop")
+            .generate_report();
+        let mut sums: Vec<NamedBytes> = Vec::new();
+        for allocation in report.allocations {
+            match sums.iter_mut().find(|sum| sum.name == allocation.name) {
+                Some(sum) => sum.bytes += allocation.size,
+                None => sums.push(NamedBytes {
+                    name: allocation.name,
+                    bytes: allocation.size,
+                }),
+            }
+        }
+        sums.sort_by(|a, b| b.bytes.cmp(&a.bytes).then(a.name.cmp(&b.name)));
+        sums
+    }
+
+    /// What the device's clock shows now; `None` where that cannot be asked.
+    pub fn calibrate(&self) -> Option<Calibration> {
+        Clock::new(self, &self.inner.instance)?.read()
+    }
+
     /// Takes the validation layer's warnings and errors since the last call, from all threads. Empty without the
     /// layer, and for a host's device, whose messages go to the host.
     pub fn validation_messages(&self) -> Vec<String> {
@@ -173,6 +219,12 @@ impl Device {
         messages
             .map(|messages| messages.drain())
             .unwrap_or_default()
+    }
+
+    /// Whether the validation layer's messages come to us.
+    pub(super) fn validates(&self) -> bool {
+        let owned = self.inner.owned.as_ref();
+        owned.is_some_and(|instance| instance.validation.is_some())
     }
 
     fn messages(&self) -> Option<Arc<Messages>> {
@@ -197,9 +249,9 @@ impl Device {
     }
 
     /// Names an object of this device for debuggers and validation messages.
-    pub(crate) fn set_name<H: vk::Handle>(&self, object: H, name: &str) {
-        let Some(debug) = self.debug_utils() else {
-            return;
+    pub(crate) fn set_name<H: vk::Handle + Copy>(&self, object: H, name: &str) {
+        let Some(debug) = self.debug_utils().filter(|_| object.as_raw() != 0) else {
+            return; // a cache need not exist
         };
         let name = CString::new(name.replace('\0', "")).expect("no NUL is left");
         let info = vk::DebugUtilsObjectNameInfoEXT::default()

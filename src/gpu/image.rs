@@ -6,6 +6,7 @@ use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 
 use super::failure::failed;
 use super::memory::bytes;
+use super::recorder::{begin_label, end_label};
 use super::{Buffer, Device};
 use crate::{Error, Result};
 
@@ -164,6 +165,7 @@ impl Image {
             // Undefined forgets the old contents, which the clear would anyway.
             .old_layout(vk::ImageLayout::UNDEFINED)
             .new_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
+        begin_label(&self.device, cmd, &self.name);
         // SAFETY: the caller vouches for `cmd`; the view is the image's own and covers the render area.
         unsafe {
             barrier(&self.device, cmd, self.handle, to_draw);
@@ -189,6 +191,7 @@ impl Image {
             self.device.raw().cmd_end_rendering(cmd);
             barrier(&self.device, cmd, self.handle, to_copy);
         }
+        end_label(&self.device, cmd);
     }
 
     /// Copies the rendered picture, rows from the top without gaps, to the beginning of `target`. The barrier between
@@ -211,6 +214,7 @@ impl Image {
             .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
             .dst_stage_mask(vk::PipelineStageFlags2::HOST | vk::PipelineStageFlags2::ALL_TRANSFER)
             .dst_access_mask(vk::AccessFlags2::HOST_READ | vk::AccessFlags2::TRANSFER_READ)];
+        begin_label(&self.device, cmd, target.name());
         // SAFETY: the caller vouches for `cmd` and the image's layout.
         unsafe {
             let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
@@ -224,6 +228,7 @@ impl Image {
             let info = vk::DependencyInfo::default().memory_barriers(&visible);
             self.device.raw().cmd_pipeline_barrier2(cmd, &info);
         }
+        end_label(&self.device, cmd);
     }
 }
 

@@ -76,6 +76,7 @@ impl Layout {
         };
         if bindings == Bindings::Bound {
             this.set = this.create_set()?;
+            device.set_name(this.set, name);
         }
         let ranges = [vk::PushConstantRange::default()
             .stage_flags(stages)

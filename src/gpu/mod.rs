@@ -6,10 +6,13 @@
 
 mod access;
 mod attachments;
+mod clock;
 mod device;
 mod devices;
 mod draw;
 mod failure;
+#[cfg(test)]
+pub(crate) mod faults;
 mod image;
 #[cfg(feature = "view")]
 mod in_flight;
@@ -35,7 +38,8 @@ mod validation;
 
 pub use access::Access;
 pub use attachments::{Attachments, DepthAttachment, Target};
-pub use device::Device;
+pub use clock::Calibration;
+pub use device::{Device, NamedBytes};
 pub use devices::{DeviceInfo, list_devices};
 pub use draw::Drawer;
 pub use image::{Image, ImageDesc};
@@ -55,5 +59,5 @@ pub use shader::{BufferAccess, BufferUse, MAX_BUFFERS, MAX_PARAMS, Shader};
 pub(crate) use surface::{Surface, Window};
 #[cfg(feature = "view")]
 pub(crate) use swapchain::Swapchain;
-pub use timer::Timer;
+pub use timer::{PassSpan, Timer};
 pub use tracker::Tracker;

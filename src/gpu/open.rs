@@ -19,6 +19,8 @@ pub struct DeviceDesc {
     pub selector: Option<String>,
     /// Load the Khronos validation layer with synchronisation checks.
     pub validation: bool,
+    /// Enable pipeline statistics where the device has them.
+    pub statistics: bool,
     /// What drivers and capture tools are told.
     pub application_name: String,
 }
@@ -28,6 +30,7 @@ impl Default for DeviceDesc {
         Self {
             selector: None,
             validation: false,
+            statistics: false,
             application_name: "rara".into(),
         }
     }
@@ -74,7 +77,7 @@ impl Device {
     }
 
     /// Opens the one of the instance's devices that is meant, with extensions that all usable ones among them offer.
-    pub(super) fn open(
+    pub(crate) fn open(
         owned: Arc<Instance>,
         candidates: Vec<(vk::PhysicalDevice, DeviceInfo)>,
         desc: &DeviceDesc,
@@ -83,7 +86,8 @@ impl Device {
         let (physical, infos): (Vec<_>, Vec<_>) = candidates.into_iter().unzip();
         let chosen = devices::choose(&infos, desc.selector.as_deref())?;
         let (physical, info) = (physical[chosen], infos[chosen].clone());
-        let support = info.support.clone().map_err(Error::Device)?;
+        let mut support = info.support.clone().map_err(Error::Device)?;
+        support.pipeline_statistics &= desc.statistics;
 
         let family = support.queue_family;
         let queues = [vk::DeviceQueueCreateInfo::default()
@@ -93,10 +97,14 @@ impl Device {
             .extensions()
             .iter()
             .chain(needed)
+            .chain(&support.calibrated_timestamps)
             .map(|name| name.as_ptr())
             .collect();
         let mut features = support.features();
+        let core = vk::PhysicalDeviceFeatures::default()
+            .pipeline_statistics_query(support.pipeline_statistics);
         let create = vk::DeviceCreateInfo::default()
+            .enabled_features(&core)
             .queue_create_infos(&queues)
             .enabled_extension_names(&extensions);
         let create = features.chain(create);
@@ -126,7 +134,10 @@ impl Device {
                 raw.destroy_device(None);
             }
         })?;
-        Ok(Self::new(adopt, info, support, allocator, Some(owned)))
+        let device = Self::new(adopt, info, support, allocator, Some(owned));
+        device.set_name(pipeline_cache, "pipelines");
+        device.set_name(queue, "queue");
+        Ok(device)
     }
 
     /// Works with a host's device. The host keeps owning it: nothing of the description is ever destroyed here.
@@ -165,6 +176,9 @@ impl Device {
         }
         support.mesh_shader &= desc.mesh_shader;
         support.push_descriptor &= desc.push_descriptor;
+        // What nobody has said that it was enabled.
+        support.pipeline_statistics = false;
+        support.calibrated_timestamps = None;
         // SAFETY: as above.
         let info = unsafe { devices::describe(&desc.instance, desc.physical_device) };
         let allocator = allocator(&desc)?;

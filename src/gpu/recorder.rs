@@ -4,6 +4,7 @@ use std::ffi::CStr;
 
 use ash::vk;
 
+use super::validation;
 use super::{Access, Buffer, ComputePipeline, Device, MAX_BUFFERS, Timer, Tracker};
 use crate::limits::GROUP_COLUMNS;
 
@@ -105,6 +106,14 @@ impl<'a> Recorder<'a> {
             // SAFETY: as above.
             unsafe { timer.end(self.cmd, pass) };
         }
+        end_label(self.device, self.cmd);
+        result
+    }
+
+    /// Records `record` under a debug label, without timestamps: for what is no pass.
+    pub fn label<R>(&mut self, name: &str, record: impl FnOnce(&mut Self) -> R) -> R {
+        begin_label(self.device, self.cmd, name);
+        let result = record(self);
         end_label(self.device, self.cmd);
         result
     }
@@ -278,6 +287,33 @@ impl<'a> Recorder<'a> {
         part
     }
 
+    /// Copies from the beginning at `offset` of a buffer that is not ours, to the beginning of one that is.
+    ///
+    /// # Safety
+    ///
+    /// `source` must be this device's, hold `size` bytes there, be made to be copied from, and outlive the execution;
+    /// what writes it must be visible by then.
+    pub unsafe fn copy_from(
+        &mut self,
+        source: vk::Buffer,
+        offset: u64,
+        target: &Buffer,
+        size: u64,
+    ) {
+        target.check_range(0, size);
+        if size == 0 {
+            return;
+        }
+        self.before(&[(target.handle(), Access::TransferWrite)]);
+        let region = vk::BufferCopy::default().src_offset(offset).size(size);
+        // SAFETY: `begin`'s contract covers `cmd` and `target`, the caller vouches for `source`.
+        unsafe {
+            self.device
+                .raw()
+                .cmd_copy_buffer(self.cmd, source, target.handle(), &[region])
+        };
+    }
+
     /// Makes buffers visible to draws later in the command buffer, as storage, arguments and indices, so that they need
     /// no barrier inside a rendering scope.
     pub fn ready_to_draw(&mut self, buffers: &[&Buffer]) {
@@ -327,6 +363,9 @@ pub(super) fn begin_label(device: &Device, cmd: vk::CommandBuffer, name: &str) {
     let Some(debug) = device.debug_utils() else {
         return;
     };
+    if device.validates() {
+        validation::enter(name);
+    }
     // On the stack, as recording does not allocate; a longer name is cut.
     let mut text = [0_u8; 64];
     let length = name.len().min(text.len() - 1);
@@ -342,6 +381,9 @@ pub(super) fn end_label(device: &Device, cmd: vk::CommandBuffer) {
     if let Some(debug) = device.debug_utils() {
         // SAFETY: as in `begin_label`, which callers call first.
         unsafe { debug.cmd_end_debug_utils_label(cmd) };
+        if device.validates() {
+            validation::leave();
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use std::ffi::CStr;
 
 use ash::{ext, khr, vk};
 
+use super::failure::failed;
 use crate::{Error, Result};
 
 /// What a physical device that meets the requirements offers beyond them.
@@ -44,6 +45,11 @@ pub struct Support {
     pub max_mesh_group_count: u32,
     /// Pixels along a side of a 2D image.
     pub max_image_size: u32,
+    /// The feature `pipelineStatisticsQuery`. Used where rara opens the device and statistics are asked for.
+    pub pipeline_statistics: bool,
+    /// The extension by which timestamps can be set against the processor's clock, `VK_KHR_calibrated_timestamps` or its
+    /// forerunner. Used where rara opens the device.
+    pub calibrated_timestamps: Option<&'static CStr>,
     /// `VK_KHR_portability_subset`, which must then be enabled.
     pub portability_subset: bool,
 }
@@ -126,7 +132,7 @@ pub unsafe fn check(instance: &ash::Instance, physical: vk::PhysicalDevice) -> R
 
     // SAFETY: as above.
     let extensions = unsafe { instance.enumerate_device_extension_properties(physical) }
-        .map_err(Error::vulkan("vkEnumerateDeviceExtensionProperties"))?;
+        .map_err(failed("vkEnumerateDeviceExtensionProperties"))?;
     let has = |wanted: &CStr| {
         extensions
             .iter()
@@ -145,6 +151,7 @@ pub unsafe fn check(instance: &ash::Instance, physical: vk::PhysicalDevice) -> R
     }
     // SAFETY: as above; every struct in the chain is known to a device of this version and these extensions.
     unsafe { instance.get_physical_device_features2(physical, &mut features) };
+    let pipeline_statistics = features.features.pipeline_statistics_query == vk::TRUE;
     for (offered, feature) in [
         (v12.buffer_device_address, "bufferDeviceAddress"),
         (v13.synchronization2, "synchronization2"),
@@ -223,6 +230,13 @@ pub unsafe fn check(instance: &ash::Instance, physical: vk::PhysicalDevice) -> R
             0
         },
         max_image_size: limits.max_image_dimension2_d,
+        pipeline_statistics,
+        calibrated_timestamps: [
+            khr::calibrated_timestamps::NAME,
+            ext::calibrated_timestamps::NAME,
+        ]
+        .into_iter()
+        .find(|name| has(name)),
         portability_subset: has(khr::portability_subset::NAME),
     })
 }

@@ -44,7 +44,9 @@ impl OneOff {
         match made {
             Ok(fence) => {
                 this.fence = fence;
+                device.set_name(this.pool, "one-off");
                 device.set_name(this.cmd, "one-off");
+                device.set_name(this.fence, "one-off");
                 Ok(this)
             }
             Err(error) => {
@@ -73,6 +75,9 @@ impl OneOff {
         // SAFETY: the pool's last submission is over: a `OneOff` is taken from the idle ones.
         unsafe { raw.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty()) }
             .map_err(failed("vkResetCommandPool"))?;
+        // Here and not after the wait: whatever failed last time, it is unsignalled when it is submitted.
+        // SAFETY: as above, nothing uses the fence.
+        unsafe { raw.reset_fences(&[self.fence]) }.map_err(failed("vkResetFences"))?;
         // SAFETY: as above, the command buffer is initial.
         unsafe { raw.begin_command_buffer(self.cmd, &begin) }
             .map_err(failed("vkBeginCommandBuffer"))?;
@@ -101,10 +106,7 @@ impl OneOff {
             // SAFETY: as above; whatever this returns, nothing more can be done.
             let _ = unsafe { raw.device_wait_idle() };
         }
-        // SAFETY: it is signalled, or the device is lost, and nothing waits for it.
-        let reset = unsafe { raw.reset_fences(&[self.fence]) };
-        waited.map_err(failed("vkWaitForFences"))?;
-        reset.map_err(failed("vkResetFences"))
+        waited.map_err(failed("vkWaitForFences"))
     }
 }
 

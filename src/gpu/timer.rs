@@ -5,6 +5,7 @@ use ash::vk;
 use super::Device;
 use super::failure::failed;
 use crate::Result;
+use crate::stats::PassStatistics;
 
 /// Timestamps around the passes of one recording. Where the device has none, it does nothing and reads nothing.
 ///
@@ -19,6 +20,27 @@ pub struct Timer {
     names: Vec<&'static str>,
     /// Whether a recording has reset the pool and may write to it.
     ready: bool,
+    statistics: Option<Statistics>,
+}
+
+/// Pipeline statistics of the passes: pass `i` has query `i`.
+struct Statistics {
+    pool: vk::QueryPool,
+    /// The pass that counts; what nests in it is counted with it, as Vulkan has only one such query active at a time.
+    active: Option<u32>,
+    /// The passes that have counted.
+    passes: Vec<u32>,
+}
+
+/// When a pass began and ended, in ticks of the device's clock.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PassSpan {
+    /// The pass.
+    pub name: &'static str,
+    /// All earlier work was done.
+    pub begin: u64,
+    /// Its own work was done too.
+    pub end: u64,
 }
 
 impl Timer {
@@ -41,7 +63,28 @@ impl Timer {
             capacity,
             names,
             ready: false,
+            statistics: None,
         })
+    }
+
+    /// Counts what the passes do, too, where the device was opened for it.
+    pub fn with_statistics(mut self) -> Result<Self> {
+        if self.device.support().pipeline_statistics {
+            let info = vk::QueryPoolCreateInfo::default()
+                .query_type(vk::QueryType::PIPELINE_STATISTICS)
+                .pipeline_statistics(COUNTED)
+                .query_count(self.capacity.max(1));
+            // SAFETY: the device is alive, and its feature for such queries was enabled.
+            let pool = unsafe { self.device.raw().create_query_pool(&info, None) }
+                .map_err(failed("vkCreateQueryPool"))?;
+            self.device.set_name(pool, "statistics");
+            self.statistics = Some(Statistics {
+                pool,
+                active: None,
+                passes: Vec::with_capacity(self.capacity as usize),
+            });
+        }
+        Ok(self)
     }
 
     /// Forgets the last recording's passes and records the reset of the queries.
@@ -60,6 +103,16 @@ impl Timer {
                     .raw()
                     .cmd_reset_query_pool(cmd, self.pool, 0, 2 * self.capacity.max(1))
             };
+        }
+        if let Some(statistics) = &mut self.statistics {
+            statistics.active = None;
+            statistics.passes.clear();
+            let count = self.capacity.max(1);
+            // SAFETY: as above.
+            unsafe {
+                let raw = self.device.raw();
+                raw.cmd_reset_query_pool(cmd, statistics.pool, 0, count);
+            }
         }
     }
 
@@ -82,6 +135,16 @@ impl Timer {
         self.names.push(name);
         // SAFETY: the caller vouches for `cmd`.
         unsafe { self.write(cmd, 2 * pass) };
+        if let Some(statistics) = self.statistics.as_mut().filter(|s| s.active.is_none()) {
+            statistics.active = Some(pass);
+            statistics.passes.push(pass);
+            let flags = vk::QueryControlFlags::empty();
+            // SAFETY: as above; no other query of this pool is active.
+            unsafe {
+                let raw = self.device.raw();
+                raw.cmd_begin_query(cmd, statistics.pool, pass, flags);
+            }
+        }
         pass
     }
 
@@ -91,6 +154,11 @@ impl Timer {
     ///
     /// As for [`Timer::begin`], once for each pass.
     pub unsafe fn end(&mut self, cmd: vk::CommandBuffer, pass: u32) {
+        if let Some(statistics) = self.statistics.as_mut().filter(|s| s.active == Some(pass)) {
+            statistics.active = None;
+            // SAFETY: the caller vouches for `cmd`; the query was begun in the same scope.
+            unsafe { self.device.raw().cmd_end_query(cmd, statistics.pool, pass) };
+        }
         // SAFETY: the caller vouches for `cmd`.
         unsafe { self.write(cmd, 2 * pass + 1) };
     }
@@ -100,6 +168,21 @@ impl Timer {
     /// runs, the queries still hold what an earlier recording left. Hosts with several frames in flight have a timer
     /// for each.
     pub fn read(&self) -> Option<Vec<(&'static str, f64)>> {
+        let support = self.device.support();
+        let mut sums: Vec<(&'static str, f64)> = Vec::with_capacity(self.names.len());
+        for span in self.spans()? {
+            let ticks = elapsed(span.begin, span.end, support.timestamp_bits);
+            let time = ticks as f64 * f64::from(support.timestamp_period) * 1e-6;
+            match sums.iter_mut().find(|(known, _)| *known == span.name) {
+                Some((_, sum)) => *sum += time,
+                None => sums.push((span.name, time)),
+            }
+        }
+        Some(sums)
+    }
+
+    /// When each pass began and ended, in the order they began; `None` as for [`read`](Self::read).
+    pub fn spans(&self) -> Option<Vec<PassSpan>> {
         if self.pool == vk::QueryPool::null() || self.names.is_empty() {
             return None;
         }
@@ -115,20 +198,49 @@ impl Timer {
             )
         };
         read.ok()?;
-        let support = self.device.support();
-        let times = ticks.chunks_exact(2).map(|pair| {
-            elapsed(pair[0], pair[1], support.timestamp_bits) as f64
-                * f64::from(support.timestamp_period)
-                * 1e-6
-        });
-        let mut sums: Vec<(&'static str, f64)> = Vec::with_capacity(self.names.len());
-        for (name, time) in self.names.iter().zip(times) {
-            match sums.iter_mut().find(|(known, _)| known == name) {
-                Some((_, sum)) => *sum += time,
-                None => sums.push((name, time)),
+        let pairs = self.names.iter().zip(ticks.chunks_exact(2));
+        let span = |(name, pair): (&&'static str, &[u64])| PassSpan {
+            name,
+            begin: pair[0],
+            end: pair[1],
+        };
+        Some(pairs.map(span).collect())
+    }
+
+    /// What each pass did; passes of one name are added up. Empty without statistics, else as for [`read`](Self::read).
+    pub fn statistics(&self) -> Vec<PassStatistics> {
+        let mut sums: Vec<PassStatistics> = Vec::new();
+        let Some(statistics) = &self.statistics else {
+            return sums;
+        };
+        for &pass in &statistics.passes {
+            let mut counts = [[0_u64; 4]];
+            let flags = vk::QueryResultFlags::TYPE_64;
+            // SAFETY: the pool is alive, and a query of it has as many 64-bit results.
+            let read = unsafe {
+                let raw = self.device.raw();
+                raw.get_query_pool_results(statistics.pool, pass, &mut counts, flags)
+            };
+            if read.is_err() {
+                return Vec::new();
             }
+            let [vertices, primitives, fragments, invocations] = counts[0];
+            let name = self.names[pass as usize];
+            let at = sums.iter().position(|sum| sum.name == name);
+            let at = at.unwrap_or_else(|| {
+                sums.push(PassStatistics {
+                    name,
+                    ..PassStatistics::default()
+                });
+                sums.len() - 1
+            });
+            let sum = &mut sums[at];
+            sum.vertex_invocations += vertices;
+            sum.primitives += primitives;
+            sum.fragment_invocations += fragments;
+            sum.compute_invocations += invocations;
         }
-        Some(sums)
+        sums
     }
 
     /// # Safety
@@ -147,6 +259,14 @@ impl Timer {
     }
 }
 
+/// In the order of their bits, which is that of the results.
+const COUNTED: vk::QueryPipelineStatisticFlags = vk::QueryPipelineStatisticFlags::from_raw(
+    vk::QueryPipelineStatisticFlags::VERTEX_SHADER_INVOCATIONS.as_raw()
+        | vk::QueryPipelineStatisticFlags::CLIPPING_PRIMITIVES.as_raw()
+        | vk::QueryPipelineStatisticFlags::FRAGMENT_SHADER_INVOCATIONS.as_raw()
+        | vk::QueryPipelineStatisticFlags::COMPUTE_SHADER_INVOCATIONS.as_raw(),
+);
+
 /// Ticks between two timestamps of `bits` valid bits, which may wrap around once.
 fn elapsed(begin: u64, end: u64, bits: u32) -> u64 {
     end.wrapping_sub(begin) & (u64::MAX >> (64 - bits.clamp(1, 64)))
@@ -156,6 +276,10 @@ impl Drop for Timer {
     fn drop(&mut self) {
         // SAFETY: whoever submitted the recording waited for it; a null pool is ignored.
         unsafe { self.device.raw().destroy_query_pool(self.pool, None) };
+        if let Some(statistics) = &self.statistics {
+            // SAFETY: as above.
+            unsafe { self.device.raw().destroy_query_pool(statistics.pool, None) };
+        }
     }
 }
 

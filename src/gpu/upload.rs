@@ -88,10 +88,13 @@ impl Device {
         self.submit_and_wait(|cmd| {
             // SAFETY: `cmd` is recording for this device's queue, and both buffers outlive the wait.
             let mut recorder = unsafe { Recorder::begin(self, cmd, None) };
-            recorder.copy(source, target, &[region]);
-            if target.location() == Location::Readback {
-                recorder.ready_for_host(&[target]);
-            }
+            let reads = target.location() == Location::Readback;
+            recorder.label(if reads { "download" } else { "upload" }, |recorder| {
+                recorder.copy(source, target, &[region]);
+                if reads {
+                    recorder.ready_for_host(&[target]);
+                }
+            });
             Ok(())
         })
     }

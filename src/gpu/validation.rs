@@ -1,5 +1,6 @@
 //! The Khronos validation layer with synchronisation checks, and the messages it has sent.
 
+use std::cell::RefCell;
 use std::ffi::{CStr, c_void};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -118,16 +119,117 @@ unsafe extern "system" fn collect(
     data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
     user: *mut c_void,
 ) -> vk::Bool32 {
-    // SAFETY: Vulkan passes a valid struct for the length of the call.
-    let text = unsafe { (*data).message_as_c_str() }
-        .unwrap_or(c"(no text)")
-        .to_string_lossy();
+    // SAFETY: Vulkan passes a valid struct for the length of the call, and whatever it points to.
+    let text = PASSES.with_borrow(|passes| unsafe { describe(&*data, passes) });
     if kind == vk::DebugUtilsMessageTypeFlagsEXT::GENERAL {
         log::debug!("Vulkan loader, {severity:?}: {text}");
     } else {
         log::error!("validation, {severity:?}: {text}");
         // SAFETY: `user` is the `Messages` that `messenger_info` was given, kept alive beside the messenger.
-        unsafe { &*user.cast::<Messages>() }.push(text.into_owned());
+        unsafe { &*user.cast::<Messages>() }.push(text);
     }
     vk::FALSE
+}
+
+thread_local! {
+    /// The labels that are open where this thread records. The layer speaks on the recording thread, and not all of its
+    /// messages (in 1.3.239 none about synchronisation) come with the command buffer's labels.
+    static PASSES: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
+}
+
+/// A label was opened on this thread, under validation.
+pub(super) fn enter(pass: &str) {
+    PASSES.with_borrow_mut(|passes| passes.push(pass.to_owned()));
+}
+
+/// The last one was closed.
+pub(super) fn leave() {
+    PASSES.with_borrow_mut(|passes| passes.pop());
+}
+
+/// The message behind the pass that it is about, the outermost label first, and the objects that have a name. `passes` are
+/// those of this thread, for a message that comes without labels.
+///
+/// # Safety
+///
+/// All that `data` points to must be valid, as it is in the messenger's callback.
+unsafe fn describe(data: &vk::DebugUtilsMessengerCallbackDataEXT<'_>, passes: &[String]) -> String {
+    let text = |text: Option<&CStr>| text.map(|text| text.to_string_lossy().into_owned());
+    // SAFETY: the caller vouches for the struct's pointers and counts; null arrays have a count of zero.
+    let (message, labels, objects) = unsafe {
+        let labels = slice(data.p_cmd_buf_labels, data.cmd_buf_label_count);
+        let objects = slice(data.p_objects, data.object_count);
+        let label = |label: &vk::DebugUtilsLabelEXT<'_>| text(label.label_name_as_c_str());
+        let named = |object: &vk::DebugUtilsObjectNameInfoEXT<'_>| {
+            let name = text(object.object_name_as_c_str()).filter(|name| !name.is_empty())?;
+            let kind = format!("{:?}", object.object_type).to_lowercase();
+            Some(format!("{} {name}", kind.replace('_', " ")))
+        };
+        (
+            text(data.message_as_c_str()).unwrap_or("(no text)".into()),
+            labels.iter().rev().filter_map(label).collect::<Vec<_>>(),
+            objects.iter().filter_map(named).collect::<Vec<_>>(),
+        )
+    };
+    let labels = if labels.is_empty() { passes } else { &labels };
+    let pass = (!labels.is_empty()).then(|| format!("in pass {}", labels.join(" > ")));
+    let objects = (!objects.is_empty()).then(|| objects.join(", "));
+    let parts = [pass, objects, Some(message)].into_iter().flatten();
+    parts.collect::<Vec<_>>().join(": ")
+}
+
+/// # Safety
+///
+/// `count` elements lie at `first`, unless it is null.
+unsafe fn slice<'a, T>(first: *const T, count: u32) -> &'a [T] {
+    if first.is_null() {
+        return &[];
+    }
+    // SAFETY: the caller vouches for it.
+    unsafe { std::slice::from_raw_parts(first, count as usize) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_say_where_and_about_what() {
+        // The innermost label comes first.
+        let labels =
+            [c"step", c"sort"].map(|name| vk::DebugUtilsLabelEXT::default().label_name(name));
+        let object = |kind, name| {
+            let mut object = vk::DebugUtilsObjectNameInfoEXT::default().object_name(name);
+            object.object_type = kind;
+            object
+        };
+        let mut nameless = object(vk::ObjectType::DEVICE, c"");
+        nameless.p_object_name = std::ptr::null();
+        let objects = [
+            object(vk::ObjectType::COMMAND_BUFFER, c"one-off"),
+            object(vk::ObjectType::BUFFER, c"splats"),
+            nameless,
+        ];
+        let data = vk::DebugUtilsMessengerCallbackDataEXT::default().message(c"a hazard");
+        let told = |data: vk::DebugUtilsMessengerCallbackDataEXT<'_>| {
+            // SAFETY: the struct was filled by its own setters.
+            unsafe { describe(&data, &[]) }
+        };
+        assert_eq!(told(data), "a hazard");
+        // SAFETY: as above.
+        let recording = unsafe { describe(&data, &["tiles".into()]) };
+        assert_eq!(recording, "in pass tiles: a hazard");
+        assert_eq!(
+            told(data.cmd_buf_labels(&labels)),
+            "in pass sort > step: a hazard"
+        );
+        assert_eq!(
+            told(data.cmd_buf_labels(&labels[1..]).objects(&objects)),
+            "in pass sort: command buffer one-off, buffer splats: a hazard"
+        );
+        assert_eq!(
+            told(vk::DebugUtilsMessengerCallbackDataEXT::default()),
+            "(no text)"
+        );
+    }
 }

@@ -22,7 +22,9 @@ pub(crate) fn record(
     readback: &Buffer,
 ) {
     if plan.work != Work::Draw {
-        recorder.update(&b.frame, 0, bytemuck::bytes_of(&plan.data));
+        recorder.label("frame", |r| {
+            r.update(&b.frame, 0, bytemuck::bytes_of(&plan.data));
+        });
     }
     match plan.work {
         Work::Whole { clip } => {
@@ -58,12 +60,11 @@ pub(crate) fn record(
         recorder.ready_to_draw(&[&d.depths, &d.draw]);
     }
 
-    recorder.copy(
-        &b.counts,
-        readback,
-        &[vk::BufferCopy::default().size(b.counts.size())],
-    );
-    recorder.ready_for_host(&[readback]);
+    recorder.label("counts", |r| {
+        let all = ash::vk::BufferCopy::default().size(b.counts.size());
+        r.copy(&b.counts, readback, &[all]);
+        r.ready_for_host(&[readback]);
+    });
     let order = &b.order[plan.sorted()];
     recorder.ready_to_draw(&[&b.frame, &b.counts, &b.splats, order, &b.cuts]);
 }

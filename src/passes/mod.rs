@@ -31,6 +31,6 @@ pub(crate) use frame::record;
 pub(crate) use occluders::Occluders;
 pub(crate) use pair_room::PairRoom;
 pub(crate) use plan::{Plan, SceneFacts};
-pub use scene_buffers::SceneBuffers;
+pub use scene_buffers::{SceneBuffers, Staging};
 pub(crate) use stages::Stages;
 pub(crate) use work::{Kept, Work};

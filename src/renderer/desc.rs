@@ -26,6 +26,8 @@ pub struct RendererDesc {
     pub bindings: Bindings,
     /// Whether to take timestamps around the stages.
     pub timing: bool,
+    /// Whether to count what the stages do, too, where the device was opened for it; only with `timing`.
+    pub statistics: bool,
     /// Whether a frame takes over what the one before has computed and this one would compute again, to the same bytes.
     /// The host then submits every frame that it prepares, in order, or calls
     /// [`Renderer::forget`](super::Renderer::forget).
@@ -95,6 +97,7 @@ impl RendererDesc {
             target: Target::DYNAMIC,
             bindings: Bindings::Address,
             timing: false,
+            statistics: false,
             reuse: false,
             frames_in_flight: 1,
         }

@@ -101,16 +101,20 @@ struct Slot {
 }
 
 impl Slot {
-    fn new(device: &Device, timing: bool) -> Result<Self> {
+    fn new(device: &Device, timing: bool, statistics: bool) -> Result<Self> {
         let mut counts = device.create_buffer(&BufferDesc {
             name: "counts_readback",
             size: size_of::<FrameCounts>() as u64,
             location: Location::Readback,
         })?;
+        // The stages of a frame, with room for several draws.
+        let timer = || match (Timer::new(device, 16), statistics) {
+            (Ok(timer), true) => timer.with_statistics(),
+            (timer, _) => timer,
+        };
         counts.mapped_mut().fill(0); // what a frame that is never submitted would tell
         Ok(Self {
-            // The stages of a frame, with room for several draws.
-            timer: timing.then(|| Timer::new(device, 16)).transpose()?,
+            timer: timing.then(timer).transpose()?,
             counts,
             empty: true,
         })
@@ -141,7 +145,8 @@ impl Renderer {
             "a renderer needs at least one frame in flight"
         );
         desc.check(device)?;
-        let slots = (0..desc.frames_in_flight).map(|_| Slot::new(device, desc.timing));
+        let slots =
+            (0..desc.frames_in_flight).map(|_| Slot::new(device, desc.timing, desc.statistics));
         Ok(Self {
             device: device.clone(),
             desc,

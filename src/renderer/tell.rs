@@ -1,10 +1,10 @@
 //! What a renderer tells about its frames: counts, times, and what was left out.
 
 use super::{Renderer, Slot};
-use crate::gpu::Timer;
+use crate::gpu::{PassSpan, Timer};
 use crate::passes::Plan;
 use crate::settings::Raster;
-use crate::stats::{Counts, PassTime, RasterChoice};
+use crate::stats::{Counts, PassStatistics, PassTime, RasterChoice};
 use crate::types::FrameCounts;
 
 impl Renderer {
@@ -71,15 +71,27 @@ impl Renderer {
 
     /// GPU time of each stage of the same frame as [`counts`](Self::counts); empty without timing.
     pub fn pass_times(&self) -> Vec<PassTime> {
-        let timer = self
-            .oldest()
-            .filter(|slot| !slot.empty)
-            .and_then(|slot| slot.timer.as_ref());
-        let times = timer.and_then(Timer::read).unwrap_or_default();
+        let times = self.timer().and_then(Timer::read).unwrap_or_default();
         times
             .into_iter()
             .map(|(name, ms)| PassTime { name, ms })
             .collect()
+    }
+
+    /// When each of these stages began and ended, in ticks of the device's clock.
+    pub fn pass_spans(&self) -> Vec<PassSpan> {
+        self.timer().and_then(Timer::spans).unwrap_or_default()
+    }
+
+    /// What each of these stages did; empty without statistics.
+    pub fn pass_statistics(&self) -> Vec<PassStatistics> {
+        self.timer().map(Timer::statistics).unwrap_or_default()
+    }
+
+    fn timer(&self) -> Option<&Timer> {
+        self.oldest()
+            .filter(|slot| !slot.empty)
+            .and_then(|slot| slot.timer.as_ref())
     }
 
     /// The slot of the frame before which the host waits next: the one that the next frame will take over.

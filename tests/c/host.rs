@@ -85,6 +85,7 @@ fn truth(scene: &Gaussians) -> (Vec<u8>, String) {
         validation: true,
         bindings: None,
         pipeline_cache: PipelineCache::Off,
+        ..HeadlessDesc::default()
     })
     .expect("a Vulkan device and the validation layer (tools/test installs both)");
     let bounds = Bounds::of(scene);

@@ -1,5 +1,6 @@
 //! The `rara` command as people and scripts meet it: texts, exit statuses, documents. Nothing here is timed.
 
+mod profile;
 mod refusals;
 mod work;
 

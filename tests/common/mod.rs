@@ -40,6 +40,7 @@ pub fn headless_by(bindings: Bindings) -> Headless {
         validation: true,
         bindings: Some(bindings),
         pipeline_cache: PipelineCache::Off,
+        ..HeadlessDesc::default()
     };
     Headless::new(&desc)
         .expect("a Vulkan device and the validation layer (tools/test installs both)")

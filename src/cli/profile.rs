@@ -1,0 +1,74 @@
+//! The flags that look into frames: a trace, and what the stages have done.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use rara::{HeadlessDesc, Trace, trace};
+
+use super::failure::Failure;
+use super::output;
+use super::session::Session;
+
+/// What to note beside the pictures.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Profiling")]
+pub(super) struct ProfileArgs {
+    /// Write what took how long on processor and device, for ui.perfetto.dev or chrome://tracing
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
+    /// Count what each stage does, where the device can: "statistics" in the JSON, a line each otherwise
+    #[arg(long)]
+    statistics: bool,
+}
+
+/// A command's profile: the trace that it fills, if one is wanted.
+pub(super) struct Profile {
+    file: Option<PathBuf>,
+    trace: Option<Trace>,
+    statistics: bool,
+}
+
+impl ProfileArgs {
+    /// Begins the trace; fails where its file could not be written.
+    pub(super) fn begin(&self) -> Result<Profile, Failure> {
+        if let Some(file) = &self.trace {
+            output::check_file(file)?;
+        }
+        Ok(Profile {
+            trace: self.trace.as_ref().map(|_| Trace::new()),
+            file: self.trace.clone(),
+            statistics: self.statistics,
+        })
+    }
+}
+
+impl Profile {
+    /// What to open, with what the profile wants of it.
+    pub(super) fn of(&self, desc: HeadlessDesc) -> HeadlessDesc {
+        HeadlessDesc {
+            trace: self.trace.clone(),
+            statistics: self.statistics,
+            ..desc
+        }
+    }
+
+    /// Notes how long `act` takes.
+    pub(super) fn span<R>(&self, name: &'static str, act: impl FnOnce() -> R) -> R {
+        trace::span(self.trace.as_ref(), name, act)
+    }
+
+    /// Says it where the device has no statistics.
+    pub(super) fn check(&self, session: &Session) {
+        if self.statistics && !session.has_statistics() {
+            output::say("note: this device counts nothing (no pipelineStatisticsQuery)");
+        }
+    }
+
+    /// Writes the trace.
+    pub(super) fn end(self) -> rara::Result<()> {
+        match (self.file, self.trace) {
+            (Some(file), Some(trace)) => output::text(&file, &trace.json()),
+            _ => Ok(()),
+        }
+    }
+}

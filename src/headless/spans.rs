@@ -1,0 +1,71 @@
+//! A frame's spans on the device, set against the processor's clock.
+
+use std::time::Instant;
+
+use serde_json::json;
+
+use crate::gpu::{Device, PassSpan};
+use crate::renderer::Renderer;
+use crate::trace::Trace;
+
+/// Adds the stages of the frame that has just been waited for. Where the device's clock cannot be read, the first stage
+/// begins with the submission, and the trace says so.
+pub(super) fn add(trace: &Trace, device: &Device, renderer: &Renderer, submitted: Instant) {
+    let info = device.info();
+    trace.note("device", info.name.as_str());
+    trace.note("driver", info.driver.as_str());
+    let spans = renderer.pass_spans();
+    let Some(first) = spans.first() else {
+        trace.note("gpu_clock", "none: the device has no timestamps");
+        return;
+    };
+    let (tick, at) = match device.calibrate() {
+        Some(reading) => {
+            trace.note(
+                "gpu_clock",
+                "calibrated: the device's clock was read beside the processor's after each frame",
+            );
+            trace.note(
+                "gpu_clock_within_us",
+                reading.within.as_nanos() as f64 * 1e-3,
+            );
+            (reading.tick, reading.at)
+        }
+        None => {
+            let how = "aligned: a frame's first stage is shown where the frame was submitted";
+            trace.note("gpu_clock", how);
+            (first.begin, submitted)
+        }
+    };
+    let support = device.support();
+    let place = |then: u64| {
+        let ticks = signed(then, tick, support.timestamp_bits);
+        trace.at(at) + ticks as f64 * f64::from(support.timestamp_period) * 1e-3
+    };
+    let counted = renderer.pass_statistics();
+    for PassSpan { name, begin, end } in spans {
+        let about = counted.iter().find(|pass| pass.name == name);
+        let about = about.map_or(json!({}), |pass| json!(pass));
+        let begin = place(begin);
+        trace.gpu(name, [begin, place(end).max(begin)], about);
+    }
+}
+
+/// From one timestamp of so many bits to another, which may lie before it.
+fn signed(to: u64, from: u64, bits: u32) -> i64 {
+    let unused = 64 - bits.clamp(1, 64);
+    (to.wrapping_sub(from) << unused).cast_signed() >> unused
+}
+
+#[cfg(test)]
+mod tests {
+    use super::signed;
+
+    #[test]
+    fn timestamps_lie_before_and_behind() {
+        assert_eq!(signed(7, 10, 64), -3);
+        assert_eq!(signed(10, 7, 36), 3);
+        assert_eq!(signed((1 << 36) - 1, 1, 36), -2);
+        assert_eq!(signed(1, (1 << 36) - 1, 36), 2);
+    }
+}

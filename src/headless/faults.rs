@@ -42,9 +42,16 @@ fn on(device: &Device) -> Result<Headless> {
     Headless::on(device.clone(), &desc)
 }
 
+/// Slow drivers get fewer places: what is tested is not theirs.
+fn is_slow() -> bool {
+    let scale = std::env::var("RARA_TEST_SCALE").ok();
+    scale.is_some_and(|scale| scale.parse().is_ok_and(|scale: f64| scale < 1.0))
+}
+
 #[test]
 fn memory_may_run_out_anywhere() {
-    run_out(|after| 9 * after + 2);
+    let step = if is_slow() { 1000 } else { 2 };
+    run_out(|after| 9 * after + step);
 }
 
 #[test]
@@ -137,6 +144,7 @@ fn fails(device: &Device, call: &'static &'static str, after: usize) -> bool {
 fn a_device_may_be_lost_anywhere() {
     let mut places = 0;
     let mut after = 0;
+    let step = if is_slow() { 8 } else { 1 };
     loop {
         // A lost device is given up with all that was made from it.
         let device = faults::device(None).expect("a device");
@@ -168,9 +176,9 @@ fn a_device_may_be_lost_anywhere() {
         faults::set_among(&[], None);
         assert_eq!(device.close(), Vec::<String>::new(), "{call}");
         places += 1;
-        after += 1;
+        after += step;
     }
-    assert!(places > 10, "{places}");
+    assert!(places * step > 10, "{places}");
 }
 
 #[test]

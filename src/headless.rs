@@ -40,6 +40,17 @@ pub struct HeadlessDesc {
     pub statistics: bool,
 }
 
+impl HeadlessDesc {
+    /// How buffers are reached.
+    pub(crate) fn chosen_bindings(&self) -> Bindings {
+        self.bindings.unwrap_or(if self.validation {
+            Bindings::Bound
+        } else {
+            Bindings::Address
+        })
+    }
+}
+
 /// A renderer that owns its device and draws into an offscreen picture, of 32-bit floats unless the settings say
 /// otherwise.
 #[derive(Debug)]
@@ -83,15 +94,10 @@ impl Headless {
     fn on(device: Device, desc: &HeadlessDesc) -> Result<Self> {
         let pipelines = PipelineFile::open(&desc.pipeline_cache, &device);
         let kept_pipeline_bytes = pipelines.as_ref().map_or(0, PipelineFile::held_bytes);
-        let bindings = desc.bindings.unwrap_or(if desc.validation {
-            Bindings::Bound
-        } else {
-            Bindings::Address
-        });
         let renderer = Renderer::new(
             &device,
             RendererDesc {
-                bindings,
+                bindings: desc.chosen_bindings(),
                 timing: true,
                 statistics: desc.statistics,
                 reuse: true,

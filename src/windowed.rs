@@ -11,8 +11,8 @@ use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::gpu::{
-    Bindings, BufferDesc, Device, DeviceDesc, Drawer, FRAMES, ImageDesc, InFlight, Location,
-    PipelineFile, Surface, Swapchain, Window,
+    BufferDesc, Device, DeviceDesc, Drawer, FRAMES, ImageDesc, InFlight, Location, PipelineFile,
+    Surface, Swapchain, Window,
 };
 use crate::headless::{HeadlessDesc, check_blending};
 use crate::passes::SceneBuffers;
@@ -85,15 +85,10 @@ impl Windowed {
         let (device, surface) = Surface::open(&open, window)?;
         let swapchain = Swapchain::new(&device, surface)?;
         let pipelines = PipelineFile::open(&desc.pipeline_cache, &device);
-        let bindings = desc.bindings.unwrap_or(if desc.validation {
-            Bindings::Bound
-        } else {
-            Bindings::Address
-        });
         let renderer = Renderer::new(
             &device,
             RendererDesc {
-                bindings,
+                bindings: desc.chosen_bindings(),
                 timing: true,
                 reuse: true,
                 frames_in_flight: FRAMES as u32,

@@ -19,7 +19,7 @@ use super::classify::UnitPlane;
 use super::footprint::{Footprint, determinant, scaled};
 use super::real::{Real, Vec3};
 use super::view::View;
-use super::{classify, compact, cutoff, project, sort, splat};
+use super::{classify, splat};
 use crate::{Camera, Clip, ClipOp, Gaussians, Mode, Settings};
 
 /// A linear function of u given a pixel: `at + slope . delta`, over its deviation.
@@ -171,15 +171,7 @@ pub fn expected<T: Real>(
 ) -> Vec<[f64; 2]> {
     let view = View::<T>::new(camera);
     let sides = classify::classify(scene, &view, clip, settings);
-    let drawn = compact::compact(&sides);
-    let splats = drawn.iter().filter_map(|&index| {
-        let index = index as usize;
-        let mut splat = project::project(scene, index, &view, settings)?;
-        splat.cut = cutoff::cutoff(scene, index, &splat.footprint, &view, clip, settings);
-        Some(splat)
-    });
-    let mut splats: Vec<_> = splats.collect();
-    sort::sort(&mut splats);
+    let splats = super::in_order(scene, &view, &sides, clip, settings);
     let [width, height] = view.size;
     let mut pixels = vec![[0.0; 2]; (width * height) as usize];
     for splat in &splats {

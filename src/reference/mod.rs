@@ -49,24 +49,34 @@ pub fn render<T: Real>(
     let view = View::<T>::new(camera);
     // What the clip does to each Gaussian.
     let sides = classify::classify(scene, &view, clip, settings);
-    // Those that are drawn.
-    let drawn = compact::compact(&sides);
-    // Their footprints and colours, and how the cut ones vary over their pixels.
-    let splats = drawn.iter().filter_map(|&index| {
-        let index = index as usize;
-        let mut splat = project::project(scene, index, &view, settings)?;
-        splat.cut = cutoff::cutoff(scene, index, &splat.footprint, &view, clip, settings);
-        Some(splat)
-    });
-    let mut splats: Vec<_> = splats.collect();
-    // Front to back.
-    sort::sort(&mut splats);
+    let splats = in_order(scene, &view, &sides, clip, settings);
     // Blended.
     let picture = splat::splat(&splats, &view, settings);
     Frame {
         picture,
         counts: counts(&sides),
     }
+}
+
+/// The splats that are drawn, front to back.
+fn in_order<T: Real>(
+    scene: &Gaussians,
+    view: &View<T>,
+    sides: &[Side],
+    clip: &Clip,
+    settings: &Settings,
+) -> Vec<project::Splat<T>> {
+    let drawn = compact::compact(sides);
+    // Their footprints and colours, and how the cut ones vary over their pixels.
+    let splats = drawn.iter().filter_map(|&index| {
+        let index = index as usize;
+        let mut splat = project::project(scene, index, view, settings)?;
+        splat.cut = cutoff::cutoff(scene, index, &splat.footprint, view, clip, settings);
+        Some(splat)
+    });
+    let mut splats: Vec<_> = splats.collect();
+    sort::sort(&mut splats);
+    splats
 }
 
 /// How many Gaussians are of which class.

@@ -2,19 +2,11 @@
 // which also says where the formulas come from.
 #ifndef RARA_MEAN_DEPTH
 #define RARA_MEAN_DEPTH
+#include "tail.glsl"
 #include "types.glsl"
 
 float normal_density(float z) {
     return 0.39894228 * exp(-0.5 * z * z);
-}
-
-// Phi with a relative error of 2e-5 in its lower tail, for shares that are divided by.
-float tail_phi(float z) {
-    float x = min(abs(z), 8.0);
-    float t = 1.0 / (1.0 + 0.37 * x);
-    float series = t * (0.14672541 + t * (0.15906193 + t * (0.0711053 + t * (0.21612205 - 0.09302393 * t))));
-    float tail = exp(-0.5 * x * x) * series;
-    return z < 0.0 ? tail : 1.0 - tail;
 }
 
 // Shares below which a pixel shows nothing of a splat.

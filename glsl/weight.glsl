@@ -3,6 +3,7 @@
 #ifndef RARA_WEIGHT
 #define RARA_WEIGHT
 #include "orthant.glsl"
+#include "tail.glsl"
 
 // A union is the rest of the complements' intersection, which is why every plane is negated under OP_OR.
 float complement_sign() {
@@ -22,24 +23,15 @@ Sight line_of_sight(uint base, vec2 delta, vec2 place) {
     return sight_through(cuts.at[base], cuts.at[base + 1u], cuts.at[base + 2u], pixel, delta);
 }
 
-// Phi(z) / Phi(front), at most 1, with a relative error of 4e-5 however little of the normal distribution is left: by
-// Mills's ratio Phi(-x) / exp(-x^2 / 2).
-float mills(float x) {
-    float t = 1.0 / (1.0 + 0.37 * x);
-    return t * (0.14672541 + t * (0.15906193 + t * (0.0711053 + t * (0.21612205 - 0.09302393 * t))));
-}
-
+// Phi(z) / Phi(front), at most 1, with a relative error of 4e-5 however little of the normal distribution is left.
 float tail_ratio(float z, float front) {
     if (z >= front) {
         return 1.0;
     }
-    float x = abs(z);
-    float y = abs(front);
     if (front < 0.0) {
-        return exp(0.5 * (y - x) * (y + x)) * mills(x) / mills(y);
+        return exp(0.5 * (front - z) * (front + z)) * mills(-z) / mills(-front);
     }
-    float tail = exp(-0.5 * x * x) * mills(x);
-    return (z < 0.0 ? tail : 1.0 - tail) / (1.0 - exp(-0.5 * y * y) * mills(y));
+    return tail_phi(z) / tail_phi(front);
 }
 
 // A record's plane; under OP_OR its complement.

@@ -1,0 +1,16 @@
+// Phi with a relative error of 2e-5 in its lower tail, for shares that are divided by.
+#ifndef RARA_TAIL
+#define RARA_TAIL
+
+// Mills's ratio Phi(-x) / exp(-x^2 / 2) of x >= 0.
+float mills(float x) {
+    float t = 1.0 / (1.0 + 0.37 * x);
+    return t * (0.14672541 + t * (0.15906193 + t * (0.0711053 + t * (0.21612205 - 0.09302393 * t))));
+}
+
+float tail_phi(float z) {
+    float tail = exp(-0.5 * z * z) * mills(abs(z));
+    return z < 0.0 ? tail : 1.0 - tail;
+}
+
+#endif

@@ -29,7 +29,7 @@ pub mod types;
 pub mod windowed;
 
 /// The versions that this crate's interface is made of.
-pub use {ash, glam};
+pub use {ash, glam, gpu_allocator};
 
 pub use camera::Camera;
 pub use clip::{Clip, ClipOp, Plane};

@@ -688,13 +688,14 @@ fn a_hosts_device_is_adopted_and_left_alone() {
     // SAFETY: the loader has no harmful initialisation; every handle is used while alive and destroyed once, in order.
     unsafe {
         let entry = ash::Entry::load().unwrap();
-        let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_3);
+        let version = vk::API_VERSION_1_3;
+        let application = vk::ApplicationInfo::default().api_version(version);
         let info = vk::InstanceCreateInfo::default().application_info(&application);
         let instance = entry.create_instance(&info, None).unwrap();
         let devices = instance.enumerate_physical_devices().unwrap();
         let usable = devices
             .into_iter()
-            .find_map(|physical| Some((physical, check(&instance, physical).ok()?)));
+            .find_map(|physical| Some((physical, check(&instance, physical, version).ok()?)));
         let (physical_device, support) = usable.unwrap();
         let queues = [vk::DeviceQueueCreateInfo::default()
             .queue_family_index(support.queue_family)
@@ -709,6 +710,7 @@ fn a_hosts_device_is_adopted_and_left_alone() {
             .create_device(physical_device, &info, None)
             .unwrap();
         let adopted = Device::adopt(AdoptDesc {
+            api_version: version,
             instance: instance.clone(),
             physical_device,
             device: raw.clone(),
@@ -718,6 +720,7 @@ fn a_hosts_device_is_adopted_and_left_alone() {
             push_descriptor: false,
             debug_utils: false,
             pipeline_cache: vk::PipelineCache::null(),
+            allocator: None,
         })
         .unwrap();
         assert!(!adopted.support().mesh_shader && !adopted.support().push_descriptor);

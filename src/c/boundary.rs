@@ -29,7 +29,7 @@ pub const RARA_ERROR_PANIC: RaraResult = 7;
 
 /// The version of this header. It changes when a host must be compiled anew; structs that grow at their end and functions
 /// that are added do not change it.
-pub const RARA_ABI_VERSION: u32 = 1;
+pub const RARA_ABI_VERSION: u32 = 2;
 
 /// The version of the library that is linked: RARA_ABI_VERSION of its header.
 #[unsafe(no_mangle)]

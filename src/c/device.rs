@@ -1,13 +1,13 @@
 //! Requirements before there is a device, and the host's own device lent to rara.
 
-use std::ffi::{CStr, c_char};
+use std::ffi::{CStr, c_char, c_void};
 
 use rara::ash::{self, vk};
 use rara::gpu::{self, AdoptDesc, Device, Support};
 use rara::{Error, Result};
 
 use crate::boundary::{
-    RaraResult, Versioned, create, destroy, exclusive, guard, invalid, read, shared, write,
+    RaraResult, Versioned, create, destroy, guard, invalid, read, shared, write,
 };
 
 /// `vkGetInstanceProcAddr`, or null.
@@ -17,8 +17,9 @@ pub type PFN_vkGetInstanceProcAddr = Option<vk::PFN_vkGetInstanceProcAddr>;
 /// Room for the names of extensions in RaraSupport.
 pub const RARA_MAX_EXTENSIONS: usize = 8;
 
-/// What a physical device that will do offers beyond what must be there. What must is Vulkan 1.3 with the features
-/// bufferDeviceAddress, synchronization2 and dynamicRendering, and a queue family with graphics and compute.
+/// What a physical device that will do offers beyond what must be there. What must is Vulkan 1.3, or 1.2 with
+/// VK_KHR_synchronization2 and VK_KHR_dynamic_rendering, the features bufferDeviceAddress, synchronization2 and
+/// dynamicRendering, and a queue family with graphics and compute.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraSupport {
@@ -36,13 +37,15 @@ pub struct RaraSupport {
     pub timestamp_period: f32,
     /// Number of extensions.
     pub extension_count: u32,
-    /// The extensions from above that are there, to be added to ppEnabledExtensionNames; the strings live as long as the
+    /// Those from above that are there and those that 1.2 needs, to be added to ppEnabledExtensionNames; the strings live as long as the
     /// library.
     pub extensions: [*const c_char; RARA_MAX_EXTENSIONS],
     /// Bytes of the largest buffer: what a scene's spherical harmonics may take.
     pub max_buffer_size: u64,
     /// Pixels along a side of an image.
     pub max_image_size: u32,
+    /// The Vulkan version that rara uses: VK_API_VERSION_1_2 or VK_API_VERSION_1_3.
+    pub api_version: u32,
 }
 
 // SAFETY: repr(C), plain numbers and pointers that are not followed, the size first.
@@ -68,6 +71,7 @@ impl RaraSupport {
             extensions,
             max_buffer_size: support.max_buffer_size,
             max_image_size: support.max_image_size,
+            api_version: support.api_version,
         }
     }
 }
@@ -75,16 +79,18 @@ impl RaraSupport {
 /// Whether a physical device will do, asked before there is a device. RARA_ERROR_DEVICE if not: the message names what is
 /// missing.
 ///
-/// `support_size` is sizeof *support.
+/// `api_version` is the VkApplicationInfo::apiVersion that the instance was created with, 1.2 or later; `support_size` is
+/// sizeof *support.
 ///
 /// # Safety
-/// `instance` is alive and was created for Vulkan 1.3 or later, `physical_device` is one of its own, and
+/// `instance` is alive and was created for `api_version`, `physical_device` is one of its own, and
 /// `get_instance_proc_addr` is the loader's. `support` has room for `support_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_check(
     get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
     instance: vk::Instance,
     physical_device: vk::PhysicalDevice,
+    api_version: u32,
     support: *mut RaraSupport,
     support_size: usize,
 ) -> RaraResult {
@@ -92,44 +98,99 @@ pub unsafe extern "C" fn rara_check(
         // SAFETY: the caller's promises.
         unsafe {
             let instance = load_instance(get_instance_proc_addr, instance, physical_device)?;
-            let found = RaraSupport::of(&gpu::check(&instance, physical_device)?);
+            let found = RaraSupport::of(&gpu::check(&instance, physical_device, api_version)?);
             write(support, support_size, &found, "support")
         }
     })
 }
 
-/// Sets what rara needs in the host's own feature structs, which then go into the pNext chain of VkDeviceCreateInfo; it
-/// sets fields to VK_TRUE and touches no others. `mesh_shader` may be null for a host that does without mesh shaders.
-///
-/// A host that chains the structs of single features instead of those of 1.2 and 1.3 sets bufferDeviceAddress,
-/// synchronization2 and dynamicRendering there itself.
+/// Sets the features that rara needs in the host's own structs: those that are in the pNext chain of its
+/// VkDeviceCreateInfo, whichever struct of Vulkan's they are in. No other field is touched. RARA_ERROR_INVALID names a
+/// feature for which the chain has no struct; meshShader and taskShader may be missing, for a host that does without.
 ///
 /// # Safety
-/// `support` is what rara_check has filled; the others are structs that may be changed.
+/// `support` is what rara_check has filled; `p_next` is null, or a chain of structs that may be changed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_support_features(
     support: *const RaraSupport,
-    vulkan12: *mut vk::PhysicalDeviceVulkan12Features<'_>,
-    vulkan13: *mut vk::PhysicalDeviceVulkan13Features<'_>,
-    mesh_shader: *mut vk::PhysicalDeviceMeshShaderFeaturesEXT<'_>,
+    p_next: *mut c_void,
 ) -> RaraResult {
-    guard(|| {
-        // SAFETY: the caller's promises.
-        unsafe {
-            let default = RaraSupport::of(&Support::default());
-            let support = read(support, default, "support")?;
-            let vulkan12 = exclusive(vulkan12, "vulkan12")?;
-            let vulkan13 = exclusive(vulkan13, "vulkan13")?;
-            vulkan12.buffer_device_address = vk::TRUE;
-            vulkan13.synchronization2 = vk::TRUE;
-            vulkan13.dynamic_rendering = vk::TRUE;
-            if let Some(mesh) = mesh_shader.as_mut().filter(|_| support.mesh_shader != 0) {
-                mesh.mesh_shader = vk::TRUE;
-                mesh.task_shader = vk::TRUE;
-            }
-            Ok(())
-        }
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let default = RaraSupport::of(&Support::default());
+        let support = read(support, default, "support")?;
+        set_features(p_next, support.mesh_shader != 0)
     })
+}
+
+/// # Safety
+/// `next` is null, or a chain of Vulkan's structs that nobody else uses.
+unsafe fn set_features(next: *mut c_void, mesh_shader: bool) -> Result<()> {
+    use vk::StructureType as Type;
+    let (mut address, mut synchronization, mut rendering) = (false, false, false);
+    let mut next = next.cast::<vk::BaseOutStructure<'_>>();
+    // SAFETY: each struct of a chain begins with its type, which says what it is, and with the next one.
+    unsafe {
+        while let Some(base) = next.as_mut() {
+            match base.s_type {
+                Type::PHYSICAL_DEVICE_VULKAN_1_2_FEATURES => {
+                    let all = &mut *next.cast::<vk::PhysicalDeviceVulkan12Features<'_>>();
+                    all.buffer_device_address = vk::TRUE;
+                    address = true;
+                }
+                Type::PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES => {
+                    let one = next.cast::<vk::PhysicalDeviceBufferDeviceAddressFeatures<'_>>();
+                    (*one).buffer_device_address = vk::TRUE;
+                    address = true;
+                }
+                Type::PHYSICAL_DEVICE_VULKAN_1_3_FEATURES => {
+                    let all = &mut *next.cast::<vk::PhysicalDeviceVulkan13Features<'_>>();
+                    (all.synchronization2, all.dynamic_rendering) = (vk::TRUE, vk::TRUE);
+                    (synchronization, rendering) = (true, true);
+                }
+                Type::PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES => {
+                    let one = next.cast::<vk::PhysicalDeviceSynchronization2Features<'_>>();
+                    (*one).synchronization2 = vk::TRUE;
+                    synchronization = true;
+                }
+                Type::PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES => {
+                    let one = next.cast::<vk::PhysicalDeviceDynamicRenderingFeatures<'_>>();
+                    (*one).dynamic_rendering = vk::TRUE;
+                    rendering = true;
+                }
+                Type::PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT if mesh_shader => {
+                    let all = &mut *next.cast::<vk::PhysicalDeviceMeshShaderFeaturesEXT<'_>>();
+                    (all.mesh_shader, all.task_shader) = (vk::TRUE, vk::TRUE);
+                }
+                _ => {}
+            }
+            next = base.p_next;
+        }
+    }
+    for (found, feature, holder) in [
+        (
+            address,
+            "bufferDeviceAddress",
+            "VkPhysicalDeviceVulkan12Features",
+        ),
+        (
+            synchronization,
+            "synchronization2",
+            "VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceSynchronization2Features",
+        ),
+        (
+            rendering,
+            "dynamicRendering",
+            "VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceDynamicRenderingFeatures",
+        ),
+    ] {
+        if !found {
+            return invalid(format!(
+                "no struct of p_next has the feature {feature}: chain a {holder}"
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// A host's device as rara uses it. May be used by several threads at once.
@@ -143,7 +204,7 @@ pub struct RaraAdoptDesc {
     pub struct_size: usize,
     /// The loader's vkGetInstanceProcAddr.
     pub get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
-    /// Created for Vulkan 1.3 or later.
+    /// Created for `api_version` below.
     pub instance: vk::Instance,
     /// The device below was made from it.
     pub physical_device: vk::PhysicalDevice,
@@ -161,6 +222,8 @@ pub struct RaraAdoptDesc {
     pub debug_utils: vk::Bool32,
     /// Where compiled pipelines are looked up and kept. Default: null, nowhere.
     pub pipeline_cache: vk::PipelineCache,
+    /// VkApplicationInfo::apiVersion of the instance, 1.2 or later. Default: VK_API_VERSION_1_3.
+    pub api_version: u32,
 }
 
 // SAFETY: repr(C), handles and numbers, the size first.
@@ -182,6 +245,7 @@ impl RaraAdoptDesc {
             push_descriptor: vk::FALSE,
             debug_utils: vk::FALSE,
             pipeline_cache: vk::PipelineCache::null(),
+            api_version: vk::API_VERSION_1_3,
         }
     }
 }
@@ -228,6 +292,8 @@ pub unsafe extern "C" fn rara_device_adopt(
                 push_descriptor: desc.push_descriptor != 0,
                 debug_utils: desc.debug_utils != 0,
                 pipeline_cache: desc.pipeline_cache,
+                api_version: desc.api_version,
+                allocator: None,
             };
             Device::adopt(adopt).map(RaraDevice)
         })
@@ -285,7 +351,8 @@ unsafe fn load_instance(
         // SAFETY: the instance is alive, as the caller promises.
         if unsafe { get_instance_proc_addr(instance, name.as_ptr()) }.is_none() {
             return Err(Error::Device(
-                "the instance was not created for Vulkan 1.3: set VkApplicationInfo::apiVersion to VK_API_VERSION_1_3"
+                "the instance was not created for Vulkan 1.2 or later: set VkApplicationInfo::apiVersion to \
+                 VK_API_VERSION_1_3"
                     .into(),
             ));
         }
@@ -308,9 +375,23 @@ unsafe fn load_device(instance: &ash::Instance, desc: &RaraAdoptDesc) -> Result<
     if desc.queue == vk::Queue::null() {
         return invalid("desc->queue is null");
     }
-    let needed: [(vk::Bool32, &CStr, &str); 5] = [
-        (vk::TRUE, c"vkCmdPipelineBarrier2", "Vulkan 1.3"),
-        (vk::TRUE, c"vkGetBufferDeviceAddress", "Vulkan 1.3"),
+    // SAFETY: the physical device is the instance's, as the caller promises.
+    let offered = unsafe { instance.get_physical_device_properties(desc.physical_device) };
+    let version = desc.api_version.min(offered.api_version);
+    let core = vk::Bool32::from(version >= vk::API_VERSION_1_3);
+    let needed: [(vk::Bool32, &CStr, &str); 7] = [
+        (vk::TRUE, c"vkGetBufferDeviceAddress", "Vulkan 1.2"),
+        (core, c"vkCmdPipelineBarrier2", "Vulkan 1.3"),
+        (
+            1 - core,
+            c"vkCmdPipelineBarrier2KHR",
+            "VK_KHR_synchronization2",
+        ),
+        (
+            1 - core,
+            c"vkCmdBeginRenderingKHR",
+            "VK_KHR_dynamic_rendering",
+        ),
         (
             desc.mesh_shader,
             c"vkCmdDrawMeshTasksEXT",

@@ -17,7 +17,7 @@
 
 // The version of this header. It changes when a host must be compiled anew; structs that grow at their end and functions
 // that are added do not change it.
-#define RARA_ABI_VERSION 1
+#define RARA_ABI_VERSION 2
 
 // Room for the names of extensions in RaraSupport.
 #define RARA_MAX_EXTENSIONS 8
@@ -105,8 +105,9 @@ typedef struct RaraDepthDesc {
     struct RaraDepthMap map;
 } RaraDepthDesc;
 
-// What a physical device that will do offers beyond what must be there. What must is Vulkan 1.3 with the features
-// bufferDeviceAddress, synchronization2 and dynamicRendering, and a queue family with graphics and compute.
+// What a physical device that will do offers beyond what must be there. What must is Vulkan 1.3, or 1.2 with
+// VK_KHR_synchronization2 and VK_KHR_dynamic_rendering, the features bufferDeviceAddress, synchronization2 and
+// dynamicRendering, and a queue family with graphics and compute.
 typedef struct RaraSupport {
     // Set by rara_check.
     size_t struct_size;
@@ -122,13 +123,15 @@ typedef struct RaraSupport {
     float timestamp_period;
     // Number of extensions.
     uint32_t extension_count;
-    // The extensions from above that are there, to be added to ppEnabledExtensionNames; the strings live as long as the
+    // Those from above that are there and those that 1.2 needs, to be added to ppEnabledExtensionNames; the strings live as long as the
     // library.
     const char *extensions[RARA_MAX_EXTENSIONS];
     // Bytes of the largest buffer: what a scene's spherical harmonics may take.
     uint64_t max_buffer_size;
     // Pixels along a side of an image.
     uint32_t max_image_size;
+    // The Vulkan version that rara uses: VK_API_VERSION_1_2 or VK_API_VERSION_1_3.
+    uint32_t api_version;
 } RaraSupport;
 
 // A host's own Vulkan, for rara_device_adopt. All of it stays the host's.
@@ -137,7 +140,7 @@ typedef struct RaraAdoptDesc {
     size_t struct_size;
     // The loader's vkGetInstanceProcAddr.
     PFN_vkGetInstanceProcAddr get_instance_proc_addr;
-    // Created for Vulkan 1.3 or later.
+    // Created for `api_version` below.
     VkInstance instance;
     // The device below was made from it.
     VkPhysicalDevice physical_device;
@@ -155,6 +158,8 @@ typedef struct RaraAdoptDesc {
     VkBool32 debug_utils;
     // Where compiled pipelines are looked up and kept. Default: null, nowhere.
     VkPipelineCache pipeline_cache;
+    // VkApplicationInfo::apiVersion of the instance, 1.2 or later. Default: VK_API_VERSION_1_3.
+    uint32_t api_version;
 } RaraAdoptDesc;
 
 // How shaders reach buffers.
@@ -542,29 +547,26 @@ RaraResult rara_depth_desc_default(struct RaraDepthDesc *desc,
 // Whether a physical device will do, asked before there is a device. RARA_ERROR_DEVICE if not: the message names what is
 // missing.
 //
-// `support_size` is sizeof *support.
+// `api_version` is the VkApplicationInfo::apiVersion that the instance was created with, 1.2 or later; `support_size` is
+// sizeof *support.
 //
 // # Safety
-// `instance` is alive and was created for Vulkan 1.3 or later, `physical_device` is one of its own, and
+// `instance` is alive and was created for `api_version`, `physical_device` is one of its own, and
 // `get_instance_proc_addr` is the loader's. `support` has room for `support_size` bytes.
 RaraResult rara_check(PFN_vkGetInstanceProcAddr get_instance_proc_addr,
                       VkInstance instance,
                       VkPhysicalDevice physical_device,
+                      uint32_t api_version,
                       struct RaraSupport *support,
                       size_t support_size);
 
-// Sets what rara needs in the host's own feature structs, which then go into the pNext chain of VkDeviceCreateInfo; it
-// sets fields to VK_TRUE and touches no others. `mesh_shader` may be null for a host that does without mesh shaders.
-//
-// A host that chains the structs of single features instead of those of 1.2 and 1.3 sets bufferDeviceAddress,
-// synchronization2 and dynamicRendering there itself.
+// Sets the features that rara needs in the host's own structs: those that are in the pNext chain of its
+// VkDeviceCreateInfo, whichever struct of Vulkan's they are in. No other field is touched. RARA_ERROR_INVALID names a
+// feature for which the chain has no struct; meshShader and taskShader may be missing, for a host that does without.
 //
 // # Safety
-// `support` is what rara_check has filled; the others are structs that may be changed.
-RaraResult rara_support_features(const struct RaraSupport *support,
-                                 VkPhysicalDeviceVulkan12Features *vulkan12,
-                                 VkPhysicalDeviceVulkan13Features *vulkan13,
-                                 VkPhysicalDeviceMeshShaderFeaturesEXT *mesh_shader);
+// `support` is what rara_check has filled; `p_next` is null, or a chain of structs that may be changed.
+RaraResult rara_support_features(const struct RaraSupport *support, void *p_next);
 
 // Nothing optional, and null handles that the host replaces. `desc_size` is sizeof *desc.
 //

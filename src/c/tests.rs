@@ -65,13 +65,10 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
     let no_device = vk::PhysicalDevice::null();
     let no_cmd = vk::CommandBuffer::null();
     call!(
-        rara_check(None, vk::Instance::null(), no_device, null_mut(), 0),
+        rara_check(None, vk::Instance::null(), no_device, 0, null_mut(), 0),
         "get_instance_proc_addr"
     );
-    call!(
-        rara_support_features(null(), null_mut(), null_mut(), null_mut()),
-        "support is null"
-    );
+    call!(rara_support_features(null(), null_mut()), "support is null");
     call!(
         rara_adopt_desc_default(null_mut(), size_of::<RaraAdoptDesc>()),
         "desc is null"

@@ -1,14 +1,17 @@
 //! The device that everything else is made from.
 
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
 use std::ffi::CString;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use ash::{ext, khr, vk};
 use gpu_allocator::AllocationError;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, Allocator};
 
 use super::clock::Clock;
+use super::commands::Commands;
 use super::instance::Instance;
 use super::submit::OneOff;
 use super::validation::Messages;
@@ -30,13 +33,16 @@ pub(super) struct Inner {
     pub(super) queue: Mutex<vk::Queue>,
     queue_family: u32,
     pipeline_cache: vk::PipelineCache,
+    commands: Commands,
     mesh_shader: Option<ext::mesh_shader::Device>,
     push_descriptor: Option<khr::push_descriptor::Device>,
     debug_utils: Option<ext::debug_utils::Device>,
-    /// `None` only while being dropped.
-    allocator: Mutex<Option<Allocator>>,
+    /// Our own or the host's; `None` only while being dropped.
+    allocator: Option<Arc<Mutex<Allocator>>>,
     allocated: AtomicU64,
     allocated_at_most: AtomicU64,
+    /// The same by name, as a host's allocator has more in it than ours.
+    allocated_by_name: Mutex<BTreeMap<String, u64>>,
     /// Idle command buffers of [`Device::submit_and_wait`].
     pub(super) idle: Mutex<Vec<OneOff>>,
     /// `None` for a host's device, which is never destroyed here. Shared with a window's surface.
@@ -58,12 +64,13 @@ impl Device {
         desc: AdoptDesc,
         info: DeviceInfo,
         support: Support,
-        allocator: Allocator,
+        allocator: Arc<Mutex<Allocator>>,
         owned: Option<Arc<Instance>>,
     ) -> Self {
         let (instance, raw) = (desc.instance, desc.device);
         Self {
             inner: Arc::new(Inner {
+                commands: Commands::load(&instance, &raw, support.api_version),
                 mesh_shader: support
                     .mesh_shader
                     .then(|| ext::mesh_shader::Device::new(&instance, &raw)),
@@ -79,9 +86,10 @@ impl Device {
                 queue: Mutex::new(desc.queue),
                 queue_family: desc.queue_family,
                 pipeline_cache: desc.pipeline_cache,
-                allocator: Mutex::new(Some(allocator)),
+                allocator: Some(allocator),
                 allocated: AtomicU64::new(0),
                 allocated_at_most: AtomicU64::new(0),
+                allocated_by_name: Mutex::default(),
                 idle: Mutex::new(Vec::new()),
                 owned,
                 instance,
@@ -175,26 +183,16 @@ impl Device {
     /// What live buffers and images take, by name, the largest first and with what alignment adds; those of one name are
     /// added up.
     pub fn memory_by_name(&self) -> Vec<NamedBytes> {
-        let allocator = self
-            .inner
-            .allocator
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        let report = allocator
-            .as_ref()
-            .expect("taken only by drop")
-            .generate_report();
-        let mut sums: Vec<NamedBytes> = Vec::new();
-        for allocation in report.allocations {
-            match sums.iter_mut().find(|sum| sum.name == allocation.name) {
-                Some(sum) => sum.bytes += allocation.size,
-                None => sums.push(NamedBytes {
-                    name: allocation.name,
-                    bytes: allocation.size,
-                }),
-            }
-        }
-        sums.sort_by(|a, b| b.bytes.cmp(&a.bytes).then(a.name.cmp(&b.name)));
+        let by_name = self.inner.allocated_by_name.lock();
+        let mut sums: Vec<NamedBytes> = by_name
+            .unwrap_or_else(PoisonError::into_inner)
+            .iter()
+            .map(|(name, bytes)| NamedBytes {
+                name: name.clone(),
+                bytes: *bytes,
+            })
+            .collect();
+        sums.sort_by_key(|sum| Reverse(sum.bytes)); // stable: by name among equals
         sums
     }
 
@@ -232,6 +230,10 @@ impl Device {
         Some(validation.messages.clone())
     }
 
+    pub(super) fn commands(&self) -> &Commands {
+        &self.inner.commands
+    }
+
     pub(crate) fn mesh_shader(&self) -> Option<&ext::mesh_shader::Device> {
         self.inner.mesh_shader.as_ref()
     }
@@ -265,15 +267,7 @@ impl Device {
         &self,
         desc: &AllocationCreateDesc<'_>,
     ) -> std::result::Result<Allocation, AllocationError> {
-        let mut allocator = self
-            .inner
-            .allocator
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        let allocation = allocator
-            .as_mut()
-            .expect("taken only by drop")
-            .allocate(desc)?;
+        let allocation = self.allocator().allocate(desc)?;
         let before = self
             .inner
             .allocated
@@ -281,24 +275,32 @@ impl Device {
         self.inner
             .allocated_at_most
             .fetch_max(before + allocation.size(), Ordering::Relaxed);
+        self.account(desc.name, |bytes| bytes + allocation.size());
         Ok(allocation)
     }
 
-    pub(crate) fn free(&self, allocation: Allocation) {
+    pub(crate) fn free(&self, name: &str, allocation: Allocation) {
         self.inner
             .allocated
             .fetch_sub(allocation.size(), Ordering::Relaxed);
-        let mut allocator = self
-            .inner
-            .allocator
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        if let Err(error) = allocator
-            .as_mut()
-            .expect("taken only by drop")
-            .free(allocation)
-        {
+        self.account(name, |bytes| bytes - allocation.size());
+        if let Err(error) = self.allocator().free(allocation) {
             log::error!("device memory could not be freed: {error}");
+        }
+    }
+
+    fn allocator(&self) -> MutexGuard<'_, Allocator> {
+        let allocator = self.inner.allocator.as_ref().expect("taken only by drop");
+        allocator.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn account(&self, name: &str, change: impl FnOnce(u64) -> u64) {
+        let by_name = self.inner.allocated_by_name.lock();
+        let mut by_name = by_name.unwrap_or_else(PoisonError::into_inner);
+        let bytes = by_name.entry(name.to_owned()).or_default();
+        *bytes = change(*bytes);
+        if *bytes == 0 {
+            by_name.remove(name);
         }
     }
 }
@@ -323,12 +325,8 @@ impl Drop for Inner {
         {
             one_off.destroy(&self.raw);
         }
-        drop(
-            self.allocator
-                .get_mut()
-                .unwrap_or_else(PoisonError::into_inner)
-                .take(),
-        );
+        // Our own frees its blocks now, while there is a device.
+        drop(self.allocator.take());
         if self.owned.is_some() {
             // SAFETY: everything made from the device holds an `Arc` of it or was destroyed above, and the cache is its
             // own or null. The instance goes after this function, with the field.

@@ -53,23 +53,24 @@ impl DeviceInfo {
 ///
 /// # Safety
 ///
-/// `instance` must be alive and created for Vulkan 1.3, and `physical` must be one of its devices.
+/// `instance` must be alive and created for `api_version`, and `physical` must be one of its devices.
 pub(crate) unsafe fn describe(
     instance: &ash::Instance,
     physical: vk::PhysicalDevice,
+    api_version: u32,
 ) -> DeviceInfo {
     // SAFETY: the caller vouches for both handles.
     let (base, memory, support) = unsafe {
         (
             instance.get_physical_device_properties(physical),
             instance.get_physical_device_memory_properties(physical),
-            requirements::check(instance, physical),
+            requirements::check(instance, physical, api_version),
         )
     };
     let text =
         |text: std::result::Result<&CStr, _>| text.unwrap_or(c"?").to_string_lossy().into_owned();
     let version = base.api_version;
-    let driver = if version >= vk::API_VERSION_1_2 {
+    let driver = if version.min(api_version) >= vk::API_VERSION_1_2 {
         let mut driver = vk::PhysicalDeviceDriverProperties::default();
         let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
         // SAFETY: as above; the struct is core in this version.

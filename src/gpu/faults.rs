@@ -27,7 +27,10 @@ pub(crate) struct Fault {
 /// What a physical device pretends to be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Pretence {
+    Vulkan11,
     Vulkan12,
+    /// Without a single extension.
+    Vulkan12Alone,
     Without(&'static str),
     WithoutGraphics,
     WithoutExtensions,
@@ -344,8 +347,12 @@ unsafe extern "system" fn properties(
     // SAFETY: the caller's arguments, passed on.
     unsafe {
         (driver().fp_v1_0().get_physical_device_properties)(physical, out);
-        if pretence() == Some(Pretence::Vulkan12) {
-            (*out).api_version = vk::API_VERSION_1_2;
+        match pretence() {
+            Some(Pretence::Vulkan11) => (*out).api_version = vk::API_VERSION_1_1,
+            Some(Pretence::Vulkan12 | Pretence::Vulkan12Alone) => {
+                (*out).api_version = vk::API_VERSION_1_2;
+            }
+            _ => {}
         }
     }
 }
@@ -378,7 +385,7 @@ unsafe extern "system" fn extensions(
     let real = driver().fp_v1_0().enumerate_device_extension_properties;
     match pretence() {
         Some(Pretence::ExtensionsFail) => vk::Result::ERROR_OUT_OF_HOST_MEMORY,
-        Some(Pretence::WithoutExtensions) => {
+        Some(Pretence::WithoutExtensions | Pretence::Vulkan12Alone) => {
             // SAFETY: the caller's pointer.
             unsafe { *count = 0 };
             vk::Result::SUCCESS
@@ -407,13 +414,17 @@ unsafe extern "system" fn features(
                         all.buffer_device_address = vk::FALSE;
                     }
                 }
-                vk::StructureType::PHYSICAL_DEVICE_VULKAN_1_3_FEATURES => {
-                    let all = &mut *next.cast::<vk::PhysicalDeviceVulkan13Features<'static>>();
-                    match feature {
-                        "synchronization2" => all.synchronization2 = vk::FALSE,
-                        "dynamicRendering" => all.dynamic_rendering = vk::FALSE,
-                        _ => {}
-                    }
+                vk::StructureType::PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES
+                    if feature == "synchronization2" =>
+                {
+                    type One = vk::PhysicalDeviceSynchronization2Features<'static>;
+                    (*next.cast::<One>()).synchronization2 = vk::FALSE;
+                }
+                vk::StructureType::PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES
+                    if feature == "dynamicRendering" =>
+                {
+                    type One = vk::PhysicalDeviceDynamicRenderingFeatures<'static>;
+                    (*next.cast::<One>()).dynamic_rendering = vk::FALSE;
                 }
                 _ => {}
             }

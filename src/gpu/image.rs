@@ -188,7 +188,7 @@ impl Image {
             .new_layout(vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
         // SAFETY: the caller vouches for `cmd`, and that the image is being rendered to.
         unsafe {
-            self.device.raw().cmd_end_rendering(cmd);
+            self.device.commands().end_rendering(cmd);
             barrier(&self.device, cmd, self.handle, to_copy);
         }
         end_label(&self.device, cmd);
@@ -226,7 +226,7 @@ impl Image {
                 &[region],
             );
             let info = vk::DependencyInfo::default().memory_barriers(&visible);
-            self.device.raw().cmd_pipeline_barrier2(cmd, &info);
+            self.device.commands().pipeline_barrier(cmd, &info);
         }
         end_label(&self.device, cmd);
     }
@@ -250,7 +250,7 @@ pub(super) unsafe fn barrier(
         .subresource_range(WHOLE)];
     let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
     // SAFETY: the caller vouches for `cmd` and image.
-    unsafe { device.raw().cmd_pipeline_barrier2(cmd, &info) };
+    unsafe { device.commands().pipeline_barrier(cmd, &info) };
 }
 
 /// Clears a target and begins rendering to all of it.
@@ -278,7 +278,7 @@ pub(super) unsafe fn begin_rendering(
         .layer_count(1)
         .color_attachments(&attachments);
     // SAFETY: the caller vouches for `cmd` and the view.
-    unsafe { device.raw().cmd_begin_rendering(cmd, &info) };
+    unsafe { device.commands().begin_rendering(cmd, &info) };
 }
 
 impl Drop for Image {
@@ -289,7 +289,7 @@ impl Drop for Image {
             self.device.raw().destroy_image(self.handle, None);
         }
         if let Some(allocation) = self.allocation.take() {
-            self.device.free(allocation);
+            self.device.free(&self.name, allocation);
         }
     }
 }

@@ -128,10 +128,10 @@ impl InFlight {
         let signals = [vk::SemaphoreSubmitInfo::default()
             .semaphore(drawn)
             .stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)];
-        let submit = [vk::SubmitInfo2::default()
+        let submit = vk::SubmitInfo2::default()
             .wait_semaphore_infos(&waits)
             .command_buffer_infos(&commands)
-            .signal_semaphore_infos(&signals)];
+            .signal_semaphore_infos(&signals);
         let queue = self
             .device
             .inner
@@ -140,7 +140,7 @@ impl InFlight {
             .unwrap_or_else(PoisonError::into_inner);
         // SAFETY: the lock keeps our threads from the queue; the fence is unsignalled, the command buffer executable, and
         // the caller vouches for the semaphores.
-        unsafe { raw.queue_submit2(*queue, &submit, slot.fence) }
+        unsafe { self.device.commands().submit(*queue, &submit, slot.fence) }
             .map_err(failed("vkQueueSubmit2"))?;
         drop(queue);
         slot.submitted = true;

@@ -10,6 +10,9 @@ use super::failure::failed;
 use super::validation::{self, Messages, Validation};
 use crate::{Error, Result};
 
+/// What an instance of our own is created for; its devices may offer less.
+pub(super) const API_VERSION: u32 = vk::API_VERSION_1_3;
+
 /// An instance of our own. Dropping it destroys messenger and instance; whatever was made from it goes first.
 pub(crate) struct Instance {
     pub(crate) raw: ash::Instance,
@@ -77,7 +80,7 @@ impl Instance {
         let application = vk::ApplicationInfo::default()
             .application_name(&application_name)
             .engine_name(c"rara")
-            .api_version(vk::API_VERSION_1_3);
+            .api_version(API_VERSION);
         let messages = Arc::new(Messages::default());
         let mut messenger = validation::messenger_info(&messages);
         let mut checks =
@@ -127,8 +130,11 @@ impl Instance {
         };
         Ok(physical
             .into_iter()
-            // SAFETY: the instance is alive and created for Vulkan 1.3, and the device is its own.
-            .map(|physical| (physical, unsafe { describe(&self.raw, physical) }))
+            .map(|physical| {
+                // SAFETY: the instance is alive and created for this version, and the device is its own.
+                let info = unsafe { describe(&self.raw, physical, API_VERSION) };
+                (physical, info)
+            })
             .collect())
     }
 }

@@ -203,7 +203,7 @@ impl Drop for Buffer {
         // SAFETY: whoever submitted work with the buffer waited for it, as the type's contract says.
         unsafe { self.device.raw().destroy_buffer(self.handle, None) };
         if let Some(allocation) = self.allocation.take() {
-            self.device.free(allocation);
+            self.device.free(&self.name, allocation);
         }
     }
 }

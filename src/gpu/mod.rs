@@ -7,6 +7,7 @@
 mod access;
 mod attachments;
 mod clock;
+mod commands;
 mod device;
 mod devices;
 mod draw;

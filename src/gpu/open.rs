@@ -1,7 +1,7 @@
 //! Two ways to a device: headless use opens one of its own, a host lends one.
 
 use std::ffi::CStr;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
@@ -39,7 +39,9 @@ impl Default for DeviceDesc {
 /// A host's own device, for [`Device::adopt`].
 #[derive(Clone)]
 pub struct AdoptDesc {
-    /// Created for Vulkan 1.3 or later.
+    /// `VkApplicationInfo::apiVersion` of the instance: 1.2 or later.
+    pub api_version: u32,
+    /// Created for this version.
     pub instance: ash::Instance,
     /// The device below was made from it.
     pub physical_device: vk::PhysicalDevice,
@@ -57,6 +59,10 @@ pub struct AdoptDesc {
     pub debug_utils: bool,
     /// Where compiled pipelines are looked up and kept; null for nowhere.
     pub pipeline_cache: vk::PipelineCache,
+    /// Where all device memory comes from, made for this device and with `buffer_device_address`. `None`: an allocator of
+    /// rara's own. It is locked while a buffer or an image is made or destroyed, never by
+    /// [`Renderer::prepare`](crate::Renderer::prepare) or a draw.
+    pub allocator: Option<Arc<Mutex<Allocator>>>,
 }
 
 impl std::fmt::Debug for AdoptDesc {
@@ -117,6 +123,7 @@ impl Device {
         // SAFETY: the device was created just now. It works without a cache too.
         let pipeline_cache = unsafe { raw.create_pipeline_cache(&empty, None) }.unwrap_or_default();
         let adopt = AdoptDesc {
+            api_version: super::instance::API_VERSION,
             instance: owned.raw.clone(),
             physical_device: physical,
             device: raw.clone(),
@@ -126,6 +133,7 @@ impl Device {
             push_descriptor: support.push_descriptor,
             debug_utils: owned.debug_utils,
             pipeline_cache,
+            allocator: None,
         };
         let allocator = allocator(&adopt).inspect_err(|_| {
             // SAFETY: nothing else was made from the device, and nobody else knows it.
@@ -148,7 +156,8 @@ impl Device {
     /// everything made from them. While [`Device::submit_and_wait`] or an upload runs, the host must not use the queue.
     pub unsafe fn adopt(desc: AdoptDesc) -> Result<Self> {
         // SAFETY: the caller vouches for the handles.
-        let mut support = unsafe { requirements::check(&desc.instance, desc.physical_device) }?;
+        let mut support =
+            unsafe { requirements::check(&desc.instance, desc.physical_device, desc.api_version) }?;
         // SAFETY: as above.
         let families = unsafe {
             desc.instance
@@ -180,13 +189,17 @@ impl Device {
         support.pipeline_statistics = false;
         support.calibrated_timestamps = None;
         // SAFETY: as above.
-        let info = unsafe { devices::describe(&desc.instance, desc.physical_device) };
-        let allocator = allocator(&desc)?;
+        let info =
+            unsafe { devices::describe(&desc.instance, desc.physical_device, desc.api_version) };
+        let allocator = match &desc.allocator {
+            Some(lent) => lent.clone(),
+            None => allocator(&desc)?,
+        };
         Ok(Self::new(desc, info, support, allocator, None))
     }
 }
 
-fn allocator(desc: &AdoptDesc) -> Result<Allocator> {
+fn allocator(desc: &AdoptDesc) -> Result<Arc<Mutex<Allocator>>> {
     Allocator::new(&AllocatorCreateDesc {
         instance: desc.instance.clone(),
         device: desc.device.clone(),
@@ -196,5 +209,6 @@ fn allocator(desc: &AdoptDesc) -> Result<Allocator> {
         // Shared blocks start small: large buffers have memory of their own.
         allocation_sizes: AllocationSizes::new(32 << 20, 32 << 20),
     })
+    .map(|allocator| Arc::new(Mutex::new(allocator)))
     .map_err(|error| Error::Memory(format!("the device's memory could not be set up: {error}")))
 }

@@ -345,7 +345,7 @@ impl<'a> Recorder<'a> {
     fn barrier(&self, barrier: &vk::MemoryBarrier2<'_>) {
         let info = vk::DependencyInfo::default().memory_barriers(std::slice::from_ref(barrier));
         // SAFETY: `begin`'s contract covers `cmd`; the masks come from the table of accesses, for this device's stages.
-        unsafe { self.device.raw().cmd_pipeline_barrier2(self.cmd, &info) };
+        unsafe { self.device.commands().pipeline_barrier(self.cmd, &info) };
     }
 }
 

@@ -9,10 +9,13 @@ use crate::{Error, Result};
 
 /// What a physical device that meets the requirements offers beyond them.
 ///
-/// Required are Vulkan 1.3 with `bufferDeviceAddress`, `synchronization2` and `dynamicRendering`, and a queue family
-/// for graphics and compute. Everything else is optional and stands here.
+/// Required are `bufferDeviceAddress`, `synchronization2` and `dynamicRendering`, which are Vulkan 1.3, or 1.2 with
+/// `VK_KHR_synchronization2` and `VK_KHR_dynamic_rendering`; and a queue family for graphics and compute. Everything else
+/// is optional and stands here.
 #[derive(Debug, Clone, Default)]
 pub struct Support {
+    /// The Vulkan version that rara uses: 1.2 or 1.3.
+    pub api_version: u32,
     /// The first queue family with graphics and compute.
     pub queue_family: u32,
     /// `VK_EXT_mesh_shader` with mesh and task shaders.
@@ -55,9 +58,12 @@ pub struct Support {
 }
 
 impl Support {
-    /// The device extensions to enable; each is optional except `VK_KHR_portability_subset` where it is listed.
+    /// The device extensions to enable. A host may leave out `VK_EXT_mesh_shader` and `VK_KHR_push_descriptor`.
     pub fn extensions(&self) -> Vec<&'static CStr> {
+        let before_1_3 = self.api_version < vk::API_VERSION_1_3;
         let wanted = [
+            (before_1_3, khr::synchronization2::NAME),
+            (before_1_3, khr::dynamic_rendering::NAME),
             (self.mesh_shader, ext::mesh_shader::NAME),
             (self.push_descriptor, khr::push_descriptor::NAME),
             (self.portability_subset, khr::portability_subset::NAME),
@@ -73,8 +79,9 @@ impl Support {
     pub fn features(&self) -> Features {
         Features {
             vulkan12: vk::PhysicalDeviceVulkan12Features::default().buffer_device_address(true),
-            vulkan13: vk::PhysicalDeviceVulkan13Features::default()
-                .synchronization2(true)
+            synchronization2: vk::PhysicalDeviceSynchronization2Features::default()
+                .synchronization2(true),
+            dynamic_rendering: vk::PhysicalDeviceDynamicRenderingFeatures::default()
                 .dynamic_rendering(true),
             mesh: self.mesh_shader.then(|| {
                 vk::PhysicalDeviceMeshShaderFeaturesEXT::default()
@@ -85,13 +92,16 @@ impl Support {
     }
 }
 
-/// The feature structs that a device is created with. A host with structs of its own sets the same fields there.
+/// The feature structs that a device is created with, in 1.2 as in 1.3. A host with structs of its own sets the same
+/// fields there; those of `VkPhysicalDeviceVulkan13Features` stand for the two single ones.
 #[derive(Debug, Clone)]
 pub struct Features {
     /// `bufferDeviceAddress`.
     pub vulkan12: vk::PhysicalDeviceVulkan12Features<'static>,
-    /// `synchronization2` and `dynamicRendering`.
-    pub vulkan13: vk::PhysicalDeviceVulkan13Features<'static>,
+    /// `synchronization2`.
+    pub synchronization2: vk::PhysicalDeviceSynchronization2Features<'static>,
+    /// `dynamicRendering`.
+    pub dynamic_rendering: vk::PhysicalDeviceDynamicRenderingFeatures<'static>,
     /// `meshShader` and `taskShader`, where supported.
     pub mesh: Option<vk::PhysicalDeviceMeshShaderFeaturesEXT<'static>>,
 }
@@ -101,7 +111,8 @@ impl Features {
     pub fn chain<'a>(&'a mut self, info: vk::DeviceCreateInfo<'a>) -> vk::DeviceCreateInfo<'a> {
         let info = info
             .push_next(&mut self.vulkan12)
-            .push_next(&mut self.vulkan13);
+            .push_next(&mut self.synchronization2)
+            .push_next(&mut self.dynamic_rendering);
         match &mut self.mesh {
             Some(mesh) => info.push_next(mesh),
             None => info,
@@ -113,8 +124,12 @@ impl Features {
 ///
 /// # Safety
 ///
-/// `instance` must be alive and created for Vulkan 1.3, and `physical` must be one of its devices.
-pub unsafe fn check(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Result<Support> {
+/// `instance` must be alive and created for `api_version`, and `physical` must be one of its devices.
+pub unsafe fn check(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+    api_version: u32,
+) -> Result<Support> {
     // SAFETY: the caller vouches for both handles.
     let base = unsafe { instance.get_physical_device_properties(physical) };
     let name = base
@@ -122,13 +137,26 @@ pub unsafe fn check(instance: &ash::Instance, physical: vk::PhysicalDevice) -> R
         .unwrap_or(c"?")
         .to_string_lossy();
     let lacks = |what: String| Err(Error::Device(format!("{name} cannot be used: {what}")));
-    if base.api_version < vk::API_VERSION_1_3 {
+    let number = |version| {
+        (
+            vk::api_version_major(version),
+            vk::api_version_minor(version),
+        )
+    };
+    if api_version < vk::API_VERSION_1_2 {
+        let (major, minor) = number(api_version);
+        return Err(Error::Invalid(format!(
+            "the instance was created for Vulkan {major}.{minor} and 1.2 is needed: set VkApplicationInfo::apiVersion"
+        )));
+    }
+    if base.api_version < vk::API_VERSION_1_2 {
+        let (major, minor) = number(base.api_version);
         return lacks(format!(
-            "it offers Vulkan {}.{} and 1.3 is needed; a newer driver may help",
-            vk::api_version_major(base.api_version),
-            vk::api_version_minor(base.api_version)
+            "it offers Vulkan {major}.{minor} and 1.2 is needed; a newer driver may help"
         ));
     }
+    let version = api_version.min(base.api_version);
+    let has_1_3 = version >= vk::API_VERSION_1_3;
 
     // SAFETY: as above.
     let extensions = unsafe { instance.enumerate_device_extension_properties(physical) }
@@ -139,13 +167,24 @@ pub unsafe fn check(instance: &ash::Instance, physical: vk::PhysicalDevice) -> R
             .any(|e| e.extension_name_as_c_str() == Ok(wanted))
     };
     let has_mesh = has(ext::mesh_shader::NAME);
+    for needed in [khr::synchronization2::NAME, khr::dynamic_rendering::NAME] {
+        if !has_1_3 && !has(needed) {
+            let (major, minor) = number(version);
+            let needed = needed.to_string_lossy();
+            return lacks(format!(
+                "Vulkan {major}.{minor} needs the extension {needed}, which it lacks"
+            ));
+        }
+    }
 
     let mut v12 = vk::PhysicalDeviceVulkan12Features::default();
-    let mut v13 = vk::PhysicalDeviceVulkan13Features::default();
+    let mut synchronization2 = vk::PhysicalDeviceSynchronization2Features::default();
+    let mut dynamic_rendering = vk::PhysicalDeviceDynamicRenderingFeatures::default();
     let mut mesh = vk::PhysicalDeviceMeshShaderFeaturesEXT::default();
     let mut features = vk::PhysicalDeviceFeatures2::default()
         .push_next(&mut v12)
-        .push_next(&mut v13);
+        .push_next(&mut synchronization2)
+        .push_next(&mut dynamic_rendering);
     if has_mesh {
         features = features.push_next(&mut mesh);
     }
@@ -154,8 +193,8 @@ pub unsafe fn check(instance: &ash::Instance, physical: vk::PhysicalDevice) -> R
     let pipeline_statistics = features.features.pipeline_statistics_query == vk::TRUE;
     for (offered, feature) in [
         (v12.buffer_device_address, "bufferDeviceAddress"),
-        (v13.synchronization2, "synchronization2"),
-        (v13.dynamic_rendering, "dynamicRendering"),
+        (synchronization2.synchronization2, "synchronization2"),
+        (dynamic_rendering.dynamic_rendering, "dynamicRendering"),
     ] {
         if offered == vk::FALSE {
             return lacks(format!("it lacks the feature {feature}"));
@@ -172,9 +211,10 @@ pub unsafe fn check(instance: &ash::Instance, physical: vk::PhysicalDevice) -> R
     let mut v11 = vk::PhysicalDeviceVulkan11Properties::default();
     let mut v13_limits = vk::PhysicalDeviceVulkan13Properties::default();
     let mut mesh_limits = vk::PhysicalDeviceMeshShaderPropertiesEXT::default();
-    let mut properties = vk::PhysicalDeviceProperties2::default()
-        .push_next(&mut v11)
-        .push_next(&mut v13_limits);
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut v11);
+    if has_1_3 {
+        properties = properties.push_next(&mut v13_limits);
+    }
     if has_mesh {
         properties = properties.push_next(&mut mesh_limits);
     }
@@ -187,6 +227,7 @@ pub unsafe fn check(instance: &ash::Instance, physical: vk::PhysicalDevice) -> R
         .contains(vk::ShaderStageFlags::COMPUTE);
     let mesh_groups = mesh_limits.max_mesh_work_group_count;
     Ok(Support {
+        api_version: version.min(vk::API_VERSION_1_3),
         queue_family: family as u32,
         mesh_shader,
         push_descriptor: has(khr::push_descriptor::NAME),
@@ -197,9 +238,12 @@ pub unsafe fn check(instance: &ash::Instance, physical: vk::PhysicalDevice) -> R
         },
         timestamp_bits: families[family].timestamp_valid_bits,
         max_storage_buffer_range: limits.max_storage_buffer_range.into(),
-        max_buffer_size: v11
-            .max_memory_allocation_size
-            .min(v13_limits.max_buffer_size),
+        max_buffer_size: if has_1_3 {
+            v11.max_memory_allocation_size
+                .min(v13_limits.max_buffer_size)
+        } else {
+            v11.max_memory_allocation_size
+        },
         max_group_count: limits.max_compute_work_group_count[0]
             .min(limits.max_compute_work_group_count[1]),
         max_shared_memory: limits.max_compute_shared_memory_size,

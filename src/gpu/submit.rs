@@ -87,7 +87,7 @@ impl OneOff {
         recorded?;
 
         let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(self.cmd)];
-        let submit = [vk::SubmitInfo2::default().command_buffer_infos(&commands)];
+        let submit = vk::SubmitInfo2::default().command_buffer_infos(&commands);
         {
             let queue = device
                 .inner
@@ -96,7 +96,7 @@ impl OneOff {
                 .unwrap_or_else(PoisonError::into_inner);
             // SAFETY: the lock keeps our threads from the queue, the host keeps its own (see `Device::adopt`); the fence
             // is unsignalled and the command buffer executable.
-            unsafe { raw.queue_submit2(*queue, &submit, self.fence) }
+            unsafe { device.commands().submit(*queue, &submit, self.fence) }
                 .map_err(failed("vkQueueSubmit2"))?;
         }
         // SAFETY: the fence belongs to the submission above.

@@ -250,7 +250,7 @@ impl Swapchain {
             .new_layout(vk::ImageLayout::PRESENT_SRC_KHR);
         // SAFETY: the caller vouches for `cmd`, and that the image is being rendered to.
         unsafe {
-            self.device.raw().cmd_end_rendering(cmd);
+            self.device.commands().end_rendering(cmd);
             barrier(&self.device, cmd, self.chain().images[image].image, to_show);
         }
     }

@@ -252,8 +252,8 @@ impl Timer {
             // SAFETY: the caller vouches for `cmd`; the query is below the pool's count and was reset.
             unsafe {
                 self.device
-                    .raw()
-                    .cmd_write_timestamp2(cmd, stage, self.pool, query)
+                    .commands()
+                    .write_timestamp(cmd, stage, self.pool, query)
             };
         }
     }

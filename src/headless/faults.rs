@@ -185,8 +185,12 @@ fn a_device_may_be_lost_anywhere() {
 fn a_device_that_is_too_old_or_lacks_something_says_so() {
     for (pretence, says) in [
         (
-            Pretence::Vulkan12,
-            "it offers Vulkan 1.2 and 1.3 is needed; a newer driver may help",
+            Pretence::Vulkan11,
+            "it offers Vulkan 1.1 and 1.2 is needed; a newer driver may help",
+        ),
+        (
+            Pretence::Vulkan12Alone,
+            "Vulkan 1.2 needs the extension VK_KHR_synchronization2, which it lacks",
         ),
         (
             Pretence::Without("bufferDeviceAddress"),
@@ -227,6 +231,21 @@ fn a_device_that_is_too_old_or_lacks_something_says_so() {
         let creates = matches!(pretence, Pretence::CreateFails(_));
         assert_eq!(refused.count(), if creates { 0 } else { listed.len() });
     }
+}
+
+#[test]
+fn a_device_of_vulkan_1_2_draws_the_same_picture() {
+    let [natural, floor] = [None, Some(Pretence::Vulkan12)].map(|pretence| {
+        let device = faults::device(pretence).expect("a device");
+        let natural = device.support().api_version == vk::API_VERSION_1_3;
+        assert_eq!(natural, pretence.is_none());
+        let mut headless = on(&device).expect("a renderer");
+        let pictures = [Raster::Tiles, Raster::Quad].map(|raster| life(&mut headless, raster));
+        drop(headless);
+        assert_eq!(device.close(), Vec::<String>::new());
+        pictures.map(|pictures| pictures.expect("renders"))
+    });
+    assert!(natural == floor, "to the bit");
 }
 
 #[test]

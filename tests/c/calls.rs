@@ -5,7 +5,7 @@
 #[path = "../../tools/examples/host.rs"]
 mod host;
 
-use std::ffi::CStr;
+use std::ffi::{CStr, c_void};
 use std::ptr::{null, null_mut};
 
 use host::{Host, HostDesc};
@@ -71,8 +71,9 @@ fn what_is_wrong_is_said() {
         let mut support: RaraSupport = std::mem::zeroed();
         let size = size_of_val(&support);
         let (instance, physical) = (ours.instance.handle(), ours.physical_device);
+        let version = ours.api_version;
         let check = |physical, support: &mut RaraSupport| {
-            rara_check(Some(loader), instance, physical, support, size)
+            rara_check(Some(loader), instance, physical, version, support, size)
         };
         let nothing = check(vk::PhysicalDevice::null(), &mut support);
         assert_fails(nothing, RARA_ERROR_INVALID, "physical_device is null");
@@ -83,8 +84,13 @@ fn what_is_wrong_is_said() {
         }
         let mut vulkan12 = vk::PhysicalDeviceVulkan12Features::default().timeline_semaphore(true);
         let mut vulkan13 = vk::PhysicalDeviceVulkan13Features::default();
-        let set = rara_support_features(&support, &mut vulkan12, &mut vulkan13, null_mut());
-        assert_ok(set);
+        let nothing = rara_support_features(&support, null_mut());
+        assert_fails(nothing, RARA_ERROR_INVALID, "bufferDeviceAddress");
+        let chain = (&raw mut vulkan12).cast::<c_void>();
+        let half = rara_support_features(&support, chain);
+        assert_fails(half, RARA_ERROR_INVALID, "synchronization2");
+        vulkan12.p_next = (&raw mut vulkan13).cast();
+        assert_ok(rara_support_features(&support, chain));
         assert_eq!(
             vulkan12.buffer_device_address + vulkan12.timeline_semaphore,
             2
@@ -97,6 +103,7 @@ fn what_is_wrong_is_said() {
         desc.get_instance_proc_addr = Some(loader);
         (desc.instance, desc.physical_device) = (instance, physical);
         desc.queue_family = ours.queue_family;
+        assert_eq!(desc.api_version, version);
         let mut device = null_mut();
         let failed = rara_device_adopt(&desc, &mut device);
         assert_fails(failed, RARA_ERROR_INVALID, "desc->device is null");
@@ -107,11 +114,16 @@ fn what_is_wrong_is_said() {
             assert_fails(failed, RARA_ERROR_INVALID, "without VK_EXT_mesh_shader");
             desc.mesh_shader = vk::FALSE;
         }
+        desc.api_version = vk::API_VERSION_1_2; // then it needs extensions that this host has not enabled
+        let failed = rara_device_adopt(&desc, &mut device);
+        assert_fails(failed, RARA_ERROR_INVALID, "VK_KHR_synchronization2");
+        desc.api_version = version;
         desc.queue_family = 99;
         let failed = rara_device_adopt(&desc, &mut device);
         assert_fails(failed, RARA_ERROR_INVALID, "no queue family 99");
         assert!(device.is_null());
         desc.queue_family = ours.queue_family;
+        assert_eq!(desc.api_version, version);
         assert_ok(rara_device_adopt(&desc, &mut device));
 
         let (mut gaussians, mut scene) = (null_mut(), null_mut());

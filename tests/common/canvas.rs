@@ -482,15 +482,23 @@ impl Canvas {
         old: vk::ImageLayout,
         new: vk::ImageLayout,
     ) {
-        let (all, both) = (
-            vk::PipelineStageFlags2::ALL_COMMANDS,
-            vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE,
-        );
+        let all = vk::PipelineStageFlags2::ALL_COMMANDS;
+        let access = |layout| match layout {
+            COLOR => {
+                vk::AccessFlags2::COLOR_ATTACHMENT_READ | vk::AccessFlags2::COLOR_ATTACHMENT_WRITE
+            }
+            DEPTH => {
+                vk::AccessFlags2::DEPTH_STENCIL_ATTACHMENT_READ
+                    | vk::AccessFlags2::DEPTH_STENCIL_ATTACHMENT_WRITE
+            }
+            COPIED => vk::AccessFlags2::TRANSFER_READ,
+            _ => vk::AccessFlags2::NONE,
+        };
         let barrier = [vk::ImageMemoryBarrier2::default()
             .src_stage_mask(all)
-            .src_access_mask(both)
+            .src_access_mask(access(old))
             .dst_stage_mask(all)
-            .dst_access_mask(both)
+            .dst_access_mask(access(new))
             .old_layout(old)
             .new_layout(new)
             .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)

@@ -28,14 +28,14 @@ int main(int count, char **arguments) {
         vkGetPhysicalDeviceProperties(all[i], &properties);
         const char *name = getenv("RARA_DEVICE");
         if (name && !strstr(properties.deviceName, name)) continue;
-        if (rara_check(vkGetInstanceProcAddr, instance, all[i], &support, sizeof support) == RARA_OK) physical = all[i];
+        if (rara_check(vkGetInstanceProcAddr, instance, all[i], VK_API_VERSION_1_3, &support, sizeof support) == RARA_OK) physical = all[i];
         else why = rara_last_error_message();
     }
     check(physical, why);
     VkPhysicalDeviceMeshShaderFeaturesEXT mesh_shader{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT};
     VkPhysicalDeviceVulkan13Features vulkan13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, support.mesh_shader ? &mesh_shader : nullptr};
     VkPhysicalDeviceVulkan12Features vulkan12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &vulkan13};
-    RARA(rara_support_features(&support, &vulkan12, &vulkan13, &mesh_shader));
+    RARA(rara_support_features(&support, &vulkan12));
     const float priority = 1;
     VkDeviceQueueCreateInfo queue_info{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, support.queue_family, 1, &priority};
     VkDeviceCreateInfo device_info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &vulkan12, 0, 1, &queue_info, 0, nullptr, support.extension_count, support.extensions};

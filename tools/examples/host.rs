@@ -1,6 +1,9 @@
 //! An engine in small, which knows nothing of splats: its own instance, device, queue and targets, two frames in flight.
 //! It paints its targets with stripes of its own, so that whatever draws afterwards draws onto something.
 
+#[path = "best_practices.rs"]
+mod best_practices;
+
 use std::ffi::{CStr, c_void};
 use std::sync::Mutex;
 
@@ -11,11 +14,14 @@ use rara::{Error, Result};
 /// Frames that the host records before it waits for the oldest.
 pub(crate) const FRAMES: usize = 2;
 
+/// What its instance is created for.
+const VERSION: u32 = vk::API_VERSION_1_3;
+
 /// What a host is created with.
 pub(crate) struct HostDesc<'a> {
     /// Part of the device's name; `None` is the first that can draw splats.
     pub(crate) device: Option<&'a str>,
-    /// Load the Khronos validation layer with synchronisation checks.
+    /// Load the Khronos validation layer with checks of synchronisation and best practices.
     pub(crate) validation: bool,
     /// Enable what is optional: mesh shaders, push descriptors.
     pub(crate) optional: bool,
@@ -88,7 +94,9 @@ impl Host {
             let (physical_device, mut support) = devices
                 .into_iter()
                 .filter(wanted)
-                .find_map(|physical| Some((physical, gpu::check(&instance, physical).ok()?)))
+                .find_map(|physical| {
+                    Some((physical, gpu::check(&instance, physical, VERSION).ok()?))
+                })
                 .ok_or_else(|| Error::Device("no device can draw splats".into()))?;
             support.mesh_shader &= desc.optional;
             support.push_descriptor &= desc.optional;
@@ -132,6 +140,7 @@ impl Host {
     /// What [`rara::gpu::Device::adopt`] wants to know. The host must outlive whatever is made from it.
     pub(crate) fn lend(&self) -> AdoptDesc {
         AdoptDesc {
+            api_version: VERSION,
             instance: self.instance.clone(),
             physical_device: self.physical_device,
             device: self.device.clone(),
@@ -141,6 +150,7 @@ impl Host {
             push_descriptor: self.support.push_descriptor,
             debug_utils: self.messenger.is_some(),
             pipeline_cache: self.pipeline_cache,
+            allocator: None,
         }
     }
 
@@ -508,7 +518,7 @@ unsafe fn instance(
 )> {
     let application = vk::ApplicationInfo::default()
         .application_name(c"rara's example host")
-        .api_version(vk::API_VERSION_1_3);
+        .api_version(VERSION);
     let (layers, extensions) = if validation {
         (
             vec![c"VK_LAYER_KHRONOS_validation".as_ptr()],
@@ -520,7 +530,7 @@ unsafe fn instance(
     } else {
         (Vec::new(), Vec::new())
     };
-    let enabled = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
+    let enabled = best_practices::checks(entry);
     let mut checks = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enabled);
     let mut info = vk::InstanceCreateInfo::default()
         .application_info(&application)
@@ -567,8 +577,10 @@ unsafe extern "system" fn collect(
         let text = (*data).message_as_c_str().unwrap_or(c"(no text)");
         (text, &*user.cast())
     };
-    let text = text.to_string_lossy().into_owned();
-    messages.lock().expect("no holder panics").push(text);
+    if best_practices::counts(text) {
+        let text = text.to_string_lossy().into_owned();
+        messages.lock().expect("no holder panics").push(text);
+    }
     vk::FALSE
 }
 

@@ -11,6 +11,9 @@ float farness(float depth) {
 
 // Beyond which farness a splat is hidden in a pixel. Whole numbers hide what rounds to more than they hold.
 float hidden_beyond(uvec2 pixel) {
+    if (min(push.param[10], push.param[11]) == 0u) {
+        return 3.0e38; // the image is not under the picture: nothing is hidden
+    }
     ivec2 at = ivec2(pixel) - ivec2(push.param[8], push.param[9]);
     uvec2 inside = uvec2(clamp(at, ivec2(0), ivec2(push.param[10], push.param[11]) - 1));
     uint number = inside.y * push.param[10] + inside.x;

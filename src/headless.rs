@@ -253,14 +253,14 @@ impl Headless {
                 // SAFETY: `cmd` is recording and `scene`, the target and the renderer outlive the wait for it; the
                 // rendering scope is opened and closed here around the draw, on an attachment of the renderer's format.
                 unsafe {
-                    self.renderer.prepare(cmd, scene);
+                    self.renderer.prepare(cmd, scene)?;
                     target.image.begin_rendering(cmd, clear);
                     let area = vk::Rect2D {
                         offset: vk::Offset2D::default(),
                         extent,
                     };
                     Drawer::new(&self.device, cmd, None).viewport(area);
-                    self.renderer.draw(cmd, [0.0, 0.0]);
+                    self.renderer.draw(cmd, [0.0, 0.0])?;
                     target.image.end_rendering(cmd);
                 }
                 recorded = Instant::now();

@@ -158,10 +158,11 @@ impl Windowed {
         // attachment of the renderer's format, and the submission waits for its image.
         unsafe {
             frames.submit(swapchain.drawn(image), |cmd| {
-                renderer.prepare(cmd, scene);
+                renderer.prepare(cmd, scene)?;
                 swapchain.begin_rendering(cmd, image, [r, g, b, 1.0]);
-                renderer.draw(cmd, [0.0, 0.0]);
+                renderer.draw(cmd, [0.0, 0.0])?;
                 swapchain.end_rendering(cmd, image);
+                Ok(())
             })?;
             swapchain.present(image)?;
         }
@@ -224,10 +225,10 @@ impl Windowed {
                     // for this one; the rendering scope is opened and closed here around the draw, on an attachment
                     // of the renderer's format.
                     unsafe {
-                        renderer.prepare(cmd, scene);
+                        renderer.prepare(cmd, scene)?;
                         target.begin_rendering(cmd, clear);
                         Drawer::new(&self.device, cmd, None).viewport(target.extent().into());
-                        renderer.draw(cmd, [0.0, 0.0]);
+                        renderer.draw(cmd, [0.0, 0.0])?;
                         target.end_rendering(cmd);
                         target.copy_to(cmd, &readback);
                     }

@@ -66,13 +66,17 @@ fn frames(scene: &Gaussians) -> Vec<(Camera, Clip, Settings)> {
 fn record(host: &mut Host, renderer: &mut Renderer, scene: &SceneBuffers, at: vk::Offset2D) {
     let cmd = host.begin().expect("begins");
     // SAFETY: `cmd` is recording outside rendering, and every test waits before it drops the scene.
-    unsafe { renderer.prepare(cmd, scene) };
+    unsafe { renderer.prepare(cmd, scene).expect("prepares") };
     host.begin_rendering(vk::Rect2D {
         offset: at,
         extent: VIEW,
     });
     // SAFETY: `cmd` is inside rendering to a target of the renderer's format, viewport and scissor are set.
-    unsafe { renderer.draw(cmd, [at.x as f32, at.y as f32]) };
+    unsafe {
+        renderer
+            .draw(cmd, [at.x as f32, at.y as f32])
+            .expect("draws")
+    };
     host.submit().expect("submits");
 }
 
@@ -371,44 +375,152 @@ fn an_empty_scene_records_nothing() {
 }
 
 #[test]
-fn what_cannot_be_blended_into_is_refused_with_a_reason() {
+fn what_there_cannot_be_is_refused_with_a_reason() {
     let host = host(BYTES, VIEW, true);
     let device = adopt(&host);
-    let error = Renderer::new(&device, RendererDesc::new(vk::Format::R8G8B8A8_UINT)).unwrap_err();
-    let text = error.to_string();
-    assert!(
-        text.contains("R8G8B8A8_UINT") && text.contains(&device.info().name),
-        "{text}"
-    );
+    let depth = |format, stencil, readable| {
+        let map = rara::DepthMap::ordinary(0.1, 10.0).expect("a map");
+        Some(rara::DepthDesc {
+            stencil,
+            readable,
+            ..rara::DepthDesc::new(format, map)
+        })
+    };
+    let desc = RendererDesc::new(BYTES);
+    let name = &device.info().name;
+    for (desc, says) in [
+        (
+            RendererDesc::new(vk::Format::R8G8B8A8_UINT),
+            ["R8G8B8A8_UINT", name.as_str()],
+        ),
+        (
+            RendererDesc {
+                frames_in_flight: 0,
+                ..desc
+            },
+            ["frames_in_flight is 0", "from 1 to 16"],
+        ),
+        (
+            RendererDesc {
+                frames_in_flight: u32::MAX,
+                ..desc
+            },
+            ["frames_in_flight is 4294967295", "from 1 to 16"],
+        ),
+        (
+            RendererDesc {
+                depth: depth(vk::Format::S8_UINT, false, false),
+                ..desc
+            },
+            ["S8_UINT", "no depth"],
+        ),
+        (
+            RendererDesc {
+                depth: depth(vk::Format::D32_SFLOAT, true, false),
+                ..desc
+            },
+            ["D32_SFLOAT", "DepthDesc::stencil"],
+        ),
+        (
+            RendererDesc {
+                depth: depth(vk::Format::D32_SFLOAT, false, true),
+                samples: vk::SampleCountFlags::TYPE_4,
+                ..desc
+            },
+            ["DepthDesc::readable", "samples"],
+        ),
+        (
+            RendererDesc {
+                expected_depth: Some(rara::ExpectedDepthDesc::new(vk::Format::R32_SFLOAT)),
+                ..desc
+            },
+            ["R32_SFLOAT", "two floats"],
+        ),
+    ] {
+        let text = Renderer::new(&device, desc).unwrap_err().to_string();
+        assert!(says.iter().all(|part| text.contains(part)), "{text}");
+    }
     drop(device);
     assert_eq!(host.close(), Vec::<String>::new());
 }
 
+/// Without recording anything, so that no command buffer is needed.
 #[test]
-#[should_panic(expected = "Renderer::draw needs a successful configure() and prepare() before it")]
-fn a_draw_without_preparation_is_refused() {
-    let headless = common::headless();
-    let mut renderer =
-        Renderer::new(headless.device(), RendererDesc::new(BYTES)).expect("a renderer");
-    // SAFETY: refused before anything is recorded.
-    unsafe { renderer.draw(vk::CommandBuffer::null(), [0.0, 0.0]) };
-}
-
-#[test]
-#[should_panic(expected = "another scene than configure()")]
-fn another_scene_than_the_configured_one_is_refused() {
+fn calls_in_an_order_that_makes_no_sense_are_refused() {
     let headless = common::headless();
     let device = headless.device();
+    let null = vk::CommandBuffer::null();
+    let refused = |result: rara::Result<()>, why: &str| match result {
+        Err(rara::Error::Invalid(text)) => assert!(text.contains(why), "{text}"),
+        other => panic!("{other:?}, and not that {why}"),
+    };
+    let (camera, clip, settings) = frames(&scene()).swap_remove(1);
+    let upload =
+        |scene| SceneBuffers::upload(device, &scene, rara::ShFormat::default()).expect("uploads");
+    // As large as the other, but not it.
+    let (one, other) = (upload(scene()), upload(generate(Kind::General, 3_000, 6)));
+    let mut renderer = Renderer::new(device, RendererDesc::new(BYTES)).expect("a renderer");
+    // SAFETY: all of them are refused before anything is recorded.
+    unsafe {
+        let why = "draw needs a successful configure() and prepare() before it";
+        refused(renderer.draw(null, [0.0; 2]), why);
+        refused(renderer.draw_depth(null, [0.0; 2]), "expected_depth");
+        let why = "prepare needs a successful configure() before it";
+        refused(renderer.prepare(null, &one), why);
+        let configured = renderer.configure(&one, &camera, &clip, &settings);
+        configured.expect("configures");
+        let why = "another scene than configure()";
+        refused(renderer.prepare(null, &other), why);
+        let why = "draw needs a successful configure() and prepare() before it";
+        refused(renderer.draw(null, [0.0; 2]), why);
+    }
+    let map = rara::DepthMap::ordinary(0.1, 10.0).expect("a map");
+    refused(renderer.set_depth_map(map), "depth attachment");
+    // A device of its own.
+    let elsewhere = common::headless();
+    let scene = SceneBuffers::upload(elsewhere.device(), &scene(), rara::ShFormat::default());
+    let configured = renderer.configure(&scene.expect("uploads"), &camera, &clip, &settings);
+    refused(configured, "another device");
+}
+
+/// What is set between a frame's preparation and its draw is for the next frame.
+#[test]
+fn settings_of_the_next_frame_leave_the_prepared_one_alone() {
     let scene = scene();
     let (camera, clip, settings) = frames(&scene).swap_remove(1);
-    let upload =
-        |scene| SceneBuffers::upload(device, scene, rara::ShFormat::default()).expect("uploads");
-    let (one, other) = (upload(&scene), upload(&generate(Kind::Layers, 3_000, 5)));
-    let mut renderer = Renderer::new(device, RendererDesc::new(BYTES)).expect("a renderer");
-    let configured = renderer.configure(&one, &camera, &clip, &settings);
-    configured.expect("configures");
-    // SAFETY: refused before anything is recorded.
-    unsafe { renderer.prepare(vk::CommandBuffer::null(), &other) };
+    let mut host = host(FLOATS, VIEW, true);
+    let device = adopt(&host);
+    let buffers =
+        SceneBuffers::upload(&device, &scene, rara::ShFormat::default()).expect("uploads");
+    let mut renderer =
+        Renderer::new(&device, in_flight(FLOATS, Bindings::Bound)).expect("a renderer");
+    let moved = rara::Placement::new(glam::DVec3::X, glam::DQuat::IDENTITY, 2.0).expect("finite");
+    let mut pictures = Vec::new();
+    for frame in 0..2 {
+        host.wait().expect("waits");
+        let configured = renderer.configure(&buffers, &camera, &clip, &settings);
+        configured.expect("configures");
+        let cmd = host.begin().expect("begins");
+        // SAFETY: `cmd` is recording outside rendering, and the frame is waited for below.
+        unsafe { renderer.prepare(cmd, &buffers).expect("prepares") };
+        if frame == 1 {
+            renderer.set_placement(moved);
+            renderer.set_color_format(BYTES);
+        }
+        host.begin_rendering(VIEW.into());
+        // More draws than the timer has room for: the picture of the last is blended over the others.
+        for _ in 0..20 {
+            // SAFETY: `cmd` is inside rendering to a target of the renderer's format, viewport and scissor are set.
+            unsafe { renderer.draw(cmd, [0.0; 2]).expect("draws") };
+        }
+        host.submit().expect("submits");
+        pictures.push(host.wait_for_all().expect("waits"));
+        let times = renderer.pass_times();
+        assert!(times.is_empty() || times.iter().any(|time| time.name == "splat"));
+    }
+    assert!(pictures[0] == pictures[1]);
+    drop((renderer, buffers, device));
+    assert_eq!(host.close(), Vec::<String>::new());
 }
 
 /// More pairs of tile and splat than a first frame has room for: it is drawn as quads, the same picture, and the frame

@@ -64,11 +64,16 @@ fn every_format_holds_the_picture_as_well_as_it_can() {
                 configured.expect("configures");
                 let renderer = std::cell::RefCell::new(renderer);
                 // SAFETY: recording outside the canvas's scope, and all is waited for.
-                let before = |cmd| unsafe { renderer.borrow_mut().prepare(cmd, &buffers) };
+                let before = |cmd| unsafe {
+                    renderer
+                        .borrow_mut()
+                        .prepare(cmd, &buffers)
+                        .expect("prepares")
+                };
                 let inside = |cmd| {
                     canvas.viewport(cmd, 0, 0, SIZE);
                     // SAFETY: inside the canvas's scope, of the renderer's format.
-                    unsafe { renderer.borrow_mut().draw(cmd, [0.0; 2]) };
+                    unsafe { renderer.borrow_mut().draw(cmd, [0.0; 2]).expect("draws") };
                 };
                 let [pixels, _] = canvas.draw(before, inside);
                 let pairs = pixels.iter().flatten().zip(truth.iter().flatten());

@@ -462,8 +462,13 @@ fn an_engine_of_vulkan_1_2_gets_the_same_pictures_from_its_own_memory() {
             // SAFETY: the frame is waited for before renderer and scene are dropped; `cmd` is where it has to be.
             let picture = unsafe {
                 host.frame(
-                    |cmd| renderer.borrow_mut().prepare(cmd, &buffers),
-                    |cmd| renderer.borrow_mut().draw(cmd, [0.0, 0.0]),
+                    |cmd| {
+                        renderer
+                            .borrow_mut()
+                            .prepare(cmd, &buffers)
+                            .expect("prepares")
+                    },
+                    |cmd| renderer.borrow_mut().draw(cmd, [0.0, 0.0]).expect("draws"),
                 )
             };
             let times = renderer.borrow_mut().pass_times();

@@ -148,10 +148,10 @@ fn scenes_and_clips_change_while_frames_are_in_flight() {
                 renderer.configure(scene, &cameras[at], &clip(&scenes[at], frame), &settings);
             configured.expect("configures");
             // SAFETY: `cmd` is recording outside rendering, and scenes are kept until their frames are done.
-            unsafe { renderer.prepare(cmd, scene) };
+            unsafe { renderer.prepare(cmd, scene).expect("prepares") };
             host.begin_rendering(VIEW.into());
             // SAFETY: `cmd` is inside rendering to a target of the renderer's format.
-            unsafe { renderer.draw(cmd, [0.0, 0.0]) };
+            unsafe { renderer.draw(cmd, [0.0, 0.0]).expect("draws") };
             host.submit().expect("submits");
         }
         let pixels = host.wait_for_all().expect("waits");

@@ -102,14 +102,24 @@ fn two_eyes_share_a_scope_and_compile_nothing_twice() {
             let before = |cmd| {
                 for renderer in &renderers {
                     // SAFETY: recording outside a scope, and all is waited for.
-                    unsafe { renderer.borrow_mut().prepare(cmd, &buffers) };
+                    unsafe {
+                        renderer
+                            .borrow_mut()
+                            .prepare(cmd, &buffers)
+                            .expect("prepares")
+                    };
                 }
             };
             let inside = |cmd| {
                 for (renderer, left) in renderers.iter().zip([0, SIZE.0]) {
                     canvas.viewport(cmd, left as i32, 0, SIZE);
                     // SAFETY: inside the canvas's scope, after both were prepared.
-                    unsafe { renderer.borrow_mut().draw(cmd, [left as f32, 0.0]) };
+                    unsafe {
+                        renderer
+                            .borrow_mut()
+                            .draw(cmd, [left as f32, 0.0])
+                            .expect("draws")
+                    };
                 }
             };
             let [pixels, _] = canvas.draw(before, inside);
@@ -147,12 +157,17 @@ fn one_renderer_draws_views_one_after_the_other_in_one_command_buffer() {
                 let configured = renderer.configure(&buffers, &eyes[eye], &clip, &raster(way));
                 configured.expect("configures");
                 // SAFETY: recording outside a scope, and all is waited for.
-                unsafe { renderer.prepare(cmd, &buffers) };
+                unsafe { renderer.prepare(cmd, &buffers).expect("prepares") };
             };
             let draw = |cmd, left: u32| {
                 canvas.viewport(cmd, left as i32, 0, SIZE);
                 // SAFETY: inside the canvas's scope, after the view was prepared.
-                unsafe { renderer.borrow_mut().draw(cmd, [left as f32, 0.0]) };
+                unsafe {
+                    renderer
+                        .borrow_mut()
+                        .draw(cmd, [left as f32, 0.0])
+                        .expect("draws")
+                };
             };
             let [pixels, _] = canvas.draw_scopes(&mut [
                 (&mut |cmd| prepare(cmd, 0), &mut |cmd| draw(cmd, 0)),
@@ -350,14 +365,19 @@ fn two_placed_scenes_stand_in_one_picture_with_a_mesh() {
             let before = |cmd| {
                 for (renderer, buffers) in renderers.iter().zip(&buffers) {
                     // SAFETY: recording outside a scope, the depth is ready to be copied, and all is waited for.
-                    unsafe { renderer.borrow_mut().prepare_behind(cmd, buffers, &depth) };
+                    unsafe {
+                        renderer
+                            .borrow_mut()
+                            .prepare_behind(cmd, buffers, &depth)
+                            .expect("prepares")
+                    };
                 }
             };
             let inside = |cmd| {
                 canvas.viewport(cmd, 0, 0, SIZE);
                 for renderer in &renderers {
                     // SAFETY: inside the canvas's scope, after both were prepared.
-                    unsafe { renderer.borrow_mut().draw(cmd, [0.0; 2]) };
+                    unsafe { renderer.borrow_mut().draw(cmd, [0.0; 2]).expect("draws") };
                 }
             };
             let [pixels, _] = canvas.draw(before, inside);

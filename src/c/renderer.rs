@@ -220,8 +220,7 @@ pub unsafe extern "C" fn rara_renderer_set_depth_map(
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         let renderer = exclusive(renderer, "renderer")?;
-        renderer.0.set_depth_map(shared(map, "map")?.map()?);
-        Ok(())
+        renderer.0.set_depth_map(shared(map, "map")?.map()?)
     })
 }
 
@@ -265,8 +264,7 @@ pub unsafe extern "C" fn rara_renderer_prepare(
     guard(|| unsafe {
         let renderer = exclusive(renderer, "renderer")?;
         let scene = shared(scene, "scene")?;
-        renderer.0.prepare(recording(cmd)?, &scene.0);
-        Ok(())
+        renderer.0.prepare(recording(cmd)?, &scene.0)
     })
 }
 
@@ -290,8 +288,7 @@ pub unsafe extern "C" fn rara_renderer_prepare_behind(
         let renderer = exclusive(renderer, "renderer")?;
         let scene = shared(scene, "scene")?;
         let depth = depth::depth_image(depth)?;
-        renderer.0.prepare_behind(recording(cmd)?, &scene.0, &depth);
-        Ok(())
+        renderer.0.prepare_behind(recording(cmd)?, &scene.0, &depth)
     })
 }
 
@@ -312,8 +309,7 @@ pub unsafe extern "C" fn rara_renderer_draw(
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         let renderer = exclusive(renderer, "renderer")?;
-        renderer.0.draw(recording(cmd)?, [x, y]);
-        Ok(())
+        renderer.0.draw(recording(cmd)?, [x, y])
     })
 }
 
@@ -333,8 +329,7 @@ pub unsafe extern "C" fn rara_renderer_draw_depth(
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         let renderer = exclusive(renderer, "renderer")?;
-        renderer.0.draw_depth(recording(cmd)?, [x, y]);
-        Ok(())
+        renderer.0.draw_depth(recording(cmd)?, [x, y])
     })
 }
 

@@ -98,6 +98,11 @@ impl Device {
         }
     }
 
+    /// Whether two handles are of one device.
+    pub(crate) fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.inner, &other.inner)
+    }
+
     /// The device's name, driver and kind.
     pub fn info(&self) -> &DeviceInfo {
         &self.inner.info

@@ -38,7 +38,7 @@ impl<'a> Drawer<'a> {
         let timed = self
             .timer
             .as_mut()
-            .map(|timer| unsafe { timer.begin(self.cmd, name) });
+            .and_then(|timer| unsafe { timer.begin(self.cmd, name) });
         let result = record(self);
         if let (Some(timer), Some(pass)) = (&mut self.timer, timed) {
             // SAFETY: as above.

@@ -104,7 +104,7 @@ impl InFlight {
     pub(crate) unsafe fn submit(
         &mut self,
         drawn: vk::Semaphore,
-        record: impl FnOnce(vk::CommandBuffer),
+        record: impl FnOnce(vk::CommandBuffer) -> Result<()>,
     ) -> Result<()> {
         let raw = self.device.raw();
         let slot = &mut self.slots[self.next];
@@ -116,7 +116,7 @@ impl InFlight {
         // SAFETY: as above, the command buffer is initial.
         unsafe { raw.begin_command_buffer(slot.cmd, &begin) }
             .map_err(failed("vkBeginCommandBuffer"))?;
-        record(slot.cmd);
+        record(slot.cmd)?; // without a submission the next reset undoes what was recorded
         // SAFETY: it is recording.
         unsafe { raw.end_command_buffer(slot.cmd) }.map_err(failed("vkEndCommandBuffer"))?;
         let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(slot.cmd)];

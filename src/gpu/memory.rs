@@ -130,6 +130,11 @@ impl Buffer {
         Ok(buffer)
     }
 
+    /// The device it is on.
+    pub(crate) fn device(&self) -> &Device {
+        &self.device
+    }
+
     /// The Vulkan handle.
     pub fn handle(&self) -> vk::Buffer {
         self.handle

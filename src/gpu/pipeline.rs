@@ -1,6 +1,7 @@
 //! Compute and graphics pipelines from reflected shaders.
 
 use std::ffi::CStr;
+use std::sync::Arc;
 
 use ash::vk;
 
@@ -25,8 +26,9 @@ pub struct ComputeDesc<'a> {
     pub bindings: Bindings,
 }
 
-/// A compute pipeline; dropping it frees it, when the device is done with it.
-pub struct ComputePipeline(Pipeline);
+/// A compute pipeline, shared by its clones; dropping the last frees it, when the device is done with it.
+#[derive(Clone)]
+pub struct ComputePipeline(Arc<Pipeline>);
 
 impl ComputePipeline {
     /// Compiles the shader.
@@ -51,7 +53,7 @@ impl ComputePipeline {
             made.map_err(|(_, result)| result),
             "vkCreateComputePipelines",
         )
-        .map(Self)
+        .map(|pipeline| Self(Arc::new(pipeline)))
     }
 
     /// Its name.
@@ -101,9 +103,10 @@ pub struct GraphicsDesc<'a> {
     pub bindings: Bindings,
 }
 
-/// A graphics pipeline; dropping it frees it, when the device is done with it.
+/// A graphics pipeline, shared by its clones; dropping the last frees it, when the device is done with it.
+#[derive(Clone)]
 pub struct GraphicsPipeline {
-    inner: Pipeline,
+    inner: Arc<Pipeline>,
     mesh: bool,
 }
 
@@ -207,7 +210,10 @@ impl GraphicsPipeline {
         };
         let made = made.map_err(|(_, result)| result);
         let inner = Pipeline::new(device, desc.name, layout, made, "vkCreateGraphicsPipelines")?;
-        Ok(Self { inner, mesh })
+        Ok(Self {
+            inner: Arc::new(inner),
+            mesh,
+        })
     }
 
     /// Its name.

@@ -3,6 +3,7 @@
 use std::ffi::CStr;
 
 use ash::vk;
+use smallvec::SmallVec;
 
 use super::validation;
 use super::{Access, Buffer, ComputePipeline, Device, MAX_BUFFERS, Timer, Tracker};
@@ -100,7 +101,7 @@ impl<'a> Recorder<'a> {
         let timed = self
             .timer
             .as_mut()
-            .map(|timer| unsafe { timer.begin(self.cmd, name) });
+            .and_then(|timer| unsafe { timer.begin(self.cmd, name) });
         let result = record(self);
         if let (Some(timer), Some(pass)) = (&mut self.timer, timed) {
             // SAFETY: as above.
@@ -329,7 +330,7 @@ impl<'a> Recorder<'a> {
     }
 
     fn ready(&mut self, buffers: &[&Buffer], accesses: &[Access]) {
-        let uses: Vec<_> = buffers
+        let uses: SmallVec<[_; 24]> = buffers
             .iter()
             .flat_map(|buffer| accesses.iter().map(|access| (buffer.handle(), *access)))
             .collect();

@@ -4,14 +4,16 @@ use std::ffi::CStr;
 
 use ash::{ext, khr, vk};
 
+use super::MAX_BUFFERS;
 use super::failure::failed;
+use crate::limits::BLOCK_SIZE;
 use crate::{Error, Result};
 
 /// What a physical device that meets the requirements offers beyond them.
 ///
 /// Required are `bufferDeviceAddress`, `synchronization2` and `dynamicRendering`, which are Vulkan 1.3, or 1.2 with
-/// `VK_KHR_synchronization2` and `VK_KHR_dynamic_rendering`; and a queue family for graphics and compute. Everything else
-/// is optional and stands here.
+/// `VK_KHR_synchronization2` and `VK_KHR_dynamic_rendering`; compute workgroups of 256, where Vulkan promises 128; and a
+/// queue family for graphics and compute. Everything else is optional and stands here.
 #[derive(Debug, Clone, Default)]
 pub struct Support {
     /// The Vulkan version that rara uses: 1.2 or 1.3.
@@ -20,7 +22,8 @@ pub struct Support {
     pub queue_family: u32,
     /// `VK_EXT_mesh_shader` with mesh and task shaders.
     pub mesh_shader: bool,
-    /// `VK_KHR_push_descriptor`, which pipelines with [`Bindings::Bound`](super::Bindings::Bound) need.
+    /// `VK_KHR_push_descriptor`, and as many storage buffers a stage as pipelines with
+    /// [`Bindings::Bound`](super::Bindings::Bound) have.
     pub push_descriptor: bool,
     /// Nanoseconds a timestamp tick; 0 where [`Support::queue_family`] has no timestamps.
     pub timestamp_period: f32,
@@ -32,20 +35,6 @@ pub struct Support {
     pub max_buffer_size: u64,
     /// Workgroups along x or y of one dispatch.
     pub max_group_count: u32,
-    /// Bytes of shared memory in a compute workgroup.
-    pub max_shared_memory: u32,
-    /// Invocations in a compute workgroup.
-    pub max_group_size: u32,
-    /// Invocations in a subgroup.
-    pub subgroup_size: u32,
-    /// Subgroup operations that compute shaders can use; empty where they can use none.
-    pub subgroup_operations: vk::SubgroupFeatureFlags,
-    /// Vertices a mesh workgroup can put out; 0 without mesh shaders, like the next two.
-    pub max_mesh_vertices: u32,
-    /// Primitives a mesh workgroup can put out.
-    pub max_mesh_primitives: u32,
-    /// Mesh workgroups along x or y of one draw.
-    pub max_mesh_group_count: u32,
     /// Pixels along a side of a 2D image.
     pub max_image_size: u32,
     /// The feature `pipelineStatisticsQuery`. Used where rara opens the device and statistics are asked for.
@@ -210,27 +199,32 @@ pub unsafe fn check(
 
     let mut v11 = vk::PhysicalDeviceVulkan11Properties::default();
     let mut v13_limits = vk::PhysicalDeviceVulkan13Properties::default();
-    let mut mesh_limits = vk::PhysicalDeviceMeshShaderPropertiesEXT::default();
     let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut v11);
     if has_1_3 {
         properties = properties.push_next(&mut v13_limits);
     }
-    if has_mesh {
-        properties = properties.push_next(&mut mesh_limits);
-    }
     // SAFETY: as above.
     unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
     let limits = base.limits;
+    let group = limits
+        .max_compute_work_group_invocations
+        .min(limits.max_compute_work_group_size[0]);
+    if group < BLOCK_SIZE {
+        return lacks(format!(
+            "its compute workgroups have {group} invocations at most (maxComputeWorkGroupInvocations, \
+             maxComputeWorkGroupSize) and {BLOCK_SIZE} are needed"
+        ));
+    }
+    let binds = limits
+        .max_per_stage_descriptor_storage_buffers
+        .min(limits.max_descriptor_set_storage_buffers)
+        >= MAX_BUFFERS as u32;
     let mesh_shader = mesh.mesh_shader == vk::TRUE && mesh.task_shader == vk::TRUE;
-    let in_compute = v11
-        .subgroup_supported_stages
-        .contains(vk::ShaderStageFlags::COMPUTE);
-    let mesh_groups = mesh_limits.max_mesh_work_group_count;
     Ok(Support {
         api_version: version.min(vk::API_VERSION_1_3),
         queue_family: family as u32,
         mesh_shader,
-        push_descriptor: has(khr::push_descriptor::NAME),
+        push_descriptor: binds && has(khr::push_descriptor::NAME),
         timestamp_period: if families[family].timestamp_valid_bits > 0 {
             limits.timestamp_period
         } else {
@@ -246,33 +240,6 @@ pub unsafe fn check(
         },
         max_group_count: limits.max_compute_work_group_count[0]
             .min(limits.max_compute_work_group_count[1]),
-        max_shared_memory: limits.max_compute_shared_memory_size,
-        max_group_size: limits
-            .max_compute_work_group_invocations
-            .min(limits.max_compute_work_group_size[0]),
-        subgroup_size: v11.subgroup_size,
-        subgroup_operations: if in_compute {
-            v11.subgroup_supported_operations
-        } else {
-            vk::SubgroupFeatureFlags::empty()
-        },
-        max_mesh_vertices: if mesh_shader {
-            mesh_limits.max_mesh_output_vertices
-        } else {
-            0
-        },
-        max_mesh_primitives: if mesh_shader {
-            mesh_limits.max_mesh_output_primitives
-        } else {
-            0
-        },
-        max_mesh_group_count: if mesh_shader {
-            mesh_groups[0]
-                .min(mesh_groups[1])
-                .min(mesh_limits.max_mesh_work_group_total_count)
-        } else {
-            0
-        },
         max_image_size: limits.max_image_dimension2_d,
         pipeline_statistics,
         calibrated_timestamps: [

@@ -116,22 +116,21 @@ impl Timer {
         }
     }
 
-    /// Records the beginning of a pass; returns what [`Timer::end`] wants.
+    /// Records the beginning of a pass; returns what [`Timer::end`] wants, or `None` where there is no room for one more: it
+    /// has no times then.
     ///
     /// # Safety
     ///
     /// `cmd` must be recording on this timer's device, in the queue's order after [`Timer::reset`].
-    pub unsafe fn begin(&mut self, cmd: vk::CommandBuffer, name: &'static str) -> u32 {
+    pub unsafe fn begin(&mut self, cmd: vk::CommandBuffer, name: &'static str) -> Option<u32> {
         assert!(
             self.ready,
             "the timer was not reset before pass \"{name}\": call reset in the same recording first"
         );
         let pass = self.names.len() as u32;
-        assert!(
-            pass < self.capacity,
-            "pass \"{name}\" is one more than the timer's capacity of {}",
-            self.capacity
-        );
+        if pass >= self.capacity {
+            return None;
+        }
         self.names.push(name);
         // SAFETY: the caller vouches for `cmd`.
         unsafe { self.write(cmd, 2 * pass) };
@@ -145,7 +144,7 @@ impl Timer {
                 raw.cmd_begin_query(cmd, statistics.pool, pass, flags);
             }
         }
-        pass
+        Some(pass)
     }
 
     /// Records the end of a pass.

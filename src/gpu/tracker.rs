@@ -1,6 +1,7 @@
 //! What a recording has done to its buffers, and the barriers that follow from it.
 
 use ash::vk;
+use smallvec::SmallVec;
 
 use super::Access;
 use super::access::{Memory, Stages};
@@ -68,7 +69,8 @@ impl History {
 #[derive(Debug)]
 pub struct Tracker {
     mesh: bool,
-    buffers: Vec<History>,
+    /// A frame has about forty; recording allocates nothing for them.
+    buffers: SmallVec<[History; 64]>,
 }
 
 impl Tracker {
@@ -76,7 +78,7 @@ impl Tracker {
     pub fn new(mesh_shader: bool) -> Self {
         Self {
             mesh: mesh_shader,
-            buffers: Vec::with_capacity(32),
+            buffers: SmallVec::new(),
         }
     }
 

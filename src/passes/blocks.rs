@@ -10,7 +10,7 @@ use crate::passes::plan::Plan;
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::shaders;
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Blocks {
     pipeline: ComputePipeline,
 }
@@ -38,7 +38,7 @@ impl Blocks {
 }
 
 /// Lists the blocks whose Gaussians differ, for one stage.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct BlockList {
     pipeline: ComputePipeline,
 }

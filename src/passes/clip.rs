@@ -13,7 +13,7 @@ use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::shaders;
 use crate::types::FrameCounts;
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Clip {
     blocks: ComputePipeline,
     clip: ComputePipeline,

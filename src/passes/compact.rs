@@ -10,7 +10,7 @@ use crate::passes::context::Context;
 use crate::passes::shaders;
 use crate::types::FrameCounts;
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Compact {
     scan: ComputePipeline,
     compact: ComputePipeline,

@@ -15,7 +15,7 @@ use crate::passes::splat::{DEPTH, WeightKey, params};
 use crate::types::FrameCounts;
 
 /// The splats' depths.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Depth {
     pipeline: ComputePipeline,
 }
@@ -57,7 +57,7 @@ impl Depth {
 }
 
 /// The draw of the depths.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct SplatDepth {
     pipeline: GraphicsPipeline,
 }

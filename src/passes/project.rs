@@ -13,7 +13,7 @@ use crate::precision::ShFormat;
 use crate::settings::Raster;
 use crate::types::FrameCounts;
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Project {
     pipeline: ComputePipeline,
 }

@@ -54,6 +54,11 @@ impl SceneBuffers {
         Ok(buffers)
     }
 
+    /// Whether it was uploaded to this device.
+    pub(crate) fn is_on(&self, device: &Device) -> bool {
+        self.gaussians.device().is(device)
+    }
+
     /// Bytes of staging memory that [`upload_with`](Self::upload_with) needs for a scene.
     pub fn staging_bytes(scene: &Gaussians, format: ShFormat) -> u64 {
         let [gaussians, sh, blocks] = sizes(scene, format);

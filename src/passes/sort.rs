@@ -19,7 +19,7 @@ const PAIRS: u32 = 1;
 // So many passes have indirect commands of their own in FrameCounts.
 const _: () = assert!(u32::BITS.div_ceil(limits::SORT_BITS) <= 4);
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Sort {
     count: ComputePipeline,
     scan: ComputePipeline,

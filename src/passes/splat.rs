@@ -13,7 +13,7 @@ use crate::passes::shaders;
 use crate::settings::{Raster, Show};
 use crate::types::{self, FrameCounts};
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Splat {
     pipeline: GraphicsPipeline,
     mesh: bool,

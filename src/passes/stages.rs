@@ -22,8 +22,8 @@ use crate::passes::work::Work;
 use crate::settings::Raster;
 use crate::types;
 
-/// All stages for one way of binding. Variants that no frame has asked for do not exist.
-#[derive(Debug)]
+/// All stages for one way of binding. Variants that no frame has asked for do not exist. A copy has the same pipelines.
+#[derive(Debug, Clone)]
 pub(crate) struct Stages {
     pub(crate) clip: Option<Clip>,
     pub(crate) block_list: BlockList,

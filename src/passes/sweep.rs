@@ -14,7 +14,7 @@ use crate::passes::shaders;
 use crate::types::FrameCounts;
 
 /// The classes that change.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Reclip {
     blocks: ComputePipeline,
     reclip: ComputePipeline,
@@ -87,7 +87,7 @@ impl Reclip {
 }
 
 /// What the rasteriser holds of the survivors that change.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Recut {
     pipeline: ComputePipeline,
 }

@@ -19,7 +19,7 @@ use crate::settings::Show;
 use crate::types::{self, FrameCounts};
 
 /// Pairs of tile and splat, ordered by tile and within each tile by depth.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Bin {
     count: ComputePipeline,
     scan: ComputePipeline,
@@ -107,7 +107,7 @@ impl TilesKey {
 }
 
 /// The tiles' pixels.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Tiles {
     pipeline: ComputePipeline,
 }
@@ -170,7 +170,7 @@ impl Tiles {
 }
 
 /// The tiles' picture, blended onto what the host has drawn.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Composite {
     pipeline: GraphicsPipeline,
 }

@@ -1,10 +1,10 @@
 //! What a frame needs, decided, allocated and compiled before anything is recorded.
 
-use std::sync::PoisonError;
+use std::sync::{Arc, PoisonError};
 
 use ash::vk;
 
-use super::{Renderer, read};
+use super::Renderer;
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
@@ -29,6 +29,7 @@ impl Renderer {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<()> {
+        (self.desc, self.placement) = (self.next_desc, self.next_placement);
         if self.placement == Placement::IDENTITY {
             return self.configure_in_scene(scene, camera, clip, settings);
         }
@@ -48,6 +49,12 @@ impl Renderer {
     ) -> Result<()> {
         self.plan = None;
         self.ready = false;
+        if !scene.is_on(&self.device) {
+            return Err(Error::Invalid(
+                "the scene was uploaded to another device than the renderer's".into(),
+            ));
+        }
+        self.scene = scene.id;
         self.free_finished();
         let columns = camera.width.div_ceil(limits::TILE_WIDTH);
         let tiles = columns.saturating_mul(camera.height.div_ceil(limits::TILE_HEIGHT));
@@ -127,13 +134,17 @@ impl Renderer {
         };
         let at = self.bindings as usize;
         let has_all = |stages: &Stages| stages.has(&context, &plan);
-        if !read(&self.stages)[at].as_ref().is_some_and(has_all) {
-            let mut stages = self.stages.write().unwrap_or_else(PoisonError::into_inner);
-            let stages = match &mut stages[at] {
-                Some(stages) => stages,
-                missing => missing.insert(Stages::new(&context)?),
+        if !self.stages[at].as_deref().is_some_and(has_all) {
+            let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+            let shared = match &mut shared[at] {
+                Some(shared) => shared,
+                missing => missing.insert(Arc::new(Stages::new(&context)?)),
             };
-            stages.ensure(&context, &plan)?;
+            if !has_all(shared) {
+                // A copy for all who come, while others record with what they have.
+                Arc::make_mut(shared).ensure(&context, &plan)?;
+            }
+            self.stages[at] = Some(shared.clone());
         }
         self.plan = Some(plan);
         Ok(())

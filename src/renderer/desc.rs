@@ -32,7 +32,7 @@ pub struct RendererDesc {
     /// The host then submits every frame that it prepares, in order, or calls
     /// [`Renderer::forget`](super::Renderer::forget).
     pub reuse: bool,
-    /// How many recorded frames may be unfinished at once, 1 or more; [`Renderer`](super::Renderer) says what the host
+    /// How many recorded frames may be unfinished at once, from 1 to [`MAX_FRAMES`](Self::MAX_FRAMES); [`Renderer`](super::Renderer) says what the host
     /// promises.
     pub frames_in_flight: u32,
 }
@@ -57,7 +57,7 @@ pub struct DepthDesc {
 /// Where expected depths are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExpectedDepthDesc {
-    /// Format of the scope's only colour attachment, of two channels or more: blendable, and best of 32-bit floats.
+    /// Format of the scope's only colour attachment: blendable, of two floats or more, best of 32 bits.
     pub format: vk::Format,
     /// Dynamic rendering, or a classic render pass of its own.
     pub target: Target,
@@ -86,6 +86,9 @@ impl DepthDesc {
 }
 
 impl RendererDesc {
+    /// The most [`frames_in_flight`](Self::frames_in_flight).
+    pub const MAX_FRAMES: u32 = 16;
+
     /// One colour attachment of one sample in dynamic rendering; buffers by address, no timestamps, nothing reused, one
     /// frame in flight.
     pub const fn new(color_format: vk::Format) -> Self {
@@ -126,21 +129,61 @@ impl RendererDesc {
         })
     }
 
-    /// Whether a device can draw into such attachments; the error says what it cannot.
+    /// Whether there can be such attachments, and a device can draw into them; the error says what it cannot.
     pub(super) fn check(&self, device: &Device) -> Result<()> {
+        if !(1..=Self::MAX_FRAMES).contains(&self.frames_in_flight) {
+            return Err(Error::Invalid(format!(
+                "RendererDesc::frames_in_flight is {}: from 1 to {} can be",
+                self.frames_in_flight,
+                Self::MAX_FRAMES
+            )));
+        }
         self.check_color(device, self.color_format)?;
         if let Some(expected) = self.expected_depth {
-            self.check_color(device, expected.format)?;
-        }
-        let as_depth = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;
-        if let Some(depth) = self.depth {
-            let format = depth.format;
-            if !device.format_features(format).contains(as_depth) {
-                return Err(Error::Device(format!(
-                    "{} cannot test depths in {format:?}; every device can in D16_UNORM and in D32_SFLOAT or X8_D24_UNORM_PACK32",
-                    device.info().name
+            if !SUMS.contains(&expected.format) {
+                return Err(Error::Invalid(format!(
+                    "ExpectedDepthDesc::format is {:?}: sums of depths and alphas need two floats, as of R32G32_SFLOAT",
+                    expected.format
                 )));
             }
+            self.check_color(device, expected.format)?;
+        }
+        self.depth
+            .map_or(Ok(()), |depth| self.check_depth(device, depth))
+    }
+
+    fn check_depth(&self, device: &Device, depth: DepthDesc) -> Result<()> {
+        let format = depth.format;
+        let Some((_, stencil)) = DEPTHS.iter().find(|(known, _)| *known == format) else {
+            return Err(Error::Invalid(format!(
+                "DepthDesc::format is {format:?}, which has no depth"
+            )));
+        };
+        if depth.stencil && !stencil {
+            return Err(Error::Invalid(format!(
+                "DepthDesc::stencil is set and {format:?} has none"
+            )));
+        }
+        if depth.readable && self.samples != vk::SampleCountFlags::TYPE_1 {
+            return Err(Error::Invalid(
+                "DepthDesc::readable is set and RendererDesc::samples are several: prepare_behind copies an image of one \
+                 sample; without it splats are drawn as quads, whose samples are tested each"
+                    .into(),
+            ));
+        }
+        let name = &device.info().name;
+        let as_depth = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;
+        if !device.format_features(format).contains(as_depth) {
+            return Err(Error::Device(format!(
+                "{name} cannot test depths in {format:?}; every device can in D16_UNORM and in D32_SFLOAT or X8_D24_UNORM_PACK32"
+            )));
+        }
+        let usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+        if !device.sample_counts(format, usage).contains(self.samples) {
+            return Err(Error::Device(format!(
+                "{name} cannot test depths in {format:?} with samples {:?}",
+                self.samples
+            )));
         }
         Ok(())
     }
@@ -167,3 +210,23 @@ impl RendererDesc {
         Ok(())
     }
 }
+
+/// Formats with a depth, and whether they have a stencil too.
+const DEPTHS: [(vk::Format, bool); 6] = [
+    (vk::Format::D16_UNORM, false),
+    (vk::Format::X8_D24_UNORM_PACK32, false),
+    (vk::Format::D32_SFLOAT, false),
+    (vk::Format::D16_UNORM_S8_UINT, true),
+    (vk::Format::D24_UNORM_S8_UINT, true),
+    (vk::Format::D32_SFLOAT_S8_UINT, true),
+];
+
+/// Formats that hold sums of depths and of alphas.
+const SUMS: [vk::Format; 6] = [
+    vk::Format::R16G16_SFLOAT,
+    vk::Format::R16G16B16_SFLOAT,
+    vk::Format::R16G16B16A16_SFLOAT,
+    vk::Format::R32G32_SFLOAT,
+    vk::Format::R32G32B32_SFLOAT,
+    vk::Format::R32G32B32A32_SFLOAT,
+];

@@ -1,12 +1,12 @@
 //! The renderer an engine embeds: it records into the host's command buffer and never submits or waits.
 //! `tools/examples/embed.rs` is a whole host.
 
-use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
+use std::sync::{Arc, Mutex};
 
 use ash::vk;
 
 use crate::depth::DepthMap;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::gpu::{
     Bindings, Buffer, BufferDesc, DepthImage, Device, Drawer, Location, Recorder, Timer,
 };
@@ -18,6 +18,8 @@ use crate::types::FrameCounts;
 mod configure;
 mod desc;
 mod tell;
+#[cfg(test)]
+mod tests;
 
 pub use desc::{DepthDesc, ExpectedDepthDesc, RendererDesc};
 
@@ -42,27 +44,41 @@ pub use desc::{DepthDesc, ExpectedDepthDesc, RendererDesc};
 /// [`prepare_behind`](Self::prepare_behind) see there.
 ///
 /// **What recording leaves behind.** `prepare` binds a compute pipeline, `draw` a graphics pipeline; both write push
-/// constants and, with [`Bindings::Bound`], push descriptor set 0. The host binds its own again. Nothing else is touched:
-/// no image, no layout, no dynamic state. Of dynamic state `draw` needs viewport and scissor, the viewport's depths from 0
-/// to 1.
+/// constants. The host binds its own pipelines again, pushes its own constants, and sets again what its pipelines have
+/// of dynamic state, all but viewport and scissor: a pipeline of rara's has the rest of it fixed, which is what binding it
+/// leaves behind. With [`Bindings::Bound`] both push descriptor set 0 too, by a layout of their own, so that the host
+/// binds all of its sets again. No image, no layout, no query and no vertex buffer is touched. Of dynamic state `draw`
+/// needs viewport and scissor: the viewport of positive height, its depths from 0 to 1.
 ///
-/// **What lives how long.** The scene's buffers, and the image of `prepare_behind`, until the frame has executed;
-/// a render pass of [`RendererDesc::target`] until the last `configure`; a host's device and instance longer than all.
+/// **What lives how long.** The scene's buffers, and the image of `prepare_behind`, until the frame has executed; a
+/// render pass of [`RendererDesc::target`] until no renderer that shares pipelines with this one is left; a host's device
+/// and instance longer than all.
+///
+/// **Errors while recording.** [`prepare`](Self::prepare) and the draws return [`Error::Invalid`] where calls come in an
+/// order that makes no sense; then nothing was recorded. They neither submit nor wait, take no lock, and allocate nothing
+/// once a frame like it has been recorded.
 ///
 /// **Several views.** Views one after the other, each with a scope of its own (`prepare`, `draw`, `prepare`, `draw`), need
 /// one renderer, whose memory they share; each counts as a frame in flight. Views in one scope need a renderer each:
 /// [`sharing`](Self::sharing) makes one that compiles nothing twice. Scenes are shared in any case.
 ///
-/// **Several scenes.** Each is prepared and drawn for itself, where [`set_placement`](Self::set_placement) puts it. They are composited in the order in which they are drawn, the farthest first: where
-/// scenes reach into each other the last one drawn is before all of the others. What has to be right there is one scene:
+/// **Several scenes.** Each is prepared and drawn for itself, where [`set_placement`](Self::set_placement) puts it, by a
+/// renderer of its own: one that goes from scene to scene gets its working memory anew where their sizes differ. They are
+/// composited in the order in which they are drawn, the farthest first: where scenes reach into each other the last one
+/// drawn is before all of the others. What has to be right there is one scene:
 /// [`Gaussians::append`](crate::Gaussians::append).
 #[derive(Debug)]
 pub struct Renderer {
     device: Device,
+    /// As the configured frame has it, and as the next one will.
     desc: RendererDesc,
-    /// Where the scene stands in the world of camera, clip and depths.
+    next_desc: RendererDesc,
+    /// Where the scene stands in the world of camera, clip and depths; of the next frame too.
     placement: Placement,
-    stages: SharedStages,
+    next_placement: Placement,
+    shared: SharedStages,
+    /// What of the shared pipelines this renderer has seen, so that recording takes no lock.
+    stages: [Option<Arc<Stages>>; 2],
     buffers: Option<Buffers>,
     /// What frames in flight may still use, with the number of frames prepared when it was replaced.
     retired: Vec<(u64, Buffers)>,
@@ -71,6 +87,8 @@ pub struct Renderer {
     /// Frames prepared so far.
     prepared: u64,
     plan: Option<Plan>,
+    /// The configured scene's number.
+    scene: u64,
     /// What the last prepared frame has left in the buffers.
     kept: Option<Kept>,
     bindings: Bindings,
@@ -83,13 +101,9 @@ pub struct Renderer {
     ready: bool,
 }
 
-/// For addresses and for bound buffers; never replaced, so frames in flight keep their pipelines. Written only by
-/// `configure`, and only where something is missing.
-type SharedStages = Arc<RwLock<[Option<Stages>; 2]>>;
-
-fn read(stages: &SharedStages) -> RwLockReadGuard<'_, [Option<Stages>; 2]> {
-    stages.read().unwrap_or_else(PoisonError::into_inner)
-}
+/// For addresses and for bound buffers. Only `configure` locks them, and only where something is missing; it puts more
+/// pipelines in and takes none out, so that frames in flight keep theirs.
+type SharedStages = Arc<Mutex<[Option<Arc<Stages>>; 2]>>;
 
 /// What a frame tells about itself, kept until its slot's next frame.
 #[derive(Debug)]
@@ -107,7 +121,7 @@ impl Slot {
             size: size_of::<FrameCounts>() as u64,
             location: Location::Readback,
         })?;
-        // The stages of a frame, with room for several draws.
+        // The stages of a frame, with room for several draws; what comes beyond has no times.
         let timer = || match (Timer::new(device, 16), statistics) {
             (Ok(timer), true) => timer.with_statistics(),
             (timer, _) => timer,
@@ -125,7 +139,8 @@ impl Renderer {
     /// A renderer on a device. Pipelines and buffers come with the first frame that needs them.
     ///
     /// # Errors
-    /// [`Error::Device`](crate::Error::Device) where the device cannot draw into such attachments.
+    /// [`Error::Device`](crate::Error::Device) where the device cannot draw into such attachments, and
+    /// [`Error::Invalid`](crate::Error::Invalid) where there can be none such.
     pub fn new(device: &Device, desc: RendererDesc) -> Result<Self> {
         Self::with(device, desc, SharedStages::default())
     }
@@ -136,27 +151,27 @@ impl Renderer {
     /// # Errors
     /// As of [`new`](Self::new).
     pub fn sharing(&self, desc: RendererDesc) -> Result<Self> {
-        Self::with(&self.device, desc, self.stages.clone())
+        Self::with(&self.device, desc, self.shared.clone())
     }
 
-    fn with(device: &Device, desc: RendererDesc, stages: SharedStages) -> Result<Self> {
-        assert!(
-            desc.frames_in_flight > 0,
-            "a renderer needs at least one frame in flight"
-        );
+    fn with(device: &Device, desc: RendererDesc, shared: SharedStages) -> Result<Self> {
         desc.check(device)?;
         let slots =
             (0..desc.frames_in_flight).map(|_| Slot::new(device, desc.timing, desc.statistics));
         Ok(Self {
             device: device.clone(),
             desc,
+            next_desc: desc,
             placement: Placement::IDENTITY,
-            stages,
+            next_placement: Placement::IDENTITY,
+            shared,
+            stages: [None, None],
             buffers: None,
             retired: Vec::new(),
             slots: slots.collect::<Result<_>>()?,
             prepared: 0,
             plan: None,
+            scene: 0,
             kept: None,
             bindings: desc.bindings,
             pairs: PairRoom::default(),
@@ -169,33 +184,27 @@ impl Renderer {
     /// Where the scene stands in the world, from the next [`configure`](Self::configure) on: camera, clip, the depth map
     /// and expected depths are the world's. Without it, where it was made.
     pub fn set_placement(&mut self, placement: Placement) {
-        if self.placement != placement {
-            self.placement = placement;
-            self.plan = None; // what is configured stands in the old place
-        }
+        self.next_placement = placement;
     }
 
     /// Changes what the host's depth buffer holds for a depth, from the next [`configure`](Self::configure) on: where its
     /// near and far planes move.
     ///
-    /// # Panics
-    /// Without [`RendererDesc::depth`].
-    pub fn set_depth_map(&mut self, map: DepthMap) {
-        let depth = self.desc.depth.as_mut();
-        let depth =
-            depth.expect("Renderer::set_depth_map needs a depth attachment in its RendererDesc");
-        if depth.map != map {
-            depth.map = map;
-            self.plan = None; // what is configured would test against the old one
+    /// # Errors
+    /// [`Error::Invalid`] without [`RendererDesc::depth`].
+    pub fn set_depth_map(&mut self, map: DepthMap) -> Result<()> {
+        match &mut self.next_desc.depth {
+            Some(depth) => depth.map = map,
+            None => {
+                return out_of_order("set_depth_map needs a depth attachment in its RendererDesc");
+            }
         }
+        Ok(())
     }
 
     /// Changes the format of the attachment that the next [`configure`](Self::configure) is for.
     pub fn set_color_format(&mut self, format: vk::Format) {
-        if self.desc.color_format != format {
-            self.desc.color_format = format;
-            self.plan = None; // what is configured would draw into the old one
-        }
+        self.next_desc.color_format = format;
     }
 
     /// Forgets what earlier frames have computed: the next one computes everything. [`configure`](Self::configure) comes
@@ -249,16 +258,15 @@ impl Renderer {
     /// will be submitted to the device's queue, or never. `scene` is the one given to [`configure`](Self::configure)
     /// and lives until the commands have executed. The host has waited for the frames that [`Renderer`] says.
     ///
-    /// # Panics
-    /// Without a successful [`configure`](Self::configure) before it, with another scene, and where
-    /// [`DepthDesc::readable`] promises the host's depth.
-    pub unsafe fn prepare(&mut self, cmd: vk::CommandBuffer, scene: &SceneBuffers) {
-        assert!(
-            !self.desc.depth.is_some_and(|depth| depth.readable),
-            "this renderer was promised the host's depth: Renderer::prepare_behind takes it"
-        );
+    /// # Errors
+    /// [`Error::Invalid`] without a successful [`configure`](Self::configure) before it, with another scene, and where
+    /// [`DepthDesc::readable`] promises the host's depth. Nothing is recorded then.
+    pub unsafe fn prepare(&mut self, cmd: vk::CommandBuffer, scene: &SceneBuffers) -> Result<()> {
+        if self.desc.depth.is_some_and(|depth| depth.readable) {
+            return out_of_order("prepare was promised the host's depth: prepare_behind takes it");
+        }
         // SAFETY: the caller's promises are those asked for.
-        unsafe { self.prepare_with(cmd, scene, None) };
+        unsafe { self.prepare_with(cmd, scene, None) }
     }
 
     /// As [`prepare`](Self::prepare), for a renderer whose [`DepthDesc::readable`] says so: with what the host has drawn
@@ -272,20 +280,19 @@ impl Renderer {
     /// As for [`prepare`](Self::prepare); and `depth` is as its description says, visible to the copy, and lives until
     /// the commands have executed.
     ///
-    /// # Panics
-    /// As [`prepare`](Self::prepare), and where [`DepthDesc::readable`] is not set.
+    /// # Errors
+    /// As of [`prepare`](Self::prepare), and where [`DepthDesc::readable`] is not set.
     pub unsafe fn prepare_behind(
         &mut self,
         cmd: vk::CommandBuffer,
         scene: &SceneBuffers,
         depth: &DepthImage,
-    ) {
-        assert!(
-            self.desc.depth.is_some_and(|depth| depth.readable),
-            "Renderer::prepare_behind needs DepthDesc::readable"
-        );
+    ) -> Result<()> {
+        if !self.desc.depth.is_some_and(|depth| depth.readable) {
+            return out_of_order("prepare_behind needs DepthDesc::readable");
+        }
         // SAFETY: the caller's promises are those asked for.
-        unsafe { self.prepare_with(cmd, scene, Some(depth)) };
+        unsafe { self.prepare_with(cmd, scene, Some(depth)) }
     }
 
     /// # Safety
@@ -295,26 +302,24 @@ impl Renderer {
         cmd: vk::CommandBuffer,
         scene: &SceneBuffers,
         depth: Option<&DepthImage>,
-    ) {
-        let stages = read(&self.stages);
-        let (Some(stages), Some(buffers), Some(plan)) =
-            (&stages[self.bindings as usize], &self.buffers, &self.plan)
-        else {
-            panic!("Renderer::prepare needs a successful configure() before it");
+    ) -> Result<()> {
+        let (Some(stages), Some(buffers), Some(plan)) = (
+            &self.stages[self.bindings as usize],
+            &self.buffers,
+            &self.plan,
+        ) else {
+            return out_of_order("prepare needs a successful configure() before it");
         };
-        assert!(
-            plan.gaussians == scene.count
-                && plan.sh_format == scene.sh_format
-                && plan.data.sh_coefficients == (scene.sh_degree + 1).pow(2),
-            "Renderer::prepare was given another scene than configure()"
-        );
+        if self.scene != scene.id {
+            return out_of_order("prepare was given another scene than configure()");
+        }
         let at = (self.prepared % self.slots.len() as u64) as usize;
         let slot = &mut self.slots[at];
         slot.empty = plan.gaussians == 0;
         self.prepared += 1;
         self.ready = true;
         if slot.empty {
-            return;
+            return Ok(());
         }
         // SAFETY: the caller promises that `cmd` is recording, outside a rendering scope.
         let mut recorder = unsafe { Recorder::begin(&self.device, cmd, slot.timer.as_mut()) };
@@ -338,6 +343,7 @@ impl Renderer {
             let keeps = self.desc.reuse && plan.occluders.is_none();
             self.kept = keeps.then(|| Kept::after(before, scene.id, plan));
         }
+        Ok(())
     }
 
     /// Records the splats, or the picture that the tiles have made of them, inside the host's rendering scope, blended
@@ -348,20 +354,19 @@ impl Renderer {
     /// `cmd` is inside a rendering scope with the attachments of the [`RendererDesc`] and no others, one layer and no view
     /// mask; viewport and scissor are set; [`prepare`](Self::prepare) was recorded for the same frame before it.
     ///
-    /// # Panics
-    /// Without a prepared frame.
-    pub unsafe fn draw(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) {
-        let stages = read(&self.stages);
+    /// # Errors
+    /// [`Error::Invalid`] without a prepared frame; nothing is recorded then.
+    pub unsafe fn draw(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) -> Result<()> {
         let (Some(stages), Some(buffers), Some(plan), true) = (
-            &stages[self.bindings as usize],
+            &self.stages[self.bindings as usize],
             &self.buffers,
             &self.plan,
             self.ready,
         ) else {
-            panic!("Renderer::draw needs a successful configure() and prepare() before it");
+            return out_of_order("draw needs a successful configure() and prepare() before it");
         };
         if plan.gaussians == 0 {
-            return;
+            return Ok(());
         }
         let at = ((self.prepared - 1) % self.slots.len() as u64) as usize;
         let map = self.depth_map();
@@ -378,6 +383,7 @@ impl Renderer {
                 composite.record(drawer, buffers, t, origin);
             }
         });
+        Ok(())
     }
 
     /// Records the splats' depths inside a rendering scope of their own, with the attachments of
@@ -392,23 +398,24 @@ impl Renderer {
     /// # Safety
     /// As of [`draw`](Self::draw), in such a scope.
     ///
-    /// # Panics
-    /// Without a prepared frame, and without [`RendererDesc::expected_depth`].
-    pub unsafe fn draw_depth(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) {
-        let attachments = self.desc.expected_depth();
-        let attachments =
-            attachments.expect("Renderer::draw_depth needs RendererDesc::expected_depth");
-        let stages = read(&self.stages);
+    /// # Errors
+    /// [`Error::Invalid`] without a prepared frame, and without [`RendererDesc::expected_depth`].
+    pub unsafe fn draw_depth(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) -> Result<()> {
+        let Some(attachments) = self.desc.expected_depth() else {
+            return out_of_order("draw_depth needs RendererDesc::expected_depth");
+        };
         let (Some(stages), Some(buffers), Some(plan), true) = (
-            &stages[self.bindings as usize],
+            &self.stages[self.bindings as usize],
             &self.buffers,
             &self.plan,
             self.ready,
         ) else {
-            panic!("Renderer::draw_depth needs a successful configure() and prepare() before it");
+            return out_of_order(
+                "draw_depth needs a successful configure() and prepare() before it",
+            );
         };
         let Some(depths) = buffers.depth.as_ref().filter(|_| plan.gaussians > 0) else {
-            return;
+            return Ok(());
         };
         let (map, unit) = (self.depth_map(), self.placement.scale());
         let splat_depth = stages.splat_depth(plan, attachments);
@@ -419,6 +426,7 @@ impl Renderer {
         drawer.pass("splat_depth", |drawer| {
             splat_depth.record(drawer, (buffers, depths), plan, origin, map, unit);
         });
+        Ok(())
     }
 
     /// What the host's depth buffer holds for a depth in the scene's units.
@@ -426,4 +434,8 @@ impl Renderer {
         let depth = self.desc.depth?;
         Some(depth.map.in_scene(&self.placement))
     }
+}
+
+fn out_of_order<T>(what: &str) -> Result<T> {
+    Err(Error::Invalid(format!("Renderer::{what}")))
 }

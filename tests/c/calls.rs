@@ -176,7 +176,7 @@ fn what_is_wrong_is_said() {
         assert_ok(rara_renderer_create(device, &desc, &mut renderer));
         map.z_near = 1.0;
         let failed = rara_renderer_set_depth_map(renderer, &map);
-        assert_fails(failed, RARA_ERROR_PANIC, "depth attachment");
+        assert_fails(failed, RARA_ERROR_INVALID, "depth attachment");
 
         let cmd = vk::CommandBuffer::null();
         let failed = rara_renderer_prepare(renderer, cmd, scene);
@@ -184,11 +184,11 @@ fn what_is_wrong_is_said() {
         // Never recorded into: the renderer sees before that nothing is configured.
         let cmd = <vk::CommandBuffer as vk::Handle>::from_raw(8);
         let failed = rara_renderer_prepare(renderer, cmd, scene);
-        assert_fails(failed, RARA_ERROR_PANIC, "configure()");
+        assert_fails(failed, RARA_ERROR_INVALID, "configure()");
         let failed = rara_renderer_draw(renderer, cmd, 0.0, 0.0);
-        assert_fails(failed, RARA_ERROR_PANIC, "prepare()");
+        assert_fails(failed, RARA_ERROR_INVALID, "prepare()");
         let failed = rara_renderer_draw_depth(renderer, cmd, 0.0, 0.0);
-        assert_fails(failed, RARA_ERROR_PANIC, "expected_depth");
+        assert_fails(failed, RARA_ERROR_INVALID, "expected_depth");
         let plane = RaraPlane {
             normal: [0.0; 3],
             offset: 0.0,

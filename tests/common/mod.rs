@@ -35,9 +35,18 @@ pub fn headless() -> Headless {
 
 /// A renderer whose every validation message is an error.
 pub fn headless_by(bindings: Bindings) -> Headless {
+    open(bindings, true)
+}
+
+/// A renderer without the layer.
+pub fn headless_unchecked(bindings: Bindings) -> Headless {
+    open(bindings, false)
+}
+
+fn open(bindings: Bindings, validation: bool) -> Headless {
     let desc = HeadlessDesc {
         device: std::env::var("RARA_TEST_DEVICE").ok(),
-        validation: true,
+        validation,
         bindings: Some(bindings),
         pipeline_cache: PipelineCache::Off,
         ..HeadlessDesc::default()

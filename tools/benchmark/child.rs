@@ -127,13 +127,17 @@ fn frames(child: Child, world: &World, args: &Args) -> Result<()> {
             let counts = counts(Child::Record);
             // SAFETY: `cmd` is recording outside rendering; scene, image and renderer outlive the recording, which is
             // never submitted.
-            count_if(counts, || unsafe { renderer.prepare(cmd, &scene) });
+            count_if(counts, || unsafe {
+                renderer.prepare(cmd, &scene).expect("prepares")
+            });
             // SAFETY: as above; the rendering scope has one attachment of the renderer's format.
             unsafe { image.begin_rendering(cmd, [0.0; 4]) };
             // SAFETY: as above.
             unsafe { Drawer::new(device, cmd, None) }.viewport(area);
             // SAFETY: as above, inside the scope, after its prepare().
-            count_if(counts, || unsafe { renderer.draw(cmd, [0.0, 0.0]) });
+            count_if(counts, || unsafe {
+                renderer.draw(cmd, [0.0, 0.0]).expect("draws")
+            });
             // SAFETY: as above.
             unsafe { image.end_rendering(cmd) };
             Err(Error::Invalid(NOT_SUBMITTED.into()))

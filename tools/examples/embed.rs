@@ -65,10 +65,10 @@ fn main() -> rara::Result<()> {
         renderer.configure(&scene, &camera, &clip, &Settings::default())?;
         let cmd = host.begin()?;
         // SAFETY: `cmd` is recording outside rendering, the scene outlives the wait at the end.
-        unsafe { renderer.prepare(cmd, &scene) };
+        unsafe { renderer.prepare(cmd, &scene) }?;
         host.begin_rendering(VIEW);
         // SAFETY: `cmd` is inside rendering to a target of this format, viewport and scissor are set.
-        unsafe { renderer.draw(cmd, [VIEW.offset.x as f32, VIEW.offset.y as f32]) };
+        unsafe { renderer.draw(cmd, [VIEW.offset.x as f32, VIEW.offset.y as f32]) }?;
         host.submit()?;
     }
     let pixels = host.wait_for_all()?;

@@ -295,6 +295,56 @@ fn depths_in_few_bits_hide_the_same_splats_in_every_way_of_drawing() {
     });
 }
 
+/// A depth image that is not under the picture hides nothing, and nothing beside its copy is read.
+#[test]
+fn a_depth_image_beside_the_picture_hides_nothing() {
+    let world = World::new();
+    let mut headless = common::headless();
+    headless.load(&world.scene).expect("uploads");
+    let settings = Settings {
+        raster: Raster::Tiles,
+        ..Settings::default()
+    };
+    let drawn = headless.render(&world.camera, &world.clip, &settings);
+    drawn.expect("renders");
+    let truth = headless.picture().expect("reads back");
+    with_host(true, |host, device| {
+        for map in maps() {
+            let desc = canvas(&world, map, vk::Format::D32_SFLOAT);
+            let depth = depth_desc(&desc, map, true);
+            let canvas = Canvas::new(&host.lend(), device, desc);
+            let format = rara::ShFormat::Float;
+            let scene = SceneBuffers::upload(device, &world.scene, format).expect("uploads");
+            let desc = RendererDesc {
+                depth: Some(depth),
+                bindings: Bindings::Bound,
+                ..RendererDesc::new(FLOATS)
+            };
+            let mut renderer = Renderer::new(device, desc).expect("a renderer");
+            let configured = renderer.configure(&scene, &world.camera, &world.clip, &settings);
+            configured.expect("configures");
+            let renderer = std::cell::RefCell::new(renderer);
+            let mut beside = canvas.depth_image(ORIGIN.0, ORIGIN.1);
+            beside.origin.x += 5_000;
+            let before = |cmd| {
+                let mut renderer = renderer.borrow_mut();
+                // SAFETY: `cmd` is recording outside a scope, the canvas's depth is ready to be copied, and all is
+                // waited for.
+                unsafe { renderer.prepare_behind(cmd, &scene, &beside) }.expect("prepares");
+            };
+            let inside = |cmd| {
+                canvas.viewport(cmd, ORIGIN.0, ORIGIN.1, VIEW);
+                let origin = [ORIGIN.0 as f32, ORIGIN.1 as f32];
+                // SAFETY: `cmd` is inside the canvas's scope, which the renderer was made for.
+                unsafe { renderer.borrow_mut().draw(cmd, origin).expect("draws") };
+            };
+            let [pixels, _] = canvas.draw(before, inside);
+            let worst = apart(&part(&pixels), &truth, 0.0);
+            assert!(worst < 1.0, "{map:?}: {worst}/255");
+        }
+    });
+}
+
 #[test]
 fn tiles_that_cannot_see_the_hosts_depth_are_quads() {
     let world = World::new();

@@ -218,10 +218,10 @@ fn a_host_whose_frames_take_over_from_each_other_gets_the_same_pictures() {
     } else {
         eprintln!("SKIPPED: this device has no mesh shaders");
     }
-    let bindings = [Bindings::Bound, Bindings::Address];
+    let bindings = common::bindings(headless.device());
     let ways = rasters
         .iter()
-        .flat_map(|raster| bindings.map(|bindings| (*raster, bindings)));
+        .flat_map(|raster| bindings.iter().map(|bindings| (*raster, *bindings)));
     for (raster, bindings) in ways {
         let mut host = host(FLOATS, VIEW, true);
         let device = adopt(&host);

@@ -206,7 +206,7 @@ fn whatever_changes_the_bytes_are_those_of_a_whole_frame() {
     let normals = [DVec3::X, DVec3::new(0.1, 0.9, -0.3).normalize()];
     let steps = (80.0 * common::scale()) as usize;
     for (_, scene) in common::generated_scenes(4_000) {
-        for bindings in [Bindings::Bound, Bindings::Address] {
+        for bindings in common::bindings(common::headless().device()) {
             let mut pair = Pair::by(bindings, &scene);
             let rasters = rasters(&pair.keeps);
             let mut frame = Frame {

@@ -162,3 +162,74 @@ fn scenes_and_clips_change_while_frames_are_in_flight() {
         assert_eq!(host.close(), Vec::<String>::new());
     }
 }
+
+/// Nothing leaks where the device is a host's, two frames are in flight and scenes come by its own staging memory.
+#[test]
+fn memory_stays_flat_over_a_thousand_frames_of_a_host() {
+    let scenes = [
+        generate(Kind::General, 300, 1),
+        generate(Kind::Strands, 700, 1),
+        generate(Kind::Layers, 500, 1),
+    ];
+    // Without the layer, whose books grow.
+    let mut host = Host::new(&HostDesc {
+        device: std::env::var("RARA_TEST_DEVICE").ok().as_deref(),
+        validation: false,
+        optional: true,
+        extent: VIEW,
+        format: FORMAT,
+    })
+    .expect("a Vulkan device");
+    // SAFETY: the handles belong together; all that is made of them is dropped before the host is closed.
+    let device = unsafe { Device::adopt(host.lend()) }.expect("the host's device will do");
+    let desc = RendererDesc {
+        reuse: true,
+        frames_in_flight: FRAMES as u32,
+        ..RendererDesc::new(FORMAT)
+    };
+    let mut renderer = Renderer::new(&device, desc).expect("a renderer");
+    let mut current: Option<(SceneBuffers, Buffer)> = None;
+    let mut retired: Vec<(usize, (SceneBuffers, Buffer))> = Vec::new();
+    let stays = (1_000 / STAY) / scenes.len() * scenes.len();
+    let mut taken = vec![Vec::new(); scenes.len()];
+    for frame in 0..stays * STAY {
+        if host.wait().expect("waits").is_some() {
+            retired.retain(|(last, _)| *last > frame - FRAMES);
+        }
+        let (stay, at) = (frame / STAY, frame / STAY % scenes.len());
+        let cmd = host.begin().expect("begins");
+        if frame % STAY == 0 {
+            let fresh = upload(&device, cmd, &scenes[at]);
+            retired.extend(current.replace(fresh).map(|old| (frame - 1, old)));
+        }
+        let (scene, _) = current.as_ref().expect("uploaded");
+        let camera = common::views(&scenes[at], 1, (VIEW.width, VIEW.height))[0];
+        // Planes of one number, so that stays can be compared.
+        let mut cut = common::clip(&scenes[at], 2, ClipOp::And);
+        let moved = cut.planes[0].offset() + 0.05 * (frame % STAY) as f64;
+        let normal = cut.planes[0].normal();
+        cut.planes[0] = rara::Plane::new(normal, moved).expect("a plane");
+        let configured = renderer.configure(scene, &camera, &cut, &Settings::default());
+        configured.expect("configures");
+        // SAFETY: `cmd` is recording outside rendering, and scenes are kept until their frames are done.
+        unsafe { renderer.prepare(cmd, scene).expect("prepares") };
+        host.begin_rendering(VIEW.into());
+        // SAFETY: `cmd` is inside rendering to a target of the renderer's format.
+        unsafe { renderer.draw(cmd, [0.0, 0.0]).expect("draws") };
+        host.submit().expect("submits");
+        if frame % STAY == STAY - 1 && stay >= 2 * scenes.len() {
+            taken[at].push(device.device_bytes());
+        }
+    }
+    host.wait_for_all().expect("waits");
+    for taken in &taken {
+        assert!(
+            taken.len() > 50 && taken.iter().all(|bytes| *bytes == taken[0]),
+            "{taken:?}"
+        );
+    }
+    drop((renderer, current, retired));
+    assert_eq!(device.device_bytes(), 0, "everything allocated was freed");
+    drop(device);
+    assert_eq!(host.close(), Vec::<String>::new());
+}

@@ -57,7 +57,7 @@ impl Stress {
         }
         let mut rows = Vec::new();
         for regime in regimes {
-            let row = stress::run(&mut headless, &regime)?;
+            let row = stress::run(&mut headless, &regime, 1)?;
             if !self.json {
                 print(&row);
             }

@@ -281,6 +281,16 @@ impl Device {
             .allocated_at_most
             .fetch_max(before + allocation.size(), Ordering::Relaxed);
         self.account(desc.name, |bytes| bytes + allocation.size());
+        // Blocks that a host's allocator shares among its buffers and ours are the host's to name.
+        if allocation.is_dedicated() || self.inner.owned.is_some() {
+            let name = if allocation.is_dedicated() {
+                desc.name
+            } else {
+                "shared"
+            };
+            // SAFETY: the memory is alive as long as the allocation, and only named here.
+            self.set_name(unsafe { allocation.memory() }, name);
+        }
         Ok(allocation)
     }
 

@@ -239,7 +239,7 @@ type C = vk::CommandBuffer;
 
 functions! {
     fallible {
-        allocate_memory = "vkAllocateMemory": PFN_vkAllocateMemory(d: D, info: *const vk::MemoryAllocateInfo<'static>, a: A, out: *mut vk::DeviceMemory);
+        allocate_memory = "vkAllocateMemory": PFN_vkAllocateMemory(d: D, info: *const vk::MemoryAllocateInfo<'static>, a: A, out: *mut vk::DeviceMemory) -> out;
         map_memory = "vkMapMemory": PFN_vkMapMemory(d: D, memory: vk::DeviceMemory, offset: u64, size: u64, flags: vk::MemoryMapFlags, out: *mut *mut c_void);
         bind_buffer = "vkBindBufferMemory": PFN_vkBindBufferMemory(d: D, buffer: vk::Buffer, memory: vk::DeviceMemory, offset: u64);
         bind_image = "vkBindImageMemory": PFN_vkBindImageMemory(d: D, image: vk::Image, memory: vk::DeviceMemory, offset: u64);

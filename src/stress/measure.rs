@@ -79,8 +79,9 @@ impl Row {
     }
 }
 
-/// Draws a regime's cases in every form and measures. Any message of the validation layer is an error.
-pub fn run(headless: &mut Headless, regime: &Regime) -> Result<Row> {
+/// Draws a regime's cases in every form, or each second of them or so, and measures. Any message of the validation layer is
+/// an error.
+pub fn run(headless: &mut Headless, regime: &Regime, every: usize) -> Result<Row> {
     let limit = regime.limit;
     let mut row = Row {
         regime: regime.name,
@@ -94,7 +95,7 @@ pub fn run(headless: &mut Headless, regime: &Regime) -> Result<Row> {
         reason: limit.map(|limit| limit.reason),
         ok: false,
     };
-    for case in (regime.cases)() {
+    for case in (regime.cases)().into_iter().step_by(every.max(1)) {
         headless.load(&case.scene)?;
         row.splats += case.scene.len();
         measure(headless, &case, &mut row)?;

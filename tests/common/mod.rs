@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use glam::DVec3;
-use rara::gpu::Bindings;
+use rara::gpu::{Bindings, Device};
 use rara::measure::compare;
 use rara::scene::{Bounds, Kind, generate, load};
 use rara::{
@@ -25,6 +25,15 @@ pub fn scale() -> f64 {
 pub fn scaled((width, height): (u32, u32)) -> (u32, u32) {
     let scaled = |pixels| (f64::from(pixels) * scale().sqrt()) as u32;
     (scaled(width), scaled(height))
+}
+
+/// The ways to buffers that differ on a device.
+pub fn bindings(device: &Device) -> Vec<Bindings> {
+    let mut all = vec![Bindings::Address];
+    if device.support().push_descriptor {
+        all.push(Bindings::Bound);
+    }
+    all
 }
 
 /// A renderer whose every validation message is an error, its buffers bound where the driver can, so that the

@@ -1,5 +1,6 @@
-//! An engine of the age of Vulkan 1.2: classic render passes, barriers and submissions of 1.0, and all memory from one
-//! `gpu-allocator`, which it lends. Nothing of 1.3 is called here, and the layer watches that rara calls none either.
+//! An engine in raw calls of an older age: classic render passes, barriers and submissions of 1.0, and all memory from one
+//! `gpu-allocator`, which it lends. Its pictures are the headless ones, byte for byte, in Vulkan 1.3 and in 1.2, where
+//! the layer watches that nothing newer is called.
 
 #[path = "../tools/examples/best_practices.rs"]
 mod best_practices;
@@ -11,7 +12,7 @@ use std::mem::ManuallyDrop;
 use std::sync::{Arc, Mutex};
 
 use rara::ash::{Device, Entry, Instance, ext, vk};
-use rara::gpu::{self, AdoptDesc, Bindings, Support, Target};
+use rara::gpu::{self, AdoptDesc, Support, Target};
 use rara::gpu_allocator::vulkan::{
     Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc,
 };
@@ -19,7 +20,6 @@ use rara::gpu_allocator::{AllocationSizes, AllocatorDebugSettings, MemoryLocatio
 use rara::scene::{Kind, generate};
 use rara::{ClipOp, Picture, Raster, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat};
 
-const VERSION: u32 = vk::API_VERSION_1_2;
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const EXTENT: vk::Extent2D = vk::Extent2D {
     width: 151,
@@ -36,6 +36,7 @@ const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
 type Messages = Mutex<Vec<String>>;
 
 struct Host {
+    version: u32,
     instance: Instance,
     loader: ext::debug_utils::Instance,
     messenger: vk::DebugUtilsMessengerEXT,
@@ -58,12 +59,12 @@ struct Host {
 impl Host {
     /// # Safety
     /// Everything made here is alive until [`Host::close`].
-    unsafe fn new() -> Self {
+    unsafe fn new(version: u32) -> Self {
         // SAFETY: every handle is used while it is alive, and what is pointed to outlives the calls.
         unsafe {
             let entry = Entry::load().expect("a Vulkan loader");
             let messages = Box::new(Messages::default());
-            let (instance, loader, messenger) = instance(&entry, &messages);
+            let (instance, loader, messenger) = instance(&entry, version, &messages);
             let part = std::env::var("RARA_TEST_DEVICE").unwrap_or_default();
             let (physical_device, support) = instance
                 .enumerate_physical_devices()
@@ -76,10 +77,10 @@ impl Host {
                     name.contains(&part.to_lowercase())
                 })
                 .find_map(|physical| {
-                    Some((physical, gpu::check(&instance, physical, VERSION).ok()?))
+                    Some((physical, gpu::check(&instance, physical, version).ok()?))
                 })
-                .expect("a device that draws splats in Vulkan 1.2");
-            assert_eq!(support.api_version, VERSION);
+                .expect("a device that draws splats");
+            assert_eq!(support.api_version, version);
             let extensions: Vec<_> = support.extensions().iter().map(|e| e.as_ptr()).collect();
             let queues = [vk::DeviceQueueCreateInfo::default()
                 .queue_family_index(support.queue_family)
@@ -119,6 +120,7 @@ impl Host {
                 .command_buffer_count(1);
             let cmd = device.allocate_command_buffers(&info).expect("memory")[0];
             Self {
+                version,
                 queue: device.get_device_queue(support.queue_family, 0),
                 instance,
                 loader,
@@ -141,7 +143,7 @@ impl Host {
 
     fn lend(&self) -> AdoptDesc {
         AdoptDesc {
-            api_version: VERSION,
+            api_version: self.version,
             instance: self.instance.clone(),
             physical_device: self.physical_device,
             device: self.device.clone(),
@@ -257,13 +259,14 @@ impl Host {
 /// `messages` outlives the instance.
 unsafe fn instance(
     entry: &Entry,
+    version: u32,
     messages: &Messages,
 ) -> (
     Instance,
     ext::debug_utils::Instance,
     vk::DebugUtilsMessengerEXT,
 ) {
-    let application = vk::ApplicationInfo::default().api_version(VERSION);
+    let application = vk::ApplicationInfo::default().api_version(version);
     let layers = [c"VK_LAYER_KHRONOS_validation".as_ptr()];
     let extensions = [
         ext::debug_utils::NAME.as_ptr(),
@@ -412,11 +415,20 @@ unsafe fn render_pass(device: &Device) -> vk::RenderPass {
 }
 
 #[test]
-fn an_engine_of_vulkan_1_2_gets_the_same_pictures_from_its_own_memory() {
+fn in_vulkan_1_3_the_pictures_are_the_headless_ones() {
+    check(vk::API_VERSION_1_3);
+}
+
+#[test]
+fn in_vulkan_1_2_the_pictures_are_the_headless_ones() {
+    check(vk::API_VERSION_1_2);
+}
+
+fn check(version: u32) {
     let scene = generate(Kind::General, 3_000, 5);
     let camera = common::views(&scene, 1, (EXTENT.width, EXTENT.height))[0];
     // SAFETY: everything made from the host goes before it.
-    let mut host = unsafe { Host::new() };
+    let mut host = unsafe { Host::new(version) };
     // SAFETY: as above.
     let device = unsafe { gpu::Device::adopt(host.lend()) }.expect("draws splats");
     let mut rasters = vec![Raster::Tiles, Raster::Quad];
@@ -433,10 +445,7 @@ fn an_engine_of_vulkan_1_2_gets_the_same_pictures_from_its_own_memory() {
     assert!(!ours.is_empty() && ours.iter().all(|part| names(&host).contains(&part.name)));
     assert!(ours.iter().all(|part| !part.name.starts_with("host's")));
 
-    for bindings in [Bindings::Address, Bindings::Bound] {
-        if bindings == Bindings::Bound && !device.support().push_descriptor {
-            continue;
-        }
+    for bindings in common::bindings(&device) {
         // Compiled from other modules: a path's own pictures agree to the bit, two paths' to 2e-5 of 255.
         let mut headless = common::headless_by(bindings);
         headless.load(&scene).expect("uploads");

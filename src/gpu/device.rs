@@ -149,7 +149,7 @@ impl Device {
         found.map(|found| found.sample_counts).unwrap_or_default()
     }
 
-    #[cfg(feature = "view")]
+    #[cfg(any(feature = "view", test))]
     pub(super) fn physical(&self) -> vk::PhysicalDevice {
         self.inner.physical
     }

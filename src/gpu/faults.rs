@@ -12,7 +12,7 @@ use ash::vk;
 use ash::vk::Handle;
 
 use super::instance::Instance;
-use super::{Device, DeviceDesc};
+use super::{AdoptDesc, Device, DeviceDesc};
 use crate::Result;
 
 /// Which call fails, and with what.
@@ -103,6 +103,30 @@ pub(crate) fn device(pretence: Option<Pretence>) -> Result<Device> {
     let instance = instance(pretence);
     let candidates = instance.devices()?;
     Device::open(std::sync::Arc::new(instance), candidates, &desc, &[])
+}
+
+/// Slow drivers get fewer places: what is tested is not theirs.
+pub(crate) fn is_slow() -> bool {
+    let scale = std::env::var("RARA_TEST_SCALE").ok();
+    scale.is_some_and(|scale| scale.parse().is_ok_and(|scale: f64| scale < 1.0))
+}
+
+/// A device as a host would lend it.
+pub(crate) fn lent(host: &Device) -> AdoptDesc {
+    let queue = host.inner.queue.lock().expect("nobody has panicked");
+    AdoptDesc {
+        api_version: host.support().api_version,
+        instance: host.instance().clone(),
+        physical_device: host.physical(),
+        device: host.raw().clone(),
+        queue: *queue,
+        queue_family: host.queue_family(),
+        mesh_shader: host.support().mesh_shader,
+        push_descriptor: host.support().push_descriptor,
+        debug_utils: true,
+        pipeline_cache: vk::PipelineCache::null(),
+        allocator: None,
+    }
 }
 
 /// From now on one of these calls fails, or none.

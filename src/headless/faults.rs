@@ -42,15 +42,9 @@ fn on(device: &Device) -> Result<Headless> {
     Headless::on(device.clone(), &desc)
 }
 
-/// Slow drivers get fewer places: what is tested is not theirs.
-fn is_slow() -> bool {
-    let scale = std::env::var("RARA_TEST_SCALE").ok();
-    scale.is_some_and(|scale| scale.parse().is_ok_and(|scale: f64| scale < 1.0))
-}
-
 #[test]
 fn memory_may_run_out_anywhere() {
-    let step = if is_slow() { 1000 } else { 2 };
+    let step = if faults::is_slow() { 1000 } else { 2 };
     run_out(|after| 9 * after + step);
 }
 
@@ -144,7 +138,7 @@ fn fails(device: &Device, call: &'static &'static str, after: usize) -> bool {
 fn a_device_may_be_lost_anywhere() {
     let mut places = 0;
     let mut after = 0;
-    let step = if is_slow() { 8 } else { 1 };
+    let step = if faults::is_slow() { 8 } else { 1 };
     loop {
         // A lost device is given up with all that was made from it.
         let device = faults::device(None).expect("a device");

@@ -17,6 +17,8 @@ use crate::types::FrameCounts;
 
 mod configure;
 mod desc;
+#[cfg(test)]
+mod faults;
 mod tell;
 #[cfg(test)]
 mod tests;

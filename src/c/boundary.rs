@@ -17,7 +17,7 @@ pub const RARA_ERROR_INVALID: RaraResult = 1;
 pub const RARA_ERROR_IO: RaraResult = 2;
 /// A file was read, and is no scene.
 pub const RARA_ERROR_FORMAT: RaraResult = 3;
-/// The device lacks something, or was lost.
+/// The device lacks something.
 pub const RARA_ERROR_DEVICE: RaraResult = 4;
 /// There is not enough memory, on the device or the host.
 pub const RARA_ERROR_MEMORY: RaraResult = 5;
@@ -26,6 +26,9 @@ pub const RARA_ERROR_VULKAN: RaraResult = 6;
 /// A panic was stopped: calls came in the wrong order, or rara has a bug; the message says which. Of the handles that
 /// the call was given, only destroying is sure to work.
 pub const RARA_ERROR_PANIC: RaraResult = 7;
+/// VK_ERROR_DEVICE_LOST. Nothing on the device can be used any more: the host destroys what was made from the
+/// RaraDevice, then that, then its own, and goes on with another one.
+pub const RARA_ERROR_DEVICE_LOST: RaraResult = 8;
 
 /// The version of this header. It changes when a host must be compiled anew; structs that grow at their end and functions
 /// that are added do not change it.
@@ -77,6 +80,7 @@ fn code(error: &Error) -> RaraResult {
         Error::Io { .. } => RARA_ERROR_IO,
         Error::Format { .. } => RARA_ERROR_FORMAT,
         Error::Device(_) => RARA_ERROR_DEVICE,
+        Error::DeviceLost { .. } => RARA_ERROR_DEVICE_LOST,
         Error::Memory(_) => RARA_ERROR_MEMORY,
         Error::Vulkan { .. } | Error::Validation(_) => RARA_ERROR_VULKAN,
     }

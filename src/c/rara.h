@@ -372,7 +372,7 @@ typedef struct RaraFrameStats {
 // A file was read, and is no scene.
 #define RARA_ERROR_FORMAT 3
 
-// The device lacks something, or was lost.
+// The device lacks something.
 #define RARA_ERROR_DEVICE 4
 
 // There is not enough memory, on the device or the host.
@@ -384,6 +384,10 @@ typedef struct RaraFrameStats {
 // A panic was stopped: calls came in the wrong order, or rara has a bug; the message says which. Of the handles that
 // the call was given, only destroying is sure to work.
 #define RARA_ERROR_PANIC 7
+
+// VK_ERROR_DEVICE_LOST. Nothing on the device can be used any more: the host destroys what was made from the
+// RaraDevice, then that, then its own, and goes on with another one.
+#define RARA_ERROR_DEVICE_LOST 8
 
 // Visible where every plane keeps it.
 #define RARA_CLIP_OP_AND 0

@@ -224,6 +224,18 @@ fn messages_are_a_threads_own() {
 }
 
 #[test]
+fn errors_have_codes_of_their_own() {
+    let lost = || rara::Error::DeviceLost {
+        call: "vkQueueSubmit2",
+    };
+    assert_fails(guard(|| Err(lost())), RARA_ERROR_DEVICE_LOST, "was lost");
+    let refused = guard(|| Err(rara::Error::Device("too old".into())));
+    assert_fails(refused, RARA_ERROR_DEVICE, "too old");
+    let full = guard(|| Err(rara::Error::Memory("full".into())));
+    assert_fails(full, RARA_ERROR_MEMORY, "full");
+}
+
+#[test]
 fn structs_of_other_versions() {
     let preset = RARA_PRESET_FAST;
     // SAFETY: the struct has the room that is said; it may hold any bytes.

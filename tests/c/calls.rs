@@ -1,5 +1,5 @@
 //! The functions of `rara.h` on a device: what a host can do wrong there has a message, and so has a device that
-//! is lost. What a host does right is drawn by `tests/c/host.rs`.
+//! is lost. What a host does right is drawn by `tests/c/host.rs` and `tests/c/frames.rs`.
 
 #[allow(dead_code)] // its frames are for the hosts that draw
 #[path = "../../tools/examples/host.rs"]

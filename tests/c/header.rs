@@ -15,7 +15,17 @@ fn the_header_is_current() {
         cbindgen::Config::from_file(folder.join("cbindgen.toml")).expect("a configuration");
     let bindings = cbindgen::Builder::new().with_config(config);
     let files = [
-        "boundary", "camera", "clip", "depth", "device", "renderer", "scene", "settings", "stats",
+        "boundary",
+        "camera",
+        "camera_files",
+        "clip",
+        "depth",
+        "device",
+        "placement",
+        "renderer",
+        "scene",
+        "settings",
+        "stats",
     ];
     let add = |bindings: cbindgen::Builder, file: &&str| {
         bindings.with_src(folder.join(file).with_extension("rs"))

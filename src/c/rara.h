@@ -62,6 +62,16 @@ typedef struct RaraSceneBuffers RaraSceneBuffers;
 // What every function that can fail returns. Of anything but RARA_OK rara_last_error_message says more.
 typedef int32_t RaraResult;
 
+// How much a line of the log matters.
+typedef uint32_t RaraLogLevel;
+
+// Takes a line of the log, of rara and of what it is built on: `text` is UTF-8, ends in NUL and is gone after the
+// call.
+//
+// Any thread may call it that is inside a function of rara's, and several at once. Locks may be held meanwhile: it
+// calls nothing of rara's, and throws nothing.
+typedef void (*RaraLog)(RaraLogLevel level, const char *text, void *user);
+
 // A pinhole camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers.
 typedef struct RaraCamera {
     // Picture width, pixels.
@@ -423,6 +433,21 @@ typedef struct RaraFrameStats {
 // RaraDevice, then that, then its own, and goes on with another one.
 #define RARA_ERROR_DEVICE_LOST 8
 
+// Something is wrong that no function could return.
+#define RARA_LOG_LEVEL_ERROR 1
+
+// Something may be wrong.
+#define RARA_LOG_LEVEL_WARN 2
+
+// What a user may want to know.
+#define RARA_LOG_LEVEL_INFO 3
+
+// What a developer may want to know.
+#define RARA_LOG_LEVEL_DEBUG 4
+
+// Every step.
+#define RARA_LOG_LEVEL_TRACE 5
+
 // Visible where every plane keeps it.
 #define RARA_CLIP_OP_AND 0
 
@@ -533,6 +558,18 @@ uint32_t rara_abi_version(void);
 // What the last call of this thread that failed has to say: one or two sentences in UTF-8, "" if none has failed.
 // Valid until this thread's next call that fails.
 const char *rara_last_error_message(void);
+
+// Sends the log to a function of the host's, of every level and the whole process; null, as it is in the beginning, to
+// nobody. `user` is what the function is given.
+//
+// May be called at any time and by any thread. The function before is then not called any more, and no thread is
+// inside it when this returns: what its `user` points to may be freed. The caller holds no lock that the function
+// waits for. RARA_ERROR_INVALID if it is called by the function itself, and where rara is linked into a Rust program
+// that has a logger already, which then has these records.
+//
+// # Safety
+// `log` is null, or as RaraLog says, and with `user` to be called by any thread, until it is replaced.
+RaraResult rara_set_log(RaraLog log, void *user);
 
 // A camera at `eye` that looks at `target`, each three numbers in world units. `up` points up in the picture; in the
 // usual world, where y is down, that is 0, -1, 0. `fov_y` is the full vertical field of view in degrees.

@@ -16,6 +16,7 @@ fn the_header_is_current() {
     let bindings = cbindgen::Builder::new().with_config(config);
     let files = [
         "boundary",
+        "logging",
         "camera",
         "camera_files",
         "clip",

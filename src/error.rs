@@ -31,6 +31,16 @@ pub enum Error {
     /// No usable Vulkan device, or the one asked for lacks something.
     #[error("{0}")]
     Device(String),
+    /// The device was lost. Nothing on it can be used any more: what was made from it is dropped, then the device, and
+    /// whoever goes on does so with another one.
+    #[error(
+        "the device was lost ({call}): the driver crashed, was reset or stopped a submission that ran too long; \
+         nothing on this device can be used any more"
+    )]
+    DeviceLost {
+        /// The call that said so.
+        call: &'static str,
+    },
     /// A Vulkan call failed.
     #[error("{call} failed: {result}")]
     Vulkan {

@@ -29,8 +29,8 @@ pub struct HeadlessDesc {
     pub device: Option<String>,
     /// Load the Khronos validation layer with synchronisation checks; any message becomes [`Error::Validation`].
     pub validation: bool,
-    /// How buffers are reached; `None` is by address, and bound under validation, whose synchronisation checks cannot
-    /// watch an address.
+    /// How buffers are reached; `None` is [what suits the device](Bindings::suiting), and bound under validation, whose
+    /// synchronisation checks cannot watch an address.
     pub bindings: Option<Bindings>,
     /// Where compiled pipelines are kept from one run to the next.
     pub pipeline_cache: PipelineCache,
@@ -42,11 +42,11 @@ pub struct HeadlessDesc {
 
 impl HeadlessDesc {
     /// How buffers are reached.
-    pub(crate) fn chosen_bindings(&self) -> Bindings {
+    pub(crate) fn bindings_on(&self, device: &Device) -> Bindings {
         self.bindings.unwrap_or(if self.validation {
             Bindings::Bound
         } else {
-            Bindings::Address
+            Bindings::suiting(device)
         })
     }
 }
@@ -97,7 +97,7 @@ impl Headless {
         let renderer = Renderer::new(
             &device,
             RendererDesc {
-                bindings: desc.chosen_bindings(),
+                bindings: desc.bindings_on(&device),
                 timing: true,
                 statistics: desc.statistics,
                 reuse: true,

@@ -88,7 +88,7 @@ impl Windowed {
         let renderer = Renderer::new(
             &device,
             RendererDesc {
-                bindings: desc.chosen_bindings(),
+                bindings: desc.bindings_on(&device),
                 timing: true,
                 reuse: true,
                 frames_in_flight: FRAMES as u32,

@@ -2,9 +2,11 @@
 
 use std::any::Any;
 use std::cell::RefCell;
-use std::ffi::{CStr, CString, c_char};
+use std::ffi::{CStr, CString, c_char, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 
+use rara::ash::vk;
 use rara::{Error, Result};
 
 /// What every function that can fail returns. Of anything but RARA_OK rara_last_error_message says more.
@@ -15,17 +17,20 @@ pub const RARA_OK: RaraResult = 0;
 pub const RARA_ERROR_INVALID: RaraResult = 1;
 /// A file could not be opened or read.
 pub const RARA_ERROR_IO: RaraResult = 2;
-/// A file was read, and is no scene.
+/// A file was read, and what stands in it is not usable.
 pub const RARA_ERROR_FORMAT: RaraResult = 3;
-/// The device lacks something, or was lost.
+/// The device lacks something.
 pub const RARA_ERROR_DEVICE: RaraResult = 4;
 /// There is not enough memory, on the device or the host.
 pub const RARA_ERROR_MEMORY: RaraResult = 5;
 /// A Vulkan call failed for another reason.
 pub const RARA_ERROR_VULKAN: RaraResult = 6;
-/// A panic was stopped: calls came in the wrong order, or rara has a bug; the message says which. Of the handles that
+/// A panic was stopped: rara has a bug, and the message says which. Of the handles that
 /// the call was given, only destroying is sure to work.
 pub const RARA_ERROR_PANIC: RaraResult = 7;
+/// VK_ERROR_DEVICE_LOST. Nothing on the device can be used any more: the host destroys what was made from the
+/// RaraDevice, then that, then its own, and goes on with another one.
+pub const RARA_ERROR_DEVICE_LOST: RaraResult = 8;
 
 /// The version of this header. It changes when a host must be compiled anew; structs that grow at their end and functions
 /// that are added do not change it.
@@ -53,7 +58,7 @@ pub extern "C" fn rara_last_error_message() -> *const c_char {
 pub(crate) fn guard(run: impl FnOnce() -> Result<()>) -> RaraResult {
     let run = || {
         #[cfg(test)]
-        crate::tests::panic_if_asked();
+        crate::nulls::panic_if_asked();
         run()
     };
     // Handles are not unwind safe in Rust's sense; RARA_ERROR_PANIC says what is left of them.
@@ -65,10 +70,26 @@ pub(crate) fn guard(run: impl FnOnce() -> Result<()>) -> RaraResult {
 }
 
 fn fail(code: RaraResult, message: &str) -> RaraResult {
-    let message = CString::new(message.replace('\0', "\u{fffd}")).unwrap_or_default();
+    let message = c_string(message);
     // Without effect while the thread is ending.
     let _ = MESSAGE.try_with(|last| last.replace(message));
     code
+}
+
+/// A text with a NUL at its end and nowhere else.
+pub(crate) fn c_string(text: &str) -> CString {
+    CString::new(text.replace('\0', "\u{fffd}")).unwrap_or_default()
+}
+
+/// As much of a text as there is room for, in whole characters, and a NUL.
+pub(crate) fn fixed<const N: usize>(from: &str) -> [c_char; N] {
+    let mut to = [0; N];
+    let most = from.len().min(N - 1);
+    let end = (0..=most).rev().find(|&end| from.is_char_boundary(end));
+    for (to, from) in to.iter_mut().zip(from[..end.unwrap_or(0)].bytes()) {
+        *to = from as c_char;
+    }
+    to
 }
 
 fn code(error: &Error) -> RaraResult {
@@ -77,6 +98,7 @@ fn code(error: &Error) -> RaraResult {
         Error::Io { .. } => RARA_ERROR_IO,
         Error::Format { .. } => RARA_ERROR_FORMAT,
         Error::Device(_) => RARA_ERROR_DEVICE,
+        Error::DeviceLost { .. } => RARA_ERROR_DEVICE_LOST,
         Error::Memory(_) => RARA_ERROR_MEMORY,
         Error::Vulkan { .. } | Error::Validation(_) => RARA_ERROR_VULKAN,
     }
@@ -126,15 +148,47 @@ pub(crate) unsafe fn list<'a, T>(first: *const T, count: usize, name: &str) -> R
     if count == 0 {
         return Ok(&[]);
     }
+    check_count::<T>(count, name)?;
+    // SAFETY: the caller's promise.
+    unsafe { shared(first, name) }?;
+    // SAFETY: as above, and not null.
+    Ok(unsafe { std::slice::from_raw_parts(first, count) })
+}
+
+/// Memory to be written; no pointer is needed to none.
+///
+/// # Safety
+/// `first` is null, or points to `size` bytes that nobody else uses for `'a`.
+pub(crate) unsafe fn memory<'a>(
+    first: *mut c_void,
+    size: usize,
+    name: &str,
+) -> Result<&'a mut [u8]> {
+    if size == 0 {
+        return Ok(&mut []);
+    }
+    check_count::<u8>(size, name)?;
+    // SAFETY: the caller's promise.
+    let first = unsafe { exclusive(first.cast::<u8>(), name) }?;
+    // SAFETY: as above, and not null.
+    Ok(unsafe { std::slice::from_raw_parts_mut(first, size) })
+}
+
+fn check_count<T>(count: usize, name: &str) -> Result<()> {
     if count > isize::MAX as usize / size_of::<T>().max(1) {
         return invalid(format!(
             "{name}: {count} of them are more than memory holds"
         ));
     }
-    // SAFETY: the caller's promise.
-    unsafe { shared(first, name) }?;
-    // SAFETY: as above, and not null.
-    Ok(unsafe { std::slice::from_raw_parts(first, count) })
+    Ok(())
+}
+
+/// A command buffer, if it is one.
+pub(crate) fn recording(cmd: vk::CommandBuffer) -> Result<vk::CommandBuffer> {
+    if cmd == vk::CommandBuffer::null() {
+        return invalid("cmd is null");
+    }
+    Ok(cmd)
 }
 
 /// A string's bytes, without the NUL at its end.
@@ -146,6 +200,29 @@ pub(crate) unsafe fn string<'a>(text: *const c_char, name: &str) -> Result<&'a C
     unsafe { shared(text, name) }?;
     // SAFETY: as above, and not null.
     Ok(unsafe { CStr::from_ptr(text) })
+}
+
+/// A file's name: UTF-8, on Unix any bytes.
+///
+/// # Safety
+/// As of [`string`].
+pub(crate) unsafe fn path(text: *const c_char, name: &str) -> Result<PathBuf> {
+    // SAFETY: the caller's promise.
+    path_of(unsafe { string(text, name) }?)
+}
+
+#[cfg(unix)]
+fn path_of(path: &CStr) -> Result<PathBuf> {
+    use std::os::unix::ffi::OsStrExt;
+    Ok(std::ffi::OsStr::from_bytes(path.to_bytes()).into())
+}
+
+#[cfg(not(unix))]
+fn path_of(path: &CStr) -> Result<PathBuf> {
+    match path.to_str() {
+        Ok(path) => Ok(path.into()),
+        Err(_) => invalid("the path is not UTF-8"),
+    }
 }
 
 /// Makes a handle: `*out` is null if `make` fails.

@@ -37,8 +37,8 @@ pub struct RaraSupport {
     pub timestamp_period: f32,
     /// Number of extensions.
     pub extension_count: u32,
-    /// Those from above that are there and those that 1.2 needs, to be added to ppEnabledExtensionNames; the strings live as long as the
-    /// library.
+    /// Those from above that are there and those that 1.2 needs, to be added to ppEnabledExtensionNames; the strings
+    /// live as long as the library.
     pub extensions: [*const c_char; RARA_MAX_EXTENSIONS],
     /// Bytes of the largest buffer: what a scene's spherical harmonics may take.
     pub max_buffer_size: u64,

@@ -9,9 +9,14 @@ compile_error!("rara-c stops panics at its boundary, and needs panic = \"unwind\
 
 pub mod boundary;
 pub mod camera;
+pub mod camera_files;
 pub mod clip;
 pub mod depth;
 pub mod device;
+pub mod logging;
+#[cfg(test)]
+mod nulls;
+pub mod placement;
 pub mod renderer;
 pub mod scene;
 pub mod settings;

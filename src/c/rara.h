@@ -19,6 +19,9 @@
 // that are added do not change it.
 #define RARA_ABI_VERSION 2
 
+// Room for a camera's name in RaraNamedCamera, the NUL included.
+#define RARA_MAX_CAMERA_NAME 256
+
 // Room for the names of extensions in RaraSupport.
 #define RARA_MAX_EXTENSIONS 8
 
@@ -59,6 +62,16 @@ typedef struct RaraSceneBuffers RaraSceneBuffers;
 // What every function that can fail returns. Of anything but RARA_OK rara_last_error_message says more.
 typedef int32_t RaraResult;
 
+// How much a line of the log matters.
+typedef uint32_t RaraLogLevel;
+
+// Takes a line of the log, of rara and of what it is built on: `text` is UTF-8, ends in NUL and is gone after the
+// call.
+//
+// Any thread may call it that is inside a function of rara's, and several at once. Locks may be held meanwhile: it
+// calls nothing of rara's, and throws nothing.
+typedef void (*RaraLog)(RaraLogLevel level, const char *text, void *user);
+
 // A pinhole camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers.
 typedef struct RaraCamera {
     // Picture width, pixels.
@@ -78,6 +91,14 @@ typedef struct RaraCamera {
     // World to camera rotation, row-major: the rows are the camera's right, down and forward axes in the world.
     double rotation[9];
 } RaraCamera;
+
+// A camera and what its file calls it.
+typedef struct RaraNamedCamera {
+    // The picture's name in the file, or the camera's number there: UTF-8, as much as there is room for.
+    char name[RARA_MAX_CAMERA_NAME];
+    // The camera.
+    struct RaraCamera camera;
+} RaraNamedCamera;
 
 // What a depth buffer holds: of every perspective projection into depths from 0 to 1.
 typedef struct RaraDepthMap {
@@ -123,8 +144,8 @@ typedef struct RaraSupport {
     float timestamp_period;
     // Number of extensions.
     uint32_t extension_count;
-    // Those from above that are there and those that 1.2 needs, to be added to ppEnabledExtensionNames; the strings live as long as the
-    // library.
+    // Those from above that are there and those that 1.2 needs, to be added to ppEnabledExtensionNames; the strings
+    // live as long as the library.
     const char *extensions[RARA_MAX_EXTENSIONS];
     // Bytes of the largest buffer: what a scene's spherical harmonics may take.
     uint64_t max_buffer_size;
@@ -161,6 +182,17 @@ typedef struct RaraAdoptDesc {
     // VkApplicationInfo::apiVersion of the instance, 1.2 or later. Default: VK_API_VERSION_1_3.
     uint32_t api_version;
 } RaraAdoptDesc;
+
+// Where a scene stands in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1} is
+// where it was made.
+typedef struct RaraPlacement {
+    // Where the scene's origin goes, world units.
+    double position[3];
+    // How it is turned: a quaternion x, y, z, w, of any length but zero.
+    double rotation[4];
+    // World units of a unit of the scene, above zero.
+    double scale;
+} RaraPlacement;
 
 // How shaders reach buffers.
 typedef uint32_t RaraBindings;
@@ -315,6 +347,18 @@ typedef struct RaraGaussiansInfo {
 // How spherical harmonics lie in device memory; bytes are of a Gaussian of degree 3.
 typedef uint32_t RaraShFormat;
 
+// A part of the host's memory that the device can copy from.
+typedef struct RaraStaging {
+    // Created with VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
+    VkBuffer buffer;
+    // Where the part begins in it, bytes.
+    uint64_t offset;
+    // The part, mapped for writing.
+    void *mapped;
+    // Its length in bytes; it may be longer than what is needed.
+    size_t size;
+} RaraStaging;
+
 // A choice of all that is given up for time: phi, key_bits, beam_switch and transmittance_min.
 typedef uint32_t RaraPreset;
 
@@ -369,10 +413,10 @@ typedef struct RaraFrameStats {
 // A file could not be opened or read.
 #define RARA_ERROR_IO 2
 
-// A file was read, and is no scene.
+// A file was read, and what stands in it is not usable.
 #define RARA_ERROR_FORMAT 3
 
-// The device lacks something, or was lost.
+// The device lacks something.
 #define RARA_ERROR_DEVICE 4
 
 // There is not enough memory, on the device or the host.
@@ -381,9 +425,28 @@ typedef struct RaraFrameStats {
 // A Vulkan call failed for another reason.
 #define RARA_ERROR_VULKAN 6
 
-// A panic was stopped: calls came in the wrong order, or rara has a bug; the message says which. Of the handles that
+// A panic was stopped: rara has a bug, and the message says which. Of the handles that
 // the call was given, only destroying is sure to work.
 #define RARA_ERROR_PANIC 7
+
+// VK_ERROR_DEVICE_LOST. Nothing on the device can be used any more: the host destroys what was made from the
+// RaraDevice, then that, then its own, and goes on with another one.
+#define RARA_ERROR_DEVICE_LOST 8
+
+// Something is wrong that no function could return.
+#define RARA_LOG_LEVEL_ERROR 1
+
+// Something may be wrong.
+#define RARA_LOG_LEVEL_WARN 2
+
+// What a user may want to know.
+#define RARA_LOG_LEVEL_INFO 3
+
+// What a developer may want to know.
+#define RARA_LOG_LEVEL_DEBUG 4
+
+// Every step.
+#define RARA_LOG_LEVEL_TRACE 5
 
 // Visible where every plane keeps it.
 #define RARA_CLIP_OP_AND 0
@@ -496,6 +559,18 @@ uint32_t rara_abi_version(void);
 // Valid until this thread's next call that fails.
 const char *rara_last_error_message(void);
 
+// Sends the log to a function of the host's, of every level and the whole process; null, as it is in the beginning, to
+// nobody. `user` is what the function is given.
+//
+// May be called at any time and by any thread. The function before is then not called any more, and no thread is
+// inside it when this returns: what its `user` points to may be freed. The caller holds no lock that the function
+// waits for. RARA_ERROR_INVALID if it is called by the function itself, and where rara is linked into a Rust program
+// that has a logger already, which then has these records.
+//
+// # Safety
+// `log` is null, or as RaraLog says, and with `user` to be called by any thread, until it is replaced.
+RaraResult rara_set_log(RaraLog log, void *user);
+
 // A camera at `eye` that looks at `target`, each three numbers in world units. `up` points up in the picture; in the
 // usual world, where y is down, that is 0, -1, 0. `fov_y` is the full vertical field of view in degrees.
 //
@@ -534,6 +609,17 @@ RaraResult rara_camera_frame(const struct RaraGaussians *gaussians,
                              uint32_t width,
                              uint32_t height,
                              struct RaraCamera *camera);
+
+// Loads the cameras of a 3DGS cameras.json, a nerfstudio transforms.json, a COLMAP sparse folder, or a single one from
+// JSON with width, height, fx, fy, cx, cy and world_to_camera. JSON files keep their order, COLMAP's cameras are
+// sorted by name. Cameras with lens distortion are RARA_ERROR_FORMAT.
+//
+// `*count` is how many there is room for at `cameras`, and becomes how many the file has; no more than there is room
+// for are written. With `cameras` null it is only asked for. `path` as of rara_gaussians_load.
+//
+// # Safety
+// `path` ends in NUL; `count` points to a number; `cameras` is null, or has room for as many cameras as that says.
+RaraResult rara_cameras_load(const char *path, struct RaraNamedCamera *cameras, size_t *count);
 
 // A depth attachment without stencil, not readable. `desc_size` is sizeof *desc.
 //
@@ -594,6 +680,19 @@ uint64_t rara_device_bytes(const struct RaraDevice *device);
 // # Safety
 // `device` is null, or alive and not used any more.
 void rara_device_destroy(struct RaraDevice *device);
+
+// Where the scene stands, from the next rara_renderer_configure on: camera, clip, the depth map and expected depths
+// are the world's. Without it, where it was made. RARA_ERROR_INVALID for numbers that are not finite, a scale that is
+// not above zero and a rotation of zero; the placement before then stays.
+//
+// The picture is that of the placed Gaussians, spherical harmonics turn with the scene, and no Gaussian is touched: a
+// scene can be moved in every frame, and one RaraSceneBuffers can be drawn in several places, by a renderer each.
+// Lengths are the scene's own then, also the one that 3DGS culls by: centres nearer than 0.2 of the scene's units
+// before the eye.
+//
+// # Safety
+// `renderer` is alive, and no other thread uses it; `placement` points to one.
+RaraResult rara_renderer_set_placement(struct RaraRenderer *renderer, const struct RaraPlacement *placement);
 
 // One colour attachment of one sample in dynamic rendering, no timestamps, nothing reused, one frame in flight.
 // `desc_size` is sizeof *desc.
@@ -737,6 +836,38 @@ RaraResult rara_scene_buffers_upload(const struct RaraDevice *device,
                                      const struct RaraGaussians *gaussians,
                                      RaraShFormat sh_format,
                                      struct RaraSceneBuffers **scene);
+
+// Bytes of staging memory that rara_scene_buffers_upload_with needs for a scene.
+//
+// # Safety
+// `gaussians` is alive; `bytes` may be overwritten.
+RaraResult rara_scene_buffers_staging_bytes(const struct RaraGaussians *gaussians,
+                                            RaraShFormat sh_format,
+                                            uint64_t *bytes);
+
+// Uploads a scene by the host's own means: allocates its buffers, writes it into the host's staging memory and records
+// the copies. Nothing is submitted and nothing waited for, so that a scene can come or be replaced while frames are in
+// flight. The calling thread converts the scene meanwhile; it may be another one than the one that draws.
+//
+// Synchronisation: the copies are ordered behind everything earlier in the queue, and nothing is needed after them:
+// rara_renderer_prepare begins with a barrier that waits for transfers. It may be recorded later into the same command
+// buffer, or into one that is submitted later to the same queue. What is written to the staging memory reaches the
+// device with the submission where the memory is host-coherent; else the host flushes the range before it submits.
+//
+// Lifetimes: the host leaves the staging range alone, and `*scene` alive, until `cmd` has executed. The scene that is
+// replaced lives until the last frame that was prepared with it has executed; `gaussians` may be destroyed at once. If
+// `cmd` is never submitted, `*scene` must not be drawn. After an error nothing has been recorded.
+//
+// # Safety
+// `device` and `gaussians` are alive. `cmd` is recording outside a rendering scope, and will be submitted to the
+// device's queue, or never; no other thread uses its pool. `staging` is as it says, and neither the device nor anybody
+// else uses its range. `scene` may be overwritten.
+RaraResult rara_scene_buffers_upload_with(const struct RaraDevice *device,
+                                          VkCommandBuffer cmd,
+                                          const struct RaraStaging *staging,
+                                          const struct RaraGaussians *gaussians,
+                                          RaraShFormat sh_format,
+                                          struct RaraSceneBuffers **scene);
 
 // Bytes of device memory that a scene takes, 0 for null.
 //

@@ -5,7 +5,8 @@ use rara::gpu::{Bindings, Target};
 use rara::{ExpectedDepthDesc, Renderer, RendererDesc, Result};
 
 use crate::boundary::{
-    RaraResult, Versioned, create, destroy, exclusive, guard, invalid, read, shared, write,
+    RaraResult, Versioned, create, destroy, exclusive, guard, invalid, read, recording, shared,
+    write,
 };
 use crate::camera::RaraCamera;
 use crate::clip::{self, RaraClip};
@@ -28,7 +29,7 @@ use crate::settings::{self, RaraSettings};
 ///
 /// The calls bind pipelines, push constants and, with RARA_BINDINGS_BOUND, push descriptor set 0: the host binds its own
 /// again. No other state, no image and no layout is touched.
-pub struct RaraRenderer(Renderer);
+pub struct RaraRenderer(pub(crate) Renderer);
 
 /// How shaders reach buffers.
 pub type RaraBindings = u32;
@@ -355,18 +356,4 @@ pub unsafe extern "C" fn rara_renderer_forget(renderer: *mut RaraRenderer) -> Ra
 pub unsafe extern "C" fn rara_renderer_destroy(renderer: *mut RaraRenderer) {
     // SAFETY: the caller's promise.
     unsafe { destroy(renderer) };
-}
-
-impl RaraRenderer {
-    /// The renderer itself.
-    pub(crate) fn inner(&self) -> &Renderer {
-        &self.0
-    }
-}
-
-fn recording(cmd: vk::CommandBuffer) -> Result<vk::CommandBuffer> {
-    if cmd == vk::CommandBuffer::null() {
-        return invalid("cmd is null");
-    }
-    Ok(cmd)
 }

@@ -1,14 +1,15 @@
 //! Scenes: from files and memory, and onto the device.
 
-use std::ffi::{CStr, c_char};
+use std::ffi::{c_char, c_void};
 use std::io::Cursor;
-use std::path::PathBuf;
 
+use rara::ash::vk;
 use rara::scene::{Bounds, Loaded, load, load_from};
-use rara::{Gaussians, Result, SceneBuffers, ShFormat};
+use rara::{Gaussians, Result, SceneBuffers, ShFormat, Staging};
 
 use crate::boundary::{
-    RaraResult, Versioned, create, destroy, exclusive, guard, invalid, list, shared, string, write,
+    self, RaraResult, Versioned, create, destroy, exclusive, guard, invalid, list, memory,
+    recording, shared, write,
 };
 use crate::device::RaraDevice;
 
@@ -79,7 +80,7 @@ pub unsafe extern "C" fn rara_gaussians_load(
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         create(gaussians, "gaussians", || {
-            let path = path_of(string(path, "path")?)?;
+            let path = boundary::path(path, "path")?;
             load(&path, &mut |_, _| ()).map(RaraGaussians)
         })
     })
@@ -99,7 +100,7 @@ pub unsafe extern "C" fn rara_gaussians_load_from(
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         create(gaussians, "gaussians", || {
-            let name = path_of(string(name, "name")?)?;
+            let name = boundary::path(name, "name")?;
             let source = Cursor::new(list(data, size, "data")?);
             load_from(source, &name, &mut |_, _| ()).map(RaraGaussians)
         })
@@ -188,6 +189,97 @@ pub unsafe extern "C" fn rara_scene_buffers_upload(
     })
 }
 
+/// A part of the host's memory that the device can copy from.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RaraStaging {
+    /// Created with VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
+    pub buffer: vk::Buffer,
+    /// Where the part begins in it, bytes.
+    pub offset: u64,
+    /// The part, mapped for writing.
+    pub mapped: *mut c_void,
+    /// Its length in bytes; it may be longer than what is needed.
+    pub size: usize,
+}
+
+/// Bytes of staging memory that rara_scene_buffers_upload_with needs for a scene.
+///
+/// # Safety
+/// `gaussians` is alive; `bytes` may be overwritten.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_scene_buffers_staging_bytes(
+    gaussians: *const RaraGaussians,
+    sh_format: RaraShFormat,
+    bytes: *mut u64,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let bytes = exclusive(bytes, "bytes")?;
+        let gaussians = &shared(gaussians, "gaussians")?.0.gaussians;
+        *bytes = SceneBuffers::staging_bytes(gaussians, self::sh_format(sh_format)?);
+        Ok(())
+    })
+}
+
+/// Uploads a scene by the host's own means: allocates its buffers, writes it into the host's staging memory and records
+/// the copies. Nothing is submitted and nothing waited for, so that a scene can come or be replaced while frames are in
+/// flight. The calling thread converts the scene meanwhile; it may be another one than the one that draws.
+///
+/// Synchronisation: the copies are ordered behind everything earlier in the queue, and nothing is needed after them:
+/// rara_renderer_prepare begins with a barrier that waits for transfers. It may be recorded later into the same command
+/// buffer, or into one that is submitted later to the same queue. What is written to the staging memory reaches the
+/// device with the submission where the memory is host-coherent; else the host flushes the range before it submits.
+///
+/// Lifetimes: the host leaves the staging range alone, and `*scene` alive, until `cmd` has executed. The scene that is
+/// replaced lives until the last frame that was prepared with it has executed; `gaussians` may be destroyed at once. If
+/// `cmd` is never submitted, `*scene` must not be drawn. After an error nothing has been recorded.
+///
+/// # Safety
+/// `device` and `gaussians` are alive. `cmd` is recording outside a rendering scope, and will be submitted to the
+/// device's queue, or never; no other thread uses its pool. `staging` is as it says, and neither the device nor anybody
+/// else uses its range. `scene` may be overwritten.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_scene_buffers_upload_with(
+    device: *const RaraDevice,
+    cmd: vk::CommandBuffer,
+    staging: *const RaraStaging,
+    gaussians: *const RaraGaussians,
+    sh_format: RaraShFormat,
+    scene: *mut *mut RaraSceneBuffers,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        create(scene, "scene", || {
+            let device = &shared(device, "device")?.0;
+            let cmd = recording(cmd)?;
+            let staging = shared(staging, "staging")?.staging()?;
+            let gaussians = &shared(gaussians, "gaussians")?.0.gaussians;
+            let format = self::sh_format(sh_format)?;
+            SceneBuffers::upload_with(device, cmd, staging, gaussians, format).map(RaraSceneBuffers)
+        })
+    })
+}
+
+impl RaraStaging {
+    /// # Safety
+    /// It is as it says, and nobody else uses its range for `'a`.
+    unsafe fn staging<'a>(&self) -> Result<Staging<'a>> {
+        if self.buffer == vk::Buffer::null() {
+            return invalid("staging->buffer is null");
+        }
+        if self.offset.checked_add(self.size as u64).is_none() {
+            return invalid("staging->offset and staging->size are beyond any buffer");
+        }
+        Ok(Staging {
+            buffer: self.buffer,
+            offset: self.offset,
+            // SAFETY: the caller's promise.
+            bytes: unsafe { memory(self.mapped, self.size, "staging->mapped") }?,
+        })
+    }
+}
+
 /// Bytes of device memory that a scene takes, 0 for null.
 ///
 /// # Safety
@@ -211,18 +303,4 @@ pub unsafe extern "C" fn rara_scene_buffers_bytes(scene: *const RaraSceneBuffers
 pub unsafe extern "C" fn rara_scene_buffers_destroy(scene: *mut RaraSceneBuffers) {
     // SAFETY: the caller's promise.
     unsafe { destroy(scene) };
-}
-
-#[cfg(unix)]
-fn path_of(path: &CStr) -> Result<PathBuf> {
-    use std::os::unix::ffi::OsStrExt;
-    Ok(std::ffi::OsStr::from_bytes(path.to_bytes()).into())
-}
-
-#[cfg(not(unix))]
-fn path_of(path: &CStr) -> Result<PathBuf> {
-    match path.to_str() {
-        Ok(path) => Ok(path.into()),
-        Err(_) => invalid("the path is not UTF-8"),
-    }
 }

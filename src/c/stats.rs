@@ -4,7 +4,7 @@ use std::ffi::c_char;
 
 use rara::ash::vk;
 
-use crate::boundary::{RaraResult, Versioned, guard, shared, write};
+use crate::boundary::{RaraResult, Versioned, fixed, guard, shared, write};
 use crate::renderer::RaraRenderer;
 use crate::settings::{
     RARA_RASTER_AUTO, RARA_RASTER_MESH, RARA_RASTER_QUAD, RARA_RASTER_TILES, RaraRaster,
@@ -81,7 +81,7 @@ pub unsafe extern "C" fn rara_renderer_stats(
 ) -> RaraResult {
     guard(|| {
         // SAFETY: the caller's promise.
-        let renderer = unsafe { shared(renderer, "renderer") }?.inner();
+        let renderer = &unsafe { shared(renderer, "renderer") }?.0;
         let (counts, raster) = (renderer.counts(), renderer.raster());
         let (times, skipped) = (renderer.pass_times(), renderer.skipped());
         let mut found = RaraFrameStats {
@@ -97,34 +97,25 @@ pub unsafe extern "C" fn rara_renderer_stats(
                 "tiles" => RARA_RASTER_TILES,
                 _ => RARA_RASTER_AUTO,
             },
-            raster_reason: text(raster.reason),
+            raster_reason: fixed(raster.reason),
             fell_back: renderer.fell_back().into(),
             pass_count: times.len().min(RARA_MAX_PASSES) as u32,
             passes: [RaraPassTime {
-                name: text(""),
+                name: fixed(""),
                 ms: 0.0,
             }; RARA_MAX_PASSES],
             gpu_ms: times.iter().map(|pass| pass.ms).sum(),
             skipped_count: skipped.len().min(RARA_MAX_PASSES) as u32,
-            skipped: [text(""); RARA_MAX_PASSES],
+            skipped: [fixed(""); RARA_MAX_PASSES],
         };
         for (to, from) in found.passes.iter_mut().zip(&times) {
-            to.name = text(from.name);
+            to.name = fixed(from.name);
             to.ms = from.ms;
         }
         for (to, from) in found.skipped.iter_mut().zip(&skipped) {
-            *to = text(from);
+            *to = fixed(from);
         }
         // SAFETY: the caller's promise.
         unsafe { write(stats, stats_size, &found, "stats") }
     })
-}
-
-/// As much of a text as there is room for, and a NUL.
-fn text<const N: usize>(from: &str) -> [c_char; N] {
-    let mut to = [0; N];
-    for (to, from) in to[..N - 1].iter_mut().zip(from.bytes()) {
-        *to = from as c_char;
-    }
-    to
 }

@@ -1,213 +1,29 @@
-//! What a host can do wrong without a device: null pointers, impossible arguments, other versions; and panics, which every
-//! function stops.
+//! What a host can do wrong without a device: impossible arguments, structs of other versions.
 
-use std::cell::Cell;
 use std::ffi::{CStr, CString};
 use std::ptr::{null, null_mut};
 
-use rara::ash::vk;
-
 use crate::boundary::*;
 use crate::camera::*;
+use crate::camera_files::*;
 use crate::clip::*;
-use crate::depth::*;
-use crate::device::*;
-use crate::renderer::*;
+use crate::placement::*;
 use crate::scene::*;
 use crate::settings::*;
-use crate::stats::*;
 
-thread_local! {
-    static PANIC: Cell<bool> = const { Cell::new(false) };
-}
-
-/// What a test puts into every function.
-pub(crate) fn panic_if_asked() {
-    assert!(!PANIC.get(), "injected");
-}
-
-fn message() -> String {
+pub(crate) fn message() -> String {
     // SAFETY: a string of this thread, copied before its next call.
     let text = unsafe { CStr::from_ptr(rara_last_error_message()) };
     text.to_str().expect("UTF-8").to_owned()
 }
 
 #[track_caller]
-fn assert_fails(result: RaraResult, code: RaraResult, part: &str) {
+pub(crate) fn assert_fails(result: RaraResult, code: RaraResult, part: &str) {
     let message = message();
     assert!(
         result == code && message.contains(part),
         "{result}: {message}"
     );
-}
-
-/// Each function with null for every pointer and handle, and what it says then.
-fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
-    let mut called = Vec::new();
-    macro_rules! call {
-        ($function:ident($($argument:expr),*), $says:literal) => {
-            // SAFETY: null is what every function must stand.
-            called.push((unsafe { $function($($argument),*) }, stringify!($function), $says));
-            assert!(called.last().is_none_or(|(_, name, _)| PANIC.get() || {
-                let says = message();
-                let is_right = says.contains($says);
-                if !is_right { eprintln!("{name}: {says}"); }
-                is_right
-            }));
-        };
-    }
-    let map = RaraDepthMap {
-        z_near: 1.0,
-        z_far: 2.0,
-        reversed: 0,
-    };
-    let format = vk::Format::R8G8B8A8_UNORM;
-    let no_device = vk::PhysicalDevice::null();
-    let no_cmd = vk::CommandBuffer::null();
-    call!(
-        rara_check(None, vk::Instance::null(), no_device, 0, null_mut(), 0),
-        "get_instance_proc_addr"
-    );
-    call!(rara_support_features(null(), null_mut()), "support is null");
-    call!(
-        rara_adopt_desc_default(null_mut(), size_of::<RaraAdoptDesc>()),
-        "desc is null"
-    );
-    call!(rara_device_adopt(null(), null_mut()), "device is null");
-    call!(rara_gaussians_load(null(), null_mut()), "gaussians is null");
-    call!(
-        rara_gaussians_load_from(null(), 0, null(), null_mut()),
-        "gaussians is null"
-    );
-    call!(
-        rara_gaussians_append(null_mut(), null()),
-        "gaussians is null"
-    );
-    call!(
-        rara_gaussians_info(null(), null_mut(), 0),
-        "gaussians is null"
-    );
-    call!(
-        rara_scene_buffers_upload(null(), null(), 0, null_mut()),
-        "scene is null"
-    );
-    call!(
-        rara_camera_look_at(null(), null(), null(), 50.0, 8, 8, null_mut()),
-        "camera is null"
-    );
-    call!(
-        rara_camera_from_world_to_camera(null(), 1.0, 1.0, 0.0, 0.0, 8, 8, null_mut()),
-        "camera is null"
-    );
-    call!(
-        rara_camera_frame(null(), null(), 50.0, 8, 8, null_mut()),
-        "camera is null"
-    );
-    call!(
-        rara_depth_desc_default(null_mut(), size_of::<RaraDepthDesc>(), format, map),
-        "desc is null"
-    );
-    call!(
-        rara_settings_default(null_mut(), size_of::<RaraSettings>(), 0),
-        "settings is null"
-    );
-    call!(
-        rara_renderer_desc_default(null_mut(), size_of::<RaraRendererDesc>(), format),
-        "desc is null"
-    );
-    call!(
-        rara_renderer_create(null(), null(), null_mut()),
-        "renderer is null"
-    );
-    call!(
-        rara_renderer_create_sharing(null(), null(), null_mut()),
-        "renderer is null"
-    );
-    call!(
-        rara_renderer_set_depth_map(null_mut(), null()),
-        "renderer is null"
-    );
-    call!(
-        rara_renderer_configure(null_mut(), null(), null(), null(), null()),
-        "renderer is null"
-    );
-    call!(
-        rara_renderer_prepare(null_mut(), no_cmd, null()),
-        "renderer is null"
-    );
-    call!(
-        rara_renderer_prepare_behind(null_mut(), no_cmd, null(), null()),
-        "renderer is null"
-    );
-    call!(
-        rara_renderer_draw(null_mut(), no_cmd, 0.0, 0.0),
-        "renderer is null"
-    );
-    call!(
-        rara_renderer_draw_depth(null_mut(), no_cmd, 0.0, 0.0),
-        "renderer is null"
-    );
-    call!(rara_renderer_forget(null_mut()), "renderer is null");
-    call!(
-        rara_renderer_stats(null(), null_mut(), 0),
-        "renderer is null"
-    );
-    called
-}
-
-#[test]
-fn null_is_named() {
-    for (result, function, _) in calls() {
-        assert_eq!(result, RARA_ERROR_INVALID, "{function}");
-    }
-    // SAFETY: null is what these ignore.
-    unsafe {
-        rara_gaussians_destroy(null_mut());
-        rara_scene_buffers_destroy(null_mut());
-        rara_renderer_destroy(null_mut());
-        rara_device_destroy(null_mut());
-        assert_eq!(
-            rara_device_bytes(null()) + rara_scene_buffers_bytes(null()),
-            0
-        );
-    }
-}
-
-#[test]
-fn no_panic_crosses() {
-    PANIC.set(true);
-    for (result, function, _) in calls() {
-        assert_eq!(result, RARA_ERROR_PANIC, "{function}");
-        assert_eq!(message(), "injected");
-    }
-    // SAFETY: null is what these ignore.
-    unsafe {
-        rara_gaussians_destroy(null_mut());
-        rara_scene_buffers_destroy(null_mut());
-        rara_renderer_destroy(null_mut());
-        rara_device_destroy(null_mut());
-        assert_eq!(
-            rara_device_bytes(null()) + rara_scene_buffers_bytes(null()),
-            0
-        );
-    }
-    PANIC.set(false);
-    let odd = guard(|| std::panic::panic_any(7));
-    assert_fails(odd, RARA_ERROR_PANIC, "without a message");
-}
-
-#[test]
-fn every_function_is_called_here() {
-    let header = include_str!("rara.h");
-    let called: Vec<_> = calls().into_iter().map(|(_, name, _)| name).collect();
-    for line in header
-        .lines()
-        .filter(|line| line.starts_with("RaraResult rara_"))
-    {
-        let name = line["RaraResult ".len()..].split('(').next();
-        let name = name.expect("a function");
-        assert!(called.contains(&name), "{name} is not in calls()");
-    }
 }
 
 #[test]
@@ -221,6 +37,18 @@ fn messages_are_a_threads_own() {
     .expect("no panic");
     assert_eq!(message(), "");
     assert_eq!(rara_abi_version(), RARA_ABI_VERSION);
+}
+
+#[test]
+fn errors_have_codes_of_their_own() {
+    let lost = || rara::Error::DeviceLost {
+        call: "vkQueueSubmit2",
+    };
+    assert_fails(guard(|| Err(lost())), RARA_ERROR_DEVICE_LOST, "was lost");
+    let refused = guard(|| Err(rara::Error::Device("too old".into())));
+    assert_fails(refused, RARA_ERROR_DEVICE, "too old");
+    let full = guard(|| Err(rara::Error::Memory("full".into())));
+    assert_fails(full, RARA_ERROR_MEMORY, "full");
 }
 
 #[test]
@@ -411,4 +239,62 @@ fn scenes() {
         rara_gaussians_destroy(scene);
         rara_gaussians_destroy(other);
     }
+}
+
+#[test]
+fn placements() {
+    let given = RaraPlacement {
+        position: [4.0, -1.0, 2.5],
+        rotation: [0.3, -0.5, 0.2, 0.9],
+        scale: 0.35,
+    };
+    let turn = rara::glam::DQuat::from_xyzw(0.3, -0.5, 0.2, 0.9);
+    let made = rara::Placement::new(given.position.into(), turn, 0.35).expect("finite numbers");
+    assert_eq!(given.placement().expect("the same"), made);
+    for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(RaraPlacement { scale, ..given }.placement().is_err());
+    }
+    let (position, rotation) = ([f64::NAN; 3], [0.0; 4]);
+    assert!(RaraPlacement { position, ..given }.placement().is_err());
+    let error = RaraPlacement { rotation, ..given }.placement();
+    let text = error.expect_err("no rotation").to_string();
+    assert!(text.contains("a rotation that is not zero"), "{text}");
+}
+
+#[test]
+fn cameras_of_files() {
+    let camera = |name: &str, x: f64| {
+        format!(
+            r#"{{"id": 0, "img_name": "{name}", "width": 90, "height": 60, "fx": 80.0, "fy": 81.0,
+            "position": [{x}, 0.0, -5.0], "rotation": [[1,0,0],[0,1,0],[0,0,1]]}}"#
+        )
+    };
+    let long = "ä".repeat(RARA_MAX_CAMERA_NAME);
+    let text = format!("[{}, {}]", camera("left", -1.0), camera(&long, 1.0));
+    let path = std::env::temp_dir().join(format!("rara-c-{}.json", std::process::id()));
+    std::fs::write(&path, text).expect("a temporary file");
+    let truth = rara::camera_files::load_cameras(&path).expect("loads");
+    let name = CString::new(path.to_str().expect("UTF-8")).expect("no NUL");
+    let (mut count, missing) = (9, c"no/such.json".as_ptr());
+    // SAFETY: strings that end in NUL, and as much room as the count says.
+    unsafe {
+        let result = rara_cameras_load(missing, null_mut(), &mut count);
+        assert_fails(result, RARA_ERROR_IO, "no/such.json");
+        let result = rara_cameras_load(name.as_ptr(), null_mut(), &mut count);
+        assert_eq!((result, count), (RARA_OK, 2));
+        let mut cameras: [RaraNamedCamera; 2] = std::mem::zeroed();
+        count = 1; // room for one
+        let result = rara_cameras_load(name.as_ptr(), cameras.as_mut_ptr(), &mut count);
+        assert_eq!((result, count), (RARA_OK, 2));
+        assert_eq!(cameras[1].camera.width, 0, "left alone");
+        let result = rara_cameras_load(name.as_ptr(), cameras.as_mut_ptr(), &mut count);
+        assert_eq!((result, count), (RARA_OK, 2));
+        for (ours, truth) in cameras.iter().zip(&truth) {
+            assert_eq!(ours.camera.camera().expect("a camera"), truth.camera);
+            let name = CStr::from_ptr(ours.name.as_ptr()).to_str();
+            let name = name.expect("whole characters");
+            assert!(truth.name.starts_with(name) && name.len() >= truth.name.len().min(254));
+        }
+    }
+    std::fs::remove_file(&path).expect("is there");
 }

@@ -21,7 +21,8 @@ pub struct RendererDesc {
     pub samples: vk::SampleCountFlags,
     /// Dynamic rendering, or a classic render pass.
     pub target: Target,
-    /// Whether buffers are reached by address (fast) or bound (the validation layer can watch them). With
+    /// Whether buffers are reached by address or bound, where the validation layer can watch them;
+    /// [`Bindings::suiting`] says which is faster on a device. With
     /// [`Bindings::Bound`] a frame whose buffers exceed the device's binding size still uses addresses.
     pub bindings: Bindings,
     /// Whether to take timestamps around the stages.

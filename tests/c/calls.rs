@@ -1,12 +1,13 @@
-//! The functions of `rara.h` on a device: what a host can do wrong there has a message, and what it does right is drawn by
-//! `tests/c/host.rs`.
+//! The functions of `rara.h` on a device: what a host can do wrong there has a message, and so has a device that
+//! is lost. What a host does right is drawn by `tests/c/host.rs` and `tests/c/frames.rs`.
 
 #[allow(dead_code)] // its frames are for the hosts that draw
 #[path = "../../tools/examples/host.rs"]
 mod host;
 
-use std::ffi::{CStr, c_void};
+use std::ffi::{CStr, c_char, c_void};
 use std::ptr::{null, null_mut};
+use std::sync::OnceLock;
 
 use host::{Host, HostDesc};
 use rara::ash::{Entry, vk};
@@ -47,8 +48,7 @@ property float scale_0\nproperty float scale_1\nproperty float scale_2
 property float rot_0\nproperty float rot_1\nproperty float rot_2\nproperty float rot_3\nend_header
 0 0 0 1 1 1 2 -1 -1 -1 1 0 0 0\n";
 
-#[test]
-fn what_is_wrong_is_said() {
+fn host() -> Host {
     let name = std::env::var("RARA_TEST_DEVICE").ok();
     let extent = vk::Extent2D {
         width: 1,
@@ -62,7 +62,12 @@ fn what_is_wrong_is_said() {
         format: FORMAT,
     };
     let host = Host::new(&desc);
-    let host = host.expect("a Vulkan device and the validation layer (tools/test installs both)");
+    host.expect("a Vulkan device and the validation layer (tools/test installs both)")
+}
+
+#[test]
+fn what_is_wrong_is_said() {
+    let host = host();
     let ours = host.lend();
     // SAFETY: the system's loader; every handle and pointer below is alive, null, or to be overwritten.
     unsafe {
@@ -216,6 +221,101 @@ fn what_is_wrong_is_said() {
         rara_renderer_destroy(second);
         rara_renderer_destroy(renderer);
         rara_scene_buffers_destroy(scene);
+        assert_eq!(
+            rara_device_bytes(device),
+            0,
+            "everything allocated was freed"
+        );
+        rara_device_destroy(device);
+    }
+    assert_eq!(host.close(), Vec::<String>::new());
+}
+
+/// The system's functions, below those that lose the device.
+static REAL: OnceLock<(vk::PFN_vkGetInstanceProcAddr, vk::PFN_vkGetDeviceProcAddr)> =
+    OnceLock::new();
+
+/// # Safety
+/// As of vkGetInstanceProcAddr.
+unsafe extern "system" fn instance_function(
+    instance: vk::Instance,
+    name: *const c_char,
+) -> vk::PFN_vkVoidFunction {
+    let (real, _) = REAL.get().expect("set by the test");
+    // SAFETY: the caller's promise; a function's type is known by its name.
+    unsafe {
+        match CStr::from_ptr(name).to_bytes() {
+            b"vkGetDeviceProcAddr" => Some(std::mem::transmute::<
+                vk::PFN_vkGetDeviceProcAddr,
+                unsafe extern "system" fn(),
+            >(device_function)),
+            _ => real(instance, name),
+        }
+    }
+}
+
+/// # Safety
+/// As of vkGetDeviceProcAddr.
+unsafe extern "system" fn device_function(
+    device: vk::Device,
+    name: *const c_char,
+) -> vk::PFN_vkVoidFunction {
+    unsafe extern "system" fn lost(
+        _: vk::Queue,
+        _: u32,
+        _: *const vk::SubmitInfo2<'_>,
+        _: vk::Fence,
+    ) -> vk::Result {
+        vk::Result::ERROR_DEVICE_LOST
+    }
+    let (_, real) = REAL.get().expect("set by the test");
+    // SAFETY: as above.
+    unsafe {
+        match CStr::from_ptr(name).to_bytes() {
+            b"vkQueueSubmit2" | b"vkQueueSubmit2KHR" => Some(std::mem::transmute::<
+                vk::PFN_vkQueueSubmit2,
+                unsafe extern "system" fn(),
+            >(lost)),
+            _ => real(device, name),
+        }
+    }
+}
+
+#[test]
+fn a_lost_device_has_a_code_of_its_own() {
+    let host = host();
+    let ours = host.lend();
+    // SAFETY: the system's loader; every handle and pointer below is alive, or to be overwritten.
+    unsafe {
+        let entry = Entry::load().expect("a Vulkan loader");
+        let real = (
+            entry.static_fn().get_instance_proc_addr,
+            ours.instance.fp_v1_0().get_device_proc_addr,
+        );
+        REAL.set(real).expect("set once");
+        let mut desc: RaraAdoptDesc = std::mem::zeroed();
+        assert_ok(rara_adopt_desc_default(&mut desc, size_of_val(&desc)));
+        desc.get_instance_proc_addr = Some(instance_function);
+        (desc.instance, desc.physical_device) = (ours.instance.handle(), ours.physical_device);
+        (desc.device, desc.queue) = (ours.device.handle(), ours.queue);
+        desc.queue_family = ours.queue_family;
+        let (mut device, mut gaussians, mut scene) = (null_mut(), null_mut(), null_mut());
+        assert_ok(rara_device_adopt(&desc, &mut device));
+        let (data, size) = (SCENE.as_ptr(), SCENE.len());
+        assert_ok(rara_gaussians_load_from(
+            data,
+            size,
+            c"one".as_ptr(),
+            &mut gaussians,
+        ));
+        let lost = rara_scene_buffers_upload(device, gaussians, RARA_SH_FORMAT_HALF, &mut scene);
+        assert_fails(
+            lost,
+            RARA_ERROR_DEVICE_LOST,
+            "the device was lost (vkQueueSubmit2)",
+        );
+        assert!(scene.is_null());
+        rara_gaussians_destroy(gaussians);
         assert_eq!(
             rara_device_bytes(device),
             0,

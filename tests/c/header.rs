@@ -1,6 +1,12 @@
-//! `rara.h` is what cbindgen makes of `src/c`. `RARA_WRITE_HEADER=1` writes it anew.
+//! Headers are what they are made of: `rara.h` what cbindgen makes of `src/c` (`RARA_WRITE_HEADER=1` writes it anew), and
+//! `mesh.h` of the C++ host what glslang makes of its shaders. C and the README's C++ compile with the former.
 
-use std::path::Path;
+mod compiler;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use compiler::{compiler, root, run};
 
 #[test]
 fn the_header_is_current() {
@@ -9,7 +15,18 @@ fn the_header_is_current() {
         cbindgen::Config::from_file(folder.join("cbindgen.toml")).expect("a configuration");
     let bindings = cbindgen::Builder::new().with_config(config);
     let files = [
-        "boundary", "camera", "clip", "depth", "device", "renderer", "scene", "settings", "stats",
+        "boundary",
+        "logging",
+        "camera",
+        "camera_files",
+        "clip",
+        "depth",
+        "device",
+        "placement",
+        "renderer",
+        "scene",
+        "settings",
+        "stats",
     ];
     let add = |bindings: cbindgen::Builder, file: &&str| {
         bindings.with_src(folder.join(file).with_extension("rs"))
@@ -26,5 +43,81 @@ fn the_header_is_current() {
     assert!(
         made == committed,
         "src/c/rara.h is stale: RARA_WRITE_HEADER=1 cargo test -p rara-c --test c_header"
+    );
+}
+
+/// Warnings count; the compiler makes nothing.
+fn assert_compiles(compiler: &str, flags: &[&str], name: &str, code: &str) {
+    let path = temporary(name);
+    std::fs::write(&path, code).expect("a temporary file");
+    let mut command = Command::new(compiler);
+    command.args(["-fsyntax-only", "-Wall", "-Wextra", "-Werror"]);
+    command.args(flags).arg("-I").arg(root().join("src/c"));
+    let says = format!("{name} does not compile (tools/setup test installs the Vulkan headers)");
+    run(command.arg(&path), &says);
+}
+
+fn temporary(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
+#[test]
+fn the_header_is_c_and_the_readmes_snippet_is_cpp() {
+    let Some(compiler) = compiler("neither rara.h in C nor the README's C++ was compiled") else {
+        return;
+    };
+    let c =
+        "#include \"rara.h\"\nint main(void) { return rara_abi_version() != RARA_ABI_VERSION; }\n";
+    let c99 = ["-x", "c", "-std=c99", "-pedantic"];
+    assert_compiles(&compiler, &c99, "header.c", c);
+
+    let readme = std::fs::read_to_string(root().join("README.md")).expect("a README");
+    let snippets: Vec<_> = readme
+        .split("\n```cpp\n")
+        .skip(1)
+        .map(|from| from.split("\n```").next().expect("all before the end"))
+        .collect();
+    let [snippet] = snippets[..] else {
+        panic!("{} snippets of C++ in the README", snippets.len());
+    };
+    // A template is only looked at as a whole where it is used.
+    let used = "void use(Splats &s, VkCommandBuffer cmd) { frame(s, cmd, [] {}); }";
+    let code = format!("{snippet}\n{used}\n");
+    assert_compiles(&compiler, &["-std=c++17"], "readme.cpp", &code);
+}
+
+#[test]
+fn the_cpp_hosts_mesh_is_what_its_shaders_compile_to() {
+    let glslang = "glslangValidator";
+    if Command::new(glslang).arg("--version").output().is_err() {
+        eprintln!("SKIPPED: NO {glslang}: tools/examples/mesh.h was not compared with its shaders");
+        return;
+    }
+    let folder = root().join("tools/examples");
+    let mut made = String::new();
+    for stage in ["vert", "frag"] {
+        let out = temporary(&format!("mesh.{stage}.h"));
+        let mut command = Command::new(glslang);
+        command.args(["-V", "--quiet", "--target-env", "vulkan1.2", "--vn"]);
+        command.arg(format!("mesh_{stage}"));
+        command.arg(folder.join(format!("mesh.{stage}")));
+        run(command.arg("-o").arg(&out), "a shader does not compile");
+        made += &std::fs::read_to_string(&out).expect("a header");
+    }
+    let made = made.replace("#pragma once", "").replace('\t', " ");
+    let committed = std::fs::read_to_string(folder.join("mesh.h")).expect("a header");
+    let version = |header: &str| header.lines().next().map(str::to_owned);
+    if version(&made) != version(&committed) {
+        // Each version of the compiler writes what it likes.
+        eprintln!(
+            "SKIPPED: ANOTHER {glslang}, {:?}: tools/examples/mesh.h, of {:?}, was not compared with its shaders",
+            version(&made),
+            version(&committed)
+        );
+        return;
+    }
+    assert!(
+        made == committed,
+        "tools/examples/mesh.h is stale: its README says how it is made"
     );
 }

@@ -1,11 +1,14 @@
 //! `tools/examples/host.cpp` is compiled, linked with the shared and with the static library, and run under validation:
 //! its splats are the headless picture, and a mesh among them hides some and not others.
 
+mod compiler;
+
 use std::env;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use compiler::{compiler, root};
 use rara::glam::DVec3;
 use rara::scene::{Bounds, Kind, generate, save_ply};
 use rara::{
@@ -22,7 +25,6 @@ fn libraries() -> PathBuf {
 }
 
 fn compile(compiler: &str, name: &str, library: &[&str]) -> PathBuf {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let warnings = [
         "-Wall",
@@ -30,23 +32,19 @@ fn compile(compiler: &str, name: &str, library: &[&str]) -> PathBuf {
         "-Wno-missing-field-initializers",
         "-Werror",
     ];
-    let output = Command::new(compiler)
+    let mut command = Command::new(compiler);
+    command
         .args(["-std=c++17", "-O1"])
         .args(warnings)
         .arg("-I")
-        .arg(root.join("src/c"))
-        .arg(root.join("tools/examples/host.cpp"))
+        .arg(root().join("src/c"))
+        .arg(root().join("tools/examples/host.cpp"))
         .arg("-o")
         .arg(&out)
         .args(library)
-        .args(["-lvulkan", "-lpthread", "-ldl", "-lm"])
-        .output()
-        .expect("the compiler starts");
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(
-        output.status.success(),
-        "host.cpp does not compile (tools/setup test installs the Vulkan headers): {said}"
-    );
+        .args(["-lvulkan", "-lpthread", "-ldl", "-lm"]);
+    let says = "host.cpp does not compile (tools/setup test installs the Vulkan headers)";
+    compiler::run(&mut command, says);
     out
 }
 
@@ -114,13 +112,9 @@ fn truth(scene: &Gaussians) -> (Vec<u8>, String) {
 
 #[test]
 fn a_host_in_cpp_draws_splats_and_a_mesh() {
-    let compiler = env::var("CXX").unwrap_or_else(|_| "c++".into());
-    if Command::new(&compiler).arg("--version").output().is_err() {
-        eprintln!(
-            "SKIPPED: NO C++ COMPILER ({compiler}): rara.h was not tried from C++; tools/setup test installs one"
-        );
+    let Some(compiler) = compiler("rara.h was not tried from C++") else {
         return;
-    }
+    };
     let scene = generate(Kind::Layers, 20_000, 2);
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c_host.ply");
     save_ply(&path, &scene).expect("a temporary file");

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use rara::ash::vk;
-use rara::gpu::{Drawer, ImageDesc};
+use rara::gpu::{Bindings, Drawer, ImageDesc};
 use rara::{Clip, Error, Headless, Renderer, RendererDesc, Result, SceneBuffers, TargetFormat};
 
 use crate::args::Args;
@@ -101,7 +101,11 @@ fn frames(child: Child, world: &World, args: &Args) -> Result<()> {
     let headless = Headless::new(&args.desc())?;
     let device = headless.device();
     let format = TargetFormat::default().vulkan();
-    let mut renderer = Renderer::new(device, RendererDesc::new(format))?;
+    let desc = RendererDesc {
+        bindings: Bindings::suiting(device),
+        ..RendererDesc::new(format)
+    };
+    let mut renderer = Renderer::new(device, desc)?;
     let variant = Variant::auto(MODES[3]);
     let scene = SceneBuffers::upload(device, &world.scene, variant.settings.precision.sh)?;
     let clip = world.halved()?;

@@ -1,0 +1,52 @@
+//! Cameras from files.
+
+use std::ffi::c_char;
+
+use rara::camera_files::load_cameras;
+
+use crate::boundary::{RaraResult, exclusive, fixed, guard, path};
+use crate::camera::RaraCamera;
+
+/// Room for a camera's name in RaraNamedCamera, the NUL included.
+pub const RARA_MAX_CAMERA_NAME: usize = 256;
+
+/// A camera and what its file calls it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RaraNamedCamera {
+    /// The picture's name in the file, or the camera's number there: UTF-8, as much as there is room for.
+    pub name: [c_char; RARA_MAX_CAMERA_NAME],
+    /// The camera.
+    pub camera: RaraCamera,
+}
+
+/// Loads the cameras of a 3DGS cameras.json, a nerfstudio transforms.json, a COLMAP sparse folder, or a single one from
+/// JSON with width, height, fx, fy, cx, cy and world_to_camera. JSON files keep their order, COLMAP's cameras are
+/// sorted by name. Cameras with lens distortion are RARA_ERROR_FORMAT.
+///
+/// `*count` is how many there is room for at `cameras`, and becomes how many the file has; no more than there is room
+/// for are written. With `cameras` null it is only asked for. `path` as of rara_gaussians_load.
+///
+/// # Safety
+/// `path` ends in NUL; `count` points to a number; `cameras` is null, or has room for as many cameras as that says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_cameras_load(
+    path: *const c_char,
+    cameras: *mut RaraNamedCamera,
+    count: *mut usize,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let count = exclusive(count, "count")?;
+        let loaded = load_cameras(&self::path(path, "path")?)?;
+        let room = if cameras.is_null() { 0 } else { *count };
+        for (i, named) in loaded.iter().take(room).enumerate() {
+            cameras.add(i).write(RaraNamedCamera {
+                name: fixed(&named.name),
+                camera: named.camera.into(),
+            });
+        }
+        *count = loaded.len();
+        Ok(())
+    })
+}

@@ -1,0 +1,118 @@
+//! The log: records of the `log` crate, to a function of the host's.
+
+use std::cell::Cell;
+use std::ffi::{c_char, c_void};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{OnceLock, PoisonError, RwLock};
+
+use log::{LevelFilter, Log, Metadata, Record};
+
+use crate::boundary::{RaraResult, c_string, guard, invalid};
+
+/// How much a line of the log matters.
+pub type RaraLogLevel = u32;
+/// Something is wrong that no function could return.
+pub const RARA_LOG_LEVEL_ERROR: RaraLogLevel = 1;
+/// Something may be wrong.
+pub const RARA_LOG_LEVEL_WARN: RaraLogLevel = 2;
+/// What a user may want to know.
+pub const RARA_LOG_LEVEL_INFO: RaraLogLevel = 3;
+/// What a developer may want to know.
+pub const RARA_LOG_LEVEL_DEBUG: RaraLogLevel = 4;
+/// Every step.
+pub const RARA_LOG_LEVEL_TRACE: RaraLogLevel = 5;
+
+/// Takes a line of the log, of rara and of what it is built on: `text` is UTF-8, ends in NUL and is gone after the
+/// call.
+///
+/// Any thread may call it that is inside a function of rara's, and several at once. Locks may be held meanwhile: it
+/// calls nothing of rara's, and throws nothing.
+pub type RaraLog =
+    Option<unsafe extern "C" fn(level: RaraLogLevel, text: *const c_char, user: *mut c_void)>;
+
+/// Where records go.
+struct Host {
+    log: unsafe extern "C" fn(RaraLogLevel, *const c_char, *mut c_void),
+    user: *mut c_void,
+}
+
+// SAFETY: whoever calls rara_set_log promises that any thread may call the function with this pointer.
+unsafe impl Send for Host {}
+// SAFETY: as above, several at once.
+unsafe impl Sync for Host {}
+
+/// Locked for reading while the host is told, so that rara_set_log returns only when nobody is in the old function.
+static HOST: RwLock<Option<Host>> = RwLock::new(None);
+
+/// Whether this process's records come to us; asked for once.
+static OURS: OnceLock<bool> = OnceLock::new();
+
+thread_local! {
+    /// This thread is in the host's function and has locked HOST.
+    static TELLING: Cell<bool> = const { Cell::new(false) };
+}
+
+struct Sink;
+
+impl Log for Sink {
+    fn enabled(&self, _: &Metadata<'_>) -> bool {
+        true // the level is the host's to look at
+    }
+
+    fn log(&self, record: &Record<'_>) {
+        // A record that cannot be written is lost, and what wrote it goes on. Dropping a payload may panic once more.
+        if let Err(payload) = catch_unwind(AssertUnwindSafe(|| tell(record))) {
+            std::mem::forget(payload);
+        }
+    }
+
+    fn flush(&self) {}
+}
+
+fn tell(record: &Record<'_>) {
+    if TELLING.get() {
+        return; // the host's function does what it must not
+    }
+    let text = c_string(&record.args().to_string());
+    let host = HOST.read().unwrap_or_else(PoisonError::into_inner);
+    if let Some(Host { log, user }) = &*host {
+        TELLING.set(true);
+        // SAFETY: as rara_set_log was promised; the text outlives the call.
+        unsafe { log(record.level() as RaraLogLevel, text.as_ptr(), *user) };
+        TELLING.set(false);
+    }
+}
+
+/// Sends the log to a function of the host's, of every level and the whole process; null, as it is in the beginning, to
+/// nobody. `user` is what the function is given.
+///
+/// May be called at any time and by any thread. The function before is then not called any more, and no thread is
+/// inside it when this returns: what its `user` points to may be freed. The caller holds no lock that the function
+/// waits for. RARA_ERROR_INVALID if it is called by the function itself, and where rara is linked into a Rust program
+/// that has a logger already, which then has these records.
+///
+/// # Safety
+/// `log` is null, or as RaraLog says, and with `user` to be called by any thread, until it is replaced.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_set_log(log: RaraLog, user: *mut c_void) -> RaraResult {
+    guard(|| {
+        if TELLING.get() {
+            return invalid("rara_set_log was called by the function that takes the log");
+        }
+        if log.is_some() && !OURS.get_or_init(|| log::set_logger(&Sink).is_ok()) {
+            return invalid(
+                "this process has a logger already, which rara's records go to: rara_set_log cannot take them",
+            );
+        }
+        // The level is changed under the lock, so that it belongs to the function that is set.
+        let mut host = HOST.write().unwrap_or_else(PoisonError::into_inner);
+        *host = log.map(|log| Host { log, user });
+        if OURS.get() == Some(&true) {
+            log::set_max_level(match *host {
+                Some(_) => LevelFilter::Trace,
+                None => LevelFilter::Off,
+            });
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,215 @@
+//! Every function with null for every pointer, and with a panic inside: both become a code.
+
+use std::cell::Cell;
+use std::ptr::{null, null_mut};
+
+use rara::ash::vk;
+
+use crate::boundary::*;
+use crate::camera::*;
+use crate::camera_files::*;
+use crate::depth::*;
+use crate::device::*;
+use crate::logging::*;
+use crate::placement::*;
+use crate::renderer::*;
+use crate::scene::*;
+use crate::settings::*;
+use crate::stats::*;
+use crate::tests::{assert_fails, message};
+
+thread_local! {
+    static PANIC: Cell<bool> = const { Cell::new(false) };
+}
+
+/// What a test puts into every function.
+pub(crate) fn panic_if_asked() {
+    assert!(!PANIC.get(), "injected");
+}
+
+/// Each function with null for every pointer and handle, and what it says then.
+fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
+    let mut called = Vec::new();
+    macro_rules! call {
+        ($function:ident($($argument:expr),*), $says:literal) => {
+            // SAFETY: null is what every function must stand.
+            called.push((unsafe { $function($($argument),*) }, stringify!($function), $says));
+            assert!(called.last().is_none_or(|(_, name, _)| PANIC.get() || {
+                let says = message();
+                let is_right = says.contains($says);
+                if !is_right { eprintln!("{name}: {says}"); }
+                is_right
+            }));
+        };
+    }
+    let map = RaraDepthMap {
+        z_near: 1.0,
+        z_far: 2.0,
+        reversed: 0,
+    };
+    let format = vk::Format::R8G8B8A8_UNORM;
+    let no_device = vk::PhysicalDevice::null();
+    let no_cmd = vk::CommandBuffer::null();
+    call!(
+        rara_check(None, vk::Instance::null(), no_device, 0, null_mut(), 0),
+        "get_instance_proc_addr"
+    );
+    call!(rara_support_features(null(), null_mut()), "support is null");
+    call!(
+        rara_adopt_desc_default(null_mut(), size_of::<RaraAdoptDesc>()),
+        "desc is null"
+    );
+    call!(rara_device_adopt(null(), null_mut()), "device is null");
+    call!(rara_gaussians_load(null(), null_mut()), "gaussians is null");
+    call!(
+        rara_gaussians_load_from(null(), 0, null(), null_mut()),
+        "gaussians is null"
+    );
+    call!(
+        rara_gaussians_append(null_mut(), null()),
+        "gaussians is null"
+    );
+    call!(
+        rara_gaussians_info(null(), null_mut(), 0),
+        "gaussians is null"
+    );
+    call!(
+        rara_scene_buffers_upload(null(), null(), 0, null_mut()),
+        "scene is null"
+    );
+    call!(
+        rara_scene_buffers_staging_bytes(null(), 0, null_mut()),
+        "bytes is null"
+    );
+    call!(
+        rara_scene_buffers_upload_with(null(), no_cmd, null(), null(), 0, null_mut()),
+        "scene is null"
+    );
+    call!(
+        rara_cameras_load(null(), null_mut(), null_mut()),
+        "count is null"
+    );
+    call!(
+        rara_camera_look_at(null(), null(), null(), 50.0, 8, 8, null_mut()),
+        "camera is null"
+    );
+    call!(
+        rara_camera_from_world_to_camera(null(), 1.0, 1.0, 0.0, 0.0, 8, 8, null_mut()),
+        "camera is null"
+    );
+    call!(
+        rara_camera_frame(null(), null(), 50.0, 8, 8, null_mut()),
+        "camera is null"
+    );
+    call!(
+        rara_depth_desc_default(null_mut(), size_of::<RaraDepthDesc>(), format, map),
+        "desc is null"
+    );
+    call!(
+        rara_settings_default(null_mut(), size_of::<RaraSettings>(), 0),
+        "settings is null"
+    );
+    call!(
+        rara_renderer_desc_default(null_mut(), size_of::<RaraRendererDesc>(), format),
+        "desc is null"
+    );
+    call!(
+        rara_renderer_create(null(), null(), null_mut()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_create_sharing(null(), null(), null_mut()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_set_depth_map(null_mut(), null()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_set_placement(null_mut(), null()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_configure(null_mut(), null(), null(), null(), null()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_prepare(null_mut(), no_cmd, null()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_prepare_behind(null_mut(), no_cmd, null(), null()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_draw(null_mut(), no_cmd, 0.0, 0.0),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_draw_depth(null_mut(), no_cmd, 0.0, 0.0),
+        "renderer is null"
+    );
+    call!(rara_renderer_forget(null_mut()), "renderer is null");
+    call!(
+        rara_renderer_stats(null(), null_mut(), 0),
+        "renderer is null"
+    );
+    call!(rara_set_log(None, null_mut()), ""); // null is nobody
+    called
+}
+
+#[test]
+fn null_is_named() {
+    for (result, function, says) in calls() {
+        let expected = [RARA_ERROR_INVALID, RARA_OK][usize::from(says.is_empty())];
+        assert_eq!(result, expected, "{function}");
+    }
+    // SAFETY: null is what these ignore.
+    unsafe {
+        rara_gaussians_destroy(null_mut());
+        rara_scene_buffers_destroy(null_mut());
+        rara_renderer_destroy(null_mut());
+        rara_device_destroy(null_mut());
+        assert_eq!(
+            rara_device_bytes(null()) + rara_scene_buffers_bytes(null()),
+            0
+        );
+    }
+}
+
+#[test]
+fn no_panic_crosses() {
+    PANIC.set(true);
+    for (result, function, _) in calls() {
+        assert_eq!(result, RARA_ERROR_PANIC, "{function}");
+        assert_eq!(message(), "injected");
+    }
+    // SAFETY: null is what these ignore.
+    unsafe {
+        rara_gaussians_destroy(null_mut());
+        rara_scene_buffers_destroy(null_mut());
+        rara_renderer_destroy(null_mut());
+        rara_device_destroy(null_mut());
+        assert_eq!(
+            rara_device_bytes(null()) + rara_scene_buffers_bytes(null()),
+            0
+        );
+    }
+    PANIC.set(false);
+    let odd = guard(|| std::panic::panic_any(7));
+    assert_fails(odd, RARA_ERROR_PANIC, "without a message");
+}
+
+#[test]
+fn every_function_is_called_here() {
+    let header = include_str!("rara.h");
+    let called: Vec<_> = calls().into_iter().map(|(_, name, _)| name).collect();
+    for line in header
+        .lines()
+        .filter(|line| line.starts_with("RaraResult rara_"))
+    {
+        let name = line["RaraResult ".len()..].split('(').next();
+        let name = name.expect("a function");
+        assert!(called.contains(&name), "{name} is not in calls()");
+    }
+}

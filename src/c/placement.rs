@@ -1,0 +1,52 @@
+//! Where a scene stands in the host's world.
+
+use rara::glam::{DQuat, DVec3};
+use rara::{Placement, Result};
+
+use crate::boundary::{RaraResult, exclusive, guard, shared};
+use crate::renderer::RaraRenderer;
+
+/// Where a scene stands in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1} is
+/// where it was made.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RaraPlacement {
+    /// Where the scene's origin goes, world units.
+    pub position: [f64; 3],
+    /// How it is turned: a quaternion x, y, z, w, of any length but zero.
+    pub rotation: [f64; 4],
+    /// World units of a unit of the scene, above zero.
+    pub scale: f64,
+}
+
+impl RaraPlacement {
+    pub(crate) fn placement(&self) -> Result<Placement> {
+        let rotation = DQuat::from_array(self.rotation);
+        Placement::new(DVec3::from(self.position), rotation, self.scale)
+    }
+}
+
+/// Where the scene stands, from the next rara_renderer_configure on: camera, clip, the depth map and expected depths
+/// are the world's. Without it, where it was made. RARA_ERROR_INVALID for numbers that are not finite, a scale that is
+/// not above zero and a rotation of zero; the placement before then stays.
+///
+/// The picture is that of the placed Gaussians, spherical harmonics turn with the scene, and no Gaussian is touched: a
+/// scene can be moved in every frame, and one RaraSceneBuffers can be drawn in several places, by a renderer each.
+/// Lengths are the scene's own then, also the one that 3DGS culls by: centres nearer than 0.2 of the scene's units
+/// before the eye.
+///
+/// # Safety
+/// `renderer` is alive, and no other thread uses it; `placement` points to one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_set_placement(
+    renderer: *mut RaraRenderer,
+    placement: *const RaraPlacement,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let renderer = exclusive(renderer, "renderer")?;
+        let placement = shared(placement, "placement")?.placement()?;
+        renderer.0.set_placement(placement);
+        Ok(())
+    })
+}

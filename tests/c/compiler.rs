@@ -1,0 +1,28 @@
+//! The C++ compiler that the tests of `rara.h` call: `CXX`, or `c++`.
+
+use std::env;
+use std::path::PathBuf;
+use std::process::Command;
+
+/// Its name; `None`, loudly, where there is none.
+pub(crate) fn compiler(what: &str) -> Option<String> {
+    let compiler = env::var("CXX").unwrap_or_else(|_| "c++".into());
+    if Command::new(&compiler).arg("--version").output().is_err() {
+        eprintln!("SKIPPED: NO C++ COMPILER ({compiler}): {what}; tools/setup test installs one");
+        return None;
+    }
+    Some(compiler)
+}
+
+/// The repository.
+pub(crate) fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Has a command succeed; `says` is what to do if it does not.
+pub(crate) fn run(command: &mut Command, says: &str) {
+    let output = command.output().expect("the compiler starts");
+    let said = String::from_utf8_lossy(&output.stderr);
+    let told = String::from_utf8_lossy(&output.stdout); // where glslang complains
+    assert!(output.status.success(), "{says}: {said}{told}");
+}

@@ -58,6 +58,24 @@ pub enum Error {
 }
 
 impl Error {
+    /// This error behind what the validation layer has said before it, which is likely why it came.
+    pub(crate) fn after(self, mut messages: Vec<String>) -> Self {
+        if messages.is_empty() {
+            return self;
+        }
+        messages.push(self.to_string());
+        Self::Validation(messages)
+    }
+
+    /// That the validation layer has said nothing.
+    pub(crate) fn validated(messages: Vec<String>) -> Result<()> {
+        if messages.is_empty() {
+            Ok(())
+        } else {
+            Err(Self::Validation(messages))
+        }
+    }
+
     /// An [`Error::Io`] for `path`, to be used with `map_err`.
     pub fn io(path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.into();

@@ -8,8 +8,33 @@ use std::path::Path;
 
 use crate::{Error, Result};
 
-/// Writes a file beside `path` and renames it into place; if anything fails, `path` is as it was before.
+/// Writes a file beside `path` and renames it into place; if anything fails, `path` is as it was before. Where it is a link,
+/// what it leads to is written; where it is no file, as a pipe or a terminal, it is written into.
 pub fn write_atomically(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> Result<()> {
+    let whole = match fs::metadata(path) {
+        Ok(there) if !there.is_file() => return write_into(path, write),
+        Ok(_) => fs::canonicalize(path).map_err(Error::io(path))?,
+        Err(_) => path.to_owned(),
+    };
+    write_beside(&whole, write)
+}
+
+fn write_into(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> Result<()> {
+    let written = File::options().write(true).open(path).and_then(|file| {
+        let mut writer = BufWriter::new(file);
+        write(&mut writer)?;
+        writer.flush()
+    });
+    written.map_err(Error::io(path))
+}
+
+fn write_beside(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
 ) -> Result<()> {
@@ -27,4 +52,32 @@ pub fn write_atomically(
         let _ = fs::remove_file(&beside); // whatever went wrong first is what the caller should hear about
     }
     written.map_err(Error::io(path))
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_and_what_is_no_file_stay_what_they_are() {
+        let folder = std::env::temp_dir().join(format!("rara-files-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a folder");
+        let (file, link) = (folder.join("file"), folder.join("link"));
+        fs::write(&file, "old").expect("a file");
+        std::os::unix::fs::symlink(&file, &link).expect("a link");
+        write_atomically(&link, |out| out.write_all(b"new")).expect("writes");
+        let is_link = fs::symlink_metadata(&link).expect("there").is_symlink();
+        assert!(is_link && fs::read(&file).expect("there") == b"new");
+        let null = Path::new("/dev/null");
+        write_atomically(null, |out| out.write_all(b"new")).expect("writes");
+        assert!(!fs::metadata(null).expect("there").is_file());
+        // What fails leaves the old one.
+        let failed = write_atomically(&link, |out| {
+            out.write_all(b"half")?;
+            Err(std::io::Error::other("full"))
+        });
+        assert!(failed.is_err() && fs::read(&file).expect("there") == b"new");
+        assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 2);
+        fs::remove_dir_all(&folder).expect("ours");
+    }
 }

@@ -154,6 +154,7 @@ impl Headless {
 
     /// Uploads a scene in place of the one before, its spherical harmonics stored as `format` says.
     pub fn load_as(&mut self, scene: &Gaussians, format: ShFormat) -> Result<()> {
+        self.drawn = None;
         // Free first: both together may not fit.
         self.scene = None;
         let upload = || SceneBuffers::upload(&self.device, scene, format);
@@ -274,7 +275,7 @@ impl Headless {
             if submitted.is_err() {
                 self.renderer.forget(); // what it would have computed is not there
             }
-            submitted?;
+            submitted.map_err(|error| error.after(self.device.validation_messages()))?;
             // A first frame finds out how much room the tiles need, and nothing is drawn of it.
             let room = self.renderer.pair_room();
             if !self.renderer.fell_back() {
@@ -298,7 +299,7 @@ impl Headless {
         self.check_validation()?;
         self.drawn = Some(background);
         let passes = self.renderer.pass_times();
-        let gpu_ms = passes.iter().map(|pass| pass.ms).sum();
+        let gpu_ms = passes.iter().fold(0.0, |sum, pass| sum + pass.ms); // `sum` of nothing is -0
         let skipped = self.renderer.skipped();
         Ok(FrameStats {
             counts: self.renderer.counts(),
@@ -332,12 +333,13 @@ impl Headless {
                 location: Location::Readback,
             })?,
         };
-        self.device.submit_and_wait(|cmd| {
+        let copied = self.device.submit_and_wait(|cmd| {
             // SAFETY: `cmd` is recording; the image was left ready to be copied from by the frame's end_rendering, and
             // image and buffer outlive the wait.
             unsafe { target.image.copy_to(cmd, &readback) };
             Ok(())
-        })?;
+        });
+        copied.map_err(|error| error.after(self.device.validation_messages()))?;
         let pixels = target.format.decode(&readback.mapped()[..size as usize]);
         target.readback = Some(readback);
         self.check_validation()?;
@@ -349,12 +351,14 @@ impl Headless {
     }
 
     fn check_validation(&self) -> Result<()> {
-        let messages = self.device.validation_messages();
-        if messages.is_empty() {
-            Ok(())
-        } else {
-            Err(Error::Validation(messages))
-        }
+        Error::validated(self.device.validation_messages())
+    }
+
+    /// Frees everything. The error is what the validation layer says of it, as of things left alive.
+    pub fn close(self) -> Result<()> {
+        let device = self.device.clone();
+        drop(self);
+        Error::validated(device.close())
     }
 }
 

@@ -40,6 +40,8 @@ pub struct Windowed {
     told: Option<Told>,
     /// The room for pairs of tile and splat for which a frame was drawn again.
     room: Option<u32>,
+    /// A frame has failed between its image and the window.
+    broken: bool,
     device: Device,
 }
 
@@ -104,6 +106,7 @@ impl Windowed {
             unread: VecDeque::new(),
             told: None,
             room: None,
+            broken: false,
             device,
         })
     }
@@ -135,8 +138,10 @@ impl Windowed {
         Ok(extent.map(|extent| (extent.width, extent.height)))
     }
 
-    /// Draws a frame and shows it. The camera's picture has the size that [`fit`](Self::fit) gave.
+    /// Draws a frame and shows it. The camera's picture has the size that [`fit`](Self::fit) gave. After an error on the way
+    /// to the window there are no more frames: a new `Windowed` for the same window is the way on.
     pub fn show(&mut self, camera: &Camera, clip: &Clip, settings: &Settings) -> Result<Shown> {
+        self.unbroken()?;
         self.frames.wait()?;
         self.read();
         let Self {
@@ -156,16 +161,19 @@ impl Windowed {
         // SAFETY: the frame before the last was waited for, and its image acquired; scene, renderer and swapchain live
         // until all frames were waited for. The rendering scope is opened and closed here around the draw, on an
         // attachment of the renderer's format, and the submission waits for its image.
-        unsafe {
-            frames.submit(swapchain.drawn(image), |cmd| {
+        let shown = unsafe {
+            let submitted = frames.submit(swapchain.drawn(image), |cmd| {
                 renderer.prepare(cmd, scene)?;
                 swapchain.begin_rendering(cmd, image, [r, g, b, 1.0]);
                 renderer.draw(cmd, [0.0, 0.0])?;
                 swapchain.end_rendering(cmd, image);
                 Ok(())
-            })?;
-            swapchain.present(image)?;
-        }
+            });
+            submitted.and_then(|()| swapchain.present(image))
+        };
+        // The image stays acquired, and a semaphore signalled that nobody waits for.
+        self.broken = shown.is_err();
+        shown.map_err(|error| error.after(self.device.validation_messages()))?;
         let skipped = computes.then(|| renderer.skipped());
         self.unread.push_back(skipped);
         self.check_validation()?;
@@ -197,6 +205,7 @@ impl Windowed {
     ) -> Result<Picture> {
         let format = settings.precision.target;
         check_blending(&self.device, format)?;
+        self.unbroken()?;
         self.frames.wait_for_all()?;
         self.read();
         let target = self.device.create_image(&ImageDesc {
@@ -239,7 +248,7 @@ impl Windowed {
             renderer.forget(); // what it would have computed is not there
         }
         renderer.set_color_format(self.swapchain.format());
-        drawn?;
+        drawn.map_err(|error| error.after(self.device.validation_messages()))?;
         self.unread.push_back(None);
         self.check_validation()?;
         Ok(Picture {
@@ -258,7 +267,15 @@ impl Windowed {
     pub fn close(self) -> Result<()> {
         let device = self.device.clone();
         drop(self);
-        validated(device.close())
+        Error::validated(device.close())
+    }
+
+    fn unbroken(&self) -> Result<()> {
+        if self.broken {
+            let what = "a frame has failed on its way to the window; open it anew";
+            return Err(Error::Invalid(what.into()));
+        }
+        Ok(())
     }
 
     /// Notes what the oldest frame tells, which has been waited for.
@@ -281,7 +298,7 @@ impl Windowed {
     }
 
     fn check_validation(&self) -> Result<()> {
-        validated(self.device.validation_messages())
+        Error::validated(self.device.validation_messages())
     }
 }
 
@@ -289,14 +306,6 @@ fn loaded(scene: &Option<SceneBuffers>) -> Result<&SceneBuffers> {
     scene
         .as_ref()
         .ok_or_else(|| Error::Invalid("there is no scene to show; load one first".into()))
-}
-
-fn validated(messages: Vec<String>) -> Result<()> {
-    if messages.is_empty() {
-        Ok(())
-    } else {
-        Err(Error::Validation(messages))
-    }
 }
 
 impl std::fmt::Debug for Windowed {

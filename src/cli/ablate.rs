@@ -88,6 +88,7 @@ impl Ablate {
                 measures,
             });
         }
+        session.close()?;
         if self.json {
             return Ok(output::json(&rows)?);
         }

@@ -78,6 +78,17 @@ pub(super) enum Views {
     },
 }
 
+impl Views {
+    /// Their numbers in their file.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
+        let (given, framed) = match self {
+            Self::Given(views) => (views.as_slice(), None),
+            Self::Framed { .. } => (&[][..], Some(0)),
+        };
+        given.iter().map(|view| view.number).chain(framed)
+    }
+}
+
 impl CameraArgs {
     /// Whether `--view all` was typed: a run of several frames, however many there are.
     pub(super) fn all(&self) -> bool {

@@ -94,6 +94,7 @@ impl Demo {
                 stats,
             });
         }
+        session.close()?;
         let labelled: Vec<_> = shots
             .iter()
             .map(|s| (s.mode.name(), s.picture.clone()))

@@ -29,10 +29,16 @@ pub(super) struct Profile {
 }
 
 impl ProfileArgs {
-    /// Begins the trace; fails where its file could not be written.
-    pub(super) fn begin(&self) -> Result<Profile, Failure> {
+    /// Begins the trace; fails where its file could not be written, or is one of `pictures`.
+    pub(super) fn begin(&self, pictures: &[PathBuf]) -> Result<Profile, Failure> {
         if let Some(file) = &self.trace {
             output::check_file(file)?;
+            if pictures.contains(file) {
+                return Err(Failure::Usage(format!(
+                    "--trace and -o are one file, {}: name two",
+                    file.display()
+                )));
+            }
         }
         Ok(Profile {
             trace: self.trace.as_ref().map(|_| Trace::new()),
@@ -64,11 +70,12 @@ impl Profile {
         }
     }
 
-    /// Writes the trace.
-    pub(super) fn end(self) -> rara::Result<()> {
-        match (self.file, self.trace) {
+    /// Writes the trace, also of work that has failed: it shows how far it came. What failed first is told.
+    pub(super) fn end_after(self, done: Result<(), Failure>) -> Result<(), Failure> {
+        let written = match (self.file, self.trace) {
             (Some(file), Some(trace)) => output::text(&file, &trace.json()),
             _ => Ok(()),
-        }
+        };
+        done.and(written.map_err(Failure::from))
     }
 }

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use rara::{Clip, Settings};
 
-use super::camera::{CameraArgs, View, Views};
+use super::camera::{CameraArgs, Views};
 use super::clip::ClipArgs;
 use super::failure::Failure;
 use super::output::{self, Progress, say};
-use super::profile::ProfileArgs;
+use super::profile::{Profile, ProfileArgs};
 use super::report::{self, Report};
 use super::session::Session;
 use super::settings::{DeviceArgs, SettingsArgs};
@@ -59,7 +60,21 @@ impl Render {
         let views = self.camera.meant()?;
         self.check_output(&views)?;
 
-        let profile = self.profile.begin()?;
+        let pictures = views.numbers().map(|n| self.picture_file(n));
+        let profile = self
+            .profile
+            .begin(&pictures.flatten().collect::<Vec<_>>())?;
+        let done = self.draw(&profile, views, &clip, &settings);
+        profile.end_after(done)
+    }
+
+    fn draw(
+        &self,
+        profile: &Profile,
+        views: Views,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<(), Failure> {
         let scene = profile.span("load", || scenes::load(&self.scenes))?;
         let views = views.of(&scene.gaussians)?;
         let mut session = Session::open(
@@ -73,16 +88,14 @@ impl Render {
         let mut progress = Progress::new("rendering");
         for (done, view) in views.iter().enumerate() {
             progress.update(done as u64, views.len() as u64);
-            frames.push(session.frame(&view.camera, &clip, &settings, self.repeat)?);
-            if let Some(pattern) = &self.output {
-                let path = numbered(pattern, view.number);
+            frames.push(session.frame(&view.camera, clip, settings, self.repeat)?);
+            if let Some(path) = self.picture_file(view.number) {
                 let picture = session.last_picture()?;
                 profile.span("encode", || picture.save(&path))?;
                 written.push(path);
             }
         }
         drop(progress);
-        profile.end()?;
 
         let size = views
             .first()
@@ -93,6 +106,7 @@ impl Render {
         } else {
             report
         };
+        session.close()?;
         if self.json {
             return Ok(output::json(&report)?);
         }
@@ -101,15 +115,17 @@ impl Render {
         Ok(())
     }
 
+    /// Where the picture of a view goes.
+    fn picture_file(&self, number: usize) -> Option<PathBuf> {
+        Some(numbered(self.output.as_ref()?, number))
+    }
+
     /// Says what is wrong with `-o` before any work is done.
     fn check_output(&self, views: &Views) -> Result<(), Failure> {
         let Some(pattern) = &self.output else {
             return Ok(());
         };
-        let first = match views {
-            Views::Given(views) => views.first().map_or(0, |v: &View| v.number),
-            Views::Framed { .. } => 0,
-        };
+        let first = views.numbers().next().unwrap_or(0);
         if self.camera.all() && numbered(pattern, 0) == numbered(pattern, 1) {
             return Err(Failure::Usage(
                 "--view all makes several pictures: put {} where their number goes, as in -o view_{}.png".into(),

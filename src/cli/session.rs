@@ -68,6 +68,11 @@ impl Session {
         self.headless.picture()
     }
 
+    /// Frees everything; the validation layer may have something to say of it.
+    pub(super) fn close(self) -> Result<()> {
+        self.headless.close()
+    }
+
     /// Whether the device is this machine's processor.
     pub(super) fn is_cpu(&self) -> bool {
         self.headless.device().info().kind_name() == "cpu"

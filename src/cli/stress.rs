@@ -64,10 +64,15 @@ impl Stress {
             rows.push(row);
         }
         let failed = rows.iter().filter(|row| !row.ok).count();
+        let (device, driver) = (
+            headless.device_name().to_owned(),
+            headless.driver().to_owned(),
+        );
+        headless.close()?;
         if self.json {
             output::json(&Document {
-                device: headless.device_name().to_owned(),
-                driver: headless.driver().to_owned(),
+                device,
+                driver,
                 rows,
             })?;
         }

@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
-use rara::{Clip, Plane};
+use rara::clip::Shape;
+use rara::{Clip, Plane, Settings};
 
-use super::camera::CameraArgs;
+use super::camera::{CameraArgs, Views};
 use super::clip::ClipArgs;
 use super::failure::Failure;
 use super::output::{self, Progress, say};
-use super::profile::ProfileArgs;
+use super::profile::{Profile, ProfileArgs};
 use super::report::{self, Report};
 use super::session::Session;
 use super::settings::{DeviceArgs, SettingsArgs};
@@ -66,11 +67,10 @@ impl Sweep {
     pub(super) fn run(self) -> Result<(), Failure> {
         let settings = self.settings.meant()?;
         let plane = Plane::new(self.clip_normal, 0.0).map_err(Failure::usage)?;
-        let (normal, op) = (plane.normal(), self.clip.op());
         // The shapes that stand still, and the one that moves.
         let mut shapes = self.clip.shapes()?;
         shapes.push(plane.into());
-        Clip::of_shapes(&shapes, op).map_err(Failure::usage)?;
+        Clip::of_shapes(&shapes, self.clip.op()).map_err(Failure::usage)?;
         if self.camera.all() {
             return Err(Failure::Usage(
                 "a sweep has one camera: give --view a number or a name".into(),
@@ -81,7 +81,21 @@ impl Sweep {
             output::make_folder(folder)?;
         }
 
-        let profile = self.profile.begin()?;
+        let profile = self.profile.begin(&[])?;
+        let done = self.draw(&profile, views, shapes, &settings);
+        profile.end_after(done)
+    }
+
+    /// `shapes` are those that stand still, and in the end the one that moves.
+    fn draw(
+        &self,
+        profile: &Profile,
+        views: Views,
+        mut shapes: Vec<Shape>,
+        settings: &Settings,
+    ) -> Result<(), Failure> {
+        let normal = Plane::new(self.clip_normal, 0.0)?.normal();
+        let op = self.clip.op();
         let scene = profile.span("load", || scenes::load(&self.scenes))?;
         let camera = views.of(&scene.gaussians)?.remove(0).camera;
         let range = extent_along(&scene.gaussians, normal);
@@ -101,9 +115,9 @@ impl Sweep {
             shapes.push(plane.into());
             let clip = Clip::of_shapes(&shapes, op)?;
             frames.push(if self.independent || self.repeat > 1 {
-                session.frame(&camera, &clip, &settings, self.repeat)?
+                session.frame(&camera, &clip, settings, self.repeat)?
             } else {
-                session.next_frame(&camera, &clip, &settings)?
+                session.next_frame(&camera, &clip, settings)?
             });
             if let Some(folder) = &self.output {
                 let path = folder.join(format!("frame_{index:03}.png"));
@@ -113,11 +127,11 @@ impl Sweep {
             }
         }
         drop(progress);
-        profile.end()?;
 
         let size = (camera.width, camera.height);
         let report = Report::new(&session, &scene, size, self.settings.mode.name(), &frames);
         let report = report.with_frames(frames).with_mean();
+        session.close()?;
         if self.json {
             return Ok(output::json(&report)?);
         }

@@ -197,3 +197,55 @@ fn blocks_change_nothing() {
         "only {settled} blocks were settled as a whole"
     );
 }
+
+#[test]
+fn an_empty_scene_after_another_shows_nothing() {
+    let mut headless = headless();
+    let scene = generate(Kind::General, 500, 1);
+    let camera = Camera::frame(&Bounds::of(&scene), -DVec3::Y, 50.0, (40, 30)).expect("a view");
+    let mut draw = |scene: &Gaussians| {
+        headless.load(scene).expect("uploads");
+        let mut stats = Vec::new();
+        for _ in 0..2 {
+            let drawn = headless.render(&camera, &Clip::default(), &Settings::default());
+            stats.push(drawn.expect("renders"));
+        }
+        (headless.picture().expect("reads back"), stats)
+    };
+    let (picture, _) = draw(&scene);
+    assert!(picture.pixels.iter().any(|pixel| pixel[3] > 0.5));
+    let (picture, stats) = draw(&Gaussians::default());
+    assert!(picture.pixels.iter().all(|pixel| *pixel == [0.0; 4]));
+    assert!(stats.iter().all(|stats| stats.gpu_ms.is_sign_positive()));
+    assert!(stats[1].skipped.contains(&"splat"), "nothing has changed");
+    assert_eq!(draw(&scene).1.len(), 2);
+}
+
+#[test]
+fn what_is_left_alive_is_told_at_the_end() {
+    let headless = headless();
+    // SAFETY: the device is alive; that the fence is never destroyed is what is tested.
+    let fence = unsafe {
+        let info = vk::FenceCreateInfo::default();
+        headless.device().raw().create_fence(&info, None)
+    };
+    fence.expect("a fence");
+    match headless.close() {
+        Err(Error::Validation(messages)) => assert!(!messages.is_empty()),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn an_error_comes_behind_what_the_layer_has_said() {
+    let lost = || Error::DeviceLost {
+        call: "vkQueueSubmit2",
+    };
+    assert!(matches!(lost().after(Vec::new()), Error::DeviceLost { .. }));
+    match lost().after(vec!["a hazard".into()]) {
+        Error::Validation(messages) => {
+            assert!(messages[0] == "a hazard" && messages[1].contains("device was lost"));
+        }
+        other => panic!("{other}"),
+    }
+}

@@ -222,7 +222,7 @@ impl Renderer {
     pub(crate) fn changes_nothing(&self) -> bool {
         self.plan
             .as_ref()
-            .is_some_and(|plan| plan.work == Work::Draw)
+            .is_some_and(|plan| plan.work == Work::Draw || plan.gaussians == 0)
     }
 
     /// As on a device with room for so few pairs of tile and splat.

@@ -193,3 +193,18 @@ fn a_machine_without_a_driver_is_told_what_to_install() {
         .expect("the rara binary runs");
     refused(&output, 1, "no Vulkan device was found; install");
 }
+
+#[test]
+fn a_trace_is_no_picture_and_shows_how_far_failing_work_came() {
+    let here = folder("trace_refused");
+    scene(&here);
+    let both = "render @/scene.ply -o @/a.png --trace @/a.png";
+    refused(&line(&here, both), 2, "one file");
+    assert!(!here.join("a.png").exists());
+    fs::write(here.join("broken.ply"), "ply\n").expect("writes");
+    let words = "render @/broken.ply -o @/a.png --trace @/trace.json";
+    refused(&line(&here, words), 1, "broken.ply");
+    let cpu = spans(&load(&here.join("trace.json")), "CPU");
+    assert_eq!(cpu.len(), 1);
+    assert_eq!(cpu[0].0, "load");
+}

@@ -184,6 +184,7 @@ impl Bench {
             rows[index].undominated = true;
         }
         let (device, driver, _) = session.about();
+        session.close()?;
         let names = self.scenes.iter().filter_map(|path| path.file_stem());
         let names: Vec<_> = names.map(|name| name.to_string_lossy()).collect();
         let report = Report {

@@ -85,8 +85,11 @@ impl Host {
             let queues = [vk::DeviceQueueCreateInfo::default()
                 .queue_family_index(support.queue_family)
                 .queue_priorities(&[1.0])];
+            let core = vk::PhysicalDeviceFeatures::default()
+                .pipeline_statistics_query(support.pipeline_statistics);
             let info = vk::DeviceCreateInfo::default()
                 .queue_create_infos(&queues)
+                .enabled_features(&core)
                 .enabled_extension_names(&extensions);
             let mut features = support.features();
             let device = instance
@@ -152,6 +155,7 @@ impl Host {
             mesh_shader: self.support.mesh_shader,
             push_descriptor: self.support.push_descriptor,
             debug_utils: true,
+            pipeline_statistics: self.support.pipeline_statistics,
             pipeline_cache: vk::PipelineCache::null(),
             allocator: Some(self.allocator.clone()),
         }
@@ -460,6 +464,7 @@ fn check(version: u32) {
             let desc = RendererDesc {
                 bindings,
                 timing: true,
+                statistics: true,
                 // SAFETY: the render pass outlives the renderer.
                 target: unsafe { Target::render_pass(host.render_pass, 0) },
                 ..RendererDesc::new(FORMAT)
@@ -482,6 +487,8 @@ fn check(version: u32) {
             };
             let times = renderer.borrow_mut().pass_times();
             assert!(!times.is_empty() || device.support().timestamp_period == 0.0);
+            let statistics = renderer.borrow_mut().pass_statistics();
+            assert_eq!(statistics.is_empty(), !device.support().pipeline_statistics);
             assert!(
                 picture == truth,
                 "{raster:?}, {bindings:?}, {planes} planes: not the headless picture"

@@ -719,6 +719,7 @@ fn a_hosts_device_is_adopted_and_left_alone() {
             mesh_shader: false,
             push_descriptor: false,
             debug_utils: false,
+            pipeline_statistics: false,
             pipeline_cache: vk::PipelineCache::null(),
             allocator: None,
         })

@@ -294,6 +294,7 @@ pub unsafe extern "C" fn rara_device_adopt(
                 pipeline_cache: desc.pipeline_cache,
                 api_version: desc.api_version,
                 allocator: None,
+                pipeline_statistics: false,
             };
             Device::adopt(adopt).map(RaraDevice)
         })

@@ -124,6 +124,7 @@ pub(crate) fn lent(host: &Device) -> AdoptDesc {
         mesh_shader: host.support().mesh_shader,
         push_descriptor: host.support().push_descriptor,
         debug_utils: true,
+        pipeline_statistics: false,
         pipeline_cache: vk::PipelineCache::null(),
         allocator: None,
     }

@@ -57,6 +57,8 @@ pub struct AdoptDesc {
     pub push_descriptor: bool,
     /// `VK_EXT_debug_utils` was enabled on the instance.
     pub debug_utils: bool,
+    /// The feature `pipelineStatisticsQuery` was enabled.
+    pub pipeline_statistics: bool,
     /// Where compiled pipelines are looked up and kept; null for nowhere.
     pub pipeline_cache: vk::PipelineCache,
     /// Where all device memory comes from, made for this device and with `buffer_device_address`. `None`: an allocator of
@@ -132,6 +134,7 @@ impl Device {
             mesh_shader: support.mesh_shader,
             push_descriptor: support.push_descriptor,
             debug_utils: owned.debug_utils,
+            pipeline_statistics: support.pipeline_statistics,
             pipeline_cache,
             allocator: None,
         };
@@ -185,8 +188,8 @@ impl Device {
         }
         support.mesh_shader &= desc.mesh_shader;
         support.push_descriptor &= desc.push_descriptor;
-        // What nobody has said that it was enabled.
-        support.pipeline_statistics = false;
+        support.pipeline_statistics &= desc.pipeline_statistics;
+        // Nobody has said that it was enabled, and only what owns its device asks for it.
         support.calibrated_timestamps = None;
         // SAFETY: as above.
         let info =

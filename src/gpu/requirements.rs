@@ -37,7 +37,7 @@ pub struct Support {
     pub max_group_count: u32,
     /// Pixels along a side of a 2D image.
     pub max_image_size: u32,
-    /// The feature `pipelineStatisticsQuery`. Used where rara opens the device and statistics are asked for.
+    /// The feature `pipelineStatisticsQuery`. Used where statistics are asked for.
     pub pipeline_statistics: bool,
     /// The extension by which timestamps can be set against the processor's clock, `VK_KHR_calibrated_timestamps` or its
     /// forerunner. Used where rara opens the device.

@@ -149,6 +149,7 @@ impl Host {
             mesh_shader: self.support.mesh_shader,
             push_descriptor: self.support.push_descriptor,
             debug_utils: self.messenger.is_some(),
+            pipeline_statistics: false,
             pipeline_cache: self.pipeline_cache,
             allocator: None,
         }

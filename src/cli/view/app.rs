@@ -17,6 +17,7 @@ use winit::window::{Window, WindowId};
 
 use super::action::Action;
 use super::input::Input;
+use super::lost;
 use super::script;
 use super::stage::{Scenery, Stage};
 use crate::cli::failure::Failure;
@@ -106,11 +107,24 @@ pub(super) fn run(events: EventLoop<Sent>, mut start: Start) -> Result<(), Failu
         moved_at: None,
         failure: None,
     };
-    let ran = events.run_app(&mut app);
+    let Some(ran) = lost::unless_lost(|| events.run_app(&mut app)) else {
+        if let Some(stage) = app.stage.take() {
+            stage.abandon();
+        }
+        return Err(lost::failure());
+    };
     if let Some(failure) = app.failure {
         return Err(failure);
     }
     ran.map_err(|error| Error::Device(format!("the window's events ended: {error}")).into())
+}
+
+/// Whether a file could not be written, and nothing else is wrong.
+fn concerns_a_file(failure: &Failure) -> bool {
+    matches!(
+        failure,
+        Failure::Work(Error::Io { .. } | Error::Format { .. })
+    )
 }
 
 impl App {
@@ -162,12 +176,15 @@ impl App {
             WindowEvent::Resized(size) => {
                 let size = (size.width, size.height);
                 self.resizing = self.resizing.filter(|(wanted, _)| *wanted != size);
-                stage.changed()?;
+                stage.resized(size)?;
                 None
             }
             WindowEvent::Occluded(occluded) => {
-                stage.occluded = occluded;
-                stage.changed()?;
+                stage.occlude(occluded)?;
+                None
+            }
+            WindowEvent::Focused(true) => {
+                stage.focus()?;
                 None
             }
             WindowEvent::Focused(false) => {
@@ -197,12 +214,11 @@ impl App {
         };
         match action {
             Some(Action::Quit) => events.exit(),
-            Some(action @ Action::Screenshot(_)) => {
+            Some(action @ Action::Screenshot(_)) => match stage.act(action) {
                 // A full disk is no reason to close the window.
-                if let Err(failure) = stage.act(action) {
-                    say(failure);
-                }
-            }
+                Err(failure) if concerns_a_file(&failure) => say(failure),
+                outcome => outcome?,
+            },
             Some(action) => stage.act(action)?,
             None => {}
         }
@@ -305,10 +321,32 @@ impl ApplicationHandler<Sent> for App {
 
     /// While the display is still there.
     fn exiting(&mut self, _: &ActiveEventLoop) {
-        if let Some(stage) = self.stage.take()
-            && let Err(failure) = stage.close()
-        {
-            self.failure.get_or_insert(failure);
+        match self.stage.take() {
+            Some(stage) if self.failure.is_some() => stage.abandon(),
+            Some(stage) => self.failure = stage.close().err(),
+            None => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_outlives_a_file_that_cannot_be_written_and_nothing_else() {
+        let disk = Error::io("a.png")(std::io::Error::other("the disk is full"));
+        assert!(concerns_a_file(&disk.into()));
+        assert!(concerns_a_file(&Error::format("a.png", "no folder").into()));
+        for fatal in [
+            Error::Validation(vec!["a hazard".into()]),
+            Error::Device("the window was lost".into()),
+            Error::DeviceLost {
+                call: "vkWaitForFences",
+            },
+            Error::Memory("none is left".into()),
+        ] {
+            assert!(!concerns_a_file(&fatal.into()));
         }
     }
 }

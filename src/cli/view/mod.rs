@@ -3,7 +3,9 @@
 mod action;
 mod app;
 mod cut;
+mod flags;
 mod input;
+mod lost;
 mod script;
 mod shots;
 mod stage;

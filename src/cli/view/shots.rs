@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use rara::{Camera, ClipOp, Error, Picture, Result};
+use rara::{Camera, Error, Picture, Result};
 use serde_json::json;
 
-use super::cut::Cut;
 use crate::cli::output;
 
 /// Where screenshots go: `{}` becomes their number.
@@ -51,9 +50,13 @@ pub(super) fn save(picture: &Picture, camera: &Camera, path: &Path) -> Result<()
              another name",
         ));
     }
+    let matrix = camera.world_to_camera();
+    let lens = (camera.fx, camera.fy, camera.cx, camera.cy);
+    // What cannot be read again is not worth a file: JSON has no number for what is not finite.
+    Camera::from_world_to_camera(matrix, lens, (camera.width, camera.height))?;
     output::check_file(path)?;
     picture.save(path)?;
-    let matrix = camera.world_to_camera().transpose().to_cols_array();
+    let matrix = matrix.transpose().to_cols_array();
     let file = json!({
         "width": camera.width, "height": camera.height,
         "fx": camera.fx, "fy": camera.fy, "cx": camera.cx, "cy": camera.cy,
@@ -63,28 +66,32 @@ pub(super) fn save(picture: &Picture, camera: &Camera, path: &Path) -> Result<()
 }
 
 /// What was written, and the flags with which `rara render` draws it.
-pub(super) fn told(path: &Path, cut: &Cut, mode: &str) -> String {
-    let mut text = format!(
-        "wrote {}; as in rara render --camera {}",
+pub(super) fn told(path: &Path, flags: &str) -> String {
+    format!(
+        "wrote {}; as in rara render --camera {} {flags}",
         path.display(),
-        beside(path).display()
-    );
-    let planes = cut.clip().planes;
-    for plane in &planes {
-        let (n, d) = (plane.normal(), plane.offset());
-        text += &format!(" --clip plane:{},{},{},{d}", n.x, n.y, n.z);
+        quoted(&beside(path).to_string_lossy())
+    )
+}
+
+/// A word as a shell takes it for one.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "_-+=.,:/@%".contains(c);
+    if !word.is_empty() && word.chars().all(|c| plain(c) || cfg!(windows) && c == '\\') {
+        return word.to_owned();
     }
-    if planes.len() > 1 && cut.op() == ClipOp::Or {
-        text += " --clip-op or";
+    if cfg!(windows) {
+        // No file's name there has such a quote in it.
+        return format!("\"{word}\"");
     }
-    text + " --mode " + mode
+    format!("'{}'", word.replace('\'', r"'\''"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use glam::DVec3;
-    use rara::{Clip, Plane, camera_files};
+    use rara::camera_files;
 
     #[test]
     fn names_are_numbered_and_no_file_is_replaced() {
@@ -109,16 +116,34 @@ mod tests {
     }
 
     #[test]
-    fn the_flags_that_draw_it_again() {
-        let clip = Clip {
-            planes: vec![Plane::new(DVec3::NEG_Z, 0.25).unwrap()],
-            op: ClipOp::And,
-        };
-        let cut = Cut::new(clip, DVec3::ZERO);
-        let text = told(Path::new("a.png"), &cut, "hard");
-        assert!(
-            text.contains("--camera a.json --clip plane:0,0,-1,0.25 --mode hard"),
-            "{text}"
+    fn a_camera_that_cannot_be_read_again_is_not_written() {
+        let folder = std::env::temp_dir().join(format!("rara-far-shot-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let eye = DVec3::new(1.0, -2.0, -3.5);
+        let given = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 40.0, (8, 6)).unwrap();
+        let picture = Picture::filled(8, 6, [0.5; 4]);
+        for x in [f64::INFINITY, f64::NAN] {
+            let mut camera = given;
+            camera.eye.x = x;
+            assert!(save(&picture, &camera, &folder.join("far.png")).is_err());
+        }
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn the_camera_is_named_as_a_shell_takes_it() {
+        let text = told(Path::new("out/a.png"), "--mode hard");
+        assert_eq!(
+            text,
+            "wrote out/a.png; as in rara render --camera out/a.json --mode hard"
         );
+        if cfg!(not(windows)) {
+            let text = told(Path::new("it's a $1.png"), "--mode hard");
+            assert!(
+                text.ends_with(r"--camera 'it'\''s a $1.json' --mode hard"),
+                "{text}"
+            );
+        }
     }
 }

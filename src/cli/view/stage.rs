@@ -12,6 +12,7 @@ use winit::window::Window;
 
 use super::action::{Action, PlaneAction};
 use super::cut::Cut;
+use super::flags;
 use super::input::KEYS;
 use super::shots::{self, Shots};
 use super::title;
@@ -44,9 +45,11 @@ pub(super) struct Stage {
     viewpoint: Viewpoint,
     /// Share of the scene's radius that a second of flying goes.
     speed: f64,
+    /// The window's pixels, as its events tell them: winit panics when it is asked for them and the window is gone.
+    size: (u32, u32),
     minimised: bool,
     /// Nothing of it is visible.
-    pub(super) occluded: bool,
+    occluded: bool,
     /// What is shown is not what should be.
     pub(super) dirty: bool,
     /// The last frame's numbers are not known yet.
@@ -61,12 +64,15 @@ pub(super) struct Stage {
 const TITLE_PAUSE: Duration = Duration::from_millis(200);
 /// Times between frames that are kept.
 const INTERVALS: usize = 10_000;
+/// The least and the most speed: one can still come back from them.
+const SPEEDS: (f64, f64) = (1e-6, 1e6);
 
 impl Stage {
     pub(super) fn new(windowed: Windowed, window: Arc<Window>, scenery: Scenery) -> Self {
         let viewpoint = scenery.viewpoint(0);
         Self {
             windowed,
+            size: window.inner_size().into(),
             window,
             scenery,
             view: 0,
@@ -87,8 +93,7 @@ impl Stage {
         if self.minimised {
             return (0, 0);
         }
-        let size = self.window.inner_size();
-        (size.width, size.height)
+        self.size
     }
 
     /// Whether a frame would be seen.
@@ -97,7 +102,30 @@ impl Stage {
         !self.occluded && width > 0 && height > 0
     }
 
-    /// The window has another size, or is to be drawn for another reason.
+    /// The window has another size.
+    pub(super) fn resized(&mut self, size: (u32, u32)) -> Result<(), Failure> {
+        self.size = size;
+        self.changed()
+    }
+
+    /// Other windows hide all of it, or no longer.
+    pub(super) fn occlude(&mut self, occluded: bool) -> Result<(), Failure> {
+        self.occluded = occluded;
+        if !occluded {
+            self.minimised = false;
+        }
+        self.changed()
+    }
+
+    /// It has the keyboard. If it was minimised, a user or a window manager has brought it back.
+    pub(super) fn focus(&mut self) -> Result<(), Failure> {
+        if !std::mem::take(&mut self.minimised) {
+            return Ok(());
+        }
+        self.changed()
+    }
+
+    /// The window is to be drawn for another reason than an action.
     pub(super) fn changed(&mut self) -> Result<(), Failure> {
         self.dirty = true;
         if !self.visible() {
@@ -120,7 +148,8 @@ impl Stage {
             Action::Turn(degrees) => self.viewpoint.turn(degrees),
             Action::Shift(pixels) => self.viewpoint.shift(pixels, height),
             Action::Zoom(steps) if self.viewpoint.walk == Walk::Fly => {
-                self.speed *= 1.25_f64.powf(steps);
+                let speed = self.speed * 1.25_f64.powf(steps);
+                self.speed = speed.clamp(SPEEDS.0, SPEEDS.1);
                 return Ok(());
             }
             Action::Zoom(steps) => self.viewpoint.zoom(steps),
@@ -190,8 +219,7 @@ impl Stage {
 
     /// The size of what is shown, or would be if it were not minimised.
     fn picture_size(&self) -> (u32, u32) {
-        let size = self.window.inner_size();
-        (size.width.max(1), size.height.max(1))
+        (self.size.0.max(1), self.size.1.max(1))
     }
 
     fn screenshot(&mut self, path: Option<PathBuf>) -> Result<(), Failure> {
@@ -206,7 +234,7 @@ impl Stage {
         let path = path.unwrap_or_else(|| shots.next());
         let picture = self.windowed.picture(&camera, &cut.clip(), settings)?;
         shots::save(&picture, &camera, &path)?;
-        say(shots::told(&path, cut, mode.name()));
+        say(shots::told(&path, &flags::flags(cut, *mode, settings)));
         self.shown_at = None; // the next frame does not follow at once
         Ok(())
     }
@@ -250,14 +278,28 @@ impl Stage {
     }
 
     /// Asks the window for another size; whether it has it already.
-    pub(super) fn resize(&self, (width, height): (u32, u32)) -> bool {
-        let wanted = PhysicalSize::new(width, height);
-        self.window.inner_size() == wanted || self.window.request_inner_size(wanted) == Some(wanted)
+    pub(super) fn resize(&mut self, wanted: (u32, u32)) -> bool {
+        if self.size != wanted {
+            let granted = self
+                .window
+                .request_inner_size(PhysicalSize::<u32>::from(wanted));
+            // What is granted at once is followed by no event.
+            self.size = granted.map_or(self.size, Into::into);
+        }
+        self.size == wanted
     }
 
     /// Frees everything; the error is what validation says of it.
     pub(super) fn close(self) -> Result<(), Failure> {
         Ok(self.windowed.close()?)
+    }
+
+    /// Frees what is on the device, after a failure.
+    pub(super) fn abandon(self) {
+        // The window goes with the process: freeing it talks to a server that may not be there any more, and Xlib then
+        // ends the process before the failure is told.
+        std::mem::forget(self.window);
+        drop(self.windowed);
     }
 }
 

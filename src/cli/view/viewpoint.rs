@@ -39,6 +39,8 @@ struct Pose {
 const POLE: f64 = 0.01;
 /// One step of the wheel takes the eye this share of the way nearer.
 const STEP: f64 = 0.1;
+/// No eye stands farther out along an axis: the squares of larger lengths are beyond single precision.
+const FARTHEST: f64 = 1e18;
 
 impl Viewpoint {
     /// From a camera, in a scene of this middle and radius. It orbits about the point of its axis beside the middle.
@@ -78,7 +80,7 @@ impl Viewpoint {
 
     /// Turns so that what is in front goes right and down by so many degrees.
     pub(super) fn turn(&mut self, degrees: DVec2) {
-        let pose = &mut self.pose;
+        let mut pose = self.pose;
         // Orbiting takes the eye to the other side; looking about takes the view there.
         let sign = match self.walk {
             Walk::Orbit => -1.0,
@@ -94,6 +96,7 @@ impl Viewpoint {
         if self.walk == Walk::Orbit {
             pose.eye = pivot - pose.axes.z_axis * pose.distance;
         }
+        self.place(pose);
     }
 
     /// Moves the eye sideways, so that what is as far as the pivot moves by so many pixels of a picture of this height.
@@ -105,20 +108,29 @@ impl Viewpoint {
 
     /// Nearer to the pivot by so many steps, farther where negative.
     pub(super) fn zoom(&mut self, steps: f64) {
-        let pivot = self.pose.pivot();
-        let distance = self.pose.distance * (1.0 - STEP).powf(steps);
-        self.pose.distance = distance.clamp(self.least, 1e6 * self.least);
-        self.pose.eye = pivot - self.pose.axes.z_axis * self.pose.distance;
+        let mut pose = self.pose;
+        let distance = pose.distance * (1.0 - STEP).powf(steps);
+        pose.distance = distance.clamp(self.least, 1e6 * self.least);
+        pose.eye = self.pose.pivot() - pose.axes.z_axis * pose.distance;
+        self.place(pose);
     }
 
     /// Moves right, down and forward, world units; the pivot goes along.
     pub(super) fn go(&mut self, by: DVec3) {
-        self.pose.eye += self.pose.axes * by;
+        let eye = self.pose.eye + self.pose.axes * by;
+        self.place(Pose { eye, ..self.pose });
     }
 
     /// Back to the start.
     pub(super) fn reset(&mut self) {
         self.pose = self.home;
+    }
+
+    fn place(&mut self, pose: Pose) {
+        // An eye beyond all numbers stays where it was.
+        if pose.eye.abs().cmple(DVec3::splat(FARTHEST)).all() {
+            self.pose = pose;
+        }
     }
 }
 
@@ -239,6 +251,31 @@ mod tests {
         let mut view = start();
         view.go(DVec3::new(1.0, 2.0, 3.0));
         assert_eq!(view.camera(SIZE).eye, DVec3::new(1.0, 2.0, -1.0));
+    }
+
+    #[test]
+    fn an_eye_beyond_all_numbers_stays_where_it_was() {
+        for walk in [Walk::Orbit, Walk::Fly] {
+            let mut view = start();
+            view.walk = walk;
+            let before = view.camera(SIZE);
+            for _ in 0..3 {
+                view.go(DVec3::new(1e308, 0.0, 0.0));
+                view.go(DVec3::new(0.0, -1e30, 1e30));
+                view.go(DVec3::splat(f64::NAN));
+                view.shift(DVec2::new(-1e308, 0.0), SIZE.1);
+                view.shift(DVec2::new(0.0, f64::INFINITY), SIZE.1);
+            }
+            assert_eq!(view.camera(SIZE), before);
+            for _ in 0..3 {
+                view.go(DVec3::Z * 9e17);
+                view.turn(DVec2::splat(1e308));
+                view.zoom(-1e308);
+            }
+            let camera = view.camera(SIZE);
+            assert!(camera.eye.abs().max_element() <= FARTHEST, "{camera:?}");
+            assert!(camera.world_to_camera().is_finite(), "{camera:?}");
+        }
     }
 
     #[test]

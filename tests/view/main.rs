@@ -1,112 +1,22 @@
 //! `rara view` on a display of its own: Xvfb is started here, a script drives the window, and what the X server holds is
 //! what must be seen. Under validation throughout.
-#![cfg(feature = "view")]
+#![cfg(all(feature = "view", unix))]
+
+mod display;
+mod x11;
 
 use std::fs;
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use rara::Picture;
 
-/// The X server's screen; the windows are smaller.
-const SCREEN: &str = "640x480x24";
+use display::{Display, Owned};
+
 const BACKGROUND: [f32; 3] = [0.2, 0.4, 0.6];
-
-/// A child process that does not outlive the test.
-struct Owned(Child);
-
-impl Drop for Owned {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-/// An X server without a screen to look at. It keeps what would be on it in a file.
-struct Display {
-    _server: Owned,
-    name: String,
-    frame_buffer: PathBuf,
-}
-
-impl Display {
-    /// Says so loudly, and is none, where Xvfb is missing.
-    fn start(folder: &Path) -> Option<Self> {
-        let server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-nolisten", "tcp", "-noreset"])
-            .args(["-screen", "0", SCREEN, "-fbdir"])
-            .arg(folder)
-            .stdin(Stdio::null())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn();
-        let mut server = match server {
-            Ok(server) => Owned(server),
-            Err(error) => {
-                eprintln!("SKIPPED: Xvfb does not start ({error}); tools/setup test installs it");
-                return None;
-            }
-        };
-        let mut number = String::new();
-        let pipe = server.0.stdout.take().expect("it is piped");
-        let read = BufReader::new(pipe).read_line(&mut number);
-        read.expect("Xvfb says which display it has");
-        assert!(!number.trim().is_empty(), "Xvfb found no free display");
-        let this = Self {
-            _server: server,
-            name: format!(":{}", number.trim()),
-            frame_buffer: folder.join("Xvfb_screen0"),
-        };
-        this.can_be_drawn_to(folder).then_some(this)
-    }
-
-    /// Whether the driver under test knows windows at all; SwiftShader as Chromium ships it does not.
-    fn can_be_drawn_to(&self, folder: &Path) -> bool {
-        if std::env::var_os("RARA_TEST_DEVICE").is_none() {
-            return true;
-        }
-        fs::write(folder.join("quit.txt"), "quit").expect("a script");
-        let mut command = rara(folder, "view @/scene.ply --script @/quit.txt");
-        let output = command.env("DISPLAY", &self.name).output();
-        let told = stderr(&output.expect("the rara binary runs"));
-        let lacks =
-            told.contains("cannot draw into windows") || told.contains("cannot be used here");
-        if lacks {
-            eprintln!("SKIPPED: {}", told.trim_end());
-        }
-        !lacks
-    }
-
-    /// The upper left corner of the screen, where a window without a window manager is.
-    fn corner(&self, width: u32, height: u32) -> Picture {
-        let bytes = fs::read(&self.frame_buffer).expect("Xvfb keeps its screen in a file");
-        // An XWD file: a header of big-endian words, 12 bytes for each colour of a map, rows.
-        let word = |at: usize| {
-            let bytes = bytes[4 * at..][..4].try_into().expect("four bytes");
-            u32::from_be_bytes(bytes) as usize
-        };
-        let (header, little_endian, bits, row, colours) =
-            (word(0), word(7) == 0, word(11), word(12), word(19));
-        assert!(
-            little_endian && bits == 32,
-            "pixels are blue, green, red, -"
-        );
-        let pixel = |i: u32| {
-            let (x, y) = ((i % width) as usize, (i / width) as usize);
-            let at = header + 12 * colours + y * row + 4 * x;
-            let [b, g, r] = [0, 1, 2].map(|c| f32::from(bytes[at + c]) / 255.0);
-            [r, g, b, 1.0]
-        };
-        Picture {
-            width,
-            height,
-            pixels: (0..width * height).map(pixel).collect(),
-        }
-    }
-}
 
 /// `rara view`, following a script line by line.
 struct Viewer<'a> {
@@ -179,12 +89,7 @@ impl<'a> Viewer<'a> {
     }
 
     fn told(&mut self) -> String {
-        let mut text = String::new();
-        let mut stderr = self.child.0.stderr.take().expect("it is piped");
-        stderr
-            .read_to_string(&mut text)
-            .expect("messages are UTF-8");
-        text
+        self.child.told()
     }
 
     /// Quits; what it has told. No message of the validation layer, no failure.
@@ -275,14 +180,30 @@ fn background() -> String {
     format!("--background {r},{g},{b}")
 }
 
-/// The picture that `rara render` makes of a screenshot's camera.
-fn rendered(folder: &Path, name: &str, words: &str) -> Picture {
-    let line = format!(
-        "render @/scene.ply -o @/{name}_rendered.png --camera @/{name}.json {} {words}",
-        background()
+/// Draws a screenshot again with what the viewer told of it and nothing else, as a person would in a shell: the same file,
+/// to the byte.
+fn draws_again(folder: &Path, name: &str, told: &str) {
+    let wrote = format!(
+        "wrote {}",
+        folder.join(name).with_extension("png").display()
     );
-    done(rara(folder, &line));
-    Picture::load(folder.join(format!("{name}_rendered.png"))).expect("a picture")
+    let line = told.lines().find(|line| line.starts_with(&wrote));
+    let line = line.unwrap_or_else(|| panic!("{name} is not in {told}"));
+    let (_, flags) = line.split_once("rara render ").expect("the flags");
+    let again = folder.join(format!("{name} again.png"));
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &format!("exec \"$0\" \"$@\" {flags}")]);
+    let render = rara(folder, "render @/scene.ply");
+    shell.arg(render.get_program()).args(render.get_args());
+    shell.arg("-o").arg(&again).env("RARA_CACHE", "");
+    done(shell);
+    let file = |path: &Path| fs::read(path).expect("a picture");
+    let shot = folder.join(name).with_extension("png");
+    if file(&shot) != file(&again) {
+        let picture = |path: &Path| Picture::load(path).expect("a picture");
+        let off = apart(&picture(&shot), &picture(&again));
+        panic!("{name}, {flags}: off by {off}/255");
+    }
 }
 
 #[test]
@@ -322,23 +243,36 @@ fn a_plane_is_moved_and_what_is_seen_is_what_render_draws() {
         "{told}"
     );
 
-    for (name, shot) in [
-        ("first", first),
-        ("moved", moved),
-        ("hard", hard),
-        ("turned", turned),
-        ("flown", flown),
-        ("whole", whole),
-    ] {
-        // What the viewer itself says draws it again.
-        let flags = told.lines().find_map(|line| {
-            let (_, flags) = line.split_once(&format!("{name}.json"))?;
-            Some(flags.to_owned())
-        });
-        let flags = flags.unwrap_or_else(|| panic!("{name} is not in {told}"));
-        let off = apart(&shot, &rendered(&folder, name, &flags));
-        assert!(off <= 1.01, "{name}, {flags}: off by {off}/255");
+    for name in ["first", "moved", "hard", "turned", "flown", "whole"] {
+        draws_again(&folder, name, &told);
     }
+}
+
+#[test]
+fn every_setting_and_any_name_draws_a_screenshot_again() {
+    let folder = folder("again");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    let words = "--size 160x120 --clip plane:1,0,0,0.1 --clip plane:0,1,0.3,0 --clip-op or --mode rara --decay depth \
+                 --sigma 2.3 --miss keep --background 0.1,0.25,1 --sh-degree 1 --preset fast --phi quintic \
+                 --beam-switch 0.0123";
+    let mut viewer = Viewer::start(&display, &folder, words);
+    viewer.screenshot("it's $one");
+    // No eye goes where no number is.
+    viewer.say(
+        "repeat 5 move 1e308,0,0\nshift -1e308,0\nturn 20,0\nmode exact\nplane next\nplane +0.2",
+    );
+    viewer.screenshot("two; more");
+    let told = viewer.quit();
+    draws_again(&folder, "it's $one", &told);
+    draws_again(&folder, "two; more", &told);
+
+    let words = "--size 160x120 --clip plane:0,0,1,0 --preset exact --key-bits 16 --target-format 8 --trace-all";
+    let mut viewer = Viewer::start(&display, &folder, words);
+    viewer.screenshot("three");
+    let told = viewer.quit();
+    draws_again(&folder, "three", &told);
 }
 
 #[test]
@@ -365,12 +299,75 @@ fn a_window_may_change_its_size_and_vanish_for_a_while() {
     viewer.shows("what it was before", &seen[4]);
     viewer.say("restore");
     viewer.shows("what it is now", &hidden);
-    viewer.quit();
-    let off = apart(
-        &hidden,
-        &rendered(&folder, "hidden", "--clip plane:0,1,0,-0.2"),
+    // Whoever brings it back: it is seen, so it is drawn.
+    viewer.say("minimise\nplane -0.1");
+    let hidden = viewer.screenshot("hidden_again");
+    let mut client = display.client();
+    let window = client.window();
+    client.unmap(window);
+    client.map(window);
+    viewer.shows("what it is after that", &hidden);
+    let told = viewer.quit();
+    draws_again(&folder, "hidden", &told);
+}
+
+#[test]
+fn a_window_outlives_a_screenshot_that_cannot_be_written() {
+    let folder = folder("key");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    let shots = folder.join("shots");
+    fs::create_dir(&shots).expect("a folder");
+    let mut viewer = Viewer::start(&display, &folder, "--size 64x64 -o @/shots/{}.png");
+    viewer.screenshot("open");
+    let mut client = display.client();
+    let window = client.window();
+    let (c, escape) = (54, 9);
+    client.press(window, c);
+    let until = Instant::now() + Duration::from_secs(20);
+    while !shots.join("001.json").exists() {
+        assert!(Instant::now() < until, "no screenshot by key");
+        sleep(Duration::from_millis(20));
+    }
+    fs::remove_dir_all(&shots).expect("it is there");
+    client.press(window, c);
+    client.press(window, escape);
+    let told = viewer.told();
+    assert!(
+        told.contains("rara: ") && told.contains("does not exist"),
+        "{told}"
     );
-    assert!(off <= 1.01, "off by {off}/255");
+    assert_eq!(viewer.child.0.wait().expect("it ends").code(), Some(0));
+}
+
+#[test]
+fn a_display_that_goes_away_is_a_failure_and_no_panic() {
+    let folder = folder("lost");
+    for server in [true, false] {
+        let Some(display) = Display::start(&folder) else {
+            return;
+        };
+        let mut viewer = Viewer::start(&display, &folder, "--size 64x64");
+        viewer.screenshot(if server { "a" } else { "b" });
+        viewer.say("repeat 2000 turn 1,0\nquit");
+        sleep(Duration::from_millis(300));
+        let Viewer { mut child, .. } = viewer;
+        if server {
+            display.kill();
+        } else {
+            let mut client = display.client();
+            let window = client.window();
+            client.kill(window);
+        }
+        let told = child.told();
+        let status = child.0.wait().expect("it ends");
+        assert_eq!(status.code(), Some(1), "{told}");
+        assert!(!told.contains("panicked"), "{told}");
+        // Xlib may be the first to notice.
+        let says = ["rara: the window was lost", "X connection to"];
+        assert!(says.iter().any(|says| told.contains(says)), "{told}");
+    }
 }
 
 #[test]

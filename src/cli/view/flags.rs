@@ -1,0 +1,229 @@
+//! The flags that draw again what is shown.
+
+use rara::{
+    ClipOp, Decay, Miss, PhiForm, Precision, Preset, Raster, Settings, ShFormat, Show, TargetFormat,
+};
+
+use super::cut::Cut;
+use crate::cli::settings::ModeArg;
+
+/// `rara render`'s flags for a clip and settings, as typed. What they do not say is the default.
+pub(super) fn flags(cut: &Cut, mode: ModeArg, settings: &Settings) -> String {
+    let mut flags = Vec::new();
+    let planes = cut.clip().planes;
+    for plane in &planes {
+        let (n, d) = (plane.normal(), plane.offset());
+        flags.push(format!("--clip plane:{},{},{},{d}", n.x, n.y, n.z));
+    }
+    if planes.len() > 1 && cut.op() == ClipOp::Or {
+        flags.push("--clip-op or".into());
+    }
+    flags.push(format!("--mode {}", mode.name()));
+    add_settings(&mut flags, settings);
+    add_precision(&mut flags, &settings.precision);
+    flags.join(" ")
+}
+
+fn add_settings(flags: &mut Vec<String>, settings: &Settings) {
+    // Nothing is left out by accident: each setting is named.
+    let Settings {
+        mode: _,
+        decay,
+        sigma,
+        miss,
+        trace_all,
+        form: _, // no flag sets it
+        background,
+        sh_degree,
+        raster,
+        show,
+        precision: _,
+    } = *settings;
+    let default = Settings::default();
+    if let Some(decay) = decay {
+        let law = match decay {
+            Decay::Linear => "linear",
+            Decay::Depth => "depth",
+        };
+        flags.push(format!("--decay {law}"));
+    }
+    if sigma != default.sigma {
+        flags.push(format!("--sigma {sigma}"));
+    }
+    if miss != default.miss {
+        let what = match miss {
+            Miss::Keep => "keep",
+            Miss::Drop => "drop",
+            Miss::Peak => "peak",
+        };
+        flags.push(format!("--miss {what}"));
+    }
+    if trace_all {
+        flags.push("--trace-all".into());
+    }
+    if let Some([r, g, b]) = background {
+        flags.push(format!("--background {r},{g},{b}"));
+    }
+    if let Some(degree) = sh_degree {
+        flags.push(format!("--sh-degree {degree}"));
+    }
+    if raster != default.raster {
+        let how = match raster {
+            Raster::Auto => "auto",
+            Raster::Mesh => "mesh",
+            Raster::Quad => "quad",
+            Raster::Tiles => "tiles",
+        };
+        flags.push(format!("--raster {how}"));
+    }
+    if show != default.show {
+        let what = match show {
+            Show::Colour => "colour",
+            Show::Weight => "weight",
+        };
+        flags.push(format!("--show {what}"));
+    }
+}
+
+/// The preset that leaves the fewest single flags, and these.
+fn add_precision(flags: &mut Vec<String>, precision: &Precision) {
+    // The default first: no flag says it.
+    let presets = [
+        (Preset::Balanced, None),
+        (Preset::Exact, Some("--preset exact")),
+        (Preset::Fast, Some("--preset fast")),
+    ];
+    let written = presets.map(|(preset, flag)| {
+        let mut flags: Vec<String> = flag.map(Into::into).into_iter().collect();
+        flags.extend(differences(precision, &preset.precision()));
+        flags
+    });
+    let fewest = written.into_iter().min_by_key(Vec::len);
+    flags.extend(fewest.unwrap_or_default());
+}
+
+/// The single flags that make `preset` into `precision`.
+fn differences(precision: &Precision, preset: &Precision) -> Vec<String> {
+    let Precision {
+        target,
+        sh,
+        phi,
+        key_bits,
+        beam_switch,
+        transmittance_min,
+    } = *precision;
+    let mut flags = Vec::new();
+    if target != preset.target {
+        let format = match target {
+            TargetFormat::Unorm8 => "8",
+            TargetFormat::Half => "16f",
+            TargetFormat::Float => "32f",
+        };
+        flags.push(format!("--target-format {format}"));
+    }
+    if sh != preset.sh {
+        let format = match sh {
+            ShFormat::Byte => "8",
+            ShFormat::Packed => "packed",
+            ShFormat::Half => "16f",
+            ShFormat::Float => "32f",
+        };
+        flags.push(format!("--sh-format {format}"));
+    }
+    if phi != preset.phi {
+        let form = match phi {
+            PhiForm::Quintic => "quintic",
+            PhiForm::Cubic => "cubic",
+            PhiForm::Logistic => "logistic",
+        };
+        flags.push(format!("--phi {form}"));
+    }
+    if key_bits != preset.key_bits {
+        flags.push(format!("--key-bits {key_bits}"));
+    }
+    if beam_switch != preset.beam_switch {
+        flags.push(format!("--beam-switch {beam_switch}"));
+    }
+    if transmittance_min != preset.transmittance_min {
+        flags.push(format!("--transmittance-min {transmittance_min}"));
+    }
+    flags
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::clip::ClipArgs;
+    use crate::cli::settings::SettingsArgs;
+    use clap::{Args as _, FromArgMatches as _};
+    use glam::DVec3;
+    use rara::{Clip, Plane};
+
+    /// What flags mean: the clip, the mode and the settings.
+    fn meant(flags: &str) -> (Clip, ModeArg, Settings) {
+        let command = clap::Command::new("rara").no_binary_name(true);
+        let command = SettingsArgs::augment_args(ClipArgs::augment_args(command));
+        let matches = command.try_get_matches_from(flags.split_whitespace());
+        let matches = matches.unwrap_or_else(|error| panic!("{flags}: {error}"));
+        let settings = SettingsArgs::from_arg_matches(&matches).unwrap();
+        let clip = ClipArgs::from_arg_matches(&matches).unwrap();
+        (
+            clip.meant().unwrap(),
+            settings.mode,
+            settings.meant().unwrap(),
+        )
+    }
+
+    /// What is written for what was typed.
+    fn written(typed: &str) -> String {
+        let (clip, mode, settings) = meant(typed);
+        flags(&Cut::new(clip, DVec3::ZERO), mode, &settings)
+    }
+
+    #[test]
+    fn what_was_typed_is_what_draws_it_again() {
+        for typed in [
+            "--mode exact",
+            "--clip plane:0,0,-1,0.25 --mode hard",
+            "--clip plane:0,0,1,0.1 --clip plane:1,0,0,-2 --clip-op or --mode none",
+            "--mode rara --decay depth --sigma 1.7 --miss keep --trace-all",
+            "--mode rara --decay linear --miss drop",
+            "--mode exact --background 0.1,0.2,0.7 --sh-degree 0 --raster quad --show weight",
+            "--mode exact --raster mesh",
+            "--mode exact --raster tiles",
+            "--mode exact --preset fast",
+            "--mode exact --preset exact",
+            "--mode exact --preset exact --phi logistic --key-bits 20",
+            "--mode exact --target-format 8 --sh-format 8",
+            "--mode exact --target-format 16f --sh-format 16f --phi cubic",
+            "--mode exact --preset fast --sh-format 32f",
+            "--mode exact --beam-switch 0.0123 --transmittance-min 0.0000003",
+        ] {
+            assert_eq!(written(typed), typed);
+        }
+    }
+
+    #[test]
+    fn no_number_is_rounded() {
+        let normal = DVec3::new(0.1, -0.7, 1.0 / 3.0);
+        let clip = Clip {
+            planes: vec![Plane::new(normal, 1e-9 / 7.0).unwrap()],
+            op: ClipOp::And,
+        };
+        let settings = Settings {
+            background: Some([1.0 / 3.0, f32::MIN_POSITIVE, 0.1 + 0.2]),
+            sigma: 1e-7 / 3.0,
+            precision: Precision {
+                beam_switch: 1e20 / 7.0,
+                ..Precision::default()
+            },
+            ..Settings::default()
+        };
+        let cut = Cut::new(clip.clone(), DVec3::ZERO);
+        let (read, _, again) = meant(&flags(&cut, ModeArg::Exact, &settings));
+        assert_eq!(again, settings);
+        let (read, plane) = (read.planes[0], clip.planes[0]);
+        assert!((read.normal() - plane.normal()).length() < 1e-15);
+        assert!((read.offset() / plane.offset() - 1.0).abs() < 1e-15);
+    }
+}

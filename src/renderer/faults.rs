@@ -86,10 +86,14 @@ fn life(host: &Device) -> Result<()> {
 
 #[test]
 fn memory_may_run_out_where_a_host_draws() {
+    if faults::is_slow() {
+        eprintln!("SKIPPED: memory that runs out, on a slow driver, whose code it does not test");
+        return;
+    }
     let host = faults::device(None).expect("a device");
     let mut places = 0;
     for call in &faults::CALLS {
-        for &after in if faults::is_slow() { &[0][..] } else { &[0, 3] } {
+        for after in [0, 3] {
             let result = Code::ERROR_OUT_OF_DEVICE_MEMORY;
             faults::set_among(std::slice::from_ref(call), Some(Fault { after, result }));
             let lived = life(&host);
@@ -119,7 +123,7 @@ fn memory_may_run_out_where_a_host_draws() {
             assert_eq!(host.validation_messages(), Vec::<String>::new(), "{call}");
         }
     }
-    assert!(places > 15, "{places} places");
+    assert!(places > 20, "{places} places");
     assert_eq!(host.close(), Vec::<String>::new());
 }
 

@@ -9,7 +9,9 @@ use std::time::Instant;
 use clap::ValueEnum;
 use rara::ash::vk;
 use rara::gpu::{Bindings, Drawer, ImageDesc};
-use rara::{Clip, Error, Headless, Renderer, RendererDesc, Result, SceneBuffers, TargetFormat};
+use rara::{
+    Clip, Error, Headless, Renderer, RendererDesc, Result, SceneBuffers, Settings, TargetFormat,
+};
 
 use crate::args::Args;
 use crate::variant::{MODES, Variant};
@@ -82,7 +84,7 @@ fn start(source: &Source, args: &Args) -> Result<()> {
     step("load");
     let mut headless = Headless::new(&args.desc())?;
     step("device");
-    headless.load(&world.scene)?;
+    headless.load_as(&world.scene, Settings::default().precision.sh)?;
     step("upload");
     let (camera, settings) = (
         world.camera(0, args.size())?,

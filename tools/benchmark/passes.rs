@@ -1,7 +1,7 @@
 //! What each stage of a frame takes: by Gaussians, picture size, mode and raster path; the camera moves, and every frame is
 //! computed from nothing.
 
-use rara::{Clip, Error, Headless, Result};
+use rara::{Clip, Error, Headless, Result, Settings};
 
 use crate::Bench;
 use crate::args::Section;
@@ -41,7 +41,7 @@ fn scene(bench: &mut Bench, source: &Source, overview: &mut Overview) -> Result<
     memory::check(source.expected(), 1)?;
     let world = source.world()?;
     let mut headless = Headless::new(&bench.args.desc())?;
-    headless.load(&world.scene)?;
+    headless.load_as(&world.scene, Settings::default().precision.sh)?;
     for width in bench.args.sizes() {
         let camera = world.camera(0, width)?;
         let place = Place {

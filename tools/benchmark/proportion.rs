@@ -1,7 +1,7 @@
 //! Cost follows what is seen: frames that show a hundredth of a scene against frames that show all of it.
 
 use rara::glam::{DMat3, DVec3};
-use rara::{Camera, Clip, Headless, Result};
+use rara::{Camera, Clip, Headless, Result, Settings};
 
 use crate::Bench;
 use crate::args::Section;
@@ -61,7 +61,7 @@ fn scene(bench: &mut Bench, source: &Source, place: &mut Place) -> Result<()> {
     memory::check(source.expected(), 1)?;
     let world = source.world()?;
     let mut headless = Headless::new(&bench.args.desc())?;
-    headless.load(&world.scene)?;
+    headless.load_as(&world.scene, Settings::default().precision.sh)?;
     let width = bench.args.size();
     let camera = world.camera(0, width)?;
     place.gaussians = world.scene.len();

@@ -2,7 +2,7 @@
 
 use rara::glam::DVec3;
 use rara::scene::extent_along;
-use rara::{Clip, Headless, Result};
+use rara::{Clip, Headless, Result, Settings};
 
 use crate::Bench;
 use crate::args::Section;
@@ -72,7 +72,7 @@ fn scene(bench: &mut Bench, source: &Source, place: &mut Place) -> Result<()> {
             continue;
         }
         let mut headless = Headless::new(&bench.args.desc())?;
-        headless.load(&world.scene)?;
+        headless.load_as(&world.scene, Settings::default().precision.sh)?;
         lanes.push(Lane {
             headless,
             variant,

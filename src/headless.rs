@@ -178,9 +178,10 @@ impl Headless {
         settings: &Settings,
     ) -> Result<FrameStats> {
         let trace = self.trace.clone();
-        trace::span(trace.as_ref(), "render", || {
+        let drawn = trace::span(trace.as_ref(), "render", || {
             self.render_frame(camera, clip, settings)
-        })
+        });
+        drawn.map_err(|error| error.after(self.device.validation_messages()))
     }
 
     fn render_frame(
@@ -275,7 +276,7 @@ impl Headless {
             if submitted.is_err() {
                 self.renderer.forget(); // what it would have computed is not there
             }
-            submitted.map_err(|error| error.after(self.device.validation_messages()))?;
+            submitted?;
             // A first frame finds out how much room the tiles need, and nothing is drawn of it.
             let room = self.renderer.pair_room();
             if !self.renderer.fell_back() {
@@ -315,7 +316,8 @@ impl Headless {
     /// Reads the picture of the last frame back.
     pub fn picture(&mut self) -> Result<Picture> {
         let trace = self.trace.clone();
-        trace::span(trace.as_ref(), "readback", || self.read_back())
+        let read = trace::span(trace.as_ref(), "readback", || self.read_back());
+        read.map_err(|error| error.after(self.device.validation_messages()))
     }
 
     fn read_back(&mut self) -> Result<Picture> {
@@ -333,13 +335,12 @@ impl Headless {
                 location: Location::Readback,
             })?,
         };
-        let copied = self.device.submit_and_wait(|cmd| {
+        self.device.submit_and_wait(|cmd| {
             // SAFETY: `cmd` is recording; the image was left ready to be copied from by the frame's end_rendering, and
             // image and buffer outlive the wait.
             unsafe { target.image.copy_to(cmd, &readback) };
             Ok(())
-        });
-        copied.map_err(|error| error.after(self.device.validation_messages()))?;
+        })?;
         let pixels = target.format.decode(&readback.mapped()[..size as usize]);
         target.readback = Some(readback);
         self.check_validation()?;

@@ -2,16 +2,15 @@
 //! `gpu-allocator`, which it lends. Its pictures are the headless ones, byte for byte, in Vulkan 1.3 and in 1.2, where
 //! the layer watches that nothing newer is called.
 
-#[path = "../tools/examples/best_practices.rs"]
-mod best_practices;
 mod common;
+#[path = "../tools/examples/validation.rs"]
+mod validation;
 
 use std::cell::RefCell;
-use std::ffi::{CStr, c_void};
 use std::mem::ManuallyDrop;
 use std::sync::{Arc, Mutex};
 
-use rara::ash::{Device, Entry, Instance, ext, vk};
+use rara::ash::{Device, Entry, Instance, vk};
 use rara::gpu::{self, AdoptDesc, Support, Target};
 use rara::gpu_allocator::vulkan::{
     Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc,
@@ -19,6 +18,7 @@ use rara::gpu_allocator::vulkan::{
 use rara::gpu_allocator::{AllocationSizes, AllocatorDebugSettings, MemoryLocation};
 use rara::scene::{Kind, generate};
 use rara::{ClipOp, Picture, Raster, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat};
+use validation::{Messages, Messenger};
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const EXTENT: vk::Extent2D = vk::Extent2D {
@@ -33,13 +33,10 @@ const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
     layer_count: 1,
 };
 
-type Messages = Mutex<Vec<String>>;
-
 struct Host {
     version: u32,
     instance: Instance,
-    loader: ext::debug_utils::Instance,
-    messenger: vk::DebugUtilsMessengerEXT,
+    messenger: Option<Messenger>,
     messages: Box<Messages>,
     physical_device: vk::PhysicalDevice,
     support: Support,
@@ -64,7 +61,9 @@ impl Host {
         unsafe {
             let entry = Entry::load().expect("a Vulkan loader");
             let messages = Box::new(Messages::default());
-            let (instance, loader, messenger) = instance(&entry, version, &messages);
+            let made = validation::instance(&entry, version, true, &messages);
+            let (instance, messenger) =
+                made.expect("the validation layer (tools/test installs it)");
             let part = std::env::var("RARA_TEST_DEVICE").unwrap_or_default();
             let (physical_device, support) = instance
                 .enumerate_physical_devices()
@@ -126,7 +125,6 @@ impl Host {
                 version,
                 queue: device.get_device_queue(support.queue_family, 0),
                 instance,
-                loader,
                 messenger,
                 messages,
                 physical_device,
@@ -251,74 +249,13 @@ impl Host {
             assert!(left.is_empty(), "{left:?}");
             drop(allocator);
             device.destroy_device(None);
-            let messenger = self.messenger;
-            self.loader.destroy_debug_utils_messenger(messenger, None);
+            if let Some((loader, messenger)) = &self.messenger {
+                loader.destroy_debug_utils_messenger(*messenger, None);
+            }
             self.instance.destroy_instance(None);
         }
         self.messages.into_inner().expect("nobody has panicked")
     }
-}
-
-/// # Safety
-/// `messages` outlives the instance.
-unsafe fn instance(
-    entry: &Entry,
-    version: u32,
-    messages: &Messages,
-) -> (
-    Instance,
-    ext::debug_utils::Instance,
-    vk::DebugUtilsMessengerEXT,
-) {
-    let application = vk::ApplicationInfo::default().api_version(version);
-    let layers = [c"VK_LAYER_KHRONOS_validation".as_ptr()];
-    let extensions = [
-        ext::debug_utils::NAME.as_ptr(),
-        ext::validation_features::NAME.as_ptr(),
-    ];
-    let enabled = best_practices::checks(entry);
-    let mut checks = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enabled);
-    let info = vk::InstanceCreateInfo::default()
-        .application_info(&application)
-        .enabled_layer_names(&layers)
-        .enabled_extension_names(&extensions)
-        .push_next(&mut checks);
-    // SAFETY: everything pointed to outlives the calls; the caller vouches for `messages`.
-    unsafe {
-        let instance = entry.create_instance(&info, None);
-        let instance = instance.expect("the validation layer (tools/test installs it)");
-        let loader = ext::debug_utils::Instance::new(entry, &instance);
-        let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
-            .message_severity(
-                vk::DebugUtilsMessageSeverityFlagsEXT::WARNING
-                    | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
-            )
-            .message_type(
-                vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
-                    | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
-            )
-            .pfn_user_callback(Some(collect))
-            .user_data(std::ptr::from_ref(messages).cast_mut().cast());
-        let messenger = loader.create_debug_utils_messenger(&info, None);
-        (instance, loader, messenger.expect("a messenger"))
-    }
-}
-
-unsafe extern "system" fn collect(
-    _: vk::DebugUtilsMessageSeverityFlagsEXT,
-    _: vk::DebugUtilsMessageTypeFlagsEXT,
-    data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
-    user: *mut c_void,
-) -> vk::Bool32 {
-    // SAFETY: Vulkan passes a valid struct, and `user` is the `Messages` that the messenger was made with.
-    unsafe {
-        let text = (*data).message_as_c_str().unwrap_or_default();
-        if best_practices::counts(text) {
-            let mut messages = (*user.cast::<Messages>()).lock().expect("no holder panics");
-            messages.push(CStr::to_string_lossy(text).into_owned());
-        }
-    }
-    vk::FALSE
 }
 
 /// # Safety

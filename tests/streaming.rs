@@ -22,6 +22,31 @@ const VIEW: vk::Extent2D = vk::Extent2D {
 };
 const STAY: usize = 4;
 
+/// A host, and its device adopted.
+fn open(validation: bool) -> (Host, Device) {
+    let host = Host::new(&HostDesc {
+        device: std::env::var("RARA_TEST_DEVICE").ok().as_deref(),
+        validation,
+        optional: true,
+        extent: VIEW,
+        format: FORMAT,
+    });
+    let host = host.expect("a Vulkan device and the validation layer (tools/test installs both)");
+    // SAFETY: the handles belong together; all that is made of them is dropped before the host is closed.
+    let device = unsafe { Device::adopt(host.lend()) }.expect("the host's device will do");
+    (host, device)
+}
+
+/// The rest of a frame that is configured.
+fn record(host: &mut Host, renderer: &mut Renderer, cmd: vk::CommandBuffer, scene: &SceneBuffers) {
+    // SAFETY: `cmd` is recording outside rendering, and every test keeps scenes until their frames are done.
+    unsafe { renderer.prepare(cmd, scene).expect("prepares") };
+    host.begin_rendering(VIEW.into());
+    // SAFETY: `cmd` is inside rendering to a target of the renderer's format.
+    unsafe { renderer.draw(cmd, [0.0, 0.0]).expect("draws") };
+    host.submit().expect("submits");
+}
+
 /// Allocates, and records the copies into a frame's own commands.
 fn upload(device: &Device, cmd: vk::CommandBuffer, scene: &Gaussians) -> (SceneBuffers, Buffer) {
     let desc = BufferDesc {
@@ -101,16 +126,7 @@ fn scenes_and_clips_change_while_frames_are_in_flight() {
         (Raster::Quad, Bindings::Address, true, 0),
     ];
     for (raster, bindings, reuse, ahead) in ways {
-        let mut host = Host::new(&HostDesc {
-            device: std::env::var("RARA_TEST_DEVICE").ok().as_deref(),
-            validation: true,
-            optional: true,
-            extent: VIEW,
-            format: FORMAT,
-        })
-        .expect("a Vulkan device and the validation layer (tools/test installs both)");
-        // SAFETY: the handles belong together; all that is made of them is dropped before the host is closed.
-        let device = unsafe { Device::adopt(host.lend()) }.expect("the host's device will do");
+        let (mut host, device) = open(true);
         let desc = RendererDesc {
             bindings,
             reuse,
@@ -147,12 +163,7 @@ fn scenes_and_clips_change_while_frames_are_in_flight() {
             let configured =
                 renderer.configure(scene, &cameras[at], &clip(&scenes[at], frame), &settings);
             configured.expect("configures");
-            // SAFETY: `cmd` is recording outside rendering, and scenes are kept until their frames are done.
-            unsafe { renderer.prepare(cmd, scene).expect("prepares") };
-            host.begin_rendering(VIEW.into());
-            // SAFETY: `cmd` is inside rendering to a target of the renderer's format.
-            unsafe { renderer.draw(cmd, [0.0, 0.0]).expect("draws") };
-            host.submit().expect("submits");
+            record(&mut host, &mut renderer, cmd, scene);
         }
         let pixels = host.wait_for_all().expect("waits");
         check("the last frame", &host, &pixels, &truth[frames - 1]);
@@ -172,16 +183,7 @@ fn memory_stays_flat_over_a_thousand_frames_of_a_host() {
         generate(Kind::Layers, 500, 1),
     ];
     // Without the layer, whose books grow.
-    let mut host = Host::new(&HostDesc {
-        device: std::env::var("RARA_TEST_DEVICE").ok().as_deref(),
-        validation: false,
-        optional: true,
-        extent: VIEW,
-        format: FORMAT,
-    })
-    .expect("a Vulkan device");
-    // SAFETY: the handles belong together; all that is made of them is dropped before the host is closed.
-    let device = unsafe { Device::adopt(host.lend()) }.expect("the host's device will do");
+    let (mut host, device) = open(false);
     let desc = RendererDesc {
         reuse: true,
         frames_in_flight: FRAMES as u32,
@@ -211,12 +213,7 @@ fn memory_stays_flat_over_a_thousand_frames_of_a_host() {
         cut.planes[0] = rara::Plane::new(normal, moved).expect("a plane");
         let configured = renderer.configure(scene, &camera, &cut, &Settings::default());
         configured.expect("configures");
-        // SAFETY: `cmd` is recording outside rendering, and scenes are kept until their frames are done.
-        unsafe { renderer.prepare(cmd, scene).expect("prepares") };
-        host.begin_rendering(VIEW.into());
-        // SAFETY: `cmd` is inside rendering to a target of the renderer's format.
-        unsafe { renderer.draw(cmd, [0.0, 0.0]).expect("draws") };
-        host.submit().expect("submits");
+        record(&mut host, &mut renderer, cmd, scene);
         if frame % STAY == STAY - 1 && stay >= 2 * scenes.len() {
             taken[at].push(device.device_bytes());
         }

@@ -21,9 +21,8 @@ pub struct RendererDesc {
     pub samples: vk::SampleCountFlags,
     /// Dynamic rendering, or a classic render pass.
     pub target: Target,
-    /// Whether buffers are reached by address or bound, where the validation layer can watch them;
-    /// [`Bindings::suiting`] says which is faster on a device. With
-    /// [`Bindings::Bound`] a frame whose buffers exceed the device's binding size still uses addresses.
+    /// Whether buffers are reached by address or bound, where the validation layer can watch them; [`Bindings::suiting`]
+    /// says which is faster on a device. With [`Bindings::Bound`] a frame whose buffers exceed the device's binding size still uses addresses.
     pub bindings: Bindings,
     /// Whether to take timestamps around the stages.
     pub timing: bool,
@@ -33,8 +32,8 @@ pub struct RendererDesc {
     /// The host then submits every frame that it prepares, in order, or calls
     /// [`Renderer::forget`](super::Renderer::forget).
     pub reuse: bool,
-    /// How many recorded frames may be unfinished at once, from 1 to [`MAX_FRAMES`](Self::MAX_FRAMES); [`Renderer`](super::Renderer) says what the host
-    /// promises.
+    /// How many recorded frames may be unfinished at once, from 1 to [`MAX_FRAMES`](Self::MAX_FRAMES);
+    /// [`Renderer`](super::Renderer) says what the host promises.
     pub frames_in_flight: u32,
 }
 

@@ -1,15 +1,13 @@
 //! An engine in small, which knows nothing of splats: its own instance, device, queue and targets, two frames in flight.
 //! It paints its targets with stripes of its own, so that whatever draws afterwards draws onto something.
 
-#[path = "best_practices.rs"]
-mod best_practices;
+#[path = "validation.rs"]
+mod validation;
 
-use std::ffi::{CStr, c_void};
-use std::sync::Mutex;
-
-use rara::ash::{Device, Entry, Instance, ext, vk};
+use rara::ash::{Device, Entry, Instance, vk};
 use rara::gpu::{self, AdoptDesc, Support};
 use rara::{Error, Result};
+use validation::{Messages, Messenger};
 
 /// Frames that the host records before it waits for the oldest.
 pub(crate) const FRAMES: usize = 2;
@@ -33,7 +31,7 @@ pub(crate) struct HostDesc<'a> {
 
 pub(crate) struct Host {
     instance: Instance,
-    messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
+    messenger: Option<Messenger>,
     messages: Box<Messages>,
     physical_device: vk::PhysicalDevice,
     support: Support,
@@ -61,9 +59,6 @@ struct Slot {
     readback_memory: vk::DeviceMemory,
 }
 
-/// The layer's warnings and errors.
-type Messages = Mutex<Vec<String>>;
-
 const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
     aspect_mask: vk::ImageAspectFlags::COLOR,
     base_mip_level: 0,
@@ -79,7 +74,8 @@ impl Host {
         unsafe {
             let entry = Entry::load().map_err(|error| Error::Device(error.to_string()))?;
             let messages = Box::new(Messages::default());
-            let (instance, messenger) = instance(&entry, desc.validation, &messages)?;
+            let (instance, messenger) =
+                validation::instance(&entry, VERSION, desc.validation, &messages)?;
 
             // What rara needs of a device can be asked before there is one, and goes into the host's own creation.
             let wanted = |physical: &vk::PhysicalDevice| {
@@ -506,84 +502,6 @@ impl Host {
 
 /// Width of the host's stripes, px.
 const STRIPE: u32 = 16;
-
-/// # Safety
-/// `messages` outlives the instance and the messenger.
-unsafe fn instance(
-    entry: &Entry,
-    validation: bool,
-    messages: &Messages,
-) -> Result<(
-    Instance,
-    Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
-)> {
-    let application = vk::ApplicationInfo::default()
-        .application_name(c"rara's example host")
-        .api_version(VERSION);
-    let (layers, extensions) = if validation {
-        (
-            vec![c"VK_LAYER_KHRONOS_validation".as_ptr()],
-            vec![
-                ext::debug_utils::NAME.as_ptr(),
-                ext::validation_features::NAME.as_ptr(),
-            ],
-        )
-    } else {
-        (Vec::new(), Vec::new())
-    };
-    let enabled = best_practices::checks(entry);
-    let mut checks = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enabled);
-    let mut info = vk::InstanceCreateInfo::default()
-        .application_info(&application)
-        .enabled_layer_names(&layers)
-        .enabled_extension_names(&extensions);
-    if validation {
-        info = info.push_next(&mut checks);
-    }
-    // SAFETY: everything pointed to outlives the calls; the caller vouches for `messages`.
-    unsafe {
-        let instance = entry
-            .create_instance(&info, None)
-            .map_err(Error::vulkan("vkCreateInstance"))?;
-        if !validation {
-            return Ok((instance, None));
-        }
-        let loader = ext::debug_utils::Instance::new(entry, &instance);
-        let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
-            .message_severity(
-                vk::DebugUtilsMessageSeverityFlagsEXT::WARNING
-                    | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
-            )
-            .message_type(
-                vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
-                    | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
-            )
-            .pfn_user_callback(Some(collect))
-            .user_data(std::ptr::from_ref(messages).cast_mut().cast());
-        let messenger = loader
-            .create_debug_utils_messenger(&info, None)
-            .map_err(Error::vulkan("vkCreateDebugUtilsMessengerEXT"))?;
-        Ok((instance, Some((loader, messenger))))
-    }
-}
-
-unsafe extern "system" fn collect(
-    _: vk::DebugUtilsMessageSeverityFlagsEXT,
-    _: vk::DebugUtilsMessageTypeFlagsEXT,
-    data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
-    user: *mut c_void,
-) -> vk::Bool32 {
-    // SAFETY: Vulkan passes a valid struct for the length of the call, and `user` is the host's messages.
-    let (text, messages): (&CStr, &Messages) = unsafe {
-        let text = (*data).message_as_c_str().unwrap_or(c"(no text)");
-        (text, &*user.cast())
-    };
-    if best_practices::counts(text) {
-        let text = text.to_string_lossy().into_owned();
-        messages.lock().expect("no holder panics").push(text);
-    }
-    vk::FALSE
-}
 
 /// A half-precision number.
 fn half(bits: u16) -> f32 {

@@ -1,0 +1,130 @@
+//! A host's instance, with the validation layer's checks of synchronisation and best practices, and what of the latter is
+//! allowed to be said, each with its reason.
+
+use std::ffi::{CStr, c_void};
+use std::sync::Mutex;
+
+use rara::ash::{Entry, Instance, ext, vk};
+use rara::{Error, Result};
+
+/// The layer's warnings and errors, but for what is allowed.
+pub(crate) type Messages = Mutex<Vec<String>>;
+
+/// What sends the messages, with its functions.
+pub(crate) type Messenger = (ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT);
+
+/// What the layer may say: part of its message's id, and why it is not heeded.
+const ALLOWED: [(&str, &str); 4] = [
+    (
+        "BestPractices-pipeline-stage-flags",
+        "ALL_COMMANDS: rara's first barrier waits for all that a host has recorded before, of which it knows nothing, and a \
+         timestamp is to be behind all of its stage",
+    ),
+    (
+        "BestPractices-SpirvDeprecated_WorkgroupSize",
+        "what stands in its place needs Vulkan 1.3, and rara's modules are for 1.2 too",
+    ),
+    (
+        "BestPractices-vkAllocateMemory-small-allocation",
+        "memory of their own for these hosts' targets of a few pixels",
+    ),
+    (
+        "BestPractices-vkBindMemory-small-dedicated-allocation",
+        "the same, and rara's own targets, which drivers compress only there",
+    ),
+];
+
+/// The layer of which the list is; a newer one may say more.
+const KNOWN: u32 = vk::make_api_version(0, 1, 3, 239);
+
+/// An instance of a version, with the layer or without.
+///
+/// # Safety
+/// `messages` outlives the instance and the messenger.
+pub(crate) unsafe fn instance(
+    entry: &Entry,
+    version: u32,
+    validation: bool,
+    messages: &Messages,
+) -> Result<(Instance, Option<Messenger>)> {
+    let application = vk::ApplicationInfo::default()
+        .application_name(c"rara's example host")
+        .api_version(version);
+    let info = vk::InstanceCreateInfo::default().application_info(&application);
+    if !validation {
+        // SAFETY: everything pointed to outlives the call.
+        let instance = unsafe { entry.create_instance(&info, None) };
+        return Ok((instance.map_err(Error::vulkan("vkCreateInstance"))?, None));
+    }
+    let layers = [c"VK_LAYER_KHRONOS_validation".as_ptr()];
+    let extensions = [
+        ext::debug_utils::NAME.as_ptr(),
+        ext::validation_features::NAME.as_ptr(),
+    ];
+    let enabled = checks(entry);
+    let mut checks = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enabled);
+    let info = info
+        .enabled_layer_names(&layers)
+        .enabled_extension_names(&extensions)
+        .push_next(&mut checks);
+    let reports = vk::DebugUtilsMessengerCreateInfoEXT::default()
+        .message_severity(
+            vk::DebugUtilsMessageSeverityFlagsEXT::WARNING
+                | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
+        )
+        .message_type(
+            vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
+                | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
+        )
+        .pfn_user_callback(Some(collect))
+        .user_data(std::ptr::from_ref(messages).cast_mut().cast());
+    // SAFETY: everything pointed to outlives the calls; the caller vouches for `messages`.
+    unsafe {
+        let instance = entry
+            .create_instance(&info, None)
+            .map_err(Error::vulkan("vkCreateInstance"))?;
+        let loader = ext::debug_utils::Instance::new(entry, &instance);
+        let messenger = loader
+            .create_debug_utils_messenger(&reports, None)
+            .map_err(Error::vulkan("vkCreateDebugUtilsMessengerEXT"))?;
+        Ok((instance, Some((loader, messenger))))
+    }
+}
+
+/// What of the layer's checks a host asks for: synchronisation, and best practices where the list above is of this layer.
+fn checks(entry: &Entry) -> Vec<vk::ValidationFeatureEnableEXT> {
+    let mut checks = vec![vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
+    // SAFETY: the entry's loader is loaded.
+    let layers = unsafe { entry.enumerate_instance_layer_properties() }.unwrap_or_default();
+    let layer = |layer: &&vk::LayerProperties| {
+        layer.layer_name_as_c_str() == Ok(c"VK_LAYER_KHRONOS_validation")
+    };
+    match layers.iter().find(layer) {
+        Some(layer) if layer.spec_version > KNOWN => {
+            eprintln!(
+                "SKIPPED: best practices, as the layer is newer than the list of what is allowed"
+            );
+        }
+        _ => checks.push(vk::ValidationFeatureEnableEXT::BEST_PRACTICES),
+    }
+    checks
+}
+
+unsafe extern "system" fn collect(
+    _: vk::DebugUtilsMessageSeverityFlagsEXT,
+    _: vk::DebugUtilsMessageTypeFlagsEXT,
+    data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
+    user: *mut c_void,
+) -> vk::Bool32 {
+    // SAFETY: Vulkan passes a valid struct for the length of the call, and `user` is the host's messages.
+    let (text, messages): (&CStr, &Messages) = unsafe {
+        let text = (*data).message_as_c_str().unwrap_or(c"(no text)");
+        (text, &*user.cast())
+    };
+    let text = text.to_string_lossy();
+    if !ALLOWED.iter().any(|(id, _)| text.contains(id)) {
+        let mut messages = messages.lock().expect("no holder panics");
+        messages.push(text.into_owned());
+    }
+    vk::FALSE
+}

@@ -34,6 +34,7 @@ pub(crate) enum Pretence {
     Without(&'static str),
     WithoutGraphics,
     WithoutExtensions,
+    WithoutSubgroups,
     ExtensionsFail,
     CreateFails(vk::Result),
 }
@@ -82,6 +83,7 @@ pub(crate) fn instance(pretence: Option<Pretence>) -> Instance {
     v1_0.enumerate_device_extension_properties = extensions;
     v1_0.create_device = create_device;
     v1_1.get_physical_device_features2 = features;
+    v1_1.get_physical_device_properties2 = properties2;
     instance.raw = ash::Instance::from_parts_1_3(raw.handle(), v1_0, v1_1, raw.fp_v1_3().clone());
     with(|state| {
         *state = State {
@@ -378,6 +380,27 @@ unsafe extern "system" fn properties(
                 (*out).api_version = vk::API_VERSION_1_2;
             }
             _ => {}
+        }
+    }
+}
+
+unsafe extern "system" fn properties2(
+    physical: vk::PhysicalDevice,
+    out: *mut vk::PhysicalDeviceProperties2<'_>,
+) {
+    // SAFETY: the caller's arguments, passed on; each struct of the chain begins with its type and the next one.
+    unsafe {
+        (driver().fp_v1_1().get_physical_device_properties2)(physical, out);
+        let mut next = (*out).p_next.cast::<vk::BaseOutStructure<'static>>();
+        while let Some(base) = next.as_mut() {
+            if base.s_type == vk::StructureType::PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES
+                && pretence() == Some(Pretence::WithoutSubgroups)
+            {
+                type All = vk::PhysicalDeviceVulkan11Properties<'static>;
+                (*next.cast::<All>()).subgroup_supported_operations =
+                    vk::SubgroupFeatureFlags::BASIC;
+            }
+            next = base.p_next;
         }
     }
 }

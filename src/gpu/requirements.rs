@@ -25,6 +25,9 @@ pub struct Support {
     /// `VK_KHR_push_descriptor`, and as many storage buffers a stage as pipelines with
     /// [`Bindings::Bound`](super::Bindings::Bound) have.
     pub push_descriptor: bool,
+    /// Invocations of a subgroup where compute shaders can vote and shuffle, else 0. Properties of the device: there is
+    /// nothing to enable.
+    pub subgroup_size: u32,
     /// Nanoseconds a timestamp tick; 0 where [`Support::queue_family`] has no timestamps.
     pub timestamp_period: f32,
     /// Valid bits of a timestamp in [`Support::queue_family`].
@@ -219,12 +222,18 @@ pub unsafe fn check(
         .max_per_stage_descriptor_storage_buffers
         .min(limits.max_descriptor_set_storage_buffers)
         >= MAX_BUFFERS as u32;
+    let operations = vk::SubgroupFeatureFlags::VOTE | vk::SubgroupFeatureFlags::SHUFFLE;
+    let has_subgroups = v11.subgroup_supported_operations.contains(operations)
+        && v11
+            .subgroup_supported_stages
+            .contains(vk::ShaderStageFlags::COMPUTE);
     let mesh_shader = mesh.mesh_shader == vk::TRUE && mesh.task_shader == vk::TRUE;
     Ok(Support {
         api_version: version.min(vk::API_VERSION_1_3),
         queue_family: family as u32,
         mesh_shader,
         push_descriptor: binds && has(khr::push_descriptor::NAME),
+        subgroup_size: if has_subgroups { v11.subgroup_size } else { 0 },
         timestamp_period: if families[family].timestamp_valid_bits > 0 {
             limits.timestamp_period
         } else {

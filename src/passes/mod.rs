@@ -33,4 +33,5 @@ pub(crate) use pair_room::PairRoom;
 pub(crate) use plan::{Plan, SceneFacts};
 pub use scene_buffers::{SceneBuffers, Staging};
 pub(crate) use stages::Stages;
+pub(crate) use tiles::TileWork;
 pub(crate) use work::{Kept, Work};

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::limits;
 use crate::passes::depth_keys::DepthKeys;
 use crate::passes::occluders::Occluders;
+use crate::passes::tiles::TileWork;
 use crate::passes::work::Work;
 use crate::precision::ShFormat;
 use crate::settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
@@ -43,8 +44,7 @@ pub(crate) struct Plan {
     pub(crate) raster: Raster,
     /// Digits of a tile's number, of `SORT_BITS` bits each.
     pub(crate) tile_digits: u32,
-    /// Pixels that an invocation of the tile rasteriser owns, one above the other.
-    pub(crate) tile_rows: u32,
+    pub(crate) tile_work: TileWork,
     /// What hides splats of tiles.
     pub(crate) occluders: Option<Occluders>,
     /// Whether the splats' depths are wanted.
@@ -66,7 +66,7 @@ pub(crate) struct SceneFacts {
     pub(crate) sort_runs: u32,
     /// How splats become pixels; never `Auto`.
     pub(crate) raster: Raster,
-    pub(crate) tile_rows: u32,
+    pub(crate) tile_work: TileWork,
     /// Pairs of tile and splat that there is to be room for.
     pub(crate) pair_capacity: u32,
     /// Whether a frame without room for its pairs is drawn once more, instead of as quads.
@@ -204,7 +204,7 @@ impl Plan {
             sort_runs: scene.sort_runs,
             raster: scene.raster,
             tile_digits: digits(data.tile_count),
-            tile_rows: scene.tile_rows,
+            tile_work: scene.tile_work,
             occluders: scene
                 .occluders
                 .filter(|_| scene.raster == Raster::Tiles)
@@ -344,7 +344,7 @@ mod tests {
             bounds: [Vec3::NEG_ONE, Vec3::ONE],
             sort_runs: 128,
             raster: Raster::Tiles,
-            tile_rows: 8,
+            tile_work: TileWork::suiting(true, 8),
             pair_capacity: 1000,
             redrawn: false,
             occluders: None,

@@ -83,11 +83,34 @@ impl Bin {
     }
 }
 
+/// How the invocations of a workgroup share its tile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct TileWork {
+    /// Pixels that an invocation owns, one above the other.
+    rows: u32,
+    /// Whether subgroups load splats together.
+    subgroups: bool,
+}
+
+impl TileWork {
+    /// What suits a device whose subgroups can shuffle if their size is not 0.
+    pub(crate) fn suiting(is_cpu: bool, subgroup_size: u32) -> Self {
+        let rows = if is_cpu { limits::TILE_HEIGHT } else { 1 };
+        let invocations = limits::TILE_WIDTH * (limits::TILE_HEIGHT / rows);
+        Self {
+            rows,
+            // On GPUs, whose caches serve all invocations at once, nobody has measured it. Subgroups with places that no
+            // invocation has would shuffle from them.
+            subgroups: is_cpu && subgroup_size > 0 && invocations.is_multiple_of(subgroup_size),
+        }
+    }
+}
+
 /// What tells one pipeline of the tiles' pixels from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct TilesKey {
     weight: WeightKey,
-    rows: u32,
+    work: TileWork,
     sweep: bool,
     depth: u32,
     show: Show,
@@ -98,7 +121,7 @@ impl TilesKey {
     pub(crate) fn new(plan: &Plan) -> Self {
         Self {
             weight: WeightKey::new(plan),
-            rows: plan.tile_rows,
+            work: plan.tile_work,
             sweep: matches!(plan.work, Work::Sweep { .. }),
             depth: plan.occluders.map_or(types::DEPTH_NONE, |o| o.form),
             show: plan.show,
@@ -121,14 +144,19 @@ impl Tiles {
             decay,
             miss,
             phi,
-            (5, key.rows),
-            (6, limits::TILE_HEIGHT / key.rows),
+            (5, key.work.rows),
+            (6, limits::TILE_HEIGHT / key.work.rows),
             (7, key.sweep.into()),
             (8, key.depth),
             (9, (key.show == Show::Weight).into()),
         ];
+        let shader = if key.work.subgroups {
+            &shaders::TILES_SUBGROUP_COMP
+        } else {
+            &shaders::TILES_COMP
+        };
         Ok(Self {
-            pipeline: context.compute("tiles", &shaders::TILES_COMP, &constants)?,
+            pipeline: context.compute("tiles", shader, &constants)?,
         })
     }
 

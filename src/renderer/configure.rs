@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{Bindings, Support};
 use crate::limits;
 use crate::passes::{
-    Buffers, Context, Kept, Occluders, Plan, SceneBuffers, SceneFacts, Stages, Work,
+    Buffers, Context, Kept, Occluders, Plan, SceneBuffers, SceneFacts, Stages, TileWork, Work,
 };
 use crate::placement::Placement;
 use crate::settings::{Raster, Settings};
@@ -73,7 +73,7 @@ impl Renderer {
             bounds: scene.bounds,
             sort_runs,
             raster,
-            tile_rows: if is_cpu { limits::TILE_HEIGHT } else { 1 },
+            tile_work: TileWork::suiting(is_cpu, support.subgroup_size),
             pair_capacity: self.pairs.room(),
             redrawn: self.redraws,
             occluders: self

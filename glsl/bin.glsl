@@ -41,7 +41,7 @@ vec3 hidden_beyond_curve(vec4 linear, vec4 bend, vec4 twist, vec4 wave, vec3 con
 uvec2 tiles_between(float low, float high, float pixels, uint side) {
     float first = max(ceil(low - 0.5), 0.0);
     float last = min(floor(high - 0.5), pixels - 1.0);
-    return first <= last ? uvec2(uint(first) / side, uint(last) / side + 1u) : uvec2(0u);
+    return first <= last ? uvec2(to_uint(first) / side, to_uint(last) / side + 1u) : uvec2(0u);
 }
 
 Outline outline(Splat splat) {

@@ -25,7 +25,7 @@ Carried carried_weight(uint cut) {
 vec3 hidden_by_record(vec3 line, uint cut, Carried weight, vec3 conic, float extent) {
     uint base = cut * FRAME.cut_stride;
     vec4 linear = cuts.at[base];
-    if (weight.plane.x >= -CUT_RANGE || (uint(linear.w) & CUT_CURVE) == 0u) {
+    if (weight.plane.x >= -CUT_RANGE || (to_uint(linear.w) & CUT_CURVE) == 0u) {
         return line;
     }
     return hidden_beyond_curve(linear, cuts.at[base + 1u], cuts.at[base + 2u], cuts.at[base + CUT_HEADER], conic, 1.001 * extent);

@@ -244,7 +244,7 @@ void chord_weights(uint base, uint count, vec2 delta, vec2 place, out float weig
 // row.
 void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 place, float alpha[ROWS], out float weight[ROWS]) {
     uint base = cut * push.param[3];
-    uint flags = uint(cuts.at[base].w);
+    uint flags = to_uint(cuts.at[base].w);
     if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         curve_weights(base, uv.x, uv.y, v_step, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) == 0u) {

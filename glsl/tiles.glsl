@@ -151,7 +151,7 @@ void main() {
                     carried_weights(plane, curvature, delta, alpha, weight);
                 } else {
                     vec2 uv = vec2(u, v + conic_opacity.x * delta.y);
-                    uint cut = uint(plane.y) | uint(plane.z) << 16;
+                    uint cut = to_uint(plane.y) | to_uint(plane.z) << 16;
                     cut_weights(cut, delta, uv, conic_opacity.x, place, alpha, weight);
                 }
                 if (SHOW_WEIGHT) {

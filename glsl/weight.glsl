@@ -199,7 +199,7 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place
 // records' stride, 4 and 5 the principal point in the coordinates of `place`.
 float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 place) {
     uint base = cut * push.param[3];
-    uint flags = uint(cuts.at[base].w);
+    uint flags = to_uint(cuts.at[base].w);
     uint count = flags >> CUT_COUNT_SHIFT;
     if (CLIP_MODE == MODE_RARA) {
         return chord_weight(base, count, (flags & CUT_FRONT) != 0u, delta, place);

@@ -40,7 +40,7 @@ bool keeps_far(float along, vec3 normal) {
     return first >= 0.0;
 }
 
-// Of a number below 2^31. CPU drivers convert to signed integers a vector at a time, to unsigned ones each by itself.
+// Of a number from 0 to below 2^31. CPU drivers convert to signed integers a vector at a time, to unsigned ones each by itself.
 uint to_uint(float number) {
     return uint(int(number));
 }

@@ -58,6 +58,90 @@ uvec2 tile_place(uint number) {
     return uvec2(within / rows, STRIP_ROWS * strip + within % rows);
 }
 
+// An invocation's pixels.
+vec2 place; // the first one's centre
+vec3 sum[ROWS];
+float light[ROWS];
+float limit[ROWS]; // the farness beyond which splats are hidden
+bool done = false; // all are saturated
+
+// What the loop looks at of a splat.
+struct Seen {
+    vec4 centre_conic;
+    vec2 conic_opacity;
+    vec3 colour;
+    vec3 plane;
+    vec3 curvature;
+};
+
+// Multiplies a cut splat's alphas by its weights; `kept` are these.
+void weigh(Seen splat, vec2 delta, vec2 uv, inout float alpha[ROWS], out float kept[ROWS]) {
+    if (CLIP_MODE == MODE_EXACT && splat.plane.x > -CUT_RANGE) {
+        carried_weights(splat.plane, splat.curvature, delta, alpha, kept);
+    } else {
+        uint cut = to_uint(splat.plane.y) | to_uint(splat.plane.z) << 16;
+        cut_weights(cut, delta, uv, splat.conic_opacity.x, place, alpha, kept);
+    }
+    bool whole = true;
+    for (uint row = 0u; row < ROWS; row++) {
+        whole = whole && (kept[row] >= 1.0 || alpha[row] == 0.0);
+    }
+    if (!whole) {
+        for (uint row = 0u; row < ROWS; row++) {
+            alpha[row] = decayed(alpha[row], kept[row]);
+        }
+    }
+}
+
+// Takes out the pixels in which the splat is hidden; whether that is all of them.
+bool hide(float far, inout float alpha[ROWS]) {
+    bool behind = true;
+    for (uint row = 0u; row < ROWS; row++) {
+        alpha[row] = far > limit[row] ? 0.0 : alpha[row];
+        behind = behind && far > limit[row];
+    }
+    return behind;
+}
+
+void blend(Seen splat, vec2 delta, float far) {
+    float u = splat.centre_conic.z * delta.x;
+    float v = splat.centre_conic.w * delta.x;
+    float alpha[ROWS];
+    for (uint row = 0u; row < ROWS; row++) {
+        float y = place.y + float(row) - splat.centre_conic.y;
+        float w = v + splat.conic_opacity.x * y;
+        float a = min(ALPHA_MAX, splat.conic_opacity.y * exp(-0.5 * (u * u + w * w)));
+        alpha[row] = a >= ALPHA_MIN ? a : 0.0;
+    }
+    // So is all that follows, where the sort has looked at whole depths.
+    done = DEPTH_FORM != DEPTH_NONE && hide(far, alpha) && FRAME.key_shift == 0u;
+    if (!done) {
+        float kept[ROWS];
+        if (SHOW_WEIGHT) {
+            for (uint row = 0u; row < ROWS; row++) {
+                kept[row] = WHOLE;
+            }
+        }
+        if (CLIP_MODE >= MODE_RARA && splat.plane.x < CUT_RANGE) {
+            weigh(splat, delta, vec2(u, v + splat.conic_opacity.x * delta.y), alpha, kept);
+        }
+        float most = 0.0;
+        for (uint row = 0u; row < ROWS; row++) {
+            float share = light[row] * alpha[row];
+            sum[row] += share * (SHOW_WEIGHT ? weight_colour(kept[row]) : splat.colour);
+            light[row] -= share;
+            most = max(most, light[row]);
+        }
+        done = most < FRAME.transmittance_min;
+    }
+}
+
+// Of a sweep's list, which holds what is clipped away.
+bool is_away(Seen splat, vec2 delta) {
+    return splat.plane.x == CUT_GONE || (CLIP_MODE == MODE_EXACT && abs(splat.plane.x) < CUT_RANGE
+        && is_carried_away(splat.plane, splat.curvature, delta));
+}
+
 void main() {
     if (LINEAR_GROUP >= FRAME.tile_count) {
         return;
@@ -69,23 +153,15 @@ void main() {
     }
     uvec2 size = uvec2(FRAME.size.xy);
     uvec2 pixel = tile_at * uvec2(TILE_WIDTH, TILE_HEIGHT) + gl_LocalInvocationID.xy * uvec2(1u, ROWS);
-    vec2 place = vec2(pixel) + 0.5;
-    vec3 sum[ROWS];
-    float light[ROWS];
+    place = vec2(pixel) + 0.5;
+    // Pixels beyond the picture keep nobody waiting.
+    done = pixel.x >= size.x || pixel.y >= size.y;
     for (uint row = 0u; row < ROWS; row++) {
         sum[row] = vec3(0.0);
-        // Pixels beyond the picture keep nobody waiting.
-        light[row] = pixel.x < size.x && pixel.y + row < size.y ? 1.0 : 0.0;
+        light[row] = pixel.y + row < size.y ? 1.0 : 0.0;
+        limit[row] = DEPTH_FORM != DEPTH_NONE ? hidden_beyond(pixel + uvec2(0u, row)) : 0.0;
     }
-    float limit[ROWS];
-    if (DEPTH_FORM != DEPTH_NONE) {
-        for (uint row = 0u; row < ROWS; row++) {
-            limit[row] = hidden_beyond(pixel + uvec2(0u, row));
-        }
-    }
-    float saturated = FRAME.transmittance_min;
     uint end = tile_begins.at[tile + 1u];
-    bool done = false;
     for (uint first = tile_begins.at[tile]; first < end && !EVERY(done); first += BATCH) {
         uint mine = pair_splats.at[min(first + IN_BATCH, end - 1u)];
         vec4 my_centre_conic = splats.at[mine].centre_conic;
@@ -96,87 +172,26 @@ void main() {
             my_curvature = splats.at[mine].curvature.xyz;
         }
         float my_depth = DEPTH_FORM != DEPTH_NONE ? splats.at[mine].middle.w : 0.0;
-        uint count = min(end - first, BATCH);
+        uint count = BATCH == 1u ? 1u : min(end - first, BATCH);
         for (uint i = 0u; i < count; i++) {
-            // All invocations take part in this, whoever is done.
-            vec4 centre_conic = OF(i, my_centre_conic);
-            vec2 conic_opacity = OF(i, my_conic_cut.xy);
-            vec3 colour = OF(i, my_colour_cut.rgb);
-            vec3 plane = vec3(CUT_WHOLE, 0.0, 0.0);
-            vec3 curvature = vec3(0.0);
+            // All invocations come by here, whoever is done: there is no other way through the loop.
+            Seen splat;
+            splat.centre_conic = OF(i, my_centre_conic);
+            splat.conic_opacity = OF(i, my_conic_cut.xy);
+            splat.colour = OF(i, my_colour_cut.rgb);
+            splat.plane = vec3(CUT_WHOLE, 0.0, 0.0);
+            splat.curvature = vec3(0.0);
             if (CLIP_MODE >= MODE_RARA || SWEEP) {
-                plane = vec3(OF(i, my_conic_cut.zw), OF(i, my_colour_cut.w));
+                splat.plane = vec3(OF(i, my_conic_cut.zw), OF(i, my_colour_cut.w));
             }
             if (CLIP_MODE == MODE_EXACT) {
-                curvature = OF(i, my_curvature);
+                splat.curvature = OF(i, my_curvature);
             }
-            float depth = DEPTH_FORM != DEPTH_NONE ? OF(i, my_depth) : 0.0;
-            vec2 delta = place - centre_conic.xy;
-            bool away = SWEEP && (plane.x == CUT_GONE
-                || (CLIP_MODE == MODE_EXACT && abs(plane.x) < CUT_RANGE && is_carried_away(plane, curvature, delta)));
-            if (done || away) {
-                continue;
+            float far = DEPTH_FORM != DEPTH_NONE ? farness(host_depth(OF(i, my_depth))) : 0.0;
+            vec2 delta = place - splat.centre_conic.xy;
+            if (!done && !(SWEEP && is_away(splat, delta))) {
+                blend(splat, delta, far);
             }
-            float u = centre_conic.z * delta.x;
-            float v = centre_conic.w * delta.x;
-            float alpha[ROWS];
-            for (uint row = 0u; row < ROWS; row++) {
-                float y = place.y + float(row) - centre_conic.y;
-                float w = v + conic_opacity.x * y;
-                float a = min(ALPHA_MAX, conic_opacity.y * exp(-0.5 * (u * u + w * w)));
-                alpha[row] = a >= ALPHA_MIN ? a : 0.0;
-            }
-            if (DEPTH_FORM != DEPTH_NONE) {
-                float far = farness(host_depth(depth));
-                bool behind = true;
-                for (uint row = 0u; row < ROWS; row++) {
-                    alpha[row] = far > limit[row] ? 0.0 : alpha[row];
-                    behind = behind && far > limit[row];
-                }
-                // So is all that follows, where the sort has looked at whole depths.
-                if (behind && FRAME.key_shift == 0u) {
-                    done = true;
-                    continue;
-                }
-            }
-            float kept[ROWS];
-            if (SHOW_WEIGHT) {
-                for (uint row = 0u; row < ROWS; row++) {
-                    kept[row] = WHOLE;
-                }
-            }
-            if (CLIP_MODE >= MODE_RARA && plane.x < CUT_RANGE) {
-                float weight[ROWS];
-                if (CLIP_MODE == MODE_EXACT && plane.x > -CUT_RANGE) {
-                    carried_weights(plane, curvature, delta, alpha, weight);
-                } else {
-                    vec2 uv = vec2(u, v + conic_opacity.x * delta.y);
-                    uint cut = to_uint(plane.y) | to_uint(plane.z) << 16;
-                    cut_weights(cut, delta, uv, conic_opacity.x, place, alpha, weight);
-                }
-                if (SHOW_WEIGHT) {
-                    for (uint row = 0u; row < ROWS; row++) {
-                        kept[row] = weight[row];
-                    }
-                }
-                bool whole = true;
-                for (uint row = 0u; row < ROWS; row++) {
-                    whole = whole && (weight[row] >= 1.0 || alpha[row] == 0.0);
-                }
-                if (!whole) {
-                    for (uint row = 0u; row < ROWS; row++) {
-                        alpha[row] = decayed(alpha[row], weight[row]);
-                    }
-                }
-            }
-            float most = 0.0;
-            for (uint row = 0u; row < ROWS; row++) {
-                float share = light[row] * alpha[row];
-                sum[row] += share * (SHOW_WEIGHT ? weight_colour(kept[row]) : colour);
-                light[row] -= share;
-                most = max(most, light[row]);
-            }
-            done = most < saturated;
         }
     }
     for (uint row = 0u; row < ROWS; row++) {

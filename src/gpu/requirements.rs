@@ -25,8 +25,8 @@ pub struct Support {
     /// `VK_KHR_push_descriptor`, and as many storage buffers a stage as pipelines with
     /// [`Bindings::Bound`](super::Bindings::Bound) have.
     pub push_descriptor: bool,
-    /// Invocations of a subgroup where compute shaders can vote and shuffle, else 0. Properties of the device: there is
-    /// nothing to enable.
+    /// Invocations of a subgroup where compute shaders can vote and shuffle, else 0. The tile rasteriser makes use of it on
+    /// CPU drivers; there is nothing to enable.
     pub subgroup_size: u32,
     /// Nanoseconds a timestamp tick; 0 where [`Support::queue_family`] has no timestamps.
     pub timestamp_period: f32,

@@ -246,20 +246,6 @@ fn a_device_of_vulkan_1_2_draws_the_same_picture() {
 }
 
 #[test]
-fn subgroups_that_load_splats_together_change_nothing() {
-    let pictures = [None, Some(Pretence::WithoutSubgroups)].map(|pretence| {
-        let device = faults::device(pretence).expect("a device");
-        assert!(pretence.is_none() || device.support().subgroup_size == 0);
-        let mut headless = on(&device).expect("a renderer");
-        let pictures = life(&mut headless, Raster::Tiles).expect("renders");
-        drop(headless);
-        assert_eq!(device.close(), Vec::<String>::new());
-        pictures
-    });
-    assert!(pictures[0] == pictures[1], "to the bit");
-}
-
-#[test]
 fn without_any_extension_a_frame_is_drawn_all_the_same() {
     let device = faults::device(Some(Pretence::WithoutExtensions)).expect("a device");
     let support = device.support();

@@ -5,7 +5,7 @@ use crate::clip::{ClipOp, Plane};
 use crate::gpu::faults;
 use crate::limits;
 use crate::scene::{Bounds, Kind, extent_along, generate};
-use crate::settings::{ExactForm, Mode, Raster};
+use crate::settings::{ExactForm, Mode, Raster, Show};
 use glam::{DVec3, Vec3};
 
 fn headless() -> Headless {
@@ -249,4 +249,61 @@ fn an_error_comes_behind_what_the_layer_has_said() {
         }
         other => panic!("{other}"),
     }
+}
+
+/// Tiles that end beyond the picture, in more than one strip; every way to weigh, and a sweep.
+#[test]
+fn subgroups_that_load_splats_together_change_nothing() {
+    let scene = generate(Kind::General, 3_000, 1);
+    let camera = Camera::frame(&Bounds::of(&scene), -DVec3::Y, 50.0, (27, 77)).expect("a view");
+    let draw = |pretence| {
+        let device = faults::device(pretence).expect("a device");
+        if pretence.is_some() {
+            assert_eq!(device.support().subgroup_size, 0);
+        } else if device.support().subgroup_size == 0 {
+            eprintln!(
+                "SKIPPED: this device has no subgroups that shuffle, so one way is compared with itself"
+            );
+        }
+        let mut headless =
+            Headless::on(device.clone(), &HeadlessDesc::default()).expect("a renderer");
+        headless.load(&scene).expect("uploads");
+        let mut pictures = Vec::new();
+        for (mode, show, planes) in [
+            (Mode::None, Show::Colour, 1),
+            (Mode::Hard, Show::Colour, 1),
+            (Mode::Rara, Show::Colour, 2),
+            (Mode::Exact, Show::Colour, 1),
+            (Mode::Exact, Show::Weight, 2),
+        ] {
+            for d in [0.0, 0.1, 0.2] {
+                let normals = [DVec3::X, DVec3::new(0.3, 1.0, 0.2)];
+                let planes = normals.iter().take(planes);
+                let clip = Clip {
+                    planes: planes
+                        .map(|&n| Plane::new(n, d).expect("a finite normal"))
+                        .collect(),
+                    op: ClipOp::And,
+                };
+                let settings = Settings {
+                    mode,
+                    show,
+                    raster: Raster::Tiles,
+                    ..Settings::default()
+                };
+                headless.render(&camera, &clip, &settings).expect("renders");
+                pictures.push(headless.picture().expect("reads back"));
+            }
+        }
+        drop(headless);
+        assert_eq!(device.close(), Vec::<String>::new());
+        pictures
+    };
+    let together = draw(None);
+    assert!(
+        together == draw(Some(faults::Pretence::WithoutSubgroups)),
+        "to the bit"
+    );
+    let last = together.last().expect("many");
+    assert!(together[0] != *last, "pictures of different things");
 }

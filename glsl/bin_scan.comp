@@ -38,11 +38,12 @@ void main() {
     }
     if (d == DIGITS - 1u) {
         bool tiled = pairs <= FRAME.pair_capacity;
-        uint rows = (FRAME.tile_count + GROUP_COLUMNS - 1u) / GROUP_COLUMNS;
+        uint strip_tiles = STRIP_ROWS * FRAME.tile_columns;
+        uint strips = (FRAME.tile_count + strip_tiles - 1u) / strip_tiles;
         counts.at[0].pairs = pairs;
         counts.at[0].tiled = tiled ? 1u : 0u;
         counts.at[0].pair_groups = uvec4(tiled ? FRAME.sort_runs / SORT_GROUP_SIZE : 0u, 1u, 1u, 0u);
-        counts.at[0].tile_groups = uvec4(tiled ? min(FRAME.tile_count, GROUP_COLUMNS) : 0u, rows, 1u, 0u);
+        counts.at[0].tile_groups = uvec4(tiled ? strip_tiles : 0u, strips, 1u, 0u);
         counts.at[0].composite = uvec4(3u, tiled ? 1u : 0u, 0u, 0u);
         if (tiled || FRAME.redrawn != 0u) {
             counts.at[0].draw.y = 0u;

@@ -41,6 +41,8 @@ const uint MESH_GROUP_SIZE = 32u;
 // Pixels of a tile.
 const uint TILE_WIDTH = 8u;
 const uint TILE_HEIGHT = 8u;
+// Rows of tiles that are drawn together, column by column.
+const uint STRIP_ROWS = 8u;
 // Bits a pass of the radix sort looks at.
 const uint SORT_BITS = 8u;
 // Workgroup size of the sort; one invocation owns a run of consecutive keys, which makes the sort stable.

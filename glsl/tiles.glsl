@@ -47,17 +47,6 @@ BUFFER(readonly, 7, uint, occluders)
 #define EVERY(value) (value)
 #endif
 
-// Tiles follow each other down the columns of strips of so many rows, not along the picture's rows: what a splat's next
-// tile needs of it is then still in the cache, whichever neighbour that is.
-const uint STRIP_ROWS = 8u;
-
-uvec2 tile_place(uint number) {
-    uint strip = number / (STRIP_ROWS * FRAME.tile_columns);
-    uint within = number % (STRIP_ROWS * FRAME.tile_columns);
-    uint rows = min(STRIP_ROWS, FRAME.tile_count / FRAME.tile_columns - STRIP_ROWS * strip);
-    return uvec2(within / rows, STRIP_ROWS * strip + within % rows);
-}
-
 // An invocation's pixels.
 vec2 place; // the first one's centre
 vec3 sum[ROWS];
@@ -143,12 +132,11 @@ bool is_away(Seen splat, vec2 delta) {
 }
 
 void main() {
-    if (LINEAR_GROUP >= FRAME.tile_count) {
-        return;
-    }
-    uvec2 tile_at = tile_place(LINEAR_GROUP);
+    // Tiles follow each other down the columns of a strip, not along the picture's rows: what a splat's next tile needs
+    // of it is then still in the cache, whichever neighbour that is.
+    uvec2 tile_at = uvec2(gl_WorkGroupID.x / STRIP_ROWS, gl_WorkGroupID.y * STRIP_ROWS + gl_WorkGroupID.x % STRIP_ROWS);
     uint tile = tile_at.y * FRAME.tile_columns + tile_at.x;
-    if (SWEEP && dirty.at[tile] == 0u) {
+    if (tile >= FRAME.tile_count || (SWEEP && dirty.at[tile] == 0u)) {
         return;
     }
     uvec2 size = uvec2(FRAME.size.xy);

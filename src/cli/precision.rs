@@ -42,7 +42,7 @@ pub(super) enum PresetArg {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum TargetArg {
+pub(super) enum TargetArg {
     #[value(name = "8")]
     Unorm8,
     #[value(name = "16f")]
@@ -52,7 +52,7 @@ enum TargetArg {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ShArg {
+pub(super) enum ShArg {
     #[value(name = "8")]
     Byte,
     Packed,
@@ -63,10 +63,41 @@ enum ShArg {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum PhiArg {
+pub(super) enum PhiArg {
     Quintic,
     Cubic,
     Logistic,
+}
+
+impl From<TargetArg> for TargetFormat {
+    fn from(format: TargetArg) -> Self {
+        match format {
+            TargetArg::Unorm8 => Self::Unorm8,
+            TargetArg::Half => Self::Half,
+            TargetArg::Float => Self::Float,
+        }
+    }
+}
+
+impl From<ShArg> for ShFormat {
+    fn from(format: ShArg) -> Self {
+        match format {
+            ShArg::Byte => Self::Byte,
+            ShArg::Packed => Self::Packed,
+            ShArg::Half => Self::Half,
+            ShArg::Float => Self::Float,
+        }
+    }
+}
+
+impl From<PhiArg> for PhiForm {
+    fn from(form: PhiArg) -> Self {
+        match form {
+            PhiArg::Quintic => Self::Quintic,
+            PhiArg::Cubic => Self::Cubic,
+            PhiArg::Logistic => Self::Logistic,
+        }
+    }
 }
 
 impl PrecisionArgs {
@@ -79,22 +110,9 @@ impl PrecisionArgs {
         };
         let preset = preset.precision();
         Precision {
-            target: self.target_format.map_or(preset.target, |t| match t {
-                TargetArg::Unorm8 => TargetFormat::Unorm8,
-                TargetArg::Half => TargetFormat::Half,
-                TargetArg::Float => TargetFormat::Float,
-            }),
-            sh: self.sh_format.map_or(preset.sh, |sh| match sh {
-                ShArg::Byte => ShFormat::Byte,
-                ShArg::Packed => ShFormat::Packed,
-                ShArg::Half => ShFormat::Half,
-                ShArg::Float => ShFormat::Float,
-            }),
-            phi: self.phi.map_or(preset.phi, |phi| match phi {
-                PhiArg::Quintic => PhiForm::Quintic,
-                PhiArg::Cubic => PhiForm::Cubic,
-                PhiArg::Logistic => PhiForm::Logistic,
-            }),
+            target: self.target_format.map_or(preset.target, Into::into),
+            sh: self.sh_format.map_or(preset.sh, Into::into),
+            phi: self.phi.map_or(preset.phi, Into::into),
             key_bits: self.key_bits.unwrap_or(preset.key_bits),
             beam_switch: self.beam_switch.unwrap_or(preset.beam_switch),
             transmittance_min: self.transmittance_min.unwrap_or(preset.transmittance_min),

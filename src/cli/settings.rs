@@ -80,7 +80,7 @@ pub(super) enum ModeArg {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum DecayArg {
+pub(super) enum DecayArg {
     /// Alpha, as in the paper
     Linear,
     /// Optical depth: complementary halves rebuild the whole
@@ -88,7 +88,7 @@ enum DecayArg {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum MissArg {
+pub(super) enum MissArg {
     /// Everything: the paper's text, with --sigma 1
     Keep,
     /// Nothing: the paper's released code
@@ -98,7 +98,7 @@ enum MissArg {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ShowArg {
+pub(super) enum ShowArg {
     /// The splats' colours
     Colour,
     /// Class and weight
@@ -106,7 +106,7 @@ enum ShowArg {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum RasterArg {
+pub(super) enum RasterArg {
     /// Mesh shader
     Mesh,
     /// Instanced quads
@@ -142,6 +142,45 @@ impl ModeArg {
     }
 }
 
+impl From<DecayArg> for Decay {
+    fn from(law: DecayArg) -> Self {
+        match law {
+            DecayArg::Linear => Self::Linear,
+            DecayArg::Depth => Self::Depth,
+        }
+    }
+}
+
+impl From<MissArg> for Miss {
+    fn from(miss: MissArg) -> Self {
+        match miss {
+            MissArg::Keep => Self::Keep,
+            MissArg::Drop => Self::Drop,
+            MissArg::Peak => Self::Peak,
+        }
+    }
+}
+
+impl From<ShowArg> for Show {
+    fn from(show: ShowArg) -> Self {
+        match show {
+            ShowArg::Colour => Self::Colour,
+            ShowArg::Weight => Self::Weight,
+        }
+    }
+}
+
+impl From<RasterArg> for Raster {
+    fn from(raster: RasterArg) -> Self {
+        match raster {
+            RasterArg::Auto => Self::Auto,
+            RasterArg::Mesh => Self::Mesh,
+            RasterArg::Quad => Self::Quad,
+            RasterArg::Tiles => Self::Tiles,
+        }
+    }
+}
+
 impl SettingsArgs {
     /// The settings that were meant.
     pub(super) fn meant(&self) -> Result<Settings, Failure> {
@@ -151,16 +190,9 @@ impl SettingsArgs {
         let defaults = self.look.meant()?;
         Ok(Settings {
             mode: self.mode.mode(),
-            decay: self.decay.map(|law| match law {
-                DecayArg::Linear => Decay::Linear,
-                DecayArg::Depth => Decay::Depth,
-            }),
+            decay: self.decay.map(Into::into),
             sigma: self.sigma.unwrap_or(defaults.sigma),
-            miss: self.miss.map_or(defaults.miss, |miss| match miss {
-                MissArg::Keep => Miss::Keep,
-                MissArg::Drop => Miss::Drop,
-                MissArg::Peak => Miss::Peak,
-            }),
+            miss: self.miss.map_or(defaults.miss, Into::into),
             trace_all: self.trace_all,
             ..defaults
         })
@@ -170,20 +202,11 @@ impl SettingsArgs {
 impl LookArgs {
     /// The default settings with this look.
     pub(super) fn meant(&self) -> Result<Settings, Failure> {
-        let raster = match self.raster {
-            RasterArg::Auto => Raster::Auto,
-            RasterArg::Mesh => Raster::Mesh,
-            RasterArg::Quad => Raster::Quad,
-            RasterArg::Tiles => Raster::Tiles,
-        };
         Ok(Settings {
             background: self.background,
             sh_degree: self.sh_degree,
-            raster,
-            show: match self.show {
-                ShowArg::Colour => Show::Colour,
-                ShowArg::Weight => Show::Weight,
-            },
+            raster: self.raster.into(),
+            show: self.show.into(),
             precision: self.precision.meant(),
             ..Settings::default()
         })

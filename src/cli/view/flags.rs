@@ -1,11 +1,11 @@
 //! The flags that draw again what is shown.
 
-use rara::{
-    ClipOp, Decay, Miss, PhiForm, Precision, Preset, Raster, Settings, ShFormat, Show, TargetFormat,
-};
+use clap::ValueEnum;
+use rara::{ClipOp, Precision, Preset, Settings};
 
 use super::cut::Cut;
-use crate::cli::settings::ModeArg;
+use crate::cli::precision::{PhiArg, ShArg, TargetArg};
+use crate::cli::settings::{DecayArg, MissArg, ModeArg, RasterArg, ShowArg};
 
 /// `rara render`'s flags for a clip and settings, as typed. What they do not say is the default.
 pub(super) fn flags(cut: &Cut, mode: ModeArg, settings: &Settings) -> String {
@@ -41,22 +41,13 @@ fn add_settings(flags: &mut Vec<String>, settings: &Settings) {
     } = *settings;
     let default = Settings::default();
     if let Some(decay) = decay {
-        let law = match decay {
-            Decay::Linear => "linear",
-            Decay::Depth => "depth",
-        };
-        flags.push(format!("--decay {law}"));
+        flags.extend(choice::<DecayArg, _>("--decay", decay));
     }
     if sigma != default.sigma {
         flags.push(format!("--sigma {sigma}"));
     }
     if miss != default.miss {
-        let what = match miss {
-            Miss::Keep => "keep",
-            Miss::Drop => "drop",
-            Miss::Peak => "peak",
-        };
-        flags.push(format!("--miss {what}"));
+        flags.extend(choice::<MissArg, _>("--miss", miss));
     }
     if trace_all {
         flags.push("--trace-all".into());
@@ -68,20 +59,10 @@ fn add_settings(flags: &mut Vec<String>, settings: &Settings) {
         flags.push(format!("--sh-degree {degree}"));
     }
     if raster != default.raster {
-        let how = match raster {
-            Raster::Auto => "auto",
-            Raster::Mesh => "mesh",
-            Raster::Quad => "quad",
-            Raster::Tiles => "tiles",
-        };
-        flags.push(format!("--raster {how}"));
+        flags.extend(choice::<RasterArg, _>("--raster", raster));
     }
     if show != default.show {
-        let what = match show {
-            Show::Colour => "colour",
-            Show::Weight => "weight",
-        };
-        flags.push(format!("--show {what}"));
+        flags.extend(choice::<ShowArg, _>("--show", show));
     }
 }
 
@@ -114,29 +95,13 @@ fn differences(precision: &Precision, preset: &Precision) -> Vec<String> {
     } = *precision;
     let mut flags = Vec::new();
     if target != preset.target {
-        let format = match target {
-            TargetFormat::Unorm8 => "8",
-            TargetFormat::Half => "16f",
-            TargetFormat::Float => "32f",
-        };
-        flags.push(format!("--target-format {format}"));
+        flags.extend(choice::<TargetArg, _>("--target-format", target));
     }
     if sh != preset.sh {
-        let format = match sh {
-            ShFormat::Byte => "8",
-            ShFormat::Packed => "packed",
-            ShFormat::Half => "16f",
-            ShFormat::Float => "32f",
-        };
-        flags.push(format!("--sh-format {format}"));
+        flags.extend(choice::<ShArg, _>("--sh-format", sh));
     }
     if phi != preset.phi {
-        let form = match phi {
-            PhiForm::Quintic => "quintic",
-            PhiForm::Cubic => "cubic",
-            PhiForm::Logistic => "logistic",
-        };
-        flags.push(format!("--phi {form}"));
+        flags.extend(choice::<PhiArg, _>("--phi", phi));
     }
     if key_bits != preset.key_bits {
         flags.push(format!("--key-bits {key_bits}"));
@@ -148,6 +113,13 @@ fn differences(precision: &Precision, preset: &Precision) -> Vec<String> {
         flags.push(format!("--transmittance-min {transmittance_min}"));
     }
     flags
+}
+
+/// A flag and the word by which it means `setting`, as the flag's own type has it.
+fn choice<A: ValueEnum, S: From<A> + PartialEq>(flag: &str, setting: S) -> Option<String> {
+    let means_it = |word: &&A| S::from((*word).clone()) == setting;
+    let word = A::value_variants().iter().find(means_it)?;
+    Some(format!("{flag} {}", word.to_possible_value()?.get_name()))
 }
 
 #[cfg(test)]

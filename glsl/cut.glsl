@@ -40,9 +40,15 @@ bool keeps_far(float along, vec3 normal) {
     return first >= 0.0;
 }
 
-// Of a number from 0 to below 2^31. CPU drivers convert to signed integers a vector at a time, to unsigned ones each by itself.
+// Of a number from 0 to below 2^31. CPU drivers convert to signed integers a vector at a time, to unsigned ones each by
+// itself.
 uint to_uint(float number) {
     return uint(int(number));
+}
+
+// Which record a splat's carried slopes name.
+uint record_number(vec3 plane) {
+    return to_uint(plane.y) | to_uint(plane.z) << 16;
 }
 
 #endif

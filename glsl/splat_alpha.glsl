@@ -21,7 +21,7 @@ float splat_alpha(vec4 centre_conic, vec4 conic_cut, float slope, vec3 curvature
                 + delta.y * (plane.z + curvature.z * delta.y);
             kept = phi(z);
         } else {
-            kept = cut_weight(to_uint(plane.y) | to_uint(plane.z) << 16, delta, vec2(u, v), gl_FragCoord.xy);
+            kept = cut_weight(record_number(plane), delta, vec2(u, v), gl_FragCoord.xy);
         }
         alpha = decayed(alpha, kept);
     }

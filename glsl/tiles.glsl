@@ -52,7 +52,7 @@ vec2 place; // the first one's centre
 vec3 sum[ROWS];
 float light[ROWS];
 float limit[ROWS]; // the farness beyond which splats are hidden
-bool done = false; // all are saturated
+bool done; // no splat changes them any more
 
 // What the loop looks at of a splat.
 struct Seen {
@@ -68,8 +68,7 @@ void weigh(Seen splat, vec2 delta, vec2 uv, inout float alpha[ROWS], out float k
     if (CLIP_MODE == MODE_EXACT && splat.plane.x > -CUT_RANGE) {
         carried_weights(splat.plane, splat.curvature, delta, alpha, kept);
     } else {
-        uint cut = to_uint(splat.plane.y) | to_uint(splat.plane.z) << 16;
-        cut_weights(cut, delta, uv, splat.conic_opacity.x, place, alpha, kept);
+        cut_weights(record_number(splat.plane), delta, uv, splat.conic_opacity.x, place, alpha, kept);
     }
     bool whole = true;
     for (uint row = 0u; row < ROWS; row++) {

@@ -367,6 +367,19 @@ fn pretence() -> Option<Pretence> {
     with(|state| state.pretence)
 }
 
+/// The structs of a chain.
+///
+/// # Safety
+///
+/// `first` is null or begins a valid chain, which outlives the iterator.
+unsafe fn chain(first: *mut c_void) -> impl Iterator<Item = *mut vk::BaseOutStructure<'static>> {
+    let one = |next: *mut vk::BaseOutStructure<'static>| (!next.is_null()).then_some(next);
+    std::iter::successors(one(first.cast()), move |&next| {
+        // SAFETY: none of them is null, and each struct begins with its type and the next one.
+        one(unsafe { (*next).p_next })
+    })
+}
+
 unsafe extern "system" fn properties(
     physical: vk::PhysicalDevice,
     out: *mut vk::PhysicalDeviceProperties,
@@ -391,16 +404,14 @@ unsafe extern "system" fn properties2(
     // SAFETY: the caller's arguments, passed on; each struct of the chain begins with its type and the next one.
     unsafe {
         (driver().fp_v1_1().get_physical_device_properties2)(physical, out);
-        let mut next = (*out).p_next.cast::<vk::BaseOutStructure<'static>>();
-        while let Some(base) = next.as_mut() {
-            if base.s_type == vk::StructureType::PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES
-                && pretence() == Some(Pretence::WithoutSubgroups)
-            {
-                type All = vk::PhysicalDeviceVulkan11Properties<'static>;
-                (*next.cast::<All>()).subgroup_supported_operations =
-                    vk::SubgroupFeatureFlags::BASIC;
+        if pretence() == Some(Pretence::WithoutSubgroups) {
+            for next in chain((*out).p_next) {
+                if (*next).s_type == vk::StructureType::PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES {
+                    type All = vk::PhysicalDeviceVulkan11Properties<'static>;
+                    (*next.cast::<All>()).subgroup_supported_operations =
+                        vk::SubgroupFeatureFlags::BASIC;
+                }
             }
-            next = base.p_next;
         }
     }
 }
@@ -453,9 +464,8 @@ unsafe extern "system" fn features(
         let Some(Pretence::Without(feature)) = pretence() else {
             return;
         };
-        let mut next = (*out).p_next.cast::<vk::BaseOutStructure<'static>>();
-        while let Some(base) = next.as_mut() {
-            match base.s_type {
+        for next in chain((*out).p_next) {
+            match (*next).s_type {
                 vk::StructureType::PHYSICAL_DEVICE_VULKAN_1_2_FEATURES => {
                     let all = &mut *next.cast::<vk::PhysicalDeviceVulkan12Features<'static>>();
                     if feature == "bufferDeviceAddress" {
@@ -476,7 +486,6 @@ unsafe extern "system" fn features(
                 }
                 _ => {}
             }
-            next = base.p_next;
         }
     }
 }

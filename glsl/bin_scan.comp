@@ -44,7 +44,9 @@ void main() {
         counts.at[0].tiled = tiled ? 1u : 0u;
         counts.at[0].pair_groups = uvec4(tiled ? FRAME.sort_runs / SORT_GROUP_SIZE : 0u, 1u, 1u, 0u);
         counts.at[0].tile_groups = uvec4(tiled ? strip_tiles : 0u, strips, 1u, 0u);
-        counts.at[0].composite = uvec4(3u, tiled ? 1u : 0u, 0u, 0u);
+        uvec2 tiles = uvec2(FRAME.tile_columns, FRAME.tile_count / FRAME.tile_columns);
+        uvec2 quads = (tiles + QUAD_TILES - 1u) / QUAD_TILES;
+        counts.at[0].composite = uvec4(6u * quads.x * quads.y, tiled ? 1u : 0u, 0u, 0u);
         if (tiled || FRAME.redrawn != 0u) {
             counts.at[0].draw.y = 0u;
         }

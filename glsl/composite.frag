@@ -5,11 +5,17 @@
 
 BUFFER(readonly, 1, vec4, picture)
 
+layout(location = 0) flat in uvec2 filled; // of this quad's tiles, as composite.vert tells
 layout(location = 0) out vec4 colour;
 
 void main() {
     vec2 place = gl_FragCoord.xy - vec2(uintBitsToFloat(push.param[0]), uintBitsToFloat(push.param[1]));
     uvec2 size = uvec2(FRAME.size.xy);
     uvec2 pixel = min(uvec2(place), size - 1u);
-    colour = picture.at[pixel.y * size.x + pixel.x];
+    uvec2 tile = pixel / uvec2(TILE_WIDTH, TILE_HEIGHT) % QUAD_TILES;
+    bool is_filled = ((tile.y < 4u ? filled.x : filled.y) >> (QUAD_TILES * (tile.y % 4u) + tile.x) & 1u) != 0u;
+    colour = vec4(0.0);
+    if (is_filled) {
+        colour = picture.at[pixel.y * size.x + pixel.x];
+    }
 }

@@ -1,5 +1,33 @@
 #version 460
-// One triangle that covers the viewport.
+#extension GL_GOOGLE_include_directive : require
+// The tiles' picture, a quad for so many tiles in both directions: where they all hold nothing, nothing is blended.
+#include "frame.glsl"
+
+BUFFER(readonly, 2, uint, tile_begins)
+
+layout(location = 0) flat out uvec2 filled; // tiles that hold anything, a bit each, row by row
+
 void main() {
-    gl_Position = vec4(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0, 0.0, 1.0);
+    uint quad = uint(gl_VertexIndex) / 6u;
+    uvec2 tiles = uvec2(FRAME.tile_columns, FRAME.tile_count / FRAME.tile_columns);
+    uint columns = (tiles.x + QUAD_TILES - 1u) / QUAD_TILES;
+    uvec2 first = uvec2(quad % columns, quad / columns) * QUAD_TILES;
+    filled = uvec2(0u);
+    for (uint row = 0u; row < QUAD_TILES && first.y + row < tiles.y; row++) {
+        uint tile = (first.y + row) * tiles.x + first.x;
+        uint begin = tile_begins.at[tile];
+        uint bits = 0u;
+        for (uint column = 0u; column < min(QUAD_TILES, tiles.x - first.x); column++) {
+            uint end = tile_begins.at[tile + column + 1u];
+            bits |= begin < end ? 1u << column : 0u;
+            begin = end;
+        }
+        bits <<= QUAD_TILES * (row % 4u);
+        filled |= row < 4u ? uvec2(bits, 0u) : uvec2(0u, bits);
+    }
+    // Six vertices of the strip that all quads are: the first and the last corner twice, so that the triangles between two
+    // quads have no area. Nor have those of a quad that holds nothing.
+    uint corner = filled == uvec2(0u) ? 0u : uint(clamp(gl_VertexIndex % 6 - 1, 0, 3));
+    vec2 pixel = vec2((first + QUAD_TILES * uvec2(corner & 1u, corner >> 1u)) * uvec2(TILE_WIDTH, TILE_HEIGHT));
+    gl_Position = vec4(2.0 * pixel * FRAME.size.zw - 1.0, 0.0, 1.0);
 }

@@ -43,6 +43,8 @@ const uint TILE_WIDTH = 8u;
 const uint TILE_HEIGHT = 8u;
 // Rows of tiles that are drawn together, column by column.
 const uint STRIP_ROWS = 8u;
+// Tiles along each side of what the composite draws as one quad; a bit each in two words, so 8.
+const uint QUAD_TILES = 8u;
 // Bits a pass of the radix sort looks at.
 const uint SORT_BITS = 8u;
 // Workgroup size of the sort; one invocation owns a run of consecutive keys, which makes the sort stable.

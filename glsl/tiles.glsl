@@ -138,6 +138,11 @@ void main() {
     if (tile >= FRAME.tile_count || (SWEEP && dirty.at[tile] == 0u)) {
         return;
     }
+    uint begin = tile_begins.at[tile];
+    uint end = tile_begins.at[tile + 1u];
+    if (begin == end) {
+        return; // nobody looks at its pixels
+    }
     uvec2 size = uvec2(FRAME.size.xy);
     uvec2 pixel = tile_at * uvec2(TILE_WIDTH, TILE_HEIGHT) + gl_LocalInvocationID.xy * uvec2(1u, ROWS);
     place = vec2(pixel) + 0.5;
@@ -148,8 +153,7 @@ void main() {
         light[row] = pixel.y + row < size.y ? 1.0 : 0.0;
         limit[row] = DEPTH_FORM != DEPTH_NONE ? hidden_beyond(pixel + uvec2(0u, row)) : 0.0;
     }
-    uint end = tile_begins.at[tile + 1u];
-    for (uint first = tile_begins.at[tile]; first < end && !EVERY(done); first += BATCH) {
+    for (uint first = begin; first < end && !EVERY(done); first += BATCH) {
         uint mine = pair_splats.at[min(first + IN_BATCH, end - 1u)];
         vec4 my_centre_conic = splats.at[mine].centre_conic;
         vec4 my_conic_cut = splats.at[mine].conic_cut;

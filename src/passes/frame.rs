@@ -45,7 +45,7 @@ pub(crate) fn record(
                 stages.tiles(plan).record(r, b, t, (plan, copied))
             });
         }
-        recorder.ready_to_draw(&[&t.picture]);
+        recorder.ready_to_draw(&[&t.picture, &t.begins]);
     }
     if let Some((depth, d)) = stages
         .depth

@@ -220,7 +220,7 @@ impl Composite {
         t: &TileBuffers,
         origin: [f32; 2],
     ) {
-        let buffers = [&b.frame, &t.picture];
+        let buffers = [&b.frame, &t.picture, &t.begins];
         let at = offset_of!(FrameCounts, composite) as u64;
         drawer.draw_indirect(
             &self.pipeline,

@@ -106,6 +106,9 @@ uvec2 tiles_in_row(Outline o, uint row) {
 // in the order of memory, for the passes that follow the order of depth.
 const uint MASK_SIDE = 8u;
 
+// In place of a mask's first tile: the tiles are more than it holds. No tile has this number, its row would be 65535.
+const uint NO_MASK = ~0u;
+
 // x: first column and, in the upper half, first row; y: 1 where the tiles are more than the mask holds; zw: the mask.
 uvec4 tile_mask(Outline o) {
     if (o.rows.y - o.rows.x > MASK_SIDE) {

@@ -11,7 +11,10 @@ BUFFER(readonly, 2, Splat, splats)
 BUFFER(readonly, 3, uint, order)
 BUFFER(, 4, uint, histogram)
 BUFFER(readonly, 5, uvec4, tile_masks)
-
+// The masks once more, in the order of depth, for the third step: where the sort has done its work.
+BUFFER(writeonly, 6, uint, mask_origins)
+BUFFER(writeonly, 7, uint, masks_above)
+BUFFER(writeonly, 8, uint, masks_below)
 
 void main() {
     uint run = gl_GlobalInvocationID.x;
@@ -24,6 +27,9 @@ void main() {
     for (uint i = bounds.x; i < bounds.y && found <= FRAME.pair_capacity; i++) {
         uint splat = order.at[i];
         uvec4 tiles = tile_masks.at[splat];
+        mask_origins.at[i] = tiles.y == 0u ? tiles.x : NO_MASK;
+        masks_above.at[i] = tiles.z;
+        masks_below.at[i] = tiles.w;
         for (uvec2 mask = tiles.zw; (mask.x | mask.y) != 0u;) {
             histogram.at[run * DIGITS + digit(next_tile(tiles.x, mask), 0u)]++;
             found++;

@@ -11,8 +11,9 @@ BUFFER(readonly, 3, uint, order)
 BUFFER(, 4, uint, histogram)
 BUFFER(writeonly, 5, uint, pair_tiles)
 BUFFER(writeonly, 6, uint, pair_splats)
-BUFFER(readonly, 7, uvec4, tile_masks)
-
+BUFFER(readonly, 7, uint, mask_origins)
+BUFFER(readonly, 8, uint, masks_above)
+BUFFER(readonly, 9, uint, masks_below)
 
 void put(uint run, uint tile, uint splat) {
     uint slot = run * DIGITS + digit(tile, 0u);
@@ -30,11 +31,11 @@ void main() {
     uvec2 bounds = run_bounds(run, counts.at[0].visible + counts.at[0].cutoff);
     for (uint i = bounds.x; i < bounds.y; i++) {
         uint splat = order.at[i];
-        uvec4 tiles = tile_masks.at[splat];
-        for (uvec2 mask = tiles.zw; (mask.x | mask.y) != 0u;) {
-            put(run, next_tile(tiles.x, mask), splat);
+        uint origin = mask_origins.at[i];
+        for (uvec2 mask = uvec2(masks_above.at[i], masks_below.at[i]); (mask.x | mask.y) != 0u;) {
+            put(run, next_tile(origin, mask), splat);
         }
-        if (tiles.y == 0u) {
+        if (origin != NO_MASK) {
             continue;
         }
         Outline o = outline(splats.at[splat]);

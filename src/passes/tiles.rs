@@ -46,6 +46,8 @@ impl Bin {
         plan: &Plan,
     ) {
         let order = &b.order[plan.sorted()];
+        // What the sort has done with has room for the masks in the order of depth.
+        let [origins, above, below] = [&b.keys[0], &b.keys[1], &b.order[plan.sorted() ^ 1]];
         let at = |offset: usize| Groups::Indirect(&b.counts, offset as u64);
         let survivors = at(offset_of!(FrameCounts, sort_groups));
         let pairs = at(offset_of!(FrameCounts, pair_groups));
@@ -56,6 +58,9 @@ impl Bin {
             order,
             &b.histogram,
             &b.tile_masks,
+            origins,
+            above,
+            below,
         ];
         recorder.dispatch(&self.count, &count, &[], survivors);
         let scan = [&b.frame, &b.counts, &b.histogram];
@@ -69,7 +74,9 @@ impl Bin {
             &b.histogram,
             tiles,
             splats,
-            &b.tile_masks,
+            origins,
+            above,
+            below,
         ];
         recorder.dispatch(&self.scatter, &scatter, &[], pairs);
         sort.record_pairs(recorder, b, t, plan.tile_digits);

@@ -136,6 +136,41 @@ uvec4 tile_mask(Outline o) {
     return uvec4(first | o.rows.x << 16, 0u, mask);
 }
 
+// The tiles of one row that a splat touches.
+struct Span {
+    uint row;
+    uvec2 columns; // first and last (exclusive)
+};
+
+// The first span of a mask, which is taken out of it: the bits of a row are one next to the other.
+Span next_span(uint origin, inout uvec2 mask) {
+    bool below = mask.x == 0u;
+    uint bits = below ? mask.y : mask.x;
+    uint row = uint(findLSB(bits)) / MASK_SIDE;
+    uint tiles = bitfieldExtract(bits, int(row * MASK_SIDE), int(MASK_SIDE));
+    bits = bitfieldInsert(bits, 0u, int(row * MASK_SIDE), int(MASK_SIDE));
+    mask = below ? uvec2(0u, bits) : uvec2(bits, mask.y);
+    uint column = (origin & 0xffffu) + uint(findLSB(tiles));
+    return Span((origin >> 16) + row + (below ? 4u : 0u), uvec2(column, column + uint(bitCount(tiles))));
+}
+
+uint packed_columns(uvec2 columns) {
+    return columns.x | columns.y << 16;
+}
+
+uvec2 unpacked_columns(uint columns) {
+    return uvec2(columns & 0xffffu, columns >> 16);
+}
+
+uint tile_rows() {
+    return FRAME.tile_count / FRAME.tile_columns;
+}
+
+// Where the histogram has how many tiles a run's splats touch in all.
+uint pairs_place(uint run) {
+    return FRAME.sort_runs * tile_rows() + run;
+}
+
 // The tile of the lowest bit of a mask, which is taken out of it.
 uint next_tile(uint origin, inout uvec2 mask) {
     uint half_index = mask.x != 0u ? 0u : 1u;

@@ -63,7 +63,9 @@ void main() {
         // Binning counts them, where tiles are wanted.
         counts.at[0].pairs = 0u;
         counts.at[0].tiled = 0u;
-        counts.at[0].pair_groups = uvec4(0u);
+        counts.at[0].span_groups = uvec4(0u);
+        counts.at[0].part_groups = uvec4(0u);
+        counts.at[0].row_groups = uvec4(0u);
         counts.at[0].tile_groups = uvec4(0u);
         counts.at[0].composite = uvec4(0u);
     }

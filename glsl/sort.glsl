@@ -1,8 +1,7 @@
 // Stable least-significant-digit radix sort. Each invocation owns a run of consecutive keys and walks it in order,
-// so equal keys keep their order without any ranking inside a workgroup. Parameter 0 is the pass; parameter 1 says what
-// is sorted: 0 the survivors, 1 the pairs of tile and splat.
+// so equal keys keep their order without any ranking inside a workgroup. Parameter 0 is the pass.
 //
-// Of the survivors the first count finds the least and the greatest key. Counted from the least they differ in fewer
+// The first count finds the least and the greatest key. Counted from the least they differ in fewer
 // digits, perhaps, than the scene's bounds allow; the passes too many are the first ones, so that the sorted keys end up
 // in the same buffer. Project writes the keys to both: whichever pass is the first finds them.
 #ifndef RARA_SORT
@@ -11,12 +10,11 @@
 
 const uint DIGITS = 1u << SORT_BITS;
 
-#define SURVIVORS (push.param[1] == 0u)
-#define KEY_COUNT (SURVIVORS ? counts.at[0].visible + counts.at[0].cutoff : counts.at[0].pairs)
+#define KEY_COUNT (counts.at[0].visible + counts.at[0].cutoff)
 // What keys are counted from: a multiple of DIGITS, so that the first count need not know it.
-#define KEY_BASE (SURVIVORS ? counts.at[0].sort_base : 0u)
+#define KEY_BASE (counts.at[0].sort_base)
 // The digit that the pass sorts by.
-#define KEY_DIGIT (push.param[0] - (SURVIVORS ? counts.at[0].sort_skipped : 0u))
+#define KEY_DIGIT (push.param[0] - counts.at[0].sort_skipped)
 
 uint digit(uint key, uint number) {
     return bitfieldExtract(key, int(number * SORT_BITS), int(SORT_BITS));

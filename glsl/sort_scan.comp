@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Second step of a pass, one workgroup, a digit an invocation: the runs' counts become the places where each run's keys
-// of each digit begin. The survivors' first one decides which passes there are, of the parameter 2 that there may be.
+// of each digit begin. The first one decides which passes there are, of the parameter 1 that there may be.
 #include "sort.glsl"
 
 layout(local_size_x = DIGITS) in;
@@ -28,7 +28,7 @@ void decide(uint d) {
     if (d != 0u) {
         return;
     }
-    uint passes = push.param[2];
+    uint passes = push.param[1];
     uint base = least & ~(DIGITS - 1u);
     // Keys that are all alike are carried to their buffer too.
     uint digits = uint(max(findMSB(greatest - base), 0)) / SORT_BITS + 1u;
@@ -43,9 +43,9 @@ void decide(uint d) {
 void main() {
     uint pass = push.param[0];
     uint d = gl_LocalInvocationIndex;
-    if (SURVIVORS && pass == 0u) {
+    if (pass == 0u) {
         decide(d);
-    } else if (SURVIVORS && pass <= counts.at[0].sort_skipped) {
+    } else if (pass <= counts.at[0].sort_skipped) {
         return; // the first pass that there is has been counted
     }
     uint total = 0u;

@@ -23,7 +23,7 @@ layout(constant_id = 8) const uint DEPTH_FORM = DEPTH_NONE;
 layout(constant_id = 9) const bool SHOW_WEIGHT = false;
 
 BUFFER(readonly, 1, Splat, splats)
-BUFFER(readonly, 2, uint, pair_splats)
+BUFFER(readonly, 2, uint, tile_splats)
 BUFFER(readonly, 3, uint, tile_begins)
 BUFFER(readonly, 4, vec4, cuts)
 BUFFER(writeonly, 5, vec4, picture)
@@ -154,7 +154,7 @@ void main() {
         limit[row] = DEPTH_FORM != DEPTH_NONE ? hidden_beyond(pixel + uvec2(0u, row)) : 0.0;
     }
     for (uint first = begin; first < end && !EVERY(done); first += BATCH) {
-        uint mine = pair_splats.at[min(first + IN_BATCH, end - 1u)];
+        uint mine = tile_splats.at[min(first + IN_BATCH, end - 1u)];
         vec4 my_centre_conic = splats.at[mine].centre_conic;
         vec4 my_conic_cut = splats.at[mine].conic_cut;
         vec4 my_colour_cut = splats.at[mine].colour_cut;

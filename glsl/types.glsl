@@ -37,7 +37,8 @@ struct FrameData {
     uint pair_capacity; // pairs of tile and splat that there is room for
     float transmittance_min; // below it a tile's pixel is saturated: what lies behind changes it by less
     uint redrawn; // 1: a frame whose pairs have no room is drawn once more, so that nothing is drawn of it
-    uint pad[2]; // unused
+    uint row_parts; // parts of the spans of a row of tiles
+    uint pad; // unused
     vec4 plane_high[MAX_CLIP_PLANES]; // unit normal and distance, rounded to single precision
     vec4 plane_low[MAX_CLIP_PLANES]; // what the rounding lost
 };
@@ -89,7 +90,9 @@ struct FrameCounts {
     uvec4 sort_pass_groups[4]; // the same for each of its passes; none where the keys agree
     uvec4 draw; // indirect draw: vertices, instances, first vertex, first instance
     uvec4 mesh_groups; // indirect mesh tasks; w: survivors
-    uvec4 pair_groups; // indirect dispatch of the runs over the pairs of tile and splat
+    uvec4 span_groups; // indirect dispatch of the runs over the splats, for their spans of tiles
+    uvec4 part_groups; // indirect dispatch of the parts of the rows of tiles
+    uvec4 row_groups; // indirect dispatch of the rows of tiles
     uvec4 tile_groups; // indirect dispatch of the tiles
     uvec4 composite; // indirect draw of the tiles' picture
     uint pairs; // pairs of tile and splat

@@ -43,9 +43,11 @@ pub(crate) struct Buffers {
 /// The tile rasteriser's part.
 #[derive(Debug)]
 pub(crate) struct TileBuffers {
-    pub(crate) pair_tiles: [Buffer; 2],
-    pub(crate) pair_splats: [Buffer; 2],
+    pub(crate) row_begins: Buffer,
+    pub(crate) spans: Buffer,
+    pub(crate) column_counts: Buffer,
     pub(crate) begins: Buffer,
+    pub(crate) splats: Buffer,
     pub(crate) picture: Buffer,
     /// The host's depth; empty where it hides nothing.
     pub(crate) occluders: Buffer,
@@ -78,6 +80,8 @@ struct Sizes {
     masks: u64,
     pairs: u64,
     tiles: u64,
+    rows: u64,
+    columns: u64,
     pixels: u64,
     occluders: u64,
     depths: u64,
@@ -98,6 +102,8 @@ impl Sizes {
                 0
             }
         };
+        let rows = u64::from(plan.data.tile_count / plan.data.tile_columns);
+        let parts = u64::from(plan.data.row_parts);
         let pixels = plan.data.size[0] as u64 * plan.data.size[1] as u64;
         Self {
             gaussians,
@@ -111,6 +117,8 @@ impl Sizes {
             masks: when_tiled(gaussians),
             pairs: when_tiled(plan.data.pair_capacity.into()),
             tiles: when_tiled(plan.data.tile_count.into()),
+            rows: when_tiled(rows),
+            columns: when_tiled(rows * parts * (u64::from(plan.data.tile_columns) + 1)),
             pixels: when_tiled(pixels),
             depths: if plan.expects_depth { gaussians } else { 0 },
             occluders: plan.occluders.map_or(0, |_| when_tiled(pixels)),
@@ -135,7 +143,8 @@ impl Buffers {
         let n = sizes.gaussians;
         let blocks = n.div_ceil(u64::from(limits::BLOCK_SIZE));
         let mask_bytes = u64::from(limits::BLOCK_SIZE) / 4; // two bits a Gaussian
-        let digits = 1_u64 << limits::SORT_BITS;
+        // Of a run: its keys of each digit, the least and the greatest; then its spans in each row of tiles, and its pairs.
+        let counts = ((1_u64 << limits::SORT_BITS) + 2).max(sizes.rows + 1);
         Ok(Self {
             frame: gpu("frame", size_of::<FrameData>() as u64)?,
             masks: gpu("masks", blocks * mask_bytes)?,
@@ -152,19 +161,15 @@ impl Buffers {
             splats: gpu("splats", n * size_of::<Splat>() as u64)?,
             keys: [gpu("keys", n * 4)?, gpu("sorted_keys", n * 4)?],
             order: [gpu("order", n * 4)?, gpu("sorted_order", n * 4)?],
-            histogram: gpu("histogram", (digits + 2) * sizes.sort_runs * 4)?,
+            histogram: gpu("histogram", counts * sizes.sort_runs * 4)?,
             tile_masks: gpu("tile_masks", sizes.masks * 16)?,
             tiles: if plan.raster == Raster::Tiles {
                 Some(TileBuffers {
-                    pair_tiles: [
-                        gpu("pair_tiles", sizes.pairs * 4)?,
-                        gpu("sorted_pair_tiles", sizes.pairs * 4)?,
-                    ],
-                    pair_splats: [
-                        gpu("pair_splats", sizes.pairs * 4)?,
-                        gpu("sorted_pair_splats", sizes.pairs * 4)?,
-                    ],
+                    row_begins: gpu("row_begins", (sizes.rows + 1) * 4)?,
+                    spans: gpu("spans", sizes.pairs * 8)?,
+                    column_counts: gpu("column_counts", sizes.columns * 4)?,
                     begins: gpu("tile_begins", (sizes.tiles + 1) * 4)?,
+                    splats: gpu("tile_splats", sizes.pairs * 4)?,
                     picture: gpu("tile_picture", sizes.pixels * 16)?,
                     occluders: gpu("occluders", sizes.occluders * 4)?,
                 })
@@ -211,6 +216,8 @@ impl Buffers {
             && have.masks >= need.masks
             && have.pairs >= need.pairs
             && have.tiles >= need.tiles
+            && have.rows >= need.rows
+            && have.columns >= need.columns
             && have.pixels >= need.pixels
             && have.depths >= need.depths
             && have.occluders >= need.occluders
@@ -222,7 +229,7 @@ impl Buffers {
         sizes
             .cut_bytes
             .max(sizes.gaussians * size_of::<Splat>() as u64)
-            .max(sizes.pairs * 4)
+            .max(sizes.pairs * 8)
             .max(sizes.pixels * 16)
     }
 }

@@ -97,7 +97,7 @@ fn view(
     let tiles = stages.bin.as_ref().zip(b.tiles.as_ref());
     if let Some((bin, t)) = tiles.filter(|_| plan.raster == Raster::Tiles) {
         // Which of them each tile of pixels holds.
-        recorder.pass("bin", |r| bin.record(r, &stages.sort, b, t, plan));
+        recorder.pass("bin", |r| bin.record(r, b, t, plan));
     }
 }
 

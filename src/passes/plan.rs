@@ -42,8 +42,6 @@ pub(crate) struct Plan {
     pub(crate) sort_runs: u32,
     /// How splats become pixels; never `Auto`.
     pub(crate) raster: Raster,
-    /// Digits of a tile's number, of `SORT_BITS` bits each.
-    pub(crate) tile_digits: u32,
     pub(crate) tile_work: TileWork,
     /// What hides splats of tiles.
     pub(crate) occluders: Option<Occluders>,
@@ -67,6 +65,8 @@ pub(crate) struct SceneFacts {
     /// How splats become pixels; never `Auto`.
     pub(crate) raster: Raster,
     pub(crate) tile_work: TileWork,
+    /// Parts of the spans of a row of tiles.
+    pub(crate) row_parts: u32,
     /// Pairs of tile and splat that there is to be room for.
     pub(crate) pair_capacity: u32,
     /// Whether a frame without room for its pairs is drawn once more, instead of as quads.
@@ -169,6 +169,7 @@ impl Plan {
         data.sort_runs = scene.sort_runs;
         data.tile_columns = camera.width.div_ceil(limits::TILE_WIDTH);
         data.tile_count = data.tile_columns * camera.height.div_ceil(limits::TILE_HEIGHT);
+        data.row_parts = scene.row_parts;
         data.pair_capacity = scene.pair_capacity;
         data.block_count = scene.gaussians.div_ceil(limits::BLOCK_SIZE);
         data.redrawn = scene.redrawn.into();
@@ -203,7 +204,6 @@ impl Plan {
             sort_passes: keys.passes(),
             sort_runs: scene.sort_runs,
             raster: scene.raster,
-            tile_digits: digits(data.tile_count),
             tile_work: scene.tile_work,
             occluders: scene
                 .occluders
@@ -224,11 +224,6 @@ impl Plan {
     /// Which of the two pairs of key and order buffers holds the sorted ones: each pass carries them to the other.
     pub(crate) fn sorted(&self) -> usize {
         (self.sort_passes % 2) as usize
-    }
-
-    /// Which of the two pairs of tile and splat buffers holds the sorted ones.
-    pub(crate) fn sorted_pairs(&self) -> usize {
-        ((self.tile_digits - 1) % 2) as usize
     }
 
     /// The same frame without its clip: all that is in view.
@@ -266,12 +261,6 @@ impl Plan {
             .filter(|(_, needed, exists)| *exists && (is_empty || !needed));
         skipped.map(|(name, ..)| *name).collect()
     }
-}
-
-/// Digits of `SORT_BITS` bits that numbers below `count` have, at least one.
-fn digits(count: u32) -> u32 {
-    let bits = u32::BITS - count.saturating_sub(1).leading_zeros();
-    bits.div_ceil(limits::SORT_BITS).max(1)
 }
 
 fn camera_constants(data: &mut FrameData, camera: &Camera) {
@@ -345,6 +334,7 @@ mod tests {
             sort_runs: 128,
             raster: Raster::Tiles,
             tile_work: TileWork::suiting(true, 8),
+            row_parts: 8,
             pair_capacity: 1000,
             redrawn: false,
             occluders: None,

@@ -5,16 +5,12 @@ use std::mem::offset_of;
 use crate::error::Result;
 use crate::gpu::{Buffer, ComputePipeline, Groups, Recorder};
 use crate::limits;
-use crate::passes::buffers::{Buffers, TileBuffers};
+use crate::passes::buffers::Buffers;
 use crate::passes::context::Context;
 use crate::passes::plan::Plan;
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::shaders;
 use crate::types::FrameCounts;
-
-/// What is sorted, as the shaders know it.
-const SURVIVORS: u32 = 0;
-const PAIRS: u32 = 1;
 
 // So many passes have indirect commands of their own in FrameCounts.
 const _: () = assert!(u32::BITS.div_ceil(limits::SORT_BITS) <= 4);
@@ -55,7 +51,7 @@ impl Sort {
         let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, sort_groups) as u64);
         let pairs = [(&b.keys[0], &b.order[0]), (&b.keys[1], &b.order[1])];
         for pass in 0..plan.sort_passes as usize {
-            let params = [pass as u32, SURVIVORS, plan.sort_passes];
+            let params = [pass as u32, plan.sort_passes];
             let (from, to) = (pairs[pass % 2], pairs[(pass % 2) ^ 1]);
             // What the first pass that there is sorts by has been counted before anybody knew which one it is.
             let counts = if pass == 0 { groups } else { sorts(pass - 1) };
@@ -71,26 +67,7 @@ impl Sort {
                 &b.order[sorted ^ 1],
                 &b.splats,
             ];
-            recorder.dispatch(&self.ties, &ties, &[0, SURVIVORS], groups);
-        }
-    }
-
-    /// Sorts the pairs of tile and splat, which lie in order of the lowest digit already, by the others.
-    pub(crate) fn record_pairs(
-        &self,
-        recorder: &mut Recorder<'_>,
-        b: &Buffers,
-        t: &TileBuffers,
-        digits: u32,
-    ) {
-        let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, pair_groups) as u64);
-        let pairs = [
-            (&t.pair_tiles[0], &t.pair_splats[0]),
-            (&t.pair_tiles[1], &t.pair_splats[1]),
-        ];
-        for (pass, digit) in (1..digits).enumerate() {
-            let (from, to) = (pairs[pass % 2], pairs[(pass % 2) ^ 1]);
-            self.pass(recorder, b, [digit, PAIRS, 0], [from, to], [groups, groups]);
+            recorder.dispatch(&self.ties, &ties, &[], groups);
         }
     }
 
@@ -99,7 +76,7 @@ impl Sort {
         &self,
         recorder: &mut Recorder<'_>,
         b: &Buffers,
-        params: [u32; 3],
+        params: [u32; 2],
         [(keys, order), (sorted_keys, sorted_order)]: [(&Buffer, &Buffer); 2],
         [counts, scatters]: [Groups<'_>; 2],
     ) {

@@ -12,45 +12,50 @@ use crate::passes::buffers::{Buffers, TileBuffers};
 use crate::passes::context::Context;
 use crate::passes::plan::Plan;
 use crate::passes::shaders;
-use crate::passes::sort::Sort;
 use crate::passes::splat::WeightKey;
 use crate::passes::work::Work;
 use crate::settings::Show;
 use crate::types::{self, FrameCounts};
 
-/// Pairs of tile and splat, ordered by tile and within each tile by depth.
+/// The splats of each tile, by depth: first the spans of each row of tiles, then their splats in each of the row's tiles.
 #[derive(Debug, Clone)]
 pub(crate) struct Bin {
-    count: ComputePipeline,
-    scan: ComputePipeline,
-    scatter: ComputePipeline,
-    ranges: ComputePipeline,
+    span_count: ComputePipeline,
+    span_scan: ComputePipeline,
+    span_scatter: ComputePipeline,
+    tile_count: ComputePipeline,
+    tile_scan: ComputePipeline,
+    tile_scatter: ComputePipeline,
 }
 
 impl Bin {
     pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
         Ok(Self {
-            count: context.compute("bin_count", &shaders::BIN_COUNT_COMP, &[])?,
-            scan: context.compute("bin_scan", &shaders::BIN_SCAN_COMP, &[])?,
-            scatter: context.compute("bin_scatter", &shaders::BIN_SCATTER_COMP, &[])?,
-            ranges: context.compute("bin_ranges", &shaders::BIN_RANGES_COMP, &[])?,
+            span_count: context.compute("span_count", &shaders::SPAN_COUNT_COMP, &[])?,
+            span_scan: context.compute("span_scan", &shaders::SPAN_SCAN_COMP, &[])?,
+            span_scatter: context.compute("span_scatter", &shaders::SPAN_SCATTER_COMP, &[])?,
+            tile_count: context.compute("tile_count", &shaders::TILE_COUNT_COMP, &[])?,
+            tile_scan: context.compute("tile_scan", &shaders::TILE_SCAN_COMP, &[])?,
+            tile_scatter: context.compute("tile_scatter", &shaders::TILE_SCATTER_COMP, &[])?,
         })
     }
 
     pub(crate) fn record(
         &self,
         recorder: &mut Recorder<'_>,
-        sort: &Sort,
         b: &Buffers,
         t: &TileBuffers,
         plan: &Plan,
     ) {
-        let order = &b.order[plan.sorted()];
+        let sorted = plan.sorted();
+        let order = &b.order[sorted];
         // What the sort has done with has room for the masks in the order of depth.
-        let [origins, above, below] = [&b.keys[0], &b.keys[1], &b.order[plan.sorted() ^ 1]];
+        let [origins, above, below] = [&b.keys[0], &b.keys[1], &b.order[sorted ^ 1]];
         let at = |offset: usize| Groups::Indirect(&b.counts, offset as u64);
         let survivors = at(offset_of!(FrameCounts, sort_groups));
-        let pairs = at(offset_of!(FrameCounts, pair_groups));
+        let spans = at(offset_of!(FrameCounts, span_groups));
+        let parts = at(offset_of!(FrameCounts, part_groups));
+        let rows = at(offset_of!(FrameCounts, row_groups));
         let count = [
             &b.frame,
             &b.counts,
@@ -62,31 +67,34 @@ impl Bin {
             above,
             below,
         ];
-        recorder.dispatch(&self.count, &count, &[], survivors);
-        let scan = [&b.frame, &b.counts, &b.histogram];
-        recorder.dispatch(&self.scan, &scan, &[], Groups::Count(1));
-        let (tiles, splats) = (&t.pair_tiles[0], &t.pair_splats[0]);
+        recorder.dispatch(&self.span_count, &count, &[], survivors);
+        let scan = [&b.frame, &b.counts, &b.histogram, &t.row_begins];
+        recorder.dispatch(&self.span_scan, &scan, &[], Groups::Count(1));
         let scatter = [
             &b.frame,
             &b.counts,
             &b.splats,
             order,
             &b.histogram,
-            tiles,
-            splats,
+            &t.spans,
             origins,
             above,
             below,
         ];
-        recorder.dispatch(&self.scatter, &scatter, &[], pairs);
-        sort.record_pairs(recorder, b, t, plan.tile_digits);
-        let ranges = [
+        recorder.dispatch(&self.span_scatter, &scatter, &[], spans);
+        let [frame, counts, begins, spans, columns] = [
             &b.frame,
             &b.counts,
-            &t.pair_tiles[plan.sorted_pairs()],
-            &t.begins,
+            &t.row_begins,
+            &t.spans,
+            &t.column_counts,
         ];
-        recorder.dispatch(&self.ranges, &ranges, &[], pairs);
+        let count = [frame, counts, begins, spans, columns];
+        recorder.dispatch(&self.tile_count, &count, &[], parts);
+        let scan = [frame, counts, begins, spans, columns, &t.begins];
+        recorder.dispatch(&self.tile_scan, &scan, &[], rows);
+        let scatter = [frame, counts, begins, spans, columns, &t.splats];
+        recorder.dispatch(&self.tile_scatter, &scatter, &[], parts);
     }
 }
 
@@ -175,12 +183,11 @@ impl Tiles {
         t: &TileBuffers,
         (plan, copied): (&Plan, vk::Rect2D),
     ) {
-        let splats = &t.pair_splats[plan.sorted_pairs()];
         // Only a sweep looks at what is dirty.
         let dirty = b.sweep.as_ref().map_or(&b.counts, |sweep| &sweep.dirty);
         let occluders = plan.occluders.map_or(&b.counts, |_| &t.occluders);
         let buffers = [
-            &b.frame, &b.splats, splats, &t.begins, &b.cuts, &t.picture, dirty, occluders,
+            &b.frame, &b.splats, &t.splats, &t.begins, &b.cuts, &t.picture, dirty, occluders,
         ];
         let [_, _, cx, cy] = plan.data.focal.map(f32::to_bits);
         let [offset, scale] = plan.occluders.map_or([0, 0], |o| o.map.words());

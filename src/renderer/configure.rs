@@ -74,6 +74,7 @@ impl Renderer {
             sort_runs,
             raster,
             tile_work: TileWork::suiting(is_cpu, support.subgroup_size),
+            row_parts: if is_cpu { 8 } else { 16 },
             pair_capacity: self.pairs.room(),
             redrawn: self.redraws,
             occluders: self

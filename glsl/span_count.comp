@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// First step of binning: how often each run of the sorted splats touches tiles of each lowest digit. It is the first
-// step of sorting the pairs of tile and splat by tile, which need not exist for it.
+// First step of binning: how many spans each run of the sorted splats has in each row of tiles. A span is the tiles of one
+// row that a splat touches. A run's counts lie together, one run after the other; behind them all their tiles.
 #include "bin.glsl"
 
 layout(local_size_x = SORT_GROUP_SIZE) in;
@@ -18,8 +18,9 @@ BUFFER(writeonly, 8, uint, masks_below)
 
 void main() {
     uint run = gl_GlobalInvocationID.x;
-    for (uint d = 0u; d < DIGITS; d++) {
-        histogram.at[run * DIGITS + d] = 0u;
+    uint rows = tile_rows();
+    for (uint row = 0u; row < rows; row++) {
+        histogram.at[run * rows + row] = 0u;
     }
     uvec2 bounds = run_bounds(run, counts.at[0].visible + counts.at[0].cutoff);
     uint found = 0u;
@@ -31,19 +32,19 @@ void main() {
         masks_above.at[i] = tiles.z;
         masks_below.at[i] = tiles.w;
         for (uvec2 mask = tiles.zw; (mask.x | mask.y) != 0u;) {
-            histogram.at[run * DIGITS + digit(next_tile(tiles.x, mask), 0u)]++;
-            found++;
+            Span span = next_span(tiles.x, mask);
+            histogram.at[run * rows + span.row]++;
+            found += span.columns.y - span.columns.x;
         }
         if (tiles.y == 0u) {
             continue;
         }
         Outline o = outline(splats.at[splat]);
         for (uint row = o.rows.x; row < o.rows.y; row++) {
-            uvec2 columns = tiles_in_row(o, row) + row * FRAME.tile_columns;
-            for (uint tile = columns.x; tile < columns.y; tile++) {
-                histogram.at[run * DIGITS + digit(tile, 0u)]++;
-            }
+            uvec2 columns = tiles_in_row(o, row);
+            histogram.at[run * rows + row] += columns.x < columns.y ? 1u : 0u;
             found += columns.y - columns.x;
         }
     }
+    histogram.at[pairs_place(run)] = found;
 }

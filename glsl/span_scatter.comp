@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Third step of binning: each run writes its pairs of tile and splat, front to back, to the places of their lowest digit.
+// Third step of binning: each run writes its spans, front to back, to the places of their rows.
 #include "bin.glsl"
 
 layout(local_size_x = SORT_GROUP_SIZE) in;
@@ -9,40 +9,39 @@ BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, Splat, splats)
 BUFFER(readonly, 3, uint, order)
 BUFFER(, 4, uint, histogram)
-BUFFER(writeonly, 5, uint, pair_tiles)
-BUFFER(writeonly, 6, uint, pair_splats)
-BUFFER(readonly, 7, uint, mask_origins)
-BUFFER(readonly, 8, uint, masks_above)
-BUFFER(readonly, 9, uint, masks_below)
+BUFFER(writeonly, 5, uvec2, spans)
+BUFFER(readonly, 6, uint, mask_origins)
+BUFFER(readonly, 7, uint, masks_above)
+BUFFER(readonly, 8, uint, masks_below)
 
-void put(uint run, uint tile, uint splat) {
-    uint slot = run * DIGITS + digit(tile, 0u);
+void put(uint slot, uvec2 columns, uint splat) {
     uint place = histogram.at[slot];
     histogram.at[slot] = place + 1u;
     if (place >= counts.at[0].pairs) {
-        return; // cannot be, while both steps find the same tiles
+        return; // cannot be, while both steps find the same spans
     }
-    pair_tiles.at[place] = tile;
-    pair_splats.at[place] = splat;
+    spans.at[place] = uvec2(splat, packed_columns(columns));
 }
 
 void main() {
     uint run = gl_GlobalInvocationID.x;
+    uint rows = tile_rows();
     uvec2 bounds = run_bounds(run, counts.at[0].visible + counts.at[0].cutoff);
     for (uint i = bounds.x; i < bounds.y; i++) {
         uint splat = order.at[i];
         uint origin = mask_origins.at[i];
         for (uvec2 mask = uvec2(masks_above.at[i], masks_below.at[i]); (mask.x | mask.y) != 0u;) {
-            put(run, next_tile(origin, mask), splat);
+            Span span = next_span(origin, mask);
+            put(run * rows + span.row, span.columns, splat);
         }
         if (origin != NO_MASK) {
             continue;
         }
         Outline o = outline(splats.at[splat]);
         for (uint row = o.rows.x; row < o.rows.y; row++) {
-            uvec2 columns = tiles_in_row(o, row) + row * FRAME.tile_columns;
-            for (uint tile = columns.x; tile < columns.y; tile++) {
-                put(run, tile, splat);
+            uvec2 columns = tiles_in_row(o, row);
+            if (columns.x < columns.y) {
+                put(run * rows + row, columns, splat);
             }
         }
     }

@@ -1,0 +1,31 @@
+// The spans of a row of tiles, which are front to back, in parts: an invocation a part.
+#ifndef RARA_ROWS
+#define RARA_ROWS
+#include "bin.glsl"
+
+BUFFER(readonly, 1, FrameCounts, counts)
+BUFFER(readonly, 2, uint, row_begins)
+BUFFER(readonly, 3, uvec2, spans)
+// How many of a part's spans hold each column, or where its splats go; behind each part its pairs.
+BUFFER(, 4, uint, column_counts)
+
+uint part_count() {
+    return tile_rows() * FRAME.row_parts;
+}
+
+// First and last span (exclusive) of a part.
+uvec2 part_bounds(uint part) {
+    uint row = part / FRAME.row_parts;
+    uint begin = row_begins.at[row];
+    uint end = row_begins.at[row + 1u];
+    uint size = (end - begin + FRAME.row_parts - 1u) / FRAME.row_parts;
+    begin = min(begin + part % FRAME.row_parts * size, end);
+    return uvec2(begin, min(begin + size, end));
+}
+
+// Where the counts of a part's columns begin.
+uint columns_place(uint part) {
+    return part * (FRAME.tile_columns + 1u);
+}
+
+#endif

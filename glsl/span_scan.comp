@@ -1,0 +1,80 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Second step of binning, one workgroup, a row of tiles an invocation: where each run's spans of each row begin, how many
+// pairs of tile and splat there are, and whether there is room for them. If not, the frame's quads are drawn instead.
+#include "bin.glsl"
+
+const uint ROWS = 256u; // at a time
+layout(local_size_x = ROWS) in;
+
+BUFFER(, 1, FrameCounts, counts)
+BUFFER(, 2, uint, histogram)
+BUFFER(writeonly, 3, uint, row_begins)
+
+shared uint totals[ROWS];
+
+// Sums that stay at the largest number instead of turning over.
+uint capped_sum(uint a, uint b) {
+    return a > ~0u - b ? ~0u : a + b;
+}
+
+uvec4 groups(bool any, uint invocations, uint size) {
+    return uvec4(any ? (invocations + size - 1u) / size : 0u, 1u, 1u, 0u);
+}
+
+void main() {
+    uint local = gl_LocalInvocationIndex;
+    // Without survivors nothing was counted, and the histogram is another frame's.
+    uint runs = counts.at[0].mesh_groups.w == 0u ? 0u : FRAME.sort_runs;
+    uint own_pairs = 0u;
+    for (uint run = local; run < runs; run += ROWS) {
+        own_pairs = capped_sum(own_pairs, histogram.at[pairs_place(run)]);
+    }
+    totals[local] = own_pairs;
+    barrier();
+    uint pairs = 0u;
+    for (uint i = 0u; i < ROWS; i++) {
+        pairs = capped_sum(pairs, totals[i]);
+    }
+    uint rows = tile_rows();
+    uint begin = 0u;
+    for (uint first = 0u; first < rows; first += ROWS) {
+        uint row = first + local;
+        uint total = 0u;
+        for (uint run = 0u; run < runs && row < rows; run++) {
+            total += histogram.at[run * rows + row];
+        }
+        barrier();
+        totals[local] = total;
+        barrier();
+        uint place = begin;
+        for (uint i = 0u; i < ROWS; i++) {
+            place += i < local ? totals[i] : 0u;
+            begin += totals[i];
+        }
+        if (row < rows) {
+            row_begins.at[row] = place;
+        }
+        for (uint run = 0u; run < runs && row < rows; run++) {
+            uint count = histogram.at[run * rows + row];
+            histogram.at[run * rows + row] = place;
+            place += count;
+        }
+    }
+    if (local == 0u) {
+        bool tiled = pairs <= FRAME.pair_capacity;
+        uint strips = (rows + STRIP_ROWS - 1u) / STRIP_ROWS;
+        uvec2 quads = (uvec2(FRAME.tile_columns, rows) + QUAD_TILES - 1u) / QUAD_TILES;
+        row_begins.at[rows] = begin;
+        counts.at[0].pairs = pairs;
+        counts.at[0].tiled = tiled ? 1u : 0u;
+        counts.at[0].span_groups = groups(tiled, FRAME.sort_runs, SORT_GROUP_SIZE);
+        counts.at[0].part_groups = groups(tiled, rows * FRAME.row_parts, ROW_GROUP_SIZE);
+        counts.at[0].row_groups = groups(tiled, rows, ROW_GROUP_SIZE);
+        counts.at[0].tile_groups = uvec4(tiled ? STRIP_ROWS * FRAME.tile_columns : 0u, strips, 1u, 0u);
+        counts.at[0].composite = uvec4(6u * quads.x * quads.y, tiled ? 1u : 0u, 0u, 0u);
+        if (tiled || FRAME.redrawn != 0u) {
+            counts.at[0].draw.y = 0u;
+        }
+    }
+}

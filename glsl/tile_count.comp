@@ -1,0 +1,32 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Fourth step of binning: how many spans of each part of a row hold each of its tiles. A span is noted where it begins and
+// where it has ended, whatever its length, and sums along the row make counts of it.
+#include "rows.glsl"
+
+layout(local_size_x = ROW_GROUP_SIZE) in;
+
+void main() {
+    uint part = gl_GlobalInvocationID.x;
+    if (part >= part_count()) {
+        return;
+    }
+    uint first = columns_place(part);
+    for (uint column = 0u; column <= FRAME.tile_columns; column++) {
+        column_counts.at[first + column] = 0u;
+    }
+    uvec2 bounds = part_bounds(part);
+    for (uint i = bounds.x; i < bounds.y; i++) {
+        uvec2 columns = unpacked_columns(spans.at[i].y);
+        column_counts.at[first + columns.x]++;
+        column_counts.at[first + columns.y]--;
+    }
+    uint here = 0u;
+    uint pairs = 0u;
+    for (uint column = 0u; column < FRAME.tile_columns; column++) {
+        here += column_counts.at[first + column];
+        column_counts.at[first + column] = here;
+        pairs += here;
+    }
+    column_counts.at[first + FRAME.tile_columns] = pairs;
+}

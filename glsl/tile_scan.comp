@@ -1,0 +1,30 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Fifth step of binning, a row of tiles an invocation: where the splats of each tile begin, and those of each part in it.
+#include "rows.glsl"
+
+layout(local_size_x = ROW_GROUP_SIZE) in;
+
+BUFFER(writeonly, 5, uint, tile_begins)
+
+void main() {
+    uint row = gl_GlobalInvocationID.x;
+    if (row >= tile_rows()) {
+        return;
+    }
+    uint place = 0u;
+    for (uint part = 0u; part < row * FRAME.row_parts; part++) {
+        place += column_counts.at[columns_place(part) + FRAME.tile_columns];
+    }
+    for (uint column = 0u; column < FRAME.tile_columns; column++) {
+        tile_begins.at[row * FRAME.tile_columns + column] = place;
+        for (uint part = row * FRAME.row_parts; part < (row + 1u) * FRAME.row_parts; part++) {
+            uint count = column_counts.at[columns_place(part) + column];
+            column_counts.at[columns_place(part) + column] = place;
+            place += count;
+        }
+    }
+    if (row + 1u == tile_rows()) {
+        tile_begins.at[FRAME.tile_count] = place;
+    }
+}

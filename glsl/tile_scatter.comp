@@ -1,0 +1,28 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Last step of binning: each part of a row writes its splats, front to back, to the places of their tiles.
+#include "rows.glsl"
+
+layout(local_size_x = ROW_GROUP_SIZE) in;
+
+BUFFER(writeonly, 5, uint, tile_splats)
+
+void main() {
+    uint part = gl_GlobalInvocationID.x;
+    if (part >= part_count()) {
+        return;
+    }
+    uint first = columns_place(part);
+    uvec2 bounds = part_bounds(part);
+    for (uint i = bounds.x; i < bounds.y; i++) {
+        uvec2 span = spans.at[i];
+        uvec2 columns = unpacked_columns(span.y);
+        for (uint column = columns.x; column < columns.y; column++) {
+            uint place = column_counts.at[first + column];
+            column_counts.at[first + column] = place + 1u;
+            if (place < counts.at[0].pairs) { // it is, while the first and the third step find the same spans
+                tile_splats.at[place] = span.x;
+            }
+        }
+    }
+}

@@ -115,7 +115,7 @@ uvec4 tile_mask(Outline o) {
         return uvec4(0u, 1u, 0u, 0u);
     }
     uvec2 spans[MASK_SIDE];
-    uint first = ~0u;
+    uint first = 0xffffu; // no column: a mask of nothing is one too, and not NO_MASK
     uint last = 0u;
     for (uint row = 0u; row < MASK_SIDE; row++) {
         spans[row] = o.rows.x + row < o.rows.y ? tiles_in_row(o, o.rows.x + row) : uvec2(0u);

@@ -49,8 +49,8 @@ const uint QUAD_TILES = 8u;
 const uint SORT_BITS = 8u;
 // Workgroup size of the sort; one invocation owns a run of consecutive keys, which makes the sort stable.
 const uint SORT_GROUP_SIZE = 64u;
-// Workgroup size where an invocation owns a row of tiles or a part of its spans.
-const uint ROW_GROUP_SIZE = 32u;
+// Workgroup size where an invocation owns a row of tiles or a part of its spans: small, since rows differ in what they hold.
+const uint ROW_GROUP_SIZE = 8u;
 // Columns of a grid of workgroups that does not fit in a row: more than 65535 would break devices with the least limit.
 const uint GROUP_COLUMNS = 32768u;
 // Focal length beyond which positions in the camera's frame are computed in two floats, px. Single precision is off by

@@ -154,32 +154,9 @@ Span next_span(uint origin, inout uvec2 mask) {
     return Span((origin >> 16) + row + (below ? 4u : 0u), uvec2(column, column + uint(bitCount(tiles))));
 }
 
-uint packed_columns(uvec2 columns) {
-    return columns.x | columns.y << 16;
-}
-
-uvec2 unpacked_columns(uint columns) {
-    return uvec2(columns & 0xffffu, columns >> 16);
-}
-
-uint tile_rows() {
-    return FRAME.tile_count / FRAME.tile_columns;
-}
-
 // Where the histogram has how many tiles a run's splats touch in all.
 uint pairs_place(uint run) {
     return FRAME.sort_runs * tile_rows() + run;
-}
-
-// The tile of the lowest bit of a mask, which is taken out of it.
-uint next_tile(uint origin, inout uvec2 mask) {
-    uint half_index = mask.x != 0u ? 0u : 1u;
-    uint bits = half_index == 0u ? mask.x : mask.y;
-    uint bit = uint(findLSB(bits));
-    bits &= bits - 1u;
-    mask = half_index == 0u ? uvec2(bits, mask.y) : uvec2(0u, bits);
-    uint row = (origin >> 16) + half_index * 4u + bit / MASK_SIDE;
-    return row * FRAME.tile_columns + (origin & 0xffffu) + bit % MASK_SIDE;
 }
 
 #endif

@@ -9,7 +9,7 @@ layout(location = 0) flat out uvec2 filled; // tiles that hold anything, a bit e
 
 void main() {
     uint quad = uint(gl_VertexIndex) / 6u;
-    uvec2 tiles = uvec2(FRAME.tile_columns, FRAME.tile_count / FRAME.tile_columns);
+    uvec2 tiles = uvec2(FRAME.tile_columns, tile_rows());
     uint columns = (tiles.x + QUAD_TILES - 1u) / QUAD_TILES;
     uvec2 first = uvec2(quad % columns, quad / columns) * QUAD_TILES;
     filled = uvec2(0u);
@@ -22,8 +22,8 @@ void main() {
             bits |= begin < end ? 1u << column : 0u;
             begin = end;
         }
-        bits <<= QUAD_TILES * (row % 4u);
-        filled |= row < 4u ? uvec2(bits, 0u) : uvec2(0u, bits);
+        bits <<= QUAD_TILES * (row % (QUAD_TILES / 2u));
+        filled |= row < QUAD_TILES / 2u ? uvec2(bits, 0u) : uvec2(0u, bits);
     }
     // Six vertices of the strip that all quads are: the first and the last corner twice, so that the triangles between two
     // quads have no area. Nor have those of a quad that holds nothing.

@@ -8,4 +8,8 @@
 BUFFER(readonly, 0, FrameData, frame)
 #define FRAME frame.at[0]
 
+uint tile_rows() {
+    return FRAME.tile_count / FRAME.tile_columns;
+}
+
 #endif

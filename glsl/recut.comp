@@ -24,7 +24,11 @@ BUFFER(writeonly, 8, uint, dirty)
 void mark(uint survivor, Quad whole) {
     uvec4 tiles = tile_masks.at[survivor];
     for (uvec2 mask = tiles.zw; (mask.x | mask.y) != 0u;) {
-        dirty.at[next_tile(tiles.x, mask)] = 1u;
+        Span span = next_span(tiles.x, mask);
+        uvec2 columns = span.columns + span.row * FRAME.tile_columns;
+        for (uint tile = columns.x; tile < columns.y; tile++) {
+            dirty.at[tile] = 1u;
+        }
     }
     if (tiles.y != 0u) {
         Splat splat = splats.at[survivor];

@@ -1,16 +1,19 @@
 // The spans of a row of tiles, which are front to back, in parts: an invocation a part.
 #ifndef RARA_ROWS
 #define RARA_ROWS
-#include "bin.glsl"
+#include "frame.glsl"
 
-BUFFER(readonly, 1, FrameCounts, counts)
-BUFFER(readonly, 2, uint, row_begins)
-BUFFER(readonly, 3, uvec2, spans)
+BUFFER(readonly, 1, uint, row_begins)
 // How many of a part's spans hold each column, or where its splats go; behind each part its pairs.
-BUFFER(, 4, uint, column_counts)
+BUFFER(, 2, uint, column_counts)
 
 uint part_count() {
     return tile_rows() * FRAME.row_parts;
+}
+
+// Where the counts of a part's columns begin.
+uint columns_place(uint part) {
+    return part * (FRAME.tile_columns + 1u);
 }
 
 // First and last span (exclusive) of a part.
@@ -23,9 +26,9 @@ uvec2 part_bounds(uint part) {
     return uvec2(begin, min(begin + size, end));
 }
 
-// Where the counts of a part's columns begin.
-uint columns_place(uint part) {
-    return part * (FRAME.tile_columns + 1u);
+// First and last column (exclusive) of a span; in the row, whatever it says.
+uvec2 columns_of(uint span) {
+    return min(uvec2(span & 0xffffu, span >> 16), FRAME.tile_columns);
 }
 
 #endif

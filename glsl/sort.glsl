@@ -1,9 +1,9 @@
 // Stable least-significant-digit radix sort. Each invocation owns a run of consecutive keys and walks it in order,
 // so equal keys keep their order without any ranking inside a workgroup. Parameter 0 is the pass.
 //
-// The first count finds the least and the greatest key. Counted from the least they differ in fewer
-// digits, perhaps, than the scene's bounds allow; the passes too many are the first ones, so that the sorted keys end up
-// in the same buffer. Project writes the keys to both: whichever pass is the first finds them.
+// The first count finds the least and the greatest key. Counted from the least they differ in fewer digits, perhaps, than
+// the scene's bounds allow; the passes too many are the first ones, so that the sorted keys end up in the same buffer.
+// Project writes the keys to both: whichever pass is the first finds them.
 #ifndef RARA_SORT
 #define RARA_SORT
 #include "frame.glsl"

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // First step of binning: how many spans each run of the sorted splats has in each row of tiles. A span is the tiles of one
-// row that a splat touches. A run's counts lie together, one run after the other; behind them all their tiles.
+// row that a splat touches. A run's counts lie together, one run after the other; behind them all how many tiles each run
+// touches.
 #include "bin.glsl"
 
 layout(local_size_x = SORT_GROUP_SIZE) in;

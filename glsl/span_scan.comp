@@ -3,6 +3,7 @@
 // Second step of binning, one workgroup, a row of tiles an invocation: where each run's spans of each row begin, how many
 // pairs of tile and splat there are, and whether there is room for them. If not, the frame's quads are drawn instead.
 #include "bin.glsl"
+#include "groups.glsl"
 
 const uint ROWS = 256u; // at a time
 layout(local_size_x = ROWS) in;
@@ -16,10 +17,6 @@ shared uint totals[ROWS];
 // Sums that stay at the largest number instead of turning over.
 uint capped_sum(uint a, uint b) {
     return a > ~0u - b ? ~0u : a + b;
-}
-
-uvec4 groups(bool any, uint invocations, uint size) {
-    return uvec4(any ? (invocations + size - 1u) / size : 0u, 1u, 1u, 0u);
 }
 
 void main() {
@@ -68,9 +65,9 @@ void main() {
         row_begins.at[rows] = begin;
         counts.at[0].pairs = pairs;
         counts.at[0].tiled = tiled ? 1u : 0u;
-        counts.at[0].span_groups = groups(tiled, FRAME.sort_runs, SORT_GROUP_SIZE);
-        counts.at[0].part_groups = groups(tiled, rows * FRAME.row_parts, ROW_GROUP_SIZE);
-        counts.at[0].row_groups = groups(tiled, rows, ROW_GROUP_SIZE);
+        counts.at[0].span_groups = tiled ? groups(FRAME.sort_runs, SORT_GROUP_SIZE) : uvec4(0u);
+        counts.at[0].part_groups = tiled ? groups(rows * FRAME.row_parts, ROW_GROUP_SIZE) : uvec4(0u);
+        counts.at[0].row_groups = tiled ? groups(rows, ROW_GROUP_SIZE) : uvec4(0u);
         counts.at[0].tile_groups = uvec4(tiled ? STRIP_ROWS * FRAME.tile_columns : 0u, strips, 1u, 0u);
         counts.at[0].composite = uvec4(6u * quads.x * quads.y, tiled ? 1u : 0u, 0u, 0u);
         if (tiled || FRAME.redrawn != 0u) {

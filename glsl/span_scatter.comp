@@ -9,10 +9,11 @@ BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, Splat, splats)
 BUFFER(readonly, 3, uint, order)
 BUFFER(, 4, uint, histogram)
-BUFFER(writeonly, 5, uvec2, spans)
-BUFFER(readonly, 6, uint, mask_origins)
-BUFFER(readonly, 7, uint, masks_above)
-BUFFER(readonly, 8, uint, masks_below)
+BUFFER(writeonly, 5, uint, span_splats)
+BUFFER(writeonly, 6, uint, span_columns)
+BUFFER(readonly, 7, uint, mask_origins)
+BUFFER(readonly, 8, uint, masks_above)
+BUFFER(readonly, 9, uint, masks_below)
 
 void put(uint slot, uvec2 columns, uint splat) {
     uint place = histogram.at[slot];
@@ -20,7 +21,8 @@ void put(uint slot, uvec2 columns, uint splat) {
     if (place >= counts.at[0].pairs) {
         return; // cannot be, while both steps find the same spans
     }
-    spans.at[place] = uvec2(splat, packed_columns(columns));
+    span_splats.at[place] = splat;
+    span_columns.at[place] = columns.x | columns.y << 16;
 }
 
 void main() {

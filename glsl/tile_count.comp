@@ -6,6 +6,8 @@
 
 layout(local_size_x = ROW_GROUP_SIZE) in;
 
+BUFFER(readonly, 3, uint, span_columns)
+
 void main() {
     uint part = gl_GlobalInvocationID.x;
     if (part >= part_count()) {
@@ -17,7 +19,7 @@ void main() {
     }
     uvec2 bounds = part_bounds(part);
     for (uint i = bounds.x; i < bounds.y; i++) {
-        uvec2 columns = unpacked_columns(spans.at[i].y);
+        uvec2 columns = columns_of(span_columns.at[i]);
         column_counts.at[first + columns.x]++;
         column_counts.at[first + columns.y]--;
     }

@@ -5,7 +5,7 @@
 
 layout(local_size_x = ROW_GROUP_SIZE) in;
 
-BUFFER(writeonly, 5, uint, tile_begins)
+BUFFER(writeonly, 3, uint, tile_begins)
 
 void main() {
     uint row = gl_GlobalInvocationID.x;

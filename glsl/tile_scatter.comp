@@ -5,7 +5,10 @@
 
 layout(local_size_x = ROW_GROUP_SIZE) in;
 
-BUFFER(writeonly, 5, uint, tile_splats)
+BUFFER(readonly, 3, uint, span_splats)
+BUFFER(readonly, 4, uint, span_columns)
+BUFFER(readonly, 5, FrameCounts, counts)
+BUFFER(writeonly, 6, uint, tile_splats)
 
 void main() {
     uint part = gl_GlobalInvocationID.x;
@@ -15,13 +18,13 @@ void main() {
     uint first = columns_place(part);
     uvec2 bounds = part_bounds(part);
     for (uint i = bounds.x; i < bounds.y; i++) {
-        uvec2 span = spans.at[i];
-        uvec2 columns = unpacked_columns(span.y);
+        uint splat = span_splats.at[i];
+        uvec2 columns = columns_of(span_columns.at[i]);
         for (uint column = columns.x; column < columns.y; column++) {
             uint place = column_counts.at[first + column];
             column_counts.at[first + column] = place + 1u;
             if (place < counts.at[0].pairs) { // it is, while the first and the third step find the same spans
-                tile_splats.at[place] = span.x;
+                tile_splats.at[place] = splat;
             }
         }
     }

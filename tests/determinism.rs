@@ -61,11 +61,12 @@ fn quads_meshes_and_tiles_give_one_picture() {
     }
 }
 
-/// More tiles than two digits of the sort count, and a picture beyond what can be bound.
+/// More rows of tiles than one scan takes at once, and a picture beyond what can be bound; then a small one in the same buffers.
 #[test]
 fn a_wide_picture_of_many_tiles_is_that_of_quads() {
     let scene = generate(Kind::General, 2_000, 9);
-    let camera = common::views(&scene, 1, common::scaled((4101, 2057)))[0]; // more tiles than a row of workgroups has
+    let (width, _) = common::scaled((4101, 2057));
+    let camera = common::views(&scene, 1, (width, 2057))[0]; // more tiles than a row of workgroups has
     let clip = common::clip(&scene, 1, ClipOp::And);
     let mut headless = common::headless();
     headless.load(&scene).expect("uploads");
@@ -81,6 +82,40 @@ fn a_wide_picture_of_many_tiles_is_that_of_quads() {
     assert_eq!(path, "tiles");
     let worst = apart(&tiles, &picture(Raster::Quad).1);
     assert!(worst <= 1.0, "tiles and quads differ by {worst:.3}/255");
+    let camera = common::views(&scene, 1, SIZE)[0];
+    let mut fresh = common::headless();
+    fresh.load(&scene).expect("uploads");
+    let [after, alone] = [&mut headless, &mut fresh].map(|headless| {
+        let settings = Settings {
+            raster: Raster::Tiles,
+            ..Settings::default()
+        };
+        headless.render(&camera, &clip, &settings).expect("renders");
+        headless.picture().expect("reads back").pixels
+    });
+    assert!(after == alone);
+}
+
+/// A pixel, a row, a column, and less than a tile.
+#[test]
+fn pictures_of_a_row_or_a_column_of_tiles_are_those_of_quads() {
+    let scene = generate(Kind::General, 2_000, 9);
+    let clip = common::clip(&scene, 1, ClipOp::And);
+    let mut headless = common::headless();
+    headless.load(&scene).expect("uploads");
+    for size in [(1, 1), (1, 300), (300, 1), (5, 3), (2100, 7), (7, 2100)] {
+        let camera = common::views(&scene, 1, size)[0];
+        let [tiles, quads] = [Raster::Tiles, Raster::Quad].map(|raster| {
+            let settings = Settings {
+                raster,
+                ..Settings::default()
+            };
+            headless.render(&camera, &clip, &settings).expect("renders");
+            headless.picture().expect("reads back")
+        });
+        let worst = apart(&tiles, &quads);
+        assert!(worst <= 1.0, "{size:?}: {worst:.3}/255");
+    }
 }
 
 /// A frame must not see what an earlier one left: not even the order of its splats when only one is left to sort.

@@ -44,7 +44,8 @@ pub(crate) struct Buffers {
 #[derive(Debug)]
 pub(crate) struct TileBuffers {
     pub(crate) row_begins: Buffer,
-    pub(crate) spans: Buffer,
+    pub(crate) span_splats: Buffer,
+    pub(crate) span_columns: Buffer,
     pub(crate) column_counts: Buffer,
     pub(crate) begins: Buffer,
     pub(crate) splats: Buffer,
@@ -166,7 +167,8 @@ impl Buffers {
             tiles: if plan.raster == Raster::Tiles {
                 Some(TileBuffers {
                     row_begins: gpu("row_begins", (sizes.rows + 1) * 4)?,
-                    spans: gpu("spans", sizes.pairs * 8)?,
+                    span_splats: gpu("span_splats", sizes.pairs * 4)?,
+                    span_columns: gpu("span_columns", sizes.pairs * 4)?,
                     column_counts: gpu("column_counts", sizes.columns * 4)?,
                     begins: gpu("tile_begins", (sizes.tiles + 1) * 4)?,
                     splats: gpu("tile_splats", sizes.pairs * 4)?,
@@ -224,12 +226,13 @@ impl Buffers {
     }
 
     /// The largest buffer that a shader binds, bytes.
-    pub(crate) fn largest(plan: &Plan) -> u64 {
-        let sizes = Sizes::of(plan);
+    pub(crate) fn largest(&self) -> u64 {
+        let sizes = self.sized_for;
         sizes
             .cut_bytes
             .max(sizes.gaussians * size_of::<Splat>() as u64)
-            .max(sizes.pairs * 8)
+            .max(sizes.pairs * 4)
+            .max(sizes.columns * 4)
             .max(sizes.pixels * 16)
     }
 }

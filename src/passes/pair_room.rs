@@ -4,7 +4,7 @@
 /// and so many a tile, where they are few and large.
 const USUAL_PER_GAUSSIAN: u32 = 2;
 const USUAL_PER_TILE: u32 = 64;
-/// The most, 2 GiB of lists: frames with more are drawn as quads.
+/// The most, 1.5 GiB of lists: frames with more are drawn as quads.
 const MOST: u32 = 1 << 27;
 
 /// Grows with what frames need, and stays.

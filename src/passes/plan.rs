@@ -65,8 +65,6 @@ pub(crate) struct SceneFacts {
     /// How splats become pixels; never `Auto`.
     pub(crate) raster: Raster,
     pub(crate) tile_work: TileWork,
-    /// Parts of the spans of a row of tiles.
-    pub(crate) row_parts: u32,
     /// Pairs of tile and splat that there is to be room for.
     pub(crate) pair_capacity: u32,
     /// Whether a frame without room for its pairs is drawn once more, instead of as quads.
@@ -169,7 +167,9 @@ impl Plan {
         data.sort_runs = scene.sort_runs;
         data.tile_columns = camera.width.div_ceil(limits::TILE_WIDTH);
         data.tile_count = data.tile_columns * camera.height.div_ceil(limits::TILE_HEIGHT);
-        data.row_parts = scene.row_parts;
+        // As many invocations as the sort has; whole workgroups a row, whose invocations then have as much to do as each other.
+        let rows = data.tile_count / data.tile_columns;
+        data.row_parts = (scene.sort_runs.div_ceil(rows)).next_multiple_of(limits::ROW_GROUP_SIZE);
         data.pair_capacity = scene.pair_capacity;
         data.block_count = scene.gaussians.div_ceil(limits::BLOCK_SIZE);
         data.redrawn = scene.redrawn.into();
@@ -334,7 +334,6 @@ mod tests {
             sort_runs: 128,
             raster: Raster::Tiles,
             tile_work: TileWork::suiting(true, 8),
-            row_parts: 8,
             pair_capacity: 1000,
             redrawn: false,
             occluders: None,

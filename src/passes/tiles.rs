@@ -52,11 +52,11 @@ impl Bin {
         // What the sort has done with has room for the masks in the order of depth.
         let [origins, above, below] = [&b.keys[0], &b.keys[1], &b.order[sorted ^ 1]];
         let at = |offset: usize| Groups::Indirect(&b.counts, offset as u64);
-        let survivors = at(offset_of!(FrameCounts, sort_groups));
-        let spans = at(offset_of!(FrameCounts, span_groups));
+        let runs = at(offset_of!(FrameCounts, sort_groups));
+        let runs_with_room = at(offset_of!(FrameCounts, span_groups));
         let parts = at(offset_of!(FrameCounts, part_groups));
         let rows = at(offset_of!(FrameCounts, row_groups));
-        let count = [
+        let span_count = [
             &b.frame,
             &b.counts,
             &b.splats,
@@ -67,34 +67,36 @@ impl Bin {
             above,
             below,
         ];
-        recorder.dispatch(&self.span_count, &count, &[], survivors);
-        let scan = [&b.frame, &b.counts, &b.histogram, &t.row_begins];
-        recorder.dispatch(&self.span_scan, &scan, &[], Groups::Count(1));
-        let scatter = [
+        recorder.dispatch(&self.span_count, &span_count, &[], runs);
+        let span_scan = [&b.frame, &b.counts, &b.histogram, &t.row_begins];
+        recorder.dispatch(&self.span_scan, &span_scan, &[], Groups::Count(1));
+        let span_scatter = [
             &b.frame,
             &b.counts,
             &b.splats,
             order,
             &b.histogram,
-            &t.spans,
+            &t.span_splats,
+            &t.span_columns,
             origins,
             above,
             below,
         ];
-        recorder.dispatch(&self.span_scatter, &scatter, &[], spans);
-        let [frame, counts, begins, spans, columns] = [
+        recorder.dispatch(&self.span_scatter, &span_scatter, &[], runs_with_room);
+        let tile_count = [&b.frame, &t.row_begins, &t.column_counts, &t.span_columns];
+        recorder.dispatch(&self.tile_count, &tile_count, &[], parts);
+        let tile_scan = [&b.frame, &t.row_begins, &t.column_counts, &t.begins];
+        recorder.dispatch(&self.tile_scan, &tile_scan, &[], rows);
+        let tile_scatter = [
             &b.frame,
-            &b.counts,
             &t.row_begins,
-            &t.spans,
             &t.column_counts,
+            &t.span_splats,
+            &t.span_columns,
+            &b.counts,
+            &t.splats,
         ];
-        let count = [frame, counts, begins, spans, columns];
-        recorder.dispatch(&self.tile_count, &count, &[], parts);
-        let scan = [frame, counts, begins, spans, columns, &t.begins];
-        recorder.dispatch(&self.tile_scan, &scan, &[], rows);
-        let scatter = [frame, counts, begins, spans, columns, &t.splats];
-        recorder.dispatch(&self.tile_scatter, &scatter, &[], parts);
+        recorder.dispatch(&self.tile_scatter, &tile_scatter, &[], parts);
     }
 }
 

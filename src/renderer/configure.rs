@@ -74,7 +74,6 @@ impl Renderer {
             sort_runs,
             raster,
             tile_work: TileWork::suiting(is_cpu, support.subgroup_size),
-            row_parts: if is_cpu { 8 } else { 16 },
             pair_capacity: self.pairs.room(),
             redrawn: self.redraws,
             occluders: self
@@ -84,15 +83,6 @@ impl Renderer {
             expects_depth: self.desc.expected_depth.is_some(),
         };
         let mut plan = Plan::new(facts, camera, clip, settings)?;
-        let largest = Buffers::largest(&plan).max(scene.largest());
-        self.bindings = match self.desc.bindings {
-            Bindings::Bound
-                if support.push_descriptor && largest <= support.max_storage_buffer_range =>
-            {
-                Bindings::Bound
-            }
-            Bindings::Bound | Bindings::Address => Bindings::Address,
-        };
         if self
             .buffers
             .as_ref()
@@ -127,6 +117,18 @@ impl Renderer {
                 Err(error) => return Err(error),
             }
         }
+        // Of what there is, which an earlier frame may have made larger than this one needs.
+        let largest = self.buffers.as_ref().map_or(0, Buffers::largest);
+        let largest = largest.max(scene.largest());
+        let support = self.device.support();
+        self.bindings = match self.desc.bindings {
+            Bindings::Bound
+                if support.push_descriptor && largest <= support.max_storage_buffer_range =>
+            {
+                Bindings::Bound
+            }
+            Bindings::Bound | Bindings::Address => Bindings::Address,
+        };
         let context = Context {
             device: &self.device,
             bindings: self.bindings,

@@ -35,7 +35,7 @@ impl Renderer {
 
     /// Whether the frame that [`counts`](Self::counts) is about had more pairs of tile and splat than there was room for,
     /// so that it was drawn as quads: the same picture, but slower. The next [`configure`](Self::configure) makes the
-    /// room, up to 2 GiB.
+    /// room, up to 1.5 GiB.
     pub fn fell_back(&self) -> bool {
         let counts = self.frame_counts();
         counts.is_some_and(|counts| counts.pairs > 0 && counts.tiled == 0)

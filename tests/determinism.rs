@@ -91,9 +91,11 @@ fn a_wide_picture_of_many_tiles_is_that_of_quads() {
             ..Settings::default()
         };
         headless.render(&camera, &clip, &settings).expect("renders");
-        headless.picture().expect("reads back").pixels
+        headless.picture().expect("reads back")
     });
-    assert!(after == alone);
+    let worst = apart(&after, &alone);
+    // The old ones are reached by address, which is compiled by itself, and rounds by itself.
+    assert!(worst <= 1e-3, "{worst}/255 from a picture in new buffers");
 }
 
 /// A pixel, a row, a column, and less than a tile.

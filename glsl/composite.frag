@@ -13,7 +13,8 @@ void main() {
     uvec2 size = uvec2(FRAME.size.xy);
     uvec2 pixel = min(uvec2(place), size - 1u);
     uvec2 tile = pixel / uvec2(TILE_WIDTH, TILE_HEIGHT) % QUAD_TILES;
-    bool is_filled = ((tile.y < QUAD_TILES / 2u ? filled.x : filled.y) >> (QUAD_TILES * (tile.y % (QUAD_TILES / 2u)) + tile.x) & 1u) != 0u;
+    uint bit = tile.y * QUAD_TILES + tile.x;
+    bool is_filled = ((bit < 32u ? filled.x : filled.y) >> bit % 32u & 1u) != 0u;
     colour = vec4(0.0);
     if (is_filled) {
         colour = picture.at[pixel.y * size.x + pixel.x];

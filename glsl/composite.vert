@@ -22,8 +22,9 @@ void main() {
             bits |= begin < end ? 1u << column : 0u;
             begin = end;
         }
-        bits <<= QUAD_TILES * (row % (QUAD_TILES / 2u));
-        filled |= row < QUAD_TILES / 2u ? uvec2(bits, 0u) : uvec2(0u, bits);
+        uint bit = row * QUAD_TILES;
+        bits <<= bit % 32u;
+        filled |= bit < 32u ? uvec2(bits, 0u) : uvec2(0u, bits);
     }
     // Six vertices of the strip that all quads are: the first and the last corner twice, so that the triangles between two
     // quads have no area. Nor have those of a quad that holds nothing.

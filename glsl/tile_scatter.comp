@@ -16,6 +16,7 @@ void main() {
         return;
     }
     uint first = columns_place(part);
+    uint pairs = counts.at[0].pairs;
     uvec2 bounds = part_bounds(part);
     for (uint i = bounds.x; i < bounds.y; i++) {
         uint splat = span_splats.at[i];
@@ -23,7 +24,7 @@ void main() {
         for (uint column = columns.x; column < columns.y; column++) {
             uint place = column_counts.at[first + column];
             column_counts.at[first + column] = place + 1u;
-            if (place < counts.at[0].pairs) { // it is, while the first and the third step find the same spans
+            if (place < pairs) { // it is, while the first and the third step find the same spans
                 tile_splats.at[place] = splat;
             }
         }

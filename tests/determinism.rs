@@ -8,7 +8,7 @@ use std::process::Command;
 use glam::DVec3;
 use rara::measure::compare;
 use rara::scene::{Kind, generate};
-use rara::{Camera, Clip, ClipOp, Mode, Picture, Plane, Raster, Settings, reference};
+use rara::{Camera, Clip, ClipOp, Headless, Mode, Picture, Plane, Raster, Settings, reference};
 
 const SIZE: (u32, u32) = (300, 220);
 
@@ -61,7 +61,21 @@ fn quads_meshes_and_tiles_give_one_picture() {
     }
 }
 
-/// More rows of tiles than one scan takes at once, and a picture beyond what can be bound; then a small one in the same buffers.
+/// How a scene was rasterised that was to be so in one way, and its picture.
+fn drawn(
+    headless: &mut Headless,
+    (camera, clip, raster): (&Camera, &Clip, Raster),
+) -> (&'static str, Picture) {
+    let settings = Settings {
+        raster,
+        ..Settings::default()
+    };
+    let stats = headless.render(camera, clip, &settings).expect("renders");
+    (stats.raster.path, headless.picture().expect("reads back"))
+}
+
+/// More rows of tiles than one scan takes at once, and a picture beyond what can be bound; then a small one in the same
+/// buffers.
 #[test]
 fn a_wide_picture_of_many_tiles_is_that_of_quads() {
     let scene = generate(Kind::General, 2_000, 9);
@@ -71,29 +85,16 @@ fn a_wide_picture_of_many_tiles_is_that_of_quads() {
     let clip = common::clip(&scene, 1, ClipOp::And);
     let mut headless = common::headless();
     headless.load(&scene).expect("uploads");
-    let mut picture = |raster| {
-        let settings = Settings {
-            raster,
-            ..Settings::default()
-        };
-        let stats = headless.render(&camera, &clip, &settings).expect("renders");
-        (stats.raster.path, headless.picture().expect("reads back"))
-    };
-    let (path, tiles) = picture(Raster::Tiles);
+    let (path, tiles) = drawn(&mut headless, (&camera, &clip, Raster::Tiles));
     assert_eq!(path, "tiles");
-    let worst = apart(&tiles, &picture(Raster::Quad).1);
+    let (_, quads) = drawn(&mut headless, (&camera, &clip, Raster::Quad));
+    let worst = apart(&tiles, &quads);
     assert!(worst <= 1.0, "tiles and quads differ by {worst:.3}/255");
     let camera = common::views(&scene, 1, SIZE)[0];
     let mut fresh = common::headless();
     fresh.load(&scene).expect("uploads");
-    let [after, alone] = [&mut headless, &mut fresh].map(|headless| {
-        let settings = Settings {
-            raster: Raster::Tiles,
-            ..Settings::default()
-        };
-        headless.render(&camera, &clip, &settings).expect("renders");
-        headless.picture().expect("reads back")
-    });
+    let [after, alone] = [&mut headless, &mut fresh]
+        .map(|headless| drawn(headless, (&camera, &clip, Raster::Tiles)).1);
     let worst = apart(&after, &alone);
     // The old ones are reached by address, which is compiled by itself, and rounds by itself.
     assert!(worst <= 1e-3, "{worst}/255 from a picture in new buffers");
@@ -108,14 +109,8 @@ fn pictures_of_a_row_or_a_column_of_tiles_are_those_of_quads() {
     headless.load(&scene).expect("uploads");
     for size in [(1, 1), (1, 300), (300, 1), (5, 3), (2100, 7), (7, 2100)] {
         let camera = common::views(&scene, 1, size)[0];
-        let [tiles, quads] = [Raster::Tiles, Raster::Quad].map(|raster| {
-            let settings = Settings {
-                raster,
-                ..Settings::default()
-            };
-            headless.render(&camera, &clip, &settings).expect("renders");
-            headless.picture().expect("reads back")
-        });
+        let [tiles, quads] = [Raster::Tiles, Raster::Quad]
+            .map(|raster| drawn(&mut headless, (&camera, &clip, raster)).1);
         let worst = apart(&tiles, &quads);
         assert!(worst <= 1.0, "{size:?}: {worst:.3}/255");
     }

@@ -3,7 +3,7 @@
 use std::mem::offset_of;
 
 use crate::error::Result;
-use crate::gpu::{Buffer, ComputePipeline, Groups, Recorder};
+use crate::gpu::{ComputePipeline, Groups, Recorder};
 use crate::limits;
 use crate::passes::buffers::Buffers;
 use crate::passes::context::Context;
@@ -52,10 +52,24 @@ impl Sort {
         let pairs = [(&b.keys[0], &b.order[0]), (&b.keys[1], &b.order[1])];
         for pass in 0..plan.sort_passes as usize {
             let params = [pass as u32, plan.sort_passes];
-            let (from, to) = (pairs[pass % 2], pairs[(pass % 2) ^ 1]);
+            let (keys, order) = pairs[pass % 2];
+            let (sorted_keys, sorted_order) = pairs[(pass % 2) ^ 1];
+            let count = [&b.frame, &b.counts, keys, &b.histogram];
             // What the first pass that there is sorts by has been counted before anybody knew which one it is.
             let counts = if pass == 0 { groups } else { sorts(pass - 1) };
-            self.pass(recorder, b, params, [from, to], [counts, sorts(pass)]);
+            recorder.dispatch(&self.count, &count, &params, counts);
+            let scan = [&b.frame, &b.counts, &b.histogram];
+            recorder.dispatch(&self.scan, &scan, &params, Groups::Count(1));
+            let scatter = [
+                &b.frame,
+                &b.counts,
+                keys,
+                order,
+                &b.histogram,
+                sorted_keys,
+                sorted_order,
+            ];
+            recorder.dispatch(&self.scatter, &scatter, &params, sorts(pass));
         }
         if scene.reordered {
             let sorted = plan.sorted();
@@ -69,30 +83,5 @@ impl Sort {
             ];
             recorder.dispatch(&self.ties, &ties, &[], groups);
         }
-    }
-
-    /// Counts, scans and scatters.
-    fn pass(
-        &self,
-        recorder: &mut Recorder<'_>,
-        b: &Buffers,
-        params: [u32; 2],
-        [(keys, order), (sorted_keys, sorted_order)]: [(&Buffer, &Buffer); 2],
-        [counts, scatters]: [Groups<'_>; 2],
-    ) {
-        let count = [&b.frame, &b.counts, keys, &b.histogram];
-        recorder.dispatch(&self.count, &count, &params, counts);
-        let scan = [&b.frame, &b.counts, &b.histogram];
-        recorder.dispatch(&self.scan, &scan, &params, Groups::Count(1));
-        let scatter = [
-            &b.frame,
-            &b.counts,
-            keys,
-            order,
-            &b.histogram,
-            sorted_keys,
-            sorted_order,
-        ];
-        recorder.dispatch(&self.scatter, &scatter, &params, scatters);
     }
 }

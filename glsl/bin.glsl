@@ -154,7 +154,7 @@ Span next_span(uint origin, inout uvec2 mask) {
     return Span((origin >> 16) + row + (below ? 4u : 0u), uvec2(column, column + uint(bitCount(tiles))));
 }
 
-// Where the histogram has how many tiles a run's splats touch in all.
+// Where span_counts has how many tiles a run's splats touch in all.
 uint pairs_place(uint run) {
     return FRAME.sort_runs * tile_rows() + run;
 }

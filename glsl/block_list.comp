@@ -1,7 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup: the blocks whose Gaussians differ, in order, and the indirect command over them. Parameter 0 says for
-// which stage: 0 clip, 1 classify.
+// One workgroup: the blocks whose Gaussians differ, in order, and the indirect command over them.
+struct Params {
+    uint stage; // which stage they are for: 0 clip, 1 classify
+};
+#define PARAMS Params
 #include "block.glsl"
 #include "groups.glsl"
 
@@ -35,7 +38,7 @@ void main() {
         }
     }
     if (local == BLOCK_SIZE - 1u) {
-        if (push.param[0] == 0u) {
+        if (push.params.stage == 0u) {
             counts.at[0].clip_groups = groups(place, 1u);
         } else {
             counts.at[0].classify_groups = groups(place, 1u);

@@ -1,21 +1,38 @@
-// One declaration for a storage buffer, two ways to reach it. A shader says
+// What a shader declares to its host, by name. Buffers: a shader says
 //     BUFFER(readonly, 0, Gaussian, gaussians)
 // and uses gaussians.at[i]. By default the buffer is reached through its device address in the push constants: fast,
 // and not bound by the device's limit on binding sizes (128 MiB on lavapipe). With RARA_BOUND it is a bound storage
 // buffer, which the validation layer's synchronisation checks can watch. The access qualifier is the pass's only
-// declaration of what it does to the buffer: build.rs reads it from the SPIR-V, the recorder derives barriers from it.
+// declaration of what it does to the buffer: the recorder derives barriers from it.
+//
+// Parameters: before it includes anything, a shader that has some declares a struct and says which it is, as in
+//     struct Params { uint pass; };
+//     #define PARAMS Params
+// and uses push.params.pass. Numbers that tell pipelines apart are specialisation constants with names.
+//
+// build.rs reads all three from the SPIR-V and makes Rust structs of them (src/codegen), so that a pass that lacks one or
+// gives it another type does not compile.
+#ifndef RARA_BUFFERS
+#define RARA_BUFFERS
+#include "limits.glsl"
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-layout(push_constant, std430) uniform Push {
-    uvec2 address[10];
-    uint param[12];
-} push;
-
 #ifdef RARA_BOUND
+#ifdef PARAMS
+layout(push_constant, std430) uniform Push {
+    PARAMS params;
+} push;
+#endif
 #define BUFFER(access, index, Type, name) \
     layout(set = 0, binding = index, std430) access buffer name##Block { Type at[]; } name;
 #else
+layout(push_constant, std430) uniform Push {
+    uvec2 address[MAX_BUFFERS];
+#ifdef PARAMS
+    PARAMS params;
+#endif
+} push;
 #define BUFFER(access, index, Type, name) \
     layout(buffer_reference, std430, buffer_reference_align = 16) access buffer name##Block { Type at[]; }; \
     name##Block name = name##Block(push.address[index]);
@@ -23,3 +40,5 @@ layout(push_constant, std430) uniform Push {
 
 // The number of this workgroup when a dispatch is folded into rows.
 #define LINEAR_GROUP (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x)
+
+#endif

@@ -199,7 +199,7 @@ void chord_weights(uint base, uint count, vec2 delta, vec2 place, out float weig
     vec3 offset_step = s.delta.x * column.b2_step - column.delta_y.y * s.b1;
     vec3 cc = product(s.c, c_step, s.c, c_step);
     vec3 square = product(offset, offset_step, offset, offset_step);
-    float sigma = uintBitsToFloat(push.param[2]);
+    float sigma = push.params.sigma;
     float inverse[ROWS];
     float low[ROWS];
     float high[ROWS];
@@ -243,7 +243,7 @@ void chord_weights(uint base, uint count, vec2 delta, vec2 place, out float weig
 // The weight of each pixel of a column. `delta`, `uv` and `place` are the first row's, `v_step` is how much v changes a
 // row.
 void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 place, float alpha[ROWS], out float weight[ROWS]) {
-    uint base = cut * push.param[3];
+    uint base = cut * push.params.cut_stride;
     uint flags = to_uint(cuts.at[base].w);
     if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         curve_weights(base, uv.x, uv.y, v_step, alpha, weight);

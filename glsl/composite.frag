@@ -1,6 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The tiles' picture, for the blend onto what the host has drawn. Parameters 0 and 1 are where the viewport begins, px.
+// The tiles' picture, for the blend onto what the host has drawn.
+struct Params {
+    vec2 origin; // where the viewport begins in the attachment, px
+};
+#define PARAMS Params
 #include "frame.glsl"
 
 BUFFER(readonly, 1, vec4, picture)
@@ -9,7 +13,7 @@ layout(location = 0) flat in uvec2 filled; // of this quad's tiles, as composite
 layout(location = 0) out vec4 colour;
 
 void main() {
-    vec2 place = gl_FragCoord.xy - vec2(uintBitsToFloat(push.param[0]), uintBitsToFloat(push.param[1]));
+    vec2 place = gl_FragCoord.xy - push.params.origin;
     uvec2 size = uvec2(FRAME.size.xy);
     uvec2 pixel = min(uvec2(place), size - 1u);
     uvec2 tile = pixel / uvec2(TILE_WIDTH, TILE_HEIGHT) % QUAD_TILES;

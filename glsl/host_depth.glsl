@@ -1,11 +1,11 @@
-// What the host's depth buffer holds for a splat. Parameters 6 and 7 are the host's: an offset, and what is divided by the
+// What the host's depth buffer holds for a splat: by the host's depth_offset, and its depth_scale, which is divided by the
 // depth and added to it. Splats before the buffer's nearest depth or beyond its farthest one are still drawn.
 #ifndef RARA_HOST_DEPTH
 #define RARA_HOST_DEPTH
 #include "frame.glsl"
 
 float host_depth(float z) {
-    precise float depth = uintBitsToFloat(push.param[6]) + uintBitsToFloat(push.param[7]) / z;
+    precise float depth = push.params.depth_offset + push.params.depth_scale / z;
     return clamp(depth, 0.0, 1.0);
 }
 

@@ -1,5 +1,7 @@
 // Every number that host and shaders share. build.rs turns each line into a Rust constant of the same name
 // (`rara::limits`), so a value stands here and nowhere else.
+#ifndef RARA_LIMITS
+#define RARA_LIMITS
 
 // Low-pass that 3DGS adds to the projected covariance's diagonal, px^2. Scenes are trained with it.
 const float LOW_PASS = 0.3;
@@ -59,3 +61,9 @@ const float PRECISE_FOCAL = 2048.0;
 // Half side of the largest quad drawn along a splat's own axes, px. Beyond it the corners' f32 error reaches pixels,
 // and the quad becomes the splat's bounding box inside the picture.
 const float QUAD_MAX_EXTENT = 4096.0;
+// Buffers that a shader can declare, whose addresses fit in the 128 bytes of push constants that every device has beside
+// MAX_PARAMS words of parameters.
+const uint MAX_BUFFERS = 10u;
+const uint MAX_PARAMS = 12u;
+
+#endif

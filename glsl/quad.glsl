@@ -28,10 +28,9 @@ vec4 corner(Splat splat, uint number) {
     return vec4(2.0 * at * FRAME.size.zw - 1.0, DEPTH ? host_depth(splat.middle.w) : 0.0, 1.0);
 }
 
-// The centre in the coordinates of gl_FragCoord, and k0 k1. Parameters 0 and 1 are where the viewport begins, px.
+// The centre in the coordinates of gl_FragCoord, and k0 k1.
 vec4 fragment_centre(Splat splat) {
-    vec2 origin = vec2(uintBitsToFloat(push.param[0]), uintBitsToFloat(push.param[1]));
-    return vec4(splat.centre_conic.xy + origin, splat.centre_conic.zw);
+    return vec4(splat.centre_conic.xy + push.params.origin, splat.centre_conic.zw);
 }
 
 #endif

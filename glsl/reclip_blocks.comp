@@ -1,7 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One invocation a block: its side of a clip that has moved while the camera stood still, and whether its Gaussians have to
-// be looked at. Parameter 0 is 1 where the frame before knew no clip.
+// be looked at.
+struct Params {
+    uint fresh; // 1: the frame before knew no clip
+};
+#define PARAMS Params
 #include "reclip.glsl"
 
 layout(local_size_x = BLOCK_GROUP_SIZE) in;
@@ -27,7 +31,7 @@ void main() {
     uint view_side = block_sides.at[block];
     uint in_view = view_side == SIDE_VISIBLE ? block_length(block) : view_side == SIDE_CUTOFF ? block_counts.at[block].x : 0u;
     uint before = reclips.at[base + RECLIP_SIDE];
-    if (push.param[0] != 0u) {
+    if (push.params.fresh != 0u) {
         before = SIDE_VISIBLE;
         reclips.at[base + RECLIP_TOTALS] = in_view;
         reclips.at[base + RECLIP_TOTALS + 1u] = 0u;

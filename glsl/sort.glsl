@@ -1,5 +1,5 @@
 // Stable least-significant-digit radix sort. Each invocation owns a run of consecutive keys and walks it in order,
-// so equal keys keep their order without any ranking inside a workgroup. Parameter 0 is the pass.
+// so equal keys keep their order without any ranking inside a workgroup.
 //
 // The first count finds the least and the greatest key. Counted from the least they differ in fewer digits, perhaps, than
 // the scene's bounds allow; the passes too many are the first ones, so that the sorted keys end up in the same buffer.
@@ -14,7 +14,7 @@ const uint DIGITS = 1u << SORT_BITS;
 // What keys are counted from: a multiple of DIGITS, so that the first count need not know it.
 #define KEY_BASE (counts.at[0].sort_base)
 // The digit that the pass sorts by.
-#define KEY_DIGIT (push.param[0] - counts.at[0].sort_skipped)
+#define KEY_DIGIT (push.params.pass - counts.at[0].sort_skipped)
 
 uint digit(uint key, uint number) {
     return bitfieldExtract(key, int(number * SORT_BITS), int(SORT_BITS));

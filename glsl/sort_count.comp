@@ -2,6 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 // First step of a pass: how often each run holds each digit. A run's counts lie together, one run after the other; behind
 // them all the least and the greatest key of each.
+struct Params {
+    uint pass; // of the sort, from 0
+};
+#define PARAMS Params
 #include "sort.glsl"
 
 layout(local_size_x = SORT_GROUP_SIZE) in;
@@ -15,7 +19,7 @@ void main() {
     for (uint d = 0u; d < DIGITS; d++) {
         histogram.at[run * DIGITS + d] = 0u;
     }
-    uint number = push.param[0] == 0u ? 0u : KEY_DIGIT;
+    uint number = push.params.pass == 0u ? 0u : KEY_DIGIT;
     uint base = number == 0u ? 0u : KEY_BASE;
     uvec2 bounds = run_bounds(run, KEY_COUNT);
     uint least = ~0u;

@@ -1,7 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Second step of a pass, one workgroup, a digit an invocation: the runs' counts become the places where each run's keys
-// of each digit begin. The first one decides which passes there are, of the parameter 1 that there may be.
+// of each digit begin. The first one decides which passes there are.
+struct Params {
+    uint pass; // of the sort, from 0
+    uint passes; // that there may be
+};
+#define PARAMS Params
 #include "sort.glsl"
 
 layout(local_size_x = DIGITS) in;
@@ -28,7 +33,7 @@ void decide(uint d) {
     if (d != 0u) {
         return;
     }
-    uint passes = push.param[1];
+    uint passes = push.params.passes;
     uint base = least & ~(DIGITS - 1u);
     // Keys that are all alike are carried to their buffer too.
     uint digits = uint(max(findMSB(greatest - base), 0)) / SORT_BITS + 1u;
@@ -41,7 +46,7 @@ void decide(uint d) {
 }
 
 void main() {
-    uint pass = push.param[0];
+    uint pass = push.params.pass;
     uint d = gl_LocalInvocationIndex;
     if (pass == 0u) {
         decide(d);

@@ -1,6 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Third step of a pass: each run carries its keys, in order, to their places.
+struct Params {
+    uint pass; // of the sort, from 0
+};
+#define PARAMS Params
 #include "sort.glsl"
 
 layout(local_size_x = SORT_GROUP_SIZE) in;

@@ -10,7 +10,7 @@ layout(local_size_x = SORT_GROUP_SIZE) in;
 BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, Splat, splats)
 BUFFER(readonly, 3, uint, order)
-BUFFER(, 4, uint, histogram)
+BUFFER(, 4, uint, span_counts)
 BUFFER(readonly, 5, uvec4, tile_masks)
 // The masks once more, in the order of depth, for the third step: where the sort has done its work.
 BUFFER(writeonly, 6, uint, mask_origins)
@@ -21,7 +21,7 @@ void main() {
     uint run = gl_GlobalInvocationID.x;
     uint rows = tile_rows();
     for (uint row = 0u; row < rows; row++) {
-        histogram.at[run * rows + row] = 0u;
+        span_counts.at[run * rows + row] = 0u;
     }
     uvec2 bounds = run_bounds(run, counts.at[0].visible + counts.at[0].cutoff);
     uint found = 0u;
@@ -34,7 +34,7 @@ void main() {
         masks_below.at[i] = tiles.w;
         for (uvec2 mask = tiles.zw; (mask.x | mask.y) != 0u;) {
             Span span = next_span(tiles.x, mask);
-            histogram.at[run * rows + span.row]++;
+            span_counts.at[run * rows + span.row]++;
             found += span.columns.y - span.columns.x;
         }
         if (tiles.y == 0u) {
@@ -43,9 +43,9 @@ void main() {
         Outline o = outline(splats.at[splat]);
         for (uint row = o.rows.x; row < o.rows.y; row++) {
             uvec2 columns = tiles_in_row(o, row);
-            histogram.at[run * rows + row] += columns.x < columns.y ? 1u : 0u;
+            span_counts.at[run * rows + row] += columns.x < columns.y ? 1u : 0u;
             found += columns.y - columns.x;
         }
     }
-    histogram.at[pairs_place(run)] = found;
+    span_counts.at[pairs_place(run)] = found;
 }

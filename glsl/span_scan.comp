@@ -9,7 +9,7 @@ const uint ROWS = 256u; // at a time
 layout(local_size_x = ROWS) in;
 
 BUFFER(, 1, FrameCounts, counts)
-BUFFER(, 2, uint, histogram)
+BUFFER(, 2, uint, span_counts)
 BUFFER(writeonly, 3, uint, row_begins)
 
 shared uint totals[ROWS];
@@ -21,11 +21,11 @@ uint capped_sum(uint a, uint b) {
 
 void main() {
     uint local = gl_LocalInvocationIndex;
-    // Without survivors nothing was counted, and the histogram is another frame's.
+    // Without survivors nothing was counted, and the counts are another frame's.
     uint runs = counts.at[0].mesh_groups.w == 0u ? 0u : FRAME.sort_runs;
     uint own_pairs = 0u;
     for (uint run = local; run < runs; run += ROWS) {
-        own_pairs = capped_sum(own_pairs, histogram.at[pairs_place(run)]);
+        own_pairs = capped_sum(own_pairs, span_counts.at[pairs_place(run)]);
     }
     totals[local] = own_pairs;
     barrier();
@@ -39,7 +39,7 @@ void main() {
         uint row = first + local;
         uint total = 0u;
         for (uint run = 0u; run < runs && row < rows; run++) {
-            total += histogram.at[run * rows + row];
+            total += span_counts.at[run * rows + row];
         }
         barrier();
         totals[local] = total;
@@ -53,8 +53,8 @@ void main() {
             row_begins.at[row] = place;
         }
         for (uint run = 0u; run < runs && row < rows; run++) {
-            uint count = histogram.at[run * rows + row];
-            histogram.at[run * rows + row] = place;
+            uint count = span_counts.at[run * rows + row];
+            span_counts.at[run * rows + row] = place;
             place += count;
         }
     }

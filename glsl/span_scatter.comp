@@ -8,7 +8,7 @@ layout(local_size_x = SORT_GROUP_SIZE) in;
 BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, Splat, splats)
 BUFFER(readonly, 3, uint, order)
-BUFFER(, 4, uint, histogram)
+BUFFER(, 4, uint, span_counts)
 BUFFER(writeonly, 5, uint, span_splats)
 BUFFER(writeonly, 6, uint, span_columns)
 BUFFER(readonly, 7, uint, mask_origins)
@@ -16,8 +16,8 @@ BUFFER(readonly, 8, uint, masks_above)
 BUFFER(readonly, 9, uint, masks_below)
 
 void put(uint slot, uvec2 columns, uint splat) {
-    uint place = histogram.at[slot];
-    histogram.at[slot] = place + 1u;
+    uint place = span_counts.at[slot];
+    span_counts.at[slot] = place + 1u;
     if (place >= counts.at[0].pairs) {
         return; // cannot be, while both steps find the same spans
     }

@@ -1,16 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One splat in one pixel.
-#include "types.glsl"
+#include "splat_params.glsl"
+#include "weight_constants.glsl"
 #include "buffers.glsl"
 
-// What the weight depends on is fixed in the pipeline: without a clip none of its code is there.
-layout(constant_id = 0) const uint CLIP_MODE = MODE_NONE;
-layout(constant_id = 1) const uint CLIP_OP = OP_AND;
-layout(constant_id = 2) const uint DECAY = DECAY_DEPTH;
-layout(constant_id = 3) const uint MISS = MISS_PEAK;
-// PHI_*: which approximation of Phi.
-layout(constant_id = 4) const uint PHI_FORM = 0u;
 
 // The debug view.
 layout(constant_id = 6) const bool SHOW_WEIGHT = false;

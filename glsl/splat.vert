@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One instance a splat, a strip of four corners.
+#include "splat_params.glsl"
 #include "quad.glsl"
 
 layout(location = 0) flat out vec4 centre_conic;

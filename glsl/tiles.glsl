@@ -3,14 +3,19 @@
 // column is the whole tile's height, which makes a splat's fixed costs an eighth.
 #ifndef RARA_TILES
 #define RARA_TILES
+struct Params {
+    vec2 principal_point; // of the camera, px
+    float sigma; // the ellipsoid that mode `rara` traces, standard deviations
+    uint cut_stride; // vec4s of a cutoff record
+    float depth_offset; // what the host's depth buffer holds for a depth: see host_depth.glsl
+    float depth_scale;
+    ivec2 copy_origin; // where in the picture the copy of the host's depth begins, px
+    uvec2 copy_size; // the copy's size, px
+};
+#define PARAMS Params
 #include "frame.glsl"
+#include "weight_constants.glsl"
 
-// As in splat.frag.
-layout(constant_id = 0) const uint CLIP_MODE = MODE_NONE;
-layout(constant_id = 1) const uint CLIP_OP = OP_AND;
-layout(constant_id = 2) const uint DECAY = DECAY_DEPTH;
-layout(constant_id = 3) const uint MISS = MISS_PEAK;
-layout(constant_id = 4) const uint PHI_FORM = 0u;
 // Pixels of an invocation, one above the other.
 layout(constant_id = 5) const uint ROWS = 8u;
 layout(local_size_x = TILE_WIDTH, local_size_y_id = 6) in;

@@ -1,5 +1,6 @@
 // The weight w of a cut splat in a pixel, and what it does to alpha. Included by what turns splats into pixels, after it
-// has declared the buffer `cuts` and the constants CLIP_MODE, CLIP_OP, DECAY, MISS and PHI_FORM.
+// has declared the buffer `cuts`, the constants of weight_constants.glsl, and the parameters sigma, cut_stride and
+// principal_point.
 #ifndef RARA_WEIGHT
 #define RARA_WEIGHT
 #include "orthant.glsl"
@@ -15,7 +16,7 @@ float combined(float share) {
 }
 
 vec2 principal_point() {
-    return vec2(uintBitsToFloat(push.param[4]), uintBitsToFloat(push.param[5]));
+    return push.params.principal_point;
 }
 
 Sight line_of_sight(uint base, vec2 delta, vec2 place) {
@@ -157,7 +158,7 @@ float front_weight(uint base, uint count, vec2 delta, vec2 place) {
 float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place) {
     Sight s = line_of_sight(base, delta, place);
     float cc = dot(s.c, s.c);
-    float sigma = uintBitsToFloat(push.param[2]);
+    float sigma = push.params.sigma;
     bool degenerate = !(cc > 0.0);
     float inverse = degenerate ? 0.0 : 1.0 / cc;
     vec3 nearest = (s.delta.x * cross(s.b2, s.c) + s.delta.y * cross(s.c, s.b1)) * inverse;
@@ -195,10 +196,9 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place
 }
 
 // Which of them by the frame's mode and the record's form. `place` is the pixel's, `delta` the same relative to the
-// splat's centre, `uv` that in the splat's own coordinates (curve.glsl). Parameter 2 is the traced ellipsoid's sigma, 3 the
-// records' stride, 4 and 5 the principal point in the coordinates of `place`.
+// splat's centre, `uv` that in the splat's own coordinates (curve.glsl).
 float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 place) {
-    uint base = cut * push.param[3];
+    uint base = cut * push.params.cut_stride;
     uint flags = to_uint(cuts.at[base].w);
     uint count = flags >> CUT_COUNT_SHIFT;
     if (CLIP_MODE == MODE_RARA) {

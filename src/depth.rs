@@ -90,9 +90,9 @@ impl DepthMap {
         (self.offset + self.scale / depth).clamp(0.0, 1.0)
     }
 
-    /// As parameters of the shaders.
-    pub(crate) fn words(&self) -> [u32; 2] {
-        [self.offset, self.scale].map(|v| (v as f32).to_bits())
+    /// Offset and scale, as parameters of the shaders.
+    pub(crate) fn factors(&self) -> [f32; 2] {
+        [self.offset, self.scale].map(|v| v as f32)
     }
 }
 

@@ -3,6 +3,8 @@
 pub mod camera;
 pub mod camera_files;
 pub mod clip;
+#[cfg(test)]
+mod codegen;
 pub mod depth;
 pub mod error;
 pub mod files;

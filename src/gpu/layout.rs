@@ -30,7 +30,8 @@ impl Bindings {
     }
 }
 
-/// The block that `glsl/buffers.glsl` declares: 128 bytes, which every device has.
+/// The block that `glsl/buffers.glsl` declares: 128 bytes, which every device has. Shaders that bind their buffers declare
+/// its parameters alone.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct PushConstants {
@@ -40,6 +41,16 @@ struct PushConstants {
 
 const _: () = assert!(size_of::<PushConstants>() == 128);
 
+impl PushConstants {
+    /// Which of the block's bytes shaders declare: those that bind their buffers need no addresses.
+    fn bytes(bindings: Bindings) -> std::ops::Range<usize> {
+        match bindings {
+            Bindings::Address => 0..size_of::<Self>(),
+            Bindings::Bound => std::mem::offset_of!(Self, param)..size_of::<Self>(),
+        }
+    }
+}
+
 /// A pipeline layout for the buffers of one or several shaders.
 pub(crate) struct Layout {
     device: Device,
@@ -47,6 +58,7 @@ pub(crate) struct Layout {
     /// Null for [`Bindings::Address`].
     set: vk::DescriptorSetLayout,
     stages: vk::ShaderStageFlags,
+    bindings: Bindings,
     /// The buffers of all stages, by ascending binding.
     pub(crate) uses: Vec<BufferUse>,
 }
@@ -85,6 +97,7 @@ impl Layout {
             raw: vk::PipelineLayout::null(),
             set: vk::DescriptorSetLayout::null(),
             stages,
+            bindings,
             uses,
         };
         if bindings == Bindings::Bound {
@@ -93,7 +106,7 @@ impl Layout {
         }
         let ranges = [vk::PushConstantRange::default()
             .stage_flags(stages)
-            .size(size_of::<PushConstants>() as u32)];
+            .size(PushConstants::bytes(bindings).len() as u32)];
         let sets = [this.set];
         let info = vk::PipelineLayoutCreateInfo::default()
             .push_constant_ranges(&ranges)
@@ -177,10 +190,9 @@ impl Layout {
         }
         block.param[..params.len()].copy_from_slice(params);
         let raw = self.device.raw();
+        let bytes = &bytemuck::bytes_of(&block)[PushConstants::bytes(self.bindings)];
         // SAFETY: the caller vouches for `cmd`; the layout has one range of this size for these stages.
-        unsafe {
-            raw.cmd_push_constants(cmd, self.raw, self.stages, 0, bytemuck::bytes_of(&block))
-        };
+        unsafe { raw.cmd_push_constants(cmd, self.raw, self.stages, 0, bytes) };
         if self.set == vk::DescriptorSetLayout::null() || self.uses.is_empty() {
             return;
         }

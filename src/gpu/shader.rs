@@ -41,8 +41,8 @@ pub struct Shader {
 }
 
 /// Buffers a pass can have: device addresses that fit in the guaranteed 128 bytes of push constants beside
-/// [`MAX_PARAMS`] words. `glsl/buffers.glsl` declares the same block.
-pub const MAX_BUFFERS: usize = 10;
+/// [`MAX_PARAMS`] words.
+pub const MAX_BUFFERS: usize = crate::limits::MAX_BUFFERS as usize;
 
 /// 32-bit parameters a pass can have.
-pub const MAX_PARAMS: usize = 12;
+pub const MAX_PARAMS: usize = crate::limits::MAX_PARAMS as usize;

@@ -1,68 +1,41 @@
-//! Stage 2, a block of Gaussians an invocation: what view and clip say about all of them at once, and which blocks are left
-//! to look at.
+//! Stage `blocks`, a block of Gaussians an invocation: what view and clip say about all of them at once, and which blocks
+//! are left to look at.
 
-use crate::error::Result;
-use crate::gpu::{Buffer, ComputePipeline, Groups, Recorder};
+use crate::gpu::{Groups, Recorder};
 use crate::limits;
-use crate::passes::buffers::Buffers;
-use crate::passes::context::Context;
+use crate::passes::block_list::{self, ListFor};
+use crate::passes::pipelines::Kernel;
 use crate::passes::plan::Plan;
-use crate::passes::scene_buffers::SceneBuffers;
-use crate::passes::shaders;
+use crate::passes::shaders::blocks;
+use crate::passes::stage::{Frame, Stage};
 
-#[derive(Debug, Clone)]
-pub(crate) struct Blocks {
-    pipeline: ComputePipeline,
+pub(crate) const STAGE: Stage = Stage {
+    name: "blocks",
+    needed: |plan| plan.finds_view(),
+    missed: |_| true,
+    pipelines: |plan, need| {
+        need(kernel(plan).key());
+        need(block_list::kernel().key());
+    },
+    record,
+};
+
+fn kernel(plan: &Plan) -> Kernel<blocks::Program> {
+    let clip = plan.view_is_clipped();
+    Kernel::new(&blocks::COMP, blocks::Constants { clip })
 }
 
-impl Blocks {
-    /// With `clip` false the shader asks for no clip.
-    pub(crate) fn new(context: &Context<'_>, clip: bool) -> Result<Self> {
-        Ok(Self {
-            pipeline: context.compute("blocks", &shaders::BLOCKS_COMP, &[(0, clip.into())])?,
-        })
-    }
-
-    pub(crate) fn record(
-        &self,
-        recorder: &mut Recorder<'_>,
-        list: &BlockList,
-        scene: &SceneBuffers,
-        b: &Buffers,
-        plan: &Plan,
-    ) {
-        let buffers = [&b.frame, &scene.blocks, &b.clip_sides, &b.block_sides];
-        recorder.dispatch(&self.pipeline, &buffers, &[], groups_of_blocks(plan));
-        list.record(recorder, &b.block_sides, b, BlockList::CLASSIFY);
-    }
-}
-
-/// Lists the blocks whose Gaussians differ, for one stage.
-#[derive(Debug, Clone)]
-pub(crate) struct BlockList {
-    pipeline: ComputePipeline,
-}
-
-impl BlockList {
-    pub(crate) const CLIP: u32 = 0;
-    pub(crate) const CLASSIFY: u32 = 1;
-
-    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
-        Ok(Self {
-            pipeline: context.compute("block_list", &shaders::BLOCK_LIST_COMP, &[])?,
-        })
-    }
-
-    pub(crate) fn record(
-        &self,
-        recorder: &mut Recorder<'_>,
-        sides: &Buffer,
-        b: &Buffers,
-        stage: u32,
-    ) {
-        let buffers = [&b.frame, sides, &b.block_list, &b.counts];
-        recorder.dispatch(&self.pipeline, &buffers, &[stage], Groups::Count(1));
-    }
+fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
+    let b = frame.buffers;
+    let buffers = blocks::Buffers {
+        frame: &b.frame,
+        blocks: &frame.scene.blocks,
+        clip_sides: &b.clip_sides,
+        block_sides: &b.block_sides,
+    };
+    let groups = groups_of_blocks(frame.plan);
+    kernel(frame.plan).dispatch(frame.pipelines, recorder, buffers, (), groups);
+    block_list::record(frame, recorder, &b.block_sides, ListFor::Classify);
 }
 
 /// An invocation a block.

@@ -5,7 +5,6 @@ use crate::error::Result;
 use crate::gpu::{Buffer, BufferDesc, Device, Location};
 use crate::limits;
 use crate::passes::plan::Plan;
-use crate::settings::Raster;
 use crate::types::{self, FrameCounts, FrameData, Splat, SplatDepth};
 
 /// Everything the stages hand to each other. No stage reads a count on the CPU, so each array but the
@@ -43,6 +42,7 @@ pub(crate) struct Buffers {
 /// The tile rasteriser's part.
 #[derive(Debug)]
 pub(crate) struct TileBuffers {
+    pub(crate) span_counts: Buffer,
     pub(crate) row_begins: Buffer,
     pub(crate) span_splats: Buffer,
     pub(crate) span_columns: Buffer,
@@ -97,7 +97,7 @@ impl Sizes {
             0
         };
         let when_tiled = |size: u64| {
-            if plan.raster == Raster::Tiles {
+            if plan.is_tiled() {
                 size
             } else {
                 0
@@ -127,6 +127,14 @@ impl Sizes {
     }
 }
 
+/// The indirect command in a field of a struct that a buffer holds.
+macro_rules! indirect {
+    ($buffer:expr, $Struct:ty, $field:ident) => {
+        $crate::gpu::Groups::Indirect(&$buffer, std::mem::offset_of!($Struct, $field) as u64)
+    };
+}
+pub(super) use indirect;
+
 /// A buffer that only the device sees.
 pub(super) fn gpu_only(device: &Device, name: &'static str, size: u64) -> Result<Buffer> {
     device.create_buffer(&BufferDesc {
@@ -144,8 +152,8 @@ impl Buffers {
         let n = sizes.gaussians;
         let blocks = n.div_ceil(u64::from(limits::BLOCK_SIZE));
         let mask_bytes = u64::from(limits::BLOCK_SIZE) / 4; // two bits a Gaussian
-        // Of a run: its keys of each digit, the least and the greatest; then its spans in each row of tiles, and its pairs.
-        let counts = ((1_u64 << limits::SORT_BITS) + 2).max(sizes.rows + 1);
+        // Of a run: its keys of each digit, the least and the greatest.
+        let digits = (1_u64 << limits::SORT_BITS) + 2;
         Ok(Self {
             frame: gpu("frame", size_of::<FrameData>() as u64)?,
             masks: gpu("masks", blocks * mask_bytes)?,
@@ -162,10 +170,12 @@ impl Buffers {
             splats: gpu("splats", n * size_of::<Splat>() as u64)?,
             keys: [gpu("keys", n * 4)?, gpu("sorted_keys", n * 4)?],
             order: [gpu("order", n * 4)?, gpu("sorted_order", n * 4)?],
-            histogram: gpu("histogram", counts * sizes.sort_runs * 4)?,
+            histogram: gpu("histogram", digits * sizes.sort_runs * 4)?,
             tile_masks: gpu("tile_masks", sizes.masks * 16)?,
-            tiles: if plan.raster == Raster::Tiles {
+            tiles: if plan.is_tiled() {
                 Some(TileBuffers {
+                    // Of a run: its spans in each row of tiles, and its pairs.
+                    span_counts: gpu("span_counts", (sizes.rows + 1) * sizes.sort_runs * 4)?,
                     row_begins: gpu("row_begins", (sizes.rows + 1) * 4)?,
                     span_splats: gpu("span_splats", sizes.pairs * 4)?,
                     span_columns: gpu("span_columns", sizes.pairs * 4)?,

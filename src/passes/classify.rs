@@ -1,41 +1,40 @@
-//! Stage 3, a Gaussian an invocation, of the blocks that are not settled as a whole: view culling by footprint, opacity
-//! and size, and the clip's class.
+//! Stage `classify`, a Gaussian an invocation, of the blocks that are not settled as a whole: view culling by footprint,
+//! opacity and size, and the clip's class.
 
-use std::mem::offset_of;
-
-use crate::error::Result;
-use crate::gpu::{ComputePipeline, Groups, Recorder};
-use crate::passes::buffers::Buffers;
-use crate::passes::context::Context;
-use crate::passes::scene_buffers::SceneBuffers;
-use crate::passes::shaders;
+use crate::gpu::Recorder;
+use crate::passes::buffers::indirect;
+use crate::passes::pipelines::Kernel;
+use crate::passes::plan::Plan;
+use crate::passes::shaders::classify;
+use crate::passes::stage::{Frame, Stage};
 use crate::types::FrameCounts;
 
-#[derive(Debug, Clone)]
-pub(crate) struct Classify {
-    pipeline: ComputePipeline,
+pub(crate) const STAGE: Stage = Stage {
+    name: "classify",
+    needed: |plan| plan.finds_view(),
+    missed: |_| true,
+    pipelines: |plan, need| need(kernel(plan).key()),
+    record,
+};
+
+/// Without a clip the shader holds no clip code.
+fn kernel(plan: &Plan) -> Kernel<classify::Program> {
+    let clip = plan.view_is_clipped();
+    Kernel::new(&classify::COMP, classify::Constants { clip })
 }
 
-impl Classify {
-    /// With `clip` false the shader holds no clip code.
-    pub(crate) fn new(context: &Context<'_>, clip: bool) -> Result<Self> {
-        Ok(Self {
-            pipeline: context.compute("classify", &shaders::CLASSIFY_COMP, &[(0, clip.into())])?,
-        })
-    }
-
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, b: &Buffers) {
-        let buffers = [
-            &b.frame,
-            &scene.gaussians,
-            &b.block_list,
-            &b.counts,
-            &b.clip_sides,
-            &b.clip_masks,
-            &b.masks,
-            &b.block_counts,
-        ];
-        let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, classify_groups) as u64);
-        recorder.dispatch(&self.pipeline, &buffers, &[], groups);
-    }
+fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
+    let b = frame.buffers;
+    let buffers = classify::Buffers {
+        frame: &b.frame,
+        gaussians: &frame.scene.gaussians,
+        block_list: &b.block_list,
+        counts: &b.counts,
+        clip_sides: &b.clip_sides,
+        clip_masks: &b.clip_masks,
+        masks: &b.masks,
+        block_counts: &b.block_counts,
+    };
+    let groups = indirect!(b.counts, FrameCounts, classify_groups);
+    kernel(frame.plan).dispatch(frame.pipelines, recorder, buffers, (), groups);
 }

@@ -1,51 +1,51 @@
-//! Stage 1, only where the clip has changed: the side of each block of Gaussians, and the paper's three classes
+//! Stage `clip`, only where the clip has changed: the side of each block of Gaussians, and the paper's three classes
 //! (section 3.2) of each Gaussian in the blocks that are cut. The camera has no part in it.
 
-use std::mem::offset_of;
-
-use crate::error::Result;
-use crate::gpu::{ComputePipeline, Groups, Recorder};
-use crate::passes::blocks::{BlockList, groups_of_blocks};
-use crate::passes::buffers::Buffers;
-use crate::passes::context::Context;
-use crate::passes::plan::Plan;
-use crate::passes::scene_buffers::SceneBuffers;
-use crate::passes::shaders;
+use crate::gpu::Recorder;
+use crate::passes::block_list::{self, ListFor};
+use crate::passes::blocks::groups_of_blocks;
+use crate::passes::buffers::indirect;
+use crate::passes::pipelines::Kernel;
+use crate::passes::shaders::{clip, clip_blocks};
+use crate::passes::stage::{Frame, Stage};
 use crate::types::FrameCounts;
 
-#[derive(Debug, Clone)]
-pub(crate) struct Clip {
-    blocks: ComputePipeline,
-    clip: ComputePipeline,
+pub(crate) const STAGE: Stage = Stage {
+    name: "clip",
+    needed: |plan| plan.finds_clip(),
+    missed: |_| true,
+    pipelines: |_, need| {
+        need(sides().key());
+        need(block_list::kernel().key());
+        need(classes().key());
+    },
+    record,
+};
+
+fn sides() -> Kernel<clip_blocks::Program> {
+    Kernel::new(&clip_blocks::COMP, ())
 }
 
-impl Clip {
-    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
-        Ok(Self {
-            blocks: context.compute("clip_blocks", &shaders::CLIP_BLOCKS_COMP, &[])?,
-            clip: context.compute("clip", &shaders::CLIP_COMP, &[])?,
-        })
-    }
+fn classes() -> Kernel<clip::Program> {
+    Kernel::new(&clip::COMP, ())
+}
 
-    pub(crate) fn record(
-        &self,
-        recorder: &mut Recorder<'_>,
-        list: &BlockList,
-        scene: &SceneBuffers,
-        b: &Buffers,
-        plan: &Plan,
-    ) {
-        let blocks = [&b.frame, &scene.blocks, &b.clip_sides];
-        recorder.dispatch(&self.blocks, &blocks, &[], groups_of_blocks(plan));
-        list.record(recorder, &b.clip_sides, b, BlockList::CLIP);
-        let clip = [
-            &b.frame,
-            &scene.gaussians,
-            &b.block_list,
-            &b.counts,
-            &b.clip_masks,
-        ];
-        let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, clip_groups) as u64);
-        recorder.dispatch(&self.clip, &clip, &[], groups);
-    }
+fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
+    let (pipelines, scene, b) = (frame.pipelines, frame.scene, frame.buffers);
+    let buffers = clip_blocks::Buffers {
+        frame: &b.frame,
+        blocks: &scene.blocks,
+        clip_sides: &b.clip_sides,
+    };
+    sides().dispatch(pipelines, recorder, buffers, (), groups_of_blocks(frame.plan));
+    block_list::record(frame, recorder, &b.clip_sides, ListFor::Clip);
+    let buffers = clip::Buffers {
+        frame: &b.frame,
+        gaussians: &scene.gaussians,
+        block_list: &b.block_list,
+        counts: &b.counts,
+        clip_masks: &b.clip_masks,
+    };
+    let groups = indirect!(b.counts, FrameCounts, clip_groups);
+    classes().dispatch(pipelines, recorder, buffers, (), groups);
 }

@@ -1,50 +1,53 @@
-//! Stage 4: the survivors' and the cutoff Gaussians' numbers in the order of the scene, the counts, and the indirect
+//! Stage `compact`: the survivors' and the cutoff Gaussians' numbers in the order of the scene, the counts, and the indirect
 //! commands of everything after. No place in a list depends on the order of atomics.
 
-use std::mem::offset_of;
-
-use crate::error::Result;
-use crate::gpu::{ComputePipeline, Groups, Recorder};
-use crate::passes::buffers::Buffers;
-use crate::passes::context::Context;
-use crate::passes::shaders;
+use crate::gpu::{Groups, Recorder};
+use crate::passes::buffers::indirect;
+use crate::passes::pipelines::Kernel;
+use crate::passes::shaders::{compact, compact_scan};
+use crate::passes::stage::{Frame, Stage};
 use crate::types::FrameCounts;
 
-#[derive(Debug, Clone)]
-pub(crate) struct Compact {
-    scan: ComputePipeline,
-    compact: ComputePipeline,
+pub(crate) const STAGE: Stage = Stage {
+    name: "compact",
+    needed: |plan| plan.finds_view(),
+    missed: |_| true,
+    pipelines: |_, need| {
+        need(places().key());
+        need(lists().key());
+    },
+    record,
+};
+
+fn places() -> Kernel<compact_scan::Program> {
+    Kernel::new(&compact_scan::COMP, ())
 }
 
-impl Compact {
-    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
-        Ok(Self {
-            scan: context.compute("compact_scan", &shaders::COMPACT_SCAN_COMP, &[])?,
-            compact: context.compute("compact", &shaders::COMPACT_COMP, &[])?,
-        })
-    }
+fn lists() -> Kernel<compact::Program> {
+    Kernel::new(&compact::COMP, ())
+}
 
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, b: &Buffers) {
-        let scan = [
-            &b.frame,
-            &b.block_sides,
-            &b.block_counts,
-            &b.block_offsets,
-            &b.block_list,
-            &b.counts,
-        ];
-        recorder.dispatch(&self.scan, &scan, &[], Groups::Count(1));
-        let compact = [
-            &b.frame,
-            &b.block_list,
-            &b.counts,
-            &b.block_sides,
-            &b.masks,
-            &b.block_offsets,
-            &b.survivors,
-            &b.cutoffs,
-        ];
-        let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, compact_groups) as u64);
-        recorder.dispatch(&self.compact, &compact, &[], groups);
-    }
+fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
+    let (pipelines, b) = (frame.pipelines, frame.buffers);
+    let buffers = compact_scan::Buffers {
+        frame: &b.frame,
+        block_sides: &b.block_sides,
+        block_counts: &b.block_counts,
+        block_offsets: &b.block_offsets,
+        block_list: &b.block_list,
+        counts: &b.counts,
+    };
+    places().dispatch(pipelines, recorder, buffers, (), Groups::Count(1));
+    let buffers = compact::Buffers {
+        frame: &b.frame,
+        block_list: &b.block_list,
+        counts: &b.counts,
+        block_sides: &b.block_sides,
+        masks: &b.masks,
+        block_offsets: &b.block_offsets,
+        survivors: &b.survivors,
+        cutoffs: &b.cutoffs,
+    };
+    let groups = indirect!(b.counts, FrameCounts, compact_groups);
+    lists().dispatch(pipelines, recorder, buffers, (), groups);
 }

@@ -1,30 +1,41 @@
-//! Stage 5, a cutoff Gaussian an invocation: what the fragment stage needs to weight it, into the cutoff buffer.
+//! Stage `cutoff`, a cutoff Gaussian an invocation: what the fragment stage needs to weight it, into the cutoff buffer.
 
-use std::mem::offset_of;
-
-use crate::error::Result;
-use crate::gpu::{ComputePipeline, Groups, Recorder};
-use crate::passes::buffers::Buffers;
-use crate::passes::context::Context;
-use crate::passes::scene_buffers::SceneBuffers;
-use crate::passes::shaders;
+use crate::gpu::Recorder;
+use crate::passes::buffers::indirect;
+use crate::passes::pipelines::Kernel;
+use crate::passes::shaders::cutoff;
+use crate::passes::stage::{Frame, Stage};
 use crate::types::FrameCounts;
 
-#[derive(Debug, Clone)]
-pub(crate) struct Cutoff {
-    pipeline: ComputePipeline,
+/// In a frame that finds its view anew.
+pub(crate) const STAGE: Stage = Stage {
+    name: "cutoff",
+    needed: |plan| plan.finds_view() && plan.view_is_cut(),
+    missed: |plan| !plan.sweeps(),
+    pipelines: |_, need| need(kernel().key()),
+    record,
+};
+
+/// The same behind the classes that a moved clip has changed.
+pub(crate) const STAGE_OF_SWEEP: Stage = Stage {
+    needed: |plan| plan.sweeps() && plan.cutoff,
+    missed: |plan| plan.sweeps(),
+    ..STAGE
+};
+
+fn kernel() -> Kernel<cutoff::Program> {
+    Kernel::new(&cutoff::COMP, ())
 }
 
-impl Cutoff {
-    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
-        Ok(Self {
-            pipeline: context.compute("cutoff", &shaders::CUTOFF_COMP, &[])?,
-        })
-    }
-
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, b: &Buffers) {
-        let buffers = [&b.frame, &scene.gaussians, &b.cutoffs, &b.counts, &b.cuts];
-        let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, cutoff_groups) as u64);
-        recorder.dispatch(&self.pipeline, &buffers, &[], groups);
-    }
+fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
+    let b = frame.buffers;
+    let buffers = cutoff::Buffers {
+        frame: &b.frame,
+        gaussians: &frame.scene.gaussians,
+        cutoffs: &b.cutoffs,
+        counts: &b.counts,
+        cuts: &b.cuts,
+    };
+    let groups = indirect!(b.counts, FrameCounts, cutoff_groups);
+    kernel().dispatch(frame.pipelines, recorder, buffers, (), groups);
 }

@@ -4,112 +4,96 @@
 use std::mem::offset_of;
 
 use crate::depth::DepthMap;
-use crate::error::Result;
-use crate::gpu::{Attachments, ComputePipeline, Drawer, GraphicsPipeline, Groups, Recorder};
-use crate::passes::buffers::{Buffers, DepthBuffers};
-use crate::passes::context::Context;
+use crate::gpu::{Attachments, Drawer, Recorder};
+use crate::passes::buffers::{Buffers, DepthBuffers, indirect};
+use crate::passes::pipelines::{Draw, Kernel, Pipelines};
 use crate::passes::plan::Plan;
-use crate::passes::scene_buffers::SceneBuffers;
-use crate::passes::shaders;
-use crate::passes::splat::{DEPTH, WeightKey, params};
+use crate::passes::shaders::{depth, splat_depth};
+use crate::passes::stage::{Frame, Stage};
+use crate::passes::weight::Weight;
+use crate::passes::work::Work;
 use crate::types::FrameCounts;
 
 /// The splats' depths.
-#[derive(Debug, Clone)]
-pub(crate) struct Depth {
-    pipeline: ComputePipeline,
+pub(crate) const STAGE: Stage = Stage {
+    name: "depth",
+    needed: |plan| plan.expects_depth && plan.work != Work::Draw,
+    missed: |_| false,
+    pipelines: |_, need| need(kernel().key()),
+    record,
+};
+
+fn kernel() -> Kernel<depth::Program> {
+    Kernel::new(&depth::COMP, ())
 }
 
-impl Depth {
-    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
-        Ok(Self {
-            pipeline: context.compute("depth", &shaders::DEPTH_COMP, &[])?,
-        })
-    }
-
-    pub(crate) fn record(
-        &self,
-        recorder: &mut Recorder<'_>,
-        scene: &SceneBuffers,
-        b: &Buffers,
-        d: &DepthBuffers,
-    ) {
-        let buffers = [
-            &b.frame,
-            &scene.gaussians,
-            &b.survivors,
-            &b.counts,
-            &d.depths,
-        ];
-        let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, project_groups) as u64);
-        recorder.dispatch(&self.pipeline, &buffers, &[], groups);
-        // A quad a survivor, also where tiles draw their colours.
-        let quad = [4_u32, 0, 0, 0];
-        recorder.update(&d.draw, 0, bytemuck::bytes_of(&quad));
-        let survivors = offset_of!(FrameCounts, mesh_groups) + 3 * size_of::<u32>();
-        let region = ash::vk::BufferCopy {
-            src_offset: survivors as u64,
-            dst_offset: 4,
-            size: 4,
-        };
-        recorder.copy(&b.counts, &d.draw, &[region]);
-    }
+fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
+    let (b, d) = (frame.buffers, frame.depths());
+    let buffers = depth::Buffers {
+        frame: &b.frame,
+        gaussians: &frame.scene.gaussians,
+        survivors: &b.survivors,
+        counts: &b.counts,
+        depths: &d.depths,
+    };
+    let groups = indirect!(b.counts, FrameCounts, project_groups);
+    kernel().dispatch(frame.pipelines, recorder, buffers, (), groups);
+    // A quad a survivor, also where tiles draw their colours.
+    let quad = [4_u32, 0, 0, 0];
+    recorder.update(&d.draw, 0, bytemuck::bytes_of(&quad));
+    let survivors = offset_of!(FrameCounts, mesh_groups) + 3 * size_of::<u32>();
+    let region = ash::vk::BufferCopy {
+        src_offset: survivors as u64,
+        dst_offset: 4,
+        size: 4,
+    };
+    recorder.copy(&b.counts, &d.draw, &[region]);
 }
 
 /// The draw of the depths.
-#[derive(Debug, Clone)]
-pub(crate) struct SplatDepth {
-    pipeline: GraphicsPipeline,
+pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat_depth::Program> {
+    let depth = attachments.depth.is_some();
+    let weight = Weight::of(plan);
+    let constants = splat_depth::Constants {
+        clip_mode: weight.mode,
+        clip_op: weight.op,
+        decay: weight.decay,
+        miss: weight.miss,
+        phi_form: weight.phi,
+        depth,
+    };
+    let shaders = [&splat_depth::VERT, &splat_depth::FRAG];
+    Draw::new(shaders, constants, attachments, depth)
 }
 
-/// What tells one pipeline from another.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct SplatDepthKey {
+/// Draws inside the host's rendering scope; `origin` is where its viewport begins, px, `map` what its depth buffer
+/// holds for a depth, `unit` what depths are multiplied by.
+pub(crate) fn record_draw(
+    drawer: &mut Drawer<'_>,
+    pipelines: &Pipelines,
+    (plan, b, d): (&Plan, &Buffers, &DepthBuffers),
     attachments: Attachments,
-    weight: WeightKey,
-}
-
-impl SplatDepthKey {
-    /// The pipeline a plan needs.
-    pub(crate) fn new(plan: &Plan, attachments: Attachments) -> Self {
-        Self {
-            attachments,
-            weight: WeightKey::new(plan),
-        }
-    }
-}
-
-impl SplatDepth {
-    pub(crate) fn new(context: &Context<'_>, key: SplatDepthKey) -> Result<Self> {
-        let context = Context {
-            attachments: key.attachments,
-            ..*context
-        };
-        let test = key.attachments.depth.is_some();
-        let [mode, op, decay, miss, phi] = key.weight.constants();
-        let constants = [mode, op, decay, miss, phi, (DEPTH, test.into())];
-        let (front, fragment) = (&shaders::SPLAT_DEPTH_VERT, &shaders::SPLAT_DEPTH_FRAG);
-        Ok(Self {
-            pipeline: context.graphics("splat_depth", front, fragment, &constants, test)?,
-        })
-    }
-
-    /// Draws inside the host's rendering scope; `origin` is where its viewport begins, px, `map` what its depth buffer
-    /// holds for a depth, `unit` what depths are multiplied by.
-    pub(crate) fn record(
-        &self,
-        drawer: &mut Drawer<'_>,
-        (b, d): (&Buffers, &DepthBuffers),
-        plan: &Plan,
-        origin: [f32; 2],
-        map: Option<DepthMap>,
-        unit: f64,
-    ) {
-        let order = &b.order[plan.sorted()];
-        let buffers = [&b.frame, &b.counts, &b.splats, order, &b.cuts, &d.depths];
-        let [x, y, sigma, stride, cx, cy, offset, scale] = params(plan, origin, map);
-        let unit = (unit as f32).to_bits();
-        let params = [x, y, sigma, stride, cx, cy, offset, scale, unit];
-        drawer.draw_indirect(&self.pipeline, &buffers, &params, &d.draw, 0);
-    }
+    origin: [f32; 2],
+    (map, unit): (Option<DepthMap>, f64),
+) {
+    let buffers = splat_depth::Buffers {
+        frame: &b.frame,
+        counts: &b.counts,
+        splats: &b.splats,
+        order: &b.order[plan.sorted()],
+        cuts: &b.cuts,
+        depths: &d.depths,
+    };
+    let [_, _, cx, cy] = plan.data.focal;
+    let [depth_offset, depth_scale] = map.map_or([0.0; 2], |map| map.factors());
+    let params = splat_depth::Params {
+        origin,
+        principal_point: [cx + origin[0], cy + origin[1]],
+        depth_offset,
+        depth_scale,
+        sigma: plan.data.sigma,
+        cut_stride: plan.cut_stride,
+        unit: unit as f32,
+    };
+    draw(plan, attachments).draw(pipelines, drawer, buffers, params, (&d.draw, 0));
 }

@@ -226,40 +226,34 @@ impl Plan {
         (self.sort_passes % 2) as usize
     }
 
-    /// The same frame without its clip: all that is in view.
-    pub(crate) fn unclipped(&self) -> Self {
-        Self {
-            mode: types::MODE_NONE,
-            cutoff: false,
-            ..self.clone()
-        }
+    /// Whether splats become pixels by tiles.
+    pub(crate) fn is_tiled(&self) -> bool {
+        self.raster == Raster::Tiles
     }
 
-    /// The stages that this frame does not need, among those of a whole one.
-    pub(crate) fn skipped(&self) -> Vec<&'static str> {
-        let is_empty = self.gaussians == 0;
-        let (clip, view, cut) = match self.work {
-            Work::Whole { clip } => (clip, true, true),
-            Work::Sweep { base, .. } => (false, base, true),
-            Work::Draw => (false, false, false),
-        };
-        let tiled = self.raster == Raster::Tiles || is_empty;
-        let stages = [
-            ("clip", clip, true),
-            ("blocks", view, true),
-            ("classify", view, true),
-            ("compact", view, true),
-            ("cutoff", cut && self.cutoff, true),
-            ("project", view, true),
-            ("sort", view, true),
-            ("bin", view, tiled),
-            ("tiles", cut, tiled),
-            ("splat", true, true),
-        ];
-        let skipped = stages
-            .iter()
-            .filter(|(_, needed, exists)| *exists && (is_empty || !needed));
-        skipped.map(|(name, ..)| *name).collect()
+    /// Whether the clip's classes have to be found, for blocks and Gaussians whether in view or not.
+    pub(crate) fn finds_clip(&self) -> bool {
+        self.work == Work::Whole { clip: true }
+    }
+
+    /// Whether it has to be found what is in view.
+    pub(crate) fn finds_view(&self) -> bool {
+        matches!(self.work, Work::Whole { .. } | Work::Sweep { base: true, .. })
+    }
+
+    /// Whether the clip moves over what is in view, clipped away or not.
+    pub(crate) fn sweeps(&self) -> bool {
+        matches!(self.work, Work::Sweep { .. })
+    }
+
+    /// Whether what is in view is found without what the clip removes.
+    pub(crate) fn view_is_clipped(&self) -> bool {
+        self.mode != types::MODE_NONE && !self.sweeps()
+    }
+
+    /// Whether what is in view is found with the cutoff records of what the clip cuts.
+    pub(crate) fn view_is_cut(&self) -> bool {
+        self.cutoff && !self.sweeps()
     }
 }
 
@@ -322,8 +316,8 @@ fn two_float(v: DVec3) -> ([f32; 3], [f32; 3]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::passes::project::ProjectKey;
-    use crate::passes::splat::WeightKey;
+    use crate::passes::project;
+    use crate::passes::weight::Weight;
 
     fn plan(mode: Mode, planes: usize) -> Plan {
         let facts = SceneFacts {
@@ -369,8 +363,8 @@ mod tests {
                 plan.mode, none.mode,
                 "the blocks' and the classes' pipeline"
             );
-            assert_eq!(WeightKey::new(&plan), WeightKey::new(&none));
-            assert_eq!(ProjectKey::new(&plan), ProjectKey::new(&none));
+            assert_eq!(Weight::of(&plan), Weight::of(&none));
+            assert_eq!(project::kernel(&plan), project::kernel(&none));
             assert_eq!((plan.cutoff, plan.cut_stride), (false, 0), "no record");
             let bytes = |plan: &Plan| bytemuck::bytes_of(&plan.data).to_vec();
             assert!(bytes(&plan) == bytes(&none), "{mode:?}");
@@ -381,7 +375,7 @@ mod tests {
     fn a_hard_clip_needs_no_records_and_no_weights() {
         let (none, hard) = (plan(Mode::None, 0), plan(Mode::Hard, 1));
         assert_eq!(hard.skipped(), ["cutoff"]);
-        assert_eq!(WeightKey::new(&hard), WeightKey::new(&none));
+        assert_eq!(Weight::of(&hard), Weight::of(&none));
         assert_eq!(ProjectKey::new(&hard), ProjectKey::new(&none));
     }
 }

@@ -1,70 +1,46 @@
-//! Stage 6, a survivor an invocation: conic, quad, colour and depth key.
+//! Stage `project`, a survivor an invocation: conic, quad, colour and depth key.
 
-use std::mem::offset_of;
-
-use crate::error::Result;
-use crate::gpu::{ComputePipeline, Groups, Recorder};
-use crate::passes::buffers::Buffers;
-use crate::passes::context::Context;
+use crate::gpu::Recorder;
+use crate::passes::buffers::indirect;
+use crate::passes::pipelines::Kernel;
 use crate::passes::plan::Plan;
-use crate::passes::scene_buffers::SceneBuffers;
-use crate::passes::shaders;
-use crate::precision::ShFormat;
-use crate::settings::Raster;
+use crate::passes::shaders::project;
+use crate::passes::stage::{Frame, Stage};
 use crate::types::FrameCounts;
 
-#[derive(Debug, Clone)]
-pub(crate) struct Project {
-    pipeline: ComputePipeline,
+pub(crate) const STAGE: Stage = Stage {
+    name: "project",
+    needed: |plan| plan.finds_view(),
+    missed: |_| true,
+    pipelines: |plan, need| need(kernel(plan).key()),
+    record,
+};
+
+/// For spherical harmonics stored in one way; without cut splats the shader knows no cutoff records.
+pub(super) fn kernel(plan: &Plan) -> Kernel<project::Program> {
+    let constants = project::Constants {
+        cut: plan.view_is_cut(),
+        sh_format: plan.sh_format.code(),
+        tiles: plan.is_tiled(),
+    };
+    Kernel::new(&project::COMP, constants)
 }
 
-/// What tells one pipeline from another.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct ProjectKey {
-    cut: bool,
-    tiles: bool,
-    sh: ShFormat,
-}
-
-impl ProjectKey {
-    /// The pipeline a plan needs.
-    pub(crate) fn new(plan: &Plan) -> Self {
-        Self {
-            cut: plan.cutoff,
-            tiles: plan.raster == Raster::Tiles,
-            sh: plan.sh_format,
-        }
-    }
-}
-
-impl Project {
-    /// For spherical harmonics stored in one way; with `cut` false the shader knows no cutoff records.
-    pub(crate) fn new(context: &Context<'_>, key: ProjectKey) -> Result<Self> {
-        let constants = [
-            (0, key.cut.into()),
-            (1, key.sh.code()),
-            (2, key.tiles.into()),
-        ];
-        Ok(Self {
-            pipeline: context.compute("project", &shaders::PROJECT_COMP, &constants)?,
-        })
-    }
-
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, b: &Buffers) {
-        let [keys, same_keys] = &b.keys;
-        let buffers = [
-            &b.frame,
-            &scene.gaussians,
-            &scene.sh,
-            &b.survivors,
-            &b.counts,
-            &b.splats,
-            keys,
-            same_keys,
-            &b.cuts,
-            &b.tile_masks,
-        ];
-        let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, project_groups) as u64);
-        recorder.dispatch(&self.pipeline, &buffers, &[], groups);
-    }
+fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
+    let (scene, b) = (frame.scene, frame.buffers);
+    let [keys, same_keys] = &b.keys;
+    let buffers = project::Buffers {
+        frame: &b.frame,
+        gaussians: &scene.gaussians,
+        sh: &scene.sh,
+        survivors: &b.survivors,
+        counts: &b.counts,
+        splats: &b.splats,
+        keys,
+        same_keys,
+        cuts: &b.cuts,
+        tile_masks: &b.tile_masks,
+    };
+    let groups = indirect!(b.counts, FrameCounts, project_groups);
+    kernel(frame.plan).dispatch(frame.pipelines, recorder, buffers, (), groups);
 }

@@ -1,87 +1,102 @@
-//! Stage 7: stable radix sort of the survivors by linear view depth, ties by their number in the file.
+//! Stage `sort`: stable radix sort of the survivors by linear view depth, ties by their number in the file.
 
 use std::mem::offset_of;
 
-use crate::error::Result;
-use crate::gpu::{ComputePipeline, Groups, Recorder};
+use crate::gpu::{Groups, Recorder};
 use crate::limits;
-use crate::passes::buffers::Buffers;
-use crate::passes::context::Context;
-use crate::passes::plan::Plan;
-use crate::passes::scene_buffers::SceneBuffers;
-use crate::passes::shaders;
+use crate::passes::buffers::indirect;
+use crate::passes::pipelines::Kernel;
+use crate::passes::shaders::{sort_count, sort_scan, sort_scatter, sort_ties};
+use crate::passes::stage::{Frame, Stage};
 use crate::types::FrameCounts;
 
 // So many passes have indirect commands of their own in FrameCounts.
 const _: () = assert!(u32::BITS.div_ceil(limits::SORT_BITS) <= 4);
 
-#[derive(Debug, Clone)]
-pub(crate) struct Sort {
-    count: ComputePipeline,
-    scan: ComputePipeline,
-    scatter: ComputePipeline,
-    ties: ComputePipeline,
+pub(crate) const STAGE: Stage = Stage {
+    name: "sort",
+    needed: |plan| plan.finds_view(),
+    missed: |_| true,
+    pipelines: |_, need| {
+        need(counts().key());
+        need(places().key());
+        need(carries().key());
+        need(ties().key());
+    },
+    record,
+};
+
+fn counts() -> Kernel<sort_count::Program> {
+    Kernel::new(&sort_count::COMP, ())
 }
 
-impl Sort {
-    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
-        Ok(Self {
-            count: context.compute("sort_count", &shaders::SORT_COUNT_COMP, &[])?,
-            scan: context.compute("sort_scan", &shaders::SORT_SCAN_COMP, &[])?,
-            scatter: context.compute("sort_scatter", &shaders::SORT_SCATTER_COMP, &[])?,
-            ties: context.compute("sort_ties", &shaders::SORT_TIES_COMP, &[])?,
-        })
-    }
+fn places() -> Kernel<sort_scan::Program> {
+    Kernel::new(&sort_scan::COMP, ())
+}
 
-    /// Sorts the survivors by their depths, and those of one depth by their number in the file; the result is in
-    /// `keys[plan.sorted()]` and `order[plan.sorted()]`. Of the passes that the scene's bounds ask for the device leaves
-    /// out the first ones, as many as there are leading digits in which the keys agree (sort.glsl).
-    pub(crate) fn record(
-        &self,
-        recorder: &mut Recorder<'_>,
-        scene: &SceneBuffers,
-        b: &Buffers,
-        plan: &Plan,
-    ) {
-        let sorts = |pass: usize| {
-            let size = size_of::<[u32; 4]>();
-            let at = offset_of!(FrameCounts, sort_pass_groups) + pass * size;
-            Groups::Indirect(&b.counts, at as u64)
+fn carries() -> Kernel<sort_scatter::Program> {
+    Kernel::new(&sort_scatter::COMP, ())
+}
+
+fn ties() -> Kernel<sort_ties::Program> {
+    Kernel::new(&sort_ties::COMP, ())
+}
+
+/// Sorts the survivors by their depths, and those of one depth by their number in the file; the result is in
+/// `keys[plan.sorted()]` and `order[plan.sorted()]`. Of the passes that the scene's bounds ask for the device leaves
+/// out the first ones, as many as there are leading digits in which the keys agree (sort.glsl).
+fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
+    let (pipelines, b) = (frame.pipelines, frame.buffers);
+    let passes = frame.plan.sort_passes;
+    let of_pass = |pass: u32| {
+        let size = size_of::<[u32; 4]>();
+        let at = offset_of!(FrameCounts, sort_pass_groups) + pass as usize * size;
+        Groups::Indirect(&b.counts, at as u64)
+    };
+    let runs = indirect!(b.counts, FrameCounts, sort_groups);
+    let pairs = [(&b.keys[0], &b.order[0]), (&b.keys[1], &b.order[1])];
+    for pass in 0..passes {
+        let (keys, order) = pairs[(pass % 2) as usize];
+        let (sorted_keys, sorted_order) = pairs[(pass % 2) as usize ^ 1];
+        let buffers = sort_count::Buffers {
+            frame: &b.frame,
+            counts: &b.counts,
+            keys,
+            histogram: &b.histogram,
         };
-        let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, sort_groups) as u64);
-        let pairs = [(&b.keys[0], &b.order[0]), (&b.keys[1], &b.order[1])];
-        for pass in 0..plan.sort_passes as usize {
-            let params = [pass as u32, plan.sort_passes];
-            let (keys, order) = pairs[pass % 2];
-            let (sorted_keys, sorted_order) = pairs[(pass % 2) ^ 1];
-            let count = [&b.frame, &b.counts, keys, &b.histogram];
-            // What the first pass that there is sorts by has been counted before anybody knew which one it is.
-            let counts = if pass == 0 { groups } else { sorts(pass - 1) };
-            recorder.dispatch(&self.count, &count, &params, counts);
-            let scan = [&b.frame, &b.counts, &b.histogram];
-            recorder.dispatch(&self.scan, &scan, &params, Groups::Count(1));
-            let scatter = [
-                &b.frame,
-                &b.counts,
-                keys,
-                order,
-                &b.histogram,
-                sorted_keys,
-                sorted_order,
-            ];
-            recorder.dispatch(&self.scatter, &scatter, &params, sorts(pass));
-        }
-        if scene.reordered {
-            let sorted = plan.sorted();
-            let ties = [
-                &b.frame,
-                &b.counts,
-                &b.keys[sorted],
-                &b.order[sorted],
-                &b.order[sorted ^ 1],
-                &b.splats,
-            ];
-            recorder.dispatch(&self.ties, &ties, &[], groups);
-        }
+        // The first count is needed before anybody knows which pass is the first one.
+        let groups = if pass == 0 { runs } else { of_pass(pass - 1) };
+        let params = sort_count::Params { pass };
+        counts().dispatch(pipelines, recorder, buffers, params, groups);
+        let buffers = sort_scan::Buffers {
+            frame: &b.frame,
+            counts: &b.counts,
+            histogram: &b.histogram,
+        };
+        let params = sort_scan::Params { pass, passes };
+        places().dispatch(pipelines, recorder, buffers, params, Groups::Count(1));
+        let buffers = sort_scatter::Buffers {
+            frame: &b.frame,
+            counts: &b.counts,
+            keys,
+            order,
+            histogram: &b.histogram,
+            sorted_keys,
+            sorted_order,
+        };
+        let params = sort_scatter::Params { pass };
+        carries().dispatch(pipelines, recorder, buffers, params, of_pass(pass));
+    }
+    if frame.scene.reordered {
+        let sorted = frame.plan.sorted();
+        let buffers = sort_ties::Buffers {
+            frame: &b.frame,
+            counts: &b.counts,
+            keys: &b.keys[sorted],
+            order: &b.order[sorted],
+            scratch: &b.order[sorted ^ 1],
+            splats: &b.splats,
+        };
+        ties().dispatch(pipelines, recorder, buffers, (), runs);
     }
 }

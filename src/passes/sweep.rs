@@ -1,124 +1,130 @@
-//! Where the camera stands still and the clip moves: the Gaussians between its old and its new surface, and what of them
-//! the rasteriser holds. The survivors, which are all in view, their places, colours, order and tiles stay.
+//! Stages `reclip` and `recut`, where the camera stands still and the clip moves: the Gaussians between its old and its new
+//! surface, and what of them the rasteriser holds. The survivors, which are all in view, their places, colours, order and
+//! tiles stay.
 
-use std::mem::offset_of;
-
-use crate::error::Result;
-use crate::gpu::{ComputePipeline, Groups, Recorder};
-use crate::passes::blocks::{BlockList, groups_of_blocks};
-use crate::passes::buffers::{Buffers, SweepBuffers};
-use crate::passes::context::Context;
+use crate::gpu::{Groups, Recorder};
+use crate::passes::block_list::{self, ListFor};
+use crate::passes::blocks::groups_of_blocks;
+use crate::passes::buffers::indirect;
+use crate::passes::pipelines::Kernel;
 use crate::passes::plan::Plan;
-use crate::passes::scene_buffers::SceneBuffers;
-use crate::passes::shaders;
+use crate::passes::shaders::{reclip, reclip_blocks, reclip_compact, reclip_scan, recut};
+use crate::passes::stage::{Frame, Stage};
+use crate::passes::work::Work;
 use crate::types::FrameCounts;
 
 /// The classes that change.
-#[derive(Debug, Clone)]
-pub(crate) struct Reclip {
-    blocks: ComputePipeline,
-    reclip: ComputePipeline,
-    scan: ComputePipeline,
-    compact: ComputePipeline,
-}
-
-impl Reclip {
-    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
-        Ok(Self {
-            blocks: context.compute("reclip_blocks", &shaders::RECLIP_BLOCKS_COMP, &[])?,
-            reclip: context.compute("reclip", &shaders::RECLIP_COMP, &[])?,
-            scan: context.compute("reclip_scan", &shaders::RECLIP_SCAN_COMP, &[])?,
-            compact: context.compute("reclip_compact", &shaders::RECLIP_COMPACT_COMP, &[])?,
-        })
-    }
-
-    /// With `fresh` the survivors have no clip yet.
-    pub(crate) fn record(
-        &self,
-        recorder: &mut Recorder<'_>,
-        list: &BlockList,
-        scene: &SceneBuffers,
-        b: &Buffers,
-        s: &SweepBuffers,
-        (plan, fresh): (&Plan, bool),
-    ) {
-        let blocks = [
-            &b.frame,
-            &scene.blocks,
-            &b.block_sides,
-            &b.block_counts,
-            &s.looks,
-            &s.reclips,
-        ];
-        recorder.dispatch(
-            &self.blocks,
-            &blocks,
-            &[fresh.into()],
-            groups_of_blocks(plan),
-        );
-        list.record(recorder, &s.looks, b, BlockList::CLIP);
-        let looked_at = Groups::Indirect(&b.counts, offset_of!(FrameCounts, clip_groups) as u64);
-        let reclip = [
-            &b.frame,
-            &scene.gaussians,
-            &b.block_list,
-            &b.counts,
-            &s.looks,
-            &b.block_sides,
-            &b.masks,
-            &s.reclips,
-        ];
-        recorder.dispatch(&self.reclip, &reclip, &[], looked_at);
-        let scan = [&b.frame, &s.looks, &s.reclips, &b.counts];
-        recorder.dispatch(&self.scan, &scan, &[], Groups::Count(1));
-        let compact = [
-            &b.frame,
-            &b.block_list,
-            &b.counts,
-            &b.block_sides,
-            &b.masks,
-            &b.block_offsets,
-            &s.reclips,
-            &s.recuts,
-            &b.cutoffs,
-        ];
-        recorder.dispatch(&self.compact, &compact, &[], looked_at);
-    }
-}
+pub(crate) const RECLIP: Stage = Stage {
+    name: "reclip",
+    needed: |plan| plan.sweeps(),
+    missed: |_| false,
+    pipelines: |_, need| {
+        need(sides().key());
+        need(block_list::kernel().key());
+        need(classes().key());
+        need(places().key());
+        need(lists().key());
+    },
+    record: record_reclip,
+};
 
 /// What the rasteriser holds of the survivors that change.
-#[derive(Debug, Clone)]
-pub(crate) struct Recut {
-    pipeline: ComputePipeline,
+pub(crate) const RECUT: Stage = Stage {
+    name: "recut",
+    needed: |plan| plan.sweeps(),
+    missed: |_| false,
+    pipelines: |plan, need| need(changes(plan).key()),
+    record: record_recut,
+};
+
+fn sides() -> Kernel<reclip_blocks::Program> {
+    Kernel::new(&reclip_blocks::COMP, ())
 }
 
-impl Recut {
-    /// With `tiles` false the shader knows none.
-    pub(crate) fn new(context: &Context<'_>, tiles: bool) -> Result<Self> {
-        Ok(Self {
-            pipeline: context.compute("recut", &shaders::RECUT_COMP, &[(0, tiles.into())])?,
-        })
-    }
+fn classes() -> Kernel<reclip::Program> {
+    Kernel::new(&reclip::COMP, ())
+}
 
-    pub(crate) fn record(
-        &self,
-        recorder: &mut Recorder<'_>,
-        scene: &SceneBuffers,
-        b: &Buffers,
-        s: &SweepBuffers,
-    ) {
-        let buffers = [
-            &b.frame,
-            &scene.gaussians,
-            &b.survivors,
-            &b.counts,
-            &s.recuts,
-            &b.cuts,
-            &b.tile_masks,
-            &b.splats,
-            &s.dirty,
-        ];
-        let groups = Groups::Indirect(&b.counts, offset_of!(FrameCounts, recut_groups) as u64);
-        recorder.dispatch(&self.pipeline, &buffers, &[], groups);
-    }
+fn places() -> Kernel<reclip_scan::Program> {
+    Kernel::new(&reclip_scan::COMP, ())
+}
+
+fn lists() -> Kernel<reclip_compact::Program> {
+    Kernel::new(&reclip_compact::COMP, ())
+}
+
+fn changes(plan: &Plan) -> Kernel<recut::Program> {
+    let tiles = plan.is_tiled();
+    Kernel::new(&recut::COMP, recut::Constants { tiles })
+}
+
+fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
+    let (pipelines, scene, b, s) = (frame.pipelines, frame.scene, frame.buffers, frame.sweep());
+    let buffers = reclip_blocks::Buffers {
+        frame: &b.frame,
+        blocks: &scene.blocks,
+        block_sides: &b.block_sides,
+        block_counts: &b.block_counts,
+        looks: &s.looks,
+        reclips: &s.reclips,
+    };
+    // The survivors may have no clip yet.
+    let fresh = matches!(frame.plan.work, Work::Sweep { fresh: true, .. });
+    let params = reclip_blocks::Params {
+        fresh: fresh.into(),
+    };
+    let groups = groups_of_blocks(frame.plan);
+    sides().dispatch(pipelines, recorder, buffers, params, groups);
+    block_list::record(frame, recorder, &s.looks, ListFor::Clip);
+    let looked_at = indirect!(b.counts, FrameCounts, clip_groups);
+    let buffers = reclip::Buffers {
+        frame: &b.frame,
+        gaussians: &scene.gaussians,
+        block_list: &b.block_list,
+        counts: &b.counts,
+        looks: &s.looks,
+        block_sides: &b.block_sides,
+        masks: &b.masks,
+        reclips: &s.reclips,
+    };
+    classes().dispatch(pipelines, recorder, buffers, (), looked_at);
+    let buffers = reclip_scan::Buffers {
+        frame: &b.frame,
+        looks: &s.looks,
+        reclips: &s.reclips,
+        counts: &b.counts,
+    };
+    places().dispatch(pipelines, recorder, buffers, (), Groups::Count(1));
+    let buffers = reclip_compact::Buffers {
+        frame: &b.frame,
+        block_list: &b.block_list,
+        counts: &b.counts,
+        block_sides: &b.block_sides,
+        masks: &b.masks,
+        block_offsets: &b.block_offsets,
+        reclips: &s.reclips,
+        recuts: &s.recuts,
+        cutoffs: &b.cutoffs,
+    };
+    lists().dispatch(pipelines, recorder, buffers, (), looked_at);
+}
+
+fn record_recut(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
+    let (scene, b, s) = (frame.scene, frame.buffers, frame.sweep());
+    // The tiles to draw again: all, where no frame has drawn what is in view.
+    let all = frame.plan.finds_view();
+    recorder.fill(&s.dirty, 0, s.dirty.size(), all.into());
+    let buffers = recut::Buffers {
+        frame: &b.frame,
+        gaussians: &scene.gaussians,
+        survivors: &b.survivors,
+        counts: &b.counts,
+        recuts: &s.recuts,
+        cuts: &b.cuts,
+        tile_masks: &b.tile_masks,
+        splats: &b.splats,
+        dirty: &s.dirty,
+    };
+    let groups = indirect!(b.counts, FrameCounts, recut_groups);
+    changes(frame.plan).dispatch(frame.pipelines, recorder, buffers, (), groups);
 }

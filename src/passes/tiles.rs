@@ -1,104 +1,27 @@
-//! Stages 8 and 9, the tile rasteriser: which splats meet each tile of pixels, front to back, and a compute shader that blends them until
-//! the tile is saturated. What does not fit is drawn as quads in the same frame.
+//! Stage `tiles`, the tile rasteriser: a compute shader that blends the splats of each tile of pixels, front to back, until
+//! the tile is saturated; and the draw of its picture. What does not fit is drawn as quads in the same frame.
 
 use std::mem::offset_of;
 
-use ash::vk;
-
-use crate::error::Result;
-use crate::gpu::{Attachments, ComputePipeline, Drawer, GraphicsPipeline, Groups, Recorder};
+use crate::gpu::{Attachments, Drawer, Recorder};
 use crate::limits;
-use crate::passes::buffers::{Buffers, TileBuffers};
-use crate::passes::context::Context;
+use crate::passes::buffers::{Buffers, TileBuffers, indirect};
+use crate::passes::pipelines::{Draw, Kernel, Pipelines};
 use crate::passes::plan::Plan;
-use crate::passes::shaders;
-use crate::passes::splat::WeightKey;
+use crate::passes::shaders::{composite, tiles};
+use crate::passes::stage::{Frame, Stage};
+use crate::passes::weight::Weight;
 use crate::passes::work::Work;
 use crate::settings::Show;
 use crate::types::{self, FrameCounts};
 
-/// The splats of each tile, by depth: first the spans of each row of tiles, then their splats in each of the row's tiles.
-#[derive(Debug, Clone)]
-pub(crate) struct Bin {
-    span_count: ComputePipeline,
-    span_scan: ComputePipeline,
-    span_scatter: ComputePipeline,
-    tile_count: ComputePipeline,
-    tile_scan: ComputePipeline,
-    tile_scatter: ComputePipeline,
-}
-
-impl Bin {
-    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
-        Ok(Self {
-            span_count: context.compute("span_count", &shaders::SPAN_COUNT_COMP, &[])?,
-            span_scan: context.compute("span_scan", &shaders::SPAN_SCAN_COMP, &[])?,
-            span_scatter: context.compute("span_scatter", &shaders::SPAN_SCATTER_COMP, &[])?,
-            tile_count: context.compute("tile_count", &shaders::TILE_COUNT_COMP, &[])?,
-            tile_scan: context.compute("tile_scan", &shaders::TILE_SCAN_COMP, &[])?,
-            tile_scatter: context.compute("tile_scatter", &shaders::TILE_SCATTER_COMP, &[])?,
-        })
-    }
-
-    pub(crate) fn record(
-        &self,
-        recorder: &mut Recorder<'_>,
-        b: &Buffers,
-        t: &TileBuffers,
-        plan: &Plan,
-    ) {
-        let sorted = plan.sorted();
-        let order = &b.order[sorted];
-        // What the sort has done with has room for the masks in the order of depth.
-        let [origins, above, below] = [&b.keys[0], &b.keys[1], &b.order[sorted ^ 1]];
-        let at = |offset: usize| Groups::Indirect(&b.counts, offset as u64);
-        let runs = at(offset_of!(FrameCounts, sort_groups));
-        let runs_with_room = at(offset_of!(FrameCounts, span_groups));
-        let parts = at(offset_of!(FrameCounts, part_groups));
-        let rows = at(offset_of!(FrameCounts, row_groups));
-        let span_count = [
-            &b.frame,
-            &b.counts,
-            &b.splats,
-            order,
-            &b.histogram,
-            &b.tile_masks,
-            origins,
-            above,
-            below,
-        ];
-        recorder.dispatch(&self.span_count, &span_count, &[], runs);
-        let span_scan = [&b.frame, &b.counts, &b.histogram, &t.row_begins];
-        recorder.dispatch(&self.span_scan, &span_scan, &[], Groups::Count(1));
-        let span_scatter = [
-            &b.frame,
-            &b.counts,
-            &b.splats,
-            order,
-            &b.histogram,
-            &t.span_splats,
-            &t.span_columns,
-            origins,
-            above,
-            below,
-        ];
-        recorder.dispatch(&self.span_scatter, &span_scatter, &[], runs_with_room);
-        let tile_count = [&b.frame, &t.row_begins, &t.column_counts, &t.span_columns];
-        recorder.dispatch(&self.tile_count, &tile_count, &[], parts);
-        let tile_scan = [&b.frame, &t.row_begins, &t.column_counts, &t.begins];
-        recorder.dispatch(&self.tile_scan, &tile_scan, &[], rows);
-        let tile_scatter = [
-            &b.frame,
-            &t.row_begins,
-            &t.column_counts,
-            &t.span_splats,
-            &t.span_columns,
-            &b.counts,
-            &t.splats,
-        ];
-        recorder.dispatch(&self.tile_scatter, &tile_scatter, &[], parts);
-    }
-}
+pub(crate) const STAGE: Stage = Stage {
+    name: "tiles",
+    needed: |plan| plan.is_tiled() && plan.work != Work::Draw,
+    missed: |plan| plan.is_tiled() || plan.gaussians == 0,
+    pipelines: |plan, need| need(kernel(plan).key()),
+    record,
+};
 
 /// How the invocations of a workgroup share its tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -124,132 +47,81 @@ impl TileWork {
     }
 }
 
-/// What tells one pipeline of the tiles' pixels from another.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct TilesKey {
-    weight: WeightKey,
-    work: TileWork,
-    sweep: bool,
-    depth: u32,
-    show: Show,
+fn kernel(plan: &Plan) -> Kernel<tiles::Program> {
+    let weight = Weight::of(plan);
+    let work = plan.tile_work;
+    let constants = tiles::Constants {
+        clip_mode: weight.mode,
+        clip_op: weight.op,
+        decay: weight.decay,
+        miss: weight.miss,
+        phi_form: weight.phi,
+        rows: work.rows,
+        local_size_y: limits::TILE_HEIGHT / work.rows,
+        sweep: plan.sweeps(),
+        depth_form: plan.occluders.map_or(types::DEPTH_NONE, |o| o.form),
+        show_weight: plan.show == Show::Weight,
+    };
+    let shader = if work.subgroups {
+        &tiles::SUBGROUP_COMP
+    } else {
+        &tiles::COMP
+    };
+    Kernel::new(shader, constants)
 }
 
-impl TilesKey {
-    /// What a plan needs.
-    pub(crate) fn new(plan: &Plan) -> Self {
-        Self {
-            weight: WeightKey::new(plan),
-            work: plan.tile_work,
-            sweep: matches!(plan.work, Work::Sweep { .. }),
-            depth: plan.occluders.map_or(types::DEPTH_NONE, |o| o.form),
-            show: plan.show,
-        }
-    }
-}
-
-/// The tiles' pixels.
-#[derive(Debug, Clone)]
-pub(crate) struct Tiles {
-    pipeline: ComputePipeline,
-}
-
-impl Tiles {
-    pub(crate) fn new(context: &Context<'_>, key: TilesKey) -> Result<Self> {
-        let [mode, op, decay, miss, phi] = key.weight.constants();
-        let constants = [
-            mode,
-            op,
-            decay,
-            miss,
-            phi,
-            (5, key.work.rows),
-            (6, limits::TILE_HEIGHT / key.work.rows),
-            (7, key.sweep.into()),
-            (8, key.depth),
-            (9, (key.show == Show::Weight).into()),
-        ];
-        let shader = if key.work.subgroups {
-            &shaders::TILES_SUBGROUP_COMP
-        } else {
-            &shaders::TILES_COMP
-        };
-        Ok(Self {
-            pipeline: context.compute("tiles", shader, &constants)?,
-        })
-    }
-
-    pub(crate) fn record(
-        &self,
-        recorder: &mut Recorder<'_>,
-        b: &Buffers,
-        t: &TileBuffers,
-        (plan, copied): (&Plan, vk::Rect2D),
-    ) {
+fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
+    let (plan, b, t) = (frame.plan, frame.buffers, frame.tiles());
+    let buffers = tiles::Buffers {
+        frame: &b.frame,
+        splats: &b.splats,
+        tile_splats: &t.splats,
+        tile_begins: &t.begins,
+        cuts: &b.cuts,
+        picture: &t.picture,
         // Only a sweep looks at what is dirty.
-        let dirty = b.sweep.as_ref().map_or(&b.counts, |sweep| &sweep.dirty);
-        let occluders = plan.occluders.map_or(&b.counts, |_| &t.occluders);
-        let buffers = [
-            &b.frame, &b.splats, &t.splats, &t.begins, &b.cuts, &t.picture, dirty, occluders,
-        ];
-        let [_, _, cx, cy] = plan.data.focal.map(f32::to_bits);
-        let [offset, scale] = plan.occluders.map_or([0, 0], |o| o.map.words());
-        let (at, size) = (copied.offset, copied.extent);
-        let sigma = plan.data.sigma.to_bits();
-        let params = [
-            0,
-            0,
-            sigma,
-            plan.cut_stride,
-            cx,
-            cy,
-            offset,
-            scale,
-            at.x as u32,
-            at.y as u32,
-            size.width,
-            size.height,
-        ];
-        let tiles = Groups::Indirect(&b.counts, offset_of!(FrameCounts, tile_groups) as u64);
-        recorder.dispatch(&self.pipeline, &buffers, &params, tiles);
-    }
+        dirty: b.sweep.as_ref().map_or(&b.counts, |sweep| &sweep.dirty),
+        occluders: plan.occluders.map_or(&b.counts, |_| &t.occluders),
+    };
+    let [_, _, cx, cy] = plan.data.focal;
+    let [depth_offset, depth_scale] = plan.occluders.map_or([0.0; 2], |o| o.map.factors());
+    let (at, size) = (frame.copied.offset, frame.copied.extent);
+    let params = tiles::Params {
+        principal_point: [cx, cy],
+        sigma: plan.data.sigma,
+        cut_stride: plan.cut_stride,
+        depth_offset,
+        depth_scale,
+        copy_origin: [at.x, at.y],
+        copy_size: [size.width, size.height],
+    };
+    let groups = indirect!(b.counts, FrameCounts, tile_groups);
+    kernel(plan).dispatch(frame.pipelines, recorder, buffers, params, groups);
 }
 
-/// The tiles' picture, blended onto what the host has drawn.
-#[derive(Debug, Clone)]
-pub(crate) struct Composite {
-    pipeline: GraphicsPipeline,
+/// The draw of the tiles' picture.
+pub(crate) fn composite(attachments: Attachments) -> Draw<composite::Program> {
+    Draw::new([&composite::VERT, &composite::FRAG], (), attachments, false)
 }
 
-impl Composite {
-    pub(crate) fn new(context: &Context<'_>) -> Result<Self> {
-        let (front, fragment) = (&shaders::COMPOSITE_VERT, &shaders::COMPOSITE_FRAG);
-        Ok(Self {
-            pipeline: context.graphics("composite", front, fragment, &[], false)?,
-        })
-    }
-
-    /// Draws inside the host's rendering scope; `origin` is where its viewport begins, px.
-    pub(crate) fn record(
-        &self,
-        drawer: &mut Drawer<'_>,
-        b: &Buffers,
-        t: &TileBuffers,
-        origin: [f32; 2],
-    ) {
-        let buffers = [&b.frame, &t.picture, &t.begins];
-        let at = offset_of!(FrameCounts, composite) as u64;
-        drawer.draw_indirect(
-            &self.pipeline,
-            &buffers,
-            &origin.map(f32::to_bits),
-            &b.counts,
-            at,
-        );
-    }
+/// Blends the tiles' picture onto what the host has drawn, inside the host's rendering scope; `origin` is where its viewport
+/// begins, px.
+pub(crate) fn record_composite(
+    drawer: &mut Drawer<'_>,
+    pipelines: &Pipelines,
+    (b, t): (&Buffers, &TileBuffers),
+    attachments: Attachments,
+    origin: [f32; 2],
+) {
+    let buffers = composite::Buffers {
+        frame: &b.frame,
+        picture: &t.picture,
+        tile_begins: &t.begins,
+    };
+    let args = (&b.counts, offset_of!(FrameCounts, composite) as u64);
+    let params = composite::Params { origin };
+    composite(attachments).draw(pipelines, drawer, buffers, params, args);
 }
-
-/// Graphics pipelines differ by what they draw into.
-pub(crate) type Composites = std::collections::HashMap<Attachments, Composite>;
 
 #[cfg(test)]
 mod tests {

@@ -3,7 +3,7 @@
 use bytemuck::bytes_of;
 
 use crate::passes::plan::Plan;
-use crate::passes::splat::WeightKey;
+use crate::passes::weight::Weight;
 use crate::types::{self, FrameData};
 
 /// What of a frame has to be computed.
@@ -94,7 +94,7 @@ impl Plan {
             ..plan.data
         };
         same(&data(self), &data(other))
-            && WeightKey::new(self) == WeightKey::new(other)
+            && Weight::of(self) == Weight::of(other)
             && self.goes_the_way_of(other)
     }
 

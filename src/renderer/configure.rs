@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{Bindings, Support};
 use crate::limits;
 use crate::passes::{
-    Buffers, Context, Kept, Occluders, Plan, SceneBuffers, SceneFacts, Stages, TileWork, Work,
+    Buffers, Kept, Occluders, Pipelines, Plan, SceneBuffers, SceneFacts, Targets, TileWork, Work,
 };
 use crate::placement::Placement;
 use crate::settings::{Raster, Settings};
@@ -129,27 +129,40 @@ impl Renderer {
             }
             Bindings::Bound | Bindings::Address => Bindings::Address,
         };
-        let context = Context {
-            device: &self.device,
-            bindings: self.bindings,
-            attachments: self.desc.attachments(),
+        self.ensure_pipelines(&plan)?;
+        self.plan = Some(plan);
+        Ok(())
+    }
+
+    /// Makes the pipelines that a plan needs and nobody has needed before.
+    fn ensure_pipelines(&mut self, plan: &Plan) -> Result<()> {
+        let targets = Targets {
+            colour: self.desc.attachments(),
             expected_depth: self.desc.expected_depth(),
         };
         let at = self.bindings as usize;
-        let has_all = |stages: &Stages| stages.has(&context, &plan);
-        if !self.stages[at].as_deref().is_some_and(has_all) {
-            let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
-            let shared = match &mut shared[at] {
-                Some(shared) => shared,
-                missing => missing.insert(Arc::new(Stages::new(&context)?)),
-            };
-            if !has_all(shared) {
-                // A copy for all who come, while others record with what they have.
-                Arc::make_mut(shared).ensure(&context, &plan)?;
-            }
-            self.stages[at] = Some(shared.clone());
+        let has_all = |pipelines: &Pipelines| {
+            let mut all = true;
+            plan.pipelines(targets, &mut |key| all &= pipelines.has(&key));
+            all
+        };
+        if self.pipelines[at].as_deref().is_some_and(has_all) {
+            return Ok(());
         }
-        self.plan = Some(plan);
+        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        let shared = shared[at].get_or_insert_with(|| Arc::new(Pipelines::new(self.bindings)));
+        if !has_all(shared) {
+            // A copy for all who come, while others record with what they have.
+            let pipelines = Arc::make_mut(shared);
+            let mut made = Ok(());
+            plan.pipelines(targets, &mut |key| {
+                if made.is_ok() {
+                    made = pipelines.ensure(&self.device, key);
+                }
+            });
+            made?;
+        }
+        self.pipelines[at] = Some(shared.clone());
         Ok(())
     }
 

@@ -10,9 +10,8 @@ use crate::error::{Error, Result};
 use crate::gpu::{
     Bindings, Buffer, BufferDesc, DepthImage, Device, Drawer, Location, Recorder, Timer,
 };
-use crate::passes::{self, Buffers, Kept, PairRoom, Plan, SceneBuffers, Stages, Work};
+use crate::passes::{self, Buffers, Frame, Kept, PairRoom, Pipelines, Plan, SceneBuffers, Work, tiles};
 use crate::placement::Placement;
-use crate::settings::Raster;
 use crate::types::FrameCounts;
 
 mod configure;
@@ -78,9 +77,9 @@ pub struct Renderer {
     /// Where the scene stands in the world of camera, clip and depths; of the next frame too.
     placement: Placement,
     next_placement: Placement,
-    shared: SharedStages,
+    shared: SharedPipelines,
     /// What of the shared pipelines this renderer has seen, so that recording takes no lock.
-    stages: [Option<Arc<Stages>>; 2],
+    pipelines: [Option<Arc<Pipelines>>; 2],
     buffers: Option<Buffers>,
     /// What frames in flight may still use, with the number of frames prepared when it was replaced.
     retired: Vec<(u64, Buffers)>,
@@ -105,7 +104,7 @@ pub struct Renderer {
 
 /// For addresses and for bound buffers. Only `configure` locks them, and only where something is missing; it puts more
 /// pipelines in and takes none out, so that frames in flight keep theirs.
-type SharedStages = Arc<Mutex<[Option<Arc<Stages>>; 2]>>;
+type SharedPipelines = Arc<Mutex<[Option<Arc<Pipelines>>; 2]>>;
 
 /// What a frame tells about itself, kept until its slot's next frame.
 #[derive(Debug)]
@@ -144,7 +143,7 @@ impl Renderer {
     /// [`Error::Device`](crate::Error::Device) where the device cannot draw into such attachments, and
     /// [`Error::Invalid`](crate::Error::Invalid) where there can be none such.
     pub fn new(device: &Device, desc: RendererDesc) -> Result<Self> {
-        Self::with(device, desc, SharedStages::default())
+        Self::with(device, desc, SharedPipelines::default())
     }
 
     /// Another renderer on the same device that shares this one's compiled pipelines: one for each view that is drawn in the
@@ -156,7 +155,7 @@ impl Renderer {
         Self::with(&self.device, desc, self.shared.clone())
     }
 
-    fn with(device: &Device, desc: RendererDesc, shared: SharedStages) -> Result<Self> {
+    fn with(device: &Device, desc: RendererDesc, shared: SharedPipelines) -> Result<Self> {
         desc.check(device)?;
         let slots =
             (0..desc.frames_in_flight).map(|_| Slot::new(device, desc.timing, desc.statistics));
@@ -167,7 +166,7 @@ impl Renderer {
             placement: Placement::IDENTITY,
             next_placement: Placement::IDENTITY,
             shared,
-            stages: [None, None],
+            pipelines: [None, None],
             buffers: None,
             retired: Vec::new(),
             slots: slots.collect::<Result<_>>()?,
@@ -305,8 +304,8 @@ impl Renderer {
         scene: &SceneBuffers,
         depth: Option<&DepthImage>,
     ) -> Result<()> {
-        let (Some(stages), Some(buffers), Some(plan)) = (
-            &self.stages[self.bindings as usize],
+        let (Some(pipelines), Some(buffers), Some(plan)) = (
+            &self.pipelines[self.bindings as usize],
             &self.buffers,
             &self.plan,
         ) else {
@@ -332,14 +331,14 @@ impl Renderer {
             },
         );
         let copied = occluders.unwrap_or_default();
-        passes::record(
-            &mut recorder,
-            stages,
+        let frame = Frame {
+            plan,
+            pipelines,
             scene,
             buffers,
-            (plan, copied),
-            &slot.counts,
-        );
+            copied,
+        };
+        passes::record(&frame, &mut recorder, &slot.counts);
         if plan.work != Work::Draw {
             let before = self.kept.take();
             let keeps = self.desc.reuse && plan.occluders.is_none();
@@ -359,8 +358,8 @@ impl Renderer {
     /// # Errors
     /// [`Error::Invalid`] without a prepared frame; nothing is recorded then.
     pub unsafe fn draw(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) -> Result<()> {
-        let (Some(stages), Some(buffers), Some(plan), true) = (
-            &self.stages[self.bindings as usize],
+        let (Some(pipelines), Some(buffers), Some(plan), true) = (
+            &self.pipelines[self.bindings as usize],
             &self.buffers,
             &self.plan,
             self.ready,
@@ -374,15 +373,14 @@ impl Renderer {
         let map = self.depth_map();
         let timer = self.slots[at].timer.as_mut();
         let attachments = self.desc.attachments();
-        let splat = stages.splat(plan, attachments);
-        let composite = stages.composite.get(&attachments);
-        let tiles = composite.zip(buffers.tiles.as_ref());
+        let tiled = buffers.tiles.as_ref().filter(|_| plan.is_tiled());
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
         let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
         drawer.pass("splat", |drawer| {
-            splat.record(drawer, buffers, plan, origin, map);
-            if let Some((composite, t)) = tiles.filter(|_| plan.raster == Raster::Tiles) {
-                composite.record(drawer, buffers, t, origin);
+            let frame = (plan, buffers);
+            passes::splat::record(drawer, pipelines, frame, attachments, origin, map);
+            if let Some(t) = tiled {
+                tiles::record_composite(drawer, pipelines, (buffers, t), attachments, origin);
             }
         });
         Ok(())
@@ -406,8 +404,8 @@ impl Renderer {
         let Some(attachments) = self.desc.expected_depth() else {
             return out_of_order("draw_depth needs RendererDesc::expected_depth");
         };
-        let (Some(stages), Some(buffers), Some(plan), true) = (
-            &self.stages[self.bindings as usize],
+        let (Some(pipelines), Some(buffers), Some(plan), true) = (
+            &self.pipelines[self.bindings as usize],
             &self.buffers,
             &self.plan,
             self.ready,
@@ -420,13 +418,14 @@ impl Renderer {
             return Ok(());
         };
         let (map, unit) = (self.depth_map(), self.placement.scale());
-        let splat_depth = stages.splat_depth(plan, attachments);
         let at = ((self.prepared - 1) % self.slots.len() as u64) as usize;
         let timer = self.slots[at].timer.as_mut();
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
         let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
         drawer.pass("splat_depth", |drawer| {
-            splat_depth.record(drawer, (buffers, depths), plan, origin, map, unit);
+            let frame = (plan, buffers, depths);
+            let map = (map, unit);
+            passes::depth::record_draw(drawer, pipelines, frame, attachments, origin, map);
         });
         Ok(())
     }

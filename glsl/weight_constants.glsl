@@ -1,0 +1,12 @@
+// What the weight of cut splats depends on is fixed in the pipeline: without a clip none of its code is there.
+#ifndef RARA_WEIGHT_CONSTANTS
+#define RARA_WEIGHT_CONSTANTS
+#include "types.glsl"
+
+layout(constant_id = 0) const uint CLIP_MODE = MODE_NONE; // MODE_*
+layout(constant_id = 1) const uint CLIP_OP = OP_AND; // OP_*
+layout(constant_id = 2) const uint DECAY = DECAY_DEPTH; // DECAY_*
+layout(constant_id = 3) const uint MISS = MISS_PEAK; // MISS_*
+layout(constant_id = 4) const uint PHI_FORM = PHI_QUINTIC; // PHI_*: which approximation of Phi
+
+#endif

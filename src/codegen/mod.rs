@@ -1,0 +1,15 @@
+//! What build.rs makes of `glsl/`: Rust constants, structs and the interface of every shader. It is compiled into the build
+//! script, and into the crate's tests.
+
+pub(crate) mod glsl;
+pub(crate) mod interface;
+pub(crate) mod manifest;
+pub(crate) mod spirv;
+
+#[cfg(feature = "shaderc")]
+#[cfg(not(test))]
+pub(crate) mod compile;
+
+/// The two ways in which a shader reaches its buffers: ending of the SPIR-V's file name, and preprocessor definition.
+pub(crate) const VARIANTS: [(&str, Option<&str>); 2] =
+    [("address", None), ("bound", Some("RARA_BOUND"))];

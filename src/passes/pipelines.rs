@@ -1,0 +1,215 @@
+//! The pipelines of all stages, in one cache: each is made when a frame first needs it, and is found again by what it is
+//! made of.
+
+use std::collections::HashMap;
+use std::hash::{Hash, Hasher};
+use std::marker::PhantomData;
+
+use ash::vk;
+
+use crate::error::Result;
+use crate::gpu::{
+    Attachments, Bindings, Buffer, ComputeDesc, ComputePipeline, Device, Drawer, GraphicsDesc,
+    GraphicsPipeline, Groups, Recorder, Shader,
+};
+use crate::passes::shaders::{BufferSet, ConstantList, ConstantSet, Interface};
+
+/// What tells a pipeline from all others: its shaders, their constants, and what it draws into.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(crate) struct PipelineKey {
+    /// For debuggers, validation messages and errors.
+    name: &'static str,
+    shader: Identity,
+    constants: ConstantList,
+    /// Of a draw: its fragment shader, the attachments, and whether it tests the host's depth.
+    draw: Option<(Identity, Attachments, bool)>,
+}
+
+/// A shader, compared by where it is.
+#[derive(Debug, Clone, Copy)]
+struct Identity(&'static Shader);
+
+impl PartialEq for Identity {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.0, other.0)
+    }
+}
+
+impl Eq for Identity {}
+
+impl Hash for Identity {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        std::ptr::from_ref(self.0).hash(state);
+    }
+}
+
+/// A compute pipeline that a stage dispatches: a shader of a program, with constants.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Kernel<P> {
+    key: PipelineKey,
+    program: PhantomData<P>,
+}
+
+impl<P: Interface> Kernel<P> {
+    pub(crate) fn new(shader: &'static Shader, constants: P::Constants) -> Self {
+        let key = PipelineKey {
+            name: P::NAME,
+            shader: Identity(shader),
+            constants: constants.list(),
+            draw: None,
+        };
+        Self {
+            key,
+            program: PhantomData,
+        }
+    }
+
+    /// What it is made of.
+    pub(crate) fn key(self) -> PipelineKey {
+        self.key
+    }
+
+    /// Records a dispatch.
+    pub(crate) fn dispatch(
+        &self,
+        pipelines: &Pipelines,
+        recorder: &mut Recorder<'_>,
+        buffers: P::Buffers<'_>,
+        params: P::Params,
+        groups: Groups<'_>,
+    ) {
+        let pipeline = &pipelines.compute[&self.key];
+        let params = bytemuck::bytes_of(&params);
+        recorder.dispatch(
+            pipeline,
+            &buffers.list(),
+            bytemuck::cast_slice(params),
+            groups,
+        );
+    }
+}
+
+/// A graphics pipeline that a stage draws with.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Draw<P> {
+    key: PipelineKey,
+    program: PhantomData<P>,
+}
+
+impl<P: Interface> Draw<P> {
+    pub(crate) fn new(
+        [front, fragment]: [&'static Shader; 2],
+        constants: P::Constants,
+        attachments: Attachments,
+        depth_test: bool,
+    ) -> Self {
+        let key = PipelineKey {
+            name: P::NAME,
+            shader: Identity(front),
+            constants: constants.list(),
+            draw: Some((Identity(fragment), attachments, depth_test)),
+        };
+        Self {
+            key,
+            program: PhantomData,
+        }
+    }
+
+    /// What it is made of.
+    pub(crate) fn key(self) -> PipelineKey {
+        self.key
+    }
+
+    /// Records a draw whose indirect command, of meshes or of vertices, is at `offset` in `args`.
+    pub(crate) fn draw(
+        &self,
+        pipelines: &Pipelines,
+        drawer: &mut Drawer<'_>,
+        buffers: P::Buffers<'_>,
+        params: P::Params,
+        (args, offset): (&Buffer, u64),
+    ) {
+        let pipeline = &pipelines.graphics[&self.key];
+        let params: &[u32] = bytemuck::cast_slice(bytemuck::bytes_of(&params));
+        let buffers = buffers.list();
+        if self.key.shader.0.stage == vk::ShaderStageFlags::MESH_EXT {
+            drawer.draw_mesh_tasks_indirect(pipeline, &buffers, params, args, offset);
+        } else {
+            drawer.draw_indirect(pipeline, &buffers, params, args, offset);
+        }
+    }
+}
+
+/// Every pipeline that frames have needed so far, for one way of binding. A copy has the same pipelines.
+#[derive(Debug, Clone)]
+pub(crate) struct Pipelines {
+    bindings: Bindings,
+    compute: HashMap<PipelineKey, ComputePipeline>,
+    graphics: HashMap<PipelineKey, GraphicsPipeline>,
+}
+
+impl Pipelines {
+    pub(crate) fn new(bindings: Bindings) -> Self {
+        Self {
+            bindings,
+            compute: HashMap::new(),
+            graphics: HashMap::new(),
+        }
+    }
+
+    /// Whether a pipeline is there.
+    pub(crate) fn has(&self, key: &PipelineKey) -> bool {
+        self.compute.contains_key(key) || self.graphics.contains_key(key)
+    }
+
+    /// Makes a pipeline that is not there yet.
+    pub(crate) fn ensure(&mut self, device: &Device, key: PipelineKey) -> Result<()> {
+        if self.has(&key) {
+            return Ok(());
+        }
+        let PipelineKey {
+            name,
+            shader: Identity(shader),
+            ref constants,
+            draw,
+        } = key;
+        let bindings = self.bindings;
+        if let Some((Identity(fragment), attachments, depth_test)) = draw {
+            let desc = GraphicsDesc {
+                name,
+                front: shader,
+                fragment,
+                constants,
+                attachments,
+                depth_test,
+                blend: Some(OVER),
+                topology: vk::PrimitiveTopology::TRIANGLE_STRIP,
+                bindings,
+            };
+            let pipeline = GraphicsPipeline::new(device, &desc)?;
+            self.graphics.insert(key, pipeline);
+        } else {
+            let desc = ComputeDesc {
+                name,
+                shader,
+                constants,
+                bindings,
+            };
+            let pipeline = ComputePipeline::new(device, &desc)?;
+            self.compute.insert(key, pipeline);
+        }
+        Ok(())
+    }
+}
+
+/// Premultiplied `over`.
+const OVER: vk::PipelineColorBlendAttachmentState = vk::PipelineColorBlendAttachmentState {
+    blend_enable: vk::TRUE,
+    src_color_blend_factor: vk::BlendFactor::ONE,
+    dst_color_blend_factor: vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
+    color_blend_op: vk::BlendOp::ADD,
+    src_alpha_blend_factor: vk::BlendFactor::ONE,
+    dst_alpha_blend_factor: vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
+    alpha_blend_op: vk::BlendOp::ADD,
+    color_write_mask: vk::ColorComponentFlags::RGBA,
+};

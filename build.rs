@@ -24,7 +24,10 @@ fn main() {
     let limits = read("glsl/limits.glsl");
     write("limits.rs", glsl::constants(&limits));
     let types = read("glsl/types.glsl");
-    write("types.rs", glsl::structs(&types, &limits) + &glsl::constants(&types));
+    write(
+        "types.rs",
+        glsl::structs(&types, &limits) + &glsl::constants(&types),
+    );
     let modules = spirv_of(Path::new("glsl"), &out);
     write("shaders.rs", shaders(Path::new("glsl"), &modules));
 }

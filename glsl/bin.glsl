@@ -67,7 +67,7 @@ Outline outline(Splat splat) {
     if (abs(plane.x) < CUT_RANGE) {
         o.line = hidden_beyond(plane, splat.curvature.xyz, vec2(width, o.reach));
     }
-    o.rows = tiles_between(top, bottom, FRAME.size.y, TILE_HEIGHT);
+    o.rows = tiles_between(top, bottom, FRAME.view.size.y, TILE_HEIGHT);
     return o;
 }
 
@@ -99,7 +99,7 @@ uvec2 tiles_in_row(Outline o, uint row) {
     if (o.line.y == 0.0 && least < 0.0) {
         return uvec2(0u);
     }
-    return tiles_between(left, right, FRAME.size.x, TILE_WIDTH);
+    return tiles_between(left, right, FRAME.view.size.x, TILE_WIDTH);
 }
 
 // A splat's tiles as a mask of MASK_SIDE x MASK_SIDE bits, row by row, from a first tile on: what project.comp finds once,
@@ -156,7 +156,7 @@ Span next_span(uint origin, inout uvec2 mask) {
 
 // Where span_counts has how many tiles a run's splats touch in all.
 uint pairs_place(uint run) {
-    return FRAME.sort_runs * tile_rows() + run;
+    return FRAME.order.sort_runs * tile_rows() + run;
 }
 
 #endif

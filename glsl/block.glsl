@@ -19,22 +19,22 @@ vec3 block_half(Block block) {
 }
 
 uint block_plane_side(uint plane, Block block, float widening) {
-    if (FRAME.trace_all != 0u && FRAME.mode != MODE_HARD) {
+    if (FRAME.region.trace_all != 0u && FRAME.region.mode != MODE_HARD) {
         return SIDE_CUTOFF;
     }
     float reach = widening * max(block.low_reach.w, 0.0);
-    float traced = FRAME.sigma * abs(block.high_sigma.w);
-    float support = FRAME.mode == MODE_HARD ? 0.0 : FRAME.mode == MODE_RARA ? max(reach, traced) : reach;
+    float traced = FRAME.region.sigma * abs(block.high_sigma.w);
+    float support = FRAME.region.mode == MODE_HARD ? 0.0 : FRAME.region.mode == MODE_RARA ? max(reach, traced) : reach;
     float distance = plane_distance(plane, block_middle(block));
-    float margin = dot(abs(FRAME.plane_high[plane].xyz), block_half(block)) + 1.0001 * support;
+    float margin = dot(abs(FRAME.region.plane_high[plane].xyz), block_half(block)) + 1.0001 * support;
     return distance > margin ? SIDE_VISIBLE : distance < -margin ? SIDE_INVISIBLE : SIDE_CUTOFF;
 }
 
 // All planes together, as clip_side does for one Gaussian, and with what perspective adds to the band at most.
 uint block_clip_side(Block block, float widening) {
-    uint decided = FRAME.op == OP_AND ? SIDE_INVISIBLE : SIDE_VISIBLE;
-    uint side = FRAME.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
-    for (uint plane = 0u; plane < FRAME.plane_count; plane++) {
+    uint decided = FRAME.region.op == OP_AND ? SIDE_INVISIBLE : SIDE_VISIBLE;
+    uint side = FRAME.region.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
+    for (uint plane = 0u; plane < FRAME.region.plane_count; plane++) {
         uint one = block_plane_side(plane, block, widening);
         if (one == decided) {
             return decided;
@@ -46,7 +46,7 @@ uint block_clip_side(Block block, float widening) {
 
 // A linear function a x + b z of the camera's frame over the box: its middle and by how much it can differ from that.
 vec2 range_over(vec3 relative, vec3 half_box, vec3 row, float a, float b) {
-    vec3 gradient = a * row + b * FRAME.rotation_z.xyz;
+    vec3 gradient = a * row + b * FRAME.view.rotation_z.xyz;
     float spread = dot(abs(gradient), half_box);
     // The eye's rows and the differences are rounded.
     float slack = 4e-6 * (abs(a) + abs(b)) * (length(relative) + length(half_box));
@@ -85,9 +85,9 @@ uint block_view_side(Block block) {
     if (farthest < NEAR_Z) {
         return SIDE_CULLED;
     }
-    vec4 focal = FRAME.focal;
-    uint x = axis_side(relative, half_box, FRAME.rotation_x.xyz, focal.x, focal.z, FRAME.size.x, FRAME.slope_bounds.xy, reach);
-    uint y = axis_side(relative, half_box, FRAME.rotation_y.xyz, focal.y, focal.w, FRAME.size.y, FRAME.slope_bounds.zw, reach);
+    vec4 focal = FRAME.view.focal;
+    uint x = axis_side(relative, half_box, FRAME.view.rotation_x.xyz, focal.x, focal.z, FRAME.view.size.x, FRAME.view.slope_bounds.xy, reach);
+    uint y = axis_side(relative, half_box, FRAME.view.rotation_y.xyz, focal.y, focal.w, FRAME.view.size.y, FRAME.view.slope_bounds.zw, reach);
     if (x == SIDE_CULLED || y == SIDE_CULLED) {
         return SIDE_CULLED;
     }
@@ -104,18 +104,18 @@ float block_nearest(Block block) {
 
 // Whether the exact form of some splat may follow true rays, for its size or because its slope is clamped.
 bool may_be_beam(Block block) {
-    if (FRAME.mode != MODE_EXACT || FRAME.form == FORM_AFFINE) {
+    if (FRAME.region.mode != MODE_EXACT || FRAME.weight.form == FORM_AFFINE) {
         return false;
     }
     vec3 relative = eye_relative(block_middle(block));
     vec3 half_box = block_half(block);
-    vec4 bounds = FRAME.slope_bounds;
-    vec2 left = range_over(relative, half_box, FRAME.rotation_x.xyz, 1.0, -bounds.x);
-    vec2 right = range_over(relative, half_box, FRAME.rotation_x.xyz, 1.0, -bounds.y);
-    vec2 top = range_over(relative, half_box, FRAME.rotation_y.xyz, 1.0, -bounds.z);
-    vec2 bottom = range_over(relative, half_box, FRAME.rotation_y.xyz, 1.0, -bounds.w);
+    vec4 bounds = FRAME.view.slope_bounds;
+    vec2 left = range_over(relative, half_box, FRAME.view.rotation_x.xyz, 1.0, -bounds.x);
+    vec2 right = range_over(relative, half_box, FRAME.view.rotation_x.xyz, 1.0, -bounds.y);
+    vec2 top = range_over(relative, half_box, FRAME.view.rotation_y.xyz, 1.0, -bounds.z);
+    vec2 bottom = range_over(relative, half_box, FRAME.view.rotation_y.xyz, 1.0, -bounds.w);
     bool clamped = !(left.x - left.y > 0.0 && right.x + right.y < 0.0 && top.x - top.y > 0.0 && bottom.x + bottom.y < 0.0);
-    return FRAME.form == FORM_BEAM || clamped || abs(block.high_sigma.w) > FRAME.beam_switch * max(block_nearest(block), 0.0);
+    return FRAME.weight.form == FORM_BEAM || clamped || abs(block.high_sigma.w) > FRAME.weight.beam_switch * max(block_nearest(block), 0.0);
 }
 
 // The clip's side of a block that is in view as a whole, so that no slope is clamped. Without large splats it does not
@@ -130,7 +130,7 @@ uint block_side_in_view(Block block, uint side) {
 
 // Gaussians of a block: all but the last are full.
 uint block_length(uint block) {
-    return min(FRAME.gaussian_count - block * BLOCK_SIZE, BLOCK_SIZE);
+    return min(FRAME.scene.gaussian_count - block * BLOCK_SIZE, BLOCK_SIZE);
 }
 
 #endif

@@ -19,9 +19,9 @@ shared uint run_totals[BLOCK_SIZE];
 
 void main() {
     uint local = gl_LocalInvocationIndex;
-    uint run = (FRAME.block_count + BLOCK_SIZE - 1u) / BLOCK_SIZE;
-    uint begin = min(local * run, FRAME.block_count);
-    uint end = min(begin + run, FRAME.block_count);
+    uint run = (FRAME.scene.block_count + BLOCK_SIZE - 1u) / BLOCK_SIZE;
+    uint begin = min(local * run, FRAME.scene.block_count);
+    uint end = min(begin + run, FRAME.scene.block_count);
     uint total = 0u;
     for (uint block = begin; block < end; block++) {
         total += (sides.at[block] & 3u) == SIDE_CUTOFF ? 1u : 0u;

@@ -12,7 +12,7 @@ BUFFER(writeonly, 3, uint, block_sides)
 
 void main() {
     uint block = LINEAR_GROUP * BLOCK_GROUP_SIZE + gl_LocalInvocationIndex;
-    if (block >= FRAME.block_count) {
+    if (block >= FRAME.scene.block_count) {
         return;
     }
     uint side = block_view_side(blocks.at[block]);

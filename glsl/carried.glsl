@@ -10,7 +10,7 @@ Carried whole_weight() {
 Carried carried_weight(uint cut) {
     Carried weight = whole_weight();
     if (cut != NOT_CUT) {
-        uint base = cut * FRAME.cut_stride;
+        uint base = cut * FRAME.weight.cut_stride;
         if (cuts.at[base].w == float(1u << CUT_COUNT_SHIFT)) {
             weight.plane = cuts.at[base + CUT_HEADER].xyz;
             weight.curvature = cuts.at[base + CUT_HEADER + 1u].xyz;
@@ -23,7 +23,7 @@ Carried carried_weight(uint cut) {
 
 // The line beyond which a splat's curve hides it, where a record holds that; else the line that there is.
 vec3 hidden_by_record(vec3 line, uint cut, Carried weight, vec3 conic, float extent) {
-    uint base = cut * FRAME.cut_stride;
+    uint base = cut * FRAME.weight.cut_stride;
     vec4 linear = cuts.at[base];
     if (weight.plane.x >= -CUT_RANGE || (to_uint(linear.w) & CUT_CURVE) == 0u) {
         return line;

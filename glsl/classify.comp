@@ -25,7 +25,7 @@ shared uint invisible_count;
 // Whether some pixel centre lies in the splat's bounding box and in the picture.
 bool covers_a_pixel(vec2 centre, vec2 extent) {
     vec2 low = max(ceil(centre - extent - 0.5), vec2(0.0));
-    vec2 high = min(floor(centre + extent - 0.5), FRAME.size.xy - 1.0);
+    vec2 high = min(floor(centre + extent - 0.5), FRAME.view.size.xy - 1.0);
     return low.x <= high.x && low.y <= high.y;
 }
 
@@ -44,7 +44,7 @@ uint classify(uint block, uint local) {
     Gaussian gaussian = gaussians.at[index];
     float opacity = gaussian.position_opacity.w;
     // Depth first: it is cheap and drops what is behind the eye. Negated, so that a NaN is culled too.
-    float depth = dot(FRAME.rotation_z.xyz, eye_relative(gaussian.position_opacity.xyz));
+    float depth = dot(FRAME.view.rotation_z.xyz, eye_relative(gaussian.position_opacity.xyz));
     if (!(depth >= NEAR_Z) || opacity < ALPHA_MIN) {
         return SIDE_CULLED;
     }
@@ -60,7 +60,7 @@ uint classify(uint block, uint local) {
         return SIDE_VISIBLE;
     }
     float sigma = largest(gaussian.scale.xyz);
-    if (FRAME.mode == MODE_EXACT && is_beam(f, sigma)) {
+    if (FRAME.region.mode == MODE_EXACT && is_beam(f, sigma)) {
         return clip_side(f.world_factor, gaussian.position_opacity.xyz, band_in_view(f, sigma, extent));
     }
     return clip_class(block, local);
@@ -81,7 +81,7 @@ void main() {
     uint group = LINEAR_GROUP;
     bool is_block = group < counts.at[0].classify_groups.w;
     uint block = is_block ? block_list.at[group] : 0u;
-    if (is_block && block * BLOCK_SIZE + local < FRAME.gaussian_count) {
+    if (is_block && block * BLOCK_SIZE + local < FRAME.scene.gaussian_count) {
         uint side = classify(block, local);
         uint bit = 1u << (local & 31u);
         // Sums and unions do not depend on the order of atomics.

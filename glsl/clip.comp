@@ -23,7 +23,7 @@ void main() {
     bool is_block = group < counts.at[0].clip_groups.w;
     uint block = is_block ? block_list.at[group] : 0u;
     uint index = block * BLOCK_SIZE + local;
-    if (is_block && index < FRAME.gaussian_count) {
+    if (is_block && index < FRAME.scene.gaussian_count) {
         Gaussian gaussian = gaussians.at[index];
         uint side = clip_side(world_factor(gaussian), gaussian.position_opacity.xyz,
                               band(opacity_extent(gaussian.position_opacity.w)));

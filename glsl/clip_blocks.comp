@@ -10,7 +10,7 @@ BUFFER(writeonly, 2, uint, clip_sides)
 
 void main() {
     uint block = LINEAR_GROUP * BLOCK_GROUP_SIZE + gl_LocalInvocationIndex;
-    if (block < FRAME.block_count) {
+    if (block < FRAME.scene.block_count) {
         clip_sides.at[block] = block_clip_side(blocks.at[block], 1.0);
     }
 }

@@ -31,7 +31,7 @@ void main() {
     }
     uint block = block_list.at[group];
     uint index = block * BLOCK_SIZE + local;
-    if (index >= FRAME.gaussian_count) {
+    if (index >= FRAME.scene.gaussian_count) {
         return;
     }
     uvec2 offset = block_offsets.at[block];

@@ -25,9 +25,9 @@ uvec4 totals_of(uint block) {
 
 void main() {
     uint local = gl_LocalInvocationIndex;
-    uint run = (FRAME.block_count + BLOCK_SIZE - 1u) / BLOCK_SIZE;
-    uint begin = min(local * run, FRAME.block_count);
-    uint end = min(begin + run, FRAME.block_count);
+    uint run = (FRAME.scene.block_count + BLOCK_SIZE - 1u) / BLOCK_SIZE;
+    uint begin = min(local * run, FRAME.scene.block_count);
+    uint end = min(begin + run, FRAME.scene.block_count);
     uvec4 total = uvec4(0u);
     for (uint block = begin; block < end; block++) {
         total += totals_of(block);
@@ -52,12 +52,12 @@ void main() {
         counts.at[0].visible = place.x;
         counts.at[0].cutoff = place.y;
         counts.at[0].invisible = place.z;
-        counts.at[0].culled = FRAME.gaussian_count - survivors - place.z;
+        counts.at[0].culled = FRAME.scene.gaussian_count - survivors - place.z;
         counts.at[0].compact_groups = groups(place.w, 1u);
         counts.at[0].project_groups = groups(survivors, SURVIVOR_GROUP_SIZE);
         counts.at[0].cutoff_groups = groups(place.y, SURVIVOR_GROUP_SIZE);
         // One survivor is sorted too: the passes carry it to the buffer that the draw reads.
-        counts.at[0].sort_groups = uvec4(survivors == 0u ? 0u : FRAME.sort_runs / SORT_GROUP_SIZE, 1u, 1u, 0u);
+        counts.at[0].sort_groups = uvec4(survivors == 0u ? 0u : FRAME.order.sort_runs / SORT_GROUP_SIZE, 1u, 1u, 0u);
         counts.at[0].draw = uvec4(4u, survivors, 0u, 0u);
         counts.at[0].mesh_groups = groups(survivors, MESH_GROUP_SIZE);
         // Binning counts them, where tiles are wanted.

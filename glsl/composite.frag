@@ -14,7 +14,7 @@ layout(location = 0) out vec4 colour;
 
 void main() {
     vec2 place = gl_FragCoord.xy - push.params.origin;
-    uvec2 size = uvec2(FRAME.size.xy);
+    uvec2 size = uvec2(FRAME.view.size.xy);
     uvec2 pixel = min(uvec2(place), size - 1u);
     uvec2 tile = pixel / uvec2(TILE_WIDTH, TILE_HEIGHT) % QUAD_TILES;
     uint bit = tile.y * QUAD_TILES + tile.x;

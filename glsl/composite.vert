@@ -9,7 +9,7 @@ layout(location = 0) flat out uvec2 filled; // tiles that hold anything, a bit e
 
 void main() {
     uint quad = uint(gl_VertexIndex) / 6u;
-    uvec2 tiles = uvec2(FRAME.tile_columns, tile_rows());
+    uvec2 tiles = uvec2(FRAME.tiles.tile_columns, tile_rows());
     uint columns = (tiles.x + QUAD_TILES - 1u) / QUAD_TILES;
     uvec2 first = uvec2(quad % columns, quad / columns) * QUAD_TILES;
     filled = uvec2(0u);
@@ -30,5 +30,5 @@ void main() {
     // quads have no area. Nor have those of a quad that holds nothing.
     uint corner = filled == uvec2(0u) ? 0u : uint(clamp(gl_VertexIndex % 6 - 1, 0, 3));
     vec2 pixel = vec2((first + QUAD_TILES * uvec2(corner & 1u, corner >> 1u)) * uvec2(TILE_WIDTH, TILE_HEIGHT));
-    gl_Position = vec4(2.0 * pixel * FRAME.size.zw - 1.0, 0.0, 1.0);
+    gl_Position = vec4(2.0 * pixel * FRAME.view.size.zw - 1.0, 0.0, 1.0);
 }

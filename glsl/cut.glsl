@@ -1,5 +1,5 @@
 // The cutoff record: what the fragment stage needs to weight a cut splat, computed once a splat by cutoff.comp.
-// vec4s of a record (FRAME.cut_stride of them):
+// vec4s of a record (FRAME.weight.cut_stride of them):
 //   0      fx / Z m1, the screen gradient along x for a pixel on the principal axis, times scale; the sum of CUT_RAY,
 //          CUT_FRONT and 256 times the number of planes
 //   1      fy / Z m2, the same along y, times scale; scale

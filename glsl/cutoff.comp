@@ -51,14 +51,14 @@ void main() {
     float reach = band_in_view(f, sigma, extent);
 
     bool front = f.view.z < band(extent) * length(f.m3);
-    bool ray = FRAME.mode == MODE_RARA || is_beam(f, sigma) || (FRAME.form == FORM_AUTO && front);
+    bool ray = FRAME.region.mode == MODE_RARA || is_beam(f, sigma) || (FRAME.weight.form == FORM_AUTO && front);
     front = front && ray;
 
-    uint base = cut * FRAME.cut_stride;
+    uint base = cut * FRAME.weight.cut_stride;
     uint at = base + CUT_HEADER;
-    uint kept = FRAME.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
+    uint kept = FRAME.region.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
     vec4 form;
-    for (uint plane = 0u; plane < FRAME.plane_count; plane++) {
+    for (uint plane = 0u; plane < FRAME.region.plane_count; plane++) {
         float distance = plane_distance(plane, position);
         vec3 normal = unit_normal(plane, f.world_factor);
         // A plane that keeps the whole splat changes no intersection, one that drops it no union.
@@ -84,23 +84,23 @@ void main() {
     }
 
     // True rays. The gradients at a pixel are these less its place times e.
-    vec3 b1 = FRAME.focal.x / f.view.z * f.m1;
-    vec3 b2 = FRAME.focal.y / f.view.z * f.m2;
+    vec3 b1 = FRAME.view.focal.x / f.view.z * f.m1;
+    vec3 b2 = FRAME.view.focal.y / f.view.z * f.m2;
     vec3 e = f.m3 / f.view.z;
     // They grow with the distance from the principal point: scale for the farthest pixel.
-    vec2 far = max(abs(FRAME.focal.zw), abs(FRAME.size.xy - FRAME.focal.zw));
+    vec2 far = max(abs(FRAME.view.focal.zw), abs(FRAME.view.size.xy - FRAME.view.focal.zw));
     float size = max(largest(b1) + far.x * largest(e), largest(b2) + far.y * largest(e));
     // Without the low-pass there is nothing to keep in proportion: rara also scales up what is tiny.
-    float scale = 1.0 / max(size, FRAME.mode == MODE_RARA ? 1e-30 : 1.0);
+    float scale = 1.0 / max(size, FRAME.region.mode == MODE_RARA ? 1e-30 : 1.0);
     CurveSource source;
     source.h0 = vec4(b1 * scale, 0.0);
     source.h1 = vec4(b2 * scale, scale);
     source.h2 = vec4(e * scale, LOW_PASS * scale * scale);
 
     // A switch of zero asks for the exact form itself.
-    if (FRAME.mode == MODE_EXACT && FRAME.form == FORM_AUTO && FRAME.beam_switch > 0.0 && count == 1u && !front) {
+    if (FRAME.region.mode == MODE_EXACT && FRAME.weight.form == FORM_AUTO && FRAME.weight.beam_switch > 0.0 && count == 1u && !front) {
         source.plane = form;
-        source.centre = f.centre - FRAME.focal.zw;
+        source.centre = f.centre - FRAME.view.focal.zw;
         source.conic = cholesky(f);
         CurveSamples samples = sampled(source, extent);
         Curve square;

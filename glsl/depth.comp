@@ -32,11 +32,11 @@ void main() {
     Footprint f = footprint(gaussian);
     vec3 c = cross(f.b1, f.b2);
     SplatDepth depth;
-    bool is_union = FRAME.op == OP_OR;
+    bool is_union = FRAME.region.op == OP_OR;
     depth.mean = vec4(f.view.z, slope_of(f, c, f.m3), is_union ? 1.0 : 0.0);
     depth.far = vec4(8.0, 0.0, 0.0, 0.0);
     depth.near = depth.far;
-    for (uint plane = 0u; plane < FRAME.plane_count && FRAME.mode >= MODE_RARA; plane++) {
+    for (uint plane = 0u; plane < FRAME.region.plane_count && FRAME.region.mode >= MODE_RARA; plane++) {
         float sign = is_union ? -1.0 : 1.0;
         vec3 normal = sign * unit_normal(plane, f.world_factor);
         float size = max(largest(normal), 1e-30);

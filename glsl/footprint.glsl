@@ -36,24 +36,24 @@ mat3 rotation_matrix(vec4 q) {
 
 // The centre relative to the eye, world axes.
 vec3 eye_relative(vec3 position) {
-    return two_float_difference(position, FRAME.eye_high.xyz, FRAME.eye_low.xyz);
+    return two_float_difference(position, FRAME.view.eye_high.xyz, FRAME.view.eye_low.xyz);
 }
 
 vec3 to_view(vec3 relative) {
-    return vec3(dot(FRAME.rotation_x.xyz, relative), dot(FRAME.rotation_y.xyz, relative),
-                dot(FRAME.rotation_z.xyz, relative));
+    return vec3(dot(FRAME.view.rotation_x.xyz, relative), dot(FRAME.view.rotation_y.xyz, relative),
+                dot(FRAME.view.rotation_z.xyz, relative));
 }
 
 // The centre in the camera's frame.
 vec3 view_position(vec3 position, vec3 relative) {
-    if (FRAME.precise_view == 0u) {
+    if (FRAME.view.precise_view == 0u) {
         return to_view(relative);
     }
-    vec3 high = FRAME.eye_high.xyz;
-    vec3 low = FRAME.eye_low.xyz;
-    return vec3(two_float_view(FRAME.rotation_x.xyz, FRAME.rotation_low[0].xyz, position, high, low),
-                two_float_view(FRAME.rotation_y.xyz, FRAME.rotation_low[1].xyz, position, high, low),
-                two_float_view(FRAME.rotation_z.xyz, FRAME.rotation_low[2].xyz, position, high, low));
+    vec3 high = FRAME.view.eye_high.xyz;
+    vec3 low = FRAME.view.eye_low.xyz;
+    return vec3(two_float_view(FRAME.view.rotation_x.xyz, FRAME.view.rotation_low[0].xyz, position, high, low),
+                two_float_view(FRAME.view.rotation_y.xyz, FRAME.view.rotation_low[1].xyz, position, high, low),
+                two_float_view(FRAME.view.rotation_z.xyz, FRAME.view.rotation_low[2].xyz, position, high, low));
 }
 
 float largest(vec3 v) {
@@ -62,8 +62,8 @@ float largest(vec3 v) {
 
 // Screen gradients at a slope, unscaled.
 void screen_gradients(Footprint f, vec2 slope, out vec3 b1, out vec3 b2) {
-    b1 = FRAME.focal.x / f.view.z * (f.m1 - slope.x * f.m3);
-    b2 = FRAME.focal.y / f.view.z * (f.m2 - slope.y * f.m3);
+    b1 = FRAME.view.focal.x / f.view.z * (f.m1 - slope.x * f.m3);
+    b2 = FRAME.view.focal.y / f.view.z * (f.m2 - slope.y * f.m3);
 }
 
 mat3 world_factor(Gaussian gaussian) {
@@ -76,12 +76,12 @@ Footprint footprint(Gaussian gaussian) {
     f.relative = eye_relative(gaussian.position_opacity.xyz);
     f.view = view_position(gaussian.position_opacity.xyz, f.relative);
     f.world_factor = world_factor(gaussian);
-    f.m1 = FRAME.rotation_x.xyz * f.world_factor;
-    f.m2 = FRAME.rotation_y.xyz * f.world_factor;
-    f.m3 = FRAME.rotation_z.xyz * f.world_factor;
+    f.m1 = FRAME.view.rotation_x.xyz * f.world_factor;
+    f.m2 = FRAME.view.rotation_y.xyz * f.world_factor;
+    f.m3 = FRAME.view.rotation_z.xyz * f.world_factor;
     vec2 slope = f.view.xy / f.view.z;
-    f.centre = FRAME.focal.xy * slope + FRAME.focal.zw;
-    f.slope = clamp(slope, FRAME.slope_bounds.xz, FRAME.slope_bounds.yw);
+    f.centre = FRAME.view.focal.xy * slope + FRAME.view.focal.zw;
+    f.slope = clamp(slope, FRAME.view.slope_bounds.xz, FRAME.view.slope_bounds.yw);
     f.clamped = f.slope != slope;
     screen_gradients(f, f.slope, f.b1, f.b2);
     f.scale = 1.0 / max(1.0, max(largest(f.b1), largest(f.b2)));

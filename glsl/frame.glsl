@@ -1,4 +1,4 @@
-// Buffer 0 of every shader: what is constant in the frame. Used in place (FRAME.size), never copied: a copy would load
+// Buffer 0 of every shader: what is constant in the frame. Used in place (FRAME.view.size), never copied: a copy would load
 // all planes, and index them in registers.
 #ifndef RARA_FRAME
 #define RARA_FRAME
@@ -9,7 +9,7 @@ BUFFER(readonly, 0, FrameData, frame)
 #define FRAME frame.at[0]
 
 uint tile_rows() {
-    return FRAME.tile_count / FRAME.tile_columns;
+    return FRAME.tiles.tile_count / FRAME.tiles.tile_columns;
 }
 
 #endif

@@ -26,21 +26,21 @@ BUFFER(writeonly, 9, uvec4, tile_masks)
 
 vec3 colour(uint index, vec3 direction) {
     float basis[MAX_SH_COEFFICIENTS];
-    sh_basis(direction, FRAME.sh_degree, basis);
-    uint base = index * sh_words(FRAME.sh_coefficients);
+    sh_basis(direction, FRAME.view.sh_degree, basis);
+    uint base = index * sh_words(FRAME.scene.sh_coefficients);
     vec3 sum = 0.5 + basis[0] * sh_constant(base);
     // A loop a degree: the compiler unrolls what has a fixed length.
-    if (FRAME.sh_degree > 0u) {
+    if (FRAME.view.sh_degree > 0u) {
         mat3 units = sh_units(base);
         for (uint i = 1u; i < 4u; i++) {
             sum += basis[i] * sh_coefficient(base, units[0], i);
         }
-        if (FRAME.sh_degree > 1u) {
+        if (FRAME.view.sh_degree > 1u) {
             for (uint i = 4u; i < 9u; i++) {
                 sum += basis[i] * sh_coefficient(base, units[1], i);
             }
         }
-        if (FRAME.sh_degree > 2u) {
+        if (FRAME.view.sh_degree > 2u) {
             for (uint i = 9u; i < 16u; i++) {
                 sum += basis[i] * sh_coefficient(base, units[2], i);
             }
@@ -82,8 +82,8 @@ void main() {
     }
     // Positive floats order like their bits. Counted from the nearest depth that the scene's bounds allow they need
     // fewer of them, and fewer passes of the sort; dropping low bits never turns an order round.
-    uint depth = max(floatBitsToUint(f.view.z), FRAME.key_near) - FRAME.key_near;
-    uint key = min(depth, FRAME.key_span) >> FRAME.key_shift;
+    uint depth = max(floatBitsToUint(f.view.z), FRAME.order.key_near) - FRAME.order.key_near;
+    uint key = min(depth, FRAME.order.key_span) >> FRAME.order.key_shift;
     keys.at[survivor] = key;
     same_keys.at[survivor] = key; // for whichever pass of the sort is the first
 }

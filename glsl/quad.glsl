@@ -25,7 +25,7 @@ vec4 corner(Splat splat, uint number) {
     float first = (number & 1u) == 0u ? -1.0 : 1.0;
     float second = (number & 2u) == 0u ? -1.0 : 1.0;
     vec2 at = splat.centre_conic.xy + splat.middle.xy + first * splat.axes.xy + second * splat.axes.zw;
-    return vec4(2.0 * at * FRAME.size.zw - 1.0, DEPTH ? host_depth(splat.middle.w) : 0.0, 1.0);
+    return vec4(2.0 * at * FRAME.view.size.zw - 1.0, DEPTH ? host_depth(splat.middle.w) : 0.0, 1.0);
 }
 
 // The centre in the coordinates of gl_FragCoord, and k0 k1.

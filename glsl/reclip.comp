@@ -58,7 +58,7 @@ void main() {
     bool is_block = group < counts.at[0].clip_groups.w;
     uint block = is_block ? block_list.at[group] : 0u;
     uint index = block * BLOCK_SIZE + local;
-    if (is_block && index < FRAME.gaussian_count && is_in_view(block, local)) {
+    if (is_block && index < FRAME.scene.gaussian_count && is_in_view(block, local)) {
         uint before = class_before(block, local);
         uint now = class_now(block, index);
         uint word = local >> 5;

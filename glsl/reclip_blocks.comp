@@ -24,7 +24,7 @@ uint side_now(Block block, uint view_side) {
 
 void main() {
     uint block = LINEAR_GROUP * BLOCK_GROUP_SIZE + gl_LocalInvocationIndex;
-    if (block >= FRAME.block_count) {
+    if (block >= FRAME.scene.block_count) {
         return;
     }
     uint base = block * RECLIP_WORDS;

@@ -21,9 +21,9 @@ uvec4 totals_of(uint block) {
 
 void main() {
     uint local = gl_LocalInvocationIndex;
-    uint run = (FRAME.block_count + BLOCK_SIZE - 1u) / BLOCK_SIZE;
-    uint begin = min(local * run, FRAME.block_count);
-    uint end = min(begin + run, FRAME.block_count);
+    uint run = (FRAME.scene.block_count + BLOCK_SIZE - 1u) / BLOCK_SIZE;
+    uint begin = min(local * run, FRAME.scene.block_count);
+    uint end = min(begin + run, FRAME.scene.block_count);
     uvec4 total = uvec4(0u);
     for (uint block = begin; block < end; block++) {
         total += totals_of(block);

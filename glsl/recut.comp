@@ -25,7 +25,7 @@ void mark(uint survivor, Quad whole) {
     uvec4 tiles = tile_masks.at[survivor];
     for (uvec2 mask = tiles.zw; (mask.x | mask.y) != 0u;) {
         Span span = next_span(tiles.x, mask);
-        uvec2 columns = span.columns + span.row * FRAME.tile_columns;
+        uvec2 columns = span.columns + span.row * FRAME.tiles.tile_columns;
         for (uint tile = columns.x; tile < columns.y; tile++) {
             dirty.at[tile] = 1u;
         }
@@ -37,7 +37,7 @@ void mark(uint survivor, Quad whole) {
         splat.middle.xy = whole.middle;
         Outline o = outline(splat);
         for (uint row = o.rows.x; row < o.rows.y; row++) {
-            uvec2 columns = tiles_in_row(o, row) + row * FRAME.tile_columns;
+            uvec2 columns = tiles_in_row(o, row) + row * FRAME.tiles.tile_columns;
             for (uint tile = columns.x; tile < columns.y; tile++) {
                 dirty.at[tile] = 1u;
             }

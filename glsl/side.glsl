@@ -12,18 +12,18 @@ const uint SIDE_CUTOFF = 3u;
 
 // Signed distance of the centre to a plane, world units, positive on the visible side.
 float plane_distance(uint plane, vec3 position) {
-    return two_float_plane(FRAME.plane_high[plane], FRAME.plane_low[plane], position);
+    return two_float_plane(FRAME.region.plane_high[plane], FRAME.region.plane_low[plane], position);
 }
 
 // The normal in the Gaussian's unit space; its length is the standard deviation along the normal.
 vec3 unit_normal(uint plane, mat3 world_factor) {
-    return FRAME.plane_high[plane].xyz * world_factor;
+    return FRAME.region.plane_high[plane].xyz * world_factor;
 }
 
 // Whether the exact form of a splat follows each pixel's true ray.
 bool is_beam(Footprint f, float sigma) {
-    return FRAME.form == FORM_BEAM
-        || (FRAME.form == FORM_AUTO && (f.clamped || sigma > FRAME.beam_switch * f.view.z));
+    return FRAME.weight.form == FORM_BEAM
+        || (FRAME.weight.form == FORM_AUTO && (f.clamped || sigma > FRAME.weight.beam_switch * f.view.z));
 }
 
 // How far the band of a splat reaches whose weight follows each pixel's true ray: a pixel at delta sees the point u with
@@ -64,16 +64,16 @@ float beam_band(Footprint f, float extent) {
 
 // How far the band reaches, in standard deviations. rara also traces its own ellipsoid.
 float band(float extent) {
-    return FRAME.mode == MODE_RARA ? max(extent, FRAME.sigma) : extent;
+    return FRAME.region.mode == MODE_RARA ? max(extent, FRAME.region.sigma) : extent;
 }
 
 // One plane: SIDE_VISIBLE where it keeps the whole splat, SIDE_INVISIBLE where it keeps nothing, else SIDE_CUTOFF.
 uint plane_side(float distance, vec3 normal, float reach) {
-    if (FRAME.mode == MODE_HARD) {
+    if (FRAME.region.mode == MODE_HARD) {
         return distance >= 0.0 ? SIDE_VISIBLE : SIDE_INVISIBLE;
     }
     float support = reach * length(normal);
-    if (FRAME.trace_all != 0u) {
+    if (FRAME.region.trace_all != 0u) {
         return SIDE_CUTOFF;
     }
     return distance >= support ? SIDE_VISIBLE : distance <= -support ? SIDE_INVISIBLE : SIDE_CUTOFF;
@@ -81,14 +81,14 @@ uint plane_side(float distance, vec3 normal, float reach) {
 
 // The same with what perspective adds to it.
 float band_in_view(Footprint f, float sigma, float extent) {
-    return FRAME.mode == MODE_EXACT && is_beam(f, sigma) ? beam_band(f, extent) : band(extent);
+    return FRAME.region.mode == MODE_EXACT && is_beam(f, sigma) ? beam_band(f, extent) : band(extent);
 }
 
 // All planes together.
 uint clip_side(mat3 world_factor, vec3 position, float reach) {
-    uint decided = FRAME.op == OP_AND ? SIDE_INVISIBLE : SIDE_VISIBLE;
-    uint side = FRAME.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
-    for (uint plane = 0u; plane < FRAME.plane_count; plane++) {
+    uint decided = FRAME.region.op == OP_AND ? SIDE_INVISIBLE : SIDE_VISIBLE;
+    uint side = FRAME.region.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
+    for (uint plane = 0u; plane < FRAME.region.plane_count; plane++) {
         uint one = plane_side(plane_distance(plane, position), unit_normal(plane, world_factor), reach);
         if (one == decided) {
             return decided;

@@ -22,14 +22,14 @@ uint digit(uint key, uint number) {
 
 // First and last key (exclusive) of a run.
 uvec2 run_bounds(uint run, uint count) {
-    uint size = (count + FRAME.sort_runs - 1u) / FRAME.sort_runs;
+    uint size = (count + FRAME.order.sort_runs - 1u) / FRAME.order.sort_runs;
     uint begin = min(run * size, count);
     return uvec2(begin, min(begin + size, count));
 }
 
 // Where the histogram has a run's least and greatest key.
 uint range_place(uint run) {
-    return FRAME.sort_runs * DIGITS + 2u * run;
+    return FRAME.order.sort_runs * DIGITS + 2u * run;
 }
 
 #endif

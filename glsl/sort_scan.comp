@@ -24,7 +24,7 @@ void decide(uint d) {
         greatest = 0u;
     }
     barrier();
-    for (uint run = d; run < FRAME.sort_runs; run += DIGITS) {
+    for (uint run = d; run < FRAME.order.sort_runs; run += DIGITS) {
         // The same whatever the order.
         atomicMin(least, histogram.at[range_place(run)]);
         atomicMax(greatest, histogram.at[range_place(run) + 1u]);
@@ -54,7 +54,7 @@ void main() {
         return; // the first pass that there is has been counted
     }
     uint total = 0u;
-    for (uint run = 0u; run < FRAME.sort_runs; run++) {
+    for (uint run = 0u; run < FRAME.order.sort_runs; run++) {
         total += histogram.at[run * DIGITS + d];
     }
     totals[d] = total;
@@ -63,7 +63,7 @@ void main() {
     for (uint before = 0u; before < d; before++) {
         place += totals[before];
     }
-    for (uint run = 0u; run < FRAME.sort_runs; run++) {
+    for (uint run = 0u; run < FRAME.order.sort_runs; run++) {
         uint count = histogram.at[run * DIGITS + d];
         histogram.at[run * DIGITS + d] = place;
         place += count;

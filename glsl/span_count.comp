@@ -26,7 +26,7 @@ void main() {
     uvec2 bounds = run_bounds(run, counts.at[0].visible + counts.at[0].cutoff);
     uint found = 0u;
     // More than there is room for need no counting: quads are drawn, and the next frame has more room.
-    for (uint i = bounds.x; i < bounds.y && found <= FRAME.pair_capacity; i++) {
+    for (uint i = bounds.x; i < bounds.y && found <= FRAME.room.pair_capacity; i++) {
         uint splat = order.at[i];
         uvec4 tiles = tile_masks.at[splat];
         mask_origins.at[i] = tiles.y == 0u ? tiles.x : NO_MASK;

@@ -22,7 +22,7 @@ uint capped_sum(uint a, uint b) {
 void main() {
     uint local = gl_LocalInvocationIndex;
     // Without survivors nothing was counted, and the counts are another frame's.
-    uint runs = counts.at[0].mesh_groups.w == 0u ? 0u : FRAME.sort_runs;
+    uint runs = counts.at[0].mesh_groups.w == 0u ? 0u : FRAME.order.sort_runs;
     uint own_pairs = 0u;
     for (uint run = local; run < runs; run += ROWS) {
         own_pairs = capped_sum(own_pairs, span_counts.at[pairs_place(run)]);
@@ -59,18 +59,18 @@ void main() {
         }
     }
     if (local == 0u) {
-        bool tiled = pairs <= FRAME.pair_capacity;
+        bool tiled = pairs <= FRAME.room.pair_capacity;
         uint strips = (rows + STRIP_ROWS - 1u) / STRIP_ROWS;
-        uvec2 quads = (uvec2(FRAME.tile_columns, rows) + QUAD_TILES - 1u) / QUAD_TILES;
+        uvec2 quads = (uvec2(FRAME.tiles.tile_columns, rows) + QUAD_TILES - 1u) / QUAD_TILES;
         row_begins.at[rows] = begin;
         counts.at[0].pairs = pairs;
         counts.at[0].tiled = tiled ? 1u : 0u;
-        counts.at[0].span_groups = tiled ? groups(FRAME.sort_runs, SORT_GROUP_SIZE) : uvec4(0u);
-        counts.at[0].part_groups = tiled ? groups(rows * FRAME.row_parts, ROW_GROUP_SIZE) : uvec4(0u);
+        counts.at[0].span_groups = tiled ? groups(FRAME.order.sort_runs, SORT_GROUP_SIZE) : uvec4(0u);
+        counts.at[0].part_groups = tiled ? groups(rows * FRAME.tiles.row_parts, ROW_GROUP_SIZE) : uvec4(0u);
         counts.at[0].row_groups = tiled ? groups(rows, ROW_GROUP_SIZE) : uvec4(0u);
-        counts.at[0].tile_groups = uvec4(tiled ? STRIP_ROWS * FRAME.tile_columns : 0u, strips, 1u, 0u);
+        counts.at[0].tile_groups = uvec4(tiled ? STRIP_ROWS * FRAME.tiles.tile_columns : 0u, strips, 1u, 0u);
         counts.at[0].composite = uvec4(6u * quads.x * quads.y, tiled ? 1u : 0u, 0u, 0u);
-        if (tiled || FRAME.redrawn != 0u) {
+        if (tiled || FRAME.room.redrawn != 0u) {
             counts.at[0].draw.y = 0u;
         }
     }

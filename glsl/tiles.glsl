@@ -107,7 +107,7 @@ void blend(Seen splat, vec2 delta, float far) {
         alpha[row] = a >= ALPHA_MIN ? a : 0.0;
     }
     // So is all that follows, where the sort has looked at whole depths.
-    done = DEPTH_FORM != DEPTH_NONE && hide(far, alpha) && FRAME.key_shift == 0u;
+    done = DEPTH_FORM != DEPTH_NONE && hide(far, alpha) && FRAME.order.key_shift == 0u;
     if (!done) {
         float kept[ROWS];
         if (SHOW_WEIGHT) {
@@ -125,7 +125,7 @@ void blend(Seen splat, vec2 delta, float far) {
             light[row] -= share;
             most = max(most, light[row]);
         }
-        done = most < FRAME.transmittance_min;
+        done = most < FRAME.tiles.transmittance_min;
     }
 }
 
@@ -139,8 +139,8 @@ void main() {
     // Tiles follow each other down the columns of a strip, not along the picture's rows: what a splat's next tile needs
     // of it is then still in the cache, whichever neighbour that is.
     uvec2 tile_at = uvec2(gl_WorkGroupID.x / STRIP_ROWS, gl_WorkGroupID.y * STRIP_ROWS + gl_WorkGroupID.x % STRIP_ROWS);
-    uint tile = tile_at.y * FRAME.tile_columns + tile_at.x;
-    if (tile >= FRAME.tile_count || (SWEEP && dirty.at[tile] == 0u)) {
+    uint tile = tile_at.y * FRAME.tiles.tile_columns + tile_at.x;
+    if (tile >= FRAME.tiles.tile_count || (SWEEP && dirty.at[tile] == 0u)) {
         return;
     }
     uint begin = tile_begins.at[tile];
@@ -148,7 +148,7 @@ void main() {
     if (begin == end) {
         return; // nobody looks at its pixels
     }
-    uvec2 size = uvec2(FRAME.size.xy);
+    uvec2 size = uvec2(FRAME.view.size.xy);
     uvec2 pixel = tile_at * uvec2(TILE_WIDTH, TILE_HEIGHT) + gl_LocalInvocationID.xy * uvec2(1u, ROWS);
     place = vec2(pixel) + 0.5;
     // Pixels beyond the picture keep nobody waiting.

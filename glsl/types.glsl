@@ -4,8 +4,20 @@
 #define RARA_TYPES
 #include "limits.glsl"
 
-// What is constant in a frame.
-struct FrameData {
+// The constants of a frame: a struct for each reason to change. Whether a frame may take over what the one before has
+// computed is decided by comparing whole structs (src/passes/work.rs), so that a constant belongs where its change has the
+// same consequences as that of its neighbours.
+
+// Sizes of the scene.
+struct SceneData {
+    uint gaussian_count; // Gaussians in the scene
+    uint block_count; // blocks of Gaussians
+    uint sh_coefficients; // coefficients a colour channel in the scene
+    uint pad; // unused
+};
+
+// The camera, and what of the scene it looks at.
+struct ViewData {
     vec4 rotation_x; // world to camera, first row; w unused
     vec4 rotation_y; // second row
     vec4 rotation_z; // third row: the view direction
@@ -15,32 +27,63 @@ struct FrameData {
     vec4 focal; // fx, fy, cx, cy, px
     vec4 slope_bounds; // lowest and highest x/z, lowest and highest y/z at which the Jacobian is evaluated
     vec4 size; // width, height, px; reciprocals
-    uint gaussian_count; // Gaussians in the scene
-    uint sh_coefficients; // coefficients a colour channel in the scene
-    uint sh_degree; // highest degree to evaluate
-    uint plane_count; // half-spaces of the clip
-    uint mode; // MODE_*
-    uint op; // OP_*
-    float sigma; // rara: the traced ellipsoid, standard deviations
-    float beam_switch; // sigma_max / Z above which the perspective-exact form is used
-    uint trace_all; // 1: every Gaussian in view is cutoff
-    uint cut_stride; // vec4s of a cutoff record
-    uint sort_runs; // invocations of the sort
-    uint block_count; // blocks of Gaussians
-    uint form; // FORM_*
     uint precise_view; // 1: positions in the camera's frame are computed in two floats
+    uint sh_degree; // highest degree to evaluate
+    uint pad[2]; // unused
+};
+
+// The order of the survivors.
+struct OrderData {
     uint key_near; // bits of the nearest depth a centre can have
     uint key_span; // by how much the farthest depth's bits exceed them
     uint key_shift; // low bits of the difference that the sort does without
+    uint sort_runs; // invocations of the sort
+};
+
+// The tiles of the picture.
+struct TilesData {
     uint tile_columns; // tiles across the picture
     uint tile_count; // tiles in the picture
-    uint pair_capacity; // pairs of tile and splat that there is room for
-    float transmittance_min; // below it a tile's pixel is saturated: what lies behind changes it by less
-    uint redrawn; // 1: a frame whose pairs have no room is drawn once more, so that nothing is drawn of it
     uint row_parts; // parts of the spans of a row of tiles
+    float transmittance_min; // below it a tile's pixel is saturated: what lies behind changes it by less
+};
+
+// How much there is room for, and what happens where that is too little: no pixel depends on it.
+struct RoomData {
+    uint pair_capacity; // pairs of tile and splat that there is room for
+    uint redrawn; // 1: a frame whose pairs have no room is drawn once more, so that nothing is drawn of it
+    uint pad[2]; // unused
+};
+
+// How what is cut is weighted.
+struct WeightData {
+    uint form; // FORM_*
+    float beam_switch; // sigma_max / Z above which the perspective-exact form is used
+    uint cut_stride; // vec4s of a cutoff record
     uint pad; // unused
+};
+
+// What is kept of the scene: all that a Gaussian's class depends on besides the Gaussian and, for large ones, the view.
+struct RegionData {
+    uint mode; // MODE_*
+    uint op; // OP_*
+    uint trace_all; // 1: every Gaussian in view is cutoff
+    float sigma; // rara: the traced ellipsoid, standard deviations; else 0
+    uint plane_count; // half-spaces of the clip
+    uint pad[3]; // unused
     vec4 plane_high[MAX_CLIP_PLANES]; // unit normal and distance, rounded to single precision
     vec4 plane_low[MAX_CLIP_PLANES]; // what the rounding lost
+};
+
+// What is constant in a frame.
+struct FrameData {
+    SceneData scene; // the scene's sizes
+    ViewData view; // the camera
+    OrderData order; // the sort
+    TilesData tiles; // the tiles
+    RoomData room; // the room that there is
+    WeightData weight; // the weights of what is cut
+    RegionData region; // what is kept
 };
 
 // A Gaussian without its colour.

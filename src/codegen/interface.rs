@@ -46,7 +46,10 @@ pub(crate) fn programs(shaders: &[Source]) -> String {
 fn module(shaders: &[Source]) -> String {
     let name = shaders[0].names().0;
     let whole = union(name, shaders);
-    let files: Vec<_> = shaders.iter().map(|s| format!("`glsl/{}`", s.file)).collect();
+    let files: Vec<_> = shaders
+        .iter()
+        .map(|s| format!("`glsl/{}`", s.file))
+        .collect();
     let mut out = format!("/// {}.\npub(crate) mod {name} {{\n", files.join(", "));
     for shader in shaders {
         let uses = shader.declarations.buffers.iter().map(|buffer| {
@@ -88,10 +91,14 @@ fn union(name: &str, shaders: &[Source]) -> Declarations {
     for shader in shaders {
         let these = &shader.declarations;
         for buffer in &these.buffers {
-            merge(name, &mut whole.buffers, buffer, |b| (b.binding.to_string(), b.name.clone()));
+            merge(name, &mut whole.buffers, buffer, |b| {
+                (b.binding.to_string(), b.name.clone())
+            });
         }
         for constant in &these.constants {
-            merge(name, &mut whole.constants, constant, |c| (c.id.to_string(), c.name.clone()));
+            merge(name, &mut whole.constants, constant, |c| {
+                (c.id.to_string(), c.name.clone())
+            });
         }
         assert!(
             whole.params.is_empty() || these.params.is_empty() || whole.params == these.params,
@@ -153,7 +160,13 @@ fn params(params: &[Param]) -> String {
          pub(crate) struct Params {\n",
     );
     let mut offset = 0;
-    for Param { name, scalar, count, offset: at } in params {
+    for Param {
+        name,
+        scalar,
+        count,
+        offset: at,
+    } in params
+    {
         assert!(
             *at == offset && *scalar != Scalar::Bool,
             "params.{name}: order the members so that nothing is padded, and make none of them a bool"
@@ -178,9 +191,16 @@ fn constants(constants: &[Constant]) -> String {
     );
     let mut words = String::new();
     for Constant { id, name, scalar } in constants {
-        assert!(*scalar != Scalar::Float, "{name}: a float cannot tell pipelines apart");
+        assert!(
+            *scalar != Scalar::Float,
+            "{name}: a float cannot tell pipelines apart"
+        );
         writeln!(out, "pub(crate) {name}: {},", scalar.rust()).unwrap();
-        write!(words, "({id}, self.{name} as u32), ").unwrap();
+        let word = match scalar {
+            Scalar::Uint => "",
+            _ => " as u32",
+        };
+        write!(words, "({id}, self.{name}{word}), ").unwrap();
     }
     out + &format!(
         "}}\nimpl super::ConstantSet for Constants {{\n\
@@ -226,7 +246,7 @@ mod tests {
             "pub(crate) static FRAG:",
             "pub(crate) static VERT:",
             "&[self.frame, self.cuts, ]",
-            "&[(0, self.mode as u32), (5, self.depth as u32), ]",
+            "&[(0, self.mode), (5, self.depth), ]",
             "pub(crate) static SUBGROUP_COMP:",
             "type Constants = ();",
         ] {

@@ -13,7 +13,10 @@ pub(crate) fn shaders(folder: &Path) -> Vec<PathBuf> {
     let files = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
     let mut shaders: Vec<_> = files
         .map(|file| file.expect("the folder is readable").path())
-        .filter(|path| path.extension().is_some_and(|e| stages.iter().any(|s| e == *s)))
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|e| stages.iter().any(|s| e == *s))
+        })
         .collect();
     shaders.sort();
     shaders
@@ -56,6 +59,7 @@ pub(crate) fn manifest(folder: &Path, shader: &Path, spirv: &Path) -> String {
 
 /// What is wrong with the SPIR-V of a folder: a sentence for each shader whose sources or modules are not those that its
 /// manifest was written for, and for each file that belongs to no shader.
+#[cfg_attr(all(feature = "shaderc", not(test)), allow(dead_code))]
 pub(crate) fn stale(folder: &Path, spirv: &Path) -> Vec<String> {
     let mut stale = Vec::new();
     let mut known = BTreeSet::new();

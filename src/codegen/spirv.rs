@@ -111,7 +111,11 @@ pub(crate) fn declarations(words: &[u32]) -> Declarations {
             }
             20 => known[id(1)].ty = Some(Type::Scalar(Scalar::Bool)), // OpTypeBool
             21 => {
-                let scalar = if word(3) == 0 { Scalar::Uint } else { Scalar::Int };
+                let scalar = if word(3) == 0 {
+                    Scalar::Uint
+                } else {
+                    Scalar::Int
+                };
                 known[id(1)].ty = (word(2) == 32).then_some(Type::Scalar(scalar)); // OpTypeInt
             }
             22 if word(2) == 32 => known[id(1)].ty = Some(Type::Scalar(Scalar::Float)), // OpTypeFloat
@@ -145,10 +149,9 @@ pub(crate) fn declarations(words: &[u32]) -> Declarations {
     let mut found = Declarations::default();
     for &(variable, pointer, storage) in &variables {
         match storage {
-            STORAGE_BUFFER => found.buffers.push(buffer(
-                &known[variable],
-                &known[pointee(pointer)],
-            )),
+            STORAGE_BUFFER => found
+                .buffers
+                .push(buffer(&known[variable], &known[pointee(pointer)])),
             PUSH_CONSTANT => found.params = params(&known, pointee(pointer)),
             _ => {}
         }
@@ -253,15 +256,30 @@ mod tests {
     #[test]
     fn a_compute_shader_tells_its_buffers_params_and_constants() {
         let found = declarations(&module("sort_scan.comp.bound.spv"));
-        let buffers: Vec<_> = found.buffers.iter().map(|b| (b.binding, &*b.name, b.access)).collect();
+        let buffers: Vec<_> = found
+            .buffers
+            .iter()
+            .map(|b| (b.binding, &*b.name, b.access))
+            .collect();
         assert_eq!(
             buffers,
-            [(0, "frame", "Read"), (1, "counts", "ReadWrite"), (2, "histogram", "ReadWrite")]
+            [
+                (0, "frame", "Read"),
+                (1, "counts", "ReadWrite"),
+                (2, "histogram", "ReadWrite")
+            ]
         );
-        let params: Vec<_> = found.params.iter().map(|p| (&*p.name, p.scalar, p.count, p.offset)).collect();
+        let params: Vec<_> = found
+            .params
+            .iter()
+            .map(|p| (&*p.name, p.scalar, p.count, p.offset))
+            .collect();
         assert_eq!(
             params,
-            [("number", Scalar::Uint, 1, 0), ("passes", Scalar::Uint, 1, 4)]
+            [
+                ("number", Scalar::Uint, 1, 0),
+                ("passes", Scalar::Uint, 1, 4)
+            ]
         );
         assert_eq!(found.constants, []);
     }

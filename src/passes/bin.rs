@@ -13,7 +13,7 @@ use crate::types::FrameCounts;
 pub(crate) const STAGE: Stage = Stage {
     name: "bin",
     needed: |plan| plan.finds_view() && plan.is_tiled(),
-    missed: |plan| plan.is_tiled() || plan.gaussians == 0,
+    missed: |plan| plan.is_tiled() || plan.gaussians() == 0,
     pipelines: |_, need| {
         need(counts_spans().key());
         need(places_spans().key());

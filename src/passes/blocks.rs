@@ -40,5 +40,10 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
 
 /// An invocation a block.
 pub(crate) fn groups_of_blocks(plan: &Plan) -> Groups<'static> {
-    Groups::Count(plan.data.block_count.div_ceil(limits::BLOCK_GROUP_SIZE))
+    Groups::Count(
+        plan.data
+            .scene
+            .block_count
+            .div_ceil(limits::BLOCK_GROUP_SIZE),
+    )
 }

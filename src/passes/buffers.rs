@@ -90,38 +90,34 @@ struct Sizes {
 
 impl Sizes {
     fn of(plan: &Plan) -> Self {
-        let gaussians = u64::from(plan.gaussians);
-        let cut_bytes = if plan.cutoff {
-            gaussians * u64::from(plan.cut_stride) * 16
+        let gaussians = u64::from(plan.gaussians());
+        let cut_bytes = if plan.cuts() {
+            gaussians * u64::from(plan.data.weight.cut_stride) * 16
         } else {
             0
         };
         let when_tiled = |size: u64| {
-            if plan.is_tiled() {
-                size
-            } else {
-                0
-            }
+            if plan.is_tiled() { size } else { 0 }
         };
-        let rows = u64::from(plan.data.tile_count / plan.data.tile_columns);
-        let parts = u64::from(plan.data.row_parts);
-        let pixels = plan.data.size[0] as u64 * plan.data.size[1] as u64;
+        let rows = u64::from(plan.data.tiles.tile_count / plan.data.tiles.tile_columns);
+        let parts = u64::from(plan.data.tiles.row_parts);
+        let pixels = plan.data.view.size[0] as u64 * plan.data.view.size[1] as u64;
         Self {
             gaussians,
-            clip_blocks: if plan.mode == types::MODE_NONE {
+            clip_blocks: if plan.mode() == types::MODE_NONE {
                 0
             } else {
-                plan.data.block_count.into()
+                plan.data.scene.block_count.into()
             },
             cut_bytes,
-            sort_runs: u64::from(plan.sort_runs),
+            sort_runs: u64::from(plan.data.order.sort_runs),
             masks: when_tiled(gaussians),
-            pairs: when_tiled(plan.data.pair_capacity.into()),
-            tiles: when_tiled(plan.data.tile_count.into()),
+            pairs: when_tiled(plan.data.room.pair_capacity.into()),
+            tiles: when_tiled(plan.data.tiles.tile_count.into()),
             rows: when_tiled(rows),
-            columns: when_tiled(rows * parts * (u64::from(plan.data.tile_columns) + 1)),
+            columns: when_tiled(rows * parts * (u64::from(plan.data.tiles.tile_columns) + 1)),
             pixels: when_tiled(pixels),
-            depths: if plan.expects_depth { gaussians } else { 0 },
+            depths: if plan.way.expects_depth { gaussians } else { 0 },
             occluders: plan.occluders.map_or(0, |_| when_tiled(pixels)),
         }
     }
@@ -188,7 +184,7 @@ impl Buffers {
             } else {
                 None
             },
-            depth: if plan.expects_depth {
+            depth: if plan.way.expects_depth {
                 Some(DepthBuffers {
                     depths: gpu("depths", n * size_of::<SplatDepth>() as u64)?,
                     draw: gpu("depth_draw", 16)?,

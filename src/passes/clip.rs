@@ -37,7 +37,13 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         blocks: &scene.blocks,
         clip_sides: &b.clip_sides,
     };
-    sides().dispatch(pipelines, recorder, buffers, (), groups_of_blocks(frame.plan));
+    sides().dispatch(
+        pipelines,
+        recorder,
+        buffers,
+        (),
+        groups_of_blocks(frame.plan),
+    );
     block_list::record(frame, recorder, &b.clip_sides, ListFor::Clip);
     let buffers = clip::Buffers {
         frame: &b.frame,

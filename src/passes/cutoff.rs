@@ -18,7 +18,7 @@ pub(crate) const STAGE: Stage = Stage {
 
 /// The same behind the classes that a moved clip has changed.
 pub(crate) const STAGE_OF_SWEEP: Stage = Stage {
-    needed: |plan| plan.sweeps() && plan.cutoff,
+    needed: |plan| plan.sweeps() && plan.cuts(),
     missed: |plan| plan.sweeps(),
     ..STAGE
 };

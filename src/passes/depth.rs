@@ -17,7 +17,7 @@ use crate::types::FrameCounts;
 /// The splats' depths.
 pub(crate) const STAGE: Stage = Stage {
     name: "depth",
-    needed: |plan| plan.expects_depth && plan.work != Work::Draw,
+    needed: |plan| plan.way.expects_depth && plan.work != Work::Draw,
     missed: |_| false,
     pipelines: |_, need| need(kernel().key()),
     record,
@@ -84,15 +84,15 @@ pub(crate) fn record_draw(
         cuts: &b.cuts,
         depths: &d.depths,
     };
-    let [_, _, cx, cy] = plan.data.focal;
+    let [_, _, cx, cy] = plan.data.view.focal;
     let [depth_offset, depth_scale] = map.map_or([0.0; 2], |map| map.factors());
     let params = splat_depth::Params {
         origin,
         principal_point: [cx + origin[0], cy + origin[1]],
         depth_offset,
         depth_scale,
-        sigma: plan.data.sigma,
-        cut_stride: plan.cut_stride,
+        sigma: plan.data.region.sigma,
+        cut_stride: plan.data.weight.cut_stride,
         unit: unit as f32,
     };
     draw(plan, attachments).draw(pipelines, drawer, buffers, params, (&d.draw, 0));

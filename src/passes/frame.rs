@@ -18,7 +18,7 @@ pub(crate) fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>, readback: &
     if let Some(t) = b.tiles.as_ref().filter(|_| plan.is_tiled()) {
         recorder.ready_to_draw(&[&t.picture, &t.begins]);
     }
-    if let Some(d) = b.depth.as_ref().filter(|_| plan.expects_depth) {
+    if let Some(d) = b.depth.as_ref().filter(|_| plan.way.expects_depth) {
         recorder.ready_to_draw(&[&d.depths, &d.draw]);
     }
     recorder.label("counts", |r| {

@@ -79,13 +79,7 @@ impl<P: Interface> Kernel<P> {
         groups: Groups<'_>,
     ) {
         let pipeline = &pipelines.compute[&self.key];
-        let params = bytemuck::bytes_of(&params);
-        recorder.dispatch(
-            pipeline,
-            &buffers.list(),
-            bytemuck::cast_slice(params),
-            groups,
-        );
+        recorder.dispatch(pipeline, &buffers.list(), words(&params), groups);
     }
 }
 
@@ -130,13 +124,20 @@ impl<P: Interface> Draw<P> {
         (args, offset): (&Buffer, u64),
     ) {
         let pipeline = &pipelines.graphics[&self.key];
-        let params: &[u32] = bytemuck::cast_slice(bytemuck::bytes_of(&params));
-        let buffers = buffers.list();
+        let (params, buffers) = (words(&params), buffers.list());
         if self.key.shader.0.stage == vk::ShaderStageFlags::MESH_EXT {
             drawer.draw_mesh_tasks_indirect(pipeline, &buffers, params, args, offset);
         } else {
             drawer.draw_indirect(pipeline, &buffers, params, args, offset);
         }
+    }
+}
+
+/// A program's parameters as they go into the push constants.
+fn words<P: bytemuck::Pod>(params: &P) -> &[u32] {
+    match size_of::<P>() {
+        0 => &[], // a struct of nothing may lie anywhere, words may not
+        _ => bytemuck::cast_slice(bytemuck::bytes_of(params)),
     }
 }
 

@@ -20,7 +20,7 @@ pub(crate) const STAGE: Stage = Stage {
 pub(super) fn kernel(plan: &Plan) -> Kernel<project::Program> {
     let constants = project::Constants {
         cut: plan.view_is_cut(),
-        sh_format: plan.sh_format.code(),
+        sh_format: plan.way.sh_format.code(),
         tiles: plan.is_tiled(),
     };
     Kernel::new(&project::COMP, constants)

@@ -47,7 +47,7 @@ fn ties() -> Kernel<sort_ties::Program> {
 /// out the first ones, as many as there are leading digits in which the keys agree (sort.glsl).
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (pipelines, b) = (frame.pipelines, frame.buffers);
-    let passes = frame.plan.sort_passes;
+    let passes = frame.plan.way.sort_passes;
     let of_pass = |pass: u32| {
         let size = size_of::<[u32; 4]>();
         let at = offset_of!(FrameCounts, sort_pass_groups) + pass as usize * size;

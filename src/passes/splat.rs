@@ -15,7 +15,7 @@ use crate::types::FrameCounts;
 
 /// The pipeline that a plan needs: without a clip the fragment shader holds no clip code.
 pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program> {
-    let front = match plan.raster {
+    let front = match plan.way.raster {
         Raster::Mesh => &splat::MESH,
         _ => &splat::VERT,
     };
@@ -28,7 +28,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program
         miss: weight.miss,
         phi_form: weight.phi,
         depth,
-        show_weight: plan.show == Show::Weight,
+        show_weight: plan.way.show == Show::Weight,
     };
     Draw::new([front, &splat::FRAG], constants, attachments, depth)
 }
@@ -50,17 +50,17 @@ pub(crate) fn record(
         order: &b.order[plan.sorted()],
         cuts: &b.cuts,
     };
-    let [_, _, cx, cy] = plan.data.focal;
+    let [_, _, cx, cy] = plan.data.view.focal;
     let [depth_offset, depth_scale] = map.map_or([0.0; 2], |map| map.factors());
     let params = splat::Params {
         origin,
         principal_point: [cx + origin[0], cy + origin[1]],
         depth_offset,
         depth_scale,
-        sigma: plan.data.sigma,
-        cut_stride: plan.cut_stride,
+        sigma: plan.data.region.sigma,
+        cut_stride: plan.data.weight.cut_stride,
     };
-    let at = match plan.raster {
+    let at = match plan.way.raster {
         Raster::Mesh => offset_of!(FrameCounts, mesh_groups),
         _ => offset_of!(FrameCounts, draw),
     };

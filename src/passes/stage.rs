@@ -116,9 +116,13 @@ impl Plan {
 
     /// The stages that this frame does not need, among those of a whole one.
     pub(crate) fn skipped(&self) -> Vec<&'static str> {
-        let is_empty = self.gaussians == 0;
+        let is_empty = self.gaussians() == 0;
         let missed = |stage: &&&Stage| (stage.missed)(self) && (is_empty || !(stage.needed)(self));
-        let mut skipped: Vec<_> = STAGES.iter().filter(missed).map(|stage| stage.name).collect();
+        let mut skipped: Vec<_> = STAGES
+            .iter()
+            .filter(missed)
+            .map(|stage| stage.name)
+            .collect();
         skipped.extend(is_empty.then_some(DRAW));
         skipped
     }

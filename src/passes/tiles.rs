@@ -18,7 +18,7 @@ use crate::types::{self, FrameCounts};
 pub(crate) const STAGE: Stage = Stage {
     name: "tiles",
     needed: |plan| plan.is_tiled() && plan.work != Work::Draw,
-    missed: |plan| plan.is_tiled() || plan.gaussians == 0,
+    missed: |plan| plan.is_tiled() || plan.gaussians() == 0,
     pipelines: |plan, need| need(kernel(plan).key()),
     record,
 };
@@ -60,7 +60,7 @@ fn kernel(plan: &Plan) -> Kernel<tiles::Program> {
         local_size_y: limits::TILE_HEIGHT / work.rows,
         sweep: plan.sweeps(),
         depth_form: plan.occluders.map_or(types::DEPTH_NONE, |o| o.form),
-        show_weight: plan.show == Show::Weight,
+        show_weight: plan.way.show == Show::Weight,
     };
     let shader = if work.subgroups {
         &tiles::SUBGROUP_COMP
@@ -83,13 +83,13 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         dirty: b.sweep.as_ref().map_or(&b.counts, |sweep| &sweep.dirty),
         occluders: plan.occluders.map_or(&b.counts, |_| &t.occluders),
     };
-    let [_, _, cx, cy] = plan.data.focal;
+    let [_, _, cx, cy] = plan.data.view.focal;
     let [depth_offset, depth_scale] = plan.occluders.map_or([0.0; 2], |o| o.map.factors());
     let (at, size) = (frame.copied.offset, frame.copied.extent);
     let params = tiles::Params {
         principal_point: [cx, cy],
-        sigma: plan.data.sigma,
-        cut_stride: plan.cut_stride,
+        sigma: plan.data.region.sigma,
+        cut_stride: plan.data.weight.cut_stride,
         depth_offset,
         depth_scale,
         copy_origin: [at.x, at.y],

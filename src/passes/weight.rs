@@ -2,7 +2,37 @@
 //! does not tell pipelines apart.
 
 use crate::passes::plan::Plan;
+use crate::settings::{Decay, Miss, Settings};
 use crate::types;
+
+/// What the weights of cut splats do and where they come from, in any mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Laws {
+    /// `DECAY_*`.
+    decay: u32,
+    /// `MISS_*`.
+    miss: u32,
+    /// `PHI_*`.
+    phi: u32,
+}
+
+impl Laws {
+    /// Those of the settings.
+    pub(crate) fn of(settings: &Settings) -> Self {
+        Self {
+            decay: match settings.decay_law() {
+                Decay::Linear => types::DECAY_LINEAR,
+                Decay::Depth => types::DECAY_DEPTH,
+            },
+            miss: match settings.miss {
+                Miss::Keep => types::MISS_KEEP,
+                Miss::Drop => types::MISS_DROP,
+                Miss::Peak => types::MISS_PEAK,
+            },
+            phi: settings.precision.phi.code(),
+        }
+    }
+}
 
 /// The constants of `glsl/weight_constants.glsl`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,16 +53,17 @@ impl Weight {
     /// What a plan needs: after a hard clip nothing is left for the fragment stage to do.
     pub(crate) fn of(plan: &Plan) -> Self {
         let when = |needed: bool, value: u32| if needed { value } else { 0 };
-        let op = match plan.data.plane_count {
+        let (cuts, mode, laws) = (plan.cuts(), plan.mode(), plan.laws);
+        let op = match plan.data.region.plane_count {
             1 => types::OP_ONE,
-            _ => plan.data.op,
+            _ => plan.data.region.op,
         };
         Self {
-            mode: when(plan.cutoff, plan.mode),
-            op: when(plan.cutoff, op),
-            decay: when(plan.cutoff, plan.decay),
-            miss: when(plan.cutoff && plan.mode == types::MODE_RARA, plan.miss),
-            phi: when(plan.cutoff && plan.mode == types::MODE_EXACT, plan.phi),
+            mode: when(cuts, mode),
+            op: when(cuts, op),
+            decay: when(cuts, laws.decay),
+            miss: when(cuts && mode == types::MODE_RARA, laws.miss),
+            phi: when(cuts && mode == types::MODE_EXACT, laws.phi),
         }
     }
 }

@@ -4,7 +4,7 @@ use bytemuck::bytes_of;
 
 use crate::passes::plan::Plan;
 use crate::passes::weight::Weight;
-use crate::types::{self, FrameData};
+use crate::types::{self, RegionData};
 
 /// What of a frame has to be computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,13 +35,13 @@ pub(crate) struct Kept {
     /// The survivors are all in view, clipped away or not; `Some(true)` if no clip has changed them yet.
     base: Option<bool>,
     /// What the classes of the clip stage are of.
-    clip: Option<FrameData>,
+    region: Option<RegionData>,
 }
 
 impl Kept {
     /// What is left to do for a plan, after a frame that left `kept`.
     pub(crate) fn work(kept: Option<&Self>, scene: u64, plan: &Plan) -> Work {
-        let clip = plan.mode != types::MODE_NONE;
+        let clip = plan.mode() != types::MODE_NONE;
         let Some(kept) = kept.filter(|kept| kept.scene == scene) else {
             return Work::Whole { clip };
         };
@@ -58,8 +58,8 @@ impl Kept {
                 fresh: base.unwrap_or(true),
             };
         }
-        let constants = clip_constants(plan);
-        let has_classes = kept.holds && kept.clip.is_some_and(|had| same(&had, &constants));
+        let has_classes =
+            kept.holds && kept.region.is_some_and(|had| same(&had, &plan.data.region));
         Work::Whole {
             clip: clip && !has_classes,
         }
@@ -67,11 +67,11 @@ impl Kept {
 
     /// What the buffers hold once a plan has been recorded after a frame that left `before`.
     pub(crate) fn after(before: Option<Self>, scene: u64, plan: &Plan) -> Self {
-        let clip = before.filter(|kept| kept.holds && kept.scene == scene);
-        let had = clip.and_then(|kept| kept.clip);
-        let (base, clip) = match plan.work {
-            Work::Whole { .. } if plan.mode == types::MODE_NONE => (Some(true), had),
-            Work::Whole { .. } => (None, Some(clip_constants(plan))),
+        let before = before.filter(|kept| kept.holds && kept.scene == scene);
+        let had = before.and_then(|kept| kept.region);
+        let (base, region) = match plan.work {
+            Work::Whole { .. } if plan.mode() == types::MODE_NONE => (Some(true), had),
+            Work::Whole { .. } => (None, Some(plan.data.region)),
             Work::Sweep { .. } => (Some(false), had),
             Work::Draw => unreachable!("a frame that changes nothing leaves what there was"),
         };
@@ -80,7 +80,7 @@ impl Kept {
             plan: plan.clone(),
             holds: true,
             base,
-            clip,
+            region,
         }
     }
 }
@@ -88,65 +88,24 @@ impl Kept {
 impl Plan {
     /// Whether another plan gives the same pixels.
     fn is_drawn_like(&self, other: &Self) -> bool {
-        let data = |plan: &Self| FrameData {
-            pair_capacity: 0,
-            redrawn: 0,
-            ..plan.data
-        };
-        same(&data(self), &data(other))
+        self.sees_like(other)
+            && same(&self.data.weight, &other.data.weight)
+            && same(&self.data.region, &other.data.region)
             && Weight::of(self) == Weight::of(other)
-            && self.goes_the_way_of(other)
     }
 
-    /// Whether another plan differs in nothing but the clip.
+    /// Whether another plan differs in nothing but the clip and its weights, and its stages leave the same kinds of things
+    /// in the same buffers.
     fn sees_like(&self, other: &Self) -> bool {
-        let data = |plan: &Self| {
-            let (plane_high, plane_low) = <_>::default();
-            FrameData {
-                mode: 0,
-                op: 0,
-                sigma: 0.0,
-                form: 0,
-                beam_switch: 0.0,
-                trace_all: 0,
-                cut_stride: 0,
-                plane_count: 0,
-                pair_capacity: 0,
-                redrawn: 0,
-                plane_high,
-                plane_low,
-                ..plan.data
-            }
-        };
-        same(&data(self), &data(other)) && self.goes_the_way_of(other)
+        same(&self.data.scene, &other.data.scene)
+            && same(&self.data.view, &other.data.view)
+            && same(&self.data.order, &other.data.order)
+            && same(&self.data.tiles, &other.data.tiles)
+            && self.way == other.way
     }
-
-    /// Whether the stages of another plan leave the same kinds of things in the same buffers.
-    fn goes_the_way_of(&self, other: &Self) -> bool {
-        self.raster == other.raster
-            && self.expects_depth == other.expects_depth
-            && self.show == other.show
-            && self.sh_format == other.sh_format
-            && self.sort_passes == other.sort_passes
-    }
-}
-
-/// What the clip stage's classes depend on.
-fn clip_constants(plan: &Plan) -> FrameData {
-    let mut data: FrameData = bytemuck::Zeroable::zeroed();
-    data.mode = plan.data.mode;
-    data.op = plan.data.op;
-    data.trace_all = plan.data.trace_all;
-    data.plane_count = plan.data.plane_count;
-    data.plane_high = plan.data.plane_high;
-    data.plane_low = plan.data.plane_low;
-    if plan.mode == types::MODE_RARA {
-        data.sigma = plan.data.sigma;
-    }
-    data
 }
 
 /// By their bytes: what is no number is itself.
-fn same(a: &FrameData, b: &FrameData) -> bool {
+fn same<T: bytemuck::NoUninit>(a: &T, b: &T) -> bool {
     bytes_of(a) == bytes_of(b)
 }

@@ -97,7 +97,7 @@ impl Renderer {
             self.free_finished();
             match Buffers::new(&self.device, &plan) {
                 Ok(buffers) => self.buffers = Some(buffers),
-                Err(Error::Memory(_)) if plan.raster == Raster::Tiles => {
+                Err(Error::Memory(_)) if plan.way.raster == Raster::Tiles => {
                     return self.configure_without_tiles(scene, camera, clip, settings);
                 }
                 Err(error) => return Err(error),

@@ -10,7 +10,9 @@ use crate::error::{Error, Result};
 use crate::gpu::{
     Bindings, Buffer, BufferDesc, DepthImage, Device, Drawer, Location, Recorder, Timer,
 };
-use crate::passes::{self, Buffers, Frame, Kept, PairRoom, Pipelines, Plan, SceneBuffers, Work, tiles};
+use crate::passes::{
+    self, Buffers, Frame, Kept, PairRoom, Pipelines, Plan, SceneBuffers, Work, tiles,
+};
 use crate::placement::Placement;
 use crate::types::FrameCounts;
 
@@ -221,7 +223,7 @@ impl Renderer {
     pub(crate) fn changes_nothing(&self) -> bool {
         self.plan
             .as_ref()
-            .is_some_and(|plan| plan.work == Work::Draw || plan.gaussians == 0)
+            .is_some_and(|plan| plan.work == Work::Draw || plan.gaussians() == 0)
     }
 
     /// As on a device with room for so few pairs of tile and splat.
@@ -316,7 +318,7 @@ impl Renderer {
         }
         let at = (self.prepared % self.slots.len() as u64) as usize;
         let slot = &mut self.slots[at];
-        slot.empty = plan.gaussians == 0;
+        slot.empty = plan.gaussians() == 0;
         self.prepared += 1;
         self.ready = true;
         if slot.empty {
@@ -366,7 +368,7 @@ impl Renderer {
         ) else {
             return out_of_order("draw needs a successful configure() and prepare() before it");
         };
-        if plan.gaussians == 0 {
+        if plan.gaussians() == 0 {
             return Ok(());
         }
         let at = ((self.prepared - 1) % self.slots.len() as u64) as usize;
@@ -414,7 +416,7 @@ impl Renderer {
                 "draw_depth needs a successful configure() and prepare() before it",
             );
         };
-        let Some(depths) = buffers.depth.as_ref().filter(|_| plan.gaussians > 0) else {
+        let Some(depths) = buffers.depth.as_ref().filter(|_| plan.gaussians() > 0) else {
             return Ok(());
         };
         let (map, unit) = (self.depth_map(), self.placement.scale());

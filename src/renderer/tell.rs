@@ -16,7 +16,7 @@ impl Renderer {
     /// How splats become pixels in the configured frame, or became in the one that [`counts`](Self::counts) is about where
     /// its tiles had no room; and why in that way.
     pub fn raster(&self) -> RasterChoice {
-        let raster = self.plan.as_ref().map(|plan| plan.raster);
+        let raster = self.plan.as_ref().map(|plan| plan.way.raster);
         if raster == Some(Raster::Tiles) && self.fell_back() {
             return RasterChoice {
                 path: "quad",

@@ -11,7 +11,6 @@ pub mod files;
 mod framing;
 pub mod gpu;
 mod half;
-pub mod headless;
 mod json;
 pub mod limits;
 pub mod measure;
@@ -22,13 +21,12 @@ pub mod precision;
 pub mod reference;
 pub mod renderer;
 pub mod scene;
+mod session;
 pub mod settings;
 pub mod stats;
 pub mod stress;
 pub mod trace;
 pub mod types;
-#[cfg(feature = "view")]
-pub mod windowed;
 
 /// The versions that this crate's interface is made of.
 pub use {ash, glam, gpu_allocator};
@@ -38,15 +36,15 @@ pub use clip::{Clip, ClipOp, Plane};
 pub use depth::DepthMap;
 pub use error::{Error, Result};
 pub use gpu::PipelineCache;
-pub use headless::{Headless, HeadlessDesc};
 pub use passes::{SceneBuffers, Staging};
 pub use picture::Picture;
 pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 pub use renderer::{DepthDesc, ExpectedDepthDesc, Renderer, RendererDesc};
 pub use scene::Gaussians;
+pub use session::{Headless, HeadlessDesc};
+#[cfg(feature = "view")]
+pub use session::{Redraw, Windowed};
 pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
 pub use stats::{Counts, FrameStats, PassStatistics, PassTime, RasterChoice};
 pub use trace::Trace;
-#[cfg(feature = "view")]
-pub use windowed::Windowed;

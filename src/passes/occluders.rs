@@ -3,8 +3,6 @@
 use ash::vk;
 
 use crate::depth::DepthMap;
-use crate::placement::Placement;
-use crate::renderer::DepthDesc;
 use crate::types;
 
 /// How the host's depth hides the splats of tiles.
@@ -19,17 +17,17 @@ pub(crate) struct Occluders {
 }
 
 impl Occluders {
-    /// Those of a host that shows its depth, for a scene that stands so and a picture of no size yet.
-    pub(crate) fn of(depth: &DepthDesc, placement: &Placement) -> Option<Self> {
-        let form = match depth.format {
+    /// Those of a host whose depth has such a format and meaning, in a picture of no size yet.
+    pub(crate) fn new(format: vk::Format, map: DepthMap) -> Self {
+        let form = match format {
             vk::Format::D16_UNORM | vk::Format::D16_UNORM_S8_UINT => types::DEPTH_16,
             vk::Format::X8_D24_UNORM_PACK32 | vk::Format::D24_UNORM_S8_UINT => types::DEPTH_24,
             _ => types::DEPTH_FLOAT,
         };
-        depth.readable.then_some(Self {
+        Self {
             form,
-            map: depth.map.in_scene(placement),
+            map,
             size: vk::Extent2D::default(),
-        })
+        }
     }
 }

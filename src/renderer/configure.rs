@@ -1,20 +1,29 @@
 //! What a frame needs, decided, allocated and compiled before anything is recorded.
 
-use std::sync::{Arc, PoisonError};
-
 use ash::vk;
 
 use super::Renderer;
+use super::choose;
+use super::frames::{Configured, RecordedFrame};
+use super::outcome::Submission;
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
-use crate::gpu::{Bindings, Support};
+use crate::gpu::Bindings;
 use crate::limits;
-use crate::passes::{
-    Buffers, Kept, Occluders, Pipelines, Plan, SceneBuffers, SceneFacts, Targets, TileWork, Work,
-};
+use crate::passes::{Kept, Occluders, Plan, SceneBuffers, SceneFacts, Targets, TileWork, Work};
 use crate::placement::Placement;
 use crate::settings::{Raster, Settings};
+
+/// What a frame is to show, and how it is submitted.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FrameRequest<'a> {
+    pub(crate) scene: &'a SceneBuffers,
+    pub(crate) camera: &'a Camera,
+    pub(crate) clip: &'a Clip,
+    pub(crate) settings: &'a Settings,
+    pub(crate) submission: Submission,
+}
 
 impl Renderer {
     /// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the
@@ -29,208 +38,175 @@ impl Renderer {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<()> {
-        (self.desc, self.placement) = (self.next_desc, self.next_placement);
-        if self.placement == Placement::IDENTITY {
-            return self.configure_in_scene(scene, camera, clip, settings);
-        }
-        let (camera, clip) = (
-            camera.in_scene(&self.placement),
-            clip.in_scene(&self.placement),
-        );
-        self.configure_in_scene(scene, &camera, &clip, settings)
+        self.configure_frame(&FrameRequest {
+            scene,
+            camera,
+            clip,
+            settings,
+            submission: Submission::InFlight,
+        })
     }
 
-    fn configure_in_scene(
-        &mut self,
-        scene: &SceneBuffers,
-        camera: &Camera,
-        clip: &Clip,
-        settings: &Settings,
-    ) -> Result<()> {
-        self.plan = None;
-        self.ready = false;
+    /// As [`configure`](Self::configure), for a frame that is submitted as the request says.
+    pub(crate) fn configure_frame(&mut self, request: &FrameRequest<'_>) -> Result<()> {
+        if self.placement == Placement::IDENTITY {
+            return self.configure_in_scene(request);
+        }
+        let camera = request.camera.in_scene(&self.placement);
+        let clip = request.clip.in_scene(&self.placement);
+        self.configure_in_scene(&FrameRequest {
+            camera: &camera,
+            clip: &clip,
+            ..*request
+        })
+    }
+
+    /// The request's camera and clip are in the scene's units here.
+    fn configure_in_scene(&mut self, request: &FrameRequest<'_>) -> Result<()> {
+        self.configured = None;
+        let scene = request.scene;
         if !scene.is_on(&self.device) {
             return Err(Error::Invalid(
                 "the scene was uploaded to another device than the renderer's".into(),
             ));
         }
-        self.scene = scene.id;
-        self.free_finished();
-        let columns = camera.width.div_ceil(limits::TILE_WIDTH);
-        let tiles = columns.saturating_mul(camera.height.div_ceil(limits::TILE_HEIGHT));
-        let needed = self.frame_counts().map_or(0, |counts| counts.pairs);
-        self.pairs.make(scene.count, tiles, needed);
+        let submission = request.submission;
+        self.memory.free_finished(self.frames.finished(submission));
+        let tiles = tiles(request.camera);
+        let redrawn = self.make_room(request, tiles);
         let support = self.device.support();
         let is_cpu = self.device.info().kind == vk::PhysicalDeviceType::CPU;
-        let sort_runs = sort_runs(is_cpu, scene.count);
-        let hidden = self.desc.depth.filter(|depth| !depth.readable);
-        let (raster, reason) = choose(settings.raster, support, is_cpu, tiles, hidden.is_some())?;
-        self.reason = reason;
+        let hidden = self.desc.depth.is_some_and(|depth| !depth.readable);
+        let (raster, reason) =
+            choose::raster(request.settings.raster, support, is_cpu, tiles, hidden)?;
+        let depth_map = self
+            .desc
+            .depth
+            .map(|depth| depth.map.in_scene(&self.placement));
         let facts = SceneFacts {
             gaussians: scene.count,
             sh_degree: scene.sh_degree,
             sh_format: scene.sh_format,
             bounds: scene.bounds,
-            sort_runs,
+            sort_runs: choose::sort_runs(is_cpu, scene.count),
             raster,
             tile_work: TileWork::suiting(is_cpu, support.subgroup_size),
-            pair_capacity: self.pairs.room(),
-            redrawn: self.redraws,
+            pair_capacity: self.memory.pairs.room(),
+            redrawn,
             occluders: self
                 .desc
                 .depth
-                .and_then(|depth| Occluders::of(&depth, &self.placement)),
+                .filter(|depth| depth.readable)
+                .zip(depth_map)
+                .map(|(depth, map)| Occluders::new(depth.format, map)),
             expects_depth: self.desc.expected_depth.is_some(),
         };
-        let mut plan = Plan::new(facts, camera, clip, settings)?;
-        if self
-            .buffers
-            .as_ref()
-            .is_none_or(|buffers| !buffers.fit(&plan))
-        {
-            // Free first: both together may not fit.
-            let outgrown = self.buffers.take();
+        let mut plan = Plan::new(facts, request.camera, request.clip, request.settings)?;
+        if !self.memory.fits(&plan) {
             if let Some(kept) = &mut self.kept {
                 kept.holds = false;
             }
-            self.retired.extend(outgrown.map(|b| (self.prepared, b)));
-            self.free_finished();
-            match Buffers::new(&self.device, &plan) {
-                Ok(buffers) => self.buffers = Some(buffers),
-                Err(Error::Memory(_)) if plan.way.raster == Raster::Tiles => {
-                    return self.configure_without_tiles(scene, camera, clip, settings);
+            let memory = &mut self.memory;
+            match memory.replace(&self.device, &plan, &self.frames, submission) {
+                Err(Error::Memory(_)) if raster == Raster::Tiles => {
+                    return self.configure_without_tiles(request);
                 }
-                Err(error) => return Err(error),
+                replaced => replaced?,
             }
         }
-        // The host's depth may be another in each frame.
-        let kept = self.kept.as_ref().filter(|_| plan.occluders.is_none());
-        plan.work = Kept::work(kept, scene.id, &plan);
-        if let (Work::Sweep { .. }, Some(buffers)) = (plan.work, &mut self.buffers) {
-            match buffers.ensure_sweep(&self.device) {
-                Ok(()) => {}
-                // A frame of its own needs less.
-                Err(Error::Memory(_)) => {
-                    self.kept = None;
-                    plan.work = Kept::work(None, scene.id, &plan);
-                }
-                Err(error) => return Err(error),
-            }
-        }
-        // Of what there is, which an earlier frame may have made larger than this one needs.
-        let largest = self.buffers.as_ref().map_or(0, Buffers::largest);
-        let largest = largest.max(scene.largest());
-        let support = self.device.support();
-        self.bindings = match self.desc.bindings {
-            Bindings::Bound
-                if support.push_descriptor && largest <= support.max_storage_buffer_range =>
-            {
-                Bindings::Bound
-            }
-            Bindings::Bound | Bindings::Address => Bindings::Address,
-        };
-        self.ensure_pipelines(&plan)?;
-        self.plan = Some(plan);
-        Ok(())
-    }
-
-    /// Makes the pipelines that a plan needs and nobody has needed before.
-    fn ensure_pipelines(&mut self, plan: &Plan) -> Result<()> {
+        plan.work = self.work(scene.id, &plan)?;
+        let bindings = self.bindings(scene);
         let targets = Targets {
             colour: self.desc.attachments(),
             expected_depth: self.desc.expected_depth(),
         };
-        let at = self.bindings as usize;
-        let has_all = |pipelines: &Pipelines| {
-            let mut all = true;
-            plan.pipelines(targets, &mut |key| all &= pipelines.has(&key));
-            all
-        };
-        if self.pipelines[at].as_deref().is_some_and(has_all) {
-            return Ok(());
-        }
-        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
-        let shared = shared[at].get_or_insert_with(|| Arc::new(Pipelines::new(self.bindings)));
-        if !has_all(shared) {
-            // A copy for all who come, while others record with what they have.
-            let pipelines = Arc::make_mut(shared);
-            let mut made = Ok(());
-            plan.pipelines(targets, &mut |key| {
-                if made.is_ok() {
-                    made = pipelines.ensure(&self.device, key);
-                }
-            });
-            made?;
-        }
-        self.pipelines[at] = Some(shared.clone());
+        let pipelines = &mut self.pipelines;
+        pipelines.ensure(&self.device, bindings, targets, &plan)?;
+        self.configured = Some(Configured {
+            scene: scene.id,
+            plan,
+            reason,
+            bindings,
+            targets,
+            depth_map,
+            unit: self.placement.scale(),
+            redrawn,
+            prepared: false,
+        });
         Ok(())
     }
 
     /// The same frame as quads, on a device that has no memory for so many tiles and their lists.
-    fn configure_without_tiles(
-        &mut self,
-        scene: &SceneBuffers,
-        camera: &Camera,
-        clip: &Clip,
-        settings: &Settings,
-    ) -> Result<()> {
-        self.pairs.refuse();
+    fn configure_without_tiles(&mut self, request: &FrameRequest<'_>) -> Result<()> {
+        self.memory.pairs.refuse();
         let quads = Settings {
             raster: Raster::Quad,
-            ..*settings
+            ..*request.settings
         };
-        self.configure_in_scene(scene, camera, clip, &quads)?;
-        self.reason = "the device has no memory for the tiles' lists";
+        self.configure_in_scene(&FrameRequest {
+            settings: &quads,
+            ..*request
+        })?;
+        if let Some(configured) = &mut self.configured {
+            configured.reason = "the device has no memory for the tiles' lists";
+        }
         Ok(())
     }
 
-    /// Frees what only frames used that the host has waited for.
-    fn free_finished(&mut self) {
-        let finished = (self.prepared + 1).saturating_sub(self.slots.len() as u64);
-        self.retired.retain(|(prepared, _)| *prepared > finished);
+    /// Sees to it that there is room for as many pairs of tile and splat as the frame before has shown that there are.
+    /// Whether nothing is to be drawn of the next frame where that is not enough.
+    fn make_room(&mut self, request: &FrameRequest<'_>, tiles: u32) -> bool {
+        let undrawn = |frame: &RecordedFrame| {
+            let redrawn = frame.configured.as_ref().is_some_and(|had| had.redrawn);
+            redrawn && frame.fell_back()
+        };
+        if self.frames.newest().is_some_and(undrawn) {
+            self.kept = None; // nothing was drawn of it
+        }
+        let before = self.frames.awaited(request.submission);
+        let fell_back = before.is_some_and(RecordedFrame::fell_back);
+        let needed = before.map_or(0, RecordedFrame::pairs);
+        let pairs = &mut self.memory.pairs;
+        let had = pairs.room();
+        pairs.make(request.scene.count, tiles, needed);
+        // Where there is no more room to be had, quads are drawn at once.
+        request.submission == Submission::Awaited && (!fell_back || pairs.room() > had)
+    }
+
+    /// What of a plan has to be computed after the frame before it.
+    fn work(&mut self, scene: u64, plan: &Plan) -> Result<Work> {
+        // The host's depth may be another in each frame.
+        let kept = self.kept.as_ref().filter(|_| plan.occluders.is_none());
+        let work = Kept::work(kept, scene, plan);
+        if !matches!(work, Work::Sweep { .. }) {
+            return Ok(work);
+        }
+        match self.memory.ensure_sweep(&self.device) {
+            Ok(()) => Ok(work),
+            // A frame of its own needs less.
+            Err(Error::Memory(_)) => {
+                self.kept = None;
+                Ok(Kept::work(None, scene, plan))
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// How buffers are reached: as wanted, where the device can bind so large ones.
+    fn bindings(&self, scene: &SceneBuffers) -> Bindings {
+        // Of what there is, which an earlier frame may have made larger than this one needs.
+        let largest = self.memory.buffers().largest().max(scene.largest());
+        let support = self.device.support();
+        let binds = support.push_descriptor && largest <= support.max_storage_buffer_range;
+        match self.desc.bindings {
+            Bindings::Bound if binds => Bindings::Bound,
+            Bindings::Bound | Bindings::Address => Bindings::Address,
+        }
     }
 }
 
-/// How splats become pixels on a device, and why in that way. `hidden` is what tiles cannot see: the host's depth.
-fn choose(
-    wanted: Raster,
-    support: &Support,
-    is_cpu: bool,
-    tiles: u32,
-    hidden: bool,
-) -> Result<(Raster, &'static str)> {
-    let tiled = wanted == Raster::Tiles || (wanted == Raster::Auto && is_cpu);
-    Ok(match wanted {
-        Raster::Auto | Raster::Tiles if hidden && tiled => {
-            let reason = "tiles need the host's depth before its scope (DepthDesc::readable)";
-            (Raster::Quad, reason)
-        }
-        Raster::Auto if u64::from(tiles) * TILE_BYTES > MOST_PICTURE => {
-            let reason = "the tiles' picture would take more than 1 GiB";
-            (Raster::Quad, reason)
-        }
-        // See the README's measurements.
-        Raster::Auto if is_cpu => (Raster::Tiles, "a CPU driver charges for each drawn splat"),
-        Raster::Auto if support.mesh_shader => (Raster::Mesh, "a GPU with mesh shaders"),
-        Raster::Auto => (Raster::Quad, "a GPU without mesh shaders"),
-        Raster::Mesh if !support.mesh_shader => {
-            return Err(Error::Device(
-                "this device has no mesh shaders (VK_EXT_mesh_shader); use --raster quad".into(),
-            ));
-        }
-        chosen => (chosen, "asked for"),
-    })
-}
-
-/// What a tile's pixels take, and the most that a picture of them may: what every device can allocate at once.
-const TILE_BYTES: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64 * 16;
-const MOST_PICTURE: u64 = 1 << 30;
-/// Runs of the sort: each costs a histogram, so few where there is little to sort and on CPU drivers; but at least the
-/// lanes of all cores there, and on GPUs enough invocations to hide the latency of their scattered writes.
-fn sort_runs(is_cpu: bool, gaussians: u32) -> u32 {
-    match (is_cpu, gaussians) {
-        (true, ..32_768) => 128,
-        (true, _) => 256,
-        (false, _) => 2048,
-    }
+/// Tiles of a camera's picture.
+fn tiles(camera: &Camera) -> u32 {
+    let columns = camera.width.div_ceil(limits::TILE_WIDTH);
+    columns.saturating_mul(camera.height.div_ceil(limits::TILE_HEIGHT))
 }

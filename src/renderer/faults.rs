@@ -4,9 +4,9 @@
 use super::*;
 use crate::camera::Camera;
 use crate::clip::{Clip, ClipOp, Plane};
-use crate::gpu::ImageDesc;
 use crate::gpu::faults::{self, CAN_BE_LOST, Fault};
-use crate::passes::Staging;
+use crate::gpu::{Bindings, BufferDesc, Drawer, ImageDesc, Location};
+use crate::passes::{SceneBuffers, Staging};
 use crate::precision::ShFormat;
 use crate::scene::{Bounds, Kind, generate};
 use crate::settings::Settings;

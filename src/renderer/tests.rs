@@ -3,7 +3,8 @@
 use super::*;
 use crate::camera::Camera;
 use crate::clip::Clip;
-use crate::gpu::{DeviceDesc, ImageDesc};
+use crate::gpu::{DeviceDesc, Drawer, ImageDesc};
+use crate::passes::SceneBuffers;
 use crate::precision::ShFormat;
 use crate::scene::{Bounds, Kind, generate};
 use crate::settings::Settings;
@@ -38,7 +39,7 @@ fn recording_waits_for_no_compiler() {
     let configured = renderer.configure(&buffers, &camera, &clip, &settings);
     configured.expect("configures");
 
-    let compiling = other.shared.lock().expect("nobody has panicked");
+    let compiling = other.pipelines.all.lock().expect("nobody has panicked");
     let configured = renderer.configure(&buffers, &camera, &clip, &settings);
     configured.expect("configures");
     let submitted = device.submit_and_wait(|cmd| {

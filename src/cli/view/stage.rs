@@ -5,8 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use rara::windowed::Shown;
-use rara::{Camera, Settings, Windowed};
+use rara::{Camera, Redraw, Settings, Windowed};
 use winit::dpi::PhysicalSize;
 use winit::window::Window;
 
@@ -183,8 +182,8 @@ impl Stage {
                 return self.changed();
             }
             Action::Timings => {
-                let told = self.windowed.told();
-                say(title::lines(self.size(), told, &mut self.intervals));
+                let stats = self.windowed.stats();
+                say(title::lines(self.size(), stats, &mut self.intervals));
                 self.intervals.clear();
                 self.shown_at = None;
                 return Ok(());
@@ -248,20 +247,20 @@ impl Stage {
         };
         let camera = self.viewpoint.camera(size);
         let Scenery { cut, settings, .. } = &self.scenery;
-        let shown = self.windowed.show(&camera, &cut.clip(), settings)?;
-        self.dirty = shown == Shown::Missed;
-        self.unsettled = shown == Shown::Unsettled;
+        let redraw = self.windowed.show(&camera, &cut.clip(), settings)?;
+        self.dirty = redraw == Redraw::Now;
+        self.unsettled = redraw == Redraw::WhenIdle;
         let now = Instant::now();
         // The frame that only asks for numbers is none that anybody waits for.
-        if let Some(before) = self.shown_at.take().filter(|_| shown == Shown::Unsettled)
+        if let Some(before) = self.shown_at.take().filter(|_| self.unsettled)
             && self.intervals.len() < INTERVALS
         {
             self.intervals.push(now - before);
         }
-        if shown == Shown::Unsettled {
+        if self.unsettled {
             self.shown_at = Some(now);
         }
-        if shown == Shown::Settled || self.titled_at.is_none_or(|at| now - at >= TITLE_PAUSE) {
+        if redraw == Redraw::NotNeeded || self.titled_at.is_none_or(|at| now - at >= TITLE_PAUSE) {
             self.titled_at = Some(now);
             self.entitle();
         }
@@ -273,7 +272,7 @@ impl Stage {
             name, mode, cut, ..
         } = &self.scenery;
         let offset = cut.on.then(|| cut.plane().offset());
-        let text = title::title(name, mode.name(), offset, self.windowed.told());
+        let text = title::title(name, mode.name(), offset, self.windowed.stats());
         self.window.set_title(&text);
     }
 

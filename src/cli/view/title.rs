@@ -1,23 +1,28 @@
-//! What a viewer tells about its frames: shortly in the window's title, at length on the terminal.
+//! A viewer's report on its frames: shortly in the window's title, at length on the terminal.
 
 use std::fmt::Write;
 use std::time::Duration;
 
-use rara::windowed::Told;
+use rara::FrameStats;
 
 use crate::cli::output::grouped;
 
 /// The title: what is shown, how it is cut, and where the last frame's time went on the device.
-pub(super) fn title(scene: &str, mode: &str, cut: Option<f64>, told: Option<&Told>) -> String {
+pub(super) fn title(
+    scene: &str,
+    mode: &str,
+    cut: Option<f64>,
+    stats: Option<&FrameStats>,
+) -> String {
     let mut text = format!("rara: {scene}, {mode}");
     if let Some(offset) = cut {
         let _ = write!(text, ", plane at {offset:.4}");
     }
-    let Some(told) = told.filter(|told| !told.passes.is_empty()) else {
+    let Some(stats) = stats.filter(|stats| !stats.passes.is_empty()) else {
         return text;
     };
-    let total: f64 = told.passes.iter().map(|pass| pass.ms).sum();
-    let mut passes: Vec<_> = told.passes.iter().collect();
+    let total: f64 = stats.passes.iter().map(|pass| pass.ms).sum();
+    let mut passes: Vec<_> = stats.passes.iter().collect();
     passes.sort_by(|a, b| b.ms.total_cmp(&a.ms));
     let most: Vec<_> = passes
         .iter()
@@ -29,10 +34,14 @@ pub(super) fn title(scene: &str, mode: &str, cut: Option<f64>, told: Option<&Tol
 }
 
 /// The lines of the key T: the last frame that computed anything, and the time between frames since the last time.
-pub(super) fn lines(size: (u32, u32), told: Option<&Told>, intervals: &mut [Duration]) -> String {
+pub(super) fn lines(
+    size: (u32, u32),
+    stats: Option<&FrameStats>,
+    intervals: &mut [Duration],
+) -> String {
     let mut text = format!("window   {}x{}", size.0, size.1);
-    if let Some(told) = told {
-        let counts = &told.counts;
+    if let Some(stats) = stats {
+        let counts = &stats.counts;
         let _ = write!(
             text,
             "\ncounts   {} visible, {} cut, {} invisible, {} culled",
@@ -42,17 +51,17 @@ pub(super) fn lines(size: (u32, u32), told: Option<&Told>, intervals: &mut [Dura
             grouped(counts.culled.into())
         );
         text += "\npasses  ";
-        for pass in &told.passes {
+        for pass in &stats.passes {
             let _ = write!(text, " {} {:.2}", pass.name, pass.ms);
         }
-        if !told.skipped.is_empty() {
-            let _ = write!(text, " (skipped: {})", told.skipped.join(", "));
+        if !stats.skipped.is_empty() {
+            let _ = write!(text, " (skipped: {})", stats.skipped.join(", "));
         }
-        let total: f64 = told.passes.iter().map(|pass| pass.ms).sum();
+        let total: f64 = stats.passes.iter().map(|pass| pass.ms).sum();
         let _ = write!(
             text,
             "\ntime     {total:.2} ms on the device, as {} ({})",
-            told.raster.path, told.raster.reason
+            stats.raster.path, stats.raster.reason
         );
     }
     if intervals.is_empty() {
@@ -78,22 +87,22 @@ mod tests {
     use super::*;
     use rara::PassTime;
 
-    fn told() -> Told {
+    fn stats() -> FrameStats {
         let pass = |name, ms| PassTime { name, ms };
-        Told {
+        FrameStats {
             passes: vec![
                 pass("clip", 0.4),
                 pass("project", 5.85),
                 pass("sort", 3.0),
                 pass("tiles", 14.25),
             ],
-            ..Told::default()
+            ..FrameStats::default()
         }
     }
 
     #[test]
     fn the_title_names_the_longest_stages() {
-        let text = title("hair.ply", "exact", Some(-0.5), Some(&told()));
+        let text = title("hair.ply", "exact", Some(-0.5), Some(&stats()));
         assert_eq!(
             text,
             "rara: hair.ply, exact, plane at -0.5000; 23.5 ms (tiles 14.2, project 5.8, sort 3.0)"
@@ -102,9 +111,9 @@ mod tests {
     }
 
     #[test]
-    fn frames_in_a_row_are_told_by_their_median() {
+    fn frames_in_a_row_are_summed_up_by_their_median() {
         let mut intervals = [40, 10, 20].map(Duration::from_millis);
-        let text = lines((640, 480), Some(&told()), &mut intervals);
+        let text = lines((640, 480), Some(&stats()), &mut intervals);
         assert!(
             text.contains("window   640x480") && text.contains("tiles 14.25"),
             "{text}"

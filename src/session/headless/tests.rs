@@ -6,6 +6,7 @@ use crate::gpu::faults;
 use crate::limits;
 use crate::scene::{Bounds, Kind, extent_along, generate};
 use crate::settings::{ExactForm, Mode, Raster, Show};
+use ash::vk;
 use glam::{DVec3, Vec3};
 
 fn headless() -> Headless {
@@ -22,7 +23,7 @@ fn what_tiles_never_have_room_for_is_drawn_as_quads() {
     let mut headless = headless();
     let scene = generate(Kind::General, 3_000, 1);
     headless.load(&scene).expect("uploads");
-    headless.renderer.limit_pairs(1 << 11);
+    headless.session.renderer.limit_pairs(1 << 11);
     let bounds = Bounds::of(&scene);
     let camera = Camera::frame(&bounds, -DVec3::Y, 50.0, (200, 150)).expect("a view");
     // The second and the third are a sweep, whose base has no room either.
@@ -138,8 +139,8 @@ fn blocks_change_nothing() {
     for scene in scenes_of_blocks() {
         settles.load(&scene).expect("uploads");
         looks.load(&scene).expect("uploads");
-        let buffers = looks.scene.as_ref().expect("loaded");
-        buffers.undecide(&looks.device).expect("uploads");
+        let buffers = looks.session.scene.as_ref().expect("loaded");
+        buffers.undecide(&looks.session.device).expect("uploads");
         let views = views_of_blocks(&Bounds::of(&scene));
         for step in 0..if faults::is_slow() { 8 } else { 16 } {
             let camera = match views.get(step) {
@@ -176,7 +177,11 @@ fn blocks_change_nothing() {
                 let draw = |headless: &mut Headless| {
                     let stats = headless.render(&camera, &clip, &settings).expect("renders");
                     let picture = headless.picture().expect("reads back");
-                    (stats.counts, picture, headless.renderer.block_sides())
+                    (
+                        stats.counts,
+                        picture,
+                        headless.session.renderer.block_sides(),
+                    )
                 };
                 let (counts, picture, sides) = draw(&mut settles);
                 let (each, truth, unsettled) = draw(&mut looks);

@@ -9,7 +9,7 @@ const MOST: u32 = 1 << 27;
 
 /// Grows with what frames need, and stays.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct PairRoom {
+pub(super) struct PairRoom {
     room: u32,
     /// Less than [`MOST`] once the device has had no memory for them.
     most: u32,
@@ -26,35 +26,43 @@ impl Default for PairRoom {
 
 impl PairRoom {
     /// Room for a scene of `gaussians` in a picture of `tiles`, after a frame that had, or would have had, `needed` pairs.
-    pub(crate) fn make(&mut self, gaussians: u32, tiles: u32, needed: u32) {
+    pub(super) fn make(&mut self, gaussians: u32, tiles: u32, needed: u32) {
         let usual = gaussians
             .saturating_mul(USUAL_PER_GAUSSIAN)
             .saturating_add(tiles.saturating_mul(USUAL_PER_TILE))
             .min(gaussians.saturating_mul(tiles));
-        let grown = needed.saturating_add(needed / 4);
-        // What would not fit anyway is no reason to take memory.
-        if needed > self.room && grown <= self.most {
-            self.room = grown;
+        if self.can_grow_to(needed) {
+            self.room = with_margin(needed);
         }
         self.room = self.room.max(usual.min(self.most));
     }
 
+    /// Whether there is no room for so many pairs, but can be. What would not fit anyway is no reason to take memory.
+    pub(super) fn can_grow_to(&self, needed: u32) -> bool {
+        needed > self.room && with_margin(needed) <= self.most
+    }
+
     /// The device has no memory for so many.
-    pub(crate) fn refuse(&mut self) {
+    pub(super) fn refuse(&mut self) {
         self.most = self.room / 2;
         self.room = 0;
     }
 
     /// As on a device with less memory.
     #[cfg(test)]
-    pub(crate) fn limited(most: u32) -> Self {
+    pub(super) fn limited(most: u32) -> Self {
         Self { room: 0, most }
     }
 
     /// Pairs that there is room for.
-    pub(crate) fn room(&self) -> u32 {
+    pub(super) fn room(&self) -> u32 {
         self.room
     }
+}
+
+/// A frame that needs a little more than the one before is no reason to allocate again.
+fn with_margin(needed: u32) -> u32 {
+    needed.saturating_add(needed / 4)
 }
 
 #[cfg(test)]

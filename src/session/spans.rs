@@ -5,16 +5,21 @@ use std::time::Instant;
 use serde_json::json;
 
 use crate::gpu::{Device, PassSpan};
-use crate::renderer::Renderer;
+use crate::renderer::RecordedFrame;
 use crate::trace::Trace;
 
 /// Adds the stages of the frame that has just been waited for. Where the device's clock cannot be read, the first stage
 /// begins with the submission, and the trace says so.
-pub(super) fn add(trace: &Trace, device: &Device, renderer: &Renderer, submitted: Instant) {
+pub(super) fn add(
+    trace: &Trace,
+    device: &Device,
+    frame: Option<&RecordedFrame>,
+    submitted: Instant,
+) {
     let info = device.info();
     trace.note("device", info.name.as_str());
     trace.note("driver", info.driver.as_str());
-    let spans = renderer.pass_spans();
+    let spans = frame.map(RecordedFrame::pass_spans).unwrap_or_default();
     let Some(first) = spans.first() else {
         trace.note("gpu_clock", "none: the device has no timestamps");
         return;
@@ -42,7 +47,9 @@ pub(super) fn add(trace: &Trace, device: &Device, renderer: &Renderer, submitted
         let ticks = signed(then, tick, support.timestamp_bits);
         trace.at(at) + ticks as f64 * f64::from(support.timestamp_period) * 1e-3
     };
-    let counted = renderer.pass_statistics();
+    let counted = frame
+        .map(RecordedFrame::pass_statistics)
+        .unwrap_or_default();
     for PassSpan { name, begin, end } in spans {
         let about = counted.iter().find(|pass| pass.name == name);
         let about = about.map_or(json!({}), |pass| json!(pass));

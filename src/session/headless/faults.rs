@@ -4,9 +4,10 @@
 use super::*;
 use crate::clip::{ClipOp, Plane};
 use crate::gpu::faults::{self, CAN_BE_LOST, Fault, Pretence};
+use crate::gpu::{Bindings, PipelineCache};
 use crate::scene::{Bounds, Kind, generate};
 use crate::settings::Raster;
-use ash::vk::Result as Code;
+use ash::vk::{self, Result as Code};
 use glam::DVec3;
 
 /// A scene, a frame of it from nothing, a sweep's frames, and pictures of the first and the last.
@@ -275,7 +276,7 @@ fn every_object_has_a_name_and_every_command_a_label() {
         for offset in [0.0, 0.1, 0.2] {
             let scene = generate(Kind::General, 600, 1);
             let camera = Camera::frame(&Bounds::of(&scene), -DVec3::Y, 50.0, (24, 16));
-            if headless.scene.is_none() {
+            if headless.session.scene.is_none() {
                 headless.load(&scene).expect("uploads");
             }
             let clip = Clip {

@@ -1,0 +1,136 @@
+//! The frames that may be unfinished at once, and what is known of each when it was waited for.
+
+use super::outcome::Submission;
+use crate::depth::DepthMap;
+use crate::error::Result;
+use crate::gpu::{Bindings, Buffer, BufferDesc, Device, Location, Timer};
+use crate::passes::{Plan, Targets, Work};
+use crate::types::FrameCounts;
+
+/// A frame as [`Renderer::configure`](super::Renderer::configure) has decided it.
+#[derive(Debug, Clone)]
+pub(super) struct Configured {
+    /// The scene's number.
+    pub(super) scene: u64,
+    pub(super) plan: Plan,
+    /// Why splats become pixels in the plan's way.
+    pub(super) reason: &'static str,
+    pub(super) bindings: Bindings,
+    pub(super) targets: Targets,
+    /// What the host's depth buffer holds for a depth in the scene's units.
+    pub(super) depth_map: Option<DepthMap>,
+    /// World units in one of the scene's.
+    pub(super) unit: f64,
+    /// Without room for its pairs of tile and splat nothing is drawn of it.
+    pub(super) redrawn: bool,
+    /// It has been prepared.
+    pub(super) prepared: bool,
+}
+
+impl Configured {
+    /// Whether its pixels are those of the frame before it.
+    pub(super) fn changes_nothing(&self) -> bool {
+        self.plan.work == Work::Draw || self.plan.gaussians() == 0
+    }
+}
+
+/// A frame that was recorded, until its slot's next one is.
+#[derive(Debug)]
+pub(crate) struct RecordedFrame {
+    pub(super) timer: Option<Timer>,
+    /// Where the host reads the frame's [`FrameCounts`].
+    pub(super) counts: Buffer,
+    /// What was recorded; `None` before the first frame, and of one that was never submitted.
+    pub(super) configured: Option<Configured>,
+}
+
+impl RecordedFrame {
+    fn new(device: &Device, timing: bool, statistics: bool) -> Result<Self> {
+        let mut counts = device.create_buffer(&BufferDesc {
+            name: "counts_readback",
+            size: size_of::<FrameCounts>() as u64,
+            location: Location::Readback,
+        })?;
+        // The stages of a frame, with room for several draws; what comes beyond has no times.
+        let timer = || match (Timer::new(device, 16), statistics) {
+            (Ok(timer), true) => timer.with_statistics(),
+            (timer, _) => timer,
+        };
+        counts.mapped_mut().fill(0); // what is read of a frame that is never submitted
+        Ok(Self {
+            timer: timing.then(timer).transpose()?,
+            counts,
+            configured: None,
+        })
+    }
+}
+
+/// A slot for each frame in flight, taken in turn.
+#[derive(Debug)]
+pub(super) struct FramesInFlight {
+    slots: Box<[RecordedFrame]>,
+    /// Frames prepared so far.
+    prepared: u64,
+}
+
+impl FramesInFlight {
+    pub(super) fn new(device: &Device, count: u32, timing: bool, statistics: bool) -> Result<Self> {
+        let slots = (0..count).map(|_| RecordedFrame::new(device, timing, statistics));
+        Ok(Self {
+            slots: slots.collect::<Result<_>>()?,
+            prepared: 0,
+        })
+    }
+
+    /// The slot for one more frame.
+    pub(super) fn begin(&mut self, configured: &Configured) -> &mut RecordedFrame {
+        let at = self.slot(self.prepared);
+        self.prepared += 1;
+        let slot = &mut self.slots[at];
+        slot.configured = Some(configured.clone());
+        slot
+    }
+
+    /// The frame that was prepared last.
+    pub(super) fn newest(&self) -> Option<&RecordedFrame> {
+        let at = self.slot(self.prepared.checked_sub(1)?);
+        Some(&self.slots[at])
+    }
+
+    /// As [`newest`](Self::newest).
+    pub(super) fn newest_mut(&mut self) -> Option<&mut RecordedFrame> {
+        let at = self.slot(self.prepared.checked_sub(1)?);
+        Some(&mut self.slots[at])
+    }
+
+    /// The frame before which the host waits next: the next one takes its slot. `None` where no frame is that old.
+    pub(super) fn oldest(&self) -> Option<&RecordedFrame> {
+        let count = self.slots.len() as u64;
+        (self.prepared >= count).then(|| &self.slots[self.slot(self.prepared)])
+    }
+
+    /// The last frame that was waited for before one that is submitted so.
+    pub(super) fn awaited(&self, submission: Submission) -> Option<&RecordedFrame> {
+        match submission {
+            Submission::Awaited => self.newest(),
+            Submission::InFlight => self.oldest(),
+        }
+    }
+
+    /// Frames prepared so far.
+    pub(super) fn prepared(&self) -> u64 {
+        self.prepared
+    }
+
+    /// How many of these, the first ones, are finished before one that is submitted so.
+    pub(super) fn finished(&self, submission: Submission) -> u64 {
+        match submission {
+            Submission::Awaited => self.prepared,
+            Submission::InFlight => (self.prepared + 1).saturating_sub(self.slots.len() as u64),
+        }
+    }
+
+    fn slot(&self, frame: u64) -> usize {
+        (frame % self.slots.len() as u64) as usize
+    }
+}

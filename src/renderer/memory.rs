@@ -1,0 +1,61 @@
+//! What frames compute in, and what they have outgrown.
+
+use super::frames::FramesInFlight;
+use super::outcome::Submission;
+use super::pair_room::PairRoom;
+use crate::error::Result;
+use crate::gpu::Device;
+use crate::passes::{Buffers, Plan};
+
+/// The buffers that all frames share, one after the other.
+#[derive(Debug, Default)]
+pub(super) struct WorkingMemory {
+    buffers: Option<Buffers>,
+    /// What frames in flight may still use, with the number of frames prepared when it was replaced.
+    retired: Vec<(u64, Buffers)>,
+    /// The pairs of tile and splat that there is to be room for.
+    pub(super) pairs: PairRoom,
+}
+
+impl WorkingMemory {
+    /// Whether a plan fits into the buffers that there are.
+    pub(super) fn fits(&self, plan: &Plan) -> bool {
+        self.buffers
+            .as_ref()
+            .is_some_and(|buffers| buffers.fit(plan))
+    }
+
+    /// Puts buffers that a plan fits into in place of those that there are; after an error there are none.
+    pub(super) fn replace(
+        &mut self,
+        device: &Device,
+        plan: &Plan,
+        frames: &FramesInFlight,
+        submission: Submission,
+    ) -> Result<()> {
+        // Free first: both together may not fit.
+        let outgrown = self.buffers.take();
+        let prepared = frames.prepared();
+        self.retired
+            .extend(outgrown.map(|buffers| (prepared, buffers)));
+        self.free_finished(frames.finished(submission));
+        self.buffers = Some(Buffers::new(device, plan)?);
+        Ok(())
+    }
+
+    /// Frees what only the first `finished` frames have used.
+    pub(super) fn free_finished(&mut self, finished: u64) {
+        self.retired.retain(|(prepared, _)| *prepared > finished);
+    }
+
+    /// Adds what a sweep needs besides.
+    pub(super) fn ensure_sweep(&mut self, device: &Device) -> Result<()> {
+        let buffers = self.buffers.as_mut().expect("replace() allocates them");
+        buffers.ensure_sweep(device)
+    }
+
+    /// The buffers of a frame that is configured.
+    pub(super) fn buffers(&self) -> &Buffers {
+        self.buffers.as_ref().expect("replace() allocates them")
+    }
+}

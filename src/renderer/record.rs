@@ -1,0 +1,183 @@
+//! A configured frame, recorded into the host's command buffer: the stages, and the draws.
+
+use ash::vk;
+
+use super::{Renderer, out_of_order};
+use crate::error::Result;
+use crate::gpu::{DepthImage, Drawer, Recorder};
+use crate::passes::{self, Frame, Kept, SceneBuffers, Work, tiles};
+
+impl Renderer {
+    /// Records the stages up to the draw, outside any rendering scope.
+    ///
+    /// # Safety
+    /// `cmd` is in the recording state, outside a rendering scope, on a queue family with compute and graphics, and
+    /// will be submitted to the device's queue, or never. `scene` is the one given to [`configure`](Self::configure)
+    /// and lives until the commands have executed. The host has waited for the frames that [`Renderer`] says.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] without a successful [`configure`](Self::configure) before it, with another scene, and where
+    /// [`DepthDesc::readable`] promises the host's depth. Nothing is recorded then.
+    pub unsafe fn prepare(&mut self, cmd: vk::CommandBuffer, scene: &SceneBuffers) -> Result<()> {
+        if self.desc.depth.is_some_and(|depth| depth.readable) {
+            return out_of_order("prepare was promised the host's depth: prepare_behind takes it");
+        }
+        // SAFETY: the caller's promises are those asked for.
+        unsafe { self.prepare_with(cmd, scene, None) }
+    }
+
+    /// As [`prepare`](Self::prepare), for a renderer whose [`DepthDesc::readable`] says so: with what the host has drawn
+    /// already, so that tiles leave out the splats behind it. The same picture as that of quads, which test each sample
+    /// against the attachment itself. Tiles of such a frame are computed anew even where [`RendererDesc::reuse`] is set.
+    ///
+    /// The part of the image under the viewport is copied, at `COPY` by `TRANSFER_READ`: the host's barrier before makes
+    /// its depths visible to that, its barrier after waits for it before the image changes layout or contents.
+    ///
+    /// # Safety
+    /// As for [`prepare`](Self::prepare); and `depth` is as its description says, visible to the copy, and lives until
+    /// the commands have executed.
+    ///
+    /// # Errors
+    /// As of [`prepare`](Self::prepare), and where [`DepthDesc::readable`] is not set.
+    pub unsafe fn prepare_behind(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        scene: &SceneBuffers,
+        depth: &DepthImage,
+    ) -> Result<()> {
+        if !self.desc.depth.is_some_and(|depth| depth.readable) {
+            return out_of_order("prepare_behind needs DepthDesc::readable");
+        }
+        // SAFETY: the caller's promises are those asked for.
+        unsafe { self.prepare_with(cmd, scene, Some(depth)) }
+    }
+
+    /// # Safety
+    /// As for [`prepare`](Self::prepare) or, with `depth`, [`prepare_behind`](Self::prepare_behind).
+    unsafe fn prepare_with(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        scene: &SceneBuffers,
+        depth: Option<&DepthImage>,
+    ) -> Result<()> {
+        let Some(configured) = &mut self.configured else {
+            return out_of_order("prepare needs a successful configure() before it");
+        };
+        if configured.scene != scene.id {
+            return out_of_order("prepare was given another scene than configure()");
+        }
+        configured.prepared = true;
+        let slot = self.frames.begin(configured);
+        let plan = &configured.plan;
+        if plan.gaussians() == 0 {
+            return Ok(());
+        }
+        let pipelines = self.pipelines.get(configured.bindings);
+        let buffers = self.memory.buffers();
+        // SAFETY: the caller promises that `cmd` is recording, outside a rendering scope.
+        let mut recorder = unsafe { Recorder::begin(&self.device, cmd, slot.timer.as_mut()) };
+        let occluders = depth.zip(plan.occluders).zip(buffers.tiles.as_ref()).map(
+            |((depth, occluders), tiles)| {
+                // SAFETY: the caller promises the image, its layout and that its depths are visible.
+                unsafe { recorder.copy_depth(depth, &tiles.occluders, occluders.size) }
+            },
+        );
+        let copied = occluders.unwrap_or_default();
+        let frame = Frame {
+            plan,
+            pipelines,
+            scene,
+            buffers,
+            copied,
+        };
+        passes::record(&frame, &mut recorder, &slot.counts);
+        if plan.work != Work::Draw {
+            let before = self.kept.take();
+            let keeps = self.desc.reuse && plan.occluders.is_none();
+            self.kept = keeps.then(|| Kept::after(before, scene.id, plan));
+        }
+        Ok(())
+    }
+
+    /// Records the splats, or the picture that the tiles have made of them, inside the host's rendering scope, blended
+    /// `over` what is there: premultiplied colours, the same for all samples of a pixel. `origin` is the viewport's upper left corner in the
+    /// attachment, whole px; the viewport has the camera's size. May be recorded more than once for a prepared frame.
+    ///
+    /// # Safety
+    /// `cmd` is inside a rendering scope with the attachments of the [`RendererDesc`] and no others, one layer and no view
+    /// mask; viewport and scissor are set; [`prepare`](Self::prepare) was recorded for the same frame before it.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] without a prepared frame; nothing is recorded then.
+    pub unsafe fn draw(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) -> Result<()> {
+        let Some(configured) = self.configured.as_ref().filter(|frame| frame.prepared) else {
+            return out_of_order("draw needs a successful configure() and prepare() before it");
+        };
+        let plan = &configured.plan;
+        if plan.gaussians() == 0 {
+            return Ok(());
+        }
+        let (bindings, attachments) = (configured.bindings, configured.targets.colour);
+        let map = configured.depth_map;
+        let pipelines = self.pipelines.get(bindings);
+        let buffers = self.memory.buffers();
+        let tiled = buffers.tiles.as_ref().filter(|_| plan.is_tiled());
+        let newest = self.frames.newest_mut();
+        let timer = newest.and_then(|frame| frame.timer.as_mut());
+        // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
+        let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
+        drawer.pass("splat", |drawer| {
+            let frame = (plan, buffers);
+            passes::splat::record(drawer, pipelines, frame, attachments, origin, map);
+            if let Some(t) = tiled {
+                tiles::record_composite(drawer, pipelines, (buffers, t), attachments, origin);
+            }
+        });
+        Ok(())
+    }
+
+    /// Records the splats' depths inside a rendering scope of their own, with the attachments of
+    /// [`RendererDesc::expected_depth`] and, if there is one, the same depth attachment: blended `over` what is there,
+    /// red is the sum of the depths, each times what its splat adds to the pixel's alpha, green that alpha. Where the host
+    /// has cleared both to 0, red / green is the pixel's expected depth along the view axis, world units; further
+    /// scenes over it keep that meaning. A splat's depth in a pixel is the mean of what the clip leaves of the Gaussian on
+    /// the pixel's line of sight, to first order of perspective; of several planes the strictest that keeps the far side
+    /// counts, and the strictest that keeps the near one. Drawn as quads however the colours are. `origin` as of
+    /// [`draw`](Self::draw).
+    ///
+    /// # Safety
+    /// As of [`draw`](Self::draw), in such a scope.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] without a prepared frame, and without [`RendererDesc::expected_depth`].
+    pub unsafe fn draw_depth(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) -> Result<()> {
+        if self.desc.expected_depth.is_none() {
+            return out_of_order("draw_depth needs RendererDesc::expected_depth");
+        }
+        let Some(configured) = self.configured.as_ref().filter(|frame| frame.prepared) else {
+            return out_of_order(
+                "draw_depth needs a successful configure() and prepare() before it",
+            );
+        };
+        let plan = &configured.plan;
+        if plan.gaussians() == 0 {
+            return Ok(());
+        }
+        let buffers = self.memory.buffers();
+        let targets = configured.targets;
+        let (Some(attachments), Some(depths)) = (targets.expected_depth, &buffers.depth) else {
+            return Ok(());
+        };
+        let pipelines = self.pipelines.get(configured.bindings);
+        let newest = self.frames.newest_mut();
+        let timer = newest.and_then(|frame| frame.timer.as_mut());
+        // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
+        let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
+        drawer.pass("splat_depth", |drawer| {
+            let frame = (plan, buffers, depths);
+            let map = (configured.depth_map, configured.unit);
+            passes::depth::record_draw(drawer, pipelines, frame, attachments, origin, map);
+        });
+        Ok(())
+    }
+}

@@ -1,0 +1,70 @@
+//! Compiled pipelines that renderers share, so that several views compile nothing twice and recording takes no lock.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::error::Result;
+use crate::gpu::{Bindings, Device};
+use crate::passes::{Pipelines, Plan, Targets};
+
+/// For addresses and for bound buffers.
+type ByBindings = [Option<Arc<Pipelines>>; 2];
+
+/// A renderer's view of what is compiled.
+#[derive(Debug, Default)]
+pub(super) struct SharedPipelines {
+    /// Only [`ensure`](Self::ensure) locks it, and only where something is missing; it puts more pipelines in and takes none
+    /// out, so that frames in flight keep theirs.
+    pub(super) all: Arc<Mutex<ByBindings>>,
+    /// What of it this renderer has seen.
+    seen: ByBindings,
+}
+
+impl SharedPipelines {
+    /// The same pipelines, for another renderer.
+    pub(super) fn sharing(&self) -> Self {
+        Self {
+            all: self.all.clone(),
+            seen: [None, None],
+        }
+    }
+
+    /// Compiles what a plan needs and nobody has compiled yet.
+    pub(super) fn ensure(
+        &mut self,
+        device: &Device,
+        bindings: Bindings,
+        targets: Targets,
+        plan: &Plan,
+    ) -> Result<()> {
+        let at = bindings as usize;
+        let has_all = |pipelines: &Pipelines| {
+            let mut all = true;
+            plan.pipelines(targets, &mut |key| all &= pipelines.has(&key));
+            all
+        };
+        if self.seen[at].as_deref().is_some_and(has_all) {
+            return Ok(());
+        }
+        let mut all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
+        let shared = all[at].get_or_insert_with(|| Arc::new(Pipelines::new(bindings)));
+        if !has_all(shared) {
+            // A copy for all who come, while others record with what they have.
+            let pipelines = Arc::make_mut(shared);
+            let mut made = Ok(());
+            plan.pipelines(targets, &mut |key| {
+                if made.is_ok() {
+                    made = pipelines.ensure(device, key);
+                }
+            });
+            made?;
+        }
+        self.seen[at] = Some(shared.clone());
+        Ok(())
+    }
+
+    /// The pipelines of a frame that is configured.
+    pub(super) fn get(&self, bindings: Bindings) -> &Pipelines {
+        let pipelines = self.seen[bindings as usize].as_deref();
+        pipelines.expect("ensure() compiles them")
+    }
+}

@@ -1,0 +1,203 @@
+//! The statistics of frames: counts, times, and what was left out.
+
+use super::Renderer;
+use super::frames::{Configured, RecordedFrame};
+use super::outcome::Outcome;
+use crate::gpu::{PassSpan, Timer};
+use crate::settings::Raster;
+use crate::stats::{Counts, FrameStats, PassStatistics, PassTime, RasterChoice};
+use crate::types::FrameCounts;
+
+impl Renderer {
+    /// The stages that the configured frame does not need.
+    pub fn skipped(&self) -> Vec<&'static str> {
+        let configured = self.configured.as_ref();
+        configured.map(Configured::skipped).unwrap_or_default()
+    }
+
+    /// How splats become pixels in the configured frame, or became in the one that [`counts`](Self::counts) is about where
+    /// its tiles had no room; and why in that way.
+    pub fn raster(&self) -> RasterChoice {
+        let configured = self.configured.as_ref();
+        let choice = configured.map(|configured| configured.raster(self.fell_back()));
+        choice.unwrap_or_default()
+    }
+
+    /// Whether the frame that [`counts`](Self::counts) is about had more pairs of tile and splat than there was room for,
+    /// so that it was drawn as quads: the same picture, but slower. The next [`configure`](Self::configure) makes the
+    /// room, up to 1.5 GiB.
+    pub fn fell_back(&self) -> bool {
+        self.oldest().is_some_and(RecordedFrame::fell_back)
+    }
+
+    /// How many Gaussians ended where in the oldest frame that is kept: the last one, with one frame in flight. Ask
+    /// after waiting for it, before the next [`prepare`](Self::prepare). All zero where no frame is that old.
+    pub fn counts(&self) -> Counts {
+        self.oldest().map(RecordedFrame::counts).unwrap_or_default()
+    }
+
+    /// GPU time of each stage of the same frame as [`counts`](Self::counts); empty without timing.
+    pub fn pass_times(&self) -> Vec<PassTime> {
+        let oldest = self.oldest();
+        oldest.map(RecordedFrame::pass_times).unwrap_or_default()
+    }
+
+    /// When each of these stages began and ended, in ticks of the device's clock.
+    pub fn pass_spans(&self) -> Vec<PassSpan> {
+        let oldest = self.oldest();
+        oldest.map(RecordedFrame::pass_spans).unwrap_or_default()
+    }
+
+    /// What each of these stages did; empty without statistics.
+    pub fn pass_statistics(&self) -> Vec<PassStatistics> {
+        let oldest = self.oldest();
+        oldest
+            .map(RecordedFrame::pass_statistics)
+            .unwrap_or_default()
+    }
+
+    /// The frame that was prepared last. Only one that was waited for says anything but what was configured.
+    pub(crate) fn newest(&self) -> Option<&RecordedFrame> {
+        self.frames.newest()
+    }
+
+    /// The frame that the public functions above are about.
+    pub(crate) fn oldest(&self) -> Option<&RecordedFrame> {
+        self.frames.oldest()
+    }
+
+    /// What has become of a frame that was waited for.
+    pub(crate) fn outcome(&self, frame: &RecordedFrame) -> Outcome {
+        let configured = frame.configured.as_ref();
+        if configured.is_none_or(Configured::changes_nothing) {
+            return Outcome::Unchanged;
+        }
+        let redrawn = configured.is_some_and(|configured| configured.redrawn);
+        if frame.fell_back() && (redrawn || self.memory.pairs.can_grow_to(frame.pairs())) {
+            return Outcome::NeedsRoom;
+        }
+        Outcome::Drawn
+    }
+
+    /// The statistics of a configured frame that [changes nothing](Self::changes_nothing) and is not even recorded.
+    pub(crate) fn unchanged_stats(&self) -> FrameStats {
+        let newest = self.newest();
+        let fell_back = newest.is_some_and(RecordedFrame::fell_back);
+        let raster = self.configured.as_ref().map(|c| c.raster(fell_back));
+        let mut skipped = self.skipped();
+        skipped.push("splat");
+        FrameStats {
+            counts: newest.map(RecordedFrame::counts).unwrap_or_default(),
+            skipped,
+            raster: raster.unwrap_or_default(),
+            ..FrameStats::default()
+        }
+    }
+}
+
+impl Configured {
+    fn skipped(&self) -> Vec<&'static str> {
+        self.plan.skipped()
+    }
+
+    fn raster(&self, fell_back: bool) -> RasterChoice {
+        let path = match self.plan.way.raster {
+            Raster::Tiles if fell_back => {
+                return RasterChoice {
+                    path: "quad",
+                    reason: "there is no room for the tiles' lists",
+                };
+            }
+            Raster::Mesh => "mesh",
+            Raster::Quad => "quad",
+            Raster::Tiles => "tiles",
+            Raster::Auto => "",
+        };
+        let reason = self.reason;
+        RasterChoice { path, reason }
+    }
+}
+
+impl RecordedFrame {
+    /// All that is known of it but the time until it was ready, which is whoever's who waited.
+    pub(crate) fn stats(&self) -> FrameStats {
+        let passes = self.pass_times();
+        let configured = self.configured.as_ref();
+        FrameStats {
+            counts: self.counts(),
+            gpu_ms: passes.iter().fold(0.0, |sum, pass| sum + pass.ms), // `sum` of nothing is -0
+            passes,
+            wall_ms: 0.0,
+            skipped: configured.map(Configured::skipped).unwrap_or_default(),
+            raster: configured.map_or_else(RasterChoice::default, |configured| {
+                configured.raster(self.fell_back())
+            }),
+            statistics: self.pass_statistics(),
+        }
+    }
+
+    pub(crate) fn pass_spans(&self) -> Vec<PassSpan> {
+        self.timer().and_then(Timer::spans).unwrap_or_default()
+    }
+
+    pub(crate) fn pass_statistics(&self) -> Vec<PassStatistics> {
+        self.timer().map(Timer::statistics).unwrap_or_default()
+    }
+
+    /// Whether its tiles' lists had no room.
+    pub(super) fn fell_back(&self) -> bool {
+        let counts = self.read_counts();
+        counts.is_some_and(|counts| counts.pairs > 0 && counts.tiled == 0)
+    }
+
+    /// The pairs of tile and splat that it had, or would have had.
+    pub(super) fn pairs(&self) -> u32 {
+        self.read_counts().map_or(0, |counts| counts.pairs)
+    }
+
+    fn counts(&self) -> Counts {
+        let Some(FrameCounts {
+            visible,
+            cutoff,
+            invisible,
+            culled,
+            ..
+        }) = self.read_counts()
+        else {
+            return Counts::default();
+        };
+        Counts {
+            visible,
+            cutoff,
+            invisible,
+            culled,
+            drawn: visible + cutoff,
+        }
+    }
+
+    fn pass_times(&self) -> Vec<PassTime> {
+        let times = self.timer().and_then(Timer::read).unwrap_or_default();
+        times
+            .into_iter()
+            .map(|(name, ms)| PassTime { name, ms })
+            .collect()
+    }
+
+    fn read_counts(&self) -> Option<FrameCounts> {
+        if self.recorded_nothing() {
+            return None;
+        }
+        let bytes = &self.counts.mapped()[..size_of::<FrameCounts>()];
+        Some(bytemuck::pod_read_unaligned(bytes))
+    }
+
+    fn timer(&self) -> Option<&Timer> {
+        self.timer.as_ref().filter(|_| !self.recorded_nothing())
+    }
+
+    /// Then nothing was counted.
+    fn recorded_nothing(&self) -> bool {
+        let configured = self.configured.as_ref();
+        configured.is_none_or(|configured| configured.plan.gaussians() == 0)
+    }
+}

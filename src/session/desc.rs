@@ -1,0 +1,33 @@
+//! What a session is opened with.
+
+use crate::gpu::{Bindings, Device, PipelineCache};
+use crate::trace::Trace;
+
+/// What a headless renderer is created with.
+#[derive(Debug, Clone, Default)]
+pub struct HeadlessDesc {
+    /// Device number or part of its name; `None` is the best device.
+    pub device: Option<String>,
+    /// Load the Khronos validation layer with synchronisation checks; any message becomes [`Error::Validation`].
+    pub validation: bool,
+    /// How buffers are reached; `None` is [what suits the device](Bindings::suiting), and bound under validation, whose
+    /// synchronisation checks cannot watch an address.
+    pub bindings: Option<Bindings>,
+    /// Where compiled pipelines are kept from one run to the next.
+    pub pipeline_cache: PipelineCache,
+    /// Where to note what takes how long on the processor and on the device.
+    pub trace: Option<Trace>,
+    /// Count what the stages do, where the device can.
+    pub statistics: bool,
+}
+
+impl HeadlessDesc {
+    /// How buffers are reached.
+    pub(super) fn bindings_on(&self, device: &Device) -> Bindings {
+        self.bindings.unwrap_or(if self.validation {
+            Bindings::Bound
+        } else {
+            Bindings::suiting(device)
+        })
+    }
+}

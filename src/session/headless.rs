@@ -1,0 +1,145 @@
+//! Scenes in, pictures out, no window.
+
+use super::target::Target;
+use super::{HeadlessDesc, Session};
+use crate::camera::Camera;
+use crate::clip::Clip;
+use crate::error::{Error, Result};
+use crate::gpu::{Device, DeviceDesc, PipelineFile};
+use crate::passes::SceneBuffers;
+use crate::picture::Picture;
+use crate::precision::{ShFormat, TargetFormat};
+use crate::renderer::RendererDesc;
+use crate::scene::Gaussians;
+use crate::settings::Settings;
+use crate::stats::FrameStats;
+use crate::trace;
+
+/// A renderer that owns its device and draws into an offscreen picture, of 32-bit floats unless the settings say
+/// otherwise.
+#[derive(Debug)]
+pub struct Headless {
+    target: Target,
+    /// Bytes of compiled pipelines that were there at the start.
+    kept_pipeline_bytes: u64,
+    // Last, so that everything above is freed before its device.
+    session: Session,
+}
+
+impl Headless {
+    /// Opens the device.
+    pub fn new(desc: &HeadlessDesc) -> Result<Self> {
+        let selector = desc.device.clone();
+        let open = || {
+            Device::headless(&DeviceDesc {
+                selector,
+                validation: desc.validation,
+                statistics: desc.statistics,
+                application_name: "rara".into(),
+            })
+        };
+        Self::on(trace::span(desc.trace.as_ref(), "open", open)?, desc)
+    }
+
+    /// On a device that is open.
+    fn on(device: Device, desc: &HeadlessDesc) -> Result<Self> {
+        let renderer = RendererDesc {
+            statistics: desc.statistics,
+            ..RendererDesc::new(TargetFormat::default().vulkan())
+        };
+        let session = Session::new(device, desc, renderer)?;
+        let held_bytes = session.pipelines.as_ref().map(PipelineFile::held_bytes);
+        Ok(Self {
+            target: Target::default(),
+            kept_pipeline_bytes: held_bytes.unwrap_or(0),
+            session,
+        })
+    }
+
+    /// The device's name, for people.
+    pub fn device_name(&self) -> &str {
+        &self.device().info().name
+    }
+
+    /// The driver's name and version, for people.
+    pub fn driver(&self) -> &str {
+        &self.device().info().driver
+    }
+
+    /// The device.
+    pub fn device(&self) -> &Device {
+        &self.session.device
+    }
+
+    /// Device memory in use, bytes.
+    pub fn device_bytes(&self) -> u64 {
+        self.device().device_bytes()
+    }
+
+    /// Device memory that the scene takes, bytes; 0 without one.
+    pub fn scene_bytes(&self) -> u64 {
+        self.session.scene.as_ref().map_or(0, SceneBuffers::bytes)
+    }
+
+    /// Bytes of compiled pipelines that an earlier run had kept; 0 if none had, or what it had could not be used.
+    pub fn kept_pipeline_bytes(&self) -> u64 {
+        self.kept_pipeline_bytes
+    }
+
+    /// Uploads a scene in place of the one before, its spherical harmonics as they are: 192 bytes a Gaussian at degree
+    /// 3. [`load_as`](Self::load_as) with [`Precision::sh`](crate::Precision::sh) of a preset takes 68.
+    pub fn load(&mut self, scene: &Gaussians) -> Result<()> {
+        self.load_as(scene, ShFormat::Float)
+    }
+
+    /// Uploads a scene in place of the one before, its spherical harmonics stored as `format` says.
+    pub fn load_as(&mut self, scene: &Gaussians, format: ShFormat) -> Result<()> {
+        self.target.forget();
+        self.session.load(scene, format)
+    }
+
+    /// Forgets what earlier frames have computed: the next one computes everything. Without it a frame takes over what
+    /// the one before has found out and this one would find out again, to the same bytes; where nothing has changed it
+    /// does nothing at all.
+    pub fn forget(&mut self) {
+        self.session.renderer.forget();
+        self.target.forget();
+    }
+
+    /// Renders one frame of the scene; the picture stays on the device.
+    pub fn render(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<FrameStats> {
+        let trace = self.session.trace.clone();
+        let (session, target) = (&mut self.session, &mut self.target);
+        let draw = || session.draw(target, camera, clip, settings);
+        let drawn = trace::span(trace.as_ref(), "render", draw);
+        drawn.map_err(|error| self.session.explain(error))
+    }
+
+    /// Reads the picture of the last frame back.
+    pub fn picture(&mut self) -> Result<Picture> {
+        let read_back = || {
+            let picture = self.target.read_back(&self.session.device)?;
+            self.session.check_validation()?;
+            Ok(picture)
+        };
+        let read = trace::span(self.session.trace.as_ref(), "readback", read_back);
+        read.map_err(|error| self.session.explain(error))
+    }
+
+    /// Frees everything. The error is what the validation layer says of it, as of things left alive.
+    pub fn close(self) -> Result<()> {
+        let device = self.device().clone();
+        drop(self);
+        Error::validated(device.close())
+    }
+}
+
+#[cfg(test)]
+mod faults;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,191 @@
+//! Whoever has no loop of their own draws with a session: a device, a renderer and a scene, and the one loop that submits
+//! a frame and reads what has become of it. [`Headless`] keeps the picture, [`Windowed`] shows it.
+
+use std::time::Instant;
+
+use crate::camera::Camera;
+use crate::clip::Clip;
+use crate::error::{Error, Result};
+use crate::gpu::{Device, Drawer, PipelineFile};
+use crate::passes::SceneBuffers;
+use crate::precision::ShFormat;
+use crate::renderer::{FrameRequest, Outcome, Renderer, RendererDesc, Submission};
+use crate::scene::Gaussians;
+use crate::settings::Settings;
+use crate::stats::FrameStats;
+use crate::trace::{self, Trace};
+
+mod desc;
+mod headless;
+mod spans;
+mod target;
+#[cfg(feature = "view")]
+mod windowed;
+
+pub use desc::HeadlessDesc;
+pub use headless::Headless;
+#[cfg(feature = "view")]
+pub use windowed::{Redraw, Windowed};
+
+use target::Target;
+
+/// A device, a renderer on it and a scene for it.
+#[derive(Debug)]
+struct Session {
+    renderer: Renderer,
+    scene: Option<SceneBuffers>,
+    pipelines: Option<PipelineFile>,
+    trace: Option<Trace>,
+    // Last, so that everything above is freed before the device.
+    device: Device,
+}
+
+impl Session {
+    /// On a device that is open.
+    fn new(device: Device, desc: &HeadlessDesc, renderer: RendererDesc) -> Result<Self> {
+        let pipelines = PipelineFile::open(&desc.pipeline_cache, &device);
+        let renderer = Renderer::new(
+            &device,
+            RendererDesc {
+                bindings: desc.bindings_on(&device),
+                timing: true,
+                reuse: true,
+                ..renderer
+            },
+        )?;
+        Ok(Self {
+            renderer,
+            scene: None,
+            pipelines,
+            trace: desc.trace.clone(),
+            device,
+        })
+    }
+
+    /// Uploads a scene in place of the one before, which no frame in flight needs any more.
+    fn load(&mut self, scene: &Gaussians, format: ShFormat) -> Result<()> {
+        self.renderer.forget();
+        // Free first: both together may not fit.
+        self.scene = None;
+        let upload = || SceneBuffers::upload(&self.device, scene, format);
+        self.scene = Some(trace::span(self.trace.as_ref(), "upload", upload)?);
+        Ok(())
+    }
+
+    /// Draws a frame into a target and waits for it; does nothing where the target has that picture already. All earlier
+    /// frames have been waited for.
+    fn draw(
+        &mut self,
+        target: &mut Target,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<FrameStats> {
+        let trace = self.trace.as_ref();
+        let renderer = &mut self.renderer;
+        let scene = loaded(&self.scene, "render")?;
+        target.set_format(&self.device, settings.precision.target)?;
+        renderer.set_color_format(settings.precision.target.vulkan());
+        let request = FrameRequest {
+            scene,
+            camera,
+            clip,
+            settings,
+            submission: Submission::Awaited,
+        };
+        let configure = |renderer: &mut Renderer| {
+            trace::span(trace, "configure", || renderer.configure_frame(&request))
+        };
+        configure(renderer)?;
+        target.set_size(&self.device, camera)?;
+        let begin = Instant::now();
+        if renderer.changes_nothing() && target.holds(settings.background) {
+            return Ok(FrameStats {
+                wall_ms: ms_since(begin),
+                ..renderer.unchanged_stats()
+            });
+        }
+        let (wall_ms, stats) = loop {
+            submit(&self.device, renderer, &request, target, trace)?;
+            let frame = renderer.newest().expect("it was prepared just now");
+            // A first frame finds out how much room the tiles need.
+            if renderer.outcome(frame) != Outcome::NeedsRoom {
+                break (ms_since(begin), frame.stats());
+            }
+            configure(renderer)?;
+        };
+        self.check_validation()?;
+        target.set_held(settings.background);
+        Ok(FrameStats { wall_ms, ..stats })
+    }
+
+    /// That the validation layer has said nothing so far.
+    fn check_validation(&self) -> Result<()> {
+        Error::validated(self.device.validation_messages())
+    }
+
+    /// An error behind what the validation layer has said before it.
+    fn explain(&self, error: Error) -> Error {
+        error.after(self.device.validation_messages())
+    }
+}
+
+/// What was compiled is kept for the next run.
+impl Drop for Session {
+    fn drop(&mut self) {
+        if let Some(pipelines) = &mut self.pipelines {
+            pipelines.keep(&self.device);
+        }
+    }
+}
+
+/// Records the configured frame, submits it and waits for it.
+fn submit(
+    device: &Device,
+    renderer: &mut Renderer,
+    request: &FrameRequest<'_>,
+    target: &mut Target,
+    trace: Option<&Trace>,
+) -> Result<()> {
+    let clear = request
+        .settings
+        .background
+        .map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
+    let image = target.to_draw();
+    let recording = Instant::now();
+    let mut recorded = recording;
+    let submitted = device.submit_and_wait(|cmd| {
+        // SAFETY: `cmd` is recording, all earlier frames were waited for, and scene, image and renderer outlive the wait
+        // for this one; the rendering scope is opened and closed here around the draw, on an attachment of the renderer's
+        // format.
+        unsafe {
+            renderer.prepare(cmd, request.scene)?;
+            image.begin_rendering(cmd, clear);
+            Drawer::new(device, cmd, None).viewport(image.extent().into());
+            renderer.draw(cmd, [0.0, 0.0])?;
+            image.end_rendering(cmd);
+        }
+        recorded = Instant::now();
+        Ok(())
+    });
+    if let Some(trace) = trace {
+        trace.cpu("record", recording, recorded);
+        trace.cpu("submit and wait", recorded, Instant::now());
+        spans::add(trace, device, renderer.newest(), recorded);
+    }
+    if submitted.is_err() {
+        renderer.abandon(); // what it would have computed is not there
+    }
+    submitted
+}
+
+/// The scene, which somebody wants to `render` or to `show`.
+fn loaded<'a>(scene: &'a Option<SceneBuffers>, wanted: &str) -> Result<&'a SceneBuffers> {
+    scene
+        .as_ref()
+        .ok_or_else(|| Error::Invalid(format!("there is no scene to {wanted}; load one first")))
+}
+
+fn ms_since(begin: Instant) -> f64 {
+    begin.elapsed().as_secs_f64() * 1e3
+}

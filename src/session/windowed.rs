@@ -1,0 +1,217 @@
+//! Scenes in, pictures in a window out. Whose window it is does not matter: any crate's that speaks `raw-window-handle`.
+
+use std::sync::Arc;
+
+use ash::vk;
+use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
+
+use super::target::Target;
+use super::{HeadlessDesc, Session, loaded};
+use crate::camera::Camera;
+use crate::clip::Clip;
+use crate::error::{Error, Result};
+use crate::gpu::{Device, DeviceDesc, FRAMES, InFlight, Surface, Swapchain, Window};
+use crate::picture::Picture;
+use crate::precision::ShFormat;
+use crate::renderer::{FrameRequest, Outcome, RendererDesc, Submission};
+use crate::scene::Gaussians;
+use crate::settings::Settings;
+use crate::stats::FrameStats;
+
+/// A renderer that owns its device and draws into somebody's window, two frames in flight. Colours are blended as they
+/// are stored, on black where the settings name no background.
+///
+/// The window is the host's: its events, its size. Nothing is drawn unless asked for. A frame takes over from the one
+/// before what stays the same, so that one in which nothing has changed costs next to nothing.
+pub struct Windowed {
+    // Dropped in this order, after waiting for the frames.
+    frames: InFlight,
+    swapchain: Swapchain,
+    session: Session,
+    /// Of the last frame that was waited for and has computed anything.
+    stats: Option<FrameStats>,
+    /// A frame has failed between its image and the window.
+    broken: bool,
+}
+
+/// Whether a frame has to be shown once more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Redraw {
+    /// It is shown, and all that can be known of it is known.
+    NotNeeded,
+    /// It is shown. Show it once more when there is nothing else to do: its statistics are not known yet, or it ran out of
+    /// room for tiles and was drawn in a slower way.
+    WhenIdle,
+    /// It is not shown, as the window was not ready for it. Show it again.
+    Now,
+}
+
+impl Windowed {
+    /// Opens the device that is meant, among those that can draw into the window. The window is kept until this is
+    /// dropped.
+    pub fn new<W>(desc: &HeadlessDesc, window: Arc<W>) -> Result<Self>
+    where
+        W: HasWindowHandle + HasDisplayHandle + 'static,
+    {
+        let open = DeviceDesc {
+            selector: desc.device.clone(),
+            validation: desc.validation,
+            application_name: "rara".into(),
+            statistics: false,
+        };
+        let window: Arc<dyn Window> = window;
+        let (device, surface) = Surface::open(&open, window)?;
+        let swapchain = Swapchain::new(&device, surface)?;
+        let renderer = RendererDesc {
+            frames_in_flight: FRAMES as u32,
+            ..RendererDesc::new(swapchain.format())
+        };
+        Ok(Self {
+            frames: InFlight::new(&device)?,
+            swapchain,
+            session: Session::new(device, desc, renderer)?,
+            stats: None,
+            broken: false,
+        })
+    }
+
+    /// The device.
+    pub fn device(&self) -> &Device {
+        &self.session.device
+    }
+
+    /// The format of the window's pictures.
+    pub fn format(&self) -> vk::Format {
+        self.swapchain.format()
+    }
+
+    /// Uploads a scene in place of the one before, its spherical harmonics stored as `format` says.
+    pub fn load_as(&mut self, scene: &Gaussians, format: ShFormat) -> Result<()> {
+        self.frames.wait_for_all()?;
+        self.session.load(scene, format)
+    }
+
+    /// Makes the window's images fit a window of this many pixels. The size that the next frame's camera needs, which
+    /// may be another one while the window changes; `None` if there is nothing to draw into, as when it is minimised.
+    pub fn fit(&mut self, window: (u32, u32)) -> Result<Option<(u32, u32)>> {
+        let extent = self.swapchain.fit(window)?;
+        Ok(extent.map(|extent| (extent.width, extent.height)))
+    }
+
+    /// Draws a frame and shows it. The camera's picture has the size that [`fit`](Self::fit) gave. After an error on the way
+    /// to the window there are no more frames: a new `Windowed` for the same window is the way on.
+    pub fn show(&mut self, camera: &Camera, clip: &Clip, settings: &Settings) -> Result<Redraw> {
+        self.unbroken()?;
+        self.wait()?;
+        let Self {
+            swapchain, frames, ..
+        } = self;
+        let renderer = &mut self.session.renderer;
+        let scene = loaded(&self.session.scene, "show")?;
+        renderer.set_color_format(swapchain.format());
+        renderer.configure_frame(&FrameRequest {
+            scene,
+            camera,
+            clip,
+            settings,
+            submission: Submission::InFlight,
+        })?;
+        let changes_nothing = renderer.changes_nothing();
+        // SAFETY: the semaphore's last frame was waited for, and with it the wait for the semaphore.
+        let Some(image) = (unsafe { swapchain.acquire(frames.acquired()) })? else {
+            return Ok(Redraw::Now);
+        };
+        let [r, g, b] = settings.background.unwrap_or_default();
+        // SAFETY: the frame before the last was waited for, and its image acquired; scene, renderer and swapchain live
+        // until all frames were waited for. The rendering scope is opened and closed here around the draw, on an
+        // attachment of the renderer's format, and the submission waits for its image.
+        let shown = unsafe {
+            let submitted = frames.submit(swapchain.drawn(image), |cmd| {
+                renderer.prepare(cmd, scene)?;
+                swapchain.begin_rendering(cmd, image, [r, g, b, 1.0]);
+                renderer.draw(cmd, [0.0, 0.0])?;
+                swapchain.end_rendering(cmd, image);
+                Ok(())
+            });
+            submitted.and_then(|()| swapchain.present(image))
+        };
+        // The image stays acquired, and a semaphore signalled that nobody waits for.
+        self.broken = shown.is_err();
+        shown.map_err(|error| self.session.explain(error))?;
+        self.session.check_validation()?;
+        if !changes_nothing {
+            return Ok(Redraw::WhenIdle);
+        }
+        // There is time to hear of the frame before.
+        Ok(match self.wait()? {
+            Some(Outcome::NeedsRoom) => Redraw::WhenIdle,
+            Some(Outcome::Drawn | Outcome::Unchanged) | None => Redraw::NotNeeded,
+        })
+    }
+
+    /// Draws a frame beside the window, as [`Headless`](crate::Headless) would, in any size and without the window's
+    /// rounding.
+    pub fn picture(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<Picture> {
+        self.unbroken()?;
+        loaded(&self.session.scene, "show")?;
+        self.wait()?;
+        self.frames.wait_for_all()?;
+        let session = &mut self.session;
+        let mut target = Target::default();
+        let drawn = session.draw(&mut target, camera, clip, settings);
+        let picture = drawn.and_then(|_| target.read_back(&session.device));
+        let picture = picture.map_err(|error| session.explain(error))?;
+        session.check_validation()?;
+        Ok(picture)
+    }
+
+    /// The statistics of the last frame that is known to be drawn and that has computed anything; `None` before the
+    /// first. Nobody waits for frames in a window, so that `wall_ms` is 0.
+    pub fn stats(&self) -> Option<&FrameStats> {
+        self.stats.as_ref()
+    }
+
+    /// Frees everything, the window too if nobody else has it. The error is what the validation layer says of it.
+    pub fn close(self) -> Result<()> {
+        let device = self.device().clone();
+        drop(self);
+        Error::validated(device.close())
+    }
+
+    fn unbroken(&self) -> Result<()> {
+        if self.broken {
+            let what = "a frame has failed on its way to the window; open it anew";
+            return Err(Error::Invalid(what.into()));
+        }
+        Ok(())
+    }
+
+    /// Waits for the oldest frame in flight and reads what has become of it; `None` before there are so many.
+    fn wait(&mut self) -> Result<Option<Outcome>> {
+        self.frames.wait()?;
+        let renderer = &self.session.renderer;
+        let Some(frame) = renderer.oldest() else {
+            return Ok(None);
+        };
+        let outcome = renderer.outcome(frame);
+        if outcome != Outcome::Unchanged {
+            self.stats = Some(frame.stats());
+        }
+        Ok(Some(outcome))
+    }
+}
+
+impl std::fmt::Debug for Windowed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Windowed")
+            .field("device", self.device())
+            .field("format", &self.swapchain.format())
+            .field("scene", &self.session.scene)
+            .finish_non_exhaustive()
+    }
+}

@@ -66,7 +66,7 @@ pub(super) fn save(picture: &Picture, camera: &Camera, path: &Path) -> Result<()
 }
 
 /// What was written, and the flags with which `rara render` draws it.
-pub(super) fn told(path: &Path, flags: &str) -> String {
+pub(super) fn wrote(path: &Path, flags: &str) -> String {
     format!(
         "wrote {}; as in rara render --camera {} {flags}",
         path.display(),
@@ -133,13 +133,13 @@ mod tests {
 
     #[test]
     fn the_camera_is_named_as_a_shell_takes_it() {
-        let text = told(Path::new("out/a.png"), "--mode hard");
+        let text = wrote(Path::new("out/a.png"), "--mode hard");
         assert_eq!(
             text,
             "wrote out/a.png; as in rara render --camera out/a.json --mode hard"
         );
         if cfg!(not(windows)) {
-            let text = told(Path::new("it's a $1.png"), "--mode hard");
+            let text = wrote(Path::new("it's a $1.png"), "--mode hard");
             assert!(
                 text.ends_with(r"--camera 'it'\''s a $1.json' --mode hard"),
                 "{text}"

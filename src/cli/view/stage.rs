@@ -233,7 +233,7 @@ impl Stage {
         let path = path.unwrap_or_else(|| shots.next());
         let picture = self.windowed.picture(&camera, &cut.clip(), settings)?;
         shots::save(&picture, &camera, &path)?;
-        say(shots::told(&path, &flags::flags(cut, *mode, settings)));
+        say(shots::wrote(&path, &flags::flags(cut, *mode, settings)));
         self.shown_at = None; // the next frame does not follow at once
         Ok(())
     }

@@ -29,6 +29,9 @@ pub use windowed::{Redraw, Windowed};
 
 use target::Target;
 
+#[cfg(test)]
+mod tests;
+
 /// A device, a renderer on it and a scene for it.
 #[derive(Debug)]
 struct Session {

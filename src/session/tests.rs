@@ -1,0 +1,129 @@
+//! The loop itself, where neither a window nor one frame after the other hides what it does.
+
+use super::*;
+use crate::gpu::{DeviceDesc, PipelineCache};
+use crate::precision::TargetFormat;
+use crate::renderer::RecordedFrame;
+use crate::scene::{Bounds, Kind, generate};
+use crate::settings::Raster;
+use glam::{DVec3, Vec3};
+
+/// A session as a window has it, with frames in flight.
+fn session() -> Session {
+    let device = Device::headless(&DeviceDesc {
+        selector: std::env::var("RARA_TEST_DEVICE").ok(),
+        validation: true,
+        ..DeviceDesc::default()
+    });
+    let desc = HeadlessDesc {
+        validation: true,
+        pipeline_cache: PipelineCache::Off,
+        ..HeadlessDesc::default()
+    };
+    let renderer = RendererDesc {
+        frames_in_flight: 2,
+        ..RendererDesc::new(TargetFormat::default().vulkan())
+    };
+    let device = device.expect("a device and the validation layer");
+    Session::new(device, &desc, renderer).expect("a renderer")
+}
+
+/// The validation layer has nothing to say of it.
+fn closes(session: Session) {
+    let device = session.device.clone();
+    drop(session);
+    assert_eq!(device.close(), Vec::<String>::new());
+}
+
+/// More pairs of tile and splat than a first frame has room for.
+fn crowded() -> (Gaussians, Camera) {
+    let mut scene = generate(Kind::General, 1_000, 5);
+    let camera = Camera::frame(&Bounds::of(&scene), -DVec3::Y, 50.0, (160, 120));
+    let radius = Bounds::of(&scene).radius() as f32;
+    scene.scales.fill(Vec3::splat(radius));
+    scene.opacities.fill(0.02); // so that no pixel is saturated before the last
+    (scene, camera.expect("a view"))
+}
+
+/// Submits a frame of quads or tiles and waits for it, as one of several in flight: it is drawn whatever room it has.
+fn show(session: &mut Session, camera: &Camera, settings: &Settings) -> Outcome {
+    let renderer = &mut session.renderer;
+    let request = FrameRequest {
+        scene: session.scene.as_ref().expect("loaded"),
+        camera,
+        clip: &Clip::default(),
+        settings,
+        submission: Submission::InFlight,
+    };
+    renderer.configure_frame(&request).expect("configures");
+    let mut target = Target::default();
+    let format = settings.precision.target;
+    target.set_format(&session.device, format).expect("blends");
+    target.set_size(&session.device, camera).expect("an image");
+    let submitted = submit(&session.device, renderer, &request, &mut target, None);
+    submitted.expect("submits");
+    let frame = renderer.newest().expect("just prepared");
+    renderer.outcome(frame)
+}
+
+/// The frame that shows how much room is needed is the last one, and not the oldest that is in flight.
+#[test]
+fn a_picture_after_frames_in_flight_has_the_room_it_needs() {
+    let (scene, camera) = crowded();
+    let settings = Settings {
+        raster: Raster::Tiles,
+        ..Settings::default()
+    };
+    let mut pictures = Vec::new();
+    for frames_before in 0..3 {
+        let mut session = session();
+        session.load(&scene, ShFormat::Float).expect("uploads");
+        for frame in 0..frames_before {
+            let outcome = show(&mut session, &camera, &settings);
+            let expected = [Outcome::NeedsRoom, Outcome::Unchanged][frame];
+            assert_eq!(outcome, expected, "frame {frame} of {frames_before}");
+        }
+        let mut target = Target::default();
+        let drawn = session.draw(&mut target, &camera, &Clip::default(), &settings);
+        let stats = drawn.expect("draws");
+        assert_eq!(stats.raster.path, "tiles", "after {frames_before} frames");
+        pictures.push(target.read_back(&session.device).expect("reads back"));
+        // Once more there is nothing to do, for this target; another one gets the draw alone.
+        let again = session.draw(&mut target, &camera, &Clip::default(), &settings);
+        assert!(again.expect("draws").skipped.contains(&"splat"));
+        let mut other = Target::default();
+        let drawn = session.draw(&mut other, &camera, &Clip::default(), &settings);
+        assert!(drawn.expect("draws").skipped.ends_with(&["tiles"]));
+        pictures.push(other.read_back(&session.device).expect("reads back"));
+        drop((target, other));
+        closes(session);
+    }
+    assert!(pictures.iter().all(|picture| *picture == pictures[0]));
+    assert!(pictures[0].pixels.iter().any(|pixel| pixel[3] > 0.5));
+}
+
+/// What the device counted of a frame that was never submitted is another's.
+#[test]
+fn a_frame_that_was_not_submitted_has_no_statistics() {
+    let mut session = session();
+    let (scene, camera) = crowded();
+    session.load(&scene, ShFormat::Float).expect("uploads");
+    let settings = Settings::default();
+    show(&mut session, &camera, &settings);
+    let failed = session.device.submit_and_wait(|cmd| {
+        let renderer = &mut session.renderer;
+        let scene = session.scene.as_ref().expect("loaded");
+        renderer.configure(scene, &camera, &Clip::default(), &settings)?;
+        // SAFETY: `cmd` is recording outside rendering, and is never submitted.
+        unsafe { renderer.prepare(cmd, scene) }?;
+        Err::<(), _>(Error::Invalid("changed my mind".into()))
+    });
+    failed.expect_err("as it says");
+    session.renderer.abandon();
+    let newest = session.renderer.newest().map(RecordedFrame::stats);
+    assert_eq!(newest, Some(FrameStats::default()));
+    assert!(
+        session.renderer.counts().drawn > 0,
+        "the one before has them"
+    );
+}

@@ -154,7 +154,7 @@ fn submit(
         .settings
         .background
         .map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
-    let image = target.to_draw();
+    let image = target.drawn_into();
     let recording = Instant::now();
     let mut recorded = recording;
     let submitted = device.submit_and_wait(|cmd| {

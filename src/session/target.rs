@@ -53,7 +53,7 @@ impl Target {
     }
 
     /// The image, of which it is not known any more what it shows.
-    pub(super) fn to_draw(&mut self) -> &Image {
+    pub(super) fn drawn_into(&mut self) -> &Image {
         self.held = None;
         self.image.as_ref().expect("set_size() makes it")
     }

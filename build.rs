@@ -12,10 +12,10 @@ use std::{env, fs};
 #[path = "src/codegen/mod.rs"]
 mod codegen;
 
-use codegen::{VARIANTS, glsl, interface, manifest, spirv};
+use codegen::{VARIANTS, glsl, interface, manifest, pictures, spirv};
 
 fn main() {
-    for changed in ["glsl", "build.rs", "src/codegen"] {
+    for changed in ["glsl", "build.rs", "src/codegen", "tools/pictures"] {
         println!("cargo::rerun-if-changed={changed}");
     }
     let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets OUT_DIR"));
@@ -30,6 +30,10 @@ fn main() {
     );
     let modules = spirv_of(Path::new("glsl"), &out);
     write("shaders.rs", shaders(Path::new("glsl"), &modules));
+    for name in ["layers", "mesh"] {
+        let png = fs::read(format!("tools/pictures/{name}.png")).expect("tools/pictures/");
+        write(&format!("{name}.md"), pictures::definition(name, &png));
+    }
 }
 
 fn read(path: &str) -> String {

@@ -1,3 +1,6 @@
+// The README's links and pictures lead elsewhere among generated pages: of a name's definitions the first counts.
+#![doc = include_str!("guide/links.md")]
+#![cfg_attr(doc, doc = include_str!(concat!(env!("OUT_DIR"), "/layers.md")))]
 #![doc = include_str!("../README.md")]
 
 pub mod camera;
@@ -10,6 +13,7 @@ pub mod error;
 pub mod files;
 mod framing;
 pub mod gpu;
+pub mod guide;
 mod half;
 mod json;
 pub mod limits;

@@ -159,7 +159,7 @@ impl Default for Precision {
     }
 }
 
-/// A choice of all six. See the README's measurements.
+/// A choice of all six; [the guide](crate::guide::modes) has what each costs and gives up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Preset {
     /// Nothing is given up.

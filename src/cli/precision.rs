@@ -7,7 +7,7 @@ use rara::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Precision")]
 pub(super) struct PrecisionArgs {
-    /// A choice of all the following; the README has what each costs and gives up
+    /// A choice of all the following; the guide (src/guide/modes.md) has what each costs and gives up
     #[arg(long, default_value = "balanced")]
     pub(super) preset: PresetArg,
     /// Channels of the picture that is drawn into: 8 bits, or floats of 16 or 32

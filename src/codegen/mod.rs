@@ -1,9 +1,10 @@
-//! What build.rs makes of `glsl/`: Rust constants, structs and the interface of every shader. It is compiled into the build
-//! script, and into the crate's tests.
+//! What build.rs makes of `glsl/`: Rust constants, structs and the interface of every shader; and of pictures, for the
+//! documentation. It is compiled into the build script, and into the crate's tests.
 
 pub(crate) mod glsl;
 pub(crate) mod interface;
 pub(crate) mod manifest;
+pub(crate) mod pictures;
 pub(crate) mod spirv;
 
 #[cfg(feature = "shaderc")]

@@ -3,7 +3,7 @@
 //! The paper's band is 3 max(sigma) on either side of the plane. Here it is K |M^T n|: the Gaussian's own extent along
 //! the normal, out to the contour on which its alpha falls to 1/255. Outside of it no pixel would change by more
 //! than half of 1/255, and half as many needles are called cut. Where weights follow each pixel's true ray, the band is
-//! wider by what perspective adds: see [`beam_band`].
+//! wider by what perspective adds: see `beam_band`.
 
 use glam::DVec3;
 

@@ -23,7 +23,7 @@ pub(super) fn raster(
             let reason = "the tiles' picture would take more than 1 GiB";
             (Raster::Quad, reason)
         }
-        // See the README's measurements.
+        // See the guide's measurements (src/guide/frame.md).
         Raster::Auto if is_cpu => (Raster::Tiles, "a CPU driver charges for each drawn splat"),
         Raster::Auto if support.mesh_shader => (Raster::Mesh, "a GPU with mesh shaders"),
         Raster::Auto => (Raster::Quad, "a GPU without mesh shaders"),

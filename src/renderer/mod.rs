@@ -97,8 +97,8 @@ impl Renderer {
     /// A renderer on a device. Pipelines and buffers come with the first frame that needs them.
     ///
     /// # Errors
-    /// [`Error::Device`](crate::Error::Device) where the device cannot draw into such attachments, and
-    /// [`Error::Invalid`](crate::Error::Invalid) where there can be none such.
+    /// [`Error::Device`] where the device cannot draw into such attachments, and
+    /// [`Error::Invalid`] where there can be none such.
     pub fn new(device: &Device, desc: RendererDesc) -> Result<Self> {
         Self::with(device, desc, SharedPipelines::default())
     }

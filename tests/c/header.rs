@@ -1,5 +1,5 @@
 //! Headers are what they are made of: `rara.h` what cbindgen makes of `src/c` (`RARA_WRITE_HEADER=1` writes it anew), and
-//! `mesh.h` of the C++ host what glslang makes of its shaders. C and the README's C++ compile with the former.
+//! `mesh.h` of the C++ host what glslang makes of its shaders. C and the guide's C++ compile with the former.
 
 mod compiler;
 
@@ -62,8 +62,8 @@ fn temporary(name: &str) -> PathBuf {
 }
 
 #[test]
-fn the_header_is_c_and_the_readmes_snippet_is_cpp() {
-    let Some(compiler) = compiler("neither rara.h in C nor the README's C++ was compiled") else {
+fn the_header_is_c_and_the_guides_snippet_is_cpp() {
+    let Some(compiler) = compiler("neither rara.h in C nor the guide's C++ was compiled") else {
         return;
     };
     let c =
@@ -71,19 +71,19 @@ fn the_header_is_c_and_the_readmes_snippet_is_cpp() {
     let c99 = ["-x", "c", "-std=c99", "-pedantic"];
     assert_compiles(&compiler, &c99, "header.c", c);
 
-    let readme = std::fs::read_to_string(root().join("README.md")).expect("a README");
-    let snippets: Vec<_> = readme
+    let chapter = std::fs::read_to_string(root().join("src/guide/c.md")).expect("a chapter");
+    let snippets: Vec<_> = chapter
         .split("\n```cpp\n")
         .skip(1)
         .map(|from| from.split("\n```").next().expect("all before the end"))
         .collect();
     let [snippet] = snippets[..] else {
-        panic!("{} snippets of C++ in the README", snippets.len());
+        panic!("{} snippets of C++ in the guide", snippets.len());
     };
     // A template is only looked at as a whole where it is used.
     let used = "void use(Splats &s, VkCommandBuffer cmd) { frame(s, cmd, [] {}); }";
     let code = format!("{snippet}\n{used}\n");
-    assert_compiles(&compiler, &["-std=c++17"], "readme.cpp", &code);
+    assert_compiles(&compiler, &["-std=c++17"], "guide.cpp", &code);
 }
 
 #[test]

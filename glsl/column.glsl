@@ -136,11 +136,12 @@ void ray_zs(ColumnSight column, vec4 plane, out float z[ROWS]) {
 }
 
 // `exact` with the camera outside the splat: exact_weight of glsl/weight.glsl. `delta` and `place` are the first row's.
-void exact_weights(uint base, uint count, vec2 delta, vec2 place, float alpha[ROWS], out float weight[ROWS]) {
+void exact_weights(uint base, uint flags, vec2 delta, vec2 place, float alpha[ROWS], out float weight[ROWS]) {
     vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
     ColumnSight column = column_sight(base, delta + middle, place + middle);
     float z[ROWS];
-    if (CLIP_OP == OP_ONE || count == 1u) {
+    uint count = flags >> CUT_COUNT_SHIFT;
+    if (!SEVERAL || count == 1u) {
         ray_zs(column, cuts.at[base + CUT_HEADER], z);
         phi_or_side(z, alpha, weight);
         return;
@@ -153,7 +154,7 @@ void exact_weights(uint base, uint count, vec2 delta, vec2 place, float alpha[RO
         ray_zs(column, plane_of(base, 1u), z);
         phi_or_side(z, alpha, other);
         for (uint row = 0u; row < ROWS; row++) {
-            weight[row] = combined(max(0.0, weight[row] - (1.0 - other[row])));
+            weight[row] = combined(flags, max(0.0, weight[row] - (1.0 - other[row])));
         }
         return;
     }
@@ -174,14 +175,14 @@ void exact_weights(uint base, uint count, vec2 delta, vec2 place, float alpha[RO
     phi_or_side(least, alpha, weight);
     uint edges = 0u;
     for (uint row = 0u; row < ROWS; row++) {
-        weight[row] = combined(weight[row]);
+        weight[row] = combined(flags, weight[row]);
         edges |= opens[row] > 1u && least[row] > -PHI_ONE && alpha[row] > 0.0 ? 1u << row : 0u;
     }
     // Not a loop over all rows: the body would be there once for each.
     for (; edges != 0u; edges &= edges - 1u) {
         uint edge = uint(findLSB(edges));
         vec2 below = vec2(0.0, float(edge));
-        float share = exact_weight(base, count, delta + below, place + below);
+        float share = exact_weight(base, flags, delta + below, place + below);
         for (uint row = 0u; row < ROWS; row++) {
             weight[row] = row == edge ? share : weight[row];
         }
@@ -189,7 +190,8 @@ void exact_weights(uint base, uint count, vec2 delta, vec2 place, float alpha[RO
 }
 
 // `rara` with the camera outside the splat: chord_weight of glsl/weight.glsl. `delta` and `place` are the first row's.
-void chord_weights(uint base, uint count, vec2 delta, vec2 place, out float weight[ROWS]) {
+void chord_weights(uint base, uint flags, vec2 delta, vec2 place, out float weight[ROWS]) {
+    uint count = flags >> CUT_COUNT_SHIFT;
     vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
     ColumnSight column = column_sight(base, delta + middle, place + middle);
     Sight s = column.s;
@@ -223,7 +225,7 @@ void chord_weights(uint base, uint count, vec2 delta, vec2 place, out float weig
             float value = form.w + quadratic(nearest, y) * inverse[row];
             float slope = (along.x + y * along.y) * sqrt(inverse[row]);
             if (!(whole[row] > 0.0) || slope == 0.0) {
-                bool is_inside = value > 0.0 || (value == 0.0 && CLIP_OP != OP_OR);
+                bool is_inside = value > 0.0 || (value == 0.0 && (flags & CUT_UNION) == 0u);
                 inside &= is_inside ? ~0u : ~(1u << row);
             } else if (slope > 0.0) {
                 low[row] = max(low[row], -value / slope);
@@ -236,7 +238,7 @@ void chord_weights(uint base, uint count, vec2 delta, vec2 place, out float weig
         bool miss = !(whole[row] > 0.0);
         bool is_inside = (inside >> row & 1u) != 0u;
         float share = !is_inside ? 0.0 : miss ? 1.0 : max(0.0, high[row] - low[row]) / whole[row];
-        weight[row] = !miss || MISS == MISS_PEAK ? combined(share) : MISS == MISS_KEEP ? 1.0 : 0.0;
+        weight[row] = !miss || MISS == MISS_PEAK ? combined(flags, share) : MISS == MISS_KEEP ? 1.0 : 0.0;
     }
 }
 
@@ -248,9 +250,9 @@ void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 place, float 
     if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         curve_weights(base, uv.x, uv.y, v_step, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) == 0u) {
-        exact_weights(base, flags >> CUT_COUNT_SHIFT, delta, place, alpha, weight);
+        exact_weights(base, flags, delta, place, alpha, weight);
     } else if (CLIP_MODE == MODE_RARA && (flags & CUT_FRONT) == 0u) {
-        chord_weights(base, flags >> CUT_COUNT_SHIFT, delta, place, weight);
+        chord_weights(base, flags, delta, place, weight);
     } else {
         for (uint row = 0u; row < ROWS; row++) {
             vec2 below = vec2(0.0, float(row));

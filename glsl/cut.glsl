@@ -1,7 +1,7 @@
 // The cutoff record: what the fragment stage needs to weight a cut splat, computed once a splat by cutoff.comp.
 // vec4s of a record (FRAME.weight.cut_stride of them):
-//   0      fx / Z m1, the screen gradient along x for a pixel on the principal axis, times scale; the sum of CUT_RAY,
-//          CUT_FRONT and 256 times the number of planes
+//   0      fx / Z m1, the screen gradient along x for a pixel on the principal axis, times scale; the sum of
+//          CUT_RAY, CUT_FRONT, CUT_UNION and 256 times the number of planes
 //   1      fy / Z m2, the same along y, times scale; scale
 //   2      e = m3 / Z, how the gradients change with the pixel, times scale; low-pass times scale^2
 //   3...   a plane each: normal in unit space, and the centre's distance, both divided by the normal's largest component
@@ -20,6 +20,9 @@ const uint CUT_RAY = 1u;
 const uint CUT_FRONT = 2u;
 // The record is one plane's z as a polynomial of degree four.
 const uint CUT_CURVE = 4u;
+// The splat is cut by a union: the record holds the planes' complements, and what it keeps is the rest of what these keep
+// together. A plane alone is no union.
+const uint CUT_UNION = 8u;
 const uint CUT_COUNT_SHIFT = 8u;
 
 // What the rasteriser carries for a splat: z at its centre, dz/dx, dz/dy and its curvature, so that the usual case, one

@@ -57,6 +57,7 @@ void main() {
     uint base = cut * FRAME.weight.cut_stride;
     uint at = base + CUT_HEADER;
     uint kept = FRAME.region.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
+    bool is_union = FRAME.region.op == OP_OR && FRAME.region.plane_count > 1u;
     vec4 form;
     for (uint plane = 0u; plane < FRAME.region.plane_count; plane++) {
         float distance = plane_distance(plane, position);
@@ -64,11 +65,16 @@ void main() {
         // A plane that keeps the whole splat changes no intersection, one that drops it no union.
         if (plane_side(distance, normal, reach) != kept) {
             form = ray_plane(normal, distance);
-            cuts.at[at++] = form;
+            cuts.at[at++] = is_union ? -form : form;
         }
     }
     uint count = at - base - CUT_HEADER;
     uint flags = count << CUT_COUNT_SHIFT;
+    if (is_union && count == 1u && !front && FRAME.region.mode == MODE_EXACT) {
+        cuts.at[at - 1u] = form; // a plane alone is no union
+    } else if (is_union) {
+        flags |= CUT_UNION;
+    }
     if (!ray && count == 1u) {
         cuts.at[base] = vec4(vec3(0.0), float(flags));
         cuts.at[at - 1u] = affine_plane(f, form);

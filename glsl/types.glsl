@@ -150,8 +150,6 @@ const uint MODE_RARA = 2u;
 const uint MODE_EXACT = 3u;
 const uint OP_AND = 0u;
 const uint OP_OR = 1u;
-// Of pipelines: one plane, nothing to combine.
-const uint OP_ONE = 2u;
 const uint DECAY_LINEAR = 0u;
 const uint DECAY_DEPTH = 1u;
 const uint MISS_KEEP = 0u;

@@ -6,13 +6,10 @@
 #include "orthant.glsl"
 #include "tail.glsl"
 
-// A union is the rest of the complements' intersection, which is why every plane is negated under OP_OR.
-float complement_sign() {
-    return CLIP_OP == OP_OR ? -1.0 : 1.0;
-}
-
-float combined(float share) {
-    return CLIP_OP == OP_OR ? 1.0 - share : share;
+// What a record keeps, given what all of its planes keep together: a union is the rest of its complements' intersection,
+// which is what its record holds.
+float combined(uint flags, float share) {
+    return (flags & CUT_UNION) != 0u ? 1.0 - share : share;
 }
 
 vec2 principal_point() {
@@ -35,9 +32,9 @@ float tail_ratio(float z, float front) {
     return tail_phi(z) / tail_phi(front);
 }
 
-// A record's plane; under OP_OR its complement.
+// A plane of a record.
 vec4 plane_of(uint base, uint plane) {
-    return complement_sign() * cuts.at[base + CUT_HEADER + plane];
+    return cuts.at[base + CUT_HEADER + plane];
 }
 
 Threshold threshold_of(Sight s, float det, uint base, uint plane) {
@@ -121,20 +118,22 @@ float several_weight(Sight s, float det, uint base, uint count) {
 }
 
 // `exact`, with the planes of a record.
-float exact_weight(uint base, uint count, vec2 delta, vec2 place) {
+float exact_weight(uint base, uint flags, vec2 delta, vec2 place) {
+    uint count = flags >> CUT_COUNT_SHIFT;
     Sight s = line_of_sight(base, delta, place);
     float det = determinant(s);
-    if (CLIP_OP == OP_ONE || count == 1u) {
+    if (!SEVERAL || count == 1u) {
         bool far;
         return phi(ray_z(s, det, cuts.at[base + CUT_HEADER], far));
     }
-    return combined(several_weight(s, det, base, count));
+    return combined(flags, several_weight(s, det, base, count));
 }
 
 // The same with the camera inside the splat: only what is in front of the eye counts, as part and as whole. Such a splat
 // is so large that the low-pass is nothing: the planes are thresholds in one variable along the ray, those that keep the
 // far side bound it from below, as the eye does, the others from above.
-float front_weight(uint base, uint count, vec2 delta, vec2 place) {
+float front_weight(uint base, uint flags, vec2 delta, vec2 place) {
+    uint count = flags >> CUT_COUNT_SHIFT;
     Sight s = line_of_sight(base, delta, place);
     float det = determinant(s);
     float far = 1.0;
@@ -149,13 +148,14 @@ float front_weight(uint base, uint count, vec2 delta, vec2 place) {
             gone = max(gone, tail_ratio(-z, front));
         }
     }
-    return combined(max(0.0, far - gone));
+    return combined(flags, max(0.0, far - gone));
 }
 
 // `rara`: the visible share of the chord that the ray cuts out of the ellipsoid (paper section 3.3 and eq. 11). The
 // line is p + t c/|c| with p its point nearest the centre; |p|^2 = |delta.x b2 - delta.y b1|^2 / |c|^2 needs no
 // inverse of M and no B^2 - 4 A C.
-float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place) {
+float chord_weight(uint base, uint flags, vec2 delta, vec2 place) {
+    uint count = flags >> CUT_COUNT_SHIFT;
     Sight s = line_of_sight(base, delta, place);
     float cc = dot(s.c, s.c);
     float sigma = push.params.sigma;
@@ -167,7 +167,7 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place
     float half_square = degenerate ? -1.0 : sigma * sigma - dot(offset, offset) * inverse;
     float high = half_square > 0.0 ? sqrt(half_square) : 0.0;
     float low = -high;
-    if (has_front) {
+    if ((flags & CUT_FRONT) != 0u) {
         vec4 front = cuts.at[base + CUT_HEADER + count];
         // The view direction's component along the line is never negative.
         low = max(low, -(front.w + dot(front.xyz, nearest)) / max(dot(front.xyz, direction), 1e-30));
@@ -184,7 +184,7 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place
         float slope = dot(form.xyz, direction);
         if (miss || slope == 0.0) {
             // The plane itself is visible, so it is no part of a complement.
-            inside = inside && (value > 0.0 || (value == 0.0 && CLIP_OP != OP_OR));
+            inside = inside && (value > 0.0 || (value == 0.0 && (flags & CUT_UNION) == 0u));
         } else if (slope > 0.0) {
             low = max(low, -value / slope);
         } else {
@@ -192,7 +192,7 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place
         }
     }
     float share = !inside ? 0.0 : miss ? 1.0 : max(0.0, high - low) / whole;
-    return combined(share);
+    return combined(flags, share);
 }
 
 // Which of them by the frame's mode and the record's form. `place` is the pixel's, `delta` the same relative to the
@@ -200,12 +200,11 @@ float chord_weight(uint base, uint count, bool has_front, vec2 delta, vec2 place
 float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 place) {
     uint base = cut * push.params.cut_stride;
     uint flags = to_uint(cuts.at[base].w);
-    uint count = flags >> CUT_COUNT_SHIFT;
     if (CLIP_MODE == MODE_RARA) {
-        return chord_weight(base, count, (flags & CUT_FRONT) != 0u, delta, place);
+        return chord_weight(base, flags, delta, place);
     }
     if ((flags & CUT_FRONT) != 0u) {
-        return front_weight(base, count, delta, place);
+        return front_weight(base, flags, delta, place);
     }
     if ((flags & CUT_CURVE) != 0u) {
         vec4 linear = cuts.at[base];
@@ -218,7 +217,7 @@ float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 place) {
         float third = twist.w + uv.x * wave.w;
         return phi(at + uv.y * (slope + uv.y * (second + uv.y * (third + uv.y * bend.w))));
     }
-    return exact_weight(base, count, delta, place);
+    return exact_weight(base, flags, delta, place);
 }
 
 // The paper scales alpha (eq. 12). The default for `exact` scales optical depth, -ln(1 - alpha): then complementary

@@ -4,7 +4,7 @@
 #include "types.glsl"
 
 layout(constant_id = 0) const uint CLIP_MODE = MODE_NONE; // MODE_*
-layout(constant_id = 1) const uint CLIP_OP = OP_AND; // OP_*
+layout(constant_id = 1) const bool SEVERAL = false; // whether a splat may be cut by more than one surface
 layout(constant_id = 2) const uint DECAY = DECAY_DEPTH; // DECAY_*
 layout(constant_id = 3) const uint MISS = MISS_PEAK; // MISS_*
 layout(constant_id = 4) const uint PHI_FORM = PHI_QUINTIC; // PHI_*: which approximation of Phi

@@ -56,7 +56,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat_depth::P
     let weight = Weight::of(plan);
     let constants = splat_depth::Constants {
         clip_mode: weight.mode,
-        clip_op: weight.op,
+        several: weight.several,
         decay: weight.decay,
         miss: weight.miss,
         phi_form: weight.phi,

@@ -23,7 +23,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program
     let weight = Weight::of(plan);
     let constants = splat::Constants {
         clip_mode: weight.mode,
-        clip_op: weight.op,
+        several: weight.several,
         decay: weight.decay,
         miss: weight.miss,
         phi_form: weight.phi,

@@ -52,7 +52,7 @@ fn kernel(plan: &Plan) -> Kernel<tiles::Program> {
     let work = plan.tile_work;
     let constants = tiles::Constants {
         clip_mode: weight.mode,
-        clip_op: weight.op,
+        several: weight.several,
         decay: weight.decay,
         miss: weight.miss,
         phi_form: weight.phi,

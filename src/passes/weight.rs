@@ -39,8 +39,8 @@ impl Laws {
 pub(crate) struct Weight {
     /// `MODE_*`.
     pub(crate) mode: u32,
-    /// `OP_*`.
-    pub(crate) op: u32,
+    /// Whether a splat may be cut by more than one surface.
+    pub(crate) several: bool,
     /// `DECAY_*`.
     pub(crate) decay: u32,
     /// `MISS_*`.
@@ -54,13 +54,9 @@ impl Weight {
     pub(crate) fn of(plan: &Plan) -> Self {
         let when = |needed: bool, value: u32| if needed { value } else { 0 };
         let (cuts, mode, laws) = (plan.cuts(), plan.mode(), plan.laws);
-        let op = match plan.data.region.plane_count {
-            1 => types::OP_ONE,
-            _ => plan.data.region.op,
-        };
         Self {
             mode: when(cuts, mode),
-            op: when(cuts, op),
+            several: cuts && plan.data.region.plane_count > 1,
             decay: when(cuts, laws.decay),
             miss: when(cuts && mode == types::MODE_RARA, laws.miss),
             phi: when(cuts && mode == types::MODE_EXACT, laws.phi),

@@ -3,7 +3,8 @@
 // they may differ and have to be looked at.
 #ifndef RARA_BLOCK
 #define RARA_BLOCK
-#include "side.glsl"
+#include "band.glsl"
+#include "region/box_side.glsl"
 
 // Contour of 1/255 of an opaque splat, standard deviations, and what the low-pass adds to a splat's deviation at most, px.
 const float EXTENT_MAX = 3.33;
@@ -18,30 +19,10 @@ vec3 block_half(Block block) {
     return 0.5 * block.high_sigma.xyz - 0.5 * block.low_reach.xyz + 1e-6 * (abs(block.low_reach.xyz) + abs(block.high_sigma.xyz));
 }
 
-uint block_plane_side(uint plane, Block block, float widening) {
-    if (FRAME.region.trace_all != 0u && FRAME.region.mode != MODE_HARD) {
-        return SIDE_CUTOFF;
-    }
-    float reach = widening * max(block.low_reach.w, 0.0);
-    float traced = FRAME.region.sigma * abs(block.high_sigma.w);
-    float support = FRAME.region.mode == MODE_HARD ? 0.0 : FRAME.region.mode == MODE_RARA ? max(reach, traced) : reach;
-    float distance = plane_distance(plane, block_middle(block));
-    float margin = dot(abs(FRAME.region.plane_high[plane].xyz), block_half(block)) + 1.0001 * support;
-    return distance > margin ? SIDE_VISIBLE : distance < -margin ? SIDE_INVISIBLE : SIDE_CUTOFF;
-}
-
-// All planes together, as clip_side does for one Gaussian, and with what perspective adds to the band at most.
+// The region's side of a block, with what perspective widens the band by at most.
 uint block_clip_side(Block block, float widening) {
-    uint decided = FRAME.region.op == OP_AND ? SIDE_INVISIBLE : SIDE_VISIBLE;
-    uint side = FRAME.region.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
-    for (uint plane = 0u; plane < FRAME.region.plane_count; plane++) {
-        uint one = block_plane_side(plane, block, widening);
-        if (one == decided) {
-            return decided;
-        }
-        side = one == SIDE_CUTOFF ? SIDE_CUTOFF : side;
-    }
-    return side;
+    float reach = widening * max(block.low_reach.w, 0.0);
+    return box_side(block_middle(block), block_half(block), reach, abs(block.high_sigma.w));
 }
 
 // A linear function a x + b z of the camera's frame over the box: its middle and by how much it can differ from that.

@@ -61,7 +61,7 @@ uint classify(uint block, uint local) {
     }
     float sigma = largest(gaussian.scale.xyz);
     if (FRAME.region.mode == MODE_EXACT && is_beam(f, sigma)) {
-        return clip_side(f.world_factor, gaussian.position_opacity.xyz, band_in_view(f, sigma, extent));
+        return gaussian_side(f.world_factor, gaussian.position_opacity.xyz, band_in_view(f, sigma, extent));
     }
     return clip_class(block, local);
 }

@@ -25,7 +25,7 @@ void main() {
     uint index = block * BLOCK_SIZE + local;
     if (is_block && index < FRAME.scene.gaussian_count) {
         Gaussian gaussian = gaussians.at[index];
-        uint side = clip_side(world_factor(gaussian), gaussian.position_opacity.xyz,
+        uint side = gaussian_side(world_factor(gaussian), gaussian.position_opacity.xyz,
                               band(opacity_extent(gaussian.position_opacity.w)));
         if (side >= SIDE_VISIBLE) {
             // A union does not depend on the order of atomics.

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One invocation a cutoff Gaussian: everything the fragment stage needs to weight it, into its cutoff record.
-#include "side.glsl"
+#include "band.glsl"
+#include "region/gaussian_side.glsl"
 #include "cut.glsl"
 #include "curve.glsl"
 
@@ -63,7 +64,7 @@ void main() {
         float distance = plane_distance(plane, position);
         vec3 normal = unit_normal(plane, f.world_factor);
         // A plane that keeps the whole splat changes no intersection, one that drops it no union.
-        if (plane_side(distance, normal, reach) != kept) {
+        if (plane_gaussian_side(distance, normal, reach) != kept) {
             form = ray_plane(normal, distance);
             cuts.at[at++] = is_union ? -form : form;
         }

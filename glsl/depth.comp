@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One invocation a survivor: how deep it is in each pixel, and what of that depends on the clip.
-#include "side.glsl"
+#include "band.glsl"
+#include "region/gaussian_side.glsl"
 #include "cut.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;

@@ -1,7 +1,8 @@
 // A bit for each Gaussian of a block.
 #ifndef RARA_MASKS
 #define RARA_MASKS
-#include "side.glsl"
+#include "band.glsl"
+#include "region/gaussian_side.glsl"
 
 // Words of a block's mask.
 const uint WORDS = BLOCK_SIZE / 32u;

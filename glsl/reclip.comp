@@ -36,7 +36,7 @@ uint class_now(uint block, uint index) {
     Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
     float extent = opacity_extent(gaussian.position_opacity.w);
-    return clip_side(f.world_factor, gaussian.position_opacity.xyz, band_in_view(f, largest(gaussian.scale.xyz), extent));
+    return gaussian_side(f.world_factor, gaussian.position_opacity.xyz, band_in_view(f, largest(gaussian.scale.xyz), extent));
 }
 
 bool is_in_view(uint block, uint local) {

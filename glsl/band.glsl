@@ -1,24 +1,7 @@
-// The paper's three classes (section 3.2) for one Gaussian and every plane, by its tight support along the normal:
-// |n.mu + d| against K |M^T n| with K where alpha falls to 1/255, instead of 3 max(sigma). Outside that band no pixel
-// of the splat changes by more than 0.5/255; where weights follow true rays, perspective widens it.
-#ifndef RARA_SIDE
-#define RARA_SIDE
+// How far from a Gaussian's centre a surface cuts it, in standard deviations.
+#ifndef RARA_BAND
+#define RARA_BAND
 #include "footprint.glsl"
-
-const uint SIDE_CULLED = 0u;
-const uint SIDE_INVISIBLE = 1u;
-const uint SIDE_VISIBLE = 2u;
-const uint SIDE_CUTOFF = 3u;
-
-// Signed distance of the centre to a plane, world units, positive on the visible side.
-float plane_distance(uint plane, vec3 position) {
-    return two_float_plane(FRAME.region.plane_high[plane], FRAME.region.plane_low[plane], position);
-}
-
-// The normal in the Gaussian's unit space; its length is the standard deviation along the normal.
-vec3 unit_normal(uint plane, mat3 world_factor) {
-    return FRAME.region.plane_high[plane].xyz * world_factor;
-}
 
 // Whether the exact form of a splat follows each pixel's true ray.
 bool is_beam(Footprint f, float sigma) {
@@ -67,35 +50,9 @@ float band(float extent) {
     return FRAME.region.mode == MODE_RARA ? max(extent, FRAME.region.sigma) : extent;
 }
 
-// One plane: SIDE_VISIBLE where it keeps the whole splat, SIDE_INVISIBLE where it keeps nothing, else SIDE_CUTOFF.
-uint plane_side(float distance, vec3 normal, float reach) {
-    if (FRAME.region.mode == MODE_HARD) {
-        return distance >= 0.0 ? SIDE_VISIBLE : SIDE_INVISIBLE;
-    }
-    float support = reach * length(normal);
-    if (FRAME.region.trace_all != 0u) {
-        return SIDE_CUTOFF;
-    }
-    return distance >= support ? SIDE_VISIBLE : distance <= -support ? SIDE_INVISIBLE : SIDE_CUTOFF;
-}
-
 // The same with what perspective adds to it.
 float band_in_view(Footprint f, float sigma, float extent) {
     return FRAME.region.mode == MODE_EXACT && is_beam(f, sigma) ? beam_band(f, extent) : band(extent);
-}
-
-// All planes together.
-uint clip_side(mat3 world_factor, vec3 position, float reach) {
-    uint decided = FRAME.region.op == OP_AND ? SIDE_INVISIBLE : SIDE_VISIBLE;
-    uint side = FRAME.region.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
-    for (uint plane = 0u; plane < FRAME.region.plane_count; plane++) {
-        uint one = plane_side(plane_distance(plane, position), unit_normal(plane, world_factor), reach);
-        if (one == decided) {
-            return decided;
-        }
-        side = one == SIDE_CUTOFF ? SIDE_CUTOFF : side;
-    }
-    return side;
 }
 
 #endif

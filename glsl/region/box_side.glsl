@@ -1,0 +1,25 @@
+// On which side of the region all Gaussians are whose centres lie in a box: conservative, so that the box is only settled
+// where each of them alone would be.
+#ifndef RARA_REGION_BOX_SIDE
+#define RARA_REGION_BOX_SIDE
+#include "region/plane.glsl"
+
+// `reach` is the farthest that a contour of 1/255 lies from its centre, and `sigma` the largest standard deviation.
+uint box_side(vec3 middle, vec3 half_size, float reach, float sigma) {
+    if (FRAME.region.trace_all != 0u && FRAME.region.mode != MODE_HARD) {
+        return SIDE_CUTOFF;
+    }
+    float traced = FRAME.region.sigma * sigma;
+    float support = FRAME.region.mode == MODE_HARD ? 0.0 : FRAME.region.mode == MODE_RARA ? max(reach, traced) : reach;
+    uint side = side_undecided();
+    for (uint plane = 0u; plane < FRAME.region.plane_count; plane++) {
+        uint one = plane_box_side(plane, middle, half_size, support);
+        if (one == side_that_decides()) {
+            return one;
+        }
+        side = one == SIDE_CUTOFF ? SIDE_CUTOFF : side;
+    }
+    return side;
+}
+
+#endif

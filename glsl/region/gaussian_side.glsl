@@ -1,0 +1,21 @@
+// On which side of the region a Gaussian is: the paper's three classes (section 3.2), by its tight support along each
+// plane's normal, |n.mu + d| against K |M^T n| with K where alpha falls to 1/255, instead of 3 max(sigma). Outside that
+// band no pixel of the splat changes by more than 0.5/255; where weights follow true rays, perspective widens it
+// (band.glsl). Twin: src/reference/region/gaussian_side.rs.
+#ifndef RARA_REGION_GAUSSIAN_SIDE
+#define RARA_REGION_GAUSSIAN_SIDE
+#include "region/plane.glsl"
+
+uint gaussian_side(mat3 world_factor, vec3 position, float reach) {
+    uint side = side_undecided();
+    for (uint plane = 0u; plane < FRAME.region.plane_count; plane++) {
+        uint one = plane_gaussian_side(plane_distance(plane, position), unit_normal(plane, world_factor), reach);
+        if (one == side_that_decides()) {
+            return one;
+        }
+        side = one == SIDE_CUTOFF ? SIDE_CUTOFF : side;
+    }
+    return side;
+}
+
+#endif

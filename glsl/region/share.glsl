@@ -1,0 +1,99 @@
+// What a pixel's share of a splat is: the chance that a point of the Gaussian on the pixel's line of sight is kept by all
+// surfaces of the splat's cutoff record, or of a union by any. Included after the buffer `cuts` is declared. Twin:
+// src/reference/region/share.rs.
+#ifndef RARA_REGION_SHARE
+#define RARA_REGION_SHARE
+#include "orthant.glsl"
+
+// What a record keeps, given what all of its surfaces keep together: a union is the rest of its complements' intersection,
+// which is what its record holds.
+float combined(uint flags, float share) {
+    return (flags & CUT_UNION) != 0u ? 1.0 - share : share;
+}
+
+// A plane of a record.
+vec4 plane_of(uint base, uint plane) {
+    return cuts.at[base + CUT_HEADER + plane];
+}
+
+Threshold threshold_of(Sight s, float det, uint base, uint plane) {
+    vec4 form = plane_of(base, plane);
+    Threshold t;
+    t.z = ray_z(s, det, form, t.far);
+    t.direction = direction(s, form.xyz);
+    return t;
+}
+
+// What four and more planes keep that one pixel sees the edges of: as if the pairs' dependences added up, within what the
+// pairs bound: the least of them, and what is left when each plane takes what the strictest one of its kind, and this what
+// the strictest of the other, has not taken. No arrays: they would cost every splat their room.
+float many_weight(Sight s, float det, uint base, uint count) {
+    // Of those that keep the far side, and of the others.
+    uvec2 strictest = uvec2(count);
+    vec2 least = vec2(PHI_ONE);
+    float share = 1.0;
+    float high = 1.0;
+    for (uint plane = 0u; plane < count; plane++) {
+        Threshold t = threshold_of(s, det, base, plane);
+        if (t.z >= PHI_ONE) {
+            continue;
+        }
+        uint kind = t.far ? 0u : 1u;
+        if (t.z < least[kind]) {
+            least[kind] = t.z;
+            strictest[kind] = plane;
+        }
+        float p = max(phi(t.z), 1e-6);
+        share *= p;
+        for (uint other = 0u; other < plane; other++) {
+            Threshold u = threshold_of(s, det, base, other);
+            if (u.z < PHI_ONE) {
+                float pair = both_positive(t, u);
+                high = min(high, pair);
+                share *= pair / (p * max(phi(u.z), 1e-6));
+            }
+        }
+    }
+    bool is_mixed = strictest.x < count && strictest.y < count;
+    float low = is_mixed
+        ? both_positive(threshold_of(s, det, base, strictest.x), threshold_of(s, det, base, strictest.y))
+        : phi(min(least.x, least.y));
+    for (uint plane = 0u; plane < count; plane++) {
+        Threshold t = threshold_of(s, det, base, plane);
+        uint first = t.far ? strictest.x : strictest.y;
+        if (t.z < PHI_ONE && plane != first && first < count) {
+            low += both_positive(threshold_of(s, det, base, first), t) - phi(t.far ? least.x : least.y);
+        }
+    }
+    return min(max(share, max(low, 0.0)), high);
+}
+
+// What several planes of a record keep together. Few pixels of a splat see the edges of more than one of them.
+float several_weight(Sight s, float det, uint base, uint count) {
+    uvec3 open = uvec3(0u);
+    float z;
+    uint opens = 0u;
+    for (uint plane = 0u; plane < count; plane++) {
+        bool far;
+        float here = ray_z(s, det, plane_of(base, plane), far);
+        if (here <= -PHI_ONE) {
+            return 0.0;
+        }
+        if (here < PHI_ONE) {
+            z = here;
+            open = uvec3(open.yz, plane);
+            opens++;
+        }
+    }
+    if (opens < 2u) {
+        return opens == 0u ? 1.0 : phi(z);
+    }
+    if (opens > 3u) {
+        return many_weight(s, det, base, count);
+    }
+    Threshold t = threshold_of(s, det, base, open.y);
+    Threshold u = threshold_of(s, det, base, open.z);
+    return opens == 2u ? both_positive(t, u) : three_positive(threshold_of(s, det, base, open.x), t, u);
+}
+
+#endif

@@ -3,7 +3,7 @@
 #ifndef RARA_BIN
 #define RARA_BIN
 #include "extent.glsl"
-#include "sort.glsl"
+#include "runs.glsl"
 
 struct Outline {
     vec2 centre; // px
@@ -156,7 +156,7 @@ Span next_span(uint origin, inout uvec2 mask) {
 
 // Where span_counts has how many tiles a run's splats touch in all.
 uint pairs_place(uint run) {
-    return FRAME.order.sort_runs * tile_rows() + run;
+    return FRAME.tiles.span_runs * tile_rows() + run;
 }
 
 #endif

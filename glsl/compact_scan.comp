@@ -63,6 +63,7 @@ void main() {
         // Binning counts them, where tiles are wanted.
         counts.at[0].pairs = 0u;
         counts.at[0].tiled = 0u;
+        counts.at[0].span_count_groups = uvec4(survivors == 0u ? 0u : FRAME.tiles.span_runs / SPAN_GROUP_SIZE, 1u, 1u, 0u);
         counts.at[0].span_groups = uvec4(0u);
         counts.at[0].part_groups = uvec4(0u);
         counts.at[0].row_groups = uvec4(0u);

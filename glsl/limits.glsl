@@ -49,8 +49,10 @@ const uint STRIP_ROWS = 8u;
 const uint QUAD_TILES = 8u;
 // Bits a pass of the radix sort looks at.
 const uint SORT_BITS = 8u;
-// Workgroup size of the sort and of the spans; one invocation owns a run of consecutive keys, which makes the sort stable.
+// Workgroup size of the sort; one invocation owns a run of consecutive keys, which makes the sort stable.
 const uint SORT_GROUP_SIZE = 64u;
+// Workgroup size of the spans of tiles, of which one invocation owns a run of consecutive splats.
+const uint SPAN_GROUP_SIZE = 64u;
 // Workgroup size where an invocation owns a row of tiles or a part of its spans: small, since rows differ in what they hold.
 const uint ROW_GROUP_SIZE = 8u;
 // Columns of a grid of workgroups that does not fit in a row: more than 65535 would break devices with the least limit.

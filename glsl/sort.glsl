@@ -7,6 +7,7 @@
 #ifndef RARA_SORT
 #define RARA_SORT
 #include "frame.glsl"
+#include "runs.glsl"
 
 const uint DIGITS = 1u << SORT_BITS;
 
@@ -18,13 +19,6 @@ const uint DIGITS = 1u << SORT_BITS;
 
 uint digit(uint key, uint number) {
     return bitfieldExtract(key, int(number * SORT_BITS), int(SORT_BITS));
-}
-
-// First and last key (exclusive) of a run.
-uvec2 run_bounds(uint run, uint count) {
-    uint size = (count + FRAME.order.sort_runs - 1u) / FRAME.order.sort_runs;
-    uint begin = min(run * size, count);
-    return uvec2(begin, min(begin + size, count));
 }
 
 // Where the histogram has a run's least and greatest key.

@@ -88,7 +88,7 @@ void order_together(uint begin, uint end) {
 void main() {
     uint local = gl_LocalInvocationIndex;
     uint count = KEY_COUNT;
-    uvec2 bounds = run_bounds(gl_GlobalInvocationID.x, count);
+    uvec2 bounds = run_bounds(gl_GlobalInvocationID.x, FRAME.order.sort_runs, count);
     uint i = bounds.x;
     // What begins in the run before is that one's.
     while (i < bounds.y && i > 0u && keys.at[i] == keys.at[i - 1u]) {

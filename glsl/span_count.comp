@@ -5,7 +5,7 @@
 // touches.
 #include "bin.glsl"
 
-layout(local_size_x = SORT_GROUP_SIZE) in;
+layout(local_size_x = SPAN_GROUP_SIZE) in;
 
 BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, Splat, splats)
@@ -23,7 +23,7 @@ void main() {
     for (uint row = 0u; row < rows; row++) {
         span_counts.at[run * rows + row] = 0u;
     }
-    uvec2 bounds = run_bounds(run, counts.at[0].visible + counts.at[0].cutoff);
+    uvec2 bounds = run_bounds(run, FRAME.tiles.span_runs, counts.at[0].visible + counts.at[0].cutoff);
     uint found = 0u;
     // More than there is room for need no counting: quads are drawn, and the next frame has more room.
     for (uint i = bounds.x; i < bounds.y && found <= FRAME.room.pair_capacity; i++) {

@@ -22,7 +22,7 @@ uint capped_sum(uint a, uint b) {
 void main() {
     uint local = gl_LocalInvocationIndex;
     // Without survivors nothing was counted, and the counts are another frame's.
-    uint runs = counts.at[0].mesh_groups.w == 0u ? 0u : FRAME.order.sort_runs;
+    uint runs = counts.at[0].mesh_groups.w == 0u ? 0u : FRAME.tiles.span_runs;
     uint own_pairs = 0u;
     for (uint run = local; run < runs; run += ROWS) {
         own_pairs = capped_sum(own_pairs, span_counts.at[pairs_place(run)]);
@@ -65,7 +65,7 @@ void main() {
         row_begins.at[rows] = begin;
         counts.at[0].pairs = pairs;
         counts.at[0].tiled = tiled ? 1u : 0u;
-        counts.at[0].span_groups = tiled ? groups(FRAME.order.sort_runs, SORT_GROUP_SIZE) : uvec4(0u);
+        counts.at[0].span_groups = tiled ? groups(FRAME.tiles.span_runs, SPAN_GROUP_SIZE) : uvec4(0u);
         counts.at[0].part_groups = tiled ? groups(rows * FRAME.tiles.row_parts, ROW_GROUP_SIZE) : uvec4(0u);
         counts.at[0].row_groups = tiled ? groups(rows, ROW_GROUP_SIZE) : uvec4(0u);
         counts.at[0].tile_groups = uvec4(tiled ? STRIP_ROWS * FRAME.tiles.tile_columns : 0u, strips, 1u, 0u);

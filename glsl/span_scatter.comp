@@ -3,7 +3,7 @@
 // Third step of binning: each run writes its spans, front to back, to the places of their rows.
 #include "bin.glsl"
 
-layout(local_size_x = SORT_GROUP_SIZE) in;
+layout(local_size_x = SPAN_GROUP_SIZE) in;
 
 BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, Splat, splats)
@@ -28,7 +28,7 @@ void put(uint slot, uvec2 columns, uint splat) {
 void main() {
     uint run = gl_GlobalInvocationID.x;
     uint rows = tile_rows();
-    uvec2 bounds = run_bounds(run, counts.at[0].visible + counts.at[0].cutoff);
+    uvec2 bounds = run_bounds(run, FRAME.tiles.span_runs, counts.at[0].visible + counts.at[0].cutoff);
     for (uint i = bounds.x; i < bounds.y; i++) {
         uint splat = order.at[i];
         uint origin = mask_origins.at[i];

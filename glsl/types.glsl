@@ -44,8 +44,10 @@ struct OrderData {
 struct TilesData {
     uint tile_columns; // tiles across the picture
     uint tile_count; // tiles in the picture
+    uint span_runs; // invocations that find the splats' spans of tiles; none where no tiles are wanted
     uint row_parts; // parts of the spans of a row of tiles
     float transmittance_min; // below it a tile's pixel is saturated: what lies behind changes it by less
+    uint pad[3]; // unused
 };
 
 // How much there is room for, and what happens where that is too little: no pixel depends on it.
@@ -133,7 +135,8 @@ struct FrameCounts {
     uvec4 sort_pass_groups[4]; // the same for each of its passes; none where the keys agree
     uvec4 draw; // indirect draw: vertices, instances, first vertex, first instance
     uvec4 mesh_groups; // indirect mesh tasks; w: survivors
-    uvec4 span_groups; // indirect dispatch of the runs over the splats, for their spans of tiles
+    uvec4 span_count_groups; // indirect dispatch of the runs over the splats, which count their spans of tiles
+    uvec4 span_groups; // indirect dispatch of the runs over the splats, which list their spans of tiles
     uvec4 part_groups; // indirect dispatch of the parts of the rows of tiles
     uvec4 row_groups; // indirect dispatch of the rows of tiles
     uvec4 tile_groups; // indirect dispatch of the tiles

@@ -15,7 +15,9 @@ use super::commands::Commands;
 use super::instance::Instance;
 use super::submit::OneOff;
 use super::validation::Messages;
-use super::{AdoptDesc, Buffer, BufferDesc, Calibration, DeviceInfo, Image, ImageDesc, Support};
+use super::{
+    AdoptDesc, Buffer, BufferDesc, Calibration, DeviceInfo, Image, ImageDesc, Shape, Support,
+};
 use crate::Result;
 
 /// A device, shared by everything made from it; clones are the same device.
@@ -28,6 +30,7 @@ pub(super) struct Inner {
     instance: ash::Instance,
     physical: vk::PhysicalDevice,
     raw: ash::Device,
+    shape: Shape,
     info: DeviceInfo,
     support: Support,
     pub(super) queue: Mutex<vk::Queue>,
@@ -81,6 +84,7 @@ impl Device {
                     .debug_utils
                     .then(|| ext::debug_utils::Device::new(&instance, &raw)),
                 physical: desc.physical_device,
+                shape: Shape::of(&info),
                 info,
                 support,
                 queue: Mutex::new(desc.queue),
@@ -106,6 +110,11 @@ impl Device {
     /// The device's name, driver and kind.
     pub fn info(&self) -> &DeviceInfo {
         &self.inner.info
+    }
+
+    /// The kind of machine that it is, or that the environment variable `RARA_SHAPE` (`cpu` or `gpu`) says it is.
+    pub fn shape(&self) -> Shape {
+        self.inner.shape
     }
 
     /// What it offers, less what the host did not enable.

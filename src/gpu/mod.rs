@@ -27,6 +27,7 @@ mod pipeline_file;
 mod recorder;
 mod requirements;
 mod shader;
+mod shape;
 mod submit;
 #[cfg(feature = "view")]
 mod surface;
@@ -56,6 +57,7 @@ pub(crate) use pipeline_file::PipelineFile;
 pub use recorder::{DepthImage, Groups, Recorder, group_grid};
 pub use requirements::{Features, Support, check};
 pub use shader::{BufferAccess, BufferUse, MAX_BUFFERS, MAX_PARAMS, Shader};
+pub use shape::Shape;
 #[cfg(feature = "view")]
 pub(crate) use surface::{Surface, Window};
 #[cfg(feature = "view")]

@@ -55,7 +55,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let order = &b.order[sorted];
     // What the sort has done with has room for the masks in the order of depth.
     let [mask_origins, masks_above, masks_below] = [&b.keys[0], &b.keys[1], &b.order[sorted ^ 1]];
-    let runs = indirect!(b.counts, FrameCounts, sort_groups);
+    let runs = indirect!(b.counts, FrameCounts, span_count_groups);
     let runs_with_room = indirect!(b.counts, FrameCounts, span_groups);
     let parts = indirect!(b.counts, FrameCounts, part_groups);
     let rows = indirect!(b.counts, FrameCounts, row_groups);

@@ -78,6 +78,7 @@ struct Sizes {
     clip_blocks: u64,
     cut_bytes: u64,
     sort_runs: u64,
+    span_runs: u64,
     masks: u64,
     pairs: u64,
     tiles: u64,
@@ -111,6 +112,7 @@ impl Sizes {
             },
             cut_bytes,
             sort_runs: u64::from(plan.data.order.sort_runs),
+            span_runs: when_tiled(plan.data.tiles.span_runs.into()),
             masks: when_tiled(gaussians),
             pairs: when_tiled(plan.data.room.pair_capacity.into()),
             tiles: when_tiled(plan.data.tiles.tile_count.into()),
@@ -171,7 +173,7 @@ impl Buffers {
             tiles: if plan.is_tiled() {
                 Some(TileBuffers {
                     // Of a run: its spans in each row of tiles, and its pairs.
-                    span_counts: gpu("span_counts", (sizes.rows + 1) * sizes.sort_runs * 4)?,
+                    span_counts: gpu("span_counts", (sizes.rows + 1) * sizes.span_runs * 4)?,
                     row_begins: gpu("row_begins", (sizes.rows + 1) * 4)?,
                     span_splats: gpu("span_splats", sizes.pairs * 4)?,
                     span_columns: gpu("span_columns", sizes.pairs * 4)?,
@@ -221,6 +223,7 @@ impl Buffers {
             && have.clip_blocks >= need.clip_blocks
             && have.cut_bytes >= need.cut_bytes
             && have.sort_runs == need.sort_runs
+            && have.span_runs >= need.span_runs
             && have.masks >= need.masks
             && have.pairs >= need.pairs
             && have.tiles >= need.tiles

@@ -57,7 +57,9 @@ pub(crate) struct SceneFacts {
     pub(crate) sh_format: ShFormat,
     /// The corners of the box around the centres.
     pub(crate) bounds: [Vec3; 2],
+    /// Invocations of the sort, and of what finds the splats' spans of tiles.
     pub(crate) sort_runs: u32,
+    pub(crate) span_runs: u32,
     /// How splats become pixels; never `Auto`.
     pub(crate) raster: Raster,
     pub(crate) tile_work: TileWork,
@@ -117,7 +119,7 @@ impl Plan {
                     key_shift: keys.shift,
                     sort_runs: scene.sort_runs,
                 },
-                tiles: tiles_data(size, scene.sort_runs, settings)?,
+                tiles: tiles_data(size, scene.span_runs, settings)?,
                 room: RoomData {
                     pair_capacity: scene.pair_capacity,
                     redrawn: scene.redrawn.into(),
@@ -232,7 +234,7 @@ fn weight_data(
 }
 
 /// The tiles of a picture.
-fn tiles_data(size: vk::Extent2D, sort_runs: u32, settings: &Settings) -> Result<TilesData> {
+fn tiles_data(size: vk::Extent2D, span_runs: u32, settings: &Settings) -> Result<TilesData> {
     let saturated = settings.precision.transmittance_min;
     if !(0.0..1.0).contains(&saturated) {
         return Err(Error::Invalid(format!(
@@ -244,12 +246,14 @@ fn tiles_data(size: vk::Extent2D, sort_runs: u32, settings: &Settings) -> Result
     Ok(TilesData {
         tile_columns: columns,
         tile_count: columns * rows,
-        // As many invocations as the sort has; whole workgroups a row, whose invocations then have as much to do as each
+        // As many invocations as the spans have; whole workgroups a row, whose invocations then have as much to do as each
         // other.
-        row_parts: sort_runs
+        span_runs,
+        row_parts: span_runs
             .div_ceil(rows)
             .next_multiple_of(limits::ROW_GROUP_SIZE),
         transmittance_min: saturated,
+        pad: [0; 3],
     })
 }
 
@@ -259,6 +263,7 @@ mod tests {
 
     use super::*;
     use crate::clip::{ClipOp, Plane};
+    use crate::gpu::Shape;
     use crate::passes::project;
     use crate::passes::weight::Weight;
     use crate::settings::Mode;
@@ -270,8 +275,9 @@ mod tests {
             sh_format: ShFormat::Float,
             bounds: [Vec3::NEG_ONE, Vec3::ONE],
             sort_runs: 128,
+            span_runs: 128,
             raster: Raster::Tiles,
-            tile_work: TileWork::suiting(true, 8),
+            tile_work: TileWork::suiting(Shape::Cpu, 8),
             pair_capacity: 1000,
             redrawn: false,
             occluders: None,

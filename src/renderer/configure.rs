@@ -1,7 +1,5 @@
 //! What a frame needs, decided, allocated and compiled before anything is recorded.
 
-use ash::vk;
-
 use super::Renderer;
 use super::choose;
 use super::frames::{Configured, RecordedFrame};
@@ -75,10 +73,10 @@ impl Renderer {
         let tiles = tiles(request.camera);
         let redrawn = self.make_room(request, tiles);
         let support = self.device.support();
-        let is_cpu = self.device.info().kind == vk::PhysicalDeviceType::CPU;
+        let shape = self.device.shape();
         let hidden = self.desc.depth.is_some_and(|depth| !depth.readable);
         let (raster, reason) =
-            choose::raster(request.settings.raster, support, is_cpu, tiles, hidden)?;
+            choose::raster(request.settings.raster, support, shape, tiles, hidden)?;
         let depth_map = self
             .desc
             .depth
@@ -88,9 +86,10 @@ impl Renderer {
             sh_degree: scene.sh_degree,
             sh_format: scene.sh_format,
             bounds: scene.bounds,
-            sort_runs: choose::sort_runs(is_cpu, scene.count),
+            sort_runs: choose::runs(shape, scene.count),
+            span_runs: choose::runs(shape, scene.count),
             raster,
-            tile_work: TileWork::suiting(is_cpu, support.subgroup_size),
+            tile_work: TileWork::suiting(shape, support.subgroup_size),
             pair_capacity: self.memory.pairs.room(),
             redrawn,
             occluders: self

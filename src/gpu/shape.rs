@@ -1,0 +1,35 @@
+//! What kind of machine a device is, as far as it decides which kernels suit it.
+
+use ash::vk;
+
+use super::DeviceInfo;
+
+/// The kind of machine that runs the stages. It decides which kernels are used and how finely their work is cut; pictures
+/// do not depend on it but for the rounding of sums.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Shape {
+    /// A driver that runs shaders on the processor's cores: few invocations that each do much.
+    Cpu,
+    /// A graphics processor: many invocations, whose memory accesses are served together.
+    Gpu,
+}
+
+impl Shape {
+    /// What a device is, unless `RARA_SHAPE` says otherwise: tests run the kernels of either kind on any device.
+    pub(crate) fn of(info: &DeviceInfo) -> Self {
+        let is = match info.kind {
+            vk::PhysicalDeviceType::CPU => Self::Cpu,
+            _ => Self::Gpu,
+        };
+        match std::env::var("RARA_SHAPE").as_deref() {
+            Ok("cpu") => Self::Cpu,
+            Ok("gpu") => Self::Gpu,
+            Ok(other) => {
+                log::warn!("RARA_SHAPE is {other:?}, neither cpu nor gpu: it is ignored");
+                is
+            }
+            Err(_) => is,
+        }
+    }
+}

@@ -1,6 +1,6 @@
 /* rara for C and C++: splats in a Vulkan host's own frames.
  *
- * Made by cbindgen from src/c, whose test c_header writes it anew with RARA_WRITE_HEADER=1; not to be edited.
+ * Made by cbindgen from src/c, whose test the_header_is_current writes it anew with RARA_WRITE_HEADER=1; not to be edited.
  *
  * Every function that can fail returns a RaraResult; rara_last_error_message says what is wrong. Nothing is thrown and
  * nothing panics across this boundary. Structs that begin with struct_size may grow in later versions: those that go in

@@ -2,7 +2,7 @@
 //! compared with the reference in double precision.
 //!
 //! A [`Regime`] is a kind of difficulty and builds [`Case`]s: a scene, a camera and a clip. [`run`] draws them in every
-//! form of the cut and measures. `rara stress` prints the table, `tests/stress.rs` holds it to the targets.
+//! form of the cut and measures. `rara stress` prints the table, `tests/pictures/stress.rs` holds it to the targets.
 
 #![forbid(unsafe_code)]
 

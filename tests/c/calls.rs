@@ -1,15 +1,11 @@
 //! The functions of `rara.h` on a device: what a host can do wrong there has a message, and so has a device that
-//! is lost. What a host does right is drawn by `tests/c/host.rs` and `tests/c/frames.rs`.
-
-#[allow(dead_code)] // its frames are for the hosts that draw
-#[path = "../../tools/examples/host.rs"]
-mod host;
+//! is lost. What a host does right is drawn by `tests/c/cpp_host.rs` and `tests/c/frames.rs`.
 
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr::{null, null_mut};
 use std::sync::OnceLock;
 
-use host::{Host, HostDesc};
+use crate::host::{Host, HostDesc};
 use rara::ash::{Entry, vk};
 use rara_c::boundary::*;
 use rara_c::camera::*;

@@ -1,15 +1,12 @@
 //! Frames through the functions of `rara.h` on the example host's device are those of the Rust interface to the byte: splats
 //! behind what the host has drawn, expected depths, a scene placed in a world, a scene by the host's own staging memory.
 
-#[path = "../common/canvas.rs"]
-mod canvas;
-
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
 use std::path::Path;
 use std::ptr::null_mut;
 
-use canvas::{Canvas, CanvasDesc, with_host};
+use crate::canvas::{Canvas, CanvasDesc, with_host};
 use rara::ash::{Entry, vk};
 use rara::glam::{DQuat, DVec3};
 use rara::gpu::{AdoptDesc, Bindings, BufferDesc, Device, Location};

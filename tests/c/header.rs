@@ -1,12 +1,10 @@
 //! Headers are what they are made of: `rara.h` what cbindgen makes of `src/c` (`RARA_WRITE_HEADER=1` writes it anew), and
 //! `mesh.h` of the C++ host what glslang makes of its shaders. C and the guide's C++ compile with the former.
 
-mod compiler;
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use compiler::{compiler, root, run};
+use crate::compiler::{compiler, root, run};
 
 #[test]
 fn the_header_is_current() {
@@ -42,7 +40,7 @@ fn the_header_is_current() {
     let committed = std::fs::read_to_string(&header).unwrap_or_default();
     assert!(
         made == committed,
-        "src/c/rara.h is stale: RARA_WRITE_HEADER=1 cargo test -p rara-c --test c_header"
+        "src/c/rara.h is stale: RARA_WRITE_HEADER=1 cargo test -p rara-c --test c the_header_is_current"
     );
 }
 

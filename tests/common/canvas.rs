@@ -2,10 +2,7 @@
 //! classic render pass, with rectangles in the depth buffer for opaque meshes.
 #![allow(dead_code, unreachable_pub, reason = "each test binary uses a part")]
 
-#[path = "../../tools/examples/host.rs"]
-mod host;
-
-use host::{Host, HostDesc};
+use crate::host::{Host, HostDesc};
 use rara::ash::{self, vk};
 use rara::gpu::{AdoptDesc, DepthImage, Device};
 

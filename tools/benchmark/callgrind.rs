@@ -1,4 +1,4 @@
-//! What callgrind writes. `tests/bench.rs` is its test.
+//! What callgrind writes. `tests/files/benchmark.rs` is its test.
 
 use std::collections::HashMap;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What a number of measurements comes to. `tests/bench.rs` is its test.
+//! What a number of measurements comes to. `tests/files/benchmark.rs` is its test.
 
 /// The least, the median and the 90th percentile of some values.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 //! It paints its targets with stripes of its own, so that whatever draws afterwards draws onto something.
 
 #[path = "validation.rs"]
-mod validation;
+pub(crate) mod validation;
 
 use rara::ash::{Device, Entry, Instance, vk};
 use rara::gpu::{self, AdoptDesc, Support};

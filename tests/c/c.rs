@@ -1,0 +1,13 @@
+//! `rara.h` and what stands behind it: that it is current, what a host does wrong and right, and a host in C++.
+
+#[path = "../common/canvas.rs"]
+mod canvas;
+mod compiler;
+#[path = "../../tools/examples/host.rs"]
+#[allow(dead_code, reason = "its frames are for the hosts that draw")]
+mod host;
+
+mod calls;
+mod cpp_host;
+mod frames;
+mod header;

@@ -1,0 +1,166 @@
+//! `tools/examples/host.cpp` is compiled, linked with the shared and with the static library, and run under validation:
+//! its splats are the headless picture, and a mesh among them hides some and not others.
+
+use std::env;
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::compiler::{compiler, root, run};
+use rara::glam::DVec3;
+use rara::scene::{Bounds, Kind, generate, save_ply};
+use rara::{
+    Camera, Clip, ClipOp, Gaussians, Headless, HeadlessDesc, PipelineCache, Plane, Raster,
+    Settings, ShFormat,
+};
+
+const SIZE: (u32, u32) = (480, 360);
+
+/// Where cargo has put the libraries: beside this test.
+fn libraries() -> PathBuf {
+    let test = env::current_exe().expect("a path");
+    test.parent().expect("a folder").to_owned()
+}
+
+fn compile(compiler: &str, name: &str, library: &[&str]) -> PathBuf {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let warnings = [
+        "-Wall",
+        "-Wextra",
+        "-Wno-missing-field-initializers",
+        "-Werror",
+    ];
+    let mut command = Command::new(compiler);
+    command
+        .args(["-std=c++17", "-O1"])
+        .args(warnings)
+        .arg("-I")
+        .arg(root().join("src/c"))
+        .arg(root().join("tools/examples/host.cpp"))
+        .arg("-o")
+        .arg(&out)
+        .args(library)
+        .args(["-lvulkan", "-lpthread", "-ldl", "-lm"]);
+    let says = "host.cpp does not compile (tools/setup test installs the Vulkan headers)";
+    run(&mut command, says);
+    out
+}
+
+/// What the host draws; it must not have anything to complain about.
+fn draw(host: &Path, device: &str, scene: &Path, what: &str) -> Vec<u8> {
+    let picture = host.with_extension(format!("{what}.ppm"));
+    let output = Command::new(host)
+        .args([scene, &picture])
+        .arg(what)
+        .env("RARA_VALIDATION", "1")
+        .env("RARA_DEVICE", device)
+        .env(
+            "VK_LAYER_ENABLES",
+            "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT",
+        )
+        .output()
+        .expect("the host starts");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.is_empty(), "{what}: {said}");
+    let told = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        told.contains(" visible, ") && told.contains(" cutoff "),
+        "{told}"
+    );
+    let bytes = std::fs::read(&picture).expect("a picture");
+    let header = format!("P6 {} {} 255\n", SIZE.0, SIZE.1);
+    let pixels = bytes.strip_prefix(header.as_bytes()).expect("a PPM");
+    assert_eq!(pixels.len(), 3 * (SIZE.0 * SIZE.1) as usize);
+    pixels.to_vec()
+}
+
+/// The same frame without a mesh, and the name of the device that has drawn it.
+fn truth(scene: &Gaussians) -> (Vec<u8>, String) {
+    let mut headless = Headless::new(&HeadlessDesc {
+        device: env::var("RARA_TEST_DEVICE").ok(),
+        validation: true,
+        bindings: None,
+        pipeline_cache: PipelineCache::Off,
+        ..HeadlessDesc::default()
+    })
+    .expect("a Vulkan device and the validation layer (tools/test installs both)");
+    let bounds = Bounds::of(scene);
+    let camera = Camera::frame(&bounds, -DVec3::Y, 50.0, SIZE).expect("a view");
+    let normal = DVec3::new(-0.28, 0.0, 0.96);
+    let centre = bounds.centre();
+    let clip = Clip {
+        planes: vec![Plane::new(normal, -normal.dot(centre)).expect("a normal")],
+        op: ClipOp::And,
+    };
+    let settings = Settings {
+        background: Some([0.0; 3]),
+        raster: Raster::Quad, // tiles want to be shown the host's depth
+        ..Settings::default()
+    };
+    headless.load_as(scene, ShFormat::Packed).expect("uploads");
+    headless.render(&camera, &clip, &settings).expect("renders");
+    let picture = headless.picture().expect("reads back");
+    let level = |v: &f32| (255.0 * v.clamp(0.0, 1.0)).round() as u8;
+    let pixels = picture
+        .pixels
+        .iter()
+        .flat_map(|pixel| pixel[..3].iter().map(level));
+    (pixels.collect(), headless.device().info().name.clone())
+}
+
+#[test]
+fn a_host_in_cpp_draws_splats_and_a_mesh() {
+    let Some(compiler) = compiler("rara.h was not tried from C++") else {
+        return;
+    };
+    let scene = generate(Kind::Layers, 20_000, 2);
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c_host.ply");
+    save_ply(&path, &scene).expect("a temporary file");
+    // As loaded: a file has opacities and scales in another form.
+    let scene = rara::scene::load(&path, &mut |_, _| ())
+        .expect("loads")
+        .gaussians;
+    let (truth, device) = truth(&scene);
+
+    let folder = libraries();
+    let shared = folder.join(format!("{DLL_PREFIX}rara_c{DLL_SUFFIX}"));
+    let archive = folder.join("librara_c.a");
+    let rpath = format!("-Wl,-rpath,{}", folder.display());
+    let shared = shared.to_str().expect("UTF-8");
+    let shared = compile(&compiler, "c_host_shared", &[shared, &rpath]);
+    let archive = archive.to_str().expect("UTF-8");
+    let archive = compile(&compiler, "c_host_static", &[archive]);
+
+    let splats = draw(&shared, &device, &path, "splats");
+    let differences = splats.iter().zip(&truth).map(|(a, b)| a.abs_diff(*b));
+    assert!(differences.max() <= Some(1), "the headless picture");
+    let same = splats.iter().zip(&truth).filter(|(a, b)| a == b).count();
+    eprintln!(
+        "{} of {} bytes are off by one",
+        splats.len() - same,
+        splats.len()
+    );
+
+    let mesh = draw(&shared, &device, &path, "mesh");
+    let both = draw(&shared, &device, &path, "both");
+    assert!(
+        draw(&archive, &device, &path, "both") == both,
+        "linked statically"
+    );
+    let (mut outside, mut hidden, mut before) = (0, 0, 0);
+    let pixels = mesh.chunks(3).zip(splats.chunks(3)).zip(both.chunks(3));
+    for ((mesh, splats), both) in pixels {
+        if mesh == [0; 3] {
+            assert_eq!(both, splats, "beside the mesh all splats are there");
+            outside += 1;
+        } else if mesh == both {
+            hidden += usize::from(splats != [0; 3]);
+        } else {
+            before += 1;
+        }
+    }
+    eprintln!(
+        "{outside} pixels beside the mesh, {hidden} hidden by it, {before} with splats before it"
+    );
+    assert!(hidden > 1000 && before > 200);
+}

@@ -1,0 +1,7 @@
+//! What needs no device: files of scenes and cameras, and the benchmark's arithmetic.
+
+mod benchmark;
+mod cameras;
+mod in_memory;
+mod ply;
+mod regressions;

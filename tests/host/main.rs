@@ -1,0 +1,16 @@
+//! What a host meets: the Vulkan layer, devices that are lent, targets, depth and viewports, frames in flight.
+
+#[path = "../common/canvas.rs"]
+mod canvas;
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../../tools/examples/host.rs"]
+mod host;
+
+mod classic_host;
+mod depth;
+mod embed;
+mod formats;
+mod gpu;
+mod streaming;
+mod views;

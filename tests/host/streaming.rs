@@ -1,0 +1,228 @@
+//! Scenes replaced and clips edited while frames are in flight: the host's own staging, no submission and no wait of ours,
+//! under the host's validation with synchronisation checks; the pictures are the headless ones.
+
+use crate::common;
+use crate::host::{FRAMES, Host, HostDesc};
+use rara::ash::vk;
+use rara::gpu::{Bindings, Buffer, BufferDesc, Device, Location};
+use rara::scene::{Kind, generate};
+use rara::{
+    Clip, ClipOp, Gaussians, Picture, Raster, Renderer, RendererDesc, SceneBuffers, Settings,
+    ShFormat, Staging,
+};
+
+const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+const VIEW: vk::Extent2D = vk::Extent2D {
+    width: 121,
+    height: 83,
+};
+const STAY: usize = 4;
+
+/// A host, and its device adopted.
+fn open(validation: bool) -> (Host, Device) {
+    let host = Host::new(&HostDesc {
+        device: std::env::var("RARA_TEST_DEVICE").ok().as_deref(),
+        validation,
+        optional: true,
+        extent: VIEW,
+        format: FORMAT,
+    });
+    let host = host.expect("a Vulkan device and the validation layer (tools/test installs both)");
+    // SAFETY: the handles belong together; all that is made of them is dropped before the host is closed.
+    let device = unsafe { Device::adopt(host.lend()) }.expect("the host's device will do");
+    (host, device)
+}
+
+/// The rest of a frame that is configured.
+fn record(host: &mut Host, renderer: &mut Renderer, cmd: vk::CommandBuffer, scene: &SceneBuffers) {
+    // SAFETY: `cmd` is recording outside rendering, and every test keeps scenes until their frames are done.
+    unsafe { renderer.prepare(cmd, scene).expect("prepares") };
+    host.begin_rendering(VIEW.into());
+    // SAFETY: `cmd` is inside rendering to a target of the renderer's format.
+    unsafe { renderer.draw(cmd, [0.0, 0.0]).expect("draws") };
+    host.submit().expect("submits");
+}
+
+/// Allocates, and records the copies into a frame's own commands.
+fn upload(device: &Device, cmd: vk::CommandBuffer, scene: &Gaussians) -> (SceneBuffers, Buffer) {
+    let desc = BufferDesc {
+        name: "host's staging",
+        size: SceneBuffers::staging_bytes(scene, ShFormat::Packed),
+        location: Location::Upload,
+    };
+    let mut memory = device.create_buffer(&desc).expect("a buffer");
+    let staging = Staging {
+        buffer: memory.handle(),
+        offset: 0,
+        bytes: memory.mapped_mut(),
+    };
+    // SAFETY: `cmd` is recording outside rendering; scene and memory are kept until the frame is done.
+    let uploaded =
+        unsafe { SceneBuffers::upload_with(device, cmd, staging, scene, ShFormat::Packed) };
+    (uploaded.expect("uploads"), memory)
+}
+
+/// A clip that moves with each frame and has other planes in each stay.
+fn clip(scene: &Gaussians, frame: usize) -> Clip {
+    let mut clip = common::clip(scene, 1 + frame / STAY, ClipOp::And);
+    let plane = clip.planes[0];
+    let offset = plane.offset() + 0.05 * (frame % STAY) as f64;
+    clip.planes[0] = rara::Plane::new(plane.normal(), offset).expect("a plane");
+    clip
+}
+
+fn check(what: &str, host: &Host, pixels: &[[f32; 4]], truth: &Picture) {
+    let expected = truth.pixels.iter().enumerate().map(|(i, pixel)| {
+        let below = host.backdrop(i as u32 % truth.width);
+        [0, 1, 2, 3].map(|c| (pixel[c] + (1.0 - pixel[3]) * below[c]).clamp(0.0, 1.0))
+    });
+    let differences = pixels.iter().zip(expected).flat_map(|(ours, theirs)| {
+        let c = |i: usize| (ours[i].clamp(0.0, 1.0) - theirs[i]).abs();
+        [c(0), c(1), c(2), c(3)]
+    });
+    let worst = differences.fold(0.0, f32::max);
+    assert!(worst < 1.0 / 255.0, "{what}: {worst}");
+}
+
+#[test]
+fn scenes_and_clips_change_while_frames_are_in_flight() {
+    let scenes = [
+        generate(Kind::General, 2_000, 5),
+        generate(Kind::Strands, 900, 6),
+        generate(Kind::Layers, 3_500, 7),
+    ];
+    let frames = scenes.len() * STAY;
+    let cameras: Vec<_> = scenes
+        .iter()
+        .map(|scene| common::views(scene, 1, (VIEW.width, VIEW.height))[0])
+        .collect();
+    let mut headless = common::headless();
+    let mut truth = Vec::new();
+    for frame in 0..frames {
+        let at = frame / STAY;
+        if frame % STAY == 0 {
+            let loaded = headless.load_as(&scenes[at], ShFormat::Packed);
+            loaded.expect("uploads");
+        }
+        headless.forget();
+        let drawn = headless.render(
+            &cameras[at],
+            &clip(&scenes[at], frame),
+            &Settings::default(),
+        );
+        drawn.expect("renders");
+        truth.push(headless.picture().expect("reads back"));
+    }
+
+    // A new scene's copies in the commands of the frame that first shows it, or in those of the frame before.
+    let ways = [
+        (Raster::Tiles, Bindings::Bound, true, 0),
+        (Raster::Tiles, Bindings::Address, false, 1),
+        (Raster::Quad, Bindings::Bound, false, 1),
+        (Raster::Quad, Bindings::Address, true, 0),
+    ];
+    for (raster, bindings, reuse, ahead) in ways {
+        let (mut host, device) = open(true);
+        let desc = RendererDesc {
+            bindings,
+            reuse,
+            frames_in_flight: FRAMES as u32,
+            ..RendererDesc::new(FORMAT)
+        };
+        let mut renderer = Renderer::new(&device, desc).expect("a renderer");
+        // The one that is shown, the one that comes, and what frames in flight may still use.
+        let mut current: Option<(SceneBuffers, Buffer)> = None;
+        let mut coming = None;
+        let mut retired: Vec<(usize, (SceneBuffers, Buffer))> = Vec::new();
+        for frame in 0..frames {
+            if let Some(pixels) = host.wait().expect("waits") {
+                let what = format!("{raster:?}, {bindings:?}, frame {}", frame - FRAMES);
+                check(&what, &host, &pixels, &truth[frame - FRAMES]);
+                retired.retain(|(last, _)| *last > frame - FRAMES);
+            }
+            let at = frame / STAY;
+            let cmd = host.begin().expect("begins");
+            let next = (frame + ahead) / STAY;
+            if ahead == 1 && next < scenes.len() && (frame + ahead) % STAY == 0 {
+                coming = Some(upload(&device, cmd, &scenes[next]));
+            }
+            if frame % STAY == 0 {
+                let fresh = coming.take().filter(|_| frame > 0 && ahead == 1);
+                let fresh = fresh.unwrap_or_else(|| upload(&device, cmd, &scenes[at]));
+                retired.extend(current.replace(fresh).map(|old| (frame - 1, old)));
+            }
+            let (scene, _) = current.as_ref().expect("uploaded");
+            let settings = Settings {
+                raster,
+                ..Settings::default()
+            };
+            let configured =
+                renderer.configure(scene, &cameras[at], &clip(&scenes[at], frame), &settings);
+            configured.expect("configures");
+            record(&mut host, &mut renderer, cmd, scene);
+        }
+        let pixels = host.wait_for_all().expect("waits");
+        check("the last frame", &host, &pixels, &truth[frames - 1]);
+        drop((renderer, current, coming, retired));
+        assert_eq!(device.device_bytes(), 0, "everything allocated was freed");
+        drop(device);
+        assert_eq!(host.close(), Vec::<String>::new());
+    }
+}
+
+/// Nothing leaks where the device is a host's, two frames are in flight and scenes come by its own staging memory.
+#[test]
+fn memory_stays_flat_over_a_thousand_frames_of_a_host() {
+    let scenes = [
+        generate(Kind::General, 300, 1),
+        generate(Kind::Strands, 700, 1),
+        generate(Kind::Layers, 500, 1),
+    ];
+    // Without the layer, whose books grow.
+    let (mut host, device) = open(false);
+    let desc = RendererDesc {
+        reuse: true,
+        frames_in_flight: FRAMES as u32,
+        ..RendererDesc::new(FORMAT)
+    };
+    let mut renderer = Renderer::new(&device, desc).expect("a renderer");
+    let mut current: Option<(SceneBuffers, Buffer)> = None;
+    let mut retired: Vec<(usize, (SceneBuffers, Buffer))> = Vec::new();
+    let stays = (1_000 / STAY) / scenes.len() * scenes.len();
+    let mut taken = vec![Vec::new(); scenes.len()];
+    for frame in 0..stays * STAY {
+        if host.wait().expect("waits").is_some() {
+            retired.retain(|(last, _)| *last > frame - FRAMES);
+        }
+        let (stay, at) = (frame / STAY, frame / STAY % scenes.len());
+        let cmd = host.begin().expect("begins");
+        if frame % STAY == 0 {
+            let fresh = upload(&device, cmd, &scenes[at]);
+            retired.extend(current.replace(fresh).map(|old| (frame - 1, old)));
+        }
+        let (scene, _) = current.as_ref().expect("uploaded");
+        let camera = common::views(&scenes[at], 1, (VIEW.width, VIEW.height))[0];
+        // Planes of one number, so that stays can be compared.
+        let mut cut = common::clip(&scenes[at], 2, ClipOp::And);
+        let moved = cut.planes[0].offset() + 0.05 * (frame % STAY) as f64;
+        let normal = cut.planes[0].normal();
+        cut.planes[0] = rara::Plane::new(normal, moved).expect("a plane");
+        let configured = renderer.configure(scene, &camera, &cut, &Settings::default());
+        configured.expect("configures");
+        record(&mut host, &mut renderer, cmd, scene);
+        if frame % STAY == STAY - 1 && stay >= 2 * scenes.len() {
+            taken[at].push(device.device_bytes());
+        }
+    }
+    host.wait_for_all().expect("waits");
+    for taken in &taken {
+        assert!(
+            taken.len() > 50 && taken.iter().all(|bytes| *bytes == taken[0]),
+            "{taken:?}"
+        );
+    }
+    drop((renderer, current, retired));
+    assert_eq!(device.device_bytes(), 0, "everything allocated was freed");
+    drop(device);
+    assert_eq!(host.close(), Vec::<String>::new());
+}

@@ -1,0 +1,407 @@
+//! Several views of a scene and several scenes in one picture: two eyes in one scope, views one after the other, scenes
+//! that stand turned, scaled and moved in a world.
+
+use std::cell::RefCell;
+
+use crate::canvas::{Canvas, CanvasDesc, with_host};
+use crate::common;
+use rara::ash::vk;
+use rara::glam::{DQuat, DVec3};
+use rara::gpu::Bindings;
+use rara::scene::{Kind, generate};
+use rara::{
+    Camera, Clip, ClipOp, DepthDesc, DepthMap, Gaussians, Picture, Placement, Plane, Raster,
+    Renderer, RendererDesc, SceneBuffers, Settings, ShFormat, reference,
+};
+
+const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+const SIZE: (u32, u32) = (121, 97);
+
+fn desc() -> RendererDesc {
+    RendererDesc {
+        bindings: Bindings::Bound,
+        ..RendererDesc::new(FLOATS)
+    }
+}
+
+fn raster(raster: Raster) -> Settings {
+    Settings {
+        raster,
+        ..Settings::default()
+    }
+}
+
+/// Two eyes before a scene.
+fn eyes(scene: &Gaussians) -> [Camera; 2] {
+    let middle = common::views(scene, 3, SIZE)[1];
+    let aside = middle.rotation.transpose() * DVec3::X * 0.1;
+    [-1.0, 1.0].map(|side| Camera {
+        eye: middle.eye + side * aside,
+        ..middle
+    })
+}
+
+fn headless(scene: &Gaussians, camera: &Camera, clip: &Clip) -> Picture {
+    let mut headless = common::headless();
+    headless.load(scene).expect("uploads");
+    let rendered = headless.render(camera, clip, &Settings::default());
+    rendered.expect("renders");
+    headless.picture().expect("reads back")
+}
+
+/// Largest difference of two pictures, of 255, but for a share of the pixels.
+fn apart(a: &[[f32; 4]], b: &[[f32; 4]], share: f64) -> f32 {
+    assert_eq!(a.len(), b.len());
+    let worst = |(a, b): (&[f32; 4], &[f32; 4])| {
+        let differences = a.iter().zip(b).map(|(a, b)| 255.0 * (a - b).abs());
+        differences.fold(0.0, f32::max)
+    };
+    let mut all: Vec<_> = a.iter().zip(b).map(worst).collect();
+    all.sort_by(f32::total_cmp);
+    all[((1.0 - share) * (all.len() - 1) as f64) as usize]
+}
+
+/// The part of a wide target that a view at column `left` has.
+fn part(pixels: &[[f32; 4]], left: u32) -> Vec<[f32; 4]> {
+    let rows = pixels.chunks_exact(2 * SIZE.0 as usize);
+    let part = |row: &[[f32; 4]]| row[left as usize..][..SIZE.0 as usize].to_vec();
+    rows.flat_map(part).collect()
+}
+
+/// Compiled pipelines that a renderer knows.
+fn pipelines(renderer: &Renderer) -> usize {
+    format!("{renderer:?}").matches("Pipeline {").count()
+}
+
+#[test]
+fn two_eyes_share_a_scope_and_compile_nothing_twice() {
+    let scene = generate(Kind::General, 3_000, 5);
+    let eyes = eyes(&scene);
+    let clip = common::clip(&scene, 1, ClipOp::And);
+    let truth = eyes.map(|eye| headless(&scene, &eye, &clip));
+    with_host(true, |host, device| {
+        let wide = CanvasDesc::new((2 * SIZE.0, SIZE.1), FLOATS);
+        let canvas = Canvas::new(&host.lend(), device, wide);
+        let buffers = SceneBuffers::upload(device, &scene, ShFormat::Float).expect("uploads");
+        for way in [Raster::Tiles, Raster::Quad] {
+            let first = Renderer::new(device, desc()).expect("a renderer");
+            let second = first.sharing(desc()).expect("another");
+            let renderers = [first, second].map(RefCell::new);
+            let mut compiled = Vec::new();
+            for (renderer, eye) in renderers.iter().zip(&eyes) {
+                let mut renderer = renderer.borrow_mut();
+                let configured = renderer.configure(&buffers, eye, &clip, &raster(way));
+                configured.expect("configures");
+                compiled.push(pipelines(&renderer));
+            }
+            assert!(compiled[0] > 5, "{compiled:?}");
+            assert_eq!(compiled[0], compiled[1], "the second found them all");
+            let before = |cmd| {
+                for renderer in &renderers {
+                    // SAFETY: recording outside a scope, and all is waited for.
+                    unsafe {
+                        renderer
+                            .borrow_mut()
+                            .prepare(cmd, &buffers)
+                            .expect("prepares")
+                    };
+                }
+            };
+            let inside = |cmd| {
+                for (renderer, left) in renderers.iter().zip([0, SIZE.0]) {
+                    canvas.viewport(cmd, left as i32, 0, SIZE);
+                    // SAFETY: inside the canvas's scope, after both were prepared.
+                    unsafe {
+                        renderer
+                            .borrow_mut()
+                            .draw(cmd, [left as f32, 0.0])
+                            .expect("draws")
+                    };
+                }
+            };
+            let [pixels, _] = canvas.draw(before, inside);
+            for (truth, left) in truth.iter().zip([0, SIZE.0]) {
+                let worst = apart(&part(&pixels, left), &truth.pixels, 0.0);
+                assert!(worst < 1.0, "{way:?}, from {left}: {worst}/255");
+            }
+        }
+    });
+}
+
+#[test]
+fn one_renderer_draws_views_one_after_the_other_in_one_command_buffer() {
+    let scene = generate(Kind::General, 3_000, 5);
+    let eyes = eyes(&scene);
+    let clip = common::clip(&scene, 2, ClipOp::And);
+    let truth = eyes.map(|eye| headless(&scene, &eye, &clip));
+    with_host(true, |host, device| {
+        let wide = CanvasDesc::new((2 * SIZE.0, SIZE.1), FLOATS);
+        let canvas = Canvas::new(&host.lend(), device, wide);
+        let buffers = SceneBuffers::upload(device, &scene, ShFormat::Float).expect("uploads");
+        for (way, bindings) in [
+            (Raster::Tiles, Bindings::Bound),
+            (Raster::Quad, Bindings::Bound),
+            (Raster::Tiles, Bindings::Address),
+        ] {
+            let two = RendererDesc {
+                frames_in_flight: 2,
+                bindings,
+                ..desc()
+            };
+            let renderer = RefCell::new(Renderer::new(device, two).expect("a renderer"));
+            let prepare = |cmd, eye: usize| {
+                let mut renderer = renderer.borrow_mut();
+                let configured = renderer.configure(&buffers, &eyes[eye], &clip, &raster(way));
+                configured.expect("configures");
+                // SAFETY: recording outside a scope, and all is waited for.
+                unsafe { renderer.prepare(cmd, &buffers).expect("prepares") };
+            };
+            let draw = |cmd, left: u32| {
+                canvas.viewport(cmd, left as i32, 0, SIZE);
+                // SAFETY: inside the canvas's scope, after the view was prepared.
+                unsafe {
+                    renderer
+                        .borrow_mut()
+                        .draw(cmd, [left as f32, 0.0])
+                        .expect("draws")
+                };
+            };
+            let [pixels, _] = canvas.draw_scopes(&mut [
+                (&mut |cmd| prepare(cmd, 0), &mut |cmd| draw(cmd, 0)),
+                (&mut |cmd| prepare(cmd, 1), &mut |cmd| draw(cmd, SIZE.0)),
+            ]);
+            for (truth, left) in truth.iter().zip([0, SIZE.0]) {
+                let worst = apart(&part(&pixels, left), &truth.pixels, 0.0);
+                assert!(worst < 1.0, "{way:?}, from {left}: {worst}/255");
+            }
+        }
+    });
+}
+
+/// A scene's Gaussians where a placement puts them, their spherical harmonics turned with them.
+fn placed(scene: &Gaussians, placement: &Placement) -> Gaussians {
+    let mut placed = scene.clone();
+    let turn = placement.rotation().as_quat();
+    for i in 0..scene.len() {
+        let position = scene.positions[i].as_dvec3();
+        placed.positions[i] = placement.to_world(position).as_vec3();
+        placed.scales[i] = scene.scales[i] * placement.scale() as f32;
+        placed.rotations[i] = (turn * scene.rotations[i]).normalize();
+    }
+    let matrix = harmonics_turned(placement.rotation());
+    let count = scene.sh_coefficients();
+    for (to, from) in placed
+        .sh
+        .chunks_exact_mut(3 * count)
+        .zip(scene.sh.chunks_exact(3 * count))
+    {
+        for (row, to) in to.chunks_exact_mut(3).enumerate() {
+            for (channel, to) in to.iter_mut().enumerate() {
+                let term =
+                    |column: usize| matrix[row][column] * f64::from(from[3 * column + channel]);
+                *to = (0..count).map(term).sum::<f64>() as f32;
+            }
+        }
+    }
+    placed
+}
+
+const BASIS: usize = 16;
+
+/// The matrix that turns coefficients of spherical harmonics: a turned function looked at from `d` is the function looked
+/// at from `d` turned back, whatever the basis. By least squares over many directions.
+fn harmonics_turned(rotation: DQuat) -> [[f64; BASIS]; BASIS] {
+    let basis = |d: DVec3| reference::harmonics::basis(reference::vec3(d.x, d.y, d.z));
+    // Columns: the normal equations' matrix, then their right sides.
+    let mut rows = [[0.0; 2 * BASIS]; BASIS];
+    for i in 0..400 {
+        let z = 1.0 - (f64::from(i) + 0.5) / 200.0;
+        let turn = f64::from(i) * 2.399_963;
+        let d = DVec3::new(turn.cos(), turn.sin(), 0.0) * (1.0 - z * z).sqrt() + DVec3::Z * z;
+        let (here, back) = (basis(d), basis(rotation.inverse() * d));
+        for (row, a) in rows.iter_mut().zip(here) {
+            for j in 0..BASIS {
+                row[j] += a * here[j];
+                row[BASIS + j] += a * back[j];
+            }
+        }
+    }
+    for i in 0..BASIS {
+        let pivot = rows[i][i];
+        rows[i] = rows[i].map(|v| v / pivot);
+        let row = rows[i];
+        for (j, other) in rows.iter_mut().enumerate() {
+            let factor = if i == j { 0.0 } else { other[i] };
+            other
+                .iter_mut()
+                .zip(row)
+                .for_each(|(a, b)| *a -= factor * b);
+        }
+    }
+    rows.map(|row| std::array::from_fn(|j| row[BASIS + j]))
+}
+
+/// Two placements whose scenes stand beside and behind each other.
+fn placements() -> [Placement; 2] {
+    let turn = |x, y, z, w| DQuat::from_xyzw(x, y, z, w).normalize();
+    [
+        Placement::new(DVec3::new(0.4, 0.2, 3.0), turn(0.3, -0.5, 0.2, 0.9), 1.7),
+        Placement::new(DVec3::new(-0.5, -0.1, 0.0), turn(-0.6, 0.1, 0.7, 0.3), 0.45),
+    ]
+    .map(|placement| placement.expect("finite numbers"))
+}
+
+fn world_camera() -> Camera {
+    let eye = DVec3::new(0.6, -0.8, -3.5);
+    let camera = Camera::look_at(eye, DVec3::new(0.0, 0.1, 1.0), DVec3::NEG_Y, 55.0, SIZE);
+    camera.expect("a view")
+}
+
+fn world_clip() -> Clip {
+    let plane = |normal: DVec3, offset| Plane::new(normal, offset).expect("a normal");
+    Clip {
+        planes: vec![
+            plane(DVec3::new(0.8, 0.3, 0.1), 0.1),
+            plane(DVec3::new(0.1, -0.2, 0.9), 0.4),
+        ],
+        op: ClipOp::Or,
+    }
+}
+
+/// Degree 0, where nothing but places turn, and degree 3, where colours do with them.
+#[test]
+fn a_placed_scene_is_the_picture_of_its_gaussians_placed() {
+    let (camera, clip) = (world_camera(), world_clip());
+    for degree in [0, 3] {
+        let mut scene = generate(Kind::General, 3_000, 7);
+        scene.set_sh_degree(degree);
+        // Colours that change with the direction by about a third.
+        let count = 3 * scene.sh_coefficients();
+        for (i, coefficient) in scene.sh.iter_mut().enumerate() {
+            if i % count >= 3 {
+                *coefficient = 0.3 * (i as f32 * 1.7).sin();
+            }
+        }
+        for placement in placements() {
+            let (inside, near) = (camera.in_scene(&placement), clip.in_scene(&placement));
+            let ours = headless(&scene, &inside, &near);
+            let theirs = headless(&placed(&scene, &placement), &camera, &clip);
+            assert!(ours.pixels.iter().any(|pixel| pixel[3] > 0.5));
+            let (worst, most) = (
+                apart(&ours.pixels, &theirs.pixels, 0.0),
+                apart(&ours.pixels, &theirs.pixels, 0.002),
+            );
+            eprintln!("degree {degree}: {worst}/255, {most}/255 for 99.8 %");
+            assert!(
+                most < 0.1 && worst < 4.0,
+                "degree {degree}: {worst}/255, {most}/255"
+            );
+        }
+    }
+}
+
+/// The farther scene first, each tested against the same mesh on reversed depth.
+#[test]
+fn two_placed_scenes_stand_in_one_picture_with_a_mesh() {
+    let scenes = [
+        generate(Kind::General, 3_000, 7),
+        generate(Kind::Layers, 3_000, 3),
+    ];
+    let (camera, clip, placements) = (world_camera(), world_clip(), placements());
+    let map = DepthMap::reversed(0.3, f64::INFINITY).expect("0 < near < far");
+    // Before the farther scene's middle, behind most of the nearer one.
+    let mesh_depth = (camera.rotation * (placements[0].position() - camera.eye)).z - 0.05;
+    let rect = vk::Rect2D {
+        offset: vk::Offset2D { x: 30, y: 20 },
+        extent: vk::Extent2D {
+            width: 50,
+            height: 45,
+        },
+    };
+    let mut truth = vec![[0.0_f32; 4]; (SIZE.0 * SIZE.1) as usize];
+    for (scene, placement) in scenes.iter().zip(&placements) {
+        let placed = placed_before(scene, placement, None);
+        let before = placed_before(scene, placement, Some((&camera, mesh_depth)));
+        let whole = headless(&placed, &camera, &clip);
+        let part = headless(&before, &camera, &clip);
+        for (i, below) in truth.iter_mut().enumerate() {
+            let (x, y) = (i as u32 % SIZE.0, i as u32 / SIZE.0);
+            let hidden = (30..80).contains(&x) && (20..65).contains(&y);
+            let pixel = if hidden { &part } else { &whole }.pixels[i];
+            *below = [0, 1, 2, 3].map(|c| pixel[c] + (1.0 - pixel[3]) * below[c]);
+        }
+    }
+    with_host(true, |host, device| {
+        let mut canvas = CanvasDesc::new(SIZE, FLOATS);
+        canvas.depth = vk::Format::D32_SFLOAT;
+        canvas.far = 0.0;
+        canvas.meshes = vec![(rect, map.at(mesh_depth) as f32)];
+        let canvas = Canvas::new(&host.lend(), device, canvas);
+        let buffers = scenes
+            .each_ref()
+            .map(|scene| SceneBuffers::upload(device, scene, ShFormat::Float).expect("uploads"));
+        for way in [Raster::Tiles, Raster::Quad] {
+            let desc = RendererDesc {
+                depth: Some(DepthDesc {
+                    readable: true,
+                    ..DepthDesc::new(vk::Format::D32_SFLOAT, map)
+                }),
+                ..desc()
+            };
+            let first = Renderer::new(device, desc).expect("a renderer");
+            let second = first.sharing(desc).expect("another");
+            let renderers = [first, second].map(RefCell::new);
+            for ((renderer, buffers), placement) in renderers.iter().zip(&buffers).zip(&placements)
+            {
+                let mut renderer = renderer.borrow_mut();
+                renderer.set_placement(*placement);
+                let configured = renderer.configure(buffers, &camera, &clip, &raster(way));
+                configured.expect("configures");
+            }
+            let depth = canvas.depth_image(0, 0);
+            let before = |cmd| {
+                for (renderer, buffers) in renderers.iter().zip(&buffers) {
+                    // SAFETY: recording outside a scope, the depth is ready to be copied, and all is waited for.
+                    unsafe {
+                        renderer
+                            .borrow_mut()
+                            .prepare_behind(cmd, buffers, &depth)
+                            .expect("prepares")
+                    };
+                }
+            };
+            let inside = |cmd| {
+                canvas.viewport(cmd, 0, 0, SIZE);
+                for renderer in &renderers {
+                    // SAFETY: inside the canvas's scope, after both were prepared.
+                    unsafe { renderer.borrow_mut().draw(cmd, [0.0; 2]).expect("draws") };
+                }
+            };
+            let [pixels, _] = canvas.draw(before, inside);
+            let (worst, most) = (apart(&pixels, &truth, 0.0), apart(&pixels, &truth, 0.002));
+            eprintln!("{way:?}: {worst}/255, {most}/255 for 99.8 %");
+            assert!(
+                most < 0.1 && worst < 4.0,
+                "{way:?}: {worst}/255, {most}/255"
+            );
+        }
+    });
+}
+
+/// A scene's Gaussians in the world; with a limit, those that are nearer than it.
+fn placed_before(
+    scene: &Gaussians,
+    placement: &Placement,
+    limit: Option<(&Camera, f64)>,
+) -> Gaussians {
+    let mut all = placed(scene, placement);
+    if let Some((camera, limit)) = limit {
+        for i in 0..all.len() {
+            let relative = all.positions[i].as_dvec3() - camera.eye;
+            if (camera.rotation * relative).z > limit {
+                all.opacities[i] = 0.0;
+            }
+        }
+    }
+    all
+}

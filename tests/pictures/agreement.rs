@@ -1,0 +1,116 @@
+//! The renderer against the f64 reference, picture by picture, on trained and generated scenes.
+
+use crate::common;
+use rara::gpu::Bindings;
+use rara::{ClipOp, Gaussians, Mode, Raster, Settings};
+
+/// Small enough for the suite, and not a multiple of any workgroup.
+const SIZE: (u32, u32) = (253, 190);
+const VIEWS: usize = 6;
+
+fn check_scenes(scenes: Vec<(String, Gaussians)>, mode: Mode, clips: &[(usize, ClipOp)]) {
+    check_scenes_by(Bindings::Bound, scenes, mode, clips);
+}
+
+fn check_scenes_by(
+    bindings: Bindings,
+    scenes: Vec<(String, Gaussians)>,
+    mode: Mode,
+    clips: &[(usize, ClipOp)],
+) {
+    let mut headless = common::headless_by(bindings);
+    for (name, scene) in scenes {
+        headless.load(&scene).expect("uploads");
+        for camera in common::views(&scene, VIEWS, common::scaled(SIZE)) {
+            for (planes, op) in clips {
+                let clip = common::clip(&scene, *planes, *op);
+                common::check(
+                    &mut headless,
+                    &name,
+                    &scene,
+                    &camera,
+                    &clip,
+                    &Settings {
+                        mode,
+                        ..Settings::default()
+                    },
+                );
+            }
+        }
+    }
+}
+
+const CLIPS: [(usize, ClipOp); 4] = [
+    (1, ClipOp::And),
+    (2, ClipOp::And),
+    (2, ClipOp::Or),
+    (6, ClipOp::And),
+];
+
+#[test]
+fn none_on_trained_scenes() {
+    check_scenes(common::trained_scenes(), Mode::None, &[(0, ClipOp::And)]);
+}
+
+#[test]
+fn hard_on_trained_scenes() {
+    check_scenes(common::trained_scenes(), Mode::Hard, &CLIPS[..2]);
+}
+
+#[test]
+fn rara_on_trained_scenes() {
+    check_scenes(common::trained_scenes(), Mode::Rara, &CLIPS);
+}
+
+#[test]
+fn exact_on_trained_scenes() {
+    check_scenes(common::trained_scenes(), Mode::Exact, &CLIPS);
+}
+
+#[test]
+fn every_mode_on_generated_scenes() {
+    for mode in [Mode::None, Mode::Hard, Mode::Rara, Mode::Exact] {
+        check_scenes(common::generated_scenes(5_000), mode, &CLIPS);
+    }
+}
+
+/// Tiles are what a CPU driver gets unasked, and draws are what a GPU gets.
+#[test]
+fn every_mode_by_quads() {
+    let mut headless = common::headless();
+    let mut scenes = common::generated_scenes(5_000);
+    scenes.extend(common::trained_scenes());
+    for (name, scene) in scenes {
+        headless.load(&scene).expect("uploads");
+        for camera in common::views(&scene, 2, common::scaled(SIZE)) {
+            for (mode, planes) in [
+                (Mode::None, 0),
+                (Mode::Hard, 1),
+                (Mode::Rara, 1),
+                (Mode::Exact, 1),
+                (Mode::Exact, 6),
+            ] {
+                let clip = common::clip(&scene, planes, ClipOp::And);
+                let settings = Settings {
+                    mode,
+                    raster: Raster::Quad,
+                    ..Settings::default()
+                };
+                common::check(&mut headless, &name, &scene, &camera, &clip, &settings);
+            }
+        }
+    }
+}
+
+/// How buffers are reached where nobody validates: the other tests bind them, for the synchronisation checks to see.
+#[test]
+fn every_mode_by_addresses() {
+    if common::bindings(common::headless().device()).len() == 1 {
+        eprintln!("SKIPPED: this device has addresses alone, the other tests use them");
+        return;
+    }
+    for mode in [Mode::None, Mode::Hard, Mode::Rara, Mode::Exact] {
+        let scenes = common::generated_scenes(5_000);
+        check_scenes_by(Bindings::Address, scenes, mode, &CLIPS);
+    }
+}

@@ -1,0 +1,302 @@
+//! The band in which a plane cuts: wide enough that nothing outside of it shows, and hardly wider than the splats.
+
+use crate::common;
+use glam::{DQuat, DVec3, Quat, Vec3};
+use proptest::prelude::*;
+use rara::reference::{self, Footprint, Side, View, classify, cutoff, splat};
+use rara::scene::{Kind, generate};
+use rara::{Camera, Clip, ClipOp, Decay, ExactForm, Gaussians, Mode, Plane, Settings, stress};
+
+/// What a pixel may change by when a splat outside the band is treated as cut: half of an 8-bit level.
+const HALF_LEVEL: f64 = 0.5 / 255.0;
+
+fn view_from(distance: f64) -> Camera {
+    let eye = DVec3::new(0.3, -0.2, -1.0).normalize() * distance;
+    Camera::look_at(eye, DVec3::ZERO, -DVec3::Y, 40.0, (256, 256)).expect("a plain view")
+}
+
+fn one(scales: Vec3, rotation: Quat, opacity: f32) -> Gaussians {
+    Gaussians {
+        positions: vec![Vec3::ZERO],
+        scales: vec![scales],
+        rotations: vec![rotation],
+        opacities: vec![opacity],
+        sh_degree: 0,
+        sh: vec![0.0; 3],
+    }
+}
+
+fn cut_by(normal: DVec3, offset: f64) -> Clip {
+    Clip {
+        planes: vec![Plane::new(normal, offset).expect("a finite normal")],
+        op: ClipOp::And,
+    }
+}
+
+/// Standard deviation of a Gaussian along a direction, from its definition.
+fn deviation(scene: &Gaussians, index: usize, normal: DVec3) -> f64 {
+    let local = scene.rotations[index].as_dquat().inverse() * normal;
+    (local * scene.scales[index].as_dvec3()).length()
+}
+
+fn direction() -> impl Strategy<Value = DVec3> {
+    (-1.0..1.0_f64, 0.0..std::f64::consts::TAU).prop_map(|(z, turn)| {
+        let r = (1.0 - z * z).sqrt();
+        DVec3::new(r * turn.cos(), r * turn.sin(), z)
+    })
+}
+
+fn rotation() -> impl Strategy<Value = Quat> {
+    (direction(), 0.0..std::f64::consts::TAU)
+        .prop_map(|(axis, angle)| DQuat::from_axis_angle(axis, angle).as_quat())
+}
+
+fn scales() -> impl Strategy<Value = Vec3> {
+    prop::array::uniform3(-4.0..-0.5_f32)
+        .prop_map(|logs| Vec3::from_array(logs.map(|l| 10.0_f32.powf(l))))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// The theorem behind the band: outside of it alpha times weight is within half a level of all or nothing, in every
+    /// pixel that counts. In the affine form, whose evidence is the footprint itself, and along true rays, where the band
+    /// is wider.
+    #[test]
+    fn outside_the_band_no_pixel_changes_by_half_a_level(
+        form in prop::sample::select(vec![ExactForm::Affine, ExactForm::Beam]), distance in 0.5..4.0_f64,
+        away in (-2.0..2.0_f64, -2.0..2.0_f64),
+        scales in scales(), rotation in rotation(), opacity in 0.005..1.0_f32, normal in direction(),
+        beyond in 1.0..1.3_f64, kept in prop::bool::ANY, aim in prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64), 40),
+    ) {
+        let scene = one(scales, rotation, opacity);
+        // Off the axis too, and beyond the picture's edge.
+        let from = view_from(distance);
+        let camera = Camera { eye: from.eye + distance / 4.0 * DVec3::new(away.0, away.1, 0.0), ..from };
+        let view = View::<f64>::new(&camera);
+        let Some(footprint) = Footprint::new(&scene, 0, &view) else { return Ok(()) };
+        let mut reach = (2.0 * (255.0 * f64::from(opacity)).ln()).sqrt();
+        if form == ExactForm::Beam {
+            let rest = 1.0 - reach * footprint.stretch * footprint.rows[2].length() / footprint.centre.z;
+            prop_assume!((rest - 0.05).abs() > 1e-6);
+            reach = if rest > 0.05 {
+                reach * footprint.stretch / rest
+            } else {
+                // Around the eye: by where the eye is in the splat.
+                let turned = scene.rotations[0].as_dquat().inverse() * camera.eye;
+                (turned / scene.scales[0].as_dvec3()).length() + 6.0
+            };
+        }
+        let sign = if kept { 1.0 } else { -1.0 };
+        let clip = cut_by(normal, sign * beyond * (1.0 + 1e-9) * reach * deviation(&scene, 0, normal));
+
+        let settings = Settings { form, ..Settings::default() };
+        let side = classify::side(&scene, 0, &footprint, &clip, &settings);
+        prop_assert_eq!(side, if kept { Side::Visible } else { Side::Invisible });
+
+        let traced = Settings { trace_all: true, ..settings };
+        let mut drawn = reference::project::project(&scene, 0, &view, &settings).expect("it is in view");
+        for (x, y) in aim {
+            let (dx, dy) = (x * footprint.half[0], y * footprint.half[1]);
+            drawn.cut = None;
+            let whole = splat::alpha(&drawn, dx, dy, Decay::Linear).unwrap_or(0.0);
+            drawn.cut = cutoff::cutoff(&scene, 0, &footprint, &view, &clip, &traced);
+            let cut = splat::alpha(&drawn, dx, dy, Decay::Linear).unwrap_or(0.0);
+            let change = (cut - if kept { whole } else { 0.0 }).abs();
+            prop_assert!(change <= HALF_LEVEL * (1.0 + 1e-9), "{} levels", 255.0 * change);
+        }
+    }
+}
+
+/// Needles a thousand times as long as thick, all in view, and a plane through their middle.
+fn needles(count: usize) -> (Gaussians, Camera, Plane) {
+    let mut scene = generate(Kind::Strands, count, 3);
+    for scale in &mut scene.scales {
+        *scale = Vec3::new(0.2, 2e-4, 2e-4);
+    }
+    let plane = Plane::new(DVec3::new(0.7, 0.5, -0.4), 0.01).expect("a finite normal");
+    (scene, view_from(12.0), plane)
+}
+
+/// Whether the plane separates points of the splat's contour at alpha = 1/255: by points of it, no formula.
+fn truly_cut(scene: &Gaussians, index: usize, plane: &Plane, sphere: &[DVec3]) -> bool {
+    let reach = (2.0 * (255.0 * f64::from(scene.opacities[index])).max(1.0).ln()).sqrt();
+    let (rotation, scales) = (
+        scene.rotations[index].as_dquat(),
+        scene.scales[index].as_dvec3(),
+    );
+    let centre = scene.positions[index].as_dvec3();
+    let kept = |u: &DVec3| plane.distance(centre + rotation * (*u * reach * scales)) >= 0.0;
+    let first = kept(&sphere[0]);
+    sphere.iter().any(|u| kept(u) != first)
+}
+
+#[test]
+fn hardly_more_needles_are_called_cut_than_are() {
+    let (scene, camera, plane) = needles(20_000);
+    // Points of the unit sphere by the golden angle, and the axes' ends.
+    let golden = |i: u32| {
+        let z = 1.0 - (2.0 * f64::from(i) + 1.0) / 400.0;
+        let turn = f64::from(i) * 2.399_963;
+        DVec3::new(
+            z,
+            (1.0 - z * z).sqrt() * turn.cos(),
+            (1.0 - z * z).sqrt() * turn.sin(),
+        )
+    };
+    let sphere: Vec<_> = (0..400).map(golden).chain([DVec3::X, -DVec3::X]).collect();
+    let all = 0..scene.len();
+    let truth = all
+        .clone()
+        .filter(|&i| truly_cut(&scene, i, &plane, &sphere))
+        .count();
+    let paper = all
+        .filter(|&i| {
+            plane.distance(scene.positions[i].as_dvec3()).abs()
+                < 3.0 * f64::from(scene.scales[i].max_element())
+        })
+        .count();
+
+    let mut headless = common::headless();
+    headless.load(&scene).expect("uploads");
+    let clip = Clip {
+        planes: vec![plane],
+        op: ClipOp::And,
+    };
+    let counts = headless
+        .render(&camera, &clip, &Settings::default())
+        .expect("renders")
+        .counts;
+    assert_eq!(counts.culled, 0, "all are in view");
+    let ours = counts.cutoff as usize;
+    println!("needles: {ours} called cut, {truth} are, the paper's band holds {paper}");
+    assert!(ours >= truth, "{ours} called cut, {truth} are");
+    assert!(
+        ours as f64 <= 1.05 * truth as f64,
+        "{ours} called cut, {truth} are"
+    );
+    assert!(
+        paper as f64 > 1.8 * ours as f64,
+        "the paper's band holds {paper}, ours {ours}"
+    );
+}
+
+#[test]
+fn the_renderer_counts_as_the_reference_in_every_stress_regime() {
+    let mut headless = common::headless();
+    for regime in stress::regimes() {
+        for case in (regime.cases)() {
+            headless.load(&case.scene).expect("uploads");
+            let settings = Settings::default();
+            let ours = headless
+                .render(&case.camera, &case.clip, &settings)
+                .expect("renders")
+                .counts;
+            let view = View::<f64>::new(&case.camera);
+            let sides = classify::classify(&case.scene, &view, &case.clip, &settings);
+            let truth = reference::counts(&sides);
+            let pairs = [
+                (ours.visible, truth.visible),
+                (ours.cutoff, truth.cutoff),
+                (ours.invisible, truth.invisible),
+                (ours.culled, truth.culled),
+            ];
+            // A splat whose contour touches a pixel centre or a plane to seven digits may be counted on either side.
+            let apart = pairs.iter().map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+            assert!(apart <= 1, "{}: {ours:?} against {truth:?}", regime.name);
+        }
+    }
+}
+
+#[test]
+fn on_the_device_nothing_shows_of_a_splat_outside_the_band() {
+    let mut headless = common::headless();
+    let camera = view_from(4.0);
+    let mut worst = 0.0_f64;
+    for (index, opacity) in [0.01_f32, 0.1, 0.5, 0.9, 0.99, 1.0].into_iter().enumerate() {
+        let turn =
+            Quat::from_rotation_y(0.7 + index as f32) * Quat::from_rotation_x(1.1 * index as f32);
+        for scales in [
+            Vec3::new(0.3, 0.003, 0.003),
+            Vec3::new(0.2, 0.2, 0.001),
+            Vec3::splat(0.1),
+        ] {
+            let scene = one(scales, turn, opacity);
+            headless.load(&scene).expect("uploads");
+            for normal in [DVec3::X, DVec3::new(0.3, 0.5, -0.8).normalize()] {
+                let reach = (2.0 * (255.0 * f64::from(opacity)).ln()).sqrt();
+                let edge = 1.001 * reach * deviation(&scene, 0, normal);
+                // Along true rays the band is wider by what perspective adds at most, a share of the depth of 4.
+                let wider = edge / (1.0 - 1.001 * reach * f64::from(scales.max_element()) / 4.0);
+                for (form, offset, side) in [
+                    (ExactForm::Affine, edge, 1.0),
+                    (ExactForm::Affine, -edge, 0.0),
+                    (ExactForm::Auto, wider, 1.0),
+                    (ExactForm::Auto, -wider, 0.0),
+                ] {
+                    let clip = cut_by(normal, offset);
+                    let settings = Settings {
+                        decay: Some(Decay::Linear),
+                        form,
+                        ..Settings::default()
+                    };
+                    let mut draw = |settings: &Settings| {
+                        let counts = headless
+                            .render(&camera, &clip, settings)
+                            .expect("renders")
+                            .counts;
+                        (counts, headless.picture().expect("reads back"))
+                    };
+                    let (counts, whole) = draw(&settings);
+                    assert_eq!(f64::from(counts.visible), side, "{counts:?}");
+                    assert_eq!(counts.cutoff, 0);
+                    let (_, traced) = draw(&Settings {
+                        trace_all: true,
+                        ..settings
+                    });
+                    for (a, b) in whole.pixels.iter().zip(&traced.pixels) {
+                        worst = worst.max(f64::from((a[3] - b[3]).abs()));
+                    }
+                }
+            }
+        }
+    }
+    println!("largest change on the device: {:.3} levels", 255.0 * worst);
+    assert!(worst <= HALF_LEVEL + 2e-5, "{:.3} levels", 255.0 * worst);
+    assert!(
+        worst > 0.8 * HALF_LEVEL,
+        "the bound is tight: {:.3} levels",
+        255.0 * worst
+    );
+}
+
+#[test]
+fn fewer_are_cut_than_by_the_paper_in_trained_scenes() {
+    for (name, scene) in common::trained_scenes() {
+        let bands = classify::bands(&scene);
+        println!(
+            "{name}: {:.2} % cut, {:.2} % in the paper's band",
+            100.0 * bands.ours,
+            100.0 * bands.paper
+        );
+        assert!(bands.ours < bands.paper, "{name}: {bands:?}");
+    }
+}
+
+#[test]
+fn modes_without_a_band_call_nothing_cut() {
+    let (scene, camera, plane) = needles(500);
+    let view = View::<f64>::new(&camera);
+    let clip = Clip {
+        planes: vec![plane],
+        op: ClipOp::And,
+    };
+    for mode in [Mode::None, Mode::Hard] {
+        let settings = Settings {
+            mode,
+            ..Settings::default()
+        };
+        let sides = classify::classify(&scene, &view, &clip, &settings);
+        assert!(!sides.contains(&Side::Cutoff));
+    }
+}

@@ -1,0 +1,264 @@
+//! The same picture by every path and in every run.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::common;
+use glam::DVec3;
+use rara::measure::compare;
+use rara::scene::{Kind, generate};
+use rara::{Camera, Clip, ClipOp, Headless, Mode, Picture, Plane, Raster, Settings, reference};
+
+const SIZE: (u32, u32) = (300, 220);
+
+/// Largest difference of a channel, in units of 1/255.
+fn apart(a: &Picture, b: &Picture) -> f32 {
+    let pairs = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
+    255.0 * pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+#[test]
+fn quads_meshes_and_tiles_give_one_picture() {
+    let mut headless = common::headless();
+    let mut others = vec![Raster::Tiles];
+    if headless.device().support().mesh_shader {
+        others.push(Raster::Mesh);
+    } else {
+        eprintln!("SKIPPED: this device has no mesh shaders; tiles and quads are compared");
+    }
+    let scenes = common::generated_scenes(4_000).into_iter();
+    for (name, scene) in scenes.chain(common::trained_scenes()) {
+        headless.load(&scene).expect("uploads");
+        let camera = common::views(&scene, 3, common::scaled(SIZE))[1];
+        for (mode, planes, op) in [
+            (Mode::None, 0, ClipOp::And),
+            (Mode::Hard, 1, ClipOp::And),
+            (Mode::Rara, 2, ClipOp::And),
+            (Mode::Exact, 1, ClipOp::And),
+            (Mode::Exact, 2, ClipOp::And),
+            (Mode::Exact, 2, ClipOp::Or),
+        ] {
+            let clip = common::clip(&scene, planes, op);
+            let mut picture = |raster| {
+                let settings = Settings {
+                    mode,
+                    raster,
+                    ..Settings::default()
+                };
+                headless.render(&camera, &clip, &settings).expect("renders");
+                headless.picture().expect("reads back")
+            };
+            let quads = picture(Raster::Quad);
+            for raster in &others {
+                let worst = apart(&picture(*raster), &quads);
+                assert!(
+                    worst <= 1.0,
+                    "{name}, {mode:?}, {planes} planes {op:?}: {raster:?} and quads differ by {worst:.3}/255"
+                );
+            }
+        }
+    }
+}
+
+/// How a scene was rasterised that was to be so in one way, and its picture.
+fn drawn(
+    headless: &mut Headless,
+    (camera, clip, raster): (&Camera, &Clip, Raster),
+) -> (&'static str, Picture) {
+    let settings = Settings {
+        raster,
+        ..Settings::default()
+    };
+    let stats = headless.render(camera, clip, &settings).expect("renders");
+    (stats.raster.path, headless.picture().expect("reads back"))
+}
+
+/// More rows of tiles than one scan takes at once, and a picture beyond what can be bound; then a small one in the same
+/// buffers.
+#[test]
+fn a_wide_picture_of_many_tiles_is_that_of_quads() {
+    let scene = generate(Kind::General, 2_000, 9);
+    // In full more tiles than a row of workgroups has; on slow drivers as many rows of them, but shorter ones.
+    let width = (4101.0 * common::scale()) as u32;
+    let camera = common::views(&scene, 1, (width, 2057))[0];
+    let clip = common::clip(&scene, 1, ClipOp::And);
+    let mut headless = common::headless();
+    headless.load(&scene).expect("uploads");
+    let (path, tiles) = drawn(&mut headless, (&camera, &clip, Raster::Tiles));
+    assert_eq!(path, "tiles");
+    let (_, quads) = drawn(&mut headless, (&camera, &clip, Raster::Quad));
+    let worst = apart(&tiles, &quads);
+    assert!(worst <= 1.0, "tiles and quads differ by {worst:.3}/255");
+    let camera = common::views(&scene, 1, SIZE)[0];
+    let mut fresh = common::headless();
+    fresh.load(&scene).expect("uploads");
+    let [after, alone] = [&mut headless, &mut fresh]
+        .map(|headless| drawn(headless, (&camera, &clip, Raster::Tiles)).1);
+    let worst = apart(&after, &alone);
+    // The old ones are reached by address, which is compiled by itself, and rounds by itself.
+    assert!(worst <= 1e-3, "{worst}/255 from a picture in new buffers");
+}
+
+/// A pixel, a row, a column, and less than a tile.
+#[test]
+fn pictures_of_a_row_or_a_column_of_tiles_are_those_of_quads() {
+    let scene = generate(Kind::General, 2_000, 9);
+    let clip = common::clip(&scene, 1, ClipOp::And);
+    let mut headless = common::headless();
+    headless.load(&scene).expect("uploads");
+    for size in [(1, 1), (1, 300), (300, 1), (5, 3), (2100, 7), (7, 2100)] {
+        let camera = common::views(&scene, 1, size)[0];
+        let [tiles, quads] = [Raster::Tiles, Raster::Quad]
+            .map(|raster| drawn(&mut headless, (&camera, &clip, raster)).1);
+        let worst = apart(&tiles, &quads);
+        assert!(worst <= 1.0, "{size:?}: {worst:.3}/255");
+    }
+}
+
+/// A frame must not see what an earlier one left: not even the order of its splats when only one is left to sort.
+#[test]
+fn a_lone_survivor_after_many_is_itself() {
+    let mut scene = generate(Kind::Layers, 8, 3);
+    for index in 0..scene.len() {
+        scene.positions[index] = glam::Vec3::new(index as f32 * 0.2 - 0.7, 0.0, 0.0);
+    }
+    let camera = common::views(&scene, 1, SIZE)[0];
+    let mut reused = common::headless();
+    reused.load(&scene).expect("uploads");
+    for end in 0..8 {
+        // Keeps the centres from `end` to `end`: each of the eight alone.
+        let x = f64::from(scene.positions[end].x);
+        let keep = |sign: f64| Plane::new(sign * DVec3::X, 0.1 - sign * x).expect("a proper plane");
+        let clip = Clip {
+            planes: vec![keep(1.0), keep(-1.0)],
+            op: ClipOp::And,
+        };
+        let hard = Settings {
+            mode: Mode::Hard,
+            ..Settings::default()
+        };
+        reused
+            .render(&camera, &Clip::default(), &hard)
+            .expect("renders");
+        let stats = reused.render(&camera, &clip, &hard).expect("renders");
+        assert_eq!(stats.counts.drawn, 1);
+        let after_many = reused.picture().expect("reads back");
+        let mut fresh = common::headless();
+        fresh.load(&scene).expect("uploads");
+        fresh.render(&camera, &clip, &hard).expect("renders");
+        assert!(
+            fresh.picture().expect("reads back") == after_many,
+            "number {end}"
+        );
+    }
+}
+
+#[test]
+fn every_run_with_any_number_of_driver_threads_gives_the_same_bytes() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let scene = folder.join("determinism.ply");
+    let rara = || Command::new(env!("CARGO_BIN_EXE_rara"));
+    let status = rara()
+        .args(["generate", "general", "-n", "20000", "--seed", "7", "-o"])
+        .arg(&scene)
+        .status();
+    assert!(status.expect("rara runs").success());
+    let render = |run: usize, threads: &str| {
+        let out = folder.join(format!("determinism-{run}.exr"));
+        let mut command = rara();
+        command
+            .env("LP_NUM_THREADS", threads)
+            .arg("render")
+            .arg(&scene)
+            .arg("-o")
+            .arg(&out);
+        command.args([
+            "--size",
+            "300x220",
+            "--clip",
+            "plane:1,0.2,0.1,0",
+            "--validation",
+        ]);
+        if let Ok(device) = std::env::var("RARA_TEST_DEVICE") {
+            command.args(["--device", &device]);
+        }
+        assert!(command.status().expect("rara runs").success());
+        std::fs::read(out).expect("the picture was written")
+    };
+    let first = render(0, "1");
+    for (run, threads) in ["1", "2", "3", "8"].iter().enumerate() {
+        assert!(
+            render(run + 1, threads) == first,
+            "{threads} driver threads give other bytes than one"
+        );
+    }
+}
+
+#[test]
+fn splats_of_one_depth_keep_the_order_of_the_file() {
+    let mut headless = common::headless();
+    let mut scene = generate(Kind::General, 6_000, 3);
+    let eye = DVec3::new(0.0, 0.0, -5.0);
+    let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, SIZE).expect("a view");
+    // One layer; a few, longer than a run of the sort; many, several of them in a run; pairs and threes.
+    for layers in [1, 7, 200, 2500] {
+        for (index, position) in scene.positions.iter_mut().enumerate() {
+            position.z = (index * 37 % layers) as f32 / 4096.0;
+        }
+        headless.load(&scene).expect("uploads");
+        for raster in [Raster::Tiles, Raster::Quad] {
+            let settings = Settings {
+                raster,
+                ..Settings::default()
+            };
+            let rendered = headless.render(&camera, &Clip::default(), &settings);
+            rendered.expect("renders");
+            let ours = headless.picture().expect("reads back");
+            let truth = reference::render::<f64>(&scene, &camera, &Clip::default(), &settings);
+            let psnr = compare(&ours, &truth.picture).expect("one size").psnr;
+            assert!(psnr > 90.0, "{layers} layers, {raster:?}: {psnr} dB");
+        }
+    }
+}
+
+/// The sort leaves out passes in which all keys agree; how many there would be follows from the box around all centres.
+#[test]
+fn a_scene_with_a_wider_box_is_sorted_alike() {
+    let mut headless = common::headless();
+    let eye = DVec3::new(0.0, 0.0, -5.0);
+    let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, SIZE).expect("a view");
+    let scene = generate(Kind::General, 3_000, 4);
+    // From one depth for all to depths that differ in three digits of a key and, around the eye, in four.
+    for (thickness, shift) in [
+        (0.0, 0.0),
+        (1e-6, 0.0),
+        (1e-3, 0.0),
+        (1.0, 0.0),
+        (4.0, -4.7),
+    ] {
+        let mut thin = scene.clone();
+        for position in &mut thin.positions {
+            position.z = position.z * thickness + shift;
+        }
+        // One that nobody sees, beside the others, behind them and a long way behind.
+        for raster in [Raster::Tiles, Raster::Quad] {
+            let settings = Settings {
+                raster,
+                ..Settings::default()
+            };
+            let pictures = [0.0, 0.05, 5.0, 1e6].map(|behind| {
+                thin.opacities[7] = 0.0;
+                thin.positions[7] = glam::Vec3::new(0.0, 0.0, behind + shift);
+                headless.load(&thin).expect("uploads");
+                let rendered = headless.render(&camera, &Clip::default(), &settings);
+                assert!(rendered.expect("renders").counts.drawn > 1000);
+                headless.picture().expect("reads back")
+            });
+            let first = &pictures[0];
+            assert!(
+                pictures.iter().all(|picture| picture == first),
+                "{thickness}, {raster:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Compiled pipelines are kept from one run to the next, and what is damaged there does no harm.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::common;
+use rara::gpu::Bindings;
+use rara::scene::{Kind, generate};
+use rara::{Clip, Headless, HeadlessDesc, Picture, PipelineCache, Settings};
+
+/// A picture drawn with a cache in `folder`, and the bytes of compiled pipelines that were there.
+fn run(pipeline_cache: PipelineCache) -> (Picture, u64) {
+    let scene = generate(Kind::General, 500, 1);
+    let camera = common::views(&scene, 1, (64, 48))[0];
+    let desc = HeadlessDesc {
+        device: std::env::var("RARA_TEST_DEVICE").ok(),
+        validation: true,
+        bindings: Some(Bindings::Address),
+        pipeline_cache,
+        ..HeadlessDesc::default()
+    };
+    let mut headless = Headless::new(&desc).expect("a Vulkan device");
+    headless.load(&scene).expect("uploads");
+    headless
+        .render(&camera, &Clip::default(), &Settings::default())
+        .expect("renders");
+    let picture = headless.picture().expect("reads back");
+    (picture, headless.kept_pipeline_bytes())
+}
+
+/// An empty place for a folder.
+fn place(test: &str) -> PathBuf {
+    let place = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("pipelines")
+        .join(test);
+    let _ = fs::remove_dir_all(&place);
+    place
+}
+
+fn only_file(folder: &Path) -> PathBuf {
+    let files = fs::read_dir(folder).expect("the folder was made");
+    let files: Vec<_> = files.map(|file| file.expect("listed").path()).collect();
+    assert_eq!(files.len(), 1, "{files:?}");
+    files[0].clone()
+}
+
+#[test]
+fn what_was_compiled_is_there_in_the_next_run() {
+    let folder = place("kept");
+    let (first, before) = run(PipelineCache::Folder(folder.clone()));
+    assert_eq!(before, 0);
+    let written = only_file(&folder);
+    let (second, kept) = run(PipelineCache::Folder(folder.clone()));
+    assert!(kept >= 32, "{kept} bytes are no cache");
+    assert!(first == second, "what was kept draws another picture");
+    assert_eq!(only_file(&folder), written);
+    let (third, none) = run(PipelineCache::Off);
+    assert_eq!(none, 0);
+    assert!(first == third);
+}
+
+#[test]
+fn a_damaged_cache_is_ignored_and_replaced() {
+    let folder = place("damaged");
+    let (whole, _) = run(PipelineCache::Folder(folder.clone()));
+    let file = only_file(&folder);
+    let good = fs::read(&file).expect("was written");
+    let flipped = |at: usize| {
+        let mut bytes = good.clone();
+        bytes[at] ^= 1;
+        bytes
+    };
+    for bad in [
+        Vec::new(),
+        b"nonsense".to_vec(),
+        good[..good.len() - 1].to_vec(),
+        flipped(0),
+        flipped(20),
+        flipped(good.len() - 1),
+    ] {
+        fs::write(&file, &bad).expect("the file is ours");
+        let (picture, used) = run(PipelineCache::Folder(folder.clone()));
+        assert_eq!(used, 0, "{} bad bytes were used", bad.len());
+        assert!(picture == whole);
+        let (_, used) = run(PipelineCache::Folder(folder.clone()));
+        assert!(used > 0, "the bad file was not replaced");
+    }
+}
+
+#[test]
+fn where_nothing_can_be_kept_the_picture_is_the_same() {
+    let folder = place("refused");
+    fs::create_dir_all(folder.parent().expect("below the target folder")).expect("can be made");
+    fs::write(&folder, "a file where a folder should be").expect("writes");
+    let (picture, used) = run(PipelineCache::Folder(folder));
+    assert_eq!(used, 0);
+    assert!(picture == run(PipelineCache::Off).0);
+}

@@ -1,0 +1,79 @@
+//! Every choice of precision draws without a validation message and within its stated error.
+
+use crate::common;
+use rara::measure::compare;
+use rara::{
+    ClipOp, Gaussians, Headless, PhiForm, Precision, Preset, Settings, ShFormat, TargetFormat,
+    reference,
+};
+
+const SIZE: (u32, u32) = (203, 150);
+
+/// Each choice by itself, and the presets.
+fn choices() -> Vec<(&'static str, Precision)> {
+    let base = Precision::default();
+    let target = |target| Precision { target, ..base };
+    let sh = |sh| Precision { sh, ..base };
+    let phi = |phi| Precision { phi, ..base };
+    let key_bits = |key_bits| Precision { key_bits, ..base };
+    let beam_switch = |beam_switch| Precision {
+        beam_switch,
+        ..base
+    };
+    let transmittance_min = |transmittance_min| Precision {
+        transmittance_min,
+        ..base
+    };
+    vec![
+        ("exact", Preset::Exact.precision()),
+        ("balanced", Preset::Balanced.precision()),
+        ("fast", Preset::Fast.precision()),
+        ("target 16f", target(TargetFormat::Half)),
+        ("target 8", target(TargetFormat::Unorm8)),
+        ("sh 32f", sh(ShFormat::Float)),
+        ("sh 16f", sh(ShFormat::Half)),
+        ("sh 8", sh(ShFormat::Byte)),
+        ("phi cubic", phi(PhiForm::Cubic)),
+        ("phi logistic", phi(PhiForm::Logistic)),
+        ("keys 24", key_bits(24)),
+        ("keys 16", key_bits(16)),
+        ("switch 0.05", beam_switch(0.05)),
+        ("saturated 1e-4", transmittance_min(1e-4)),
+        ("saturated 0", transmittance_min(0.0)),
+    ]
+}
+
+/// The least PSNR of a scene in a precision, over a few views.
+fn psnr(headless: &mut Headless, scene: &Gaussians, precision: Precision) -> f64 {
+    headless.load_as(scene, precision.sh).expect("uploads");
+    let clip = common::clip(scene, 1, ClipOp::And);
+    let settings = Settings {
+        precision,
+        ..Settings::default()
+    };
+    let view = |camera| {
+        headless.render(&camera, &clip, &settings).expect("renders");
+        let picture = headless.picture().expect("reads back");
+        let twin = reference::render::<f64>(scene, &camera, &clip, &settings).picture;
+        compare(&picture, &twin).expect("the same size").psnr
+    };
+    let views = common::views(scene, 3, SIZE).into_iter();
+    views.map(view).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn every_precision_is_within_its_stated_error() {
+    let mut headless = common::headless();
+    let scenes = common::trained_scenes();
+    for (name, scene) in common::generated_scenes(3_000).into_iter().chain(scenes) {
+        for (what, precision) in choices() {
+            let psnr = psnr(&mut headless, &scene, precision);
+            println!("{name}, {what}: {psnr:.1} dB");
+            let least = precision.least_psnr();
+            assert!(
+                psnr >= least,
+                "{name}, {what}: {psnr:.1} dB, less than {least}"
+            );
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! What a frame takes over from the one before is what it would have computed: the same bytes, and what it says that it
+//! skipped.
+
+use crate::common;
+use glam::DVec3;
+use rara::gpu::Bindings;
+use rara::{
+    Camera, Clip, ClipOp, Decay, ExactForm, Gaussians, Headless, Mode, Plane, Raster, Settings,
+    TargetFormat,
+};
+
+const SIZE: (u32, u32) = (250, 190);
+/// All that comes before the pixels.
+const VIEW: [&str; 5] = ["blocks", "classify", "compact", "project", "sort"];
+
+/// Two renderers with one scene: one keeps what it can, the other forgets.
+struct Pair {
+    keeps: Headless,
+    forgets: Headless,
+}
+
+impl Pair {
+    fn new(scene: &Gaussians) -> Self {
+        Self::by(Bindings::Bound, scene)
+    }
+
+    fn by(bindings: Bindings, scene: &Gaussians) -> Self {
+        let [keeps, forgets] = [(); 2].map(|()| {
+            let mut headless = common::headless_by(bindings);
+            headless.load(scene).expect("uploads");
+            headless
+        });
+        Self { keeps, forgets }
+    }
+
+    /// Draws a frame with both and compares all they tell; returns what the one skipped.
+    fn draw(&mut self, camera: &Camera, clip: &Clip, settings: &Settings) -> Vec<&'static str> {
+        self.forgets.forget();
+        let picture = |headless: &mut Headless| {
+            let stats = headless.render(camera, clip, settings).expect("renders");
+            (headless.picture().expect("reads back"), stats)
+        };
+        let (kept, stats) = picture(&mut self.keeps);
+        let (whole, truth) = picture(&mut self.forgets);
+        assert_eq!(stats.counts, truth.counts, "{settings:?} {clip:?}");
+        let apart = kept
+            .pixels
+            .iter()
+            .zip(&whole.pixels)
+            .enumerate()
+            .filter(|(_, (a, b))| a.map(f32::to_bits) != b.map(f32::to_bits));
+        let apart: Vec<_> = apart.collect();
+        assert!(
+            apart.is_empty(),
+            "{} pixels differ, the first {:?}: {settings:?} {clip:?}, skipped {:?}",
+            apart.len(),
+            apart[0],
+            stats.skipped
+        );
+        for pass in &stats.passes {
+            assert!(!stats.skipped.contains(&pass.name), "{}", pass.name);
+        }
+        stats.skipped
+    }
+}
+
+/// A plane across the scene at a share of its extent.
+fn plane(scene: &Gaussians, normal: DVec3, share: f64) -> Plane {
+    let (low, high) = rara::scene::extent_along(scene, normal);
+    Plane::new(normal, -(low + share * (high - low))).expect("a finite normal")
+}
+
+fn cut(scene: &Gaussians, normal: DVec3, share: f64) -> Clip {
+    Clip {
+        planes: vec![plane(scene, normal, share)],
+        op: ClipOp::And,
+    }
+}
+
+fn rasters(headless: &Headless) -> Vec<Raster> {
+    let mut all = vec![Raster::Tiles, Raster::Quad];
+    if headless.device().support().mesh_shader {
+        all.push(Raster::Mesh);
+    }
+    all
+}
+
+#[test]
+fn a_sweep_computes_the_view_once() {
+    let scenes = common::generated_scenes(6_000).into_iter();
+    for (index, (name, scene)) in scenes.chain(common::trained_scenes()).enumerate() {
+        let mut pair = Pair::new(&scene);
+        let camera = common::views(&scene, 3, common::scaled(SIZE))[1];
+        let normal = DVec3::new(0.8, 0.3, 0.5).normalize();
+        let (rasters, modes) = (rasters(&pair.keeps), [Mode::Exact, Mode::Rara, Mode::Hard]);
+        // The trained ones are large, and some drivers slow: a part of the combinations each.
+        let all = index < 3 && common::scale() == 1.0;
+        for (r, raster) in rasters.into_iter().enumerate() {
+            for (m, mode) in modes.into_iter().enumerate() {
+                if !all && (r, m) != (index % 2, index % 3) && (r, m) != (0, 0) {
+                    continue;
+                }
+                let settings = Settings {
+                    mode,
+                    raster,
+                    ..Settings::default()
+                };
+                pair.keeps.forget();
+                for (step, share) in [0.1, 0.35, 0.4, 0.9, 0.5, 0.45].into_iter().enumerate() {
+                    let skipped = pair.draw(&camera, &cut(&scene, normal, share), &settings);
+                    let is_kept = VIEW.iter().all(|stage| skipped.contains(stage));
+                    assert_eq!(is_kept, step > 1, "{name}, step {step}: {skipped:?}");
+                    assert_eq!(skipped.contains(&"clip"), step > 0, "{skipped:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_frame_like_the_one_before_does_nothing_and_another_background_only_draws() {
+    let (_, scene) = common::generated_scenes(3_000).remove(0);
+    let mut pair = Pair::new(&scene);
+    let camera = common::views(&scene, 3, SIZE)[0];
+    let clip = cut(&scene, DVec3::X, 0.5);
+    for raster in rasters(&pair.keeps) {
+        let settings = Settings {
+            raster,
+            ..Settings::default()
+        };
+        assert!(!pair.draw(&camera, &clip, &settings).contains(&"project"));
+        let skipped = pair.draw(&camera, &clip, &settings);
+        assert!(VIEW.iter().all(|stage| skipped.contains(stage)));
+        assert!(skipped.contains(&"splat") && skipped.contains(&"cutoff"));
+        let red = Settings {
+            background: Some([0.5, 0.0, 0.0]),
+            ..settings
+        };
+        let skipped = pair.draw(&camera, &clip, &red);
+        assert!(VIEW.iter().all(|stage| skipped.contains(stage)));
+        assert!(!skipped.contains(&"splat"));
+    }
+}
+
+#[test]
+fn a_camera_that_moves_keeps_the_clips_classes() {
+    let (_, scene) = common::generated_scenes(6_000).remove(0);
+    let mut pair = Pair::new(&scene);
+    let clip = cut(&scene, DVec3::new(0.5, 0.1, -0.7).normalize(), 0.4);
+    for (step, camera) in common::views(&scene, 4, SIZE).iter().enumerate() {
+        let skipped = pair.draw(camera, &clip, &Settings::default());
+        assert_eq!(skipped.contains(&"clip"), step > 0, "{skipped:?}");
+        assert!(!skipped.contains(&"project"));
+    }
+}
+
+/// A frame of a walk: each differs from the one before in one thing, mostly in where the clip is.
+#[derive(Clone)]
+struct Frame {
+    settings: Settings,
+    size: (u32, u32),
+    camera: usize,
+    share: f64,
+    planes: usize,
+    op: ClipOp,
+}
+
+impl Frame {
+    fn step(&mut self, rasters: &[Raster], pick: &mut impl FnMut(usize) -> usize) {
+        let settings = &mut self.settings;
+        match pick(24) {
+            0 => self.camera = pick(3),
+            1 => self.size = common::scaled([SIZE, (97, 301), (8, 8)][pick(3)]),
+            2 => settings.mode = [Mode::None, Mode::Hard, Mode::Rara, Mode::Exact][pick(4)],
+            3 => settings.raster = rasters[pick(rasters.len())],
+            4 => settings.decay = [None, Some(Decay::Linear), Some(Decay::Depth)][pick(3)],
+            5 => {
+                settings.form = [ExactForm::Auto, ExactForm::Beam, ExactForm::Affine][pick(3)];
+            }
+            6 => {
+                let formats = [
+                    TargetFormat::Unorm8,
+                    TargetFormat::Half,
+                    TargetFormat::Float,
+                ];
+                settings.precision.target = formats[pick(3)];
+            }
+            7 => self.planes = 1 + pick(2),
+            8 => settings.trace_all = pick(3) == 0,
+            9 => self.op = [ClipOp::And, ClipOp::Or][pick(2)],
+            _ => self.share = [0.2, 0.4, 0.5, 0.55, 0.8][pick(5)],
+        }
+    }
+}
+
+#[test]
+fn whatever_changes_the_bytes_are_those_of_a_whole_frame() {
+    let mut state = 11_u64;
+    let mut pick = |count: usize| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 33) as usize % count
+    };
+    let normals = [DVec3::X, DVec3::new(0.1, 0.9, -0.3).normalize()];
+    let steps = (80.0 * common::scale()) as usize;
+    for (_, scene) in common::generated_scenes(4_000) {
+        for bindings in common::bindings(common::headless().device()) {
+            let mut pair = Pair::by(bindings, &scene);
+            let rasters = rasters(&pair.keeps);
+            let mut frame = Frame {
+                settings: Settings::default(),
+                size: common::scaled(SIZE),
+                camera: 0,
+                share: 0.5,
+                planes: 1,
+                op: ClipOp::And,
+            };
+            let mut sweeps = 0;
+            for _ in 0..steps {
+                frame.step(&rasters, &mut pick);
+                let mut cameras = common::views(&scene, 3, frame.size);
+                // Inside the scene, where splats are large, beside the picture and behind the eye.
+                cameras[2].eye = rara::scene::Bounds::of(&scene).centre();
+                let clip = Clip {
+                    planes: normals[..frame.planes]
+                        .iter()
+                        .map(|&normal| plane(&scene, normal, frame.share))
+                        .collect(),
+                    op: frame.op,
+                };
+                let skipped = pair.draw(&cameras[frame.camera], &clip, &frame.settings);
+                sweeps += usize::from(skipped.contains(&"project") && !skipped.contains(&"splat"));
+            }
+            assert!(
+                sweeps > steps / 6,
+                "only {sweeps} frames were those of a sweep"
+            );
+        }
+    }
+}
+
+#[test]
+fn another_scene_is_not_taken_for_the_one_before() {
+    let mut scenes = common::generated_scenes(2_000).into_iter();
+    let (first, second) = (
+        scenes.next().expect("some").1,
+        scenes.next().expect("two").1,
+    );
+    let mut pair = Pair::new(&first);
+    let camera = common::views(&first, 3, SIZE)[0];
+    let settings = Settings::default();
+    pair.draw(&camera, &Clip::default(), &settings);
+    for headless in [&mut pair.keeps, &mut pair.forgets] {
+        headless.load(&second).expect("uploads");
+    }
+    let skipped = pair.draw(&camera, &Clip::default(), &settings);
+    assert!(!skipped.contains(&"project"));
+}

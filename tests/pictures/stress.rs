@@ -1,0 +1,44 @@
+//! The stress suite under validation: what `rara stress --validation` prints, held to its targets.
+
+use crate::common;
+use rara::stress::{self, Regime, Row};
+
+/// Runs every regime, so that a failure shows the whole table.
+fn check(regimes: Vec<Regime>) {
+    let mut headless = common::headless();
+    let run = |regime: &Regime| -> Row {
+        // On slow drivers each fourth case: of five, the first and the last, which is the crowd.
+        let every = if common::scale() < 1.0 { 4 } else { 1 };
+        let row = stress::run(&mut headless, regime, every);
+        row.unwrap_or_else(|error| panic!("{}: {error}", regime.name))
+    };
+    let rows: Vec<_> = regimes.iter().map(run).collect();
+    let failed: Vec<_> = rows.iter().filter(|row| !row.ok).collect();
+    assert!(failed.is_empty(), "{failed:#?}");
+    // A regime that draws nothing would pass; one is meant to.
+    let empty = rows
+        .iter()
+        .filter(|row| row.splats == 0)
+        .map(|row| row.regime);
+    assert!(empty.eq(regimes.iter().filter(|r| r.empty).map(|r| r.name)));
+}
+
+#[test]
+fn shapes() {
+    check(stress::shapes());
+}
+
+#[test]
+fn places() {
+    check(stress::places());
+}
+
+#[test]
+fn planes() {
+    check(stress::planes());
+}
+
+#[test]
+fn frames_and_files() {
+    check([stress::frames(), stress::files()].concat());
+}

@@ -3,6 +3,8 @@
 #[path = "../common/canvas.rs"]
 mod canvas;
 mod compiler;
+#[path = "../common/folder.rs"]
+mod folder;
 #[path = "../../tools/examples/host.rs"]
 #[allow(dead_code, reason = "its frames are for the hosts that draw")]
 mod host;

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::compiler::{compiler, root, run};
+use crate::folder::Folder;
 use rara::glam::DVec3;
 use rara::scene::{Bounds, Kind, generate, save_ply};
 use rara::{
@@ -22,8 +23,7 @@ fn libraries() -> PathBuf {
     test.parent().expect("a folder").to_owned()
 }
 
-fn compile(compiler: &str, name: &str, library: &[&str]) -> PathBuf {
-    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+fn compile(compiler: &str, out: PathBuf, library: &[&str]) -> PathBuf {
     let warnings = [
         "-Wall",
         "-Wextra",
@@ -114,7 +114,8 @@ fn a_host_in_cpp_draws_splats_and_a_mesh() {
         return;
     };
     let scene = generate(Kind::Layers, 20_000, 2);
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c_host.ply");
+    let own = Folder::new("c-host");
+    let path = own.join("scene.ply");
     save_ply(&path, &scene).expect("a temporary file");
     // As loaded: a file has opacities and scales in another form.
     let scene = rara::scene::load(&path, &mut |_, _| ())
@@ -127,9 +128,9 @@ fn a_host_in_cpp_draws_splats_and_a_mesh() {
     let archive = folder.join("librara_c.a");
     let rpath = format!("-Wl,-rpath,{}", folder.display());
     let shared = shared.to_str().expect("UTF-8");
-    let shared = compile(&compiler, "c_host_shared", &[shared, &rpath]);
+    let shared = compile(&compiler, own.join("shared"), &[shared, &rpath]);
     let archive = archive.to_str().expect("UTF-8");
-    let archive = compile(&compiler, "c_host_static", &[archive]);
+    let archive = compile(&compiler, own.join("static"), &[archive]);
 
     let splats = draw(&shared, &device, &path, "splats");
     let differences = splats.iter().zip(&truth).map(|(a, b)| a.abs_diff(*b));

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::ptr::null_mut;
 
 use crate::canvas::{Canvas, CanvasDesc, with_host};
+use crate::folder::Folder;
 use rara::ash::{Entry, vk};
 use rara::glam::{DQuat, DVec3};
 use rara::gpu::{AdoptDesc, Bindings, BufferDesc, Device, Location};
@@ -327,8 +328,9 @@ unsafe fn upload_with(
 }
 
 /// Draws with a scene of this many Gaussians, on the example host's device by both interfaces.
-fn with_both(name: &str, count: usize, test: impl FnOnce(&Gaussians, &AdoptDesc, &Device, &Ours)) {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+fn with_both(count: usize, test: impl FnOnce(&Gaussians, &AdoptDesc, &Device, &Ours)) {
+    let folder = Folder::new(&format!("c-frames-{count}"));
+    let path = folder.join("scene.ply");
     save_ply(&path, &generate(Kind::General, count, 5)).expect("a temporary file");
     // As loaded: a file has opacities and scales in another form.
     let scene = load(&path, &mut |_, _| ()).expect("loads").gaussians;
@@ -348,7 +350,7 @@ fn with_both(name: &str, count: usize, test: impl FnOnce(&Gaussians, &AdoptDesc,
 
 #[test]
 fn what_is_behind_a_mesh_and_expected_depths_are_the_same_bytes() {
-    with_both("c_frames.ply", 3_000, |scene, lent, device, ours| {
+    with_both(3_000, |scene, lent, device, ours| {
         let turn = DQuat::from_xyzw(0.1, -0.2, 0.05, 0.9);
         let placed = Placement::new(DVec3::new(0.3, -0.1, 0.2), turn, 0.8).expect("possible");
         let mut seen: Vec<Pixels> = Vec::new();
@@ -380,7 +382,7 @@ fn what_is_behind_a_mesh_and_expected_depths_are_the_same_bytes() {
 
 #[test]
 fn a_scene_by_the_hosts_own_staging_memory_is_the_same_bytes() {
-    with_both("c_staging.ply", 2_900, |scene, lent, device, ours| {
+    with_both(2_900, |scene, lent, device, ours| {
         let world = World::new(scene, Raster::Tiles);
         let canvas = world.canvas(lent, device);
         let truth = world.drawn(device, &canvas);

@@ -1,10 +1,11 @@
 //! Headers are what they are made of: `rara.h` what cbindgen makes of `src/c` (`RARA_WRITE_HEADER=1` writes it anew), and
 //! `mesh.h` of the C++ host what glslang makes of its shaders. C and the guide's C++ compile with the former.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use crate::compiler::{compiler, root, run};
+use crate::folder::Folder;
 
 #[test]
 fn the_header_is_current() {
@@ -46,17 +47,14 @@ fn the_header_is_current() {
 
 /// Warnings count; the compiler makes nothing.
 fn assert_compiles(compiler: &str, flags: &[&str], name: &str, code: &str) {
-    let path = temporary(name);
+    let own = Folder::new("c-header");
+    let path = own.join(name);
     std::fs::write(&path, code).expect("a temporary file");
     let mut command = Command::new(compiler);
     command.args(["-fsyntax-only", "-Wall", "-Wextra", "-Werror"]);
     command.args(flags).arg("-I").arg(root().join("src/c"));
     let says = format!("{name} does not compile (tools/setup test installs the Vulkan headers)");
     run(command.arg(&path), &says);
-}
-
-fn temporary(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
 
 #[test]
@@ -92,9 +90,10 @@ fn the_cpp_hosts_mesh_is_what_its_shaders_compile_to() {
         return;
     }
     let folder = root().join("tools/examples");
+    let own = Folder::new("c-mesh");
     let mut made = String::new();
     for stage in ["vert", "frag"] {
-        let out = temporary(&format!("mesh.{stage}.h"));
+        let out = own.join(format!("mesh.{stage}.h"));
         let mut command = Command::new(glslang);
         command.args(["-V", "--quiet", "--target-env", "vulkan1.2", "--vn"]);
         command.arg(format!("mesh_{stage}"));

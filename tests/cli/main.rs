@@ -1,13 +1,15 @@
 //! The `rara` command as people and scripts meet it: texts, exit statuses, documents. Nothing here is timed.
 
+#[path = "../common/folder.rs"]
+mod folder;
 mod profile;
 mod refusals;
 mod work;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use folder::Folder;
 use serde_json::Value;
 
 /// Runs `rara` with these arguments.
@@ -38,14 +40,8 @@ fn line(folder: &Path, words: &str) -> Output {
     rara(words)
 }
 
-/// A folder of the test's own, empty.
-fn folder(test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
-        .join("cli")
-        .join(test);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("the target folder is writable");
-    folder
+fn folder(test: &str) -> Folder {
+    Folder::new(&format!("cli-{test}"))
 }
 
 fn stderr(output: &Output) -> String {

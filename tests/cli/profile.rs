@@ -186,7 +186,7 @@ fn a_machine_without_a_driver_is_told_what_to_install() {
     scene(&here);
     let output = Command::new(env!("CARGO_BIN_EXE_rara"))
         .args(["render", "scene.ply", "--json"])
-        .current_dir(&here)
+        .current_dir(&*here)
         .env("VK_DRIVER_FILES", here.join("none.json"))
         .env("VK_ICD_FILENAMES", here.join("none.json"))
         .output()

@@ -166,7 +166,7 @@ fn a_wrong_command_line_is_status_2_and_one_line() {
         refused(&line(&here, words), 2, what);
     }
     assert_eq!(
-        fs::read_dir(&here).unwrap().count(),
+        fs::read_dir(&*here).unwrap().count(),
         0,
         "nothing was written"
     );

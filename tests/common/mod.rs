@@ -1,6 +1,8 @@
 //! What the tests share: scenes, views around them, planes through them, and a renderer under validation.
 #![allow(dead_code, unreachable_pub, reason = "each test binary uses a part")]
 
+pub mod folder;
+
 use std::path::PathBuf;
 
 use glam::DVec3;

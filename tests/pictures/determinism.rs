@@ -1,9 +1,9 @@
 //! The same picture by every path and in every run.
 
-use std::path::Path;
 use std::process::Command;
 
 use crate::common;
+use crate::common::folder::Folder;
 use glam::DVec3;
 use rara::measure::compare;
 use rara::scene::{Kind, generate};
@@ -155,7 +155,7 @@ fn a_lone_survivor_after_many_is_itself() {
 
 #[test]
 fn every_run_with_any_number_of_driver_threads_gives_the_same_bytes() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let folder = Folder::new("determinism");
     let scene = folder.join("determinism.ply");
     let rara = || Command::new(env!("CARGO_BIN_EXE_rara"));
     let status = rara()

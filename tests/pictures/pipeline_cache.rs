@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::common;
+use crate::common::folder::Folder;
 use rara::gpu::Bindings;
 use rara::scene::{Kind, generate};
 use rara::{Clip, Headless, HeadlessDesc, Picture, PipelineCache, Settings};
@@ -28,15 +29,6 @@ fn run(pipeline_cache: PipelineCache) -> (Picture, u64) {
     (picture, headless.kept_pipeline_bytes())
 }
 
-/// An empty place for a folder.
-fn place(test: &str) -> PathBuf {
-    let place = Path::new(env!("CARGO_TARGET_TMPDIR"))
-        .join("pipelines")
-        .join(test);
-    let _ = fs::remove_dir_all(&place);
-    place
-}
-
 fn only_file(folder: &Path) -> PathBuf {
     let files = fs::read_dir(folder).expect("the folder was made");
     let files: Vec<_> = files.map(|file| file.expect("listed").path()).collect();
@@ -46,7 +38,8 @@ fn only_file(folder: &Path) -> PathBuf {
 
 #[test]
 fn what_was_compiled_is_there_in_the_next_run() {
-    let folder = place("kept");
+    let place = Folder::new("pipelines-kept");
+    let folder = place.join("made by the first run");
     let (first, before) = run(PipelineCache::Folder(folder.clone()));
     assert_eq!(before, 0);
     let written = only_file(&folder);
@@ -61,7 +54,8 @@ fn what_was_compiled_is_there_in_the_next_run() {
 
 #[test]
 fn a_damaged_cache_is_ignored_and_replaced() {
-    let folder = place("damaged");
+    let place = Folder::new("pipelines-damaged");
+    let folder = place.join("cache");
     let (whole, _) = run(PipelineCache::Folder(folder.clone()));
     let file = only_file(&folder);
     let good = fs::read(&file).expect("was written");
@@ -89,8 +83,8 @@ fn a_damaged_cache_is_ignored_and_replaced() {
 
 #[test]
 fn where_nothing_can_be_kept_the_picture_is_the_same() {
-    let folder = place("refused");
-    fs::create_dir_all(folder.parent().expect("below the target folder")).expect("can be made");
+    let place = Folder::new("pipelines-refused");
+    let folder = place.join("cache");
     fs::write(&folder, "a file where a folder should be").expect("writes");
     let (picture, used) = run(PipelineCache::Folder(folder));
     assert_eq!(used, 0);

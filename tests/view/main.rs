@@ -3,11 +3,13 @@
 #![cfg(all(feature = "view", unix))]
 
 mod display;
+#[path = "../common/folder.rs"]
+mod folder;
 mod x11;
 
 use std::fs;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -15,6 +17,7 @@ use std::time::{Duration, Instant};
 use rara::Picture;
 
 use display::{Display, Owned};
+use folder::Folder;
 
 const BACKGROUND: [f32; 3] = [0.2, 0.4, 0.6];
 
@@ -155,12 +158,8 @@ fn stderr(output: &Output) -> String {
 }
 
 /// A folder of the test's own with a small scene in it.
-fn folder(test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
-        .join("view")
-        .join(test);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("the target folder is writable");
+fn folder(test: &str) -> Folder {
+    let folder = Folder::new(&format!("view-{test}"));
     done(rara(
         &folder,
         "generate general -n 3000 --seed 3 -o @/scene.ply",

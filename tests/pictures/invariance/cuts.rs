@@ -1,12 +1,11 @@
 //! How a cut is put and how a scene is stored.
 
-use std::path::Path;
-
 use proptest::prelude::*;
 use rara::scene::{load, save_ply};
 use rara::{Clip, ClipOp, Gaussians, Mode, Plane, Settings};
 
 use super::{check, draw, operations, planes, scenes, views};
+use crate::common::folder::Folder;
 
 #[test]
 fn cutting_twice_is_cutting_once_and_the_order_of_planes_is_nobodys_business() {
@@ -40,7 +39,7 @@ fn cutting_twice_is_cutting_once_and_the_order_of_planes_is_nobodys_business() {
 
 #[test]
 fn splitting_a_scene_into_files_gives_the_same_bytes() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let folder = Folder::new("invariance-cuts");
     let cuts = [any::<prop::sample::Index>(), any::<prop::sample::Index>()];
     check(
         (scenes(), views(), planes(1..3), cuts),

@@ -1,0 +1,36 @@
+//! A folder of a test's own.
+#![allow(dead_code, unreachable_pub, reason = "each test binary uses a part")]
+
+use std::ops::Deref;
+use std::path::{Path, PathBuf};
+use std::{fs, process};
+
+/// An empty folder that nothing else writes to, not even a second run of the same test. It goes with the value, unless
+/// the test fails: then what is in it shows why.
+pub struct Folder(PathBuf);
+
+impl Folder {
+    pub fn new(test: &str) -> Self {
+        let name = format!("{test}-{}", process::id());
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        let _ = fs::remove_dir_all(&path); // of a process that had this number before
+        fs::create_dir_all(&path).expect("the target folder is writable");
+        Self(path)
+    }
+}
+
+impl Deref for Folder {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        if !std::thread::panicking() {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+}

@@ -28,6 +28,7 @@ pub(crate) mod tiles;
 mod view;
 mod weight;
 mod work;
+mod working;
 
 pub(crate) use buffers::Buffers;
 pub(crate) use frame::record;

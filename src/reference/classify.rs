@@ -7,12 +7,13 @@
 
 use glam::DVec3;
 
+use super::clip::{self, Verdict, clip_side};
 use super::cutoff::is_beam;
 use super::footprint::Footprint;
 use super::real::{Real, Vec3, vec3};
 use super::view::View;
 use crate::limits::{ALPHA_MIN_INVERSE, BEYOND_EYE, WIDENING_REST};
-use crate::{Clip, ClipOp, Gaussians, Mode, Plane, Settings};
+use crate::{Clip, Gaussians, Mode, Plane, Settings};
 
 /// The paper's three classes, and what is not seen anyway.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +49,7 @@ impl<T: Real> UnitPlane<T> {
     }
 
     /// Whether the Gaussian is farther from the plane than `reach` standard deviations, and on which side.
-    fn verdict(&self, reach: T) -> Verdict {
+    pub(super) fn verdict(&self, reach: T) -> Verdict {
         let half = reach * self.normal.length();
         if self.offset >= half {
             Verdict::Keep
@@ -58,14 +59,6 @@ impl<T: Real> UnitPlane<T> {
             Verdict::Cut
         }
     }
-}
-
-/// What one plane does to one Gaussian.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Verdict {
-    Keep,
-    Cut,
-    Drop,
 }
 
 /// The class of every Gaussian of the scene.
@@ -91,41 +84,8 @@ pub fn side<T: Real>(
     clip: &Clip,
     settings: &Settings,
 ) -> Side {
-    if clip.planes.is_empty() || settings.mode == Mode::None {
-        return Side::Visible;
-    }
-    let planes = clip
-        .planes
-        .iter()
-        .map(|plane| UnitPlane::new(scene, index, &footprint.axes, plane));
-    if settings.mode == Mode::Hard {
-        let mut kept = planes.map(|plane| plane.offset >= T::zero());
-        let visible = match clip.op {
-            ClipOp::And => kept.all(|k| k),
-            ClipOp::Or => kept.any(|k| k),
-        };
-        return if visible {
-            Side::Visible
-        } else {
-            Side::Invisible
-        };
-    }
-    if settings.trace_all {
-        return Side::Cutoff;
-    }
     let reach = band(scene, index, footprint, settings);
-    let verdicts: Vec<_> = planes.map(|plane| plane.verdict(reach)).collect();
-    let (all, any) = (
-        |v| verdicts.iter().all(|&x| x == v),
-        |v| verdicts.contains(&v),
-    );
-    match clip.op {
-        ClipOp::And if any(Verdict::Drop) => Side::Invisible,
-        ClipOp::And if all(Verdict::Keep) => Side::Visible,
-        ClipOp::Or if any(Verdict::Keep) => Side::Visible,
-        ClipOp::Or if all(Verdict::Drop) => Side::Invisible,
-        _ => Side::Cutoff,
-    }
+    clip_side(scene, index, &footprint.axes, reach, clip, settings)
 }
 
 /// The planes that cut a Gaussian of class [`Side::Cutoff`], in the clip's order.
@@ -146,19 +106,17 @@ pub fn cutting<T: Real>(
         .collect()
 }
 
-/// Half width of the band in which a plane cuts, standard deviations. The paper's chord can be longer than the
-/// visible footprint; a splat is then cut as soon as its traced ellipsoid is.
+/// Half width of the band in which a plane cuts, standard deviations, with what perspective adds to it.
 fn band<T: Real>(
     scene: &Gaussians,
     index: usize,
     footprint: &Footprint<T>,
     settings: &Settings,
 ) -> T {
-    match settings.mode {
-        Mode::Rara => footprint.reach.max(T::of(f64::from(settings.sigma))),
-        Mode::Exact if is_beam(scene, index, footprint, settings) => beam_band(footprint),
-        Mode::None | Mode::Hard | Mode::Exact => footprint.reach,
+    if settings.mode == Mode::Exact && is_beam(scene, index, footprint, settings) {
+        return beam_band(footprint);
     }
+    clip::band(footprint.reach, settings)
 }
 
 /// Half width of the band of a splat whose weight follows each pixel's true ray. The footprint is linear: a pixel at

@@ -5,8 +5,10 @@
 
 #![forbid(unsafe_code)]
 
+pub mod bin;
 pub mod chord;
 pub mod classify;
+pub mod clip;
 pub mod compact;
 pub mod cutoff;
 pub mod depth;

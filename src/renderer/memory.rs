@@ -54,6 +54,11 @@ impl WorkingMemory {
         buffers.ensure_sweep(device)
     }
 
+    /// The buffers, if a frame has been configured.
+    pub(super) fn allocated(&self) -> Option<&Buffers> {
+        self.buffers.as_ref()
+    }
+
     /// The buffers of a frame that is configured.
     pub(super) fn buffers(&self) -> &Buffers {
         self.buffers.as_ref().expect("replace() allocates them")

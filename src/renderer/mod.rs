@@ -23,6 +23,7 @@ mod shared;
 mod stats;
 #[cfg(test)]
 mod tests;
+mod working;
 
 pub(crate) use configure::FrameRequest;
 pub use desc::{DepthDesc, ExpectedDepthDesc, RendererDesc};

@@ -139,6 +139,8 @@ impl Headless {
     }
 }
 
+mod working;
+
 #[cfg(test)]
 mod faults;
 #[cfg(test)]

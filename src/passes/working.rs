@@ -1,0 +1,61 @@
+//! The working memory by its names, for tests that hold what a stage has written to the stage's twin.
+
+use crate::gpu::Buffer;
+use crate::passes::buffers::Buffers;
+use crate::passes::scene_buffers::SceneBuffers;
+
+impl Buffers {
+    /// The buffer of a debug name.
+    pub(crate) fn named(&self, name: &str) -> Option<&Buffer> {
+        self.all().into_iter().find(|buffer| buffer.name() == name)
+    }
+
+    fn all(&self) -> Vec<&Buffer> {
+        let mut all = vec![
+            &self.frame,
+            &self.masks,
+            &self.clip_sides,
+            &self.clip_masks,
+            &self.block_sides,
+            &self.block_list,
+            &self.block_counts,
+            &self.block_offsets,
+            &self.counts,
+            &self.survivors,
+            &self.cutoffs,
+            &self.cuts,
+            &self.splats,
+            &self.histogram,
+            &self.tile_masks,
+        ];
+        all.extend(self.keys.iter().chain(&self.order));
+        if let Some(t) = &self.tiles {
+            all.extend([
+                &t.span_counts,
+                &t.row_begins,
+                &t.span_splats,
+                &t.span_columns,
+                &t.column_counts,
+                &t.begins,
+                &t.splats,
+                &t.picture,
+                &t.occluders,
+            ]);
+        }
+        if let Some(d) = &self.depth {
+            all.extend([&d.depths, &d.draw]);
+        }
+        if let Some(s) = &self.sweep {
+            all.extend([&s.looks, &s.reclips, &s.recuts, &s.dirty]);
+        }
+        all
+    }
+}
+
+impl SceneBuffers {
+    /// The buffer of a debug name.
+    pub(crate) fn named(&self, name: &str) -> Option<&Buffer> {
+        let all = [&self.gaussians, &self.sh, &self.blocks];
+        all.into_iter().find(|buffer| buffer.name() == name)
+    }
+}

@@ -1,0 +1,231 @@
+//! Stage `bin`: which tiles a splat reaches, and the splats of each tile, front to back.
+
+use glam::{DMat3, DVec3, Quat, Vec3};
+use rara::limits::{TILE_HEIGHT, TILE_WIDTH};
+use rara::reference::bin::{self, Outline, Span};
+use rara::reference::{Real, View, project, sort};
+use rara::types::Splat;
+use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings};
+
+use crate::frame::{self, SIZE, SIZES, Stages};
+use crate::sort::places;
+
+/// Where a cut splat's weight is taken for nothing, in deviations behind its plane.
+const TRIM_DEVIATIONS: f32 = 4.55;
+
+/// What the stage is given of a splat.
+fn outline<T: Real>(splat: &Splat) -> Outline<T> {
+    let of = |x: f32| T::of(f64::from(x));
+    let [cx, cy, k0, k1] = splat.centre_conic;
+    let [k2, opacity, z, along] = splat.conic_cut;
+    let [ax, ay, bx, by] = splat.axes;
+    let [mx, my, ..] = splat.middle;
+    let side = |centre: f32, middle: f32, a: f32, b: f32| {
+        let (middle, half) = (of(centre) + of(middle), of(a.abs()) + of(b.abs()));
+        [middle - half, middle + half]
+    };
+    Outline {
+        centre: [of(cx), of(cy)],
+        factors: [of(k0), of(k1), of(k2)],
+        opacity: of(opacity),
+        quad: [side(cx, mx, ax, bx), side(cy, my, ay, by)],
+        line: (z.abs() < 1e30).then(|| {
+            assert_eq!(splat.curvature, [0.0; 4], "the affine form has none");
+            [of(z + TRIM_DEVIATIONS), of(along), of(splat.colour_cut[3])]
+        }),
+    }
+}
+
+/// Each splat's spans by the lists of the tiles: what the stage has made of all.
+fn listed(begins: &[u32], splats: &[u32], count: usize, columns: u32) -> Vec<Vec<Span>> {
+    let mut spans = vec![Vec::<Span>::new(); count];
+    for (tile, range) in (0..).zip(begins.windows(2)) {
+        let (row, column) = (tile / columns, tile % columns);
+        for &splat in &splats[range[0] as usize..range[1] as usize] {
+            let spans = &mut spans[splat as usize];
+            match spans.last_mut() {
+                Some(last) if last.row == row && last.columns[1] == column => last.columns[1] += 1,
+                _ => spans.push(Span {
+                    row,
+                    columns: [column, column + 1],
+                }),
+            }
+        }
+    }
+    spans
+}
+
+/// The spans of a mask; none of a splat that has more tiles than it holds.
+fn masked([origin, is_larger, above, below]: [u32; 4]) -> Option<Vec<Span>> {
+    let rows = [above, below].map(u32::to_le_bytes).concat();
+    let in_row = |(row, bits): (u32, u8)| {
+        let first = (origin & 0xffff) + bits.trailing_zeros();
+        (bits != 0).then(|| Span {
+            row: (origin >> 16) + row,
+            columns: [first, first + bits.count_ones()],
+        })
+    };
+    (is_larger == 0).then(|| (0..).zip(rows).filter_map(in_row).collect())
+}
+
+/// What the device found, and how many spans the twin finds otherwise, at a tie.
+fn check(stages: &mut Stages, what: &str) -> [usize; 2] {
+    let size = [SIZE.0, SIZE.1];
+    let tiles = [size[0].div_ceil(TILE_WIDTH), size[1].div_ceil(TILE_HEIGHT)];
+    let splats = stages.splats();
+    let counts = stages.counts();
+    assert_eq!(counts.tiled, 1, "{what}");
+    let begins: Vec<u32> = stages.read("tile_begins");
+    let begins = &begins[..(tiles[0] * tiles[1] + 1) as usize];
+    let mut lists: Vec<u32> = stages.read("tile_splats");
+    lists.truncate(counts.pairs as usize);
+    let found = listed(begins, &lists, splats.len(), tiles[0]);
+    // The lists are those of the spans, in the order of depth: exactly.
+    let (depths, numbers) = places(stages);
+    let order = sort::order(&depths, &numbers);
+    let twin = bin::bin(&found, &order, tiles);
+    assert!((begins, &lists) == (&twin.0[..], &twin.1), "{what}");
+    // The spans of each row of tiles, likewise.
+    let row_begins: Vec<u32> = stages.read("row_begins");
+    let span_splats: Vec<u32> = stages.read("span_splats");
+    let span_columns: Vec<u32> = stages.read("span_columns");
+    let mut rows = vec![Vec::new(); tiles[1] as usize];
+    for &splat in &order {
+        for span in &found[splat as usize] {
+            rows[span.row as usize].push((splat, span.columns));
+        }
+    }
+    for (row, spans) in rows.iter().enumerate() {
+        let places = row_begins[row] as usize..row_begins[row + 1] as usize;
+        let columns = |at: u32| [at & 0xffff, at >> 16];
+        let ours = places.map(|at| (span_splats[at], columns(span_columns[at])));
+        assert!(ours.eq(spans.iter().copied()), "{what}, row {row}");
+    }
+    // The spans are those of the splats' masks, and of the twin but for ties.
+    let masks: Vec<[u32; 4]> = stages.read("tile_masks");
+    let (mut all, mut ties) = (0, 0);
+    for (index, splat) in splats.iter().enumerate() {
+        let ours = &found[index];
+        if let Some(masked) = masked(masks[index]) {
+            assert!(*ours == masked, "{what}: {ours:?} against {masked:?}");
+        }
+        let single = outline::<f32>(splat);
+        let twin = single.spans(size, single.margin());
+        all += twin.len();
+        if *ours != twin {
+            // Never less than what the contour reaches, nor more than twice the margin allows.
+            let truth = outline::<f64>(splat);
+            let least = truth.spans(size, 0.0);
+            let most = truth.spans(size, 2.0 * truth.margin());
+            assert!(
+                holds(ours, &least) && holds(&most, ours),
+                "{what}: {ours:?}, at least {least:?}, at most {most:?}: {splat:?}"
+            );
+            ties += 1;
+        }
+    }
+    [all, ties]
+}
+
+/// Whether each span of `inner` is within one of `outer`.
+fn holds(outer: &[Span], inner: &[Span]) -> bool {
+    inner.iter().all(|inner| {
+        outer.iter().any(|outer| {
+            outer.row == inner.row
+                && outer.columns[0] <= inner.columns[0]
+                && outer.columns[1] >= inner.columns[1]
+        })
+    })
+}
+
+#[test]
+fn tiles_hold_the_splats_that_the_twin_puts_there() {
+    let mut stages = Stages::new();
+    let [mut all, mut ties] = [0, 0];
+    for count in SIZES {
+        let scene = frame::scene(count);
+        stages.load(&scene);
+        for (view, mode) in [(0, Mode::None), (1, Mode::None), (0, Mode::Exact)] {
+            let settings = Settings {
+                mode,
+                raster: Raster::Tiles,
+                form: ExactForm::Affine,
+                ..Settings::default()
+            };
+            let clip = frame::clip(&scene, 1, ClipOp::And);
+            stages.draw(&frame::views(&scene)[view], &clip, &settings);
+            if count > 0 && !stages.survivors().is_empty() {
+                let [spans, apart] = check(&mut stages, &format!("{count}, {mode:?}"));
+                all += spans;
+                ties += apart;
+            }
+        }
+    }
+    println!("{all} spans, {ties} splats with others than the twin's");
+    assert!(all > 50_000, "{all}");
+    // One in twenty thousand; a margin that is not the twin's changes one in a few hundred.
+    assert!(ties * 20_000 <= all, "{ties} of {all}");
+}
+
+/// A splat whose contour of 1/255 runs through pixel centres at the corners of tiles: single precision may draw it there
+/// or not, and tiles draw it where quads do.
+#[test]
+fn tiles_reach_pixel_centres_on_the_contour() {
+    let mut stages = Stages::new();
+    let mut camera = Camera {
+        width: 96,
+        height: 80,
+        fx: 512.0,
+        fy: 512.0,
+        cx: 48.0,
+        cy: 40.0,
+        eye: DVec3::ZERO,
+        rotation: DMat3::IDENTITY,
+    };
+    let mut on_contour = 0;
+    for step in 0..120 {
+        let turn =
+            Quat::from_rotation_z(0.37 * step as f32) * Quat::from_rotation_x(0.2 * step as f32);
+        let scale = Vec3::new(0.02 + 0.002 * (step % 17) as f32, 0.004, 0.01);
+        let opacity = [0.02, 0.2, 0.6, 0.99][step % 4];
+        let scene = frame::one(Vec3::new(0.0, 0.0, 2.0), scale, turn, opacity);
+        let base = project::project(&scene, 0, &View::<f64>::new(&camera), &Settings::default());
+        let f = base.expect("in view").footprint;
+        // The contour's ends to the left and to the right, above and below, each put onto a centre of a pixel that is the
+        // first or the last of its tile.
+        let [k0, k1, k2] = f.factors;
+        let right = [f.reach / k0, -k1 / k2 * f.reach / k0];
+        let k = (k0 * k0 + k1 * k1).sqrt();
+        let below = [-k1 / k * f.reach / k0, f.reach * k / (k0 * k2)];
+        let ends = [right, right.map(|x| -x), below, below.map(|x| -x)];
+        let [dx, dy] = ends[step % 4];
+        // A right or lower end on the first pixel of a tile, a left or upper one on the last.
+        let pixel = if step % 2 == 0 { 56.5 } else { 39.5 };
+        (camera.cx, camera.cy) = (pixel - dx, pixel - dy);
+        stages.load(&scene);
+        let mut draw = |raster| {
+            let settings = Settings {
+                raster,
+                ..Settings::default()
+            };
+            stages.draw(&camera, &Clip::default(), &settings);
+            stages.headless.picture().expect("reads back")
+        };
+        let quads = draw(Raster::Quad);
+        let tiles = draw(Raster::Tiles);
+        for (at, (a, b)) in quads.pixels.iter().zip(&tiles.pixels).enumerate() {
+            for (a, b) in a.iter().zip(b) {
+                assert!(
+                    (a - b).abs() <= 1e-4,
+                    "step {step}, pixel {at}: {a} by quads, {b} by tiles"
+                );
+            }
+        }
+        let at = pixel as usize * 96 + pixel as usize;
+        on_contour += usize::from(quads.pixels[at][3] > 0.0);
+    }
+    assert!(
+        (20..=110).contains(&on_contour),
+        "{on_contour} of 120 are drawn at their contour's end"
+    );
+}

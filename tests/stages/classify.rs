@@ -1,0 +1,139 @@
+//! Stages `blocks` and `classify`: which Gaussians are in view, and what the clip does to them.
+
+use glam::{DMat3, DVec3, Quat, Vec3};
+use rara::limits::BLOCK_SIZE;
+use rara::reference::{self, Side, View, classify};
+use rara::{Camera, Clip, ClipOp, Mode, Raster, Settings};
+
+use crate::frame::{self, SIZES, Stages};
+use crate::ties;
+
+/// What the stages say of each Gaussian, in the device's order; nothing of one that is culled or invisible, which of a
+/// block's Gaussians only their number tells apart.
+pub fn sides(stages: &mut Stages) -> Vec<Option<Side>> {
+    let of_blocks: Vec<u32> = stages.read("block_sides");
+    let masks: Vec<[[u32; 8]; 2]> = stages.read("masks");
+    let side = |index: usize| {
+        let (block, place) = (index / BLOCK_SIZE as usize, index % BLOCK_SIZE as usize);
+        let bit = |mask: &[u32; 8]| mask[place / 32] >> (place % 32) & 1 == 1;
+        match of_blocks[block] {
+            0 => Some(Side::Culled),
+            1 => Some(Side::Invisible),
+            2 => Some(Side::Visible),
+            3 => match masks[block].each_ref().map(bit) {
+                [true, true] => Some(Side::Cutoff),
+                [true, false] => Some(Side::Visible),
+                [false, false] => None,
+                [false, true] => panic!("{index} is cut and does not survive"),
+            },
+            other => panic!("block {block} is on side {other}"),
+        }
+    };
+    (0..stages.scene.len()).map(side).collect()
+}
+
+#[test]
+fn classes_are_the_twins() {
+    let mut stages = Stages::new();
+    for count in SIZES {
+        let scene = frame::scene(count);
+        stages.load(&scene);
+        for camera in frame::views(&scene) {
+            for (mode, planes, op) in [
+                (Mode::None, 0, ClipOp::And),
+                (Mode::Exact, 1, ClipOp::And),
+                (Mode::Rara, 2, ClipOp::Or),
+                (Mode::Exact, 3, ClipOp::Or),
+            ] {
+                let settings = Settings {
+                    mode,
+                    raster: Raster::Quad,
+                    ..Settings::default()
+                };
+                let planes = frame::clip(&scene, planes, op);
+                let counts = stages.draw(&camera, &planes, &settings).counts;
+                if count == 0 {
+                    assert_eq!(counts, rara::Counts::default());
+                } else {
+                    check(&mut stages, &camera, &planes, &settings);
+                }
+            }
+        }
+    }
+}
+
+fn check(stages: &mut Stages, camera: &Camera, planes: &Clip, settings: &Settings) {
+    let ours = sides(stages);
+    let twin = classify::classify(&stages.scene, &View::<f32>::new(camera), planes, settings);
+    let mut ties = 0;
+    for (index, (ours, twin)) in ours.iter().zip(&twin).enumerate() {
+        let is = |side: &Side| match ours {
+            Some(ours) => ours == side,
+            None => matches!(side, Side::Culled | Side::Invisible),
+        };
+        if !is(twin) {
+            let possible = ties::classes(&stages.scene, index, Some(camera), planes, settings);
+            assert!(
+                possible.iter().any(is),
+                "{index}: {ours:?}, the twin says {twin:?}, possible are {possible:?}: {settings:?}"
+            );
+            ties += 1;
+        }
+    }
+    assert!(ties <= 1 + stages.scene.len() / 5_000, "{ties} ties");
+    // How many are of which class, by block and in all, so that culled and invisible are told apart.
+    let of_blocks: Vec<u32> = stages.read("block_sides");
+    let totals: Vec<[u32; 4]> = stages.read("block_counts");
+    let mut apart = 0;
+    for (block, twin) in twin.chunks(BLOCK_SIZE as usize).enumerate() {
+        if of_blocks[block] == 3 {
+            let counts = reference::counts(twin);
+            let [visible, cutoff, invisible, _] = totals[block];
+            apart += visible.abs_diff(counts.visible)
+                + cutoff.abs_diff(counts.cutoff)
+                + invisible.abs_diff(counts.invisible);
+        }
+    }
+    assert!(
+        apart as usize <= 2 * ties,
+        "{apart} counted apart, {ties} ties"
+    );
+}
+
+/// Literally: what 3DGS does not draw is nearer than 0.2 along the view axis.
+#[test]
+fn the_near_cut_is_at_a_fifth() {
+    let camera = Camera {
+        width: 64,
+        height: 48,
+        fx: 60.0,
+        fy: 60.0,
+        cx: 32.0,
+        cy: 24.0,
+        eye: DVec3::ZERO,
+        rotation: DMat3::IDENTITY,
+    };
+    let mut stages = Stages::new();
+    for (z, side) in [(0.199, Side::Culled), (0.201, Side::Visible)] {
+        let scene = frame::one(
+            Vec3::new(0.01, 0.0, z),
+            Vec3::splat(0.01),
+            Quat::IDENTITY,
+            0.9,
+        );
+        stages.load(&scene);
+        let settings = Settings {
+            raster: Raster::Quad,
+            ..Settings::default()
+        };
+        let clip = Clip::default();
+        let counts = stages.draw(&camera, &clip, &settings).counts;
+        assert_eq!(counts.visible, u32::from(side == Side::Visible), "{z}");
+        assert_eq!(counts.culled, u32::from(side == Side::Culled), "{z}");
+        let twin = classify::classify(&scene, &View::<f32>::new(&camera), &clip, &settings);
+        assert_eq!(twin, [side], "{z}");
+        let drawn = stages.headless.picture().expect("reads back");
+        let is_there = drawn.pixels.iter().any(|pixel| pixel[3] > 0.5);
+        assert_eq!(is_there, side == Side::Visible, "{z}");
+    }
+}

@@ -1,0 +1,109 @@
+//! Stage `clip`: the side of each block and, of those that are cut, of each Gaussian.
+
+use glam::{DVec3, Quat, Vec3};
+use rara::limits::{ALPHA_MIN, BLOCK_SIZE};
+use rara::reference::{Side, clip};
+use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings};
+
+use crate::frame::{self, SIZES, Stages};
+use crate::ties;
+
+/// What the stage says of each Gaussian, in the device's order.
+pub fn sides(stages: &mut Stages) -> Vec<Side> {
+    let of_blocks: Vec<u32> = stages.read("clip_sides");
+    let masks: Vec<[[u32; 8]; 2]> = stages.read("clip_masks");
+    let side = |index: usize| {
+        let (block, place) = (index / BLOCK_SIZE as usize, index % BLOCK_SIZE as usize);
+        let bit = |mask: &[u32; 8]| mask[place / 32] >> (place % 32) & 1 == 1;
+        match of_blocks[block] {
+            1 => Side::Invisible,
+            2 => Side::Visible,
+            3 => match masks[block].each_ref().map(bit) {
+                [false, true] => Side::Cutoff,
+                [true, false] => Side::Visible,
+                [false, false] => Side::Invisible,
+                [true, true] => panic!("{index} is visible and cut"),
+            },
+            other => panic!("block {block} is on side {other}"),
+        }
+    };
+    (0..stages.scene.len()).map(side).collect()
+}
+
+#[test]
+fn the_clips_sides_are_the_twins() {
+    let mut stages = Stages::new();
+    for count in SIZES {
+        let scene = frame::scene(count);
+        stages.load(&scene);
+        let mut cases = vec![(Mode::Exact, 1, ClipOp::And), (Mode::Rara, 3, ClipOp::Or)];
+        cases.extend([(Mode::Hard, 2, ClipOp::And), (Mode::Exact, 3, ClipOp::Or)]);
+        for (mode, planes, op) in cases {
+            let settings = Settings {
+                mode,
+                raster: Raster::Quad,
+                ..Settings::default()
+            };
+            let planes = frame::clip(&scene, planes, op);
+            stages.draw(&frame::views(&scene)[0], &planes, &settings);
+            if count > 0 {
+                check(&mut stages, &planes, &settings);
+            }
+        }
+    }
+}
+
+fn check(stages: &mut Stages, planes: &Clip, settings: &Settings) {
+    let ours = sides(stages);
+    let twin = clip::clip::<f32>(&stages.scene, planes, settings);
+    let mut ties = 0;
+    for (index, (ours, twin)) in ours.iter().zip(&twin).enumerate() {
+        // Those that no pixel shows are nobody's: their block may be settled without them.
+        if ours != twin && stages.scene.opacities[index] >= ALPHA_MIN {
+            let possible = ties::classes(&stages.scene, index, None, planes, settings);
+            assert!(
+                possible.contains(ours),
+                "{index}: {ours:?}, the twin says {twin:?}: {settings:?}"
+            );
+            ties += 1;
+        }
+    }
+    assert!(ties <= 1 + stages.scene.len() / 5_000, "{ties} ties");
+    if stages.scene.len() > 1_000 && settings.mode != Mode::Hard {
+        for side in [Side::Visible, Side::Cutoff, Side::Invisible] {
+            assert!(ours.contains(&side), "some are {side:?}: {settings:?}");
+        }
+    }
+}
+
+/// At coordinates of a million single precision knows an offset to a sixteenth only: the rest is in the low word.
+#[test]
+fn a_planes_distance_has_its_low_word() {
+    let mut stages = Stages::new();
+    let at = Vec3::new(1e6, 0.0, 0.0);
+    let scene = frame::one(at, Vec3::splat(0.002), Quat::IDENTITY, 0.9);
+    stages.load(&scene);
+    let eye = at.as_dvec3() - 4.0 * DVec3::Z;
+    let camera = rara::Camera::look_at(eye, at.as_dvec3(), -DVec3::Y, 50.0, (64, 64));
+    let camera = camera.expect("a view");
+    for (offset, side) in [
+        (-1e6 + 0.02, Side::Visible),
+        (-1e6 + 0.01, Side::Visible),
+        (-1e6 + 0.003, Side::Cutoff),
+        (-1e6 - 0.003, Side::Cutoff),
+        (-1e6 - 0.01, Side::Invisible),
+    ] {
+        assert_eq!(offset as f32, -1e6, "one number in single precision");
+        let planes = Clip {
+            planes: vec![Plane::new(DVec3::X, offset).expect("a finite normal")],
+            op: ClipOp::And,
+        };
+        let settings = Settings {
+            raster: Raster::Quad,
+            ..Settings::default()
+        };
+        stages.draw(&camera, &planes, &settings);
+        assert_eq!(sides(&mut stages), [side], "{offset}");
+        assert_eq!(clip::clip::<f32>(&scene, &planes, &settings), [side]);
+    }
+}

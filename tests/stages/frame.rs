@@ -1,0 +1,181 @@
+//! A frame whose stages are looked at: the scene as it lies on the device, and what the stages have written.
+
+use glam::{DVec3, Quat, Vec3};
+use rara::gpu::Bindings;
+use rara::scene::{Bounds, Kind, generate};
+use rara::types::{FrameCounts, Gaussian, Splat};
+use rara::{Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, Plane, Settings, ShFormat};
+
+use crate::common;
+
+/// None, one, around a workgroup and a block, and enough for every path.
+pub const SIZES: [usize; 6] = [0, 1, 255, 256, 257, 50_000];
+/// Not a multiple of a tile.
+pub const SIZE: (u32, u32) = (253, 190);
+
+/// A renderer and its scene.
+pub struct Stages {
+    pub headless: Headless,
+    /// In the device's order.
+    pub scene: Gaussians,
+    /// The numbers of its Gaussians in the file.
+    pub numbers: Vec<u32>,
+}
+
+impl Stages {
+    pub fn new() -> Self {
+        Self {
+            headless: common::headless_by(Bindings::Bound),
+            scene: Gaussians::default(),
+            numbers: Vec::new(),
+        }
+    }
+
+    pub fn load(&mut self, scene: &Gaussians) {
+        self.load_as(scene, ShFormat::Float);
+    }
+
+    pub fn load_as(&mut self, scene: &Gaussians, format: ShFormat) {
+        self.headless.load_as(scene, format).expect("uploads");
+        let there: Vec<Gaussian> = self.read("gaussians");
+        let numbers = there.iter().take(scene.len());
+        self.numbers = numbers.map(|one| one.scale[3].to_bits()).collect();
+        let mut once = self.numbers.clone();
+        once.sort_unstable();
+        assert!(once.into_iter().eq(0..scene.len() as u32), "each once");
+        self.scene = picked(scene, &self.numbers);
+    }
+
+    /// Draws a whole frame.
+    pub fn draw(&mut self, camera: &Camera, clip: &Clip, settings: &Settings) -> FrameStats {
+        self.headless.forget();
+        self.again(camera, clip, settings)
+    }
+
+    /// Draws a frame that may take over what the one before has found out.
+    pub fn again(&mut self, camera: &Camera, clip: &Clip, settings: &Settings) -> FrameStats {
+        let drawn = self.headless.render(camera, clip, settings);
+        drawn.expect("renders")
+    }
+
+    /// What is in a buffer.
+    pub fn read<T: bytemuck::AnyBitPattern>(&mut self, name: &str) -> Vec<T> {
+        let bytes = self.headless.working_buffer(name);
+        let bytes = bytes.unwrap_or_else(|| panic!("there is no buffer {name}"));
+        let elements = bytes.chunks_exact(size_of::<T>());
+        elements.map(bytemuck::pod_read_unaligned).collect()
+    }
+
+    pub fn counts(&mut self) -> FrameCounts {
+        self.read("counts")[0]
+    }
+
+    /// The device's numbers of the survivors, and their numbers among the cut ones.
+    pub fn survivors(&mut self) -> Vec<[u32; 2]> {
+        let counts = self.counts();
+        let mut survivors = self.read("survivors");
+        survivors.truncate((counts.visible + counts.cutoff) as usize);
+        survivors
+    }
+
+    /// The same after a sweep, whose survivors are all in view, clipped away or not.
+    pub fn survivors_in_view(&mut self) -> Vec<[u32; 2]> {
+        let in_view = self.counts().mesh_groups[3] as usize;
+        let mut survivors = self.read("survivors");
+        survivors.truncate(in_view);
+        survivors
+    }
+
+    pub fn splats_in_view(&mut self, count: usize) -> Vec<Splat> {
+        let mut splats = self.read("splats");
+        splats.truncate(count);
+        splats
+    }
+
+    pub fn splats(&mut self) -> Vec<Splat> {
+        let count = self.survivors().len();
+        let mut splats = self.read("splats");
+        splats.truncate(count);
+        splats
+    }
+}
+
+/// Some Gaussians of a scene.
+pub fn picked(scene: &Gaussians, numbers: &[u32]) -> Gaussians {
+    let mut picked = Gaussians {
+        sh_degree: scene.sh_degree,
+        ..Gaussians::default()
+    };
+    for index in numbers.iter().map(|&number| number as usize) {
+        picked.positions.push(scene.positions[index]);
+        picked.scales.push(scene.scales[index]);
+        picked.rotations.push(scene.rotations[index]);
+        picked.opacities.push(scene.opacities[index]);
+        picked.sh.extend_from_slice(scene.sh_of(index));
+    }
+    picked
+}
+
+/// A generated scene with what such scenes have too little of: faint splats, ones around the limit of 1/255, and ones
+/// without thickness.
+pub fn scene(count: usize) -> Gaussians {
+    let mut scene = generate(Kind::General, count, 1);
+    for index in 0..count {
+        match index % 23 {
+            3 => scene.opacities[index] = (index % 9) as f32 / 1000.0,
+            7 => scene.opacities[index] *= 0.05,
+            11 => scene.scales[index].x = 0.0,
+            _ => {}
+        }
+    }
+    scene
+}
+
+/// From outside, and from within the scene, where splats are large, beside the picture and behind the eye.
+pub fn views(scene: &Gaussians) -> [Camera; 2] {
+    let outside = if scene.is_empty() {
+        let eye = DVec3::new(0.0, 1.0, -4.0);
+        Camera::look_at(eye, DVec3::ZERO, -DVec3::Y, 50.0, SIZE).expect("a view")
+    } else {
+        common::views(scene, 3, SIZE)[0]
+    };
+    let mut within = outside;
+    within.eye = 0.7 * Bounds::of(scene).centre() + 0.3 * outside.eye;
+    if !within.eye.is_finite() {
+        within = outside;
+    }
+    [outside, within]
+}
+
+/// Oblique planes through the middle of a scene, in the order in which the renderer has them.
+pub fn clip(scene: &Gaussians, count: usize, op: ClipOp) -> Clip {
+    let centre = match Bounds::of(scene).centre() {
+        centre if centre.is_finite() => centre,
+        _ => DVec3::ZERO,
+    };
+    let normals = [
+        DVec3::new(-0.8, 0.1, 0.7),
+        DVec3::new(0.1, -0.9, 0.3),
+        DVec3::new(0.9, 0.3, 0.2),
+    ];
+    let planes = normals
+        .iter()
+        .take(count)
+        .map(|normal| Plane::new(*normal, -normal.dot(centre)).expect("a proper plane"));
+    Clip {
+        planes: planes.collect(),
+        op,
+    }
+}
+
+/// One Gaussian of degree 0.
+pub fn one(position: Vec3, scale: Vec3, rotation: Quat, opacity: f32) -> Gaussians {
+    Gaussians {
+        positions: vec![position],
+        scales: vec![scale],
+        rotations: vec![rotation],
+        opacities: vec![opacity],
+        sh_degree: 0,
+        sh: vec![1.0, 0.5, 0.25],
+    }
+}

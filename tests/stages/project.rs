@@ -1,0 +1,251 @@
+//! Stage `project`: place, shape and colour of each survivor.
+
+use glam::{DMat3, DVec3, Quat, Vec3};
+use rara::reference::{View, harmonics, project, vec3};
+use rara::{Camera, Clip, Gaussians, Raster, Settings, ShFormat};
+
+use crate::frame::{self, SIZES, Stages};
+use crate::ties::{largest, ulps};
+
+/// How far apart device and twin are, each in units in the last place of what it was computed from.
+#[derive(Debug, Default, Clone, Copy)]
+struct Apart {
+    depth: f32,
+    centre: f32,
+    shape: f32,
+    colour: f32,
+}
+
+#[test]
+fn splats_are_the_twins() {
+    let mut stages = Stages::new();
+    let mut worst = Apart::default();
+    for count in SIZES {
+        let scene = frame::scene(count);
+        stages.load(&scene);
+        for camera in frame::views(&scene) {
+            stages.draw(&camera, &Clip::default(), &quads());
+            if count > 0 {
+                compare(&mut stages, &camera, &mut worst);
+            }
+        }
+    }
+    println!("{worst:?}");
+    // Sums of three products, and what a division and a root add.
+    assert!(worst.depth <= 4.0, "{worst:?}");
+    assert!(worst.centre <= 16.0, "{worst:?}");
+    assert!(worst.shape <= 16.0, "{worst:?}");
+    assert!(worst.colour <= 16.0, "{worst:?}");
+}
+
+fn quads() -> Settings {
+    Settings {
+        raster: Raster::Quad,
+        ..Settings::default()
+    }
+}
+
+fn compare(stages: &mut Stages, camera: &Camera, worst: &mut Apart) {
+    let view = View::<f32>::new(camera);
+    let survivors = stages.survivors();
+    for (splat, [index, _]) in stages.splats().iter().zip(survivors) {
+        let index = index as usize;
+        let Some(twin) = project::project(&stages.scene, index, &view, &quads()) else {
+            continue; // a tie of stage classify
+        };
+        assert_eq!(splat.middle[2].to_bits(), stages.numbers[index]);
+        let [cx, cy, k0, k1] = splat.centre_conic;
+        let [k2, opacity, z, _] = splat.conic_cut;
+        assert_eq!(opacity, stages.scene.opacities[index]);
+        assert!(z > 1e30, "nothing is cut");
+        let f = &twin.footprint;
+        let distance = f.relative.largest();
+        worst.depth = worst.depth.max(ulps(splat.middle[3], f.centre.z, distance));
+        // A pixel's place follows from a slope, which is off by the centre's error over the depth.
+        for (ours, axis) in [(cx, 0), (cy, 1)] {
+            let slope = (f.pixel[axis] - view.principal[axis]) / view.focal[axis];
+            let size = view.focal[axis] * distance / f.centre.z * (1.0 + slope.abs());
+            worst.centre = worst.centre.max(ulps(ours, f.pixel[axis], size));
+        }
+        // The factors' rounding, against what the twin in double precision says of their cancellation.
+        let [t0, t1, t2] = f.factors;
+        let size = t1.hypot(t2);
+        let condition = condition(f.gradients.map(|b| Vec3::new(b.x, b.y, b.z)));
+        let of = |ours, theirs, size| ulps(ours, theirs, size) / condition;
+        let shape = of(k0, t0, 0.0).max(of(k1, t1, size)).max(of(k2, t2, 0.0));
+        worst.shape = worst.shape.max(shape);
+        let basis = basis_at(f.relative);
+        for channel in 0..3 {
+            let terms = stages.scene.sh_of(index).iter().skip(channel).step_by(3);
+            let sizes = terms.zip(basis).map(|(c, basis)| (c * basis).abs());
+            let size = 0.5 + sizes.sum::<f32>();
+            let apart = ulps(splat.colour_cut[channel], twin.colour[channel], size);
+            worst.colour = worst.colour.max(apart);
+        }
+    }
+}
+
+fn basis_at(direction: rara::reference::Vec3<f32>) -> [f32; 16] {
+    harmonics::basis(direction * (1.0 / direction.length()))
+}
+
+/// How much more than single precision's rounding the footprint's gradients carry into its shape: the low-pass is 0.3
+/// square pixels, whatever the gradients' length.
+fn condition([b1, b2]: [Vec3; 2]) -> f32 {
+    let size = largest(b1).max(largest(b2));
+    1.0 + size
+}
+
+/// The sixteen basis functions as 3DGS has them, at the direction (2, -3, 6) / 7. From the definition of the associated
+/// Legendre polynomials with the Condon-Shortley phase, orders -l to l, in rational arithmetic, not from any formula here.
+const OBLIQUE: [f64; 16] = [
+    0.282_094_791_773_878_1,
+    0.209_401_076_529_822_8,
+    0.418_802_153_059_645_6,
+    -0.139_600_717_686_548_6,
+    -0.133_781_440_480_662_8,
+    0.401_344_321_441_988_3,
+    0.379_757_190_814_258_8,
+    -0.267_562_880_961_325_6,
+    -0.055_742_266_866_942_8,
+    0.015_482_193_321_690_4,
+    -0.303_387_789_898_134_0,
+    0.523_670_551_572_988_5,
+    0.215_419_573_914_993_8,
+    -0.349_113_701_048_659_0,
+    -0.126_411_579_124_222_5,
+    0.079_131_210_310_861_8,
+];
+
+#[test]
+fn the_harmonics_are_those_of_3dgs() {
+    let way = vec3(2.0_f64, -3.0, 6.0) * (1.0 / 7.0);
+    for (index, (ours, literal)) in harmonics::basis(way).into_iter().zip(OBLIQUE).enumerate() {
+        assert!((ours - literal).abs() < 1e-12, "{index}: {ours}, {literal}");
+    }
+    let mut stages = Stages::new();
+    for index in 0..16 {
+        let mut scene = frame::one(
+            Vec3::new(2.0, -3.0, 6.0),
+            Vec3::splat(0.1),
+            Quat::IDENTITY,
+            0.9,
+        );
+        scene.set_sh_degree(3);
+        scene.sh.fill(0.0);
+        // Red grows with the function, green falls; both stay above 0.
+        scene.sh[3 * index] = 0.25;
+        scene.sh[3 * index + 1] = -0.25;
+        stages.load(&scene);
+        stages.draw(&ahead(), &Clip::default(), &quads());
+        let [red, green, blue, _] = stages.splats()[0].colour_cut.map(f64::from);
+        let want = 0.25 * OBLIQUE[index];
+        assert!((red - 0.5 - want).abs() < 3e-7, "{index}: red {red}");
+        assert!((green - 0.5 + want).abs() < 3e-7, "{index}: green {green}");
+        assert_eq!(blue, 0.5);
+        let picture = stages.headless.picture().expect("reads back");
+        let pixels = picture.pixels.iter().filter(|pixel| pixel[3] > 0.5);
+        let shown: Vec<_> = pixels.map(|[r, _, _, a]| f64::from(r / a)).collect();
+        assert!(!shown.is_empty());
+        assert!(
+            shown.iter().all(|r| (r - 0.5 - want).abs() < 1e-6),
+            "{index}"
+        );
+    }
+}
+
+/// From the origin along z; wide enough for what stands well beside its axis.
+fn ahead() -> Camera {
+    Camera {
+        width: 96,
+        height: 96,
+        fx: 40.0,
+        fy: 40.0,
+        cx: 48.0,
+        cy: 48.0,
+        eye: DVec3::ZERO,
+        rotation: DMat3::IDENTITY,
+    }
+}
+
+/// Coefficients that a format holds exactly are read as they are: its integers, its scales, and where each lies.
+#[test]
+fn stored_harmonics_are_read_as_they_were() {
+    let mut stages = Stages::new();
+    let scales = [0.015_625_f32, 2.0, 0.000_488_281_25]; // of degrees 1, 2 and 3: powers of two, far apart
+    for degree in [1, 2, 3] {
+        for format in [
+            ShFormat::Float,
+            ShFormat::Half,
+            ShFormat::Packed,
+            ShFormat::Byte,
+        ] {
+            let mut scene = Gaussians::default();
+            for place in 0..5 {
+                let at = Vec3::new(place as f32 - 2.0, 0.3 * place as f32, 5.0);
+                scene.append(&frame::one(at, Vec3::splat(0.1), Quat::IDENTITY, 0.9));
+            }
+            scene.set_sh_degree(degree);
+            let stride = 3 * scene.sh_coefficients();
+            for (k, value) in scene.sh.iter_mut().enumerate() {
+                let (number, channel) = (k % stride / 3, k % 3);
+                let at = (k * 7919 % 401) as f32 - 200.0;
+                let scale = scales[[0, 0, 1, 2][(number as f32).sqrt() as usize]];
+                // The largest of a degree is its scale.
+                let is_first = [1, 4, 9].contains(&number) && channel == 0;
+                *value = match format {
+                    _ if number == 0 => 0.5 + at / 1024.0,
+                    ShFormat::Half => at / 1024.0,
+                    ShFormat::Byte if number == 1 && channel == 0 => 1.5,
+                    ShFormat::Byte => 1.5 * (at / 2.0).trunc() / 127.0,
+                    _ if is_first => scale,
+                    _ => scale * at / if channel == 2 { 511.0 } else { 1023.0 },
+                };
+            }
+            stages.load_as(&scene, format);
+            stages.draw(&ahead(), &Clip::default(), &quads());
+            let mut worst = Apart::default();
+            compare(&mut stages, &ahead(), &mut worst);
+            assert_eq!(stages.splats().len(), 5);
+            assert!(
+                worst.colour <= 16.0,
+                "{format:?}, degree {degree}: {worst:?}"
+            );
+        }
+    }
+}
+
+/// The quad covers the contour on which alpha falls to 1/255, and is hardly larger than the smallest rectangle around it.
+#[test]
+fn quads_are_the_contours_rectangles() {
+    let mut stages = Stages::new();
+    let scene = frame::scene(50_000);
+    stages.load(&scene);
+    for camera in frame::views(&scene) {
+        stages.draw(&camera, &Clip::default(), &quads());
+        for splat in stages.splats() {
+            let [_, _, k0, k1] = splat.centre_conic.map(f64::from);
+            let [k2, opacity, ..] = splat.conic_cut.map(f64::from);
+            let extent = (2.0 * (255.0 * opacity).max(1.0).ln()).sqrt();
+            let [ax, ay, bx, by] = splat.axes.map(f64::from);
+            let [mx, my, ..] = splat.middle.map(f64::from);
+            let (a, b) = (ax.hypot(ay), bx.hypot(by));
+            for step in 0..32 {
+                let turn = f64::from(step) / 32.0 * std::f64::consts::TAU;
+                // On the contour: u = k0 dx and v = k1 dx + k2 dy lie on a circle.
+                let dx = extent * turn.cos() / k0;
+                let dy = (extent * turn.sin() - k1 * dx) / k2;
+                let s = ((dx - mx) * ax + (dy - my) * ay) / (a * a);
+                let t = ((dx - mx) * bx + (dy - my) * by) / (b * b);
+                assert!(s.abs() <= 1.0 && t.abs() <= 1.0, "{s} {t}: {splat:?}");
+            }
+            if mx == 0.0 && my == 0.0 {
+                // The area of the ellipse's rectangle is 4 K^2 over the factors' determinant.
+                let least = extent * extent / (k0 * k2);
+                assert!(a * b >= least, "{splat:?}");
+                let most = 1.003 * least + 0.05 * (a + b);
+                assert!(a * b <= most, "{} against {least}: {splat:?}", a * b);
+            }
+        }
+    }
+}

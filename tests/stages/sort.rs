@@ -1,0 +1,127 @@
+//! Stage `sort`: the survivors' order, from the depths that the stage before has found.
+
+use rara::reference::sort;
+use rara::scene::{Kind, generate};
+use rara::{Clip, Gaussians, Raster, Settings};
+
+use crate::frame::{self, SIZES, Stages};
+
+/// The splats' depths and their numbers in the file.
+pub fn places(stages: &mut Stages) -> (Vec<f32>, Vec<u32>) {
+    let splats = stages.splats();
+    let depths = splats.iter().map(|splat| splat.middle[3]);
+    let numbers = splats.iter().map(|splat| splat.middle[2].to_bits());
+    (depths.collect(), numbers.collect())
+}
+
+fn check(stages: &mut Stages, what: &str) {
+    let (depths, numbers) = places(stages);
+    let twin = sort::order(&depths, &numbers);
+    let is_sorted = |(keys, order): &(Vec<u32>, Vec<u32>)| {
+        // All bits count here: keys are the depths' bits, counted from one number on.
+        let near =
+            |(key, place): (&u32, &u32)| depths[*place as usize].to_bits().wrapping_sub(*key);
+        let mut nears = keys.iter().zip(&twin).map(near);
+        let first = nears.next();
+        *order == twin && nears.all(|near| Some(near) == first)
+    };
+    let pairs = keys_and_orders(stages, depths.len());
+    assert!(
+        pairs.iter().any(is_sorted),
+        "{what}: neither order is the twin's"
+    );
+}
+
+/// Each pass carries the keys and the order to the other pair of buffers; the number of passes says which is the last.
+fn keys_and_orders(stages: &mut Stages, count: usize) -> [(Vec<u32>, Vec<u32>); 2] {
+    [("keys", "order"), ("sorted_keys", "sorted_order")].map(|names| {
+        let [mut keys, mut order] = [names.0, names.1].map(|name| stages.read::<u32>(name));
+        keys.truncate(count);
+        order.truncate(count);
+        (keys, order)
+    })
+}
+
+#[test]
+fn the_order_is_the_twins() {
+    let mut stages = Stages::new();
+    let settings = Settings {
+        raster: Raster::Quad,
+        ..Settings::default()
+    };
+    assert_eq!(settings.precision.key_bits, 32);
+    for count in SIZES {
+        let scene = frame::scene(count);
+        stages.load(&scene);
+        for camera in frame::views(&scene) {
+            stages.draw(&camera, &Clip::default(), &settings);
+            if count > 0 {
+                check(&mut stages, &format!("{count}"));
+            }
+        }
+    }
+}
+
+/// Splats of one depth are in the order of the file, however many they are.
+#[test]
+fn equal_depths_are_in_the_files_order() {
+    let mut stages = Stages::new();
+    let scene = generate(Kind::General, 3_000, 2);
+    let mut camera = frame::views(&scene)[0];
+    camera.rotation = glam::DMat3::IDENTITY;
+    camera.eye = glam::DVec3::new(0.0, 0.0, -40.0);
+    let settings = Settings {
+        raster: Raster::Quad,
+        ..Settings::default()
+    };
+    for layers in [1, 7, 40, 900] {
+        let mut flat: Gaussians = scene.clone();
+        for (index, position) in flat.positions.iter_mut().enumerate() {
+            *position *= 0.5;
+            position.z = (index * 7919 % layers) as f32 / 64.0;
+        }
+        stages.load(&flat);
+        let counts = stages.draw(&camera, &Clip::default(), &settings).counts;
+        assert!(counts.drawn > 1_000, "{counts:?}");
+        check(&mut stages, &format!("{layers} layers"));
+    }
+}
+
+/// With fewer bits neighbours may change places, and nothing else.
+#[test]
+fn fewer_bits_keep_the_order_of_what_they_tell_apart() {
+    let mut stages = Stages::new();
+    let scene = frame::scene(50_000);
+    stages.load(&scene);
+    for bits in [8, 16, 24] {
+        let mut settings = Settings {
+            raster: Raster::Quad,
+            ..Settings::default()
+        };
+        settings.precision.key_bits = bits;
+        let camera = frame::views(&scene)[0];
+        stages.draw(&camera, &Clip::default(), &settings);
+        let (depths, numbers) = places(&mut stages);
+        let is_sorted = |(keys, order): &(Vec<u32>, Vec<u32>)| {
+            let mut once = order.clone();
+            once.sort_unstable();
+            if !once.into_iter().eq(0..depths.len() as u32) {
+                return false;
+            }
+            let at = |i: usize| order[i] as usize;
+            let mut deepest = 0.0_f32; // of the keys before
+            let mut of_key = 0.0_f32;
+            (1..order.len()).all(|i| {
+                of_key = of_key.max(depths[at(i - 1)]);
+                if keys[i] != keys[i - 1] {
+                    deepest = of_key;
+                }
+                (keys[i - 1], numbers[at(i - 1)]) < (keys[i], numbers[at(i)])
+                    && depths[at(i)] >= deepest
+                    && u64::from(keys[i]) < 1 << bits
+            })
+        };
+        let pairs = keys_and_orders(&mut stages, depths.len());
+        assert!(pairs.iter().any(is_sorted), "{bits} bits");
+    }
+}

@@ -1,0 +1,106 @@
+//! Stages `reclip` and `recut`: what a moved clip changes while the camera stands still.
+
+use rara::reference::{Side, View, classify};
+use rara::types::{CUT_AWAY, NOT_CUT};
+use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings};
+
+use crate::frame::{self, SIZES, Stages};
+use crate::ties;
+
+fn moved(clip: &Clip, by: f64) -> Clip {
+    let planes = clip
+        .planes
+        .iter()
+        .map(|plane| Plane::new(plane.normal(), plane.offset() + by).expect("a finite normal"));
+    Clip {
+        planes: planes.collect(),
+        op: clip.op,
+    }
+}
+
+#[test]
+fn a_moved_clip_changes_what_the_twin_says() {
+    let mut stages = Stages::new();
+    for count in SIZES {
+        let scene = frame::scene(count);
+        stages.load(&scene);
+        let camera = frame::views(&scene)[0];
+        let view = View::<f32>::new(&camera);
+        for (mode, planes, op, raster) in [
+            (Mode::Exact, 1, ClipOp::And, Raster::Tiles),
+            (Mode::Rara, 2, ClipOp::Or, Raster::Quad),
+            (Mode::Hard, 1, ClipOp::And, Raster::Tiles),
+        ] {
+            let settings = Settings {
+                mode,
+                raster,
+                ..Settings::default()
+            };
+            let clip = frame::clip(&scene, planes, op);
+            stages.headless.forget();
+            stages.again(&camera, &clip, &settings);
+            // The second frame begins the sweep, the third goes on with it.
+            for by in [0.1, 0.2, -0.3] {
+                let clip = moved(&clip, by);
+                let swept = stages.again(&camera, &clip, &settings);
+                if count == 0 {
+                    continue;
+                }
+                assert_eq!(swept.skipped.contains(&"project"), by != 0.1, "{by}");
+                // All in view survive; the list says which of them the clip changes, and to what.
+                let survivors = stages.survivors_in_view();
+                let recuts: Vec<[u32; 2]> = stages.read("recuts");
+                let changed = stages.counts().recut_groups[3] as usize;
+                let twin = classify::classify(&stages.scene, &view, &clip, &settings);
+                let mut cuts = 0;
+                for &[survivor, cut] in &recuts[..changed] {
+                    let index = survivors[survivor as usize][0] as usize;
+                    let ours = match cut {
+                        NOT_CUT => Side::Visible,
+                        CUT_AWAY => Side::Invisible,
+                        _ => {
+                            assert_eq!(cut, cuts, "in order");
+                            cuts += 1;
+                            Side::Cutoff
+                        }
+                    };
+                    if ours != twin[index] {
+                        let camera = Some(&camera);
+                        let possible =
+                            ties::classes(&stages.scene, index, camera, &clip, &settings);
+                        assert!(possible.contains(&ours), "{index}: {ours:?}, {possible:?}");
+                    }
+                }
+                assert_eq!(cuts, swept.counts.cutoff);
+                // What the rasteriser then holds of each is what a whole frame computes.
+                let swept_splats = stages.splats_in_view(survivors.len());
+                let mut whole = std::collections::HashMap::new();
+                let counts = stages.draw(&camera, &clip, &settings).counts;
+                assert_eq!(counts, swept.counts);
+                for splat in stages.splats() {
+                    whole.insert(splat.middle[2].to_bits(), splat);
+                }
+                let mut gone = 0;
+                for mut splat in swept_splats {
+                    let Some(truth) = whole.get(&splat.middle[2].to_bits()) else {
+                        assert_eq!(splat.conic_cut[2], 4e30, "clipped away");
+                        gone += 1;
+                        continue;
+                    };
+                    if truth.conic_cut[2] < -1e30 {
+                        // Each names a record of its own frame.
+                        assert!(splat.conic_cut[2] < -1e30);
+                        splat.conic_cut[3] = truth.conic_cut[3];
+                        splat.colour_cut[3] = truth.colour_cut[3];
+                    }
+                    assert!(splat == *truth, "{splat:?}, in a whole frame {truth:?}");
+                }
+                assert_eq!(gone, counts.invisible);
+                // The next frame of the sweep goes on from the one before.
+                stages.headless.forget();
+                stages.again(&camera, &moved(&clip, 0.05), &settings);
+                stages.again(&camera, &clip, &settings);
+            }
+        }
+    }
+}

@@ -264,6 +264,12 @@ pub(crate) unsafe trait Versioned: Copy {
     const NAME: &'static str;
 }
 
+/// Whether some version of a struct, older or newer than this one, can have so many bytes: in C a struct's size is a
+/// multiple of its alignment, and its first field says it.
+fn is_a_version<T: Versioned>(size: usize) -> bool {
+    size >= size_of::<usize>() && size.is_multiple_of(align_of::<T>())
+}
+
 /// A host's struct; what its version does not have yet is as in `default`.
 ///
 /// # Safety
@@ -271,7 +277,7 @@ pub(crate) unsafe trait Versioned: Copy {
 pub(crate) unsafe fn read<T: Versioned>(pointer: *const T, default: T, name: &str) -> Result<T> {
     // SAFETY: the caller's promise.
     let size = *unsafe { shared(pointer.cast::<usize>(), name) }?;
-    if size < size_of::<usize>() || size > size_of::<T>() {
+    if !is_a_version::<T>(size) || size > size_of::<T>() {
         return invalid(format!(
             "{name}->struct_size is {size}, and this library's {} has {} bytes: set it to sizeof({}), and link a library \
              that is not older than its header",
@@ -302,7 +308,7 @@ pub(crate) unsafe fn write<T: Versioned>(
     value: &T,
     name: &str,
 ) -> Result<()> {
-    if size < size_of::<usize>() {
+    if !is_a_version::<T>(size) {
         return invalid(format!("{name} of {size} bytes: give sizeof({})", T::NAME));
     }
     // SAFETY: the caller's promise.

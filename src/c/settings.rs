@@ -123,7 +123,7 @@ unsafe impl Versioned for RaraSettings {
 }
 
 impl RaraSettings {
-    fn new(preset: Preset) -> Self {
+    pub(crate) fn new(preset: Preset) -> Self {
         let settings = Settings::default();
         let precision = preset.precision();
         Self {

@@ -57,19 +57,19 @@ fn structs_of_other_versions() {
     // SAFETY: the struct has the room that is said; it may hold any bytes.
     unsafe {
         let mut settings: RaraSettings = std::mem::zeroed();
-        // An older host, whose struct ended after `sigma`.
-        let older = std::mem::offset_of!(RaraSettings, miss);
-        settings.miss = 77;
+        // An older host, whose struct ended after `miss`.
+        let older = std::mem::offset_of!(RaraSettings, trace_all);
+        settings.trace_all = 77;
         assert_eq!(rara_settings_default(&mut settings, older, preset), RARA_OK);
         assert_eq!(
-            (settings.struct_size, settings.miss),
+            (settings.struct_size, settings.trace_all),
             (older, 77),
             "left alone"
         );
         settings.mode = RARA_MODE_HARD;
         let read = crate::settings::settings(&settings).expect("is filled up");
         assert_eq!(read.mode, rara::Mode::Hard);
-        assert_eq!(read.miss, rara::Miss::Peak, "the default");
+        assert!(!read.trace_all, "the default");
         // A newer one.
         settings.struct_size = size_of::<RaraSettings>() + 8;
         let error = crate::settings::settings(&settings).expect_err("is not understood");
@@ -99,6 +99,41 @@ fn structs_of_other_versions() {
         settings.raster = 12;
         let error = crate::settings::settings(&settings).expect_err("no raster");
         assert_eq!(error.to_string(), "settings->raster 12 is no RaraRaster");
+    }
+}
+
+#[test]
+fn structs_of_no_version() {
+    #[repr(C)]
+    struct Room {
+        settings: RaraSettings,
+        behind: [u8; 16],
+    }
+    let ours = size_of::<RaraSettings>();
+    let first = size_of::<usize>();
+    // SAFETY: the struct has room for all of these sizes; it may hold any bytes.
+    unsafe {
+        let mut room: Room = std::mem::zeroed();
+        for size in [0, 1, first - 1, first + 1, ours - 1, ours + 1, ours + 7] {
+            room.settings = RaraSettings::new(rara::Preset::Balanced);
+            room.settings.struct_size = size;
+            let error = crate::settings::settings(&room.settings).expect_err("no version");
+            let text = error.to_string();
+            assert!(text.contains(&format!("struct_size is {size},")), "{text}");
+            room.settings.struct_size = 77;
+            let written = rara_settings_default(&mut room.settings, size, RARA_PRESET_FAST);
+            assert_fails(written, RARA_ERROR_INVALID, &format!("of {size} bytes"));
+            assert_eq!(room.settings.struct_size, 77, "left alone");
+        }
+        // A newer host's larger struct is filled as far as this library knows it, and cannot be read.
+        room.behind = [7; 16];
+        let written = rara_settings_default(&mut room.settings, ours + 8, RARA_PRESET_FAST);
+        assert_eq!(written, RARA_OK);
+        assert_eq!((room.settings.struct_size, room.behind), (ours, [7; 16]));
+        room.settings.struct_size = ours + 8;
+        assert!(crate::settings::settings(&room.settings).is_err());
+        room.settings.struct_size = ours;
+        assert!(crate::settings::settings(&room.settings).is_ok());
     }
 }
 

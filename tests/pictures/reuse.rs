@@ -5,8 +5,8 @@ use crate::common;
 use glam::DVec3;
 use rara::gpu::Bindings;
 use rara::{
-    Camera, Clip, ClipOp, Decay, ExactForm, Gaussians, Headless, Mode, Plane, Raster, Settings,
-    TargetFormat,
+    Camera, Clip, ClipOp, Decay, ExactForm, Gaussians, Headless, Miss, Mode, PhiForm, Picture,
+    Plane, Raster, Settings, Show, TargetFormat,
 };
 
 const SIZE: (u32, u32) = (250, 190);
@@ -31,6 +31,16 @@ impl Pair {
             headless
         });
         Self { keeps, forgets }
+    }
+
+    /// Draws frames one after the other, each as [`draw`](Self::draw) does, after one that leaves nothing to the first;
+    /// returns their pictures.
+    fn walk<const N: usize>(&mut self, frames: [(Camera, Clip, Settings); N]) -> [Picture; N] {
+        self.keeps.forget();
+        frames.map(|(camera, clip, settings)| {
+            self.draw(&camera, &clip, &settings);
+            self.forgets.picture().expect("reads back")
+        })
     }
 
     /// Draws a frame with both and compares all they tell; returns what the one skipped.
@@ -68,6 +78,11 @@ impl Pair {
 fn plane(scene: &Gaussians, normal: DVec3, share: f64) -> Plane {
     let (low, high) = rara::scene::extent_along(scene, normal);
     Plane::new(normal, -(low + share * (high - low))).expect("a finite normal")
+}
+
+/// The same plane, moved.
+fn nudged(plane: &Plane, by: f64) -> Plane {
+    Plane::new(plane.normal(), plane.offset() + by).expect("a finite normal")
 }
 
 fn cut(scene: &Gaussians, normal: DVec3, share: f64) -> Clip {
@@ -161,6 +176,7 @@ struct Frame {
     size: (u32, u32),
     camera: usize,
     share: f64,
+    nudge: f64,
     planes: usize,
     op: ClipOp,
 }
@@ -168,7 +184,7 @@ struct Frame {
 impl Frame {
     fn step(&mut self, rasters: &[Raster], pick: &mut impl FnMut(usize) -> usize) {
         let settings = &mut self.settings;
-        match pick(24) {
+        match pick(38) {
             0 => self.camera = pick(3),
             1 => self.size = common::scaled([SIZE, (97, 301), (8, 8)][pick(3)]),
             2 => settings.mode = [Mode::None, Mode::Hard, Mode::Rara, Mode::Exact][pick(4)],
@@ -188,6 +204,14 @@ impl Frame {
             7 => self.planes = 1 + pick(2),
             8 => settings.trace_all = pick(3) == 0,
             9 => self.op = [ClipOp::And, ClipOp::Or][pick(2)],
+            10 => settings.sigma = [1.0, 3.0, 5.0][pick(3)],
+            11 => settings.miss = [Miss::Keep, Miss::Drop, Miss::Peak][pick(3)],
+            12 => settings.show = [Show::Colour, Show::Weight][pick(2)],
+            13 => settings.precision.beam_switch = [0.0, 0.005, 0.05][pick(3)],
+            14 => settings.precision.transmittance_min = [0.0, 4e-6, 0.3][pick(3)],
+            15 => settings.sh_degree = [None, Some(0), Some(2)][pick(3)],
+            // Less than single precision tells apart: the planes' low words alone.
+            16 => self.nudge = [0.0, 1e-9, -1e-9][pick(3)],
             _ => self.share = [0.2, 0.4, 0.5, 0.55, 0.8][pick(5)],
         }
     }
@@ -213,6 +237,7 @@ fn whatever_changes_the_bytes_are_those_of_a_whole_frame() {
                 size: common::scaled(SIZE),
                 camera: 0,
                 share: 0.5,
+                nudge: 0.0,
                 planes: 1,
                 op: ClipOp::And,
             };
@@ -225,7 +250,7 @@ fn whatever_changes_the_bytes_are_those_of_a_whole_frame() {
                 let clip = Clip {
                     planes: normals[..frame.planes]
                         .iter()
-                        .map(|&normal| plane(&scene, normal, frame.share))
+                        .map(|&normal| nudged(&plane(&scene, normal, frame.share), frame.nudge))
                         .collect(),
                     op: frame.op,
                 };
@@ -236,6 +261,104 @@ fn whatever_changes_the_bytes_are_those_of_a_whole_frame() {
                 sweeps > steps / 6,
                 "only {sweeps} frames were those of a sweep"
             );
+        }
+    }
+}
+
+/// What one thing that changes is in the two frames, before and after.
+type Change = (&'static str, Settings, Settings);
+
+/// All that changes neither the camera nor where the clip is, each alone.
+fn changes() -> Vec<Change> {
+    let usual = Settings::default();
+    let traced = Settings {
+        mode: Mode::Rara,
+        ..usual
+    };
+    let changed = |name, before: Settings, change: fn(&mut Settings)| {
+        let mut after = before;
+        change(&mut after);
+        (name, before, after)
+    };
+    vec![
+        changed("sigma", traced, |s| s.sigma = 5.0),
+        changed("miss", traced, |s| s.miss = Miss::Keep),
+        changed("mode", traced, |s| s.mode = Mode::Hard),
+        changed("trace_all", usual, |s| s.trace_all = true),
+        changed("decay", usual, |s| s.decay = Some(Decay::Linear)),
+        changed("form", usual, |s| s.form = ExactForm::Affine),
+        changed("show", usual, |s| s.show = Show::Weight),
+        changed("beam_switch", usual, |s| s.precision.beam_switch = 0.0),
+        changed("phi", usual, |s| s.precision.phi = PhiForm::Logistic),
+        changed("transmittance_min", usual, |s| {
+            s.precision.transmittance_min = 0.3;
+        }),
+        changed("sh_degree", usual, |s| s.sh_degree = Some(0)),
+        changed("key_bits", usual, |s| s.precision.key_bits = 8),
+    ]
+}
+
+/// Each alone, under a camera that stands still and then moves; there and back.
+#[test]
+fn each_setting_alone_changes_what_it_should() {
+    let (_, scene) = common::generated_scenes(2_000).remove(0);
+    let mut pair = Pair::new(&scene);
+    let cameras = common::views(&scene, 3, common::scaled((125, 95)));
+    let clip = cut(&scene, DVec3::new(0.8, 0.3, 0.5).normalize(), 0.45);
+    for raster in [Raster::Tiles, Raster::Quad] {
+        for (name, before, after) in changes() {
+            let [before, after] = [before, after].map(|settings| Settings { raster, ..settings });
+            let steps = [
+                (0, before),
+                (0, after),
+                (1, after),
+                (1, before),
+                (2, after),
+                (2, before),
+            ];
+            let shown = pair
+                .walk(steps.map(|(camera, settings)| (cameras[camera], clip.clone(), settings)));
+            // Quads blend everything, whatever is behind.
+            if (name, raster) != ("transmittance_min", Raster::Quad) {
+                assert!(shown[0] != shown[1], "{name} changes nothing by {raster:?}");
+                assert!(shown[2] != shown[3], "{name} changes nothing by {raster:?}");
+            }
+        }
+    }
+}
+
+/// The same for a clip of which nothing but its planes' low words changes: a million units from the origin single precision
+/// knows an offset to a sixteenth, and so do centres, which stand in sheets there.
+#[test]
+fn a_planes_low_word_alone_changes_what_it_should() {
+    let (_, mut scene) = common::generated_scenes(2_000).remove(0);
+    for position in &mut scene.positions {
+        position.x += 1e6;
+    }
+    let mut pair = Pair::new(&scene);
+    let cameras = common::views(&scene, 3, common::scaled((125, 95)));
+    let mut sheets: Vec<f32> = scene.positions.iter().map(|position| position.x).collect();
+    sheets.sort_unstable_by(f32::total_cmp);
+    let sheet = f64::from(sheets[sheets.len() / 2]);
+    let clips = [0.01, -0.01].map(|beside| {
+        let plane = Plane::new(DVec3::X, beside - sheet).expect("a finite normal");
+        assert_eq!(f64::from(plane.offset() as f32), -sheet, "the high word");
+        Clip {
+            planes: vec![plane],
+            op: ClipOp::And,
+        }
+    });
+    for raster in [Raster::Tiles, Raster::Quad] {
+        for mode in [Mode::Hard, Mode::Rara, Mode::Exact] {
+            let settings = Settings {
+                mode,
+                raster,
+                ..Settings::default()
+            };
+            let steps = [(0, 0), (0, 1), (1, 1), (1, 0), (2, 1), (2, 0)];
+            let shown = pair
+                .walk(steps.map(|(camera, clip)| (cameras[camera], clips[clip].clone(), settings)));
+            assert!(shown[0] != shown[1] && shown[2] != shown[3], "{mode:?}");
         }
     }
 }

@@ -13,6 +13,7 @@ mod classify;
 mod clip;
 mod compact;
 mod cutoff;
+mod depth;
 mod project;
 mod sort;
 mod sweep;

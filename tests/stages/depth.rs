@@ -1,0 +1,127 @@
+//! Stage `depth`: how deep each survivor is, on average of what the clip leaves of it.
+
+use rara::gpu::{Bindings, Device, DeviceDesc};
+use rara::reference::depth::Depth;
+use rara::reference::{Footprint, Real, View};
+use rara::types::{FrameCounts, Splat, SplatDepth};
+use rara::{
+    Camera, Clip, ClipOp, ExpectedDepthDesc, Gaussians, Mode, Raster, Renderer, RendererDesc,
+    SceneBuffers, Settings, ShFormat, TargetFormat,
+};
+
+use crate::frame::{self, SIZES};
+
+/// What the stage has written of each survivor, and the survivor's number in the file.
+fn depths(
+    device: &Device,
+    scene: &Gaussians,
+    camera: &Camera,
+    clip: &Clip,
+) -> Vec<(usize, SplatDepth)> {
+    let format = TargetFormat::Float.vulkan();
+    let desc = RendererDesc {
+        bindings: Bindings::Bound,
+        expected_depth: Some(ExpectedDepthDesc::new(format)),
+        ..RendererDesc::new(format)
+    };
+    let mut renderer = Renderer::new(device, desc).expect("a renderer");
+    let there = SceneBuffers::upload(device, scene, ShFormat::Float).expect("uploads");
+    let configured = renderer.configure(&there, camera, clip, &settings());
+    configured.expect("configures");
+    let submitted = device.submit_and_wait(|cmd| {
+        // SAFETY: `cmd` is recording outside a scope, and all outlives the wait for it.
+        unsafe { renderer.prepare(cmd, &there) }
+    });
+    submitted.expect("runs");
+    if scene.is_empty() {
+        return Vec::new();
+    }
+    let read = |name| renderer.working_buffer(name).expect(name);
+    let counts: FrameCounts = bytemuck::pod_read_unaligned(&read("counts"));
+    let survivors = (counts.visible + counts.cutoff) as usize;
+    let splats = read("splats");
+    let splats = splats.chunks_exact(size_of::<Splat>());
+    let numbers = splats.map(|bytes| {
+        let splat: Splat = bytemuck::pod_read_unaligned(bytes);
+        splat.middle[2].to_bits() as usize
+    });
+    let depths = read("depths");
+    let depths = depths.chunks_exact(size_of::<SplatDepth>());
+    let depths = depths.map(bytemuck::pod_read_unaligned);
+    numbers.zip(depths).take(survivors).collect()
+}
+
+fn settings() -> Settings {
+    Settings {
+        mode: Mode::Exact,
+        raster: Raster::Quad,
+        ..Settings::default()
+    }
+}
+
+/// What the fragment stage makes of a record at an offset from the splat's centre: the mean, and the share that it is of.
+fn mean(depth: &SplatDepth, [dx, dy]: [f64; 2]) -> [f64; 2] {
+    let at = |[a, b, c, _]: [f32; 4]| f64::from(a) + f64::from(b) * dx + f64::from(c) * dy;
+    let density = |z: f64| (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt();
+    let whole = at(depth.mean);
+    let low = -at(depth.far).clamp(-8.0, 8.0);
+    let high = at(depth.near).clamp(-8.0, 8.0);
+    let moment = f64::from(depth.far[3]) * density(low) + f64::from(depth.near[3]) * density(high);
+    let between = if low + high > 0.0 {
+        (-low).phi() - (-high).phi()
+    } else {
+        high.phi() - low.phi()
+    };
+    match (low < high, depth.mean[3] != 0.0) {
+        (false, _) => [whole, 0.0],
+        (true, false) => [whole + moment / between, between],
+        (true, true) => [whole - moment / (1.0 - between), 1.0 - between],
+    }
+}
+
+#[test]
+fn mean_depths_are_the_twins() {
+    let device = Device::headless(&DeviceDesc {
+        selector: std::env::var("RARA_TEST_DEVICE").ok(),
+        validation: true,
+        ..DeviceDesc::default()
+    });
+    let device = device.expect("a device and the validation layer");
+    let (mut worst, mut moved, mut compared) = (0.0_f64, 0.0_f64, 0);
+    for count in SIZES {
+        let scene = frame::scene(count);
+        for (view, planes, op) in [(0, 1, ClipOp::And), (1, 3, ClipOp::And), (0, 2, ClipOp::Or)] {
+            let camera = frame::views(&scene)[view];
+            let single = View::<f32>::new(&camera);
+            let clip = frame::clip(&scene, planes, op);
+            for (index, ours) in depths(&device, &scene, &camera, &clip) {
+                let Some(footprint) = Footprint::new(&scene, index, &single) else {
+                    continue; // a tie of stage classify
+                };
+                let twin = Depth::new(&scene, index, &footprint, &clip, &settings());
+                let whole = Depth::new(&scene, index, &footprint, &Clip::default(), &settings());
+                let deviation = f64::from(footprint.rows[2].length());
+                let [k0, k1, k2] = footprint.factors.map(f64::from);
+                for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.5), (-1.2, -1.2)] {
+                    let (dx, dy) = (u / k0, (v - k1 * u / k0) / k2);
+                    let [ours, share] = mean(&ours, [dx, dy]);
+                    // Where nearly nothing is left its depth is a quotient of two roundings.
+                    if share < 0.01 || deviation == 0.0 {
+                        continue;
+                    }
+                    let at = |depth: &Depth<f32>| f64::from(depth.mean(dx as f32, dy as f32));
+                    let ulp = f64::from(f32::EPSILON) * f64::from(footprint.relative.length());
+                    let apart = (ours - at(&twin)).abs();
+                    worst = worst.max(apart / (deviation + 1e3 * ulp));
+                    moved = moved.max((at(&twin) - at(&whole)).abs() / deviation);
+                    compared += 1;
+                }
+            }
+        }
+    }
+    println!("{worst} deviations apart at worst of {compared}; the clip moves up to {moved}");
+    assert!(compared > 100_000 && moved > 1.0, "{compared}, {moved}");
+    // Of a splat's own thickness along the view axis, beside the rounding of its distance.
+    assert!(worst <= 2e-3, "{worst}");
+    assert_eq!(device.close(), Vec::<String>::new());
+}

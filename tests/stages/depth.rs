@@ -14,17 +14,11 @@ use crate::frame::{self, SIZES};
 /// What the stage has written of each survivor, and the survivor's number in the file.
 fn depths(
     device: &Device,
+    renderer: &mut Renderer,
     scene: &Gaussians,
     camera: &Camera,
     clip: &Clip,
 ) -> Vec<(usize, SplatDepth)> {
-    let format = TargetFormat::Float.vulkan();
-    let desc = RendererDesc {
-        bindings: Bindings::Bound,
-        expected_depth: Some(ExpectedDepthDesc::new(format)),
-        ..RendererDesc::new(format)
-    };
-    let mut renderer = Renderer::new(device, desc).expect("a renderer");
     let there = SceneBuffers::upload(device, scene, ShFormat::Float).expect("uploads");
     let configured = renderer.configure(&there, camera, clip, &settings());
     configured.expect("configures");
@@ -87,6 +81,13 @@ fn mean_depths_are_the_twins() {
         ..DeviceDesc::default()
     });
     let device = device.expect("a device and the validation layer");
+    let format = TargetFormat::Float.vulkan();
+    let desc = RendererDesc {
+        bindings: Bindings::Bound,
+        expected_depth: Some(ExpectedDepthDesc::new(format)),
+        ..RendererDesc::new(format)
+    };
+    let mut renderer = Renderer::new(&device, desc).expect("a renderer");
     let (mut worst, mut moved, mut compared) = (0.0_f64, 0.0_f64, 0);
     for count in SIZES {
         let scene = frame::scene(count);
@@ -94,7 +95,7 @@ fn mean_depths_are_the_twins() {
             let camera = frame::views(&scene)[view];
             let single = View::<f32>::new(&camera);
             let clip = frame::clip(&scene, planes, op);
-            for (index, ours) in depths(&device, &scene, &camera, &clip) {
+            for (index, ours) in depths(&device, &mut renderer, &scene, &camera, &clip) {
                 let Some(footprint) = Footprint::new(&scene, index, &single) else {
                     continue; // a tie of stage classify
                 };
@@ -123,5 +124,6 @@ fn mean_depths_are_the_twins() {
     assert!(compared > 100_000 && moved > 1.0, "{compared}, {moved}");
     // Of a splat's own thickness along the view axis, beside the rounding of its distance.
     assert!(worst <= 2e-3, "{worst}");
+    drop(renderer);
     assert_eq!(device.close(), Vec::<String>::new());
 }

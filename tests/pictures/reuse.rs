@@ -307,14 +307,23 @@ fn each_setting_alone_changes_what_it_should() {
     let (_, scene) = common::generated_scenes(2_000).remove(0);
     let mut pair = Pair::new(&scene);
     let cameras = common::views(&scene, 3, common::scaled((125, 95)));
-    let clip = cut(&scene, DVec3::new(0.8, 0.3, 0.5).normalize(), 0.45);
+    let normal = DVec3::new(0.8, 0.3, 0.5).normalize();
+    let clips = [0.4, 0.45].map(|share| cut(&scene, normal, share));
     for (name, before, after) in changes() {
-        let steps = [(0, before), (0, after), (1, after), (1, before), (2, after)];
-        let frame =
-            |(camera, settings): (usize, Settings)| (cameras[camera], clip.clone(), settings);
-        let shown = pair.walk(steps.map(frame));
-        assert!(shown[0] != shown[1], "{name} changes nothing");
-        assert!(shown[2] != shown[3], "{name} changes nothing");
+        // The second frame begins a sweep: what the third may take over is more than after a whole frame, as the fourth is.
+        let steps = [
+            (0, 0, before),
+            (0, 1, before),
+            (0, 1, after),
+            (1, 1, after),
+            (1, 1, before),
+            (2, 1, after),
+        ];
+        let shown = pair.walk(
+            steps.map(|(camera, clip, settings)| (cameras[camera], clips[clip].clone(), settings)),
+        );
+        assert!(shown[1] != shown[2], "{name} changes nothing");
+        assert!(shown[3] != shown[4], "{name} changes nothing");
     }
 }
 

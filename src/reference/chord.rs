@@ -6,8 +6,8 @@
 //! `c = b1' x b2'`, its densest point (nearest to the centre) is `u* = p x c / |c|^2` with `p = dx b2' - dy b1'`, and
 //! `|u*| = |p| / |c|`. Where the paper leaves a case open, the reading is the limit of the length ratio.
 
-use super::classify::UnitPlane;
 use super::real::{Real, Vec3};
+use super::region::UnitPlane;
 use crate::{ClipOp, Miss};
 
 /// A cut splat traced by mode `rara`.

@@ -7,59 +7,14 @@
 
 use glam::DVec3;
 
-use super::clip::{self, Verdict, clip_side};
+use super::clip;
 use super::cutoff::is_beam;
 use super::footprint::Footprint;
-use super::real::{Real, Vec3, vec3};
+use super::real::{Real, vec3};
+use super::region::{Side, UnitPlane, gaussian_side};
 use super::view::View;
 use crate::limits::{ALPHA_MIN_INVERSE, BEYOND_EYE, WIDENING_REST};
-use crate::{Clip, Gaussians, Mode, Plane, Settings};
-
-/// The paper's three classes, and what is not seen anyway.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// Outside the view or too faint, whatever the clip says.
-    Culled,
-    /// In view and untouched.
-    Visible,
-    /// In view and cut.
-    Cutoff,
-    /// In view but wholly clipped away.
-    Invisible,
-}
-
-/// A clip plane in a Gaussian's unit space: the point `mu + M u` is visible iff `offset + normal . u >= 0`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct UnitPlane<T> {
-    /// `a = M^T n`, world units.
-    pub normal: Vec3<T>,
-    /// `g = n . mu + d`: the signed distance of the Gaussian's centre, world units.
-    pub offset: T,
-}
-
-impl<T: Real> UnitPlane<T> {
-    /// The plane seen from inside Gaussian `index`. The distance is taken in double precision and rounded even in
-    /// f32: far from the world's origin its two terms cancel, and the GPU computes it in two floats for that reason.
-    pub fn new(scene: &Gaussians, index: usize, axes: &[Vec3<T>; 3], plane: &Plane) -> Self {
-        let n = Vec3::of(plane.normal());
-        Self {
-            normal: vec3(axes[0].dot(n), axes[1].dot(n), axes[2].dot(n)),
-            offset: T::of(plane.distance(scene.positions[index].as_dvec3())),
-        }
-    }
-
-    /// Whether the Gaussian is farther from the plane than `reach` standard deviations, and on which side.
-    pub(super) fn verdict(&self, reach: T) -> Verdict {
-        let half = reach * self.normal.length();
-        if self.offset >= half {
-            Verdict::Keep
-        } else if self.offset <= -half {
-            Verdict::Drop
-        } else {
-            Verdict::Cut
-        }
-    }
-}
+use crate::{Clip, Gaussians, Mode, Settings};
 
 /// The class of every Gaussian of the scene.
 pub fn classify<T: Real>(
@@ -85,7 +40,7 @@ pub fn side<T: Real>(
     settings: &Settings,
 ) -> Side {
     let reach = band(scene, index, footprint, settings);
-    clip_side(scene, index, &footprint.axes, reach, clip, settings)
+    gaussian_side(scene, index, &footprint.axes, reach, clip, settings)
 }
 
 /// The planes that cut a Gaussian of class [`Side::Cutoff`], in the clip's order.
@@ -102,7 +57,7 @@ pub fn cutting<T: Real>(
         .iter()
         .map(|plane| UnitPlane::new(scene, index, &footprint.axes, plane));
     planes
-        .filter(|plane| settings.trace_all || plane.verdict(reach) == Verdict::Cut)
+        .filter(|plane| plane.gaussian_side(reach, settings) == Side::Cutoff)
         .collect()
 }
 

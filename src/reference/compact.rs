@@ -1,6 +1,6 @@
 //! Stage `compact`: the Gaussians that are drawn, in the scene's order.
 
-use super::classify::Side;
+use super::region::Side;
 
 /// Indices of the visible and the cut Gaussians, in the scene's order.
 pub fn compact(sides: &[Side]) -> Vec<u32> {

@@ -1,10 +1,11 @@
 //! Stage `cutoff`: how a cut splat's weight varies over its pixels.
 
 use super::chord::Chord;
-use super::classify::{Side, cutting, side};
+use super::classify::{cutting, side};
 use super::exact::{AffinePlane, Beam};
 use super::footprint::Footprint;
 use super::real::Real;
+use super::region::{self, Side};
 use super::view::View;
 use crate::{Clip, ClipOp, ExactForm, Gaussians, Mode, Settings};
 
@@ -29,7 +30,7 @@ impl<T: Real> Cut<T> {
     pub fn weight(&self, dx: T, dy: T) -> T {
         match self {
             Cut::Affine { planes, op } => {
-                super::exact::combine(*op, planes.iter().map(|plane| plane.threshold(dx, dy)))
+                region::share(*op, planes.iter().map(|plane| plane.threshold(dx, dy)))
             }
             Cut::Beam(beam) => beam.weight(dx, dy),
             Cut::Chord(chord) => chord.weight(dx, dy),

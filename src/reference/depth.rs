@@ -15,9 +15,9 @@
 //! two where both are thresholds in one variable, as on a ray without low-pass. A union leaves out such an interval of its
 //! complements, and what that takes of the whole's mean is left to the rest.
 
-use super::classify::UnitPlane;
 use super::footprint::{Footprint, determinant, scaled};
 use super::real::{Real, Vec3};
+use super::region::UnitPlane;
 use super::view::View;
 use super::{classify, splat};
 use crate::{Camera, Clip, ClipOp, Gaussians, Mode, Settings};

@@ -8,10 +8,10 @@
 //! the splat on the visible side is therefore `Phi(mean / deviation)`, and alpha times that share is what EWA
 //! splatting (the paper's equation 9) makes of the truncated Gaussian, filtered like every other splat.
 
-use super::classify::UnitPlane;
 use super::footprint::{Footprint, determinant, scaled};
-use super::orthant::{Direction, Threshold, orthant};
+use super::orthant::{Direction, Threshold};
 use super::real::{Real, Vec3};
+use super::region::{UnitPlane, share};
 use super::view::View;
 use crate::ClipOp;
 
@@ -166,7 +166,7 @@ impl<T: Real> Beam<T> {
         let planes = self.planes.iter().map(threshold);
         match &self.front {
             Some(front) => in_front(self.op, planes, threshold(front).z),
-            None => combine(self.op, planes),
+            None => share(self.op, planes),
         }
     }
 }
@@ -176,15 +176,7 @@ pub fn holds_the_eye<T: Real>(footprint: &Footprint<T>) -> bool {
     footprint.centre.z < footprint.reach * footprint.rows[2].length()
 }
 
-/// The share that several planes leave in one pixel.
-pub fn combine<T: Real>(op: ClipOp, planes: impl Iterator<Item = Threshold<T>>) -> T {
-    match op {
-        ClipOp::And => orthant(planes),
-        ClipOp::Or => T::one() - orthant(planes.map(Threshold::complement)),
-    }
-}
-
-/// The same where the eye is within the splat: of what is before it, the part beyond `front` on the ray.
+/// What [`share`] says where the eye is within the splat: of what is before it, the part beyond `front` on the ray.
 ///
 /// Such a splat is so large that the low-pass is nothing. On one ray every plane is a threshold in the same normal
 /// variable: "far" planes keep what lies beyond theirs, "near" ones what lies before. Of each kind only the strictest

@@ -19,15 +19,16 @@ pub mod orthant;
 pub mod project;
 pub mod quadrature;
 mod real;
+pub mod region;
 pub mod sort;
 pub mod splat;
 mod view;
 
-pub use classify::{Side, UnitPlane};
 pub use cutoff::Cut;
 pub use footprint::Footprint;
 pub use project::Splat;
 pub use real::{Real, Vec3, vec3};
+pub use region::{Side, UnitPlane};
 pub use view::View;
 
 use crate::{Camera, Clip, Counts, Gaussians, Picture, Settings};

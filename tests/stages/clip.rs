@@ -2,7 +2,9 @@
 
 use glam::{DVec3, Quat, Vec3};
 use rara::limits::{ALPHA_MIN, BLOCK_SIZE};
+use rara::reference::region::{Bounds, box_side};
 use rara::reference::{Side, clip};
+use rara::types::Block;
 use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings};
 
 use crate::frame::{self, SIZES, Stages};
@@ -48,6 +50,7 @@ fn the_clips_sides_are_the_twins() {
             stages.draw(&frame::views(&scene)[0], &planes, &settings);
             if count > 0 {
                 check(&mut stages, &planes, &settings);
+                check_blocks(&mut stages, &planes, &settings);
             }
         }
     }
@@ -74,6 +77,36 @@ fn check(stages: &mut Stages, planes: &Clip, settings: &Settings) {
             assert!(ours.contains(&side), "some are {side:?}: {settings:?}");
         }
     }
+}
+
+/// The shader widens the box and the band by what rounding may take: where it settles a block, its twin does so too, and it
+/// leaves hardly a block open that the twin settles.
+fn check_blocks(stages: &mut Stages, planes: &Clip, settings: &Settings) {
+    let sides: Vec<u32> = stages.read("clip_sides");
+    let blocks: Vec<Block> = stages.read("blocks");
+    let count = stages.scene.len().div_ceil(BLOCK_SIZE as usize);
+    let mut open = 0;
+    for (side, block) in sides.into_iter().zip(blocks).take(count) {
+        let corner =
+            |corner: [f32; 4]| DVec3::new(corner[0].into(), corner[1].into(), corner[2].into());
+        let (low, high) = (corner(block.low_reach), corner(block.high_sigma));
+        let bounds = Bounds {
+            middle: 0.5 * (low + high),
+            half: 0.5 * (high - low),
+            reach: f64::from(block.low_reach[3]).max(0.0),
+            sigma: f64::from(block.high_sigma[3]).abs(),
+        };
+        let twin = box_side(&bounds, planes, settings);
+        match side {
+            1 => assert_eq!(twin, Side::Invisible, "{block:?}"),
+            2 => assert_eq!(twin, Side::Visible, "{block:?}"),
+            _ => open += usize::from(twin != Side::Cutoff),
+        }
+    }
+    assert!(
+        open <= 1 + count / 50,
+        "{open} of {count} blocks are left open"
+    );
 }
 
 /// At coordinates of a million single precision knows an offset to a sixteenth only: the rest is in the low word.

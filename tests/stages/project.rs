@@ -109,10 +109,10 @@ const OBLIQUE: [f64; 16] = [
     -0.267_562_880_961_325_6,
     -0.055_742_266_866_942_8,
     0.015_482_193_321_690_4,
-    -0.303_387_789_898_134_0,
+    -0.303_387_789_898_134,
     0.523_670_551_572_988_5,
     0.215_419_573_914_993_8,
-    -0.349_113_701_048_659_0,
+    -0.349_113_701_048_659,
     -0.126_411_579_124_222_5,
     0.079_131_210_310_861_8,
 ];
@@ -124,7 +124,7 @@ fn the_harmonics_are_those_of_3dgs() {
         assert!((ours - literal).abs() < 1e-12, "{index}: {ours}, {literal}");
     }
     let mut stages = Stages::new();
-    for index in 0..16 {
+    for (index, literal) in OBLIQUE.into_iter().enumerate() {
         let mut scene = frame::one(
             Vec3::new(2.0, -3.0, 6.0),
             Vec3::splat(0.1),
@@ -139,7 +139,7 @@ fn the_harmonics_are_those_of_3dgs() {
         stages.load(&scene);
         stages.draw(&ahead(), &Clip::default(), &quads());
         let [red, green, blue, _] = stages.splats()[0].colour_cut.map(f64::from);
-        let want = 0.25 * OBLIQUE[index];
+        let want = 0.25 * literal;
         assert!((red - 0.5 - want).abs() < 3e-7, "{index}: red {red}");
         assert!((green - 0.5 + want).abs() < 3e-7, "{index}: green {green}");
         assert_eq!(blue, 0.5);

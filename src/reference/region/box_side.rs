@@ -1,0 +1,59 @@
+//! On which side of the region all Gaussians are whose centres lie in a box.
+
+use glam::DVec3;
+
+use super::Side;
+use crate::{Clip, ClipOp, Mode, Plane, Settings};
+
+/// Gaussians whose centres lie in a box.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// The box's middle and half its sides, world units.
+    pub middle: DVec3,
+    /// Half its sides, world units.
+    pub half: DVec3,
+    /// The farthest that the contour of 1/255 of one lies from its centre, world units.
+    pub reach: f64,
+    /// The largest standard deviation of one, world units.
+    pub sigma: f64,
+}
+
+/// The side that all of them have; [`Side::Cutoff`] where they may differ. Conservative: a box has a side only where each
+/// Gaussian alone has it.
+pub fn box_side(bounds: &Bounds, clip: &Clip, settings: &Settings) -> Side {
+    if clip.planes.is_empty() || settings.mode == Mode::None {
+        return Side::Visible;
+    }
+    if settings.trace_all && settings.mode != Mode::Hard {
+        return Side::Cutoff;
+    }
+    let (decides, undecided) = match clip.op {
+        ClipOp::And => (Side::Invisible, Side::Visible),
+        ClipOp::Or => (Side::Visible, Side::Invisible),
+    };
+    let mut side = undecided;
+    for plane in &clip.planes {
+        let one = plane_box_side(plane, bounds, settings);
+        if one == decides {
+            return one;
+        }
+        if one == Side::Cutoff {
+            side = one;
+        }
+    }
+    side
+}
+
+fn plane_box_side(plane: &Plane, bounds: &Bounds, settings: &Settings) -> Side {
+    let support = match settings.mode {
+        Mode::Hard | Mode::None => 0.0,
+        Mode::Rara => bounds.reach.max(f64::from(settings.sigma) * bounds.sigma),
+        Mode::Exact => bounds.reach,
+    };
+    let margin = plane.normal().abs().dot(bounds.half) + support;
+    match plane.distance(bounds.middle) {
+        distance if distance > margin => Side::Visible,
+        distance if distance < -margin => Side::Invisible,
+        _ => Side::Cutoff,
+    }
+}

@@ -1,0 +1,25 @@
+//! The region that a clip keeps: its shape, and the questions that the stages ask of it, a file each, beside the files of the
+//! same names in `glsl/region/`.
+
+mod box_side;
+mod gaussian_side;
+mod plane;
+mod share;
+
+pub use box_side::{Bounds, box_side};
+pub use gaussian_side::gaussian_side;
+pub use plane::UnitPlane;
+pub use share::share;
+
+/// The paper's three classes, and what is not seen anyway.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Outside the view or too faint, whatever the clip says.
+    Culled,
+    /// In view and untouched.
+    Visible,
+    /// In view and cut.
+    Cutoff,
+    /// In view but wholly clipped away.
+    Invisible,
+}

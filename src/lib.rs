@@ -14,7 +14,6 @@ pub mod files;
 mod framing;
 pub mod gpu;
 pub mod guide;
-mod half;
 mod json;
 pub mod limits;
 pub mod measure;

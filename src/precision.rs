@@ -3,8 +3,8 @@
 #![forbid(unsafe_code)]
 
 use ash::vk;
+use half::f16;
 
-use crate::half::from_half;
 use crate::limits;
 use crate::types;
 
@@ -34,7 +34,7 @@ impl TargetFormat {
     pub(crate) fn decode(self, bytes: &[u8]) -> Vec<[f32; 4]> {
         let channel = |at: usize| match self {
             Self::Unorm8 => f32::from(bytes[at]) / 255.0,
-            Self::Half => from_half(u16::from_le_bytes([bytes[2 * at], bytes[2 * at + 1]])),
+            Self::Half => f16::from_le_bytes([bytes[2 * at], bytes[2 * at + 1]]).to_f32(),
             Self::Float => f32::from_le_bytes(std::array::from_fn(|byte| bytes[4 * at + byte])),
         };
         let pixels = bytes.len() / self.pixel_bytes() as usize;

@@ -1,6 +1,7 @@
 //! How a Gaussian's spherical harmonics lie in device memory: the twin of `glsl/sh_storage.glsl`.
 
-use crate::half::{from_half, to_half};
+use half::f16;
+
 use crate::precision::ShFormat;
 use crate::types;
 
@@ -16,7 +17,7 @@ pub(crate) fn words(format: ShFormat, numbers: usize) -> usize {
 
 /// Appends a Gaussian's coefficients, `[coefficient][r, g, b]`, to `out`.
 pub(crate) fn pack(format: ShFormat, numbers: &[f32], out: &mut Vec<u32>) {
-    let pair = |a: f32, b: f32| u32::from(to_half(a)) | u32::from(to_half(b)) << 16;
+    let pair = |a: f32, b: f32| half_bits(a) | half_bits(b) << 16;
     match format {
         ShFormat::Float => out.extend(numbers.iter().map(|v| v.to_bits())),
         ShFormat::Half => out.extend(
@@ -28,7 +29,7 @@ pub(crate) fn pack(format: ShFormat, numbers: &[f32], out: &mut Vec<u32>) {
         ShFormat::Byte => {
             let (constant, rest) = numbers.split_at(3);
             // What the shader will multiply by is the rounded scale.
-            let scale = from_half(to_half(largest(rest)));
+            let scale = nearest_half(largest(rest)).to_f32();
             out.push(pair(constant[0], constant[1]));
             out.push(pair(constant[2], scale));
             out.extend(rest.chunks(4).map(|four| {
@@ -41,15 +42,23 @@ pub(crate) fn pack(format: ShFormat, numbers: &[f32], out: &mut Vec<u32>) {
     }
 }
 
+/// The nearest 16-bit float, ties to even; what is beyond the largest, or no number, becomes the largest.
+fn nearest_half(value: f32) -> f16 {
+    f16::from_f32(value.abs().min(f16::MAX.to_f32_const()).copysign(value))
+}
+
+fn half_bits(value: f32) -> u32 {
+    nearest_half(value).to_bits().into()
+}
+
 /// Bits of red, green and blue of a packed coefficient.
 const BITS: [u32; 3] = [11, 11, 10];
 
 fn pack_words(numbers: &[f32], out: &mut Vec<u32>) {
     let (constant, mut rest) = numbers.split_at(3);
-    let half = |v: f32| u32::from(to_half(v));
-    out.push(half(constant[0]) | half(constant[1]) << 16);
+    out.push(half_bits(constant[0]) | half_bits(constant[1]) << 16);
     let exponents_at = out.len();
-    out.push(half(constant[2]));
+    out.push(half_bits(constant[2]));
     for degree in 1..=3 {
         let (numbers, higher) = rest.split_at(rest.len().min(3 * (2 * degree + 1)));
         let (exponent, scale) = scale(largest(numbers));
@@ -104,7 +113,7 @@ mod tests {
 
     /// What the shader reads.
     fn component(format: ShFormat, packed: &[u32], k: usize) -> f32 {
-        let half = |k: usize| from_half((packed[k / 2] >> (16 * (k % 2))) as u16);
+        let half = |k: usize| f16::from_bits((packed[k / 2] >> (16 * (k % 2))) as u16).to_f32();
         let signed = |word: u32, low: u32, bits: u32| {
             ((word << (32 - low - bits)) as i32 >> (32 - bits)) as f32
         };
@@ -214,6 +223,24 @@ mod tests {
         }
         assert_eq!((scale(0.0).0, scale(1e-40).0), (0, 0));
         assert_eq!(scale(f32::MAX), (31, 65536.0));
+    }
+
+    #[test]
+    fn every_half_survives_the_way_there_and_back_and_ties_go_to_even() {
+        for bits in 0..=u16::MAX {
+            let half = f16::from_bits(bits);
+            let back = nearest_half(half.to_f32());
+            if half.is_finite() {
+                assert_eq!(back.to_bits(), bits, "{bits:#06x}");
+            } else {
+                assert_eq!(back.to_f32().abs(), 65504.0, "{bits:#06x}");
+            }
+        }
+        assert_eq!(nearest_half(1.0 + 1.0 / 2048.0).to_f32(), 1.0);
+        assert_eq!(
+            nearest_half(1.0 + 3.0 / 2048.0).to_f32(),
+            1.0 + 2.0 / 1024.0
+        );
     }
 
     #[test]

@@ -4,6 +4,7 @@
 #![doc = include_str!("../README.md")]
 
 pub mod camera;
+#[cfg(feature = "json")]
 pub mod camera_files;
 pub mod clip;
 #[cfg(test)]
@@ -14,19 +15,23 @@ pub mod files;
 mod framing;
 pub mod gpu;
 pub mod guide;
+#[cfg(feature = "json")]
 mod json;
 pub mod limits;
+#[cfg(feature = "lab")]
 pub mod measure;
 mod passes;
 pub mod picture;
 pub mod placement;
 pub mod precision;
+#[cfg(feature = "lab")]
 pub mod reference;
 pub mod renderer;
 pub mod scene;
 mod session;
 pub mod settings;
 pub mod stats;
+#[cfg(feature = "lab")]
 pub mod stress;
 pub mod trace;
 pub mod types;

@@ -1,9 +1,8 @@
 //! What a frame tells about itself; the `--json` statistics are made of it.
 
-use serde::Serialize;
-
 /// How many Gaussians ended where. `visible + cutoff + invisible + culled` is the scene's count.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Counts {
     /// In view and untouched by the clip.
     pub visible: u32,
@@ -18,7 +17,8 @@ pub struct Counts {
 }
 
 /// GPU time of one stage.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PassTime {
     /// The stage: the same name as its shader, module and debug label.
     pub name: &'static str,
@@ -27,7 +27,8 @@ pub struct PassTime {
 }
 
 /// What one stage did, as the device has counted it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PassStatistics {
     /// The stage.
     pub name: &'static str,
@@ -42,7 +43,8 @@ pub struct PassStatistics {
 }
 
 /// Which way of turning splats into pixels a frame took.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct RasterChoice {
     /// `mesh`, `quad` or `tiles`; empty before the first frame.
     pub path: &'static str,
@@ -51,7 +53,8 @@ pub struct RasterChoice {
 }
 
 /// The statistics of one frame.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FrameStats {
     /// How many Gaussians ended where.
     pub counts: Counts,
@@ -66,6 +69,6 @@ pub struct FrameStats {
     /// How splats became pixels, and why in that way.
     pub raster: RasterChoice,
     /// What each stage did, where that was asked for and the device counts it.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub statistics: Vec<PassStatistics>,
 }

@@ -2,9 +2,11 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "json")]
 mod file;
 mod shape;
 
+#[cfg(feature = "json")]
 pub use file::{NamedPlane, load_planes, planes_from_json};
 pub use shape::{Shape, numbers};
 

@@ -53,7 +53,8 @@ pub(super) struct Inner {
 }
 
 /// What a buffer or an image is for, and the device memory that it takes.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct NamedBytes {
     /// Its name: what it is for.
     pub name: String,

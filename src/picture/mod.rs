@@ -2,6 +2,7 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "picture")]
 mod file;
 
 /// RGBA pixels, 32-bit float, premultiplied, blended values as they are (no transfer function).

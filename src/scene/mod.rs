@@ -5,14 +5,21 @@
 mod bounds;
 mod gaussians;
 mod generate;
-pub mod ply;
+#[cfg(feature = "ply")]
+mod ply;
+#[cfg(feature = "ply")]
 mod report;
+#[cfg(feature = "ply")]
 mod save;
 
 pub use bounds::{Bounds, extent_along};
 pub use gaussians::{Gaussians, sh_coefficients};
+#[cfg(feature = "lab")]
 pub(crate) use generate::random::Random;
 pub use generate::{Kind, generate};
-pub use ply::{Loaded, load, load_from};
-pub use report::{LoadReport, Remark};
-pub use save::save_ply;
+#[cfg(feature = "ply")]
+pub use {
+    ply::{Loaded, load, load_from},
+    report::{LoadReport, Remark},
+    save::save_ply,
+};

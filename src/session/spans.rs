@@ -2,11 +2,9 @@
 
 use std::time::Instant;
 
-use serde_json::json;
-
 use crate::gpu::{Device, PassSpan};
 use crate::renderer::RecordedFrame;
-use crate::trace::Trace;
+use crate::trace::{Note, Trace};
 
 /// Adds the stages of the frame that has just been waited for. Where the device's clock cannot be read, the first stage
 /// begins with the submission, and the trace says so.
@@ -17,28 +15,29 @@ pub(super) fn add(
     submitted: Instant,
 ) {
     let info = device.info();
-    trace.note("device", info.name.as_str());
-    trace.note("driver", info.driver.as_str());
+    let note = |key, words: &str| trace.note(key, Note::Text(words.into()));
+    note("device", &info.name);
+    note("driver", &info.driver);
     let spans = frame.map(RecordedFrame::pass_spans).unwrap_or_default();
     let Some(first) = spans.first() else {
-        trace.note("gpu_clock", "none: the device has no timestamps");
+        note("gpu_clock", "none: the device has no timestamps");
         return;
     };
     let (tick, at) = match device.calibrate() {
         Some(reading) => {
-            trace.note(
+            note(
                 "gpu_clock",
                 "calibrated: the device's clock was read beside the processor's after each frame",
             );
             trace.note(
                 "gpu_clock_within_us",
-                reading.within.as_nanos() as f64 * 1e-3,
+                Note::Number(reading.within.as_nanos() as f64 * 1e-3),
             );
             (reading.tick, reading.at)
         }
         None => {
             let how = "aligned: a frame's first stage is shown where the frame was submitted";
-            trace.note("gpu_clock", how);
+            note("gpu_clock", how);
             (first.begin, submitted)
         }
     };
@@ -52,9 +51,8 @@ pub(super) fn add(
         .unwrap_or_default();
     for PassSpan { name, begin, end } in spans {
         let about = counted.iter().find(|pass| pass.name == name);
-        let about = about.map_or(json!({}), |pass| json!(pass));
         let begin = place(begin);
-        trace.gpu(name, [begin, place(end).max(begin)], about);
+        trace.gpu(name, [begin, place(end).max(begin)], about.copied());
     }
 }
 

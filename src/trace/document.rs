@@ -1,0 +1,78 @@
+//! A trace as JSON.
+
+use serde_json::{Map, Value, json};
+
+use super::{Lane, Span, Trace};
+
+impl Trace {
+    /// The document that `chrome://tracing` and <https://ui.perfetto.dev> open.
+    pub fn json(&self) -> String {
+        let events = self.events();
+        let named = |lane: Lane, name: &str| {
+            ["process_name", "thread_name"].map(|what| {
+                json!({"ph": "M", "name": what, "pid": lane as u32, "tid": lane as u32, "args": {"name": name}})
+            })
+        };
+        let mut list: Vec<Value> = named(Lane::Cpu, "CPU").into();
+        list.extend(named(Lane::Gpu, "GPU"));
+        let mut spans: Vec<&Span> = events.spans.iter().collect();
+        // In the order of time, what holds others before them.
+        spans.sort_by(|a, b| a.begin.total_cmp(&b.begin).then(b.end.total_cmp(&a.end)));
+        list.extend(spans.iter().map(|span| {
+            json!({
+                "ph": "X", "name": span.name, "pid": span.lane as u32, "tid": span.lane as u32,
+                "ts": span.begin, "dur": span.end - span.begin,
+                "args": span.about.map_or(json!({}), |about| json!(about)),
+            })
+        }));
+        let notes: Map<String, Value> = events
+            .notes
+            .iter()
+            .map(|(key, note)| ((*key).into(), json!(note)))
+            .collect();
+        let document = json!({
+            "traceEvents": list, "displayTimeUnit": "ms", "metadata": notes,
+        });
+        document.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stats::PassStatistics;
+    use crate::trace::Note;
+
+    #[test]
+    fn what_holds_others_comes_first() {
+        let trace = Trace::new();
+        trace.span("outer", || trace.span("inner", || ()));
+        let about = PassStatistics {
+            name: "sort",
+            primitives: 7,
+            ..PassStatistics::default()
+        };
+        trace.gpu("sort", [3.0, 5.0], Some(about));
+        trace.note("clock", Note::Text("read".into()));
+        trace.note("clock", Note::Text("none".into()));
+        trace.note("within", Note::Number(1.5));
+        let document: Value = serde_json::from_str(&trace.json()).expect("JSON");
+        let events = document["traceEvents"].as_array().expect("a list");
+        let cpu: Vec<_> = events
+            .iter()
+            .filter(|event| event["ph"] == "X" && event["pid"] == 1)
+            .map(|event| event["name"].as_str().expect("a name"))
+            .collect();
+        assert_eq!(cpu, ["outer", "inner"]);
+        let sort = events.iter().find(|event| event["name"] == "sort");
+        let sort = sort.expect("the device's span");
+        assert_eq!((&sort["ts"], &sort["dur"]), (&json!(3.0), &json!(2.0)));
+        assert_eq!(sort["args"]["primitives"], 7);
+        let inner = events.iter().find(|event| event["name"] == "inner");
+        assert_eq!(inner.expect("a span")["args"], json!({}));
+        assert_eq!(
+            document["metadata"],
+            json!({"clock": "none", "within": 1.5})
+        );
+    }
+}

@@ -4,6 +4,7 @@ use crate::precision::Precision;
 
 /// How a clip treats the Gaussians that it cuts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Mode {
     /// No clipping.
     None,
@@ -18,6 +19,7 @@ pub enum Mode {
 
 /// What the weight w of a cut splat scales.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Decay {
     /// Alpha: `alpha' = alpha w` (the paper).
     Linear,
@@ -27,6 +29,7 @@ pub enum Decay {
 
 /// [`Mode::Rara`] only: what a cutoff splat keeps in a pixel whose ray misses the traced ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Miss {
     /// Everything (the paper's text).
     Keep,
@@ -39,11 +42,12 @@ pub enum Miss {
 
 /// How splats become pixels. All give the same picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Raster {
     /// The faster path on the device at hand.
     #[default]
     Auto,
-    /// `VK_EXT_mesh_shader`.
+    /// Mesh shaders (VK_EXT_mesh_shader).
     Mesh,
     /// Instanced quads.
     Quad,
@@ -54,8 +58,9 @@ pub enum Raster {
 
 /// What a frame shows of its splats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Show {
-    /// Their colours.
+    /// The splats' colours.
     #[default]
     Colour,
     /// What the clip does to them: blue where it leaves them whole; where it cuts, from red, nothing is kept in this pixel,

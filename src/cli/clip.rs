@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use rara::clip::{Shape, load_planes};
 use rara::{Clip, ClipOp};
 
@@ -22,13 +22,7 @@ pub(super) struct ClipArgs {
     clip_file: Vec<String>,
     /// How several shapes combine: visible in all of them, or in any
     #[arg(long, value_name = "OP", default_value = "and")]
-    clip_op: Op,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Op {
-    And,
-    Or,
+    clip_op: ClipOp,
 }
 
 impl ClipArgs {
@@ -48,10 +42,7 @@ impl ClipArgs {
 
     /// How they combine.
     pub(super) fn op(&self) -> ClipOp {
-        match self.clip_op {
-            Op::And => ClipOp::And,
-            Op::Or => ClipOp::Or,
-        }
+        self.clip_op
     }
 }
 
@@ -101,7 +92,7 @@ mod tests {
     use glam::DVec3;
     use rara::limits::MAX_CLIP_PLANES;
 
-    fn clip(shapes: &[&str], clip_op: Op) -> Result<Clip, Failure> {
+    fn clip(shapes: &[&str], clip_op: ClipOp) -> Result<Clip, Failure> {
         let clip = shapes.iter().map(|s| shape(s).unwrap()).collect();
         let clip_file = Vec::new();
         ClipArgs {
@@ -125,15 +116,15 @@ mod tests {
 
     #[test]
     fn planes_flip() {
-        let half = clip(&["plane:2,0,0,-1"], Op::And).unwrap();
+        let half = clip(&["plane:2,0,0,-1"], ClipOp::And).unwrap();
         assert!(keeps(&half, 0.6, 0.0, 0.0) && !keeps(&half, 0.4, 0.0, 0.0));
-        let other = clip(&["!plane:2,0,0,-1"], Op::And).unwrap();
+        let other = clip(&["!plane:2,0,0,-1"], ClipOp::And).unwrap();
         assert!(!keeps(&other, 0.6, 0.0, 0.0) && keeps(&other, 0.4, 0.0, 0.0));
     }
 
     #[test]
     fn boxes_keep_inside_or_outside_whatever_the_operation_says_when_alone() {
-        for op in [Op::And, Op::Or] {
+        for op in [ClipOp::And, ClipOp::Or] {
             let inside = clip(&["box:1,2,3,0.5,1,2"], op).unwrap();
             let outside = clip(&["!box:1,2,3,0.5,1,2"], op).unwrap();
             for (point, within) in [
@@ -153,17 +144,17 @@ mod tests {
     #[test]
     fn a_box_turns_with_its_quaternion() {
         // A quarter turn about z, not normalised: the long side comes to lie along y.
-        let turned = clip(&["box:0,0,0,3,1,1,5,0,0,5"], Op::And).unwrap();
+        let turned = clip(&["box:0,0,0,3,1,1,5,0,0,5"], ClipOp::And).unwrap();
         assert!(keeps(&turned, 0.0, 2.9, 0.0) && !keeps(&turned, 2.0, 0.0, 0.0));
     }
 
     #[test]
     fn only_one_operation_joins_all_half_spaces() {
-        assert!(clip(&["box:0,0,0,1,1,1", "plane:1,0,0,0"], Op::And).is_ok());
-        assert!(clip(&["!box:0,0,0,1,1,1", "plane:1,0,0,0"], Op::Or).is_ok());
-        assert!(clip(&["!box:0,0,0,1,1,1", "plane:1,0,0,0"], Op::And).is_err());
-        assert!(clip(&["box:0,0,0,1,1,1", "plane:1,0,0,0"], Op::Or).is_err());
-        assert!(clip(&["box:0,0,0,1,1,1", "!box:0,0,0,2,2,2"], Op::And).is_err());
+        assert!(clip(&["box:0,0,0,1,1,1", "plane:1,0,0,0"], ClipOp::And).is_ok());
+        assert!(clip(&["!box:0,0,0,1,1,1", "plane:1,0,0,0"], ClipOp::Or).is_ok());
+        assert!(clip(&["!box:0,0,0,1,1,1", "plane:1,0,0,0"], ClipOp::And).is_err());
+        assert!(clip(&["box:0,0,0,1,1,1", "plane:1,0,0,0"], ClipOp::Or).is_err());
+        assert!(clip(&["box:0,0,0,1,1,1", "!box:0,0,0,2,2,2"], ClipOp::And).is_err());
     }
 
     #[test]
@@ -186,6 +177,6 @@ mod tests {
         }
         let many: Vec<&str> =
             std::iter::repeat_n("plane:1,0,0,0", MAX_CLIP_PLANES as usize + 1).collect();
-        assert!(clip(&many, Op::And).is_err());
+        assert!(clip(&many, ClipOp::And).is_err());
     }
 }

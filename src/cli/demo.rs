@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use rara::{Camera, Clip, ClipOp, Decay, ExactForm, FrameStats, Mode, Picture, Plane, Settings};
 use rara::{measure, reference, scene};
 
@@ -12,7 +12,7 @@ use super::failure::Failure;
 use super::output::{self, grouped, say};
 use super::scenes::{self, Scene};
 use super::session::Session;
-use super::settings::{DeviceArgs, LookArgs, ModeArg};
+use super::settings::{DeviceArgs, LookArgs, name};
 use super::sheet;
 
 /// Draw a scene cut through its middle in all four modes, and measure them
@@ -45,7 +45,7 @@ pub(super) struct Demo {
 
 /// What one mode made.
 struct Shot {
-    mode: ModeArg,
+    mode: Mode,
     settings: Settings,
     picture: Picture,
     stats: FrameStats,
@@ -80,13 +80,10 @@ impl Demo {
             camera.width, camera.height
         ));
         let mut shots = Vec::new();
-        for mode in ModeArg::ALL {
-            let settings = Settings {
-                mode: mode.mode(),
-                ..look
-            };
+        for &mode in Mode::value_variants() {
+            let settings = Settings { mode, ..look };
             let (picture, stats) = session.picture(&camera, &clip, &settings)?;
-            picture.save(self.output.join(format!("{}.png", mode.name())))?;
+            picture.save(self.output.join(format!("{}.png", name(mode))))?;
             shots.push(Shot {
                 mode,
                 settings,
@@ -97,7 +94,7 @@ impl Demo {
         session.close()?;
         let labelled: Vec<_> = shots
             .iter()
-            .map(|s| (s.mode.name(), s.picture.clone()))
+            .map(|s| (name(s.mode), s.picture.clone()))
             .collect();
         let [_, hard, _, exact] = [0, 1, 2, 3].map(|index| &shots[index].picture);
         let corner = sheet::where_they_differ(hard, exact);
@@ -151,7 +148,7 @@ fn print_frames(shots: &[Shot]) {
             .collect();
         say(format_args!(
             "{:<6} {visible:>10} {cut:>10} {clipped:>10} {culled:>10} {:>9.2}  {}",
-            mode.name(),
+            name(*mode),
             stats.gpu_ms,
             passes.join(", ")
         ));
@@ -189,10 +186,10 @@ fn print_errors(
     {
         let own = columns(&measure::compare(picture, &render(settings))?.into());
         let cut = match mode {
-            ModeArg::None => String::new(), // Nothing is cut, so there is nothing to be exact about.
+            Mode::None => String::new(), // Nothing is cut, so there is nothing to be exact about.
             _ => columns(&measure::compare(picture, &truth)?.into()),
         };
-        say(format_args!("{:<6} {own}   {cut}", mode.name())
+        say(format_args!("{:<6} {own}   {cut}", name(*mode))
             .to_string()
             .trim_end());
     }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use super::failure::Failure;
 use super::output::{self, grouped, say};
@@ -16,7 +16,7 @@ Examples:
   rara generate strands -n 3000000 --seed 7 -o hair.ply")]
 pub(super) struct Generate {
     /// What it looks like
-    kind: KindArg,
+    kind: scene::Kind,
     /// Number of Gaussians
     #[arg(short = 'n', long, value_name = "COUNT", default_value_t = 100_000)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..))]
@@ -29,25 +29,10 @@ pub(super) struct Generate {
     output: PathBuf,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum KindArg {
-    /// Surfaces of all sizes, like a trained scene
-    General,
-    /// Thin needles along strands, like hair
-    Strands,
-    /// Nested filled layers, like anatomy
-    Layers,
-}
-
 impl Generate {
     pub(super) fn run(self) -> Result<(), Failure> {
         output::check_file(&self.output)?;
-        let kind = match self.kind {
-            KindArg::General => scene::Kind::General,
-            KindArg::Strands => scene::Kind::Strands,
-            KindArg::Layers => scene::Kind::Layers,
-        };
-        let made = scene::generate(kind, self.count as usize, self.seed);
+        let made = scene::generate(self.kind, self.count as usize, self.seed);
         scene::save_ply(&self.output, &made)?;
         say(format_args!(
             "wrote {} Gaussians to {}",

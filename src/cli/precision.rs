@@ -1,6 +1,6 @@
 //! The flags that give up exactness for time.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use rara::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 
 /// What is given up for time. A single choice overrides the preset's.
@@ -9,16 +9,16 @@ use rara::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 pub(super) struct PrecisionArgs {
     /// A choice of all the following; the guide (src/guide/modes.md) has what each costs and gives up
     #[arg(long, default_value = "balanced")]
-    pub(super) preset: PresetArg,
+    pub(super) preset: Preset,
     /// Channels of the picture that is drawn into: 8 bits, or floats of 16 or 32
     #[arg(long, value_name = "FORMAT")]
-    target_format: Option<TargetArg>,
+    target_format: Option<TargetFormat>,
     /// Spherical harmonics on the device: floats of 32 or 16 bits, 11 bits and a scale a degree (packed), or 8 and a scale a Gaussian
     #[arg(long, value_name = "FORMAT")]
-    sh_format: Option<ShArg>,
+    sh_format: Option<ShFormat>,
     /// Approximation of the normal distribution in mode exact: off by at most 2e-5, 1.4e-4 or 1e-2
     #[arg(long, value_name = "FORM")]
-    phi: Option<PhiArg>,
+    phi: Option<PhiForm>,
     /// Most bits of the depths that the sort looks at; each 8 are a pass
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(8..=32))]
     key_bits: Option<u32>,
@@ -30,89 +30,14 @@ pub(super) struct PrecisionArgs {
     transmittance_min: Option<f32>,
 }
 
-/// `--preset`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum PresetArg {
-    /// Nothing is given up
-    Exact,
-    /// What no picture shows is given up
-    Balanced,
-    /// What pictures hardly show is given up
-    Fast,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum TargetArg {
-    #[value(name = "8")]
-    Unorm8,
-    #[value(name = "16f")]
-    Half,
-    #[value(name = "32f")]
-    Float,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum ShArg {
-    #[value(name = "8")]
-    Byte,
-    Packed,
-    #[value(name = "16f")]
-    Half,
-    #[value(name = "32f")]
-    Float,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum PhiArg {
-    Quintic,
-    Cubic,
-    Logistic,
-}
-
-impl From<TargetArg> for TargetFormat {
-    fn from(format: TargetArg) -> Self {
-        match format {
-            TargetArg::Unorm8 => Self::Unorm8,
-            TargetArg::Half => Self::Half,
-            TargetArg::Float => Self::Float,
-        }
-    }
-}
-
-impl From<ShArg> for ShFormat {
-    fn from(format: ShArg) -> Self {
-        match format {
-            ShArg::Byte => Self::Byte,
-            ShArg::Packed => Self::Packed,
-            ShArg::Half => Self::Half,
-            ShArg::Float => Self::Float,
-        }
-    }
-}
-
-impl From<PhiArg> for PhiForm {
-    fn from(form: PhiArg) -> Self {
-        match form {
-            PhiArg::Quintic => Self::Quintic,
-            PhiArg::Cubic => Self::Cubic,
-            PhiArg::Logistic => Self::Logistic,
-        }
-    }
-}
-
 impl PrecisionArgs {
     /// The precision that was meant.
     pub(super) fn meant(&self) -> Precision {
-        let preset = match self.preset {
-            PresetArg::Exact => Preset::Exact,
-            PresetArg::Balanced => Preset::Balanced,
-            PresetArg::Fast => Preset::Fast,
-        };
-        let preset = preset.precision();
+        let preset = self.preset.precision();
         Precision {
-            target: self.target_format.map_or(preset.target, Into::into),
-            sh: self.sh_format.map_or(preset.sh, Into::into),
-            phi: self.phi.map_or(preset.phi, Into::into),
+            target: self.target_format.unwrap_or(preset.target),
+            sh: self.sh_format.unwrap_or(preset.sh),
+            phi: self.phi.unwrap_or(preset.phi),
             key_bits: self.key_bits.unwrap_or(preset.key_bits),
             beam_switch: self.beam_switch.unwrap_or(preset.beam_switch),
             transmittance_min: self.transmittance_min.unwrap_or(preset.transmittance_min),

@@ -12,7 +12,7 @@ use super::output::{self, Progress, say};
 use super::profile::{Profile, ProfileArgs};
 use super::report::{self, Report};
 use super::session::Session;
-use super::settings::{DeviceArgs, SettingsArgs};
+use super::settings::{DeviceArgs, SettingsArgs, name};
 use super::{scenes, values};
 
 /// Draw one picture, or one for each camera of a file
@@ -100,7 +100,7 @@ impl Render {
         let size = views
             .first()
             .map_or((0, 0), |v| (v.camera.width, v.camera.height));
-        let report = Report::new(&session, &scene, size, self.settings.mode.name(), &frames);
+        let report = Report::new(&session, &scene, size, name(settings.mode), &frames);
         let report = if self.camera.all() {
             report.with_frames(frames)
         } else {

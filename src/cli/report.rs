@@ -19,7 +19,7 @@ pub(super) struct Report {
     driver: String,
     scene: SceneReport,
     size: [u32; 2],
-    mode: &'static str,
+    mode: String,
     #[serde(flatten)]
     stats: FrameStats,
     memory: Memory,
@@ -54,7 +54,7 @@ impl Report {
         session: &Session,
         scene: &Scene,
         size: (u32, u32),
-        mode: &'static str,
+        mode: String,
         frames: &[FrameStats],
     ) -> Self {
         let (device, driver, device_bytes) = session.about();

@@ -13,16 +13,16 @@ use super::{output, values};
 pub(super) struct SettingsArgs {
     /// How Gaussians that the clip cuts are treated
     #[arg(long, default_value = "exact")]
-    pub(super) mode: ModeArg,
+    pub(super) mode: Mode,
     /// What a cut splat's visible share scales [default: linear for rara, depth for exact]
     #[arg(long, value_name = "LAW")]
-    decay: Option<DecayArg>,
+    decay: Option<Decay>,
     /// Mode rara: the ellipsoid it traces, in standard deviations [default: 3]
     #[arg(long, value_name = "K", value_parser = values::positive, allow_hyphen_values = true)]
     sigma: Option<f32>,
     /// Mode rara: what a cut splat keeps where the pixel's ray misses its ellipsoid [default: peak]
     #[arg(long, value_name = "WHAT")]
-    miss: Option<MissArg>,
+    miss: Option<Miss>,
     /// Ablation: treat every Gaussian as cut
     #[arg(long)]
     trace_all: bool,
@@ -42,10 +42,10 @@ pub(super) struct LookArgs {
     sh_degree: Option<u32>,
     /// How splats become pixels; the picture is the same
     #[arg(long, value_name = "HOW", default_value = "auto")]
-    raster: RasterArg,
+    raster: Raster,
     /// Colours, or what the clip does to each splat: whole ones blue, cut ones red to yellow by their weight
     #[arg(long, value_name = "WHAT", default_value = "colour")]
-    show: ShowArg,
+    show: Show,
     #[command(flatten)]
     precision: PrecisionArgs,
 }
@@ -66,133 +66,24 @@ pub(super) struct DeviceArgs {
     no_pipeline_cache: bool,
 }
 
-/// `--mode`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum ModeArg {
-    /// No clipping
-    None,
-    /// Keep or drop by the centre
-    Hard,
-    /// The RaRa Clipper paper's length ratio along each pixel's ray
-    Rara,
-    /// The exact visible share of the splat, low-pass included
-    Exact,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum DecayArg {
-    /// Alpha, as in the paper
-    Linear,
-    /// Optical depth: complementary halves rebuild the whole
-    Depth,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum MissArg {
-    /// Everything: the paper's text, with --sigma 1
-    Keep,
-    /// Nothing: the paper's released code
-    Drop,
-    /// All or nothing, by the side of the ray's densest point
-    Peak,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum ShowArg {
-    /// The splats' colours
-    Colour,
-    /// Class and weight
-    Weight,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum RasterArg {
-    /// Mesh shader
-    Mesh,
-    /// Instanced quads
-    Quad,
-    /// Tiles of 8x8 pixels by compute shaders
-    Tiles,
-    /// The faster one on the device
-    Auto,
-}
-
-impl ModeArg {
-    /// All modes, the simplest first.
-    pub(super) const ALL: [Self; 4] = [Self::None, Self::Hard, Self::Rara, Self::Exact];
-
-    /// The library's mode.
-    pub(super) fn mode(self) -> Mode {
-        match self {
-            Self::None => Mode::None,
-            Self::Hard => Mode::Hard,
-            Self::Rara => Mode::Rara,
-            Self::Exact => Mode::Exact,
-        }
-    }
-
-    /// As typed and as in the statistics.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Hard => "hard",
-            Self::Rara => "rara",
-            Self::Exact => "exact",
-        }
-    }
-}
-
-impl From<DecayArg> for Decay {
-    fn from(law: DecayArg) -> Self {
-        match law {
-            DecayArg::Linear => Self::Linear,
-            DecayArg::Depth => Self::Depth,
-        }
-    }
-}
-
-impl From<MissArg> for Miss {
-    fn from(miss: MissArg) -> Self {
-        match miss {
-            MissArg::Keep => Self::Keep,
-            MissArg::Drop => Self::Drop,
-            MissArg::Peak => Self::Peak,
-        }
-    }
-}
-
-impl From<ShowArg> for Show {
-    fn from(show: ShowArg) -> Self {
-        match show {
-            ShowArg::Colour => Self::Colour,
-            ShowArg::Weight => Self::Weight,
-        }
-    }
-}
-
-impl From<RasterArg> for Raster {
-    fn from(raster: RasterArg) -> Self {
-        match raster {
-            RasterArg::Auto => Self::Auto,
-            RasterArg::Mesh => Self::Mesh,
-            RasterArg::Quad => Self::Quad,
-            RasterArg::Tiles => Self::Tiles,
-        }
-    }
+/// What is typed for a value, and what the statistics call it.
+pub(super) fn name(value: impl ValueEnum) -> String {
+    let value = value.to_possible_value();
+    value.map_or_else(String::new, |value| value.get_name().into())
 }
 
 impl SettingsArgs {
     /// The settings that were meant.
     pub(super) fn meant(&self) -> Result<Settings, Failure> {
-        if self.mode != ModeArg::Rara && (self.sigma.is_some() || self.miss.is_some()) {
+        if self.mode != Mode::Rara && (self.sigma.is_some() || self.miss.is_some()) {
             output::say("note: --sigma and --miss change nothing without --mode rara");
         }
         let defaults = self.look.meant()?;
         Ok(Settings {
-            mode: self.mode.mode(),
-            decay: self.decay.map(Into::into),
+            mode: self.mode,
+            decay: self.decay,
             sigma: self.sigma.unwrap_or(defaults.sigma),
-            miss: self.miss.map_or(defaults.miss, Into::into),
+            miss: self.miss.unwrap_or(defaults.miss),
             trace_all: self.trace_all,
             ..defaults
         })
@@ -205,8 +96,8 @@ impl LookArgs {
         Ok(Settings {
             background: self.background,
             sh_degree: self.sh_degree,
-            raster: self.raster.into(),
-            show: self.show.into(),
+            raster: self.raster,
+            show: self.show,
             precision: self.precision.meant(),
             ..Settings::default()
         })

@@ -14,7 +14,7 @@ const ZOOM: u32 = 6;
 
 /// Pictures of one size with their labels, and under each the same piece of it, magnified; `corner` is the piece's
 /// top left.
-pub(super) fn sheet(pictures: &[(&str, Picture)], corner: (u32, u32)) -> Picture {
+pub(super) fn sheet(pictures: &[(String, Picture)], corner: (u32, u32)) -> Picture {
     let Some((_, first)) = pictures.first() else {
         return Picture::default();
     };
@@ -66,14 +66,16 @@ fn set(picture: &mut Picture, x: u32, y: u32, pixel: [f32; 4]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::settings::ModeArg;
+    use super::super::settings::name;
     use super::*;
+    use clap::ValueEnum as _;
+    use rara::Mode;
 
     #[test]
     fn every_mode_can_be_labelled() {
-        let letters = ModeArg::ALL.iter().flat_map(|mode| mode.name().chars());
-        for letter in letters {
-            assert_ne!(ink::glyph(letter), [0; 7], "{letter}");
+        for mode in Mode::value_variants() {
+            let name = name(*mode);
+            assert!(name.chars().all(|letter| letter.is_ascii_graphic()));
         }
     }
 
@@ -91,7 +93,7 @@ mod tests {
         let mut red = Picture::filled(12, 12, [1.0, 0.0, 0.0, 1.0]);
         set(&mut red, 5, 5, [0.0, 1.0, 0.0, 1.0]);
         let blue = Picture::filled(12, 12, [0.0, 0.0, 1.0, 1.0]);
-        let made = sheet(&[("x", red), ("o", blue)], (5, 5));
+        let made = sheet(&[("x".into(), red), ("o".into(), blue)], (5, 5));
         assert_eq!((made.width, made.height), (28, 11 + 12 + 4 + 12));
         assert_eq!(made.at(0, 11), [1.0, 0.0, 0.0, 1.0]);
         assert_eq!(made.at(12, 11), MARGIN);

@@ -14,7 +14,7 @@ use super::output::{self, Progress, say};
 use super::profile::{Profile, ProfileArgs};
 use super::report::{self, Report};
 use super::session::Session;
-use super::settings::{DeviceArgs, SettingsArgs};
+use super::settings::{DeviceArgs, SettingsArgs, name};
 use super::{scenes, values};
 use rara::scene::extent_along;
 
@@ -129,7 +129,7 @@ impl Sweep {
         drop(progress);
 
         let size = (camera.width, camera.height);
-        let report = Report::new(&session, &scene, size, self.settings.mode.name(), &frames);
+        let report = Report::new(&session, &scene, size, name(settings.mode), &frames);
         let report = report.with_frames(frames).with_mean();
         session.close()?;
         if self.json {

@@ -73,6 +73,7 @@ impl Plane {
 
 /// How several planes combine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum ClipOp {
     /// Visible where every plane keeps it (an intersection).
     #[default]

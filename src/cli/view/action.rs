@@ -5,10 +5,9 @@ use std::str::FromStr;
 
 use clap::ValueEnum;
 use glam::{DVec2, DVec3};
-use rara::Plane;
+use rara::{Mode, Plane};
 
 use super::viewpoint::Walk;
-use crate::cli::settings::ModeArg;
 use crate::cli::values;
 
 /// Something to do.
@@ -29,7 +28,7 @@ pub(super) enum Action {
     /// The next camera of the file.
     NextView,
     Plane(PlaneAction),
-    Mode(ModeArg),
+    Mode(Mode),
     /// To this file, or to the next free number.
     Screenshot(Option<PathBuf>),
     Resize((u32, u32)),
@@ -101,7 +100,7 @@ impl FromStr for Action {
             "drag" => Self::Plane(PlaneAction::Drag(pair(rest)?)),
             "tilt" => Self::Plane(PlaneAction::Tilt(pair(rest)?)),
             "mode" => Self::Mode(
-                ModeArg::from_str(rest, false)
+                Mode::from_str(rest, false)
                     .map_err(|_| format!("mode {rest}: none, hard, rara or exact is possible"))?,
             ),
             "screenshot" if rest.is_empty() => Self::Screenshot(None),
@@ -179,7 +178,7 @@ mod tests {
             parsed("tilt -5,2.5"),
             Action::Plane(PlaneAction::Tilt(DVec2::new(-5.0, 2.5)))
         );
-        assert_eq!(parsed("mode hard"), Action::Mode(ModeArg::Hard));
+        assert_eq!(parsed("mode hard"), Action::Mode(Mode::Hard));
         assert_eq!(parsed("camera fly"), Action::Walk(Walk::Fly));
         assert_eq!(
             parsed("move 1,0,-2"),

@@ -1,14 +1,12 @@
 //! The flags that draw again what is shown.
 
-use clap::ValueEnum;
 use rara::{ClipOp, Precision, Preset, Settings};
 
 use super::cut::Cut;
-use crate::cli::precision::{PhiArg, ShArg, TargetArg};
-use crate::cli::settings::{DecayArg, MissArg, ModeArg, RasterArg, ShowArg};
+use crate::cli::settings::name;
 
 /// `rara render`'s flags for a clip and settings, as typed. What they do not say is the default.
-pub(super) fn flags(cut: &Cut, mode: ModeArg, settings: &Settings) -> String {
+pub(super) fn flags(cut: &Cut, settings: &Settings) -> String {
     let mut flags = Vec::new();
     let planes = cut.clip().planes;
     for plane in &planes {
@@ -18,7 +16,7 @@ pub(super) fn flags(cut: &Cut, mode: ModeArg, settings: &Settings) -> String {
     if planes.len() > 1 && cut.op() == ClipOp::Or {
         flags.push("--clip-op or".into());
     }
-    flags.push(format!("--mode {}", mode.name()));
+    flags.push(format!("--mode {}", name(settings.mode)));
     add_settings(&mut flags, settings);
     add_precision(&mut flags, &settings.precision);
     flags.join(" ")
@@ -41,13 +39,13 @@ fn add_settings(flags: &mut Vec<String>, settings: &Settings) {
     } = *settings;
     let default = Settings::default();
     if let Some(decay) = decay {
-        flags.extend(choice::<DecayArg, _>("--decay", decay));
+        flags.push(format!("--decay {}", name(decay)));
     }
     if sigma != default.sigma {
         flags.push(format!("--sigma {sigma}"));
     }
     if miss != default.miss {
-        flags.extend(choice::<MissArg, _>("--miss", miss));
+        flags.push(format!("--miss {}", name(miss)));
     }
     if trace_all {
         flags.push("--trace-all".into());
@@ -59,10 +57,10 @@ fn add_settings(flags: &mut Vec<String>, settings: &Settings) {
         flags.push(format!("--sh-degree {degree}"));
     }
     if raster != default.raster {
-        flags.extend(choice::<RasterArg, _>("--raster", raster));
+        flags.push(format!("--raster {}", name(raster)));
     }
     if show != default.show {
-        flags.extend(choice::<ShowArg, _>("--show", show));
+        flags.push(format!("--show {}", name(show)));
     }
 }
 
@@ -95,13 +93,13 @@ fn differences(precision: &Precision, preset: &Precision) -> Vec<String> {
     } = *precision;
     let mut flags = Vec::new();
     if target != preset.target {
-        flags.extend(choice::<TargetArg, _>("--target-format", target));
+        flags.push(format!("--target-format {}", name(target)));
     }
     if sh != preset.sh {
-        flags.extend(choice::<ShArg, _>("--sh-format", sh));
+        flags.push(format!("--sh-format {}", name(sh)));
     }
     if phi != preset.phi {
-        flags.extend(choice::<PhiArg, _>("--phi", phi));
+        flags.push(format!("--phi {}", name(phi)));
     }
     if key_bits != preset.key_bits {
         flags.push(format!("--key-bits {key_bits}"));
@@ -115,13 +113,6 @@ fn differences(precision: &Precision, preset: &Precision) -> Vec<String> {
     flags
 }
 
-/// A flag and the word by which it means `setting`, as the flag's own type has it.
-fn choice<A: ValueEnum, S: From<A> + PartialEq>(flag: &str, setting: S) -> Option<String> {
-    let means_it = |word: &&A| S::from((*word).clone()) == setting;
-    let word = A::value_variants().iter().find(means_it)?;
-    Some(format!("{flag} {}", word.to_possible_value()?.get_name()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,25 +122,21 @@ mod tests {
     use glam::DVec3;
     use rara::{Clip, Plane};
 
-    /// What flags mean: the clip, the mode and the settings.
-    fn meant(flags: &str) -> (Clip, ModeArg, Settings) {
+    /// What flags mean: the clip and the settings.
+    fn meant(flags: &str) -> (Clip, Settings) {
         let command = clap::Command::new("rara").no_binary_name(true);
         let command = SettingsArgs::augment_args(ClipArgs::augment_args(command));
         let matches = command.try_get_matches_from(flags.split_whitespace());
         let matches = matches.unwrap_or_else(|error| panic!("{flags}: {error}"));
         let settings = SettingsArgs::from_arg_matches(&matches).unwrap();
         let clip = ClipArgs::from_arg_matches(&matches).unwrap();
-        (
-            clip.meant().unwrap(),
-            settings.mode,
-            settings.meant().unwrap(),
-        )
+        (clip.meant().unwrap(), settings.meant().unwrap())
     }
 
     /// What is written for what was typed.
     fn written(typed: &str) -> String {
-        let (clip, mode, settings) = meant(typed);
-        flags(&Cut::new(clip, DVec3::ZERO), mode, &settings)
+        let (clip, settings) = meant(typed);
+        flags(&Cut::new(clip, DVec3::ZERO), &settings)
     }
 
     #[test]
@@ -192,7 +179,7 @@ mod tests {
             ..Settings::default()
         };
         let cut = Cut::new(clip.clone(), DVec3::ZERO);
-        let (read, _, again) = meant(&flags(&cut, ModeArg::Exact, &settings));
+        let (read, again) = meant(&flags(&cut, &settings));
         assert_eq!(again, settings);
         let (read, plane) = (read.planes[0], clip.planes[0]);
         assert!((read.normal() - plane.normal()).length() < 1e-15);

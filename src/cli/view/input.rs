@@ -3,11 +3,11 @@
 use std::collections::HashSet;
 
 use glam::{DVec2, DVec3};
+use rara::Mode;
 use winit::event::{ElementState, MouseButton, MouseScrollDelta};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
 use super::action::{Action, PlaneAction};
-use crate::cli::settings::ModeArg;
 
 /// What `--help` and the key H say.
 pub(super) const KEYS: &str = "\
@@ -177,10 +177,10 @@ fn named(key: NamedKey, shift: bool) -> Option<Action> {
 fn letter(text: &str) -> Option<Action> {
     let plane = Action::Plane;
     Some(match text.to_lowercase().as_str() {
-        "0" => Action::Mode(ModeArg::None),
-        "1" => Action::Mode(ModeArg::Hard),
-        "2" => Action::Mode(ModeArg::Rara),
-        "3" => Action::Mode(ModeArg::Exact),
+        "0" => Action::Mode(Mode::None),
+        "1" => Action::Mode(Mode::Hard),
+        "2" => Action::Mode(Mode::Rara),
+        "3" => Action::Mode(Mode::Exact),
         "+" | "=" => Action::Zoom(1.0),
         "-" => Action::Zoom(-1.0),
         "p" => plane(PlaneAction::Toggle),
@@ -241,7 +241,7 @@ mod tests {
         assert_eq!(press(&mut input, "+", true), Some(Action::Zoom(1.0)));
         assert_eq!(
             press(&mut input, "2", false),
-            Some(Action::Mode(ModeArg::Rara))
+            Some(Action::Mode(Mode::Rara))
         );
         assert_eq!(press(&mut input, "?", false), None);
     }

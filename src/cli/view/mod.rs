@@ -110,7 +110,6 @@ impl View {
                     name: name(&self.scenes),
                     cut: Cut::new(clip, bounds.centre()),
                     settings,
-                    mode: self.settings.mode,
                     centre: bounds.centre(),
                     radius: bounds.radius(),
                     shots,

@@ -18,7 +18,7 @@ use super::title;
 use super::viewpoint::{Viewpoint, Walk};
 use crate::cli::failure::Failure;
 use crate::cli::output::say;
-use crate::cli::settings::ModeArg;
+use crate::cli::settings;
 
 /// What is shown, and how it is moved.
 #[derive(Debug)]
@@ -29,7 +29,6 @@ pub(super) struct Scenery {
     pub(super) views: Vec<(Camera, DVec3)>,
     pub(super) cut: Cut,
     pub(super) settings: Settings,
-    pub(super) mode: ModeArg,
     pub(super) centre: DVec3,
     pub(super) radius: f64,
     pub(super) shots: Shots,
@@ -171,10 +170,7 @@ impl Stage {
                 self.viewpoint.walk = walk;
             }
             Action::Plane(action) => self.act_on_plane(action),
-            Action::Mode(mode) => {
-                self.scenery.mode = mode;
-                self.scenery.settings.mode = mode.mode();
-            }
+            Action::Mode(mode) => self.scenery.settings.mode = mode,
             Action::Screenshot(path) => return self.screenshot(path),
             Action::Minimise | Action::Restore => {
                 self.minimised = action == Action::Minimise;
@@ -226,14 +222,13 @@ impl Stage {
         let Scenery {
             cut,
             settings,
-            mode,
             shots,
             ..
         } = &mut self.scenery;
         let path = path.unwrap_or_else(|| shots.next());
         let picture = self.windowed.picture(&camera, &cut.clip(), settings)?;
         shots::save(&picture, &camera, &path)?;
-        say(shots::wrote(&path, &flags::flags(cut, *mode, settings)));
+        say(shots::wrote(&path, &flags::flags(cut, settings)));
         self.shown_at = None; // the next frame does not follow at once
         Ok(())
     }
@@ -269,10 +264,14 @@ impl Stage {
 
     fn entitle(&self) {
         let Scenery {
-            name, mode, cut, ..
+            name,
+            settings,
+            cut,
+            ..
         } = &self.scenery;
+        let mode = settings::name(settings.mode);
         let offset = cut.on.then(|| cut.plane().offset());
-        let text = title::title(name, mode.name(), offset, self.windowed.stats());
+        let text = title::title(name, &mode, offset, self.windowed.stats());
         self.window.set_title(&text);
     }
 

@@ -16,6 +16,7 @@ use super::{Gaussians, sh_coefficients};
 
 /// What to generate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Kind {
     /// Objects made of flat splats on surfaces, with the statistics of a trained scene; degree 3.
     General,

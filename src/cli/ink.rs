@@ -1,5 +1,12 @@
 //! Lines, dots and letters in pictures, for charts and labels.
 
+use std::convert::Infallible;
+
+use embedded_graphics::mono_font::MonoTextStyle;
+use embedded_graphics::mono_font::ascii::FONT_6X10;
+use embedded_graphics::pixelcolor::BinaryColor;
+use embedded_graphics::prelude::*;
+use embedded_graphics::text::Text;
 use rara::Picture;
 
 /// Mixes a colour into a pixel; outside of the picture nothing happens.
@@ -62,8 +69,8 @@ pub(super) fn dot(picture: &mut Picture, at: [f64; 2], radius: f64, colour: [u8;
     paint(picture, [at, at], radius, colour, distance);
 }
 
-/// Writes small letters and digits with their top left corner at (x, y); capitals become small, what has no glyph is a
-/// space. A letter is five dots wide and seven high, each dot `scale` pixels.
+/// Writes with the top left corner of the first letter, if it is a capital, at (x, y). A letter is five dots wide and seven
+/// high, each dot `scale` pixels; what is not ASCII becomes a question mark.
 pub(super) fn text(
     picture: &mut Picture,
     [x, y]: [f64; 2],
@@ -71,68 +78,56 @@ pub(super) fn text(
     scale: i64,
     colour: [u8; 3],
 ) {
-    let (left, top) = (x.round() as i64, y.round() as i64);
-    for (place, letter) in (0..).zip(words.chars()) {
-        for (row, dots) in (0..).zip(glyph(letter.to_ascii_lowercase())) {
-            for column in (0..5).filter(|column| dots >> (4 - column) & 1 == 1) {
-                let corner = [left + (6 * place + column) * scale, top + row * scale];
-                for dot in 0..scale * scale {
-                    let (dx, dy) = (dot % scale, dot / scale);
-                    mix(picture, corner[0] + dx, corner[1] + dy, colour, 1.0);
-                }
-            }
-        }
+    /// The lowest of the seven rows, counted from 0.
+    const BASELINE: i32 = 6;
+    let mut dots = Dots {
+        picture,
+        corner: [x, y].map(|v| v.round() as i64),
+        scale,
+        colour,
+    };
+    let style = MonoTextStyle::new(&FONT_6X10, BinaryColor::On);
+    let Ok(_end) = Text::new(words, Point::new(0, BASELINE), style).draw(&mut dots);
+}
+
+/// What the font's dots are painted into, as squares.
+struct Dots<'a> {
+    picture: &'a mut Picture,
+    corner: [i64; 2],
+    scale: i64,
+    colour: [u8; 3],
+}
+
+impl OriginDimensions for Dots<'_> {
+    fn size(&self) -> Size {
+        Size::new(self.picture.width, self.picture.height)
     }
 }
 
-/// A letter's rows from the top, the leftmost of five dots being 16.
-pub(super) fn glyph(letter: char) -> [u8; 7] {
-    match letter {
-        '0' => [14, 17, 19, 21, 25, 17, 14],
-        '1' => [4, 12, 4, 4, 4, 4, 14],
-        '2' => [14, 17, 1, 6, 8, 16, 31],
-        '3' => [31, 2, 4, 6, 1, 17, 14],
-        '4' => [2, 6, 10, 18, 31, 2, 2],
-        '5' => [31, 16, 30, 1, 1, 17, 14],
-        '6' => [6, 8, 16, 30, 17, 17, 14],
-        '7' => [31, 1, 2, 4, 4, 8, 8],
-        '8' => [14, 17, 17, 14, 17, 17, 14],
-        '9' => [14, 17, 17, 15, 1, 2, 12],
-        'a' => [0, 0, 14, 1, 15, 17, 15],
-        'b' => [16, 16, 22, 25, 17, 17, 30],
-        'c' => [0, 0, 14, 17, 16, 17, 14],
-        'd' => [1, 1, 13, 19, 17, 19, 13],
-        'e' => [0, 0, 14, 17, 31, 16, 14],
-        'f' => [6, 9, 8, 28, 8, 8, 8],
-        'g' => [0, 15, 17, 17, 15, 1, 14],
-        'h' => [16, 16, 22, 25, 17, 17, 17],
-        'i' => [4, 0, 12, 4, 4, 4, 14],
-        'j' => [2, 0, 6, 2, 2, 18, 12],
-        'k' => [16, 16, 18, 20, 24, 20, 18],
-        'l' => [12, 4, 4, 4, 4, 4, 14],
-        'm' => [0, 0, 26, 21, 21, 17, 17],
-        'n' => [0, 0, 22, 25, 17, 17, 17],
-        'o' => [0, 0, 14, 17, 17, 17, 14],
-        'p' => [0, 0, 30, 17, 30, 16, 16],
-        'q' => [0, 0, 13, 19, 15, 1, 1],
-        'r' => [0, 0, 22, 25, 16, 16, 16],
-        's' => [0, 0, 14, 16, 14, 1, 30],
-        't' => [8, 8, 30, 8, 8, 9, 6],
-        'u' => [0, 0, 17, 17, 17, 19, 13],
-        'v' => [0, 0, 17, 17, 17, 10, 4],
-        'w' => [0, 0, 17, 17, 21, 21, 10],
-        'x' => [0, 0, 17, 10, 4, 10, 17],
-        'y' => [0, 0, 17, 17, 15, 1, 14],
-        'z' => [0, 0, 31, 2, 4, 8, 31],
-        '.' => [0, 0, 0, 0, 0, 12, 12],
-        ',' => [0, 0, 0, 0, 12, 4, 8],
-        '-' => [0, 0, 0, 31, 0, 0, 0],
-        '_' => [0, 0, 0, 0, 0, 0, 31],
-        '+' => [0, 4, 4, 31, 4, 4, 0],
-        '/' => [0, 1, 2, 4, 8, 16, 0],
-        '(' => [2, 4, 8, 8, 8, 4, 2],
-        ')' => [8, 4, 2, 2, 2, 4, 8],
-        _ => [0; 7],
+impl DrawTarget for Dots<'_> {
+    type Color = BinaryColor;
+    type Error = Infallible;
+
+    fn draw_iter<I>(&mut self, dots: I) -> Result<(), Infallible>
+    where
+        I: IntoIterator<Item = Pixel<BinaryColor>>,
+    {
+        for Pixel(at, colour) in dots {
+            if colour.is_off() {
+                continue;
+            }
+            let [left, top] = self.corner;
+            let (left, top) = (
+                left + i64::from(at.x) * self.scale,
+                top + i64::from(at.y) * self.scale,
+            );
+            for y in top..top + self.scale {
+                for x in left..left + self.scale {
+                    mix(self.picture, x, y, self.colour, 1.0);
+                }
+            }
+        }
+        Ok(())
     }
 }
 
@@ -160,11 +155,30 @@ mod tests {
     fn letters_are_where_they_were_put() {
         let mut picture = Picture::filled(20, 10, [1.0; 4]);
         text(&mut picture, [1.0, 1.0], "L1", 1, [0; 3]);
-        assert_eq!(picture.at(3, 1), [0.0, 0.0, 0.0, 1.0]);
-        assert_eq!(picture.at(9, 1), [0.0, 0.0, 0.0, 1.0]);
-        assert!(picture.pixels.iter().filter(|p| p[0] == 0.0).count() > 10);
-        for letter in ('a'..='z').chain('0'..='9') {
-            assert_ne!(glyph(letter), [0; 7], "{letter}");
+        let black = |x, y| picture.at(x, y) == [0.0, 0.0, 0.0, 1.0];
+        let left = (1..8).all(|y| black(1, y));
+        assert!(left && (1..6).all(|x| black(x, 7)), "an L from (1, 1)");
+        assert!((1..8).all(|y| black(9, y)), "a 1 beside it");
+        assert!((0..20).all(|x| !black(x, 0) && !black(x, 8)));
+    }
+
+    #[test]
+    fn every_letter_has_a_shape_of_its_own_at_any_scale() {
+        let drawn = |letter: char, scale: i64| {
+            let mut picture = Picture::filled(24, 36, [1.0; 4]);
+            text(&mut picture, [3.0, 6.0], &letter.to_string(), scale, [0; 3]);
+            picture
+        };
+        let letters: Vec<char> = ('!'..='~').collect();
+        for (place, &letter) in letters.iter().enumerate() {
+            let small = drawn(letter, 1);
+            assert_ne!(small, Picture::filled(24, 36, [1.0; 4]), "{letter}");
+            for &other in &letters[..place] {
+                assert_ne!(small, drawn(other, 1), "{letter} and {other}");
+            }
+            let ink = |picture: &Picture| picture.pixels.iter().filter(|p| p[0] == 0.0).count();
+            assert_eq!(ink(&drawn(letter, 3)), 9 * ink(&small), "{letter}");
         }
+        assert_eq!(drawn('é', 1), drawn('?', 1));
     }
 }

@@ -148,7 +148,7 @@ pub unsafe extern "C" fn rara_gaussians_info(
             count: gaussians.len() as u64,
             dropped: report.dropped,
             repaired: report.repaired,
-            sh_degree: gaussians.sh_degree,
+            sh_degree: gaussians.sh_degree(),
             bounds_min: bounds.min.into(),
             bounds_max: bounds.max.into(),
         };

@@ -262,7 +262,7 @@ fn scenes() {
         assert_eq!(rara_gaussians_info(scene, &mut info, size), RARA_OK);
         assert_eq!(
             (info.struct_size, info.count, info.sh_degree),
-            (size, 100, made.sh_degree)
+            (size, 100, made.sh_degree())
         );
         assert!(info.bounds_min[0] < info.bounds_max[0]);
         let mut camera: RaraCamera = std::mem::zeroed();

@@ -121,7 +121,7 @@ fn made_up() -> Scene {
 /// A plane that shows the camera the cut: what is near and to the left goes, and that is half of the Gaussians.
 pub(super) fn middle(scene: &Scene, camera: &Camera) -> rara::Result<Plane> {
     let normal = camera.rotation.row(0) * 0.8 + camera.rotation.row(2) * 0.6;
-    let centres = scene.gaussians.positions.iter();
+    let centres = scene.gaussians.positions().iter();
     let mut along: Vec<f64> = centres.map(|p| normal.dot(p.as_dvec3())).collect();
     along.sort_unstable_by(f64::total_cmp);
     // Between two centres: through one, rounding would decide whether a hard clip keeps it.

@@ -99,13 +99,13 @@ impl Info {
         let scene = scenes::load(&self.scenes)?;
         let gaussians = &scene.gaussians;
         let sorted = |index: usize| {
-            let mut axes = gaussians.scales[index].to_array();
+            let mut axes = gaussians.scales()[index].to_array();
             axes.sort_unstable_by(f32::total_cmp);
             axes
         };
         let all = 0..gaussians.len();
         let ratio = |long: f32, short: f32| if long == short { 1.0 } else { long / short };
-        let centres = gaussians.positions.iter().map(|p| p.as_dvec3());
+        let centres = gaussians.positions().iter().map(|p| p.as_dvec3());
         let empty = if gaussians.is_empty() {
             DVec3::ZERO
         } else {
@@ -114,7 +114,7 @@ impl Info {
         let robust = Bounds::of(gaussians);
         let document = Document {
             gaussians: gaussians.len(),
-            sh_degree: gaussians.sh_degree,
+            sh_degree: gaussians.sh_degree(),
             repaired: scene.repaired,
             dropped: scene.dropped,
             notes: scene.notes,
@@ -123,7 +123,7 @@ impl Info {
                 centres.fold(-empty, DVec3::max),
             ),
             robust_bounds: Extent::new(robust.min, robust.max),
-            opacity: Spread::of(gaussians.opacities.iter().copied()),
+            opacity: Spread::of(gaussians.opacities().iter().copied()),
             scale: Spread::of(all.clone().map(|i| sorted(i)[2])),
             elongation: Spread::of(all.clone().map(|i| ratio(sorted(i)[2], sorted(i)[1]))),
             flatness: Spread::of(all.map(|i| ratio(sorted(i)[1], sorted(i)[0]))),

@@ -64,7 +64,7 @@ impl Report {
             driver,
             scene: SceneReport {
                 gaussians: scene.gaussians.len(),
-                sh_degree: scene.gaussians.sh_degree,
+                sh_degree: scene.gaussians.sh_degree(),
                 repaired: scene.repaired,
                 dropped: scene.dropped,
             },

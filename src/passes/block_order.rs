@@ -28,7 +28,7 @@ pub(super) fn order(scene: &Gaussians) -> Vec<u32> {
     if count <= limits::BLOCK_SIZE {
         return (0..count).collect(); // one block, whatever the order
     }
-    let [low, high] = extent(&scene.positions);
+    let [low, high] = extent(scene.positions());
     let size = (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
     let key = |number: u32| {
         let index = number as usize;
@@ -43,7 +43,7 @@ pub(super) fn order(scene: &Gaussians) -> Vec<u32> {
             LARGE
         };
         // Outliers go to the ends, and what is no number to the beginning.
-        let share = ((scene.positions[index] - low) / size).clamp(Vec3::ZERO, Vec3::ONE);
+        let share = ((scene.positions()[index] - low) / size).clamp(Vec3::ZERO, Vec3::ONE);
         let cell = share * ((1 << BITS) - 1) as f32;
         class << (3 * BITS) | morton(cell.x as u32, cell.y as u32, cell.z as u32)
     };
@@ -65,10 +65,10 @@ fn block(scene: &Gaussians, numbers: &[u32]) -> Block {
     let (mut farthest, mut sigma, mut spanning) = (-1.0_f32, 0.0_f32, true);
     for index in numbers.iter().map(|&number| number as usize) {
         spanning &= is_spanning(scene, index);
-        if scene.opacities[index] < limits::ALPHA_MIN {
+        if scene.opacities()[index] < limits::ALPHA_MIN {
             continue; // nowhere visible, wherever it is
         }
-        let position = scene.positions[index];
+        let position = scene.positions()[index];
         let reach = reach(scene, index);
         if !(position.is_finite() && reach.is_finite()) {
             // Looked at, wherever the others are.
@@ -79,7 +79,7 @@ fn block(scene: &Gaussians, numbers: &[u32]) -> Block {
         low = low.min(position);
         high = high.max(position);
         farthest = farthest.max(reach);
-        sigma = sigma.max(scene.scales[index].max_element());
+        sigma = sigma.max(scene.scales()[index].max_element());
     }
     let sigma = if spanning {
         sigma
@@ -94,14 +94,14 @@ fn block(scene: &Gaussians, numbers: &[u32]) -> Block {
 
 /// How far from its centre a splat's contour of 1/255 can lie, world units.
 fn reach(scene: &Gaussians, index: usize) -> f32 {
-    let times = scene.opacities[index] * limits::ALPHA_MIN_INVERSE;
+    let times = scene.opacities()[index] * limits::ALPHA_MIN_INVERSE;
     // A little more than single precision finds on the device.
     let extent = 1.0001 * (2.0 * times.max(1.0).ln()).sqrt();
-    extent * scene.scales[index].max_element()
+    extent * scene.scales()[index].max_element()
 }
 
 fn is_spanning(scene: &Gaussians, index: usize) -> bool {
-    scene.opacities[index] >= limits::OPACITY_SPANNING
+    scene.opacities()[index] >= limits::OPACITY_SPANNING
 }
 
 /// Where nearly all centres are, from a sample.
@@ -132,6 +132,7 @@ fn morton(x: u32, y: u32, z: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::GaussianArrays;
     use glam::Quat;
 
     fn scene(count: usize) -> Gaussians {
@@ -140,7 +141,7 @@ mod tests {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             (state >> 8) as f32 / (1 << 24) as f32
         };
-        Gaussians {
+        let arrays = GaussianArrays {
             positions: (0..count)
                 .map(|_| Vec3::new(next(), next(), next()))
                 .collect(),
@@ -151,7 +152,8 @@ mod tests {
             opacities: (0..count).map(|_| next()).collect(),
             sh_degree: 0,
             sh: vec![0.0; 3 * count],
-        }
+        };
+        Gaussians::new(arrays).expect("arrays that fit")
     }
 
     #[test]
@@ -173,13 +175,13 @@ mod tests {
             let [high @ .., sigma] = block.high_sigma;
             let (low, high) = (Vec3::from(low), Vec3::from(high));
             for index in numbers.iter().map(|&n| n as usize) {
-                if scene.opacities[index] < limits::ALPHA_MIN {
+                if scene.opacities()[index] < limits::ALPHA_MIN {
                     assert!(sigma < 0.0, "not all of them span a pixel");
                     continue;
                 }
-                let (x, s) = (scene.positions[index], scene.scales[index].x);
+                let (x, s) = (scene.positions()[index], scene.scales()[index].x);
                 assert!(low.cmple(x).all() && x.cmple(high).all());
-                let extent = (2.0 * (255.0 * scene.opacities[index]).ln()).sqrt();
+                let extent = (2.0 * (255.0 * scene.opacities()[index]).ln()).sqrt();
                 assert!(s <= sigma.abs() && s * extent <= reach);
             }
             volume += f64::from((high - low).max(Vec3::ZERO).element_product());
@@ -191,7 +193,7 @@ mod tests {
     #[test]
     fn one_that_is_no_number_leaves_its_block_undecided_and_bounded() {
         let mut scene = scene(10);
-        scene.positions[3].y = f32::NAN;
+        scene.positions_mut()[3].y = f32::NAN;
         let block = blocks(&scene, &order(&scene))[0];
         assert_eq!(block.low_reach[3], f32::INFINITY);
         assert!(block.high_sigma[3] < 0.0);
@@ -201,7 +203,7 @@ mod tests {
     #[test]
     fn faint_ones_are_a_block_that_nothing_sees() {
         let mut scene = scene(10);
-        scene.opacities.fill(0.001);
+        scene.opacities_mut().fill(0.001);
         assert!(blocks(&scene, &order(&scene))[0].low_reach[3] < 0.0);
     }
 

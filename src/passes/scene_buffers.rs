@@ -142,12 +142,12 @@ impl SceneBuffers {
             return Err(Error::Invalid(format!(
                 "{} Gaussians of spherical-harmonics degree {} need more than 2^32 numbers; lower the degree or store them in fewer bits",
                 scene.len(),
-                scene.sh_degree
+                scene.sh_degree()
             )));
         }
         let order = block_order::order(scene);
         let blocks = block_order::blocks(scene, &order);
-        let centres = scene.positions.iter();
+        let centres = scene.positions().iter();
         let bounds = centres.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], &x| {
             [low.min(x), high.max(x)]
         });
@@ -158,7 +158,7 @@ impl SceneBuffers {
             blocks: gpu_only(device, "blocks", sizes[2])?,
             reordered: !order.is_sorted(),
             count,
-            sh_degree: scene.sh_degree,
+            sh_degree: scene.sh_degree(),
             sh_format: format,
             bounds,
         };
@@ -252,11 +252,11 @@ fn upload_in_chunks<T: bytemuck::NoUninit>(
 
 fn pack(scene: &Gaussians, number: u32) -> Gaussian {
     let index = number as usize;
-    let position = scene.positions[index];
+    let position = scene.positions()[index];
     Gaussian {
-        position_opacity: position.extend(scene.opacities[index]).into(),
-        scale: scene.scales[index].extend(f32::from_bits(number)).into(),
-        rotation: scene.rotations[index].into(),
+        position_opacity: position.extend(scene.opacities()[index]).into(),
+        scale: scene.scales()[index].extend(f32::from_bits(number)).into(),
+        rotation: scene.rotations()[index].into(),
     }
 }
 

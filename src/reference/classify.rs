@@ -119,7 +119,7 @@ pub fn bands(scene: &Gaussians) -> Bands {
     let (mut ours, mut paper, mut total) = (0_usize, 0_usize, 0_usize);
     for normal in normals {
         let along = scene
-            .positions
+            .positions()
             .iter()
             .map(|p| normal.dot(p.as_dvec3()))
             .collect::<Vec<_>>();
@@ -127,12 +127,12 @@ pub fn bands(scene: &Gaussians) -> Bands {
         sorted.sort_unstable_by(f64::total_cmp);
         let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
         for (index, distance) in along.iter().map(|x| (x - middle).abs()).enumerate() {
-            let brightness = f64::from(scene.opacities[index]) * f64::from(ALPHA_MIN_INVERSE);
+            let brightness = f64::from(scene.opacities()[index]) * f64::from(ALPHA_MIN_INVERSE);
             if brightness < 1.0 {
                 continue;
             }
-            let scales = scene.scales[index].as_dvec3();
-            let local = scene.rotations[index].as_dquat().inverse() * normal;
+            let scales = scene.scales()[index].as_dvec3();
+            let local = scene.rotations()[index].as_dquat().inverse() * normal;
             let reach = (2.0 * brightness.ln()).sqrt();
             total += 1;
             ours += usize::from(distance < reach * (local * scales).length());

@@ -12,8 +12,8 @@ use crate::{Clip, Gaussians, Mode, Settings};
 /// The class of every Gaussian of the scene; none is [`Side::Culled`].
 pub fn clip<T: Real>(scene: &Gaussians, clip: &Clip, settings: &Settings) -> Vec<Side> {
     let side = |index: usize| {
-        let axes = half_axes(scene.scales[index], scene.rotations[index]);
-        let brightness = T::of(f64::from(scene.opacities[index]) * f64::from(ALPHA_MIN_INVERSE));
+        let axes = half_axes(scene.scales()[index], scene.rotations()[index]);
+        let brightness = T::of(f64::from(scene.opacities()[index]) * f64::from(ALPHA_MIN_INVERSE));
         let reach = (T::of(2.0) * brightness.ln()).max(T::zero()).sqrt();
         gaussian_side(scene, index, &axes, band(reach, settings), clip, settings)
     };

@@ -46,15 +46,15 @@ impl<T: Real> Footprint<T> {
     /// The footprint of one Gaussian, or nothing if it is culled: nearer than [`NEAR_Z`] or behind the eye, fainter
     /// than 1/255 even at its centre, or its box holds no pixel centre of the picture.
     pub fn new(scene: &Gaussians, index: usize, view: &View<T>) -> Option<Self> {
-        let relative = view.relative(scene.positions[index]);
+        let relative = view.relative(scene.positions()[index]);
         let centre = view.turn(relative);
-        let opacity = T::of(f64::from(scene.opacities[index]));
+        let opacity = T::of(f64::from(scene.opacities()[index]));
         let brightness = opacity * T::of(f64::from(ALPHA_MIN_INVERSE));
         if !(centre.z >= T::of(f64::from(NEAR_Z)) && brightness >= T::one()) {
             return None;
         }
 
-        let axes = half_axes(scene.scales[index], scene.rotations[index]);
+        let axes = half_axes(scene.scales()[index], scene.rotations()[index]);
         let rows = view
             .rows
             .map(|row| vec3(row.dot(axes[0]), row.dot(axes[1]), row.dot(axes[2])));

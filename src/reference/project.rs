@@ -30,8 +30,8 @@ pub fn project<T: Real>(
     let footprint = Footprint::new(scene, index, view)?;
     let degree = settings
         .sh_degree
-        .unwrap_or(scene.sh_degree)
-        .min(scene.sh_degree);
+        .unwrap_or(scene.sh_degree())
+        .min(scene.sh_degree());
     Some(Splat {
         index: u32::try_from(index).expect("scenes have fewer than 2^32 Gaussians"),
         colour: harmonics::colour(scene.sh_of(index), degree, footprint.relative),

@@ -54,7 +54,7 @@ pub fn mean_depth(
     bundle: Bundle,
     steps: u32,
 ) -> f64 {
-    let centre = camera.rotation * (scene.positions[index].as_dvec3() - camera.eye);
+    let centre = camera.rotation * (scene.positions()[index].as_dvec3() - camera.eye);
     let [visible, _, depth] = sums(scene, index, camera, clip, position, bundle, steps);
     centre.z + depth / visible
 }
@@ -142,14 +142,15 @@ impl Pixel {
         position: DVec2,
         bundle: Bundle,
     ) -> Self {
-        let centre = scene.positions[index].as_dvec3();
+        let centre = scene.positions()[index].as_dvec3();
         let view = camera.rotation * (centre - camera.eye);
-        let axes = DMat3::from_quat(scene.rotations[index].as_dquat().normalize());
+        let axes = DMat3::from_quat(scene.rotations()[index].as_dquat().normalize());
         let focal = DVec2::new(camera.fx, camera.fy);
         Self {
             centre,
             depth: view.z,
-            inverse: DMat3::from_diagonal(1.0 / scene.scales[index].as_dvec3()) * axes.transpose(),
+            inverse: DMat3::from_diagonal(1.0 / scene.scales()[index].as_dvec3())
+                * axes.transpose(),
             turn: camera.rotation.transpose(),
             view,
             focal,

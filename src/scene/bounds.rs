@@ -61,7 +61,7 @@ pub fn extent_along(gaussians: &Gaussians, normal: DVec3) -> (f64, f64) {
         return widened(-half, half, 0.0);
     }
     let mut along: Vec<f64> = gaussians
-        .positions
+        .positions()
         .iter()
         .map(|p| normal.dot(p.as_dvec3()))
         .collect();
@@ -79,7 +79,7 @@ pub fn extent_along(gaussians: &Gaussians, normal: DVec3) -> (f64, f64) {
 
 fn median_size(gaussians: &Gaussians) -> f64 {
     let mut sizes: Vec<f32> = gaussians
-        .scales
+        .scales()
         .iter()
         .copied()
         .map(Vec3::max_element)
@@ -98,14 +98,15 @@ fn widened(low: f64, high: f64, by: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Quat;
 
     fn line(positions: impl Iterator<Item = f32>) -> Gaussians {
-        let positions: Vec<_> = positions.map(|x| Vec3::new(x, 0.0, 0.0)).collect();
-        Gaussians {
-            scales: vec![Vec3::ZERO; positions.len()],
-            positions,
-            ..Gaussians::default()
+        let mut line = Gaussians::default();
+        for x in positions {
+            let at = Vec3::new(x, 0.0, 0.0);
+            line.push(at, Vec3::ZERO, Quat::IDENTITY, 1.0, &[0.0; 3]);
         }
+        line
     }
 
     #[test]

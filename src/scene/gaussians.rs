@@ -2,12 +2,25 @@
 
 use glam::{Quat, Vec3};
 
-/// A set of 3D Gaussians, one array per attribute, all of the same length (except [`sh`](Self::sh)).
+use crate::error::{Error, Result};
+
+/// The highest degree of spherical harmonics.
+pub(super) const MAX_SH_DEGREE: u32 = 3;
+/// How far the square of a rotation's length may be from one. Rounded ones are within 1e-6; unnormalised ones are not.
+const UNIT: f32 = 1e-3;
+
+/// A set of 3D Gaussians, one array per attribute.
 ///
-/// Everything in here is finite, rotations are unit quaternions and scales are not negative: the loaders repair or
-/// drop what is not and report it, so that no later stage has to ask.
+/// [`new`](Self::new) takes them as whole arrays, [`push`](Self::push) one by one, and files are read by
+/// [`scene::load`](crate::scene::load). Whatever is done to them, the arrays fit each other. Everything in them is finite,
+/// rotations are unit quaternions, scales are not negative and opacities between 0 and 1: the loaders repair or drop what
+/// is not and report it, and `new` refuses it, so that no later stage has to ask.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Gaussians {
+pub struct Gaussians(GaussianArrays);
+
+/// The arrays that [`Gaussians`] are made of, all of the same length except [`sh`](Self::sh).
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct GaussianArrays {
     /// Centres, world units.
     pub positions: Vec<Vec3>,
     /// Standard deviations along the Gaussian's own axes, world units (linear, not logarithms). Zero is allowed.
@@ -23,64 +36,334 @@ pub struct Gaussians {
 }
 
 impl Gaussians {
+    /// Gaussians of whole arrays.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] names the array whose length is not that of `positions`, or the first number in it that cannot
+    /// be drawn: one that is not finite, a negative scale, a rotation that is no unit quaternion, an opacity that is not
+    /// between 0 and 1.
+    pub fn new(arrays: GaussianArrays) -> Result<Self> {
+        arrays.check().map_err(Error::Invalid)?;
+        Ok(Self(arrays))
+    }
+
+    /// None yet, of degree `sh_degree`, with room for exactly `count`; `None` if the memory can't be had.
+    pub(super) fn with_room(count: usize, sh_degree: u32) -> Option<Self> {
+        let numbers = count.checked_mul(3 * sh_coefficients(sh_degree))?;
+        let mut arrays = GaussianArrays {
+            sh_degree,
+            ..GaussianArrays::default()
+        };
+        arrays.positions.try_reserve_exact(count).ok()?;
+        arrays.scales.try_reserve_exact(count).ok()?;
+        arrays.rotations.try_reserve_exact(count).ok()?;
+        arrays.opacities.try_reserve_exact(count).ok()?;
+        arrays.sh.try_reserve_exact(numbers).ok()?;
+        Some(Self(arrays))
+    }
+
+    /// The arrays, to be changed and made into Gaussians again.
+    pub fn into_arrays(self) -> GaussianArrays {
+        self.0
+    }
+
     /// Number of Gaussians.
     pub fn len(&self) -> usize {
-        self.positions.len()
+        self.0.positions.len()
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.positions.is_empty()
+        self.0.positions.is_empty()
+    }
+
+    /// Centres, world units.
+    pub fn positions(&self) -> &[Vec3] {
+        &self.0.positions
+    }
+
+    /// Standard deviations along the Gaussians' own axes, world units (linear, not logarithms).
+    pub fn scales(&self) -> &[Vec3] {
+        &self.0.scales
+    }
+
+    /// Rotations from the Gaussians' own axes to the world, unit quaternions.
+    pub fn rotations(&self) -> &[Quat] {
+        &self.0.rotations
+    }
+
+    /// Opacities at the centres, 0 to 1 (not logits).
+    pub fn opacities(&self) -> &[f32] {
+        &self.0.opacities
+    }
+
+    /// Degree of the spherical harmonics, 0 to 3.
+    pub fn sh_degree(&self) -> u32 {
+        self.0.sh_degree
+    }
+
+    /// Spherical harmonics, `[Gaussian][coefficient][r, g, b]`.
+    pub fn sh(&self) -> &[f32] {
+        &self.0.sh
+    }
+
+    /// Centres, to be moved. What these and the following are set to is not checked: a number that [`new`](Self::new)
+    /// would refuse makes its Gaussian, and no other, look like anything or nothing.
+    pub fn positions_mut(&mut self) -> &mut [Vec3] {
+        &mut self.0.positions
+    }
+
+    /// Standard deviations, to be changed.
+    pub fn scales_mut(&mut self) -> &mut [Vec3] {
+        &mut self.0.scales
+    }
+
+    /// Rotations, to be changed.
+    pub fn rotations_mut(&mut self) -> &mut [Quat] {
+        &mut self.0.rotations
+    }
+
+    /// Opacities, to be changed.
+    pub fn opacities_mut(&mut self) -> &mut [f32] {
+        &mut self.0.opacities
+    }
+
+    /// Spherical harmonics, to be changed.
+    pub fn sh_mut(&mut self) -> &mut [f32] {
+        &mut self.0.sh
     }
 
     /// Coefficients a colour channel: `(sh_degree + 1)^2`.
     pub fn sh_coefficients(&self) -> usize {
-        sh_coefficients(self.sh_degree)
+        sh_coefficients(self.0.sh_degree)
     }
 
     /// The spherical harmonics of one Gaussian, `[coefficient][r, g, b]`.
     pub fn sh_of(&self, index: usize) -> &[f32] {
         let stride = 3 * self.sh_coefficients();
-        &self.sh[index * stride..][..stride]
+        &self.0.sh[index * stride..][..stride]
+    }
+
+    /// Appends one, whose numbers are not checked, as with [`positions_mut`](Self::positions_mut). `sh` is
+    /// `[coefficient][r, g, b]`.
+    ///
+    /// # Panics
+    /// If `sh` is not of these Gaussians' degree.
+    pub fn push(&mut self, position: Vec3, scale: Vec3, rotation: Quat, opacity: f32, sh: &[f32]) {
+        let numbers = 3 * self.sh_coefficients();
+        assert!(
+            sh.len() == numbers,
+            "{} numbers are no spherical harmonics of degree {}, which have {numbers}",
+            sh.len(),
+            self.0.sh_degree
+        );
+        self.0.positions.push(position);
+        self.0.scales.push(scale);
+        self.0.rotations.push(rotation);
+        self.0.opacities.push(opacity);
+        self.0.sh.extend_from_slice(sh);
+    }
+
+    /// Drops all but the first `count`; nothing happens if there are no more.
+    pub fn truncate(&mut self, count: usize) {
+        let numbers = count.saturating_mul(3 * self.sh_coefficients());
+        self.0.positions.truncate(count);
+        self.0.scales.truncate(count);
+        self.0.rotations.truncate(count);
+        self.0.opacities.truncate(count);
+        self.0.sh.truncate(numbers);
     }
 
     /// Appends `other`, raising both to the higher spherical-harmonics degree (the missing coefficients are zero).
     pub fn append(&mut self, other: &Gaussians) {
         let degree = if self.is_empty() {
-            other.sh_degree
+            other.0.sh_degree
         } else {
-            self.sh_degree.max(other.sh_degree)
+            self.0.sh_degree.max(other.0.sh_degree)
         };
         self.set_sh_degree(degree);
-        self.positions.extend_from_slice(&other.positions);
-        self.scales.extend_from_slice(&other.scales);
-        self.rotations.extend_from_slice(&other.rotations);
-        self.opacities.extend_from_slice(&other.opacities);
-        if other.sh_degree == degree {
-            self.sh.extend_from_slice(&other.sh);
+        self.0.positions.extend_from_slice(&other.0.positions);
+        self.0.scales.extend_from_slice(&other.0.scales);
+        self.0.rotations.extend_from_slice(&other.0.rotations);
+        self.0.opacities.extend_from_slice(&other.0.opacities);
+        if other.0.sh_degree == degree {
+            self.0.sh.extend_from_slice(&other.0.sh);
         } else {
             let mut raised = other.clone();
             raised.set_sh_degree(degree);
-            self.sh.extend_from_slice(&raised.sh);
+            self.0.sh.extend_from_slice(&raised.0.sh);
         }
     }
 
     /// Changes the degree: higher coefficients are dropped, missing ones are zero.
+    ///
+    /// # Panics
+    /// If `degree` is above 3.
     pub fn set_sh_degree(&mut self, degree: u32) {
+        assert!(
+            degree <= MAX_SH_DEGREE,
+            "spherical harmonics of degree {degree} cannot be drawn: 0 to {MAX_SH_DEGREE} can"
+        );
         let (old, new) = (3 * self.sh_coefficients(), 3 * sh_coefficients(degree));
         if old != new {
             let mut sh = vec![0.0; self.len() * new];
             let kept = old.min(new);
-            for (to, from) in sh.chunks_exact_mut(new).zip(self.sh.chunks_exact(old)) {
+            for (to, from) in sh.chunks_exact_mut(new).zip(self.0.sh.chunks_exact(old)) {
                 to[..kept].copy_from_slice(&from[..kept]);
             }
-            self.sh = sh;
+            self.0.sh = sh;
         }
-        self.sh_degree = degree;
+        self.0.sh_degree = degree;
+    }
+}
+
+impl GaussianArrays {
+    fn check(&self) -> std::result::Result<(), String> {
+        if self.sh_degree > MAX_SH_DEGREE {
+            let degree = self.sh_degree;
+            return Err(format!(
+                "sh_degree is {degree}: 0 to {MAX_SH_DEGREE} can be drawn"
+            ));
+        }
+        let count = self.positions.len();
+        let numbers = 3 * sh_coefficients(self.sh_degree);
+        for (array, found, expected) in [
+            ("scales", self.scales.len(), Some(count)),
+            ("rotations", self.rotations.len(), Some(count)),
+            ("opacities", self.opacities.len(), Some(count)),
+            ("sh", self.sh.len(), count.checked_mul(numbers)),
+        ] {
+            if Some(found) != expected {
+                let each = if array == "sh" {
+                    format!(", each {numbers} numbers of {array}")
+                } else {
+                    String::new()
+                };
+                return Err(format!(
+                    "{array} has {found} elements, which do not fit {count} positions{each}"
+                ));
+            }
+        }
+        refuse("positions", &self.positions, "not finite", |p| {
+            p.is_finite()
+        })?;
+        refuse(
+            "scales",
+            &self.scales,
+            "not finite and zero or above; logarithms are exponentiated first",
+            |s| s.is_finite() && s.min_element() >= 0.0,
+        )?;
+        refuse(
+            "rotations",
+            &self.rotations,
+            "no unit quaternion; normalise it first",
+            |q| (q.length_squared() - 1.0).abs() <= UNIT,
+        )?;
+        refuse(
+            "opacities",
+            &self.opacities,
+            "not between 0 and 1; logits go through the sigmoid first",
+            |o| (0.0..=1.0).contains(o),
+        )?;
+        refuse("sh", &self.sh, "not finite", |v| v.is_finite())
+    }
+}
+
+/// An error for the first element that is not `fit`.
+fn refuse<T: std::fmt::Debug>(
+    array: &str,
+    elements: &[T],
+    problem: &str,
+    fit: impl Fn(&T) -> bool,
+) -> std::result::Result<(), String> {
+    match elements.iter().position(|element| !fit(element)) {
+        Some(at) => Err(format!(
+            "{array}[{at}] is {:?}: that is {problem}",
+            elements[at]
+        )),
+        None => Ok(()),
     }
 }
 
 /// Coefficients a colour channel for spherical harmonics up to `degree`.
 pub const fn sh_coefficients(degree: u32) -> usize {
     ((degree + 1) * (degree + 1)) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arrays() -> GaussianArrays {
+        GaussianArrays {
+            positions: vec![Vec3::ZERO, Vec3::X],
+            scales: vec![Vec3::ONE, Vec3::ZERO],
+            rotations: vec![Quat::IDENTITY, Quat::from_rotation_x(1.0)],
+            opacities: vec![0.0, 1.0],
+            sh_degree: 1,
+            sh: vec![-0.5; 24],
+        }
+    }
+
+    #[test]
+    fn arrays_that_fit_are_taken_and_given_back() {
+        let made = Gaussians::new(arrays()).expect("they fit");
+        assert_eq!((made.len(), made.sh_coefficients()), (2, 4));
+        assert_eq!(made.into_arrays(), arrays());
+        let none = Gaussians::new(GaussianArrays::default()).expect("nothing fits nothing");
+        assert!(none.is_empty());
+    }
+
+    #[test]
+    fn the_array_that_does_not_fit_is_named() {
+        type Spoil = fn(&mut GaussianArrays);
+        let cases: [(&str, Spoil); 15] = [
+            ("scales has 1 elements", |a| a.scales.truncate(1)),
+            ("rotations has 3", |a| a.rotations.push(Quat::IDENTITY)),
+            ("opacities has 0", |a| a.opacities.clear()),
+            (
+                "sh has 23 elements, which do not fit 2 positions, each 12",
+                |a| a.sh.truncate(23),
+            ),
+            ("scales has 2 elements, which do not fit 3", |a| {
+                a.positions.push(Vec3::Y)
+            }),
+            ("sh has 24", |a| a.sh_degree = 3),
+            ("sh_degree is 4", |a| a.sh_degree = 4),
+            ("sh_degree is 4294967295", |a| a.sh_degree = u32::MAX),
+            ("positions[1]", |a| a.positions[1].z = f32::NAN),
+            ("scales[0]", |a| a.scales[0].y = -1e-9),
+            ("scales[1]", |a| a.scales[1].y = f32::INFINITY),
+            ("rotations[1]", |a| {
+                a.rotations[1] = Quat::from_xyzw(1.0, 1.0, 0.0, 0.0)
+            }),
+            ("opacities[0]", |a| a.opacities[0] = 1.1),
+            ("opacities[1]", |a| a.opacities[1] = f32::NAN),
+            ("sh[7]", |a| a.sh[7] = f32::NEG_INFINITY),
+        ];
+        for (says, spoil) in cases {
+            let mut spoilt = arrays();
+            spoil(&mut spoilt);
+            let error = Gaussians::new(spoilt).expect_err(says).to_string();
+            assert!(error.starts_with(says), "{error}, not {says}");
+        }
+    }
+
+    #[test]
+    fn pushing_and_truncating_keep_the_arrays_in_step() {
+        let mut made = Gaussians::new(arrays()).expect("they fit");
+        made.push(Vec3::Y, Vec3::ONE, Quat::IDENTITY, 0.5, &[1.0; 12]);
+        assert_eq!((made.len(), made.sh_of(2)), (3, &[1.0; 12][..]));
+        made.truncate(9);
+        assert_eq!(made.len(), 3);
+        made.truncate(2);
+        assert_eq!(made.into_arrays(), arrays());
+    }
+
+    #[test]
+    #[should_panic(expected = "3 numbers are no spherical harmonics of degree 1")]
+    fn harmonics_of_another_degree_are_misuse() {
+        let mut made = Gaussians::new(arrays()).expect("they fit");
+        made.push(Vec3::Y, Vec3::ONE, Quat::IDENTITY, 0.5, &[1.0; 3]);
+    }
 }

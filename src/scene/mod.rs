@@ -13,7 +13,7 @@ mod report;
 mod save;
 
 pub use bounds::{Bounds, extent_along};
-pub use gaussians::{Gaussians, sh_coefficients};
+pub use gaussians::{GaussianArrays, Gaussians, sh_coefficients};
 #[cfg(feature = "lab")]
 pub(crate) use generate::random::Random;
 pub use generate::{Kind, generate};

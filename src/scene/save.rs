@@ -54,17 +54,17 @@ fn write_row(out: &mut dyn Write, gaussians: &Gaussians, index: usize) -> io::Re
     let mut row = [0.0_f32; 62];
     let sh = gaussians.sh_of(index);
     let coefficients = sh.len() / 3;
-    row[..3].copy_from_slice(&gaussians.positions[index].to_array());
+    row[..3].copy_from_slice(&gaussians.positions()[index].to_array());
     row[6..9].copy_from_slice(&sh[..3]);
     for (at, value) in row[9..].iter_mut().take(sh.len() - 3).enumerate() {
         let (channel, coefficient) = (at / (coefficients - 1), at % (coefficients - 1) + 1);
         *value = sh[3 * coefficient + channel];
     }
     let tail = 6 + sh.len();
-    row[tail] = logit(gaussians.opacities[index]);
-    let scale = gaussians.scales[index].to_array().map(log);
+    row[tail] = logit(gaussians.opacities()[index]);
+    let scale = gaussians.scales()[index].to_array().map(log);
     row[tail + 1..][..3].copy_from_slice(&scale);
-    let q = gaussians.rotations[index];
+    let q = gaussians.rotations()[index];
     row[tail + 4..][..4].copy_from_slice(&[q.w, q.x, q.y, q.z]);
     let mut bytes = [0_u8; 4 * 62];
     for (to, value) in bytes.chunks_exact_mut(4).zip(row) {

@@ -40,8 +40,8 @@ fn crowded() -> (Gaussians, Camera) {
     let mut scene = generate(Kind::General, 1_000, 5);
     let camera = Camera::frame(&Bounds::of(&scene), -DVec3::Y, 50.0, (160, 120));
     let radius = Bounds::of(&scene).radius() as f32;
-    scene.scales.fill(Vec3::splat(radius));
-    scene.opacities.fill(0.02); // so that no pixel is saturated before the last
+    scene.scales_mut().fill(Vec3::splat(radius));
+    scene.opacities_mut().fill(0.02); // so that no pixel is saturated before the last
     (scene, camera.expect("a view"))
 }
 

@@ -101,11 +101,21 @@ fn opacities() -> Vec<Case> {
         1.0,
     ];
     let mut case = strewn(&mut random, PLAIN, &any_normal, &mix, 60, true);
-    for (opacity, value) in case.scene.opacities.iter_mut().zip(values.iter().cycle()) {
+    for (opacity, value) in case
+        .scene
+        .opacities_mut()
+        .iter_mut()
+        .zip(values.iter().cycle())
+    {
         *opacity = *value as f32;
     }
     let mut crowd = strewn(&mut random, PLAIN, &any_normal, &mix, 400, false);
-    for (opacity, value) in crowd.scene.opacities.iter_mut().zip(values.iter().cycle()) {
+    for (opacity, value) in crowd
+        .scene
+        .opacities_mut()
+        .iter_mut()
+        .zip(values.iter().cycle())
+    {
         *opacity = *value as f32;
     }
     vec![case, crowd]
@@ -115,7 +125,7 @@ fn bright() -> Vec<Case> {
     let mut random = Random::new(42);
     let mut case = strewn(&mut random, PLAIN, &any_normal, &mix, 300, false);
     case.scene.set_sh_degree(3);
-    for value in &mut case.scene.sh {
+    for value in case.scene.sh_mut() {
         *value = random.range(-1e4, 1e4) as f32;
     }
     vec![case]

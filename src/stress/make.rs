@@ -166,26 +166,18 @@ pub(super) fn push(
     rotation: Quat,
     opacity: f32,
 ) {
-    scene.positions.push(position);
-    scene.scales.push(scales.as_vec3());
-    scene.rotations.push(rotation);
-    scene.opacities.push(opacity);
-    scene.sh.extend([0.0; 3]);
+    scene.push(position, scales.as_vec3(), rotation, opacity, &[0.0; 3]);
 }
 
 /// Gives the last splat of a scene without directions a random colour.
 pub(super) fn set_colour(scene: &mut Gaussians, random: &mut Random) {
-    let at = scene.sh.len() - 3;
-    for value in &mut scene.sh[at..] {
+    let at = scene.sh().len() - 3;
+    for value in &mut scene.sh_mut()[at..] {
         *value = random.range(-1.7, 1.7) as f32; // 0.5 + 0.28 of it is a colour from 0 to 1
     }
 }
 
 /// Takes the last splat back.
 pub(super) fn pop(scene: &mut Gaussians) {
-    scene.positions.pop();
-    scene.scales.pop();
-    scene.rotations.pop();
-    scene.opacities.pop();
-    scene.sh.truncate(scene.sh.len() - 3);
+    scene.truncate(scene.len().saturating_sub(1));
 }

@@ -111,7 +111,7 @@ fn edge(op: ClipOp, count: usize) -> Vec<Case> {
         }
         let middle = scene.len() as f64 / 2.0;
         let step = 2.0 * PLAIN.radius() / scene.len() as f64;
-        for (index, position) in scene.positions.iter_mut().enumerate() {
+        for (index, position) in scene.positions_mut().iter_mut().enumerate() {
             *position = (line * ((index as f64 - middle) * step)).as_vec3();
         }
         let mut turned = |_| {

@@ -88,14 +88,11 @@ fn fragments_count_until_a_pixel_is_saturated() {
     let eye = DVec3::new(0.0, 0.0, -4.0);
     let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, (37, 41)).expect("a view");
     let count = |copies, scale, opacity| {
-        let scene = Gaussians {
-            positions: vec![Vec3::ZERO; copies],
-            scales: vec![Vec3::splat(scale); copies],
-            rotations: vec![Quat::IDENTITY; copies],
-            opacities: vec![opacity; copies],
-            sh_degree: 0,
-            sh: vec![0.0; 3 * copies],
-        };
+        let mut scene = Gaussians::default();
+        for _ in 0..copies {
+            let scale = Vec3::splat(scale);
+            scene.push(Vec3::ZERO, scale, Quat::IDENTITY, opacity, &[0.0; 3]);
+        }
         fragments::count(&scene, &camera, &Settings::default())
     };
     // Larger than the picture: 1/100 of the light is left, then 1e-4, then 1e-6, where 4e-6 are enough.

@@ -87,23 +87,18 @@ impl World {
     /// The Gaussians that are nearer than a depth.
     fn before(&self, limit: f64) -> Gaussians {
         let s = &self.scene;
-        let mut kept = Gaussians {
-            sh_degree: s.sh_degree,
-            ..Gaussians::default()
-        };
+        let mut kept = Gaussians::default();
+        kept.set_sh_degree(s.sh_degree());
         for i in (0..s.len()).filter(|&i| depth(s, &self.camera, i) < limit) {
-            kept.positions.push(s.positions[i]);
-            kept.scales.push(s.scales[i]);
-            kept.rotations.push(s.rotations[i]);
-            kept.opacities.push(s.opacities[i]);
-            kept.sh.extend_from_slice(s.sh_of(i));
+            let (position, scale, rotation) = (s.positions()[i], s.scales()[i], s.rotations()[i]);
+            kept.push(position, scale, rotation, s.opacities()[i], s.sh_of(i));
         }
         kept
     }
 }
 
 fn depth(scene: &Gaussians, camera: &Camera, index: usize) -> f64 {
-    let relative = scene.positions[index].as_dvec3() - camera.eye;
+    let relative = scene.positions()[index].as_dvec3() - camera.eye;
     (camera.rotation * relative).z
 }
 

@@ -526,10 +526,10 @@ fn settings_of_the_next_frame_leave_the_prepared_one_alone() {
 fn a_frame_without_room_for_its_tiles_is_drawn_as_quads() {
     let mut scene = generate(Kind::General, 1_000, 5);
     let size = rara::scene::Bounds::of(&scene).radius() as f32;
-    for scale in &mut scene.scales {
+    for scale in scene.scales_mut() {
         *scale = glam::Vec3::splat(size);
     }
-    for opacity in &mut scene.opacities {
+    for opacity in scene.opacities_mut() {
         *opacity = 0.02; // so that no pixel is saturated before the last
     }
     let (camera, clip, settings) = frames(&scene).swap_remove(1);

@@ -183,17 +183,17 @@ fn placed(scene: &Gaussians, placement: &Placement) -> Gaussians {
     let mut placed = scene.clone();
     let turn = placement.rotation().as_quat();
     for i in 0..scene.len() {
-        let position = scene.positions[i].as_dvec3();
-        placed.positions[i] = placement.to_world(position).as_vec3();
-        placed.scales[i] = scene.scales[i] * placement.scale() as f32;
-        placed.rotations[i] = (turn * scene.rotations[i]).normalize();
+        let position = scene.positions()[i].as_dvec3();
+        placed.positions_mut()[i] = placement.to_world(position).as_vec3();
+        placed.scales_mut()[i] = scene.scales()[i] * placement.scale() as f32;
+        placed.rotations_mut()[i] = (turn * scene.rotations()[i]).normalize();
     }
     let matrix = harmonics_turned(placement.rotation());
     let count = scene.sh_coefficients();
     for (to, from) in placed
-        .sh
+        .sh_mut()
         .chunks_exact_mut(3 * count)
-        .zip(scene.sh.chunks_exact(3 * count))
+        .zip(scene.sh().chunks_exact(3 * count))
     {
         for (row, to) in to.chunks_exact_mut(3).enumerate() {
             for (channel, to) in to.iter_mut().enumerate() {
@@ -277,7 +277,7 @@ fn a_placed_scene_is_the_picture_of_its_gaussians_placed() {
         scene.set_sh_degree(degree);
         // Colours that change with the direction by about a third.
         let count = 3 * scene.sh_coefficients();
-        for (i, coefficient) in scene.sh.iter_mut().enumerate() {
+        for (i, coefficient) in scene.sh_mut().iter_mut().enumerate() {
             if i % count >= 3 {
                 *coefficient = 0.3 * (i as f32 * 1.7).sin();
             }
@@ -397,9 +397,9 @@ fn placed_before(
     let mut all = placed(scene, placement);
     if let Some((camera, limit)) = limit {
         for i in 0..all.len() {
-            let relative = all.positions[i].as_dvec3() - camera.eye;
+            let relative = all.positions()[i].as_dvec3() - camera.eye;
             if (camera.rotation * relative).z > limit {
-                all.opacities[i] = 0.0;
+                all.opacities_mut()[i] = 0.0;
             }
         }
     }

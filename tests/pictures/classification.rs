@@ -16,14 +16,9 @@ fn view_from(distance: f64) -> Camera {
 }
 
 fn one(scales: Vec3, rotation: Quat, opacity: f32) -> Gaussians {
-    Gaussians {
-        positions: vec![Vec3::ZERO],
-        scales: vec![scales],
-        rotations: vec![rotation],
-        opacities: vec![opacity],
-        sh_degree: 0,
-        sh: vec![0.0; 3],
-    }
+    let mut one = Gaussians::default();
+    one.push(Vec3::ZERO, scales, rotation, opacity, &[0.0; 3]);
+    one
 }
 
 fn cut_by(normal: DVec3, offset: f64) -> Clip {
@@ -35,8 +30,8 @@ fn cut_by(normal: DVec3, offset: f64) -> Clip {
 
 /// Standard deviation of a Gaussian along a direction, from its definition.
 fn deviation(scene: &Gaussians, index: usize, normal: DVec3) -> f64 {
-    let local = scene.rotations[index].as_dquat().inverse() * normal;
-    (local * scene.scales[index].as_dvec3()).length()
+    let local = scene.rotations()[index].as_dquat().inverse() * normal;
+    (local * scene.scales()[index].as_dvec3()).length()
 }
 
 fn direction() -> impl Strategy<Value = DVec3> {
@@ -83,8 +78,8 @@ proptest! {
                 reach * footprint.stretch / rest
             } else {
                 // Around the eye: by where the eye is in the splat.
-                let turned = scene.rotations[0].as_dquat().inverse() * camera.eye;
-                (turned / scene.scales[0].as_dvec3()).length() + 6.0
+                let turned = scene.rotations()[0].as_dquat().inverse() * camera.eye;
+                (turned / scene.scales()[0].as_dvec3()).length() + 6.0
             };
         }
         let sign = if kept { 1.0 } else { -1.0 };
@@ -111,7 +106,7 @@ proptest! {
 /// Needles a thousand times as long as thick, all in view, and a plane through their middle.
 fn needles(count: usize) -> (Gaussians, Camera, Plane) {
     let mut scene = generate(Kind::Strands, count, 3);
-    for scale in &mut scene.scales {
+    for scale in scene.scales_mut() {
         *scale = Vec3::new(0.2, 2e-4, 2e-4);
     }
     let plane = Plane::new(DVec3::new(0.7, 0.5, -0.4), 0.01).expect("a finite normal");
@@ -120,12 +115,12 @@ fn needles(count: usize) -> (Gaussians, Camera, Plane) {
 
 /// Whether the plane separates points of the splat's contour at alpha = 1/255: by points of it, no formula.
 fn truly_cut(scene: &Gaussians, index: usize, plane: &Plane, sphere: &[DVec3]) -> bool {
-    let reach = (2.0 * (255.0 * f64::from(scene.opacities[index])).max(1.0).ln()).sqrt();
+    let reach = (2.0 * (255.0 * f64::from(scene.opacities()[index])).max(1.0).ln()).sqrt();
     let (rotation, scales) = (
-        scene.rotations[index].as_dquat(),
-        scene.scales[index].as_dvec3(),
+        scene.rotations()[index].as_dquat(),
+        scene.scales()[index].as_dvec3(),
     );
-    let centre = scene.positions[index].as_dvec3();
+    let centre = scene.positions()[index].as_dvec3();
     let kept = |u: &DVec3| plane.distance(centre + rotation * (*u * reach * scales)) >= 0.0;
     let first = kept(&sphere[0]);
     sphere.iter().any(|u| kept(u) != first)
@@ -152,8 +147,8 @@ fn hardly_more_needles_are_called_cut_than_are() {
         .count();
     let paper = all
         .filter(|&i| {
-            plane.distance(scene.positions[i].as_dvec3()).abs()
-                < 3.0 * f64::from(scene.scales[i].max_element())
+            plane.distance(scene.positions()[i].as_dvec3()).abs()
+                < 3.0 * f64::from(scene.scales()[i].max_element())
         })
         .count();
 

@@ -2,7 +2,7 @@
 //! ones at random, in pictures large enough for single precision to matter, against the perspective-exact form in f64.
 
 use crate::common;
-use glam::{DQuat, DVec3, Quat, Vec3};
+use glam::{DQuat, DVec3, Quat};
 use rara::reference;
 use rara::{Camera, Clip, ClipOp, ExactForm, Gaussians, Mode, Plane, Raster, Settings};
 
@@ -52,14 +52,14 @@ fn case(random: &mut Random, size: u32) -> (Gaussians, Camera, Clip) {
     let normal = random.direction();
     let deviation = ((turn.inverse() * normal) * scales).length();
     let offset = -normal.dot(centre) + random.between(-2.0, 2.0) * deviation;
-    let scene = Gaussians {
-        positions: vec![centre.as_vec3()],
-        scales: vec![scales.as_vec3()],
-        rotations: vec![Quat::from_array(turn.as_quat().to_array()).normalize()],
-        opacities: vec![random.between(0.1, 1.0) as f32],
-        sh_degree: 0,
-        sh: Vec3::splat(0.5 / 0.282_094_79).to_array().to_vec(),
-    };
+    let mut scene = Gaussians::default();
+    scene.push(
+        centre.as_vec3(),
+        scales.as_vec3(),
+        Quat::from_array(turn.as_quat().to_array()).normalize(),
+        random.between(0.1, 1.0) as f32,
+        &[0.5 / 0.282_094_79; 3],
+    );
     let camera = Camera::look_at(
         DVec3::ZERO,
         DVec3::Z,

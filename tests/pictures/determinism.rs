@@ -120,14 +120,14 @@ fn pictures_of_a_row_or_a_column_of_tiles_are_those_of_quads() {
 fn a_lone_survivor_after_many_is_itself() {
     let mut scene = generate(Kind::Layers, 8, 3);
     for index in 0..scene.len() {
-        scene.positions[index] = glam::Vec3::new(index as f32 * 0.2 - 0.7, 0.0, 0.0);
+        scene.positions_mut()[index] = glam::Vec3::new(index as f32 * 0.2 - 0.7, 0.0, 0.0);
     }
     let camera = common::views(&scene, 1, SIZE)[0];
     let mut reused = common::headless();
     reused.load(&scene).expect("uploads");
     for end in 0..8 {
         // Keeps the centres from `end` to `end`: each of the eight alone.
-        let x = f64::from(scene.positions[end].x);
+        let x = f64::from(scene.positions()[end].x);
         let keep = |sign: f64| Plane::new(sign * DVec3::X, 0.1 - sign * x).expect("a proper plane");
         let clip = Clip {
             planes: vec![keep(1.0), keep(-1.0)],
@@ -202,7 +202,7 @@ fn splats_of_one_depth_keep_the_order_of_the_file() {
     let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, SIZE).expect("a view");
     // One layer; a few, longer than a run of the sort; many, several of them in a run; pairs and threes.
     for layers in [1, 7, 200, 2500] {
-        for (index, position) in scene.positions.iter_mut().enumerate() {
+        for (index, position) in scene.positions_mut().iter_mut().enumerate() {
             position.z = (index * 37 % layers) as f32 / 4096.0;
         }
         headless.load(&scene).expect("uploads");
@@ -237,7 +237,7 @@ fn a_scene_with_a_wider_box_is_sorted_alike() {
         (4.0, -4.7),
     ] {
         let mut thin = scene.clone();
-        for position in &mut thin.positions {
+        for position in thin.positions_mut() {
             position.z = position.z * thickness + shift;
         }
         // One that nobody sees, beside the others, behind them and a long way behind.
@@ -247,8 +247,8 @@ fn a_scene_with_a_wider_box_is_sorted_alike() {
                 ..Settings::default()
             };
             let pictures = [0.0, 0.05, 5.0, 1e6].map(|behind| {
-                thin.opacities[7] = 0.0;
-                thin.positions[7] = glam::Vec3::new(0.0, 0.0, behind + shift);
+                thin.opacities_mut()[7] = 0.0;
+                thin.positions_mut()[7] = glam::Vec3::new(0.0, 0.0, behind + shift);
                 headless.load(&thin).expect("uploads");
                 let rendered = headless.render(&camera, &Clip::default(), &settings);
                 assert!(rendered.expect("renders").counts.drawn > 1000);

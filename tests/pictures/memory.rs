@@ -8,7 +8,7 @@ use rara::{Gaussians, Preset, ShFormat};
 fn scene(count: usize) -> Gaussians {
     let mut scene = generate(Kind::General, count, 1);
     scene.set_sh_degree(3);
-    for (index, number) in scene.sh.iter_mut().enumerate() {
+    for (index, number) in scene.sh_mut().iter_mut().enumerate() {
         *number += (index % 97) as f32 * 1e-3;
     }
     scene

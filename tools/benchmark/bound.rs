@@ -92,7 +92,7 @@ fn scene(bench: &mut Bench, source: &Source, place: &mut Place) -> Result<()> {
 fn nothing_but_keys(scene: &Gaussians) -> Gaussians {
     let mut keys = scene.clone();
     keys.set_sh_degree(0);
-    keys.scales.fill(glam::Vec3::ZERO);
+    keys.scales_mut().fill(glam::Vec3::ZERO);
     keys
 }
 

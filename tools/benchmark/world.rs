@@ -102,7 +102,7 @@ impl World {
     pub(crate) fn keeping(&self, share: f64, normal: DVec3) -> Result<Clip> {
         let along = self
             .scene
-            .positions
+            .positions()
             .iter()
             .map(|p| normal.dot(p.as_dvec3()));
         let mut along: Vec<f64> = along.collect();

@@ -48,20 +48,20 @@ pub fn within<T>(base: usize, each: usize, input: &[u8], work: impl FnOnce() -> 
 pub fn assert_sound(scene: &Gaussians) {
     let n = scene.len();
     let lengths = [
-        scene.scales.len(),
-        scene.rotations.len(),
-        scene.opacities.len(),
+        scene.scales().len(),
+        scene.rotations().len(),
+        scene.opacities().len(),
     ];
     assert_eq!(lengths, [n; 3]);
-    assert!(scene.sh_degree <= 3);
-    assert_eq!(scene.sh.len(), 3 * n * scene.sh_coefficients());
-    assert!(scene.positions.iter().all(|p| p.is_finite()));
+    assert!(scene.sh_degree() <= 3);
+    assert_eq!(scene.sh().len(), 3 * n * scene.sh_coefficients());
+    assert!(scene.positions().iter().all(|p| p.is_finite()));
     let sound = |s: &glam::Vec3| s.is_finite() && s.min_element() >= 0.0;
-    assert!(scene.scales.iter().all(sound));
+    assert!(scene.scales().iter().all(sound));
     let unit = |q: &glam::Quat| (q.length() - 1.0).abs() < 1e-5;
-    assert!(scene.rotations.iter().all(unit));
-    assert!(scene.opacities.iter().all(|o| (0.0..=1.0).contains(o)));
-    assert!(scene.sh.iter().all(|v| v.is_finite()));
+    assert!(scene.rotations().iter().all(unit));
+    assert!(scene.opacities().iter().all(|o| (0.0..=1.0).contains(o)));
+    assert!(scene.sh().iter().all(|v| v.is_finite()));
 }
 
 /// A possible size, positive focal lengths, a finite eye and a rotation.

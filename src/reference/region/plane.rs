@@ -20,7 +20,7 @@ impl<T: Real> UnitPlane<T> {
         let n = Vec3::of(plane.normal());
         Self {
             normal: vec3(axes[0].dot(n), axes[1].dot(n), axes[2].dot(n)),
-            offset: T::of(plane.distance(scene.positions[index].as_dvec3())),
+            offset: T::of(plane.distance(scene.positions()[index].as_dvec3())),
         }
     }
 

@@ -86,12 +86,12 @@ fn a_rigid_motion_of_everything_changes_nothing() {
     let mut moved = base.clone();
     for i in 0..base.len() {
         // Rounded to 1/65536 first, so that the step is exact as well.
-        let position = (base.positions[i] * 65536.0).round() / 65536.0;
-        moved.positions[i] = turned(position) + step.as_vec3();
-        moved.rotations[i] = (turn * base.rotations[i].as_dquat()).as_quat();
+        let position = (base.positions()[i] * 65536.0).round() / 65536.0;
+        moved.positions_mut()[i] = turned(position) + step.as_vec3();
+        moved.rotations_mut()[i] = (turn * base.rotations()[i].as_dquat()).as_quat();
     }
     let mut base = base;
-    base.positions
+    base.positions_mut()
         .iter_mut()
         .for_each(|p| *p = (*p * 65536.0).round() / 65536.0);
     let view = Camera {

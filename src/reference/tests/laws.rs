@@ -214,7 +214,7 @@ proptest! {
         first.set_sh_degree(degrees[0]);
         second.set_sh_degree(degrees[1]);
         first.append(&second);
-        prop_assert_eq!(first.sh.len(), 3 * first.len() * first.sh_coefficients());
+        prop_assert_eq!(first.sh().len(), 3 * first.len() * first.sh_coefficients());
         first.set_sh_degree(0);
         prop_assert_eq!(&first, &whole);
     }

@@ -68,13 +68,13 @@ impl Default for One {
 fn scene(ones: &[One]) -> Gaussians {
     let mut scene = Gaussians::default();
     for one in ones {
-        scene.positions.push(Point::from(one.position));
-        scene.scales.push(Point::from(one.scale));
-        scene.rotations.push(one.rotation);
-        scene.opacities.push(one.opacity);
-        scene
-            .sh
-            .extend(one.colour.map(|c| ((f64::from(c) - 0.5) / Y00) as f32));
+        scene.push(
+            Point::from(one.position),
+            Point::from(one.scale),
+            one.rotation,
+            one.opacity,
+            &one.colour.map(|c| ((f64::from(c) - 0.5) / Y00) as f32),
+        );
     }
     scene
 }

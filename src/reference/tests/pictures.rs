@@ -178,8 +178,8 @@ fn colours_see_from_the_eye_to_the_centre_and_are_not_negative() {
         ..One::default()
     }]);
     scene.set_sh_degree(1);
-    scene.sh = vec![0.0; 12];
-    (scene.sh[6], scene.sh[7]) = (1.0, -2.0); // z band: red up, green down, seen along +z
+    scene.sh_mut().fill(0.0);
+    (scene.sh_mut()[6], scene.sh_mut()[7]) = (1.0, -2.0); // z band: red up, green down, seen along +z
     let camera = camera(1, 1, 100.0);
     let pixel = whole(&scene, &camera).at(0, 0);
     assert_close(pixel, [0.5 * (0.5 + 0.488_602_5), 0.0, 0.25, 0.5]);

@@ -9,9 +9,10 @@ pub(crate) mod random;
 mod spherical;
 mod strands;
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3, Vec3};
 
 use self::random::Random;
+use super::gaussians::MAX_SH_DEGREE;
 use super::{Gaussians, sh_coefficients};
 
 /// What to generate.
@@ -51,27 +52,23 @@ struct Builder(Gaussians);
 
 impl Builder {
     fn new(count: usize, sh_degree: u32) -> Self {
-        Self(Gaussians {
-            positions: Vec::with_capacity(count),
-            scales: Vec::with_capacity(count),
-            rotations: Vec::with_capacity(count),
-            opacities: Vec::with_capacity(count),
-            sh_degree,
-            sh: Vec::with_capacity(3 * sh_coefficients(sh_degree) * count),
-        })
+        Self(Gaussians::with_room(count, sh_degree).expect("memory for a scene"))
     }
 
     /// `colours` are the coefficients in order; missing ones are zero.
     fn push(&mut self, splat: &Splat, colours: &[DVec3]) {
         let rotation = DQuat::from_mat3(&splat.axes).normalize();
-        self.0.positions.push(splat.position.as_vec3());
-        self.0.scales.push(splat.scales.as_vec3());
-        self.0.rotations.push(rotation.as_quat().normalize());
-        self.0.opacities.push(splat.opacity as f32);
-        for coefficient in 0..self.0.sh_coefficients() {
-            let colour = colours.get(coefficient).copied().unwrap_or_default();
-            self.0.sh.extend(colour.as_vec3().to_array());
+        let mut sh = [Vec3::ZERO; sh_coefficients(MAX_SH_DEGREE)];
+        for (to, colour) in sh.iter_mut().zip(colours) {
+            *to = colour.as_vec3();
         }
+        self.0.push(
+            splat.position.as_vec3(),
+            splat.scales.as_vec3(),
+            rotation.as_quat().normalize(),
+            splat.opacity as f32,
+            bytemuck::cast_slice(&sh[..self.0.sh_coefficients()]),
+        );
     }
 }
 
@@ -118,22 +115,22 @@ mod tests {
             for count in [0, 1, 2, 5, 23, 25, 1000] {
                 let scene = generate(kind, count, 7);
                 assert_eq!(scene.len(), count, "{kind:?}");
-                assert_eq!(scene.sh.len(), 3 * count * scene.sh_coefficients());
-                assert!(scene.positions.iter().all(|p| p.length() < 1.1));
+                assert_eq!(scene.sh().len(), 3 * count * scene.sh_coefficients());
+                assert!(scene.positions().iter().all(|p| p.length() < 1.1));
                 assert!(
                     scene
-                        .scales
+                        .scales()
                         .iter()
                         .all(|s| s.is_finite() && s.min_element() > 0.0)
                 );
                 assert!(
                     scene
-                        .rotations
+                        .rotations()
                         .iter()
                         .all(|q| (q.length() - 1.0).abs() < 1e-5)
                 );
-                assert!(scene.opacities.iter().all(|o| *o > 0.0 && *o <= 1.0));
-                assert!(scene.sh.iter().all(|v| v.is_finite() && v.abs() < 3.0));
+                assert!(scene.opacities().iter().all(|o| *o > 0.0 && *o <= 1.0));
+                assert!(scene.sh().iter().all(|v| v.is_finite() && v.abs() < 3.0));
             }
         }
     }
@@ -143,8 +140,8 @@ mod tests {
         for kind in KINDS {
             assert_eq!(generate(kind, 500, 1), generate(kind, 500, 1));
             assert_ne!(
-                generate(kind, 500, 1).positions,
-                generate(kind, 500, 2).positions
+                generate(kind, 500, 1).positions(),
+                generate(kind, 500, 2).positions()
             );
         }
     }
@@ -154,7 +151,7 @@ mod tests {
         let hair = generate(Kind::Strands, 2400, 3);
         // A pixel at 1024^2, 60 degrees, distance 2.6.
         let pixel = 2.0 * 2.6 * 30_f32.to_radians().tan() / 1024.0;
-        for scale in &hair.scales {
+        for scale in hair.scales() {
             assert!((scale.max_element() / scale.min_element() - 20.0).abs() < 0.1);
             assert!(scale.min_element() < pixel);
         }
@@ -164,7 +161,7 @@ mod tests {
     fn splats_shrink_with_their_number() {
         let median = |kind, count| {
             let mut sizes: Vec<_> = generate(kind, count, 1)
-                .scales
+                .scales()
                 .iter()
                 .map(|s| s.max_element())
                 .collect();

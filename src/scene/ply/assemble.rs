@@ -22,25 +22,11 @@ impl Assembler {
     /// Room for exactly `count` Gaussians; the caller has checked that the file is big enough for them. `None` if
     /// the memory can't be had.
     pub(super) fn with_room(count: u64, sh_degree: u32) -> Option<Self> {
-        let count = usize::try_from(count).ok()?;
-        let numbers = 3 * sh_coefficients(sh_degree);
-        let mut gaussians = Gaussians {
-            sh_degree,
-            ..Gaussians::default()
-        };
-        gaussians.positions.try_reserve_exact(count).ok()?;
-        gaussians.scales.try_reserve_exact(count).ok()?;
-        gaussians.rotations.try_reserve_exact(count).ok()?;
-        gaussians.opacities.try_reserve_exact(count).ok()?;
-        gaussians
-            .sh
-            .try_reserve_exact(count.checked_mul(numbers)?)
-            .ok()?;
         Some(Self {
-            gaussians,
+            gaussians: Gaussians::with_room(usize::try_from(count).ok()?, sh_degree)?,
             report: LoadReport::default(),
             rows: 0,
-            used: SH + numbers,
+            used: SH + 3 * sh_coefficients(sh_degree),
         })
     }
 
@@ -48,7 +34,7 @@ impl Assembler {
     pub(super) fn push(&mut self, row: &Row) {
         let element = self.rows;
         self.rows += 1;
-        let degree = self.gaussians.sh_degree;
+        let degree = self.gaussians.sh_degree();
         let unusable = |(slot, &value): (usize, &f64)| {
             let value = value as f32;
             !(value.is_finite() || is_limit(slot, value))
@@ -93,13 +79,14 @@ impl Assembler {
                 )
             });
         }
-        let to = &mut self.gaussians;
-        to.positions
-            .push(Vec3::new(row[0] as f32, row[1] as f32, row[2] as f32));
-        to.scales.push(Vec3::from_array(scale));
-        to.rotations.push(rotation.unwrap_or(Quat::IDENTITY));
-        to.opacities.push((1.0 / (1.0 + (-row[10]).exp())) as f32);
-        to.sh.extend(row[SH..self.used].iter().map(|&v| v as f32));
+        let single = row.map(|value| value as f32);
+        self.gaussians.push(
+            Vec3::from_slice(&single[..3]),
+            Vec3::from_array(scale),
+            rotation.unwrap_or(Quat::IDENTITY),
+            (1.0 / (1.0 + (-row[10]).exp())) as f32,
+            &single[SH..self.used],
+        );
     }
 
     /// The scene and what was done to it.
@@ -153,7 +140,7 @@ mod tests {
             let (gaussians, report) = load(&[r]);
             assert!(report.is_clean());
             assert_eq!(
-                gaussians.rotations[0],
+                gaussians.rotations()[0],
                 Quat::from_xyzw(-0.5, 0.5, -0.5, 0.5)
             );
         }
@@ -164,7 +151,7 @@ mod tests {
         let mut r = row();
         r[6] = -0.0;
         let (gaussians, report) = load(&[row(), r]);
-        assert_eq!(gaussians.rotations[1], Quat::IDENTITY);
+        assert_eq!(gaussians.rotations()[1], Quat::IDENTITY);
         assert_eq!((report.repaired, report.dropped), (1, 0));
         assert_eq!(report.first_repaired[0].element, 1);
     }
@@ -178,9 +165,9 @@ mod tests {
         rows[1][4] = 88.7;
         let (gaussians, report) = load(&rows);
         assert!(report.is_clean());
-        assert_eq!(gaussians.opacities, [1.0, 0.0]);
-        assert_eq!(gaussians.scales[1].x, 0.0);
-        assert!(gaussians.scales[1].y > 1e38);
+        assert_eq!(gaussians.opacities(), [1.0, 0.0]);
+        assert_eq!(gaussians.scales()[1].x, 0.0);
+        assert!(gaussians.scales()[1].y > 1e38);
     }
 
     #[test]
@@ -191,8 +178,8 @@ mod tests {
         rows[2][SCALES + 2] = f64::NEG_INFINITY;
         let (gaussians, report) = load(&rows);
         assert_eq!((gaussians.len(), report.repaired), (3, 3));
-        assert_eq!(gaussians.opacities, [1.0, 0.0, 0.5]);
-        assert_eq!(gaussians.scales[2], Vec3::new(1.0, 1.0, 0.0));
+        assert_eq!(gaussians.opacities(), [1.0, 0.0, 0.5]);
+        assert_eq!(gaussians.scales()[2], Vec3::new(1.0, 1.0, 0.0));
         assert_eq!(
             report.first_repaired[0].reason,
             "opacity is inf, taken as the opacity 1"

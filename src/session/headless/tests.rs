@@ -59,31 +59,34 @@ fn what_tiles_never_have_room_for_is_drawn_as_quads() {
 fn scenes_of_blocks() -> [Gaussians; 4] {
     let general = generate(Kind::General, 5_000, 3);
     let mut small = general.clone();
-    for (scale, opacity) in small.scales.iter_mut().zip(&mut small.opacities) {
+    for scale in small.scales_mut() {
         *scale *= 0.02;
+    }
+    for opacity in small.opacities_mut() {
         *opacity = opacity.max(0.01);
     }
     let mut odd = general.clone();
     for index in 0..odd.len() {
-        odd.scales[index] = match index {
+        odd.scales_mut()[index] = match index {
             _ if index % 7 == 0 => Vec3::ZERO,
             _ if index % 301 == 0 => Vec3::splat(50.0),
             _ if index % 2003 == 0 => Vec3::splat(1e36),
-            _ => odd.scales[index],
+            _ => odd.scales()[index],
         };
         if index % 5 == 0 {
-            odd.opacities[index] = limits::ALPHA_MIN * (1.0 + 1e-5 * (index as f32 - 2500.0));
+            odd.opacities_mut()[index] = limits::ALPHA_MIN * (1.0 + 1e-5 * (index as f32 - 2500.0));
         }
         if index % 1999 == 0 {
-            odd.positions[index] = Vec3::splat(1e36);
+            odd.positions_mut()[index] = Vec3::splat(1e36);
         }
     }
     let mut tight = general.clone();
     for index in 0..tight.len() {
         let first = index / limits::BLOCK_SIZE as usize * limits::BLOCK_SIZE as usize;
-        tight.positions[index] = general.positions[first];
-        tight.scales[index] = Vec3::splat([0.0005, 0.05][first / limits::BLOCK_SIZE as usize % 2]);
-        tight.opacities[index] = 0.9;
+        tight.positions_mut()[index] = general.positions()[first];
+        tight.scales_mut()[index] =
+            Vec3::splat([0.0005, 0.05][first / limits::BLOCK_SIZE as usize % 2]);
+        tight.opacities_mut()[index] = 0.9;
     }
     [general, small, odd, tight]
 }
@@ -146,7 +149,7 @@ fn blocks_change_nothing() {
             let camera = match views.get(step) {
                 Some(camera) => *camera,
                 None => {
-                    let point = scene.positions[pick(scene.len())];
+                    let point = scene.positions()[pick(scene.len())];
                     at_the_edge(views[pick(2)], point, -2.0 + 0.5 * pick(9) as f64)
                 }
             };

@@ -10,12 +10,12 @@ fn check_scene(scene: &Gaussians, count: usize) {
     for i in 0..count {
         let v = |name: &str| value(name, i, false);
         assert_eq!(
-            scene.positions[i],
+            scene.positions()[i],
             Vec3::new(v("x") as f32, v("y") as f32, v("z") as f32)
         );
-        assert_eq!(scene.scales[i].y, v("scale_1").exp() as f32);
+        assert_eq!(scene.scales()[i].y, v("scale_1").exp() as f32);
         assert_eq!(
-            scene.opacities[i],
+            scene.opacities()[i],
             (1.0 / (1.0 + (-v("opacity")).exp())) as f32
         );
         let q = Quat::from_xyzw(
@@ -24,7 +24,7 @@ fn check_scene(scene: &Gaussians, count: usize) {
             v("rot_3") as f32,
             v("rot_0") as f32,
         );
-        assert!(scene.rotations[i].abs_diff_eq(q.normalize(), 1e-6));
+        assert!(scene.rotations()[i].abs_diff_eq(q.normalize(), 1e-6));
         let rest = scene.sh_coefficients() - 1;
         let sh = scene.sh_of(i);
         for channel in 0..3 {
@@ -52,7 +52,7 @@ fn every_degree_order_and_encoding() {
                 names.reverse();
                 let loaded = load_bytes(&scene_file(format, 7, &floats(&names)).bytes()).unwrap();
                 assert!(loaded.report.is_clean(), "{}", loaded.report);
-                assert_eq!(loaded.gaussians.sh_degree, degree);
+                assert_eq!(loaded.gaussians.sh_degree(), degree);
                 check_scene(&loaded.gaussians, 7);
             }
         }
@@ -89,7 +89,10 @@ fn doubles_and_lists_and_other_types() {
                 .map(|n| (if *n == "x" { kind } else { "float" }, *n))
                 .collect();
             let loaded = load_bytes(&scene_file(format, 3, &whole).bytes()).unwrap();
-            assert_eq!(loaded.gaussians.positions[2].x, value("x", 2, true) as f32);
+            assert_eq!(
+                loaded.gaussians.positions()[2].x,
+                value("x", 2, true) as f32
+            );
         }
     }
 }
@@ -202,13 +205,13 @@ fn saving_and_loading_gives_the_scene_back() {
         let mut scene = load_bytes(&file.bytes()).unwrap().gaussians;
         scene.set_sh_degree(degree);
         scene
-            .sh
+            .sh_mut()
             .iter_mut()
             .enumerate()
             .for_each(|(i, v)| *v = i as f32 * 0.01);
-        scene.scales[3].x = 0.0;
-        scene.opacities[4] = 1.0;
-        scene.opacities[5] = 0.0;
+        scene.scales_mut()[3].x = 0.0;
+        scene.opacities_mut()[4] = 1.0;
+        scene.opacities_mut()[5] = 0.0;
         let path =
             std::env::temp_dir().join(format!("rara-ply-save-{}-{degree}.ply", std::process::id()));
         save_ply(&path, &scene).unwrap();
@@ -217,18 +220,19 @@ fn saving_and_loading_gives_the_scene_back() {
         assert!(loaded.report.is_clean());
         let back = loaded.gaussians;
         assert_eq!(
-            (&back.positions, &back.sh, back.sh_degree),
-            (&scene.positions, &scene.sh, degree)
+            (back.positions(), back.sh(), back.sh_degree()),
+            (scene.positions(), scene.sh(), degree)
         );
         for i in 0..50 {
             assert!(
-                back.scales[i].abs_diff_eq(scene.scales[i], 1e-6 * scene.scales[i].max_element())
+                back.scales()[i]
+                    .abs_diff_eq(scene.scales()[i], 1e-6 * scene.scales()[i].max_element())
             );
-            assert!(back.rotations[i].abs_diff_eq(scene.rotations[i], 1e-6));
-            assert!((back.opacities[i] - scene.opacities[i]).abs() < 1e-6);
+            assert!(back.rotations()[i].abs_diff_eq(scene.rotations()[i], 1e-6));
+            assert!((back.opacities()[i] - scene.opacities()[i]).abs() < 1e-6);
         }
         assert_eq!(
-            (back.scales[3].x, back.opacities[4], back.opacities[5]),
+            (back.scales()[3].x, back.opacities()[4], back.opacities()[5]),
             (0.0, 1.0, 0.0)
         );
     }

@@ -138,26 +138,26 @@ pub(crate) fn assert_sound(scene: &Gaussians) {
     let n = scene.len();
     assert_eq!(
         (
-            scene.scales.len(),
-            scene.rotations.len(),
-            scene.opacities.len()
+            scene.scales().len(),
+            scene.rotations().len(),
+            scene.opacities().len()
         ),
         (n, n, n)
     );
-    assert_eq!(scene.sh.len(), 3 * n * scene.sh_coefficients());
-    assert!(scene.positions.iter().all(|p| p.is_finite()));
+    assert_eq!(scene.sh().len(), 3 * n * scene.sh_coefficients());
+    assert!(scene.positions().iter().all(|p| p.is_finite()));
     assert!(
         scene
-            .scales
+            .scales()
             .iter()
             .all(|s| s.is_finite() && s.min_element() >= 0.0)
     );
     assert!(
         scene
-            .rotations
+            .rotations()
             .iter()
             .all(|q| (q.length() - 1.0).abs() < 1e-5)
     );
-    assert!(scene.opacities.iter().all(|o| (0.0..=1.0).contains(o)));
-    assert!(scene.sh.iter().all(|v| v.is_finite()));
+    assert!(scene.opacities().iter().all(|o| (0.0..=1.0).contains(o)));
+    assert!(scene.sh().iter().all(|v| v.is_finite()));
 }

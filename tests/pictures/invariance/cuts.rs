@@ -1,7 +1,7 @@
 //! How a cut is put and how a scene is stored.
 
 use proptest::prelude::*;
-use rara::scene::{load, save_ply};
+use rara::scene::{GaussianArrays, load, save_ply};
 use rara::{Clip, ClipOp, Gaussians, Mode, Plane, Settings};
 
 use super::{check, draw, operations, planes, scenes, views};
@@ -71,12 +71,13 @@ fn splitting_a_scene_into_files_gives_the_same_bytes() {
 
 fn part(scene: &Gaussians, from: usize, to: usize) -> Gaussians {
     let stride = 3 * scene.sh_coefficients();
-    Gaussians {
-        positions: scene.positions[from..to].to_vec(),
-        scales: scene.scales[from..to].to_vec(),
-        rotations: scene.rotations[from..to].to_vec(),
-        opacities: scene.opacities[from..to].to_vec(),
-        sh_degree: scene.sh_degree,
-        sh: scene.sh[from * stride..to * stride].to_vec(),
-    }
+    let part = GaussianArrays {
+        positions: scene.positions()[from..to].to_vec(),
+        scales: scene.scales()[from..to].to_vec(),
+        rotations: scene.rotations()[from..to].to_vec(),
+        opacities: scene.opacities()[from..to].to_vec(),
+        sh_degree: scene.sh_degree(),
+        sh: scene.sh()[from * stride..to * stride].to_vec(),
+    };
+    Gaussians::new(part).expect("parts of what fits")
 }

@@ -22,16 +22,11 @@ fn separated() -> impl Strategy<Value = (Gaussians, Camera)> {
             let (column, row) = ((index % 5) as f32 - 2.0, (index / 5) as f32 - 1.5);
             let depth = 2.0 + 0.1 * index as f32;
             let pixel = depth / 100.0;
-            scene
-                .positions
-                .push(Vec3::new(20.0 * pixel * column, 19.0 * pixel * row, depth));
+            let position = Vec3::new(20.0 * pixel * column, 19.0 * pixel * row, depth);
             let deviations = shape.map(|s| 2.5 * pixel * 10.0_f32.powf(-3.0 * s));
-            scene.scales.push(deviations.into());
-            scene
-                .rotations
-                .push(DQuat::from_axis_angle(axis, angle).as_quat());
-            scene.opacities.push(opacity);
-            scene.sh.extend([1.0, 0.3, -0.7]);
+            let rotation = DQuat::from_axis_angle(axis, angle).as_quat();
+            let colour = [1.0, 0.3, -0.7];
+            scene.push(position, deviations.into(), rotation, opacity, &colour);
         }
         let camera = Camera {
             width: SIZE.0,
@@ -60,9 +55,9 @@ fn planes_through_splats() -> impl Strategy<Value = Through> {
 fn resolved(scene: &Gaussians, planes: &Through) -> Vec<Plane> {
     let plane = |(index, normal, deviations): &(prop::sample::Index, DVec3, f64)| {
         let i = index.index(scene.len());
-        let along = scene.rotations[i].as_dquat().inverse() * *normal;
-        let extent = (along * scene.scales[i].as_dvec3()).length();
-        let centre = scene.positions[i].as_dvec3();
+        let along = scene.rotations()[i].as_dquat().inverse() * *normal;
+        let extent = (along * scene.scales()[i].as_dvec3()).length();
+        let centre = scene.positions()[i].as_dvec3();
         Plane::new(*normal, deviations * extent - normal.dot(centre)).unwrap()
     };
     planes.iter().map(plane).collect()

@@ -1,6 +1,6 @@
 //! Where the world stands and how large a unit is.
 
-use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
+use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
 use rara::measure::compare;
 use rara::{Camera, Clip, ClipOp, Gaussians, Mode, Plane, Settings};
@@ -9,13 +9,14 @@ use super::{check, directions, draw, planes, scenes, views};
 
 /// Everything turned, then moved; the camera and the planes with it. Harmonics do not turn: degree 0.
 fn moved(scene: &Gaussians, turn: DQuat, step: DVec3) -> Gaussians {
-    let place = |p: &Vec3| (turn * p.as_dvec3() + step).as_vec3();
-    let rotate = |q: &Quat| (turn * q.as_dquat()).as_quat();
-    Gaussians {
-        positions: scene.positions.iter().map(place).collect(),
-        rotations: scene.rotations.iter().map(rotate).collect(),
-        ..scene.clone()
+    let mut moved = scene.clone();
+    for position in moved.positions_mut() {
+        *position = (turn * position.as_dvec3() + step).as_vec3();
     }
+    for rotation in moved.rotations_mut() {
+        *rotation = (turn * rotation.as_dquat()).as_quat();
+    }
+    moved
 }
 
 /// Positions and quaternions are single-precision numbers before and after: 6e-8 of some 10 units, a few thousandths
@@ -76,12 +77,13 @@ fn a_world_of_another_power_of_two_is_the_same_picture_to_the_bit() {
     let strategy = (scenes(), views(), planes(1..3), -1..10_i32);
     check(strategy, |headless, (scene, camera, planes, power)| {
         let factor = 2.0_f64.powi(power);
-        let larger = |v: &Vec3| *v * factor as f32;
-        let scaled = Gaussians {
-            positions: scene.positions.iter().map(larger).collect(),
-            scales: scene.scales.iter().map(larger).collect(),
-            ..scene.clone()
-        };
+        let mut scaled = scene.clone();
+        for position in scaled.positions_mut() {
+            *position *= factor as f32;
+        }
+        for scale in scaled.scales_mut() {
+            *scale *= factor as f32;
+        }
         let clip = |factor: f64| Clip {
             planes: planes
                 .iter()

@@ -33,14 +33,10 @@ fn scene(numbers: &mut Numbers) -> Option<Gaussians> {
     if !finite || largest == 0.0 || !opacity.is_finite() {
         return None;
     }
-    Some(Gaussians {
-        positions: vec![position],
-        scales: vec![scale],
-        rotations: vec![Quat::from_vec4((rotation / largest).normalize().as_vec4())],
-        opacities: vec![opacity],
-        sh_degree: 0,
-        sh: vec![1.0; 3],
-    })
+    let rotation = Quat::from_vec4((rotation / largest).normalize().as_vec4());
+    let mut scene = Gaussians::default();
+    scene.push(position, scale, rotation, opacity, &[1.0; 3]);
+    Some(scene)
 }
 
 fn camera(numbers: &mut Numbers) -> Option<Camera> {

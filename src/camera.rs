@@ -26,6 +26,9 @@ pub struct Camera {
 }
 
 impl Camera {
+    /// Largest picture side, pixels. Vulkan guarantees 4096; every driver we know has at least this.
+    pub const MAX_SIZE: u32 = 16384;
+
     /// A camera at `eye` that looks at `target`. `up` points up in the picture (the default world has y down: `-Y`).
     /// `fov_y` is the full vertical field of view in degrees.
     pub fn look_at(
@@ -104,10 +107,13 @@ impl Camera {
     }
 
     fn checked(self) -> Result<Self> {
-        if self.width == 0 || self.height == 0 || self.width > MAX_SIZE || self.height > MAX_SIZE {
+        let possible = 1..=Self::MAX_SIZE;
+        if !(possible.contains(&self.width) && possible.contains(&self.height)) {
             return Err(Error::Invalid(format!(
-                "a picture of {}x{} is not possible; each side is 1 to {MAX_SIZE} pixels",
-                self.width, self.height
+                "a picture of {}x{} is not possible; each side is 1 to {} pixels",
+                self.width,
+                self.height,
+                Self::MAX_SIZE
             )));
         }
         let focal_ok = |f: f64| f.is_finite() && f > 0.0;
@@ -146,6 +152,3 @@ impl Camera {
         DMat4::from_mat3_translation(self.rotation, -(self.rotation * self.eye))
     }
 }
-
-/// Largest picture side, pixels. Vulkan guarantees 4096; every driver we know has at least this.
-pub const MAX_SIZE: u32 = 16384;

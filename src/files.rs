@@ -1,6 +1,7 @@
 //! Writing files so that nobody ever sees half of one.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(not(feature = "lab"), allow(unreachable_pub))]
 
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};

@@ -3,53 +3,67 @@
 #![cfg_attr(doc, doc = include_str!(concat!(env!("OUT_DIR"), "/layers.md")))]
 #![doc = include_str!("../README.md")]
 
-pub mod camera;
+mod camera;
 #[cfg(feature = "json")]
 pub mod camera_files;
 pub mod clip;
 #[cfg(test)]
 mod codegen;
-pub mod depth;
-pub mod error;
-pub mod files;
+mod depth;
+mod error;
 mod framing;
 pub mod gpu;
 pub mod guide;
 #[cfg(feature = "json")]
 mod json;
-pub mod limits;
-#[cfg(feature = "lab")]
-pub mod measure;
 mod passes;
-pub mod picture;
-pub mod placement;
-pub mod precision;
-#[cfg(feature = "lab")]
-pub mod reference;
-pub mod renderer;
+mod picture;
+mod placement;
+mod precision;
+mod renderer;
 pub mod scene;
 mod session;
-pub mod settings;
-pub mod stats;
+mod settings;
+mod stats;
+mod trace;
+
+// What measures and tests rara itself: no interface that a version keeps, and public only with the feature `lab`.
+#[cfg(feature = "lab")]
+pub mod files;
+#[cfg(not(feature = "lab"))]
+mod files;
+#[cfg(feature = "lab")]
+pub mod limits;
+#[cfg(not(feature = "lab"))]
+mod limits;
+#[cfg(feature = "lab")]
+pub mod measure;
+#[cfg(feature = "lab")]
+pub mod reference;
 #[cfg(feature = "lab")]
 pub mod stress;
-pub mod trace;
+#[cfg(feature = "lab")]
 pub mod types;
+#[cfg(not(feature = "lab"))]
+mod types;
 
 /// The versions that this crate's interface is made of.
 pub use {ash, glam, gpu_allocator};
 
 pub use camera::Camera;
-pub use clip::{Clip, ClipOp, Plane};
+#[doc(inline)]
+pub use clip::{Clip, ClipOp, Plane, Shape};
 pub use depth::DepthMap;
 pub use error::{Error, Result};
+#[doc(inline)]
 pub use gpu::PipelineCache;
 pub use passes::{SceneBuffers, Staging};
 pub use picture::Picture;
 pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 pub use renderer::{DepthDesc, ExpectedDepthDesc, Renderer, RendererDesc};
-pub use scene::Gaussians;
+#[doc(inline)]
+pub use scene::{Bounds, GaussianArrays, Gaussians};
 pub use session::{Headless, HeadlessDesc};
 #[cfg(feature = "view")]
 pub use session::{Redraw, Windowed};

@@ -126,7 +126,7 @@ impl Trace {
 }
 
 /// [`Trace::span`] where there is a trace; without one only `act`.
-pub fn span<R>(trace: Option<&Trace>, name: &'static str, act: impl FnOnce() -> R) -> R {
+pub(crate) fn span<R>(trace: Option<&Trace>, name: &'static str, act: impl FnOnce() -> R) -> R {
     match trace {
         Some(trace) => trace.span(name, act),
         None => act(),

@@ -1,7 +1,7 @@
 //! Clips: planes and how they combine.
 
 use rara::glam::DVec3;
-use rara::{Clip, ClipOp, Error, Plane, Result, limits};
+use rara::{Clip, ClipOp, Error, Plane, Result};
 
 use crate::boundary::{invalid, list};
 
@@ -42,11 +42,11 @@ pub(crate) unsafe fn clip(clip: *const RaraClip) -> Result<Clip> {
     let Some(clip) = (unsafe { clip.as_ref() }) else {
         return Ok(Clip::default());
     };
-    if clip.plane_count > limits::MAX_CLIP_PLANES as usize {
+    if clip.plane_count > Clip::MAX_PLANES {
         return invalid(format!(
             "clip->plane_count is {}, and a clip has at most {} planes",
             clip.plane_count,
-            limits::MAX_CLIP_PLANES
+            Clip::MAX_PLANES
         ));
     }
     // SAFETY: the caller's promise.

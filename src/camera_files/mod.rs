@@ -13,7 +13,7 @@ use std::path::Path;
 
 use glam::{DMat3, DMat4, DVec3};
 
-use crate::camera::{Camera, MAX_SIZE};
+use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::json;
 
@@ -141,10 +141,11 @@ impl Parts {
     /// The camera, or what is wrong with it; `what` names it.
     fn camera(self, what: &str) -> std::result::Result<Camera, String> {
         let side = |side: f64, name: &str| {
-            let whole = side.fract() == 0.0 && side >= 1.0 && side <= f64::from(MAX_SIZE);
+            let whole = side.fract() == 0.0 && side >= 1.0 && side <= f64::from(Camera::MAX_SIZE);
             let error = || {
                 format!(
-                    "{what} has the {name} {side}; it must be a whole number from 1 to {MAX_SIZE}"
+                    "{what} has the {name} {side}; it must be a whole number from 1 to {}",
+                    Camera::MAX_SIZE
                 )
             };
             whole.then_some(side as u32).ok_or_else(error)

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use clap::Args;
-use rara::clip::{Shape, load_planes};
-use rara::{Clip, ClipOp};
+use rara::clip::load_planes;
+use rara::{Clip, ClipOp, Shape};
 
 use super::failure::Failure;
 
@@ -90,7 +90,6 @@ fn from_file(text: &str) -> Result<Vec<Shape>, Failure> {
 mod tests {
     use super::*;
     use glam::DVec3;
-    use rara::limits::MAX_CLIP_PLANES;
 
     fn clip(shapes: &[&str], clip_op: ClipOp) -> Result<Clip, Failure> {
         let clip = shapes.iter().map(|s| shape(s).unwrap()).collect();
@@ -175,8 +174,7 @@ mod tests {
         ] {
             assert!(shape(text).is_err(), "{text}");
         }
-        let many: Vec<&str> =
-            std::iter::repeat_n("plane:1,0,0,0", MAX_CLIP_PLANES as usize + 1).collect();
+        let many: Vec<&str> = std::iter::repeat_n("plane:1,0,0,0", Clip::MAX_PLANES + 1).collect();
         assert!(clip(&many, ClipOp::And).is_err());
     }
 }

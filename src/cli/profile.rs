@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rara::{HeadlessDesc, Trace, trace};
+use rara::{HeadlessDesc, Trace};
 
 use super::failure::Failure;
 use super::output;
@@ -60,7 +60,10 @@ impl Profile {
 
     /// Notes how long `act` takes.
     pub(super) fn span<R>(&self, name: &'static str, act: impl FnOnce() -> R) -> R {
-        trace::span(self.trace.as_ref(), name, act)
+        match &self.trace {
+            Some(trace) => trace.span(name, act),
+            None => act(),
+        }
     }
 
     /// Says it where the device has no statistics.

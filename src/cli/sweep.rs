@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
-use rara::clip::Shape;
-use rara::{Clip, Plane, Settings};
+use rara::{Clip, Plane, Settings, Shape};
 
 use super::camera::{CameraArgs, Views};
 use super::clip::ClipArgs;

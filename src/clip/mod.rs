@@ -8,11 +8,14 @@ mod shape;
 
 #[cfg(feature = "json")]
 pub use file::{NamedPlane, load_planes, planes_from_json};
-pub use shape::{Shape, numbers};
+pub use shape::Shape;
+#[cfg(feature = "lab")]
+pub use shape::numbers;
 
 use glam::DVec3;
 
 use crate::error::{Error, Result};
+use crate::limits;
 
 /// A half-space: the points x with `normal . x + offset >= 0` are visible.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,8 +99,13 @@ impl ClipOp {
 /// The region that stays visible. No planes means that everything does.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Clip {
-    /// The half-spaces, at most [`MAX_CLIP_PLANES`](crate::limits::MAX_CLIP_PLANES).
+    /// The half-spaces, at most [`MAX_PLANES`](Self::MAX_PLANES).
     pub planes: Vec<Plane>,
     /// How they combine.
     pub op: ClipOp,
+}
+
+impl Clip {
+    /// The most half-spaces that a frame can have.
+    pub const MAX_PLANES: usize = limits::MAX_CLIP_PLANES as usize;
 }

@@ -6,7 +6,6 @@ use glam::{DQuat, DVec3};
 
 use super::{Clip, ClipOp, Plane};
 use crate::error::{Error, Result, shortened};
-use crate::limits::MAX_CLIP_PLANES;
 
 /// A shape as the half-spaces that bound what it keeps. Parses from text; a leading `!` keeps the outside.
 ///
@@ -137,6 +136,7 @@ fn inside(text: &str) -> Result<Shape> {
 ///
 /// # Errors
 /// [`Error::Invalid`] for anything else.
+#[cfg_attr(not(feature = "lab"), allow(unreachable_pub))]
 pub fn numbers(text: &str) -> Result<Vec<f64>> {
     text.split(',')
         .map(|part| match part.trim().parse::<f64>() {
@@ -155,7 +155,7 @@ impl Clip {
     ///
     /// # Errors
     /// [`Error::Invalid`] if they do not fit one list of half-spaces that one operation joins, or make more than
-    /// [`MAX_CLIP_PLANES`].
+    /// [`Clip::MAX_PLANES`].
     pub fn of_shapes(shapes: &[Shape], op: ClipOp) -> Result<Self> {
         let op = match shapes {
             [only] => only.op,
@@ -173,10 +173,11 @@ impl Clip {
             )));
         }
         let planes: Vec<Plane> = shapes.iter().flat_map(|s| s.planes.clone()).collect();
-        if planes.len() > MAX_CLIP_PLANES as usize {
+        if planes.len() > Clip::MAX_PLANES {
             return Err(Error::Invalid(format!(
-                "the clip shapes make {} half-spaces (a box makes six), and a clip has at most {MAX_CLIP_PLANES}",
-                planes.len()
+                "the clip shapes make {} half-spaces (a box makes six), and a clip has at most {}",
+                planes.len(),
+                Clip::MAX_PLANES
             )));
         }
         Ok(Self { planes, op })

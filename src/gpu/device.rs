@@ -176,11 +176,13 @@ impl Device {
     }
 
     /// Creates a buffer.
+    #[cfg_attr(not(feature = "lab"), doc(hidden))]
     pub fn create_buffer(&self, desc: &BufferDesc<'_>) -> Result<Buffer> {
         Buffer::new(self, desc)
     }
 
     /// Creates a colour target.
+    #[cfg_attr(not(feature = "lab"), doc(hidden))]
     pub fn create_image(&self, desc: &ImageDesc<'_>) -> Result<Image> {
         Image::new(self, desc)
     }
@@ -212,6 +214,7 @@ impl Device {
     }
 
     /// What the device's clock shows now; `None` where that cannot be asked.
+    #[cfg_attr(not(feature = "lab"), doc(hidden))]
     pub fn calibrate(&self) -> Option<Calibration> {
         Clock::new(self, &self.inner.instance)?.read()
     }

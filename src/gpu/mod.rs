@@ -4,6 +4,15 @@
 //! [`Device::submit_and_wait`] and the uploads and downloads built on it, and what a window needs: surface, swapchain
 //! and frames in flight.
 
+#![cfg_attr(
+    not(feature = "lab"),
+    allow(
+        dead_code,
+        unreachable_pub,
+        reason = "tests and measurements use more of it than frames do"
+    )
+)]
+
 mod access;
 mod attachments;
 mod clock;
@@ -38,29 +47,43 @@ mod tracker;
 mod upload;
 mod validation;
 
-pub use access::Access;
-pub use attachments::{Attachments, DepthAttachment, Target};
-pub use clock::Calibration;
+pub use attachments::Target;
 pub use device::{Device, NamedBytes};
 pub use devices::{DeviceInfo, list_devices};
-pub use draw::Drawer;
-pub use image::{Image, ImageDesc};
-#[cfg(feature = "view")]
-pub(crate) use in_flight::{FRAMES, InFlight};
 pub use layout::Bindings;
-pub use memory::{Buffer, BufferDesc, Location};
 pub use open::{AdoptDesc, DeviceDesc};
-pub use pipeline::{ComputeDesc, ComputePipeline, GraphicsDesc, GraphicsPipeline};
 pub use pipeline_cache::PipelineCacheId;
 pub use pipeline_file::PipelineCache;
-pub(crate) use pipeline_file::PipelineFile;
-pub use recorder::{DepthImage, Groups, Recorder, group_grid};
+pub use recorder::DepthImage;
 pub use requirements::{Features, Support, check};
-pub use shader::{BufferAccess, BufferUse, MAX_BUFFERS, MAX_PARAMS, Shader};
 pub use shape::Shape;
+pub use timer::PassSpan;
+
+#[cfg(not(feature = "lab"))]
+pub(crate) use inner::*;
+#[cfg(feature = "lab")]
+pub use inner::*;
+pub(crate) use pipeline_file::PipelineFile;
 #[cfg(feature = "view")]
-pub(crate) use surface::{Surface, Window};
-#[cfg(feature = "view")]
-pub(crate) use swapchain::Swapchain;
-pub use timer::{PassSpan, Timer};
-pub use tracker::Tracker;
+pub(crate) use {
+    in_flight::{FRAMES, InFlight},
+    surface::{Surface, Window},
+    swapchain::Swapchain,
+};
+
+/// What frames are recorded with; public for tests and measurements only.
+mod inner {
+    pub use super::access::Access;
+    pub use super::attachments::{Attachments, DepthAttachment};
+    pub use super::clock::Calibration;
+    pub use super::draw::Drawer;
+    pub use super::image::{Image, ImageDesc};
+    pub use super::memory::{Buffer, BufferDesc, Location};
+    pub use super::pipeline::{ComputeDesc, ComputePipeline, GraphicsDesc, GraphicsPipeline};
+    #[cfg(feature = "lab")]
+    pub use super::recorder::group_grid;
+    pub use super::recorder::{Groups, Recorder};
+    pub use super::shader::{BufferAccess, BufferUse, MAX_BUFFERS, MAX_PARAMS, Shader};
+    pub use super::timer::Timer;
+    pub use super::tracker::Tracker;
+}

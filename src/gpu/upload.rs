@@ -10,6 +10,7 @@ const STAGING: u64 = 32 << 20;
 
 impl Device {
     /// Writes `data` at `offset` in a buffer and waits until it is there.
+    #[cfg_attr(not(feature = "lab"), doc(hidden))]
     pub fn upload(&self, buffer: &Buffer, offset: u64, data: &[u8]) -> Result<()> {
         self.upload_with(buffer, offset, data.len() as u64, |at, chunk| {
             chunk.copy_from_slice(&data[at as usize..][..chunk.len()]);
@@ -20,6 +21,7 @@ impl Device {
     /// Writes `size` bytes at `offset` in a buffer and waits until they are there. `fill` is called for one chunk after
     /// the other, with the chunk's first byte among the `size`, and writes all of it: at most 32 MiB, and a multiple of
     /// 1 MiB except for the last. The chunk is mapped memory that is slow to read.
+    #[cfg_attr(not(feature = "lab"), doc(hidden))]
     pub fn upload_with(
         &self,
         buffer: &Buffer,
@@ -46,11 +48,13 @@ impl Device {
     }
 
     /// Reads a whole buffer back, after everything submitted before.
+    #[cfg_attr(not(feature = "lab"), doc(hidden))]
     pub fn download(&self, buffer: &Buffer) -> Result<Vec<u8>> {
         self.download_range(buffer, 0, buffer.size())
     }
 
     /// Reads `size` bytes at `offset` of a buffer back, after everything submitted before.
+    #[cfg_attr(not(feature = "lab"), doc(hidden))]
     pub fn download_range(&self, buffer: &Buffer, offset: u64, size: u64) -> Result<Vec<u8>> {
         buffer.check_range(offset, size);
         let mut data = Vec::with_capacity(size as usize);

@@ -8,9 +8,8 @@ use image::codecs::{openexr::OpenExrEncoder, png::PngEncoder};
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits};
 
 use super::{Picture, premultiplied, to_bytes};
-use crate::camera::MAX_SIZE;
 use crate::files::write_atomically;
-use crate::{Error, Result};
+use crate::{Camera, Error, Result};
 
 /// The kinds of picture file there are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,7 +92,8 @@ impl Picture {
             }
         };
         let mut limits = Limits::no_limits();
-        (limits.max_image_width, limits.max_image_height) = (Some(MAX_SIZE), Some(MAX_SIZE));
+        limits.max_image_width = Some(Camera::MAX_SIZE);
+        limits.max_image_height = Some(Camera::MAX_SIZE);
         reader.limits(limits);
         let image = reader.decode();
         let image = image.map_err(|error| {

@@ -3,7 +3,6 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rara::camera::MAX_SIZE;
 use rara::{Camera, Gaussians, Plane};
 
 /// The system's allocator, which ends the process when a run needs more than its share.
@@ -67,7 +66,7 @@ pub fn assert_sound(scene: &Gaussians) {
 /// A possible size, positive focal lengths, a finite eye and a rotation.
 pub fn assert_camera(camera: &Camera) {
     let sides = [camera.width, camera.height];
-    assert!(sides.iter().all(|side| (1..=MAX_SIZE).contains(side)));
+    assert!(sides.iter().all(|side| (1..=Camera::MAX_SIZE).contains(side)));
     assert!(
         [camera.fx, camera.fy]
             .iter()

@@ -2,8 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use rara::clip::Shape;
-use rara::{Clip, ClipOp};
+use rara::{Clip, ClipOp, Shape};
 use rara_fuzz::{assert_plane, assert_readable, within};
 
 fuzz_target!(|bytes: &[u8]| {
@@ -26,7 +25,7 @@ fuzz_target!(|bytes: &[u8]| {
         assert_eq!((back.planes(), back.op()), (shape.planes(), shape.op()));
     }
     match Clip::of_shapes(&shapes, op) {
-        Ok(clip) => assert!(clip.planes.len() <= rara::limits::MAX_CLIP_PLANES as usize),
+        Ok(clip) => assert!(clip.planes.len() <= Clip::MAX_PLANES),
         Err(error) => assert_readable(&error),
     }
 });

@@ -3,9 +3,11 @@
 use glam::{DMat3, DMat4, DVec3};
 
 use crate::error::{Error, Result};
+use crate::setters::setters;
 
 /// A pinhole camera and the size of its picture. All in f64: the GPU gets single-precision values derived from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Camera {
     /// Picture width, pixels.
     pub width: u32,
@@ -24,6 +26,17 @@ pub struct Camera {
     /// World to camera rotation (rows are the camera's right, down and forward axes in the world).
     pub rotation: DMat3,
 }
+
+setters!(Camera {
+    width: u32,
+    height: u32,
+    fx: f64,
+    fy: f64,
+    cx: f64,
+    cy: f64,
+    eye: DVec3,
+    rotation: DMat3,
+});
 
 impl Camera {
     /// Largest picture side, pixels. Vulkan guarantees 4096; every driver we know has at least this.

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 /// remedy. Misuse of the library is a panic with a sentence instead; repairable data is repaired, counted and
 /// reported by the loader.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// A file could not be opened, read or written.
     #[error("{path}: {source}", path = path.display())]

@@ -23,6 +23,7 @@ mod precision;
 mod renderer;
 pub mod scene;
 mod session;
+mod setters;
 mod settings;
 mod stats;
 mod trace;

@@ -6,11 +6,13 @@ use ash::vk;
 use half::f16;
 
 use crate::limits;
+use crate::setters::setters;
 use crate::types;
 
 /// Format of the picture that [`Headless`](crate::Headless) draws into. A host has a format of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[non_exhaustive]
 pub enum TargetFormat {
     /// 8 bits a channel: each blend rounds, so that thin layers gather error or vanish.
     #[cfg_attr(feature = "cli", value(name = "8"))]
@@ -59,6 +61,7 @@ impl TargetFormat {
 /// How spherical harmonics lie in device memory. Chosen when a scene is loaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[non_exhaustive]
 pub enum ShFormat {
     /// 8 bits a coefficient and one scale a Gaussian; the constant term in 16-bit floats. 56 bytes for degree 3.
     #[cfg_attr(feature = "cli", value(name = "8"))]
@@ -91,6 +94,7 @@ impl ShFormat {
 /// The normal distribution's Phi in the weight of a cut splat: how it is approximated, and the largest error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[non_exhaustive]
 pub enum PhiForm {
     /// A logistic of an odd quintic: 1.9e-5.
     #[default]
@@ -114,6 +118,7 @@ impl PhiForm {
 
 /// What a frame gives up for time.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Precision {
     /// Format of the picture.
     pub target: TargetFormat,
@@ -132,6 +137,15 @@ pub struct Precision {
     /// than this times its colour. Zero blends everything.
     pub transmittance_min: f32,
 }
+
+setters!(Precision {
+    target: TargetFormat,
+    sh: ShFormat,
+    phi: PhiForm,
+    key_bits: u32,
+    beam_switch: f32,
+    transmittance_min: f32,
+});
 
 impl Precision {
     /// What a picture of this precision is held to against its twin in f64, decibels: the least of what the single
@@ -171,6 +185,7 @@ impl Default for Precision {
 /// A choice of all six; [the guide](crate::guide::modes) has what each costs and gives up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[non_exhaustive]
 pub enum Preset {
     /// Nothing is given up.
     Exact,

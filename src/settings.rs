@@ -1,10 +1,12 @@
 //! What a frame is asked to be, apart from scene, camera and clip.
 
 use crate::precision::Precision;
+use crate::setters::setters;
 
 /// How a clip treats the Gaussians that it cuts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[non_exhaustive]
 pub enum Mode {
     /// No clipping.
     None,
@@ -30,6 +32,7 @@ pub enum Decay {
 /// [`Mode::Rara`] only: what a cutoff splat keeps in a pixel whose ray misses the traced ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[non_exhaustive]
 pub enum Miss {
     /// Everything (the paper's text).
     Keep,
@@ -43,6 +46,7 @@ pub enum Miss {
 /// How splats become pixels. All give the same picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[non_exhaustive]
 pub enum Raster {
     /// The faster path on the device at hand.
     #[default]
@@ -59,6 +63,7 @@ pub enum Raster {
 /// What a frame shows of its splats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[non_exhaustive]
 pub enum Show {
     /// The splats' colours.
     #[default]
@@ -70,6 +75,7 @@ pub enum Show {
 
 /// Which form of the exact weight a cut splat gets.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub enum ExactForm {
     /// Affine in the pixel for small splats, perspective-exact for large ones ([`Precision::beam_switch`]).
     #[default]
@@ -80,8 +86,14 @@ pub enum ExactForm {
     Affine,
 }
 
-/// The options of a frame.
+/// The options of a frame: the default ones, and what is to be otherwise.
+///
+/// ```
+/// use rara::{Mode, Settings};
+/// let settings = Settings::default().mode(Mode::Hard).trace_all(true);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Settings {
     /// How cut Gaussians are treated.
     pub mode: Mode,
@@ -106,6 +118,20 @@ pub struct Settings {
     /// What is given up for time.
     pub precision: Precision,
 }
+
+setters!(Settings {
+    mode: Mode,
+    decay: Option<Decay>,
+    sigma: f32,
+    miss: Miss,
+    trace_all: bool,
+    form: ExactForm,
+    background: Option<[f32; 3]>,
+    sh_degree: Option<u32>,
+    raster: Raster,
+    show: Show,
+    precision: Precision,
+});
 
 impl Default for Settings {
     fn default() -> Self {

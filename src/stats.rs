@@ -29,6 +29,7 @@ pub struct PassTime {
 /// What one stage did, as the device has counted it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct PassStatistics {
     /// The stage.
     pub name: &'static str,
@@ -45,6 +46,7 @@ pub struct PassStatistics {
 /// Which way of turning splats into pixels a frame took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct RasterChoice {
     /// `mesh`, `quad` or `tiles`; empty before the first frame.
     pub path: &'static str,
@@ -55,6 +57,7 @@ pub struct RasterChoice {
 /// The statistics of one frame.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct FrameStats {
     /// How many Gaussians ended where.
     pub counts: Counts,

@@ -100,7 +100,8 @@ fn code(error: &Error) -> RaraResult {
         Error::Device(_) => RARA_ERROR_DEVICE,
         Error::DeviceLost { .. } => RARA_ERROR_DEVICE_LOST,
         Error::Memory(_) => RARA_ERROR_MEMORY,
-        Error::Vulkan { .. } | Error::Validation(_) => RARA_ERROR_VULKAN,
+        // And what a later version may add to these two.
+        Error::Vulkan { .. } | Error::Validation(_) | _ => RARA_ERROR_VULKAN,
     }
 }
 

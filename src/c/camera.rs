@@ -52,18 +52,9 @@ impl RaraCamera {
         let lens = (self.fx, self.fy, self.cx, self.cy);
         let rotation = DMat3::from_cols_array(&self.rotation).transpose();
         let eye = DVec3::from(self.eye);
-        Camera::from_world_to_camera(DMat4::from_mat3(rotation), lens, size)?;
-        let camera = Camera {
-            width: self.width,
-            height: self.height,
-            fx: self.fx,
-            fy: self.fy,
-            cx: self.cx,
-            cy: self.cy,
-            eye,
-            rotation,
-        };
-        camera.resized(size) // the same, once all of it is found possible
+        let turned = Camera::from_world_to_camera(DMat4::from_mat3(rotation), lens, size)?;
+        // To the bit what the host has written, once all of it is found possible.
+        turned.rotation(rotation).eye(eye).resized(size)
     }
 }
 

@@ -76,11 +76,9 @@ pub(crate) unsafe fn depth_desc(desc: *const RaraDepthDesc) -> Result<DepthDesc>
     if desc.format == vk::Format::UNDEFINED {
         return invalid("desc->depth->format is VK_FORMAT_UNDEFINED");
     }
-    Ok(DepthDesc {
-        stencil: desc.stencil != 0,
-        readable: desc.readable != 0,
-        ..DepthDesc::new(desc.format, desc.map.map()?)
-    })
+    Ok(DepthDesc::new(desc.format, desc.map.map()?)
+        .stencil(desc.stencil != 0)
+        .readable(desc.readable != 0))
 }
 
 /// A depth attachment without stencil, not readable. `desc_size` is sizeof *desc.

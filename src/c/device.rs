@@ -282,20 +282,14 @@ pub unsafe extern "C" fn rara_device_adopt(
                 desc.instance,
                 desc.physical_device,
             )?;
-            let adopt = AdoptDesc {
-                device: load_device(&instance, &desc)?,
-                instance,
-                physical_device: desc.physical_device,
-                queue: desc.queue,
-                queue_family: desc.queue_family,
-                mesh_shader: desc.mesh_shader != 0,
-                push_descriptor: desc.push_descriptor != 0,
-                debug_utils: desc.debug_utils != 0,
-                pipeline_cache: desc.pipeline_cache,
-                api_version: desc.api_version,
-                allocator: None,
-                pipeline_statistics: false,
-            };
+            let device = load_device(&instance, &desc)?;
+            let queue = (desc.queue, desc.queue_family);
+            let version = desc.api_version;
+            let adopt = AdoptDesc::new(version, instance, desc.physical_device, device, queue)
+                .mesh_shader(desc.mesh_shader != 0)
+                .push_descriptor(desc.push_descriptor != 0)
+                .debug_utils(desc.debug_utils != 0)
+                .pipeline_cache(desc.pipeline_cache);
             Device::adopt(adopt).map(RaraDevice)
         })
     })

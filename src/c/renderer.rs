@@ -121,36 +121,36 @@ unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<RendererDesc> {
     if desc.frames_in_flight == 0 {
         return invalid("desc->frames_in_flight is 0: a renderer needs at least one");
     }
-    Ok(RendererDesc {
-        color_format: desc.color_format,
-        depth: if desc.depth.is_null() {
-            None
-        } else {
-            // SAFETY: the caller's promise.
-            Some(unsafe { depth::depth_desc(desc.depth) }?)
-        },
-        samples: desc.samples,
-        expected_depth: (desc.expected_depth_format != vk::Format::UNDEFINED).then(|| {
-            ExpectedDepthDesc {
-                format: desc.expected_depth_format,
-                // SAFETY: the caller's promise.
-                target: unsafe {
-                    target(desc.expected_depth_render_pass, desc.expected_depth_subpass)
-                },
-            }
-        }),
+    let depth = if desc.depth.is_null() {
+        None
+    } else {
         // SAFETY: the caller's promise.
-        target: unsafe { target(desc.render_pass, desc.subpass) },
-        bindings: match desc.bindings {
-            RARA_BINDINGS_ADDRESS => Bindings::Address,
-            RARA_BINDINGS_BOUND => Bindings::Bound,
-            other => return invalid(format!("desc->bindings {other} is no RaraBindings")),
-        },
-        timing: desc.timing != 0,
-        statistics: false, // needs a device that rara has opened itself
-        reuse: desc.reuse != 0,
-        frames_in_flight: desc.frames_in_flight,
-    })
+        Some(unsafe { depth::depth_desc(desc.depth) }?)
+    };
+    let expects_depth = desc.expected_depth_format != vk::Format::UNDEFINED;
+    let expected_depth = expects_depth.then(|| {
+        let (pass, subpass) = (desc.expected_depth_render_pass, desc.expected_depth_subpass);
+        // SAFETY: the caller's promise.
+        let target = unsafe { target(pass, subpass) };
+        ExpectedDepthDesc::new(desc.expected_depth_format).target(target)
+    });
+    let bindings = match desc.bindings {
+        RARA_BINDINGS_ADDRESS => Bindings::Address,
+        RARA_BINDINGS_BOUND => Bindings::Bound,
+        other => return invalid(format!("desc->bindings {other} is no RaraBindings")),
+    };
+    // SAFETY: the caller's promise.
+    let target = unsafe { target(desc.render_pass, desc.subpass) };
+    // No statistics, which need a device that rara has opened itself.
+    Ok(RendererDesc::new(desc.color_format)
+        .depth(depth)
+        .samples(desc.samples)
+        .expected_depth(expected_depth)
+        .target(target)
+        .bindings(bindings)
+        .timing(desc.timing != 0)
+        .reuse(desc.reuse != 0)
+        .frames_in_flight(desc.frames_in_flight))
 }
 
 /// One colour attachment of one sample in dynamic rendering, no timestamps, nothing reused, one frame in flight.

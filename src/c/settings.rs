@@ -128,12 +128,7 @@ impl RaraSettings {
         let precision = preset.precision();
         Self {
             struct_size: size_of::<Self>(),
-            mode: match settings.mode {
-                Mode::None => RARA_MODE_NONE,
-                Mode::Hard => RARA_MODE_HARD,
-                Mode::Rara => RARA_MODE_RARA,
-                Mode::Exact => RARA_MODE_EXACT,
-            },
+            mode: RARA_MODE_EXACT,
             decay: RARA_DECAY_AUTO,
             sigma: settings.sigma,
             miss: RARA_MISS_PEAK,
@@ -146,6 +141,7 @@ impl RaraSettings {
                 PhiForm::Quintic => RARA_PHI_FORM_QUINTIC,
                 PhiForm::Cubic => RARA_PHI_FORM_CUBIC,
                 PhiForm::Logistic => RARA_PHI_FORM_LOGISTIC,
+                other => unreachable!("no preset has {other:?}, which C cannot say"),
             },
             key_bits: precision.key_bits,
             beam_switch: precision.beam_switch,
@@ -157,62 +153,60 @@ impl RaraSettings {
         fn no<T>(field: &str, value: u32, kind: &str) -> Result<T> {
             invalid(format!("settings->{field} {value} is no {kind}"))
         }
-        Ok(Settings {
-            mode: match self.mode {
+        Ok(Settings::default()
+            .mode(match self.mode {
                 RARA_MODE_NONE => Mode::None,
                 RARA_MODE_HARD => Mode::Hard,
                 RARA_MODE_RARA => Mode::Rara,
                 RARA_MODE_EXACT => Mode::Exact,
                 other => return no("mode", other, "RaraMode"),
-            },
-            decay: match self.decay {
+            })
+            .decay(match self.decay {
                 RARA_DECAY_AUTO => None,
                 RARA_DECAY_LINEAR => Some(Decay::Linear),
                 RARA_DECAY_DEPTH => Some(Decay::Depth),
                 other => return no("decay", other, "RaraDecay"),
-            },
-            sigma: self.sigma,
-            miss: match self.miss {
+            })
+            .sigma(self.sigma)
+            .miss(match self.miss {
                 RARA_MISS_KEEP => Miss::Keep,
                 RARA_MISS_DROP => Miss::Drop,
                 RARA_MISS_PEAK => Miss::Peak,
                 other => return no("miss", other, "RaraMiss"),
-            },
-            trace_all: self.trace_all != 0,
-            form: match self.form {
+            })
+            .trace_all(self.trace_all != 0)
+            .form(match self.form {
                 RARA_EXACT_FORM_AUTO => ExactForm::Auto,
                 RARA_EXACT_FORM_BEAM => ExactForm::Beam,
                 RARA_EXACT_FORM_AFFINE => ExactForm::Affine,
                 other => return no("form", other, "RaraExactForm"),
-            },
-            background: None,
-            sh_degree: u32::try_from(self.sh_degree).ok(),
-            raster: match self.raster {
+            })
+            .sh_degree(u32::try_from(self.sh_degree).ok())
+            .raster(match self.raster {
                 RARA_RASTER_AUTO => Raster::Auto,
                 RARA_RASTER_MESH => Raster::Mesh,
                 RARA_RASTER_QUAD => Raster::Quad,
                 RARA_RASTER_TILES => Raster::Tiles,
                 other => return no("raster", other, "RaraRaster"),
-            },
-            show: match self.show {
+            })
+            .show(match self.show {
                 RARA_SHOW_COLOUR => Show::Colour,
                 RARA_SHOW_WEIGHT => Show::Weight,
                 other => return no("show", other, "RaraShow"),
-            },
-            precision: Precision {
-                phi: match self.phi {
-                    RARA_PHI_FORM_QUINTIC => PhiForm::Quintic,
-                    RARA_PHI_FORM_CUBIC => PhiForm::Cubic,
-                    RARA_PHI_FORM_LOGISTIC => PhiForm::Logistic,
-                    other => return no("phi", other, "RaraPhiForm"),
-                },
-                key_bits: self.key_bits,
-                beam_switch: self.beam_switch,
-                transmittance_min: self.transmittance_min,
-                // Of the scene and the target, which are not a frame's.
-                ..Precision::default()
-            },
-        })
+            })
+            .precision(
+                Precision::default()
+                    // Of the scene and the target, which are not a frame's: the default.
+                    .phi(match self.phi {
+                        RARA_PHI_FORM_QUINTIC => PhiForm::Quintic,
+                        RARA_PHI_FORM_CUBIC => PhiForm::Cubic,
+                        RARA_PHI_FORM_LOGISTIC => PhiForm::Logistic,
+                        other => return no("phi", other, "RaraPhiForm"),
+                    })
+                    .key_bits(self.key_bits)
+                    .beam_switch(self.beam_switch)
+                    .transmittance_min(self.transmittance_min),
+            ))
     }
 }
 

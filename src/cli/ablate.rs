@@ -73,10 +73,7 @@ impl Ablate {
         };
 
         let mut session = Session::open(&self.device.meant(), &scene.gaussians, look.precision.sh)?;
-        let unclipped = Settings {
-            mode: Mode::None,
-            ..look
-        };
+        let unclipped = look.mode(Mode::None);
         let (truth, _) = session.picture(&camera, &Clip::default(), &unclipped)?;
         let mut rows = Vec::new();
         for (what, settings) in cases(look) {
@@ -112,13 +109,12 @@ impl Ablate {
 }
 
 fn cases(look: Settings) -> Vec<(&'static str, Settings)> {
-    let mode = |mode| Settings { mode, ..look };
-    let all = |miss, sigma| Settings {
-        mode: Mode::Rara,
-        trace_all: true,
-        miss,
-        sigma,
-        ..look
+    let mode = |mode| look.mode(mode);
+    let all = |miss, sigma| {
+        look.mode(Mode::Rara)
+            .trace_all(true)
+            .miss(miss)
+            .sigma(sigma)
     };
     vec![
         ("hard", mode(Mode::Hard)),

@@ -49,34 +49,31 @@ pub(super) fn combine(frames: &[FrameStats], how: Combine) -> FrameStats {
     skipped.retain(|name| {
         2 * frames.iter().filter(|f| f.skipped.contains(name)).count() > frames.len()
     });
-    FrameStats {
-        counts: match how {
-            Combine::Median => middle(frames),
-            Combine::Mean => Counts {
-                visible: count(|c| c.visible),
-                cutoff: count(|c| c.cutoff),
-                invisible: count(|c| c.invisible),
-                culled: count(|c| c.culled),
-                drawn: count(|c| c.drawn),
-            },
+    let mut combined = FrameStats::default();
+    combined.counts = match how {
+        Combine::Median => middle(frames),
+        Combine::Mean => Counts {
+            visible: count(|c| c.visible),
+            cutoff: count(|c| c.cutoff),
+            invisible: count(|c| c.invisible),
+            culled: count(|c| c.culled),
+            drawn: count(|c| c.drawn),
         },
-        passes: passes
-            .into_iter()
-            .map(|name| PassTime {
-                name,
-                ms: value(&|frame| ms(name, frame)),
-            })
-            .collect(),
-        gpu_ms: value(&|frame| frame.gpu_ms),
-        wall_ms: value(&|frame| frame.wall_ms),
-        skipped,
-        raster: frames.last().map(|frame| frame.raster).unwrap_or_default(),
+    };
+    let passes = passes.into_iter().map(|name| PassTime {
+        name,
+        ms: value(&|frame| ms(name, frame)),
+    });
+    combined.passes = passes.collect();
+    combined.gpu_ms = value(&|frame| frame.gpu_ms);
+    combined.wall_ms = value(&|frame| frame.wall_ms);
+    combined.skipped = skipped;
+    if let Some(last) = frames.last() {
+        combined.raster = last.raster;
         // The last one's: they are for looking into a frame, and no measure of many.
-        statistics: frames
-            .last()
-            .map(|f| f.statistics.clone())
-            .unwrap_or_default(),
+        combined.statistics = last.statistics.clone();
     }
+    combined
 }
 
 /// The names in the order of their first appearance.
@@ -95,10 +92,8 @@ mod tests {
     use super::*;
 
     fn frame(gpu_ms: f64, visible: u32, sort: Option<f64>) -> FrameStats {
-        let mut frame = FrameStats {
-            gpu_ms,
-            ..FrameStats::default()
-        };
+        let mut frame = FrameStats::default();
+        frame.gpu_ms = gpu_ms;
         frame.counts.visible = visible;
         frame.counts.drawn = visible;
         frame.passes.push(PassTime {

@@ -81,7 +81,7 @@ impl Demo {
         ));
         let mut shots = Vec::new();
         for &mode in Mode::value_variants() {
-            let settings = Settings { mode, ..look };
+            let settings = look.mode(mode);
             let (picture, stats) = session.picture(&camera, &clip, &settings)?;
             picture.save(self.output.join(format!("{}.png", name(mode))))?;
             shots.push(Shot {
@@ -166,12 +166,11 @@ fn print_errors(
     let render = |settings: &Settings| {
         reference::render::<f64>(&scene.gaussians, camera, clip, settings).picture
     };
-    let exact = Settings {
-        mode: Mode::Exact,
-        decay: Some(Decay::Depth),
-        form: ExactForm::Beam,
-        ..shots[0].settings
-    };
+    let exact = shots[0]
+        .settings
+        .mode(Mode::Exact)
+        .decay(Some(Decay::Depth))
+        .form(ExactForm::Beam);
     let truth = render(&exact);
     say(format_args!(
         "{:<6} {:>11} {:>10} {:>10}   {:>11} {:>10} {:>10}",

@@ -34,14 +34,13 @@ impl PrecisionArgs {
     /// The precision that was meant.
     pub(super) fn meant(&self) -> Precision {
         let preset = self.preset.precision();
-        Precision {
-            target: self.target_format.unwrap_or(preset.target),
-            sh: self.sh_format.unwrap_or(preset.sh),
-            phi: self.phi.unwrap_or(preset.phi),
-            key_bits: self.key_bits.unwrap_or(preset.key_bits),
-            beam_switch: self.beam_switch.unwrap_or(preset.beam_switch),
-            transmittance_min: self.transmittance_min.unwrap_or(preset.transmittance_min),
-        }
+        preset
+            .target(self.target_format.unwrap_or(preset.target))
+            .sh(self.sh_format.unwrap_or(preset.sh))
+            .phi(self.phi.unwrap_or(preset.phi))
+            .key_bits(self.key_bits.unwrap_or(preset.key_bits))
+            .beam_switch(self.beam_switch.unwrap_or(preset.beam_switch))
+            .transmittance_min(self.transmittance_min.unwrap_or(preset.transmittance_min))
     }
 }
 

@@ -51,11 +51,7 @@ impl ProfileArgs {
 impl Profile {
     /// What to open, with what the profile wants of it.
     pub(super) fn of(&self, desc: HeadlessDesc) -> HeadlessDesc {
-        HeadlessDesc {
-            trace: self.trace.clone(),
-            statistics: self.statistics,
-            ..desc
-        }
+        desc.trace(self.trace.clone()).statistics(self.statistics)
     }
 
     /// Notes how long `act` takes.

@@ -79,43 +79,37 @@ impl SettingsArgs {
             output::say("note: --sigma and --miss change nothing without --mode rara");
         }
         let defaults = self.look.meant()?;
-        Ok(Settings {
-            mode: self.mode,
-            decay: self.decay,
-            sigma: self.sigma.unwrap_or(defaults.sigma),
-            miss: self.miss.unwrap_or(defaults.miss),
-            trace_all: self.trace_all,
-            ..defaults
-        })
+        Ok(defaults
+            .mode(self.mode)
+            .decay(self.decay)
+            .sigma(self.sigma.unwrap_or(defaults.sigma))
+            .miss(self.miss.unwrap_or(defaults.miss))
+            .trace_all(self.trace_all))
     }
 }
 
 impl LookArgs {
     /// The default settings with this look.
     pub(super) fn meant(&self) -> Result<Settings, Failure> {
-        Ok(Settings {
-            background: self.background,
-            sh_degree: self.sh_degree,
-            raster: self.raster,
-            show: self.show,
-            precision: self.precision.meant(),
-            ..Settings::default()
-        })
+        Ok(Settings::default()
+            .background(self.background)
+            .sh_degree(self.sh_degree)
+            .raster(self.raster)
+            .show(self.show)
+            .precision(self.precision.meant()))
     }
 }
 
 impl DeviceArgs {
     /// What to open.
     pub(super) fn meant(&self) -> HeadlessDesc {
-        HeadlessDesc {
-            device: self.device.clone(),
-            validation: self.validation,
-            pipeline_cache: if self.no_pipeline_cache {
+        HeadlessDesc::default()
+            .device(self.device.clone())
+            .validation(self.validation)
+            .pipeline_cache(if self.no_pipeline_cache {
                 PipelineCache::Off
             } else {
                 PipelineCache::User
-            },
-            ..HeadlessDesc::default()
-        }
+            })
     }
 }

@@ -10,6 +10,7 @@ use crate::{Error, Result};
 
 /// A physical device as `rara devices` shows it; its number is its place in the list.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct DeviceInfo {
     /// The device's name.
     pub name: String,

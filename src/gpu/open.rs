@@ -10,10 +10,12 @@ use gpu_allocator::{AllocationSizes, AllocatorDebugSettings};
 use super::failure::failed;
 use super::instance::Instance;
 use super::{Device, DeviceInfo, devices, requirements};
+use crate::setters::setters;
 use crate::{Error, Result};
 
 /// What [`Device::headless`] opens.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct DeviceDesc {
     /// A number from [`list_devices`](super::list_devices) or part of a name; `None` is the best device.
     pub selector: Option<String>,
@@ -24,6 +26,13 @@ pub struct DeviceDesc {
     /// What drivers and capture tools are told.
     pub application_name: String,
 }
+
+setters!(DeviceDesc {
+    selector: Option<String>,
+    validation: bool,
+    statistics: bool,
+    application_name: String,
+});
 
 impl Default for DeviceDesc {
     fn default() -> Self {
@@ -36,8 +45,9 @@ impl Default for DeviceDesc {
     }
 }
 
-/// A host's own device, for [`Device::adopt`].
+/// A host's own device, for [`Device::adopt`]: [`AdoptDesc::new`], and what else the host has enabled.
 #[derive(Clone)]
+#[non_exhaustive]
 pub struct AdoptDesc {
     /// `VkApplicationInfo::apiVersion` of the instance: 1.2 or later.
     pub api_version: u32,
@@ -65,6 +75,41 @@ pub struct AdoptDesc {
     /// rara's own. It is locked while a buffer or an image is made or destroyed, never by
     /// [`Renderer::prepare`](crate::Renderer::prepare) or a draw.
     pub allocator: Option<Arc<Mutex<Allocator>>>,
+}
+
+setters!(AdoptDesc {
+    mesh_shader: bool,
+    push_descriptor: bool,
+    debug_utils: bool,
+    pipeline_statistics: bool,
+    pipeline_cache: vk::PipelineCache,
+    allocator: Option<Arc<Mutex<Allocator>>>,
+});
+
+impl AdoptDesc {
+    /// A device with nothing enabled that is optional, no pipeline cache, and an allocator of rara's own.
+    pub fn new(
+        api_version: u32,
+        instance: ash::Instance,
+        physical_device: vk::PhysicalDevice,
+        device: ash::Device,
+        (queue, queue_family): (vk::Queue, u32),
+    ) -> Self {
+        Self {
+            api_version,
+            instance,
+            physical_device,
+            device,
+            queue,
+            queue_family,
+            mesh_shader: false,
+            push_descriptor: false,
+            debug_utils: false,
+            pipeline_statistics: false,
+            pipeline_cache: vk::PipelineCache::null(),
+            allocator: None,
+        }
+    }
 }
 
 impl std::fmt::Debug for AdoptDesc {

@@ -15,6 +15,7 @@ use crate::{Error, Result};
 /// `VK_KHR_synchronization2` and `VK_KHR_dynamic_rendering`; compute workgroups of 256, where Vulkan promises 128; and a
 /// queue family for graphics and compute. Everything else is optional and stands here.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Support {
     /// The Vulkan version that rara uses: 1.2 or 1.3.
     pub api_version: u32,
@@ -87,6 +88,7 @@ impl Support {
 /// The feature structs that a device is created with, in 1.2 as in 1.3. A host with structs of its own sets the same
 /// fields there; those of `VkPhysicalDeviceVulkan13Features` stand for the two single ones.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Features {
     /// `bufferDeviceAddress`.
     pub vulkan12: vk::PhysicalDeviceVulkan12Features<'static>,

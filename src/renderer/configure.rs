@@ -117,7 +117,7 @@ impl Renderer {
         let bindings = self.bindings(scene);
         let targets = Targets {
             colour: self.desc.attachments(),
-            expected_depth: self.desc.expected_depth(),
+            expected_depth: self.desc.expected_depth_attachments(),
         };
         let pipelines = &mut self.pipelines;
         pipelines.ensure(&self.device, bindings, targets, &plan)?;

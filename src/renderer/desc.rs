@@ -5,9 +5,11 @@ use ash::vk;
 use crate::depth::DepthMap;
 use crate::error::{Error, Result};
 use crate::gpu::{Attachments, Bindings, DepthAttachment, Device, Target};
+use crate::setters::setters;
 
-/// What a renderer is created with: [`RendererDesc::new`] for the usual, fields changed where a host wants otherwise.
+/// What a renderer is created with: [`RendererDesc::new`] for the usual, and what a host wants otherwise.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct RendererDesc {
     /// Format of the colour attachment that [`Renderer::draw`](super::Renderer::draw) draws into. It must be blendable;
     /// splats are trained to be blended as stored, so sRGB formats, which blend in linear light, give another picture.
@@ -37,9 +39,23 @@ pub struct RendererDesc {
     pub frames_in_flight: u32,
 }
 
+setters!(RendererDesc {
+    color_format: vk::Format,
+    depth: Option<DepthDesc>,
+    expected_depth: Option<ExpectedDepthDesc>,
+    samples: vk::SampleCountFlags,
+    target: Target,
+    bindings: Bindings,
+    timing: bool,
+    statistics: bool,
+    reuse: bool,
+    frames_in_flight: u32,
+});
+
 /// The host's depth attachment. Splats behind what it holds are hidden, none is written into it. A splat is at one depth,
 /// that of its centre, in all of its pixels: the depth by which splats are ordered. Opaque things go first, then splats.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct DepthDesc {
     /// Its format, with or without stencil.
     pub format: vk::Format,
@@ -54,14 +70,22 @@ pub struct DepthDesc {
     pub readable: bool,
 }
 
+setters!(DepthDesc {
+    stencil: bool,
+    readable: bool,
+});
+
 /// Where expected depths are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ExpectedDepthDesc {
     /// Format of the scope's only colour attachment: blendable, of two floats or more, best of 32 bits.
     pub format: vk::Format,
     /// Dynamic rendering, or a classic render pass of its own.
     pub target: Target,
 }
+
+setters!(ExpectedDepthDesc { target: Target });
 
 impl ExpectedDepthDesc {
     /// In dynamic rendering.
@@ -121,7 +145,7 @@ impl RendererDesc {
     }
 
     /// What the pipeline of expected depths draws into.
-    pub(super) fn expected_depth(&self) -> Option<Attachments> {
+    pub(super) fn expected_depth_attachments(&self) -> Option<Attachments> {
         self.expected_depth.map(|expected| Attachments {
             color: expected.format,
             target: expected.target,

@@ -22,6 +22,7 @@ pub struct Remark {
 /// logarithm of scale 0. Bringing an ordinary quaternion to length one is no repair: trainers store them
 /// unnormalised on purpose.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct LoadReport {
     /// Elements left out.
     pub dropped: u64,

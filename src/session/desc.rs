@@ -1,10 +1,12 @@
 //! What a session is opened with.
 
 use crate::gpu::{Bindings, Device, PipelineCache};
+use crate::setters::setters;
 use crate::trace::Trace;
 
 /// What a headless renderer is created with.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct HeadlessDesc {
     /// Device number or part of its name; `None` is the best device.
     pub device: Option<String>,
@@ -20,6 +22,15 @@ pub struct HeadlessDesc {
     /// Count what the stages do, where the device can.
     pub statistics: bool,
 }
+
+setters!(HeadlessDesc {
+    device: Option<String>,
+    validation: bool,
+    bindings: Option<Bindings>,
+    pipeline_cache: PipelineCache,
+    trace: Option<Trace>,
+    statistics: bool,
+});
 
 impl HeadlessDesc {
     /// How buffers are reached.

@@ -58,17 +58,12 @@ fn recording_allocates_nothing() {
             rasters.push(Raster::Mesh);
         }
         for (raster, reuse) in rasters.into_iter().flat_map(|r| [(r, false), (r, true)]) {
-            let desc = RendererDesc {
-                bindings,
-                reuse,
-                timing: true,
-                ..RendererDesc::new(FORMAT)
-            };
+            let desc = RendererDesc::new(FORMAT)
+                .bindings(bindings)
+                .reuse(reuse)
+                .timing(true);
             let mut renderer = Renderer::new(device, desc).expect("a renderer");
-            let settings = Settings {
-                raster,
-                ..Settings::default()
-            };
+            let settings = Settings::default().raster(raster);
             for (number, planes) in [0, 1, 3, 1, 1].into_iter().enumerate() {
                 let clip = common::clip(&scene, planes, ClipOp::And);
                 let configured = renderer.configure(&buffers, &camera, &clip, &settings);

@@ -22,11 +22,11 @@ fn memory_stays_flat_over_ten_thousand_frames() {
 fn soak(frames: usize) {
     let _alone = crate::alone();
     // Without the validation layer: it keeps books of its own that grow.
-    let mut headless = Headless::new(&HeadlessDesc {
-        device: std::env::var("RARA_TEST_DEVICE").ok(),
-        pipeline_cache: PipelineCache::Off,
-        ..HeadlessDesc::default()
-    })
+    let mut headless = Headless::new(
+        &HeadlessDesc::default()
+            .device(std::env::var("RARA_TEST_DEVICE").ok())
+            .pipeline_cache(PipelineCache::Off),
+    )
     .expect("a Vulkan device");
     let scenes: Vec<Gaussians> = [
         (Kind::General, 300),

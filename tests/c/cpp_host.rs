@@ -76,13 +76,13 @@ fn draw(host: &Path, device: &str, scene: &Path, what: &str) -> Vec<u8> {
 
 /// The same frame without a mesh, and the name of the device that has drawn it.
 fn truth(scene: &Gaussians) -> (Vec<u8>, String) {
-    let mut headless = Headless::new(&HeadlessDesc {
-        device: env::var("RARA_TEST_DEVICE").ok(),
-        validation: true,
-        bindings: None,
-        pipeline_cache: PipelineCache::Off,
-        ..HeadlessDesc::default()
-    })
+    let mut headless = Headless::new(
+        &HeadlessDesc::default()
+            .device(env::var("RARA_TEST_DEVICE").ok())
+            .validation(true)
+            .bindings(None)
+            .pipeline_cache(PipelineCache::Off),
+    )
     .expect("a Vulkan device and the validation layer (tools/test installs both)");
     let bounds = Bounds::of(scene);
     let camera = Camera::frame(&bounds, -DVec3::Y, 50.0, SIZE).expect("a view");
@@ -92,11 +92,9 @@ fn truth(scene: &Gaussians) -> (Vec<u8>, String) {
         planes: vec![Plane::new(normal, -normal.dot(centre)).expect("a normal")],
         op: ClipOp::And,
     };
-    let settings = Settings {
-        background: Some([0.0; 3]),
-        raster: Raster::Quad, // tiles want to be shown the host's depth
-        ..Settings::default()
-    };
+    let settings = Settings::default()
+        .background(Some([0.0; 3]))
+        .raster(Raster::Quad); // tiles want to be shown the host's depth
     headless.load_as(scene, ShFormat::Packed).expect("uploads");
     headless.render(&camera, &clip, &settings).expect("renders");
     let picture = headless.picture().expect("reads back");

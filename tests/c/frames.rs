@@ -99,23 +99,15 @@ impl<'a> World<'a> {
 
     /// By the Rust interface.
     fn drawn(&self, device: &Device, canvas: &Canvas) -> Pixels {
-        let desc = RendererDesc {
-            depth: Some(DepthDesc {
-                readable: true,
-                ..DepthDesc::new(DEPTH, map())
-            }),
-            expected_depth: Some(ExpectedDepthDesc::new(DEPTHS)),
-            bindings: Bindings::Bound,
-            ..RendererDesc::new(FLOATS)
-        };
+        let desc = RendererDesc::new(FLOATS)
+            .depth(Some(DepthDesc::new(DEPTH, map()).readable(true)))
+            .expected_depth(Some(ExpectedDepthDesc::new(DEPTHS)))
+            .bindings(Bindings::Bound);
         let scene = SceneBuffers::upload(device, self.scene, ShFormat::Packed);
         let scene = scene.expect("uploads");
         let renderer = RefCell::new(Renderer::new(device, desc).expect("a renderer"));
         renderer.borrow_mut().set_placement(self.placement);
-        let settings = Settings {
-            raster: self.raster,
-            ..Settings::default()
-        };
+        let settings = Settings::default().raster(self.raster);
         let clip = Clip {
             planes: vec![self.plane],
             op: ClipOp::And,

@@ -55,13 +55,11 @@ pub fn headless_unchecked(bindings: Bindings) -> Headless {
 }
 
 fn open(bindings: Bindings, validation: bool) -> Headless {
-    let desc = HeadlessDesc {
-        device: std::env::var("RARA_TEST_DEVICE").ok(),
-        validation,
-        bindings: Some(bindings),
-        pipeline_cache: PipelineCache::Off,
-        ..HeadlessDesc::default()
-    };
+    let desc = HeadlessDesc::default()
+        .device(std::env::var("RARA_TEST_DEVICE").ok())
+        .validation(validation)
+        .bindings(Some(bindings))
+        .pipeline_cache(PipelineCache::Off);
     Headless::new(&desc)
         .expect("a Vulkan device and the validation layer (tools/test installs both)")
 }

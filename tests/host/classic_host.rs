@@ -140,20 +140,18 @@ impl Host {
     }
 
     fn lend(&self) -> AdoptDesc {
-        AdoptDesc {
-            api_version: self.version,
-            instance: self.instance.clone(),
-            physical_device: self.physical_device,
-            device: self.device.clone(),
-            queue: self.queue,
-            queue_family: self.support.queue_family,
-            mesh_shader: self.support.mesh_shader,
-            push_descriptor: self.support.push_descriptor,
-            debug_utils: true,
-            pipeline_statistics: self.support.pipeline_statistics,
-            pipeline_cache: vk::PipelineCache::null(),
-            allocator: Some(self.allocator.clone()),
-        }
+        AdoptDesc::new(
+            self.version,
+            self.instance.clone(),
+            self.physical_device,
+            self.device.clone(),
+            (self.queue, self.support.queue_family),
+        )
+        .mesh_shader(self.support.mesh_shader)
+        .push_descriptor(self.support.push_descriptor)
+        .debug_utils(true)
+        .pipeline_statistics(self.support.pipeline_statistics)
+        .allocator(Some(self.allocator.clone()))
     }
 
     /// # Safety
@@ -397,20 +395,15 @@ fn check(version: u32) {
         };
         for (raster, planes) in rasters.iter().flat_map(clips) {
             let clip = common::clip(&scene, planes, ClipOp::And);
-            let settings = Settings {
-                raster,
-                ..Settings::default()
-            };
+            let settings = Settings::default().raster(raster);
             headless.render(&camera, &clip, &settings).expect("renders");
             let truth = headless.picture().expect("reads back");
-            let desc = RendererDesc {
-                bindings,
-                timing: true,
-                statistics: true,
+            let desc = RendererDesc::new(FORMAT)
+                .bindings(bindings)
+                .timing(true)
+                .statistics(true)
                 // SAFETY: the render pass outlives the renderer.
-                target: unsafe { Target::render_pass(host.render_pass, 0) },
-                ..RendererDesc::new(FORMAT)
-            };
+                .target(unsafe { Target::render_pass(host.render_pass, 0) });
             let mut renderer = Renderer::new(&device, desc).expect("a renderer");
             let configured = renderer.configure(&buffers, &camera, &clip, &settings);
             configured.expect("configures");

@@ -118,10 +118,7 @@ fn canvas(world: &World, map: DepthMap, depth: vk::Format) -> CanvasDesc {
 }
 
 fn depth_desc(canvas: &CanvasDesc, map: DepthMap, readable: bool) -> DepthDesc {
-    DepthDesc {
-        readable,
-        ..DepthDesc::new(canvas.depth, map)
-    }
+    DepthDesc::new(canvas.depth, map).readable(readable)
 }
 
 /// One frame of the world on a canvas; the part under the camera's picture, and how it was drawn.
@@ -135,10 +132,7 @@ fn draw(
     let format = rara::ShFormat::Float;
     let scene = SceneBuffers::upload(device, &world.scene, format).expect("uploads");
     let mut renderer = Renderer::new(device, desc).expect("a renderer");
-    let settings = Settings {
-        raster,
-        ..Settings::default()
-    };
+    let settings = Settings::default().raster(raster);
     let configured = renderer.configure(&scene, &world.camera, &world.clip, &settings);
     configured.expect("configures");
     let path = renderer.raster().path;
@@ -229,11 +223,9 @@ fn meshes_hide_the_splats_behind_them_on_ordinary_and_reversed_depth() {
                 .into_iter()
                 .flat_map(|raster| [(raster, Bindings::Bound), (raster, Bindings::Address)])
             {
-                let desc = RendererDesc {
-                    depth: Some(depth),
-                    bindings,
-                    ..RendererDesc::new(FLOATS)
-                };
+                let desc = RendererDesc::new(FLOATS)
+                    .depth(Some(depth))
+                    .bindings(bindings);
                 let (picture, path) = draw(device, &canvas, &world, desc, raster);
                 let asked = match raster {
                     Raster::Tiles => "tiles",
@@ -271,11 +263,9 @@ fn depths_in_few_bits_hide_the_same_splats_in_every_way_of_drawing() {
                 let desc = canvas(&world, map, format);
                 let depth = depth_desc(&desc, map, true);
                 let canvas = Canvas::new(&host.lend(), device, desc);
-                let desc = RendererDesc {
-                    depth: Some(depth),
-                    bindings: Bindings::Bound,
-                    ..RendererDesc::new(FLOATS)
-                };
+                let desc = RendererDesc::new(FLOATS)
+                    .depth(Some(depth))
+                    .bindings(Bindings::Bound);
                 let (quads, _) = draw(device, &canvas, &world, desc, Raster::Quad);
                 let (tiles, path) = draw(device, &canvas, &world, desc, Raster::Tiles);
                 assert_eq!(path, "tiles");
@@ -293,10 +283,7 @@ fn a_depth_image_beside_the_picture_hides_nothing() {
     let world = World::new();
     let mut headless = common::headless();
     headless.load(&world.scene).expect("uploads");
-    let settings = Settings {
-        raster: Raster::Tiles,
-        ..Settings::default()
-    };
+    let settings = Settings::default().raster(Raster::Tiles);
     let drawn = headless.render(&world.camera, &world.clip, &settings);
     drawn.expect("renders");
     let truth = headless.picture().expect("reads back");
@@ -307,11 +294,9 @@ fn a_depth_image_beside_the_picture_hides_nothing() {
             let canvas = Canvas::new(&host.lend(), device, desc);
             let format = rara::ShFormat::Float;
             let scene = SceneBuffers::upload(device, &world.scene, format).expect("uploads");
-            let desc = RendererDesc {
-                depth: Some(depth),
-                bindings: Bindings::Bound,
-                ..RendererDesc::new(FLOATS)
-            };
+            let desc = RendererDesc::new(FLOATS)
+                .depth(Some(depth))
+                .bindings(Bindings::Bound);
             let mut renderer = Renderer::new(device, desc).expect("a renderer");
             let configured = renderer.configure(&scene, &world.camera, &world.clip, &settings);
             configured.expect("configures");
@@ -346,10 +331,7 @@ fn tiles_that_cannot_see_the_hosts_depth_are_quads() {
         let desc = canvas(&world, map, vk::Format::D32_SFLOAT);
         let depth = depth_desc(&desc, map, false);
         let canvas = Canvas::new(&host.lend(), device, desc);
-        let desc = RendererDesc {
-            depth: Some(depth),
-            ..RendererDesc::new(FLOATS)
-        };
+        let desc = RendererDesc::new(FLOATS).depth(Some(depth));
         for raster in [Raster::Tiles, Raster::Auto] {
             let (picture, path) = draw(device, &canvas, &world, desc, raster);
             assert_eq!(path, "quad", "{raster:?}");
@@ -382,12 +364,10 @@ fn a_classic_render_pass_shows_the_same_picture() {
                 } else {
                     Target::DYNAMIC
                 };
-                let desc = RendererDesc {
-                    depth,
-                    target,
-                    bindings: Bindings::Bound,
-                    ..RendererDesc::new(FLOATS)
-                };
+                let desc = RendererDesc::new(FLOATS)
+                    .depth(depth)
+                    .target(target)
+                    .bindings(Bindings::Bound);
                 draw(device, &canvas, &world, desc, raster).0
             });
             assert!(dynamic.pixels.iter().any(|pixel| pixel[3] > 0.5));
@@ -413,12 +393,10 @@ fn targets_of_several_samples_resolve_to_the_same_picture() {
         desc.samples = samples;
         let depth = depth_desc(&desc, map, false);
         let canvas = Canvas::new(&host.lend(), device, desc);
-        let desc = RendererDesc {
-            depth: Some(depth),
-            samples,
-            bindings: Bindings::Bound,
-            ..RendererDesc::new(FLOATS)
-        };
+        let desc = RendererDesc::new(FLOATS)
+            .depth(Some(depth))
+            .samples(samples)
+            .bindings(Bindings::Bound);
         for raster in rasters(device) {
             let (picture, _) = draw(device, &canvas, &world, desc, raster);
             let (worst, most) = (apart(&picture, &truth, 0.0), apart(&picture, &truth, 0.01));
@@ -440,19 +418,16 @@ fn what_a_device_cannot_draw_into_is_refused_with_a_reason() {
         };
         let samples = vk::SampleCountFlags::TYPE_64;
         let usual = RendererDesc::new(vk::Format::R8G8B8A8_UNORM);
-        let text = refused(RendererDesc { samples, ..usual });
+        let text = refused(usual.samples(samples));
         assert!(
             text.contains("TYPE_64") && text.contains("one sample"),
             "{text}"
         );
         let samples = vk::SampleCountFlags::TYPE_1 | vk::SampleCountFlags::TYPE_4;
-        let text = refused(RendererDesc { samples, ..usual });
+        let text = refused(usual.samples(samples));
         assert!(text.contains("samples"), "{text}");
         let depth = DepthDesc::new(vk::Format::R8G8B8A8_UNORM, maps()[0]);
-        let text = refused(RendererDesc {
-            depth: Some(depth),
-            ..usual
-        });
+        let text = refused(usual.depth(Some(depth)));
         assert!(text.contains("no depth"), "{text}");
     });
 }
@@ -461,14 +436,8 @@ fn what_a_device_cannot_draw_into_is_refused_with_a_reason() {
 fn a_promised_depth_that_is_not_given_is_refused() {
     let headless = common::headless();
     let device = headless.device();
-    let depth = DepthDesc {
-        readable: true,
-        ..DepthDesc::new(vk::Format::D32_SFLOAT, maps()[0])
-    };
-    let desc = RendererDesc {
-        depth: Some(depth),
-        ..RendererDesc::new(FLOATS)
-    };
+    let depth = DepthDesc::new(vk::Format::D32_SFLOAT, maps()[0]).readable(true);
+    let desc = RendererDesc::new(FLOATS).depth(Some(depth));
     let world = World::new();
     let format = rara::ShFormat::Float;
     let scene = SceneBuffers::upload(device, &world.scene, format).expect("uploads");
@@ -492,10 +461,7 @@ fn expected_depths_are_the_references() {
         (Mode::Hard, 1, ClipOp::And),
     ] {
         let clip = common::clip(&world.scene, planes, op);
-        let settings = Settings {
-            mode,
-            ..Settings::default()
-        };
+        let settings = Settings::default().mode(mode);
         let truth =
             reference::depth::expected::<f64>(&world.scene, &world.camera, &clip, &settings);
         with_host(true, |host, device| {
@@ -506,13 +472,11 @@ fn expected_depths_are_the_references() {
                 (Raster::Tiles, Bindings::Bound),
                 (Raster::Quad, Bindings::Address),
             ] {
-                let desc = RendererDesc {
-                    expected_depth: Some(ExpectedDepthDesc::new(format)),
-                    bindings,
-                    ..RendererDesc::new(FLOATS)
-                };
+                let desc = RendererDesc::new(FLOATS)
+                    .expected_depth(Some(ExpectedDepthDesc::new(format)))
+                    .bindings(bindings);
                 let mut renderer = Renderer::new(device, desc).expect("a renderer");
-                let settings = Settings { raster, ..settings };
+                let settings = settings.raster(raster);
                 let configured = renderer.configure(&scene, &world.camera, &clip, &settings);
                 configured.expect("configures");
                 let renderer = std::cell::RefCell::new(renderer);
@@ -570,12 +534,10 @@ fn expected_depths_are_behind_the_cut_and_before_the_mesh() {
         let canvas = Canvas::new(&host.lend(), device, desc);
         let scene = SceneBuffers::upload(device, &world.scene, rara::ShFormat::Float);
         let scene = scene.expect("uploads");
-        let desc = RendererDesc {
-            depth: Some(depth),
-            expected_depth: Some(ExpectedDepthDesc::new(format)),
-            bindings: Bindings::Bound,
-            ..RendererDesc::new(FLOATS)
-        };
+        let desc = RendererDesc::new(FLOATS)
+            .depth(Some(depth))
+            .expected_depth(Some(ExpectedDepthDesc::new(format)))
+            .bindings(Bindings::Bound);
         let mut renderer = Renderer::new(device, desc).expect("a renderer");
         let clip = Clip::default();
         let configured = renderer.configure(&scene, &world.camera, &clip, &Settings::default());

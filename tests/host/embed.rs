@@ -38,12 +38,10 @@ fn adopt(host: &Host) -> Device {
 }
 
 fn in_flight(format: vk::Format, bindings: Bindings) -> RendererDesc {
-    RendererDesc {
-        bindings,
-        timing: true,
-        frames_in_flight: FRAMES as u32,
-        ..RendererDesc::new(format)
-    }
+    RendererDesc::new(format)
+        .bindings(bindings)
+        .timing(true)
+        .frames_in_flight(FRAMES as u32)
 }
 
 fn scene() -> Gaussians {
@@ -224,10 +222,7 @@ fn a_host_whose_frames_take_over_from_each_other_gets_the_same_pictures() {
         let device = adopt(&host);
         let buffers =
             SceneBuffers::upload(&device, &scene, rara::ShFormat::Float).expect("uploads");
-        let desc = RendererDesc {
-            reuse: true,
-            ..in_flight(FLOATS, bindings)
-        };
+        let desc = in_flight(FLOATS, bindings).reuse(true);
         let mut renderer = Renderer::new(&device, desc).expect("a renderer");
         let check = |host: &Host, pixels: &[[f32; 4]], frame: usize| {
             let what = format!("{raster:?}, {bindings:?}, frame {frame}");
@@ -238,10 +233,7 @@ fn a_host_whose_frames_take_over_from_each_other_gets_the_same_pictures() {
             if let Some(pixels) = host.wait().expect("waits") {
                 check(&host, &pixels, index - FRAMES);
             }
-            let settings = Settings {
-                raster,
-                ..*settings
-            };
+            let settings = settings.raster(raster);
             let configured = renderer.configure(&buffers, camera, clip, &settings);
             configured.expect("configures");
             reused += usize::from(renderer.skipped().contains(&"project"));
@@ -284,7 +276,7 @@ fn a_viewport_anywhere_in_the_target_leaves_the_rest_alone() {
             // In a corner, in the middle, and over the target's edge.
             for (x, y) in [(0, 0), (77, 43), (250, 150)] {
                 host.wait().expect("waits");
-                let settings = Settings { raster, ..settings };
+                let settings = settings.raster(raster);
                 let configured = renderer.configure(&buffers, &camera, &clip, &settings);
                 configured.expect("configures");
                 record(&mut host, &mut renderer, &buffers, vk::Offset2D { x, y });
@@ -377,11 +369,11 @@ fn what_there_cannot_be_is_refused_with_a_reason() {
     let device = adopt(&host);
     let depth = |format, stencil, readable| {
         let map = rara::DepthMap::ordinary(0.1, 10.0).expect("a map");
-        Some(rara::DepthDesc {
-            stencil,
-            readable,
-            ..rara::DepthDesc::new(format, map)
-        })
+        Some(
+            rara::DepthDesc::new(format, map)
+                .stencil(stencil)
+                .readable(readable),
+        )
     };
     let desc = RendererDesc::new(BYTES);
     let name = &device.info().name;
@@ -391,46 +383,28 @@ fn what_there_cannot_be_is_refused_with_a_reason() {
             ["R8G8B8A8_UINT", name.as_str()],
         ),
         (
-            RendererDesc {
-                frames_in_flight: 0,
-                ..desc
-            },
+            desc.frames_in_flight(0),
             ["frames_in_flight is 0", "from 1 to 16"],
         ),
         (
-            RendererDesc {
-                frames_in_flight: u32::MAX,
-                ..desc
-            },
+            desc.frames_in_flight(u32::MAX),
             ["frames_in_flight is 4294967295", "from 1 to 16"],
         ),
         (
-            RendererDesc {
-                depth: depth(vk::Format::S8_UINT, false, false),
-                ..desc
-            },
+            desc.depth(depth(vk::Format::S8_UINT, false, false)),
             ["S8_UINT", "no depth"],
         ),
         (
-            RendererDesc {
-                depth: depth(vk::Format::D32_SFLOAT, true, false),
-                ..desc
-            },
+            desc.depth(depth(vk::Format::D32_SFLOAT, true, false)),
             ["D32_SFLOAT", "DepthDesc::stencil"],
         ),
         (
-            RendererDesc {
-                depth: depth(vk::Format::D32_SFLOAT, false, true),
-                samples: vk::SampleCountFlags::TYPE_4,
-                ..desc
-            },
+            desc.depth(depth(vk::Format::D32_SFLOAT, false, true))
+                .samples(vk::SampleCountFlags::TYPE_4),
             ["DepthDesc::readable", "samples"],
         ),
         (
-            RendererDesc {
-                expected_depth: Some(rara::ExpectedDepthDesc::new(vk::Format::R32_SFLOAT)),
-                ..desc
-            },
+            desc.expected_depth(Some(rara::ExpectedDepthDesc::new(vk::Format::R32_SFLOAT))),
             ["R32_SFLOAT", "two floats"],
         ),
     ] {
@@ -549,10 +523,7 @@ fn a_frame_without_room_for_its_tiles_is_drawn_as_quads() {
             );
             assert_shows(&format!("frame {frame}"), FLOATS, &pixels, &expected);
         }
-        let settings = Settings {
-            raster: Raster::Tiles,
-            ..settings
-        };
+        let settings = settings.raster(Raster::Tiles);
         let configured = renderer.configure(&buffers, &camera, &clip, &settings);
         configured.expect("configures");
         record(&mut host, &mut renderer, &buffers, vk::Offset2D::default());

@@ -48,15 +48,9 @@ fn every_format_holds_the_picture_as_well_as_it_can() {
                 rasters.push((Raster::Mesh, quads));
             }
             for (raster, [most, average]) in rasters {
-                let desc = RendererDesc {
-                    bindings: Bindings::Bound,
-                    ..RendererDesc::new(format)
-                };
+                let desc = RendererDesc::new(format).bindings(Bindings::Bound);
                 let mut renderer = Renderer::new(device, desc).expect("a renderer");
-                let settings = Settings {
-                    raster,
-                    ..Settings::default()
-                };
+                let settings = Settings::default().raster(raster);
                 let configured = renderer.configure(&buffers, &camera, &clip, &settings);
                 configured.expect("configures");
                 let renderer = std::cell::RefCell::new(renderer);

@@ -86,12 +86,7 @@ fn all_bindings(device: &Device) -> &'static [Bindings] {
 /// The device under test: the best one, or what `RARA_TEST_DEVICE` says.
 fn open() -> Device {
     let selector = std::env::var("RARA_TEST_DEVICE").ok();
-    Device::headless(&DeviceDesc {
-        selector,
-        validation: true,
-        ..DeviceDesc::default()
-    })
-    .unwrap()
+    Device::headless(&DeviceDesc::default().selector(selector).validation(true)).unwrap()
 }
 
 /// Runs a test on a device with validation and asserts that the layer has nothing to say, destruction included.
@@ -163,10 +158,7 @@ fn a_device_opens_with_validation_and_says_who_it_is() {
 
 #[test]
 fn an_unknown_device_is_an_error_that_lists_the_known_ones() {
-    let desc = DeviceDesc {
-        selector: Some("no such device".into()),
-        ..DeviceDesc::default()
-    };
+    let desc = DeviceDesc::default().selector(Some("no such device".into()));
     let error = Device::headless(&desc).unwrap_err().to_string();
     assert!(
         error.contains("no such device") && error.contains(&list_devices().unwrap()[0].name),
@@ -700,29 +692,23 @@ fn a_hosts_device_is_adopted_and_left_alone() {
         let queues = [vk::DeviceQueueCreateInfo::default()
             .queue_family_index(support.queue_family)
             .queue_priorities(&[1.0])];
-        let mut features = Support {
-            mesh_shader: false,
-            ..support.clone()
-        }
-        .features();
+        let mut plain = support.clone();
+        plain.mesh_shader = false;
+        let mut features = plain.features();
         let info = features.chain(vk::DeviceCreateInfo::default().queue_create_infos(&queues));
         let raw = instance
             .create_device(physical_device, &info, None)
             .unwrap();
-        let adopted = Device::adopt(AdoptDesc {
-            api_version: version,
-            instance: instance.clone(),
+        let adopted = Device::adopt(AdoptDesc::new(
+            version,
+            instance.clone(),
             physical_device,
-            device: raw.clone(),
-            queue: raw.get_device_queue(support.queue_family, 0),
-            queue_family: support.queue_family,
-            mesh_shader: false,
-            push_descriptor: false,
-            debug_utils: false,
-            pipeline_statistics: false,
-            pipeline_cache: vk::PipelineCache::null(),
-            allocator: None,
-        })
+            raw.clone(),
+            (
+                raw.get_device_queue(support.queue_family, 0),
+                support.queue_family,
+            ),
+        ))
         .unwrap();
         assert!(!adopted.support().mesh_shader && !adopted.support().push_descriptor);
 

@@ -123,12 +123,10 @@ fn scenes_and_clips_change_while_frames_are_in_flight() {
     ];
     for (raster, bindings, reuse, ahead) in ways {
         let (mut host, device) = open(true);
-        let desc = RendererDesc {
-            bindings,
-            reuse,
-            frames_in_flight: FRAMES as u32,
-            ..RendererDesc::new(FORMAT)
-        };
+        let desc = RendererDesc::new(FORMAT)
+            .bindings(bindings)
+            .reuse(reuse)
+            .frames_in_flight(FRAMES as u32);
         let mut renderer = Renderer::new(&device, desc).expect("a renderer");
         // The one that is shown, the one that comes, and what frames in flight may still use.
         let mut current: Option<(SceneBuffers, Buffer)> = None;
@@ -152,10 +150,7 @@ fn scenes_and_clips_change_while_frames_are_in_flight() {
                 retired.extend(current.replace(fresh).map(|old| (frame - 1, old)));
             }
             let (scene, _) = current.as_ref().expect("uploaded");
-            let settings = Settings {
-                raster,
-                ..Settings::default()
-            };
+            let settings = Settings::default().raster(raster);
             let configured =
                 renderer.configure(scene, &cameras[at], &clip(&scenes[at], frame), &settings);
             configured.expect("configures");
@@ -180,11 +175,9 @@ fn memory_stays_flat_over_a_thousand_frames_of_a_host() {
     ];
     // Without the layer, whose books grow.
     let (mut host, device) = open(false);
-    let desc = RendererDesc {
-        reuse: true,
-        frames_in_flight: FRAMES as u32,
-        ..RendererDesc::new(FORMAT)
-    };
+    let desc = RendererDesc::new(FORMAT)
+        .reuse(true)
+        .frames_in_flight(FRAMES as u32);
     let mut renderer = Renderer::new(&device, desc).expect("a renderer");
     let mut current: Option<(SceneBuffers, Buffer)> = None;
     let mut retired: Vec<(usize, (SceneBuffers, Buffer))> = Vec::new();

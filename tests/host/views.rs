@@ -18,27 +18,18 @@ const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const SIZE: (u32, u32) = (121, 97);
 
 fn desc() -> RendererDesc {
-    RendererDesc {
-        bindings: Bindings::Bound,
-        ..RendererDesc::new(FLOATS)
-    }
+    RendererDesc::new(FLOATS).bindings(Bindings::Bound)
 }
 
 fn raster(raster: Raster) -> Settings {
-    Settings {
-        raster,
-        ..Settings::default()
-    }
+    Settings::default().raster(raster)
 }
 
 /// Two eyes before a scene.
 fn eyes(scene: &Gaussians) -> [Camera; 2] {
     let middle = common::views(scene, 3, SIZE)[1];
     let aside = middle.rotation.transpose() * DVec3::X * 0.1;
-    [-1.0, 1.0].map(|side| Camera {
-        eye: middle.eye + side * aside,
-        ..middle
-    })
+    [-1.0, 1.0].map(|side| middle.eye(middle.eye + side * aside))
 }
 
 fn headless(scene: &Gaussians, camera: &Camera, clip: &Clip) -> Picture {
@@ -143,11 +134,7 @@ fn one_renderer_draws_views_one_after_the_other_in_one_command_buffer() {
             (Raster::Quad, Bindings::Bound),
             (Raster::Tiles, Bindings::Address),
         ] {
-            let two = RendererDesc {
-                frames_in_flight: 2,
-                bindings,
-                ..desc()
-            };
+            let two = desc().frames_in_flight(2).bindings(bindings);
             let renderer = RefCell::new(Renderer::new(device, two).expect("a renderer"));
             let prepare = |cmd, eye: usize| {
                 let mut renderer = renderer.borrow_mut();
@@ -341,13 +328,9 @@ fn two_placed_scenes_stand_in_one_picture_with_a_mesh() {
             .each_ref()
             .map(|scene| SceneBuffers::upload(device, scene, ShFormat::Float).expect("uploads"));
         for way in [Raster::Tiles, Raster::Quad] {
-            let desc = RendererDesc {
-                depth: Some(DepthDesc {
-                    readable: true,
-                    ..DepthDesc::new(vk::Format::D32_SFLOAT, map)
-                }),
-                ..desc()
-            };
+            let desc = desc().depth(Some(
+                DepthDesc::new(vk::Format::D32_SFLOAT, map).readable(true),
+            ));
             let first = Renderer::new(device, desc).expect("a renderer");
             let second = first.sharing(desc).expect("another");
             let renderers = [first, second].map(RefCell::new);

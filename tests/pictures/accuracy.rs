@@ -35,22 +35,17 @@ fn exact_is_ten_times_nearer_to_the_truth_than_any_other_way() {
     for (name, scene) in scenes {
         let (camera, clip) = view(&scene);
         // Every splat is cut along true rays: bands and fits are errors too.
-        let truth = Settings {
-            form: ExactForm::Beam,
-            decay: Some(Decay::Depth),
-            trace_all: true,
-            ..Settings::default()
-        };
+        let truth = Settings::default()
+            .form(ExactForm::Beam)
+            .decay(Some(Decay::Depth))
+            .trace_all(true);
         let truth = reference::render::<f64>(&scene, &camera, &clip, &truth).picture;
         headless.load(&scene).expect("uploads");
         let mut error = |settings: Settings| -> Comparison {
             headless.render(&camera, &clip, &settings).expect("renders");
             compare(&headless.picture().expect("reads back"), &truth).expect("the same size")
         };
-        let mode = |mode| Settings {
-            mode,
-            ..Settings::default()
-        };
+        let mode = |mode| Settings::default().mode(mode);
         let exact = error(mode(Mode::Exact));
         let is_fine = name == "hair_bear" || name == "mni_layers";
         let most = if is_fine {
@@ -59,11 +54,7 @@ fn exact_is_ten_times_nearer_to_the_truth_than_any_other_way() {
             L1_ANYWHERE
         };
         assert!(exact.l1 <= most && exact.ssim >= SSIM, "{name}: {exact:?}");
-        let paper = |sigma, miss| Settings {
-            sigma,
-            miss,
-            ..mode(Mode::Rara)
-        };
+        let paper = |sigma, miss| mode(Mode::Rara).sigma(sigma).miss(miss);
         for (way, settings) in [
             ("by centres", mode(Mode::Hard)),
             ("the paper's text", paper(1.0, Miss::Keep)),

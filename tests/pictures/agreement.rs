@@ -30,10 +30,7 @@ fn check_scenes_by(
                     &scene,
                     &camera,
                     &clip,
-                    &Settings {
-                        mode,
-                        ..Settings::default()
-                    },
+                    &Settings::default().mode(mode),
                 );
             }
         }
@@ -91,11 +88,7 @@ fn every_mode_by_quads() {
                 (Mode::Exact, 6),
             ] {
                 let clip = common::clip(&scene, planes, ClipOp::And);
-                let settings = Settings {
-                    mode,
-                    raster: Raster::Quad,
-                    ..Settings::default()
-                };
+                let settings = Settings::default().mode(mode).raster(Raster::Quad);
                 common::check(&mut headless, &name, &scene, &camera, &clip, &settings);
             }
         }

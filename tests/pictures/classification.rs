@@ -67,7 +67,8 @@ proptest! {
         let scene = one(scales, rotation, opacity);
         // Off the axis too, and beyond the picture's edge.
         let from = view_from(distance);
-        let camera = Camera { eye: from.eye + distance / 4.0 * DVec3::new(away.0, away.1, 0.0), ..from };
+        let camera = from
+.eye(from.eye + distance / 4.0 * DVec3::new(away.0, away.1, 0.0));
         let view = View::<f64>::new(&camera);
         let Some(footprint) = Footprint::new(&scene, 0, &view) else { return Ok(()) };
         let mut reach = (2.0 * (255.0 * f64::from(opacity)).ln()).sqrt();
@@ -85,11 +86,13 @@ proptest! {
         let sign = if kept { 1.0 } else { -1.0 };
         let clip = cut_by(normal, sign * beyond * (1.0 + 1e-9) * reach * deviation(&scene, 0, normal));
 
-        let settings = Settings { form, ..Settings::default() };
+        let settings = Settings::default()
+.form(form);
         let side = classify::side(&scene, 0, &footprint, &clip, &settings);
         prop_assert_eq!(side, if kept { Side::Visible } else { Side::Invisible });
 
-        let traced = Settings { trace_all: true, ..settings };
+        let traced = settings
+.trace_all(true);
         let mut drawn = reference::project::project(&scene, 0, &view, &settings).expect("it is in view");
         for (x, y) in aim {
             let (dx, dy) = (x * footprint.half[0], y * footprint.half[1]);
@@ -230,11 +233,7 @@ fn on_the_device_nothing_shows_of_a_splat_outside_the_band() {
                     (ExactForm::Auto, -wider, 0.0),
                 ] {
                     let clip = cut_by(normal, offset);
-                    let settings = Settings {
-                        decay: Some(Decay::Linear),
-                        form,
-                        ..Settings::default()
-                    };
+                    let settings = Settings::default().decay(Some(Decay::Linear)).form(form);
                     let mut draw = |settings: &Settings| {
                         let counts = headless
                             .render(&camera, &clip, settings)
@@ -245,10 +244,7 @@ fn on_the_device_nothing_shows_of_a_splat_outside_the_band() {
                     let (counts, whole) = draw(&settings);
                     assert_eq!(f64::from(counts.visible), side, "{counts:?}");
                     assert_eq!(counts.cutoff, 0);
-                    let (_, traced) = draw(&Settings {
-                        trace_all: true,
-                        ..settings
-                    });
+                    let (_, traced) = draw(&settings.trace_all(true));
                     for (a, b) in whole.pixels.iter().zip(&traced.pixels) {
                         worst = worst.max(f64::from((a[3] - b[3]).abs()));
                     }
@@ -287,10 +283,7 @@ fn modes_without_a_band_call_nothing_cut() {
         op: ClipOp::And,
     };
     for mode in [Mode::None, Mode::Hard] {
-        let settings = Settings {
-            mode,
-            ..Settings::default()
-        };
+        let settings = Settings::default().mode(mode);
         let sides = classify::classify(&scene, &view, &clip, &settings);
         assert!(!sides.contains(&Side::Cutoff));
     }

@@ -89,18 +89,10 @@ fn fitted_weights_are_the_exact_ones() {
         } else {
             Raster::Quad
         };
-        let settings = Settings {
-            mode: Mode::Exact,
-            raster,
-            ..Settings::default()
-        };
+        let settings = Settings::default().mode(Mode::Exact).raster(raster);
         let stats = headless.render(&camera, &clip, &settings).expect("renders");
         cut += stats.counts.cutoff;
-        let truth = Settings {
-            form: ExactForm::Beam,
-            trace_all: true,
-            ..settings
-        };
+        let truth = settings.form(ExactForm::Beam).trace_all(true);
         let truth = reference::render::<f64>(&scene, &camera, &clip, &truth).picture;
         let picture = headless.picture().expect("reads back");
         // Alpha alone, which no colour scales. On the splat's contour rounding decides whether a pixel has any.

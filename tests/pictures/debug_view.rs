@@ -21,12 +21,10 @@ fn classes_and_weights_are_shown_as_the_reference_does() {
         let mut rasters = vec![Raster::Tiles, Raster::Quad];
         rasters.extend(mesh.then_some(Raster::Mesh));
         for raster in rasters {
-            let settings = Settings {
-                mode,
-                raster,
-                show: Show::Weight,
-                ..Settings::default()
-            };
+            let settings = Settings::default()
+                .mode(mode)
+                .raster(raster)
+                .show(Show::Weight);
             common::check(&mut headless, "weights", &scene, &camera, &clip, &settings);
         }
     }
@@ -41,10 +39,7 @@ fn colours_and_weights_take_turns() {
     let clip = common::clip(&scene, 1, ClipOp::And);
     headless.load(&scene).expect("uploads");
     for show in [Show::Colour, Show::Weight, Show::Colour, Show::Weight] {
-        let settings = Settings {
-            show,
-            ..Settings::default()
-        };
+        let settings = Settings::default().show(show);
         headless.render(&camera, &clip, &settings).expect("renders");
         let picture = headless.picture().expect("reads back");
         let truth = reference::render::<f64>(&scene, &camera, &clip, &settings).picture;

@@ -40,11 +40,7 @@ fn quads_meshes_and_tiles_give_one_picture() {
         ] {
             let clip = common::clip(&scene, planes, op);
             let mut picture = |raster| {
-                let settings = Settings {
-                    mode,
-                    raster,
-                    ..Settings::default()
-                };
+                let settings = Settings::default().mode(mode).raster(raster);
                 headless.render(&camera, &clip, &settings).expect("renders");
                 headless.picture().expect("reads back")
             };
@@ -65,10 +61,7 @@ fn drawn(
     headless: &mut Headless,
     (camera, clip, raster): (&Camera, &Clip, Raster),
 ) -> (&'static str, Picture) {
-    let settings = Settings {
-        raster,
-        ..Settings::default()
-    };
+    let settings = Settings::default().raster(raster);
     let stats = headless.render(camera, clip, &settings).expect("renders");
     (stats.raster.path, headless.picture().expect("reads back"))
 }
@@ -133,10 +126,7 @@ fn a_lone_survivor_after_many_is_itself() {
             planes: vec![keep(1.0), keep(-1.0)],
             op: ClipOp::And,
         };
-        let hard = Settings {
-            mode: Mode::Hard,
-            ..Settings::default()
-        };
+        let hard = Settings::default().mode(Mode::Hard);
         reused
             .render(&camera, &Clip::default(), &hard)
             .expect("renders");
@@ -207,10 +197,7 @@ fn splats_of_one_depth_keep_the_order_of_the_file() {
         }
         headless.load(&scene).expect("uploads");
         for raster in [Raster::Tiles, Raster::Quad] {
-            let settings = Settings {
-                raster,
-                ..Settings::default()
-            };
+            let settings = Settings::default().raster(raster);
             let rendered = headless.render(&camera, &Clip::default(), &settings);
             rendered.expect("renders");
             let ours = headless.picture().expect("reads back");
@@ -242,10 +229,7 @@ fn a_scene_with_a_wider_box_is_sorted_alike() {
         }
         // One that nobody sees, beside the others, behind them and a long way behind.
         for raster in [Raster::Tiles, Raster::Quad] {
-            let settings = Settings {
-                raster,
-                ..Settings::default()
-            };
+            let settings = Settings::default().raster(raster);
             let pictures = [0.0, 0.05, 5.0, 1e6].map(|behind| {
                 thin.opacities_mut()[7] = 0.0;
                 thin.positions_mut()[7] = glam::Vec3::new(0.0, 0.0, behind + shift);

@@ -81,10 +81,7 @@ fn five_million_gaussians_exceed_bindings_and_rows_and_agree() {
         planes: vec![Plane::new(normal, offset).expect("a proper plane")],
         op: ClipOp::And,
     };
-    let settings = Settings {
-        trace_all: true,
-        ..Settings::default()
-    };
+    let settings = Settings::default().trace_all(true);
 
     let begin = Instant::now();
     let camera = common::views(&scene, 1, SMALL)[0];

@@ -27,17 +27,14 @@ fn a_plane_at_infinity_gives_the_bytes_of_none_in_every_mode() {
     {
         headless.load(&scene).expect("uploads");
         let camera = common::views(&scene, 1, common::scaled(SIZE))[0];
-        let none = Settings {
-            mode: Mode::None,
-            ..Settings::default()
-        };
+        let none = Settings::default().mode(Mode::None);
         headless
             .render(&camera, &Clip::default(), &none)
             .expect("renders");
         let plain = headless.picture().expect("reads back");
         for mode in [Mode::Hard, Mode::Rara, Mode::Exact] {
             let stats = headless
-                .render(&camera, &far_plane(&scene), &Settings { mode, ..none })
+                .render(&camera, &far_plane(&scene), &none.mode(mode))
                 .expect("renders");
             assert_eq!(stats.counts.cutoff, 0, "{name}, {mode:?}");
             assert!(
@@ -56,22 +53,17 @@ fn tracing_every_gaussian_degrades_the_picture_as_the_paper_reports() {
     for (name, scene) in common::generated_scenes(3_000).into_iter().take(2) {
         headless.load(&scene).expect("uploads");
         let camera = common::views(&scene, 1, common::scaled(SIZE))[0];
-        let none = Settings {
-            mode: Mode::None,
-            ..Settings::default()
-        };
+        let none = Settings::default().mode(Mode::None);
         headless
             .render(&camera, &Clip::default(), &none)
             .expect("renders");
         let plain = headless.picture().expect("reads back");
         let mut error = |miss, sigma| {
-            let settings = Settings {
-                mode: Mode::Rara,
-                trace_all: true,
-                miss,
-                sigma,
-                ..none
-            };
+            let settings = none
+                .mode(Mode::Rara)
+                .trace_all(true)
+                .miss(miss)
+                .sigma(sigma);
             headless
                 .render(&camera, &far_plane(&scene), &settings)
                 .expect("renders");

@@ -13,13 +13,11 @@ use rara::{Clip, Headless, HeadlessDesc, Picture, PipelineCache, Settings};
 fn run(pipeline_cache: PipelineCache) -> (Picture, u64) {
     let scene = generate(Kind::General, 500, 1);
     let camera = common::views(&scene, 1, (64, 48))[0];
-    let desc = HeadlessDesc {
-        device: std::env::var("RARA_TEST_DEVICE").ok(),
-        validation: true,
-        bindings: Some(Bindings::Address),
-        pipeline_cache,
-        ..HeadlessDesc::default()
-    };
+    let desc = HeadlessDesc::default()
+        .device(std::env::var("RARA_TEST_DEVICE").ok())
+        .validation(true)
+        .bindings(Some(Bindings::Address))
+        .pipeline_cache(pipeline_cache);
     let mut headless = Headless::new(&desc).expect("a Vulkan device");
     headless.load(&scene).expect("uploads");
     headless

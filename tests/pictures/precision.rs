@@ -12,18 +12,12 @@ const SIZE: (u32, u32) = (203, 150);
 /// Each choice by itself, and the presets.
 fn choices() -> Vec<(&'static str, Precision)> {
     let base = Precision::default();
-    let target = |target| Precision { target, ..base };
-    let sh = |sh| Precision { sh, ..base };
-    let phi = |phi| Precision { phi, ..base };
-    let key_bits = |key_bits| Precision { key_bits, ..base };
-    let beam_switch = |beam_switch| Precision {
-        beam_switch,
-        ..base
-    };
-    let transmittance_min = |transmittance_min| Precision {
-        transmittance_min,
-        ..base
-    };
+    let target = |target| base.target(target);
+    let sh = |sh| base.sh(sh);
+    let phi = |phi| base.phi(phi);
+    let key_bits = |key_bits| base.key_bits(key_bits);
+    let beam_switch = |beam_switch| base.beam_switch(beam_switch);
+    let transmittance_min = |transmittance_min| base.transmittance_min(transmittance_min);
     vec![
         ("exact", Preset::Exact.precision()),
         ("balanced", Preset::Balanced.precision()),
@@ -47,10 +41,7 @@ fn choices() -> Vec<(&'static str, Precision)> {
 fn psnr(headless: &mut Headless, scene: &Gaussians, precision: Precision) -> f64 {
     headless.load_as(scene, precision.sh).expect("uploads");
     let clip = common::clip(scene, 1, ClipOp::And);
-    let settings = Settings {
-        precision,
-        ..Settings::default()
-    };
+    let settings = Settings::default().precision(precision);
     let view = |camera| {
         headless.render(&camera, &clip, &settings).expect("renders");
         let picture = headless.picture().expect("reads back");

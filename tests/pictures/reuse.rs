@@ -115,11 +115,7 @@ fn a_sweep_computes_the_view_once() {
                 if !all && (r, m) != (index % 2, index % 3) && (r, m) != (0, 0) {
                     continue;
                 }
-                let settings = Settings {
-                    mode,
-                    raster,
-                    ..Settings::default()
-                };
+                let settings = Settings::default().mode(mode).raster(raster);
                 pair.keeps.forget();
                 for (step, share) in [0.1, 0.35, 0.4, 0.9, 0.5, 0.45].into_iter().enumerate() {
                     let skipped = pair.draw(&camera, &cut(&scene, normal, share), &settings);
@@ -139,18 +135,12 @@ fn a_frame_like_the_one_before_does_nothing_and_another_background_only_draws() 
     let camera = common::views(&scene, 3, SIZE)[0];
     let clip = cut(&scene, DVec3::X, 0.5);
     for raster in rasters(&pair.keeps) {
-        let settings = Settings {
-            raster,
-            ..Settings::default()
-        };
+        let settings = Settings::default().raster(raster);
         assert!(!pair.draw(&camera, &clip, &settings).contains(&"project"));
         let skipped = pair.draw(&camera, &clip, &settings);
         assert!(VIEW.iter().all(|stage| skipped.contains(stage)));
         assert!(skipped.contains(&"splat") && skipped.contains(&"cutoff"));
-        let red = Settings {
-            background: Some([0.5, 0.0, 0.0]),
-            ..settings
-        };
+        let red = settings.background(Some([0.5, 0.0, 0.0]));
         let skipped = pair.draw(&camera, &clip, &red);
         assert!(VIEW.iter().all(|stage| skipped.contains(stage)));
         assert!(!skipped.contains(&"splat"));
@@ -270,14 +260,8 @@ type Change = (&'static str, Settings, Settings);
 
 /// All that changes neither the camera nor where the clip is, each alone; by tiles, which more depends on.
 fn changes() -> Vec<Change> {
-    let usual = Settings {
-        raster: Raster::Tiles,
-        ..Settings::default()
-    };
-    let traced = Settings {
-        mode: Mode::Rara,
-        ..usual
-    };
+    let usual = Settings::default().raster(Raster::Tiles);
+    let traced = usual.mode(Mode::Rara);
     let changed = |name, before: Settings, change: fn(&mut Settings)| {
         let mut after = before;
         change(&mut after);
@@ -332,12 +316,16 @@ fn each_setting_alone_changes_what_it_should() {
 #[test]
 fn a_planes_low_word_alone_changes_what_it_should() {
     let (_, mut scene) = common::generated_scenes(2_000).remove(0);
-    for position in &mut scene.positions {
+    for position in scene.positions_mut() {
         position.x += 1e6;
     }
     let mut pair = Pair::new(&scene);
     let cameras = common::views(&scene, 3, common::scaled((125, 95)));
-    let mut sheets: Vec<f32> = scene.positions.iter().map(|position| position.x).collect();
+    let mut sheets: Vec<f32> = scene
+        .positions()
+        .iter()
+        .map(|position| position.x)
+        .collect();
     sheets.sort_unstable_by(f32::total_cmp);
     let sheet = f64::from(sheets[sheets.len() / 2]);
     let clips = [0.01, -0.01].map(|beside| {
@@ -349,11 +337,7 @@ fn a_planes_low_word_alone_changes_what_it_should() {
         }
     });
     for (raster, mode) in [(Raster::Tiles, Mode::Hard), (Raster::Quad, Mode::Exact)] {
-        let settings = Settings {
-            mode,
-            raster,
-            ..Settings::default()
-        };
+        let settings = Settings::default().mode(mode).raster(raster);
         let steps = [(0, 0), (0, 1), (1, 1), (1, 0), (2, 1)];
         let frame =
             |(camera, clip): (usize, usize)| (cameras[camera], clips[clip].clone(), settings);

@@ -1,6 +1,6 @@
 //! Stage `bin`: which tiles a splat reaches, and the splats of each tile, front to back.
 
-use glam::{DMat3, DVec3, Quat, Vec3};
+use glam::{DMat4, Quat, Vec3};
 use rara::limits::{TILE_HEIGHT, TILE_WIDTH};
 use rara::reference::bin::{self, Outline, Span};
 use rara::reference::{Real, View, project, sort};
@@ -146,12 +146,10 @@ fn tiles_hold_the_splats_that_the_twin_puts_there() {
         let scene = frame::scene(count);
         stages.load(&scene);
         for (view, mode) in [(0, Mode::None), (1, Mode::None), (0, Mode::Exact)] {
-            let settings = Settings {
-                mode,
-                raster: Raster::Tiles,
-                form: ExactForm::Affine,
-                ..Settings::default()
-            };
+            let settings = Settings::default()
+                .mode(mode)
+                .raster(Raster::Tiles)
+                .form(ExactForm::Affine);
             let clip = frame::clip(&scene, 1, ClipOp::And);
             stages.draw(&frame::views(&scene)[view], &clip, &settings);
             if count > 0 && !stages.survivors().is_empty() {
@@ -172,16 +170,9 @@ fn tiles_hold_the_splats_that_the_twin_puts_there() {
 #[test]
 fn tiles_reach_pixel_centres_on_the_contour() {
     let mut stages = Stages::new();
-    let mut camera = Camera {
-        width: 96,
-        height: 80,
-        fx: 512.0,
-        fy: 512.0,
-        cx: 48.0,
-        cy: 40.0,
-        eye: DVec3::ZERO,
-        rotation: DMat3::IDENTITY,
-    };
+    let mut camera =
+        Camera::from_world_to_camera(DMat4::IDENTITY, (512.0, 512.0, 48.0, 40.0), (96, 80))
+            .expect("a camera at the origin");
     let mut on_contour = 0;
     for step in 0..120 {
         let turn =
@@ -204,10 +195,7 @@ fn tiles_reach_pixel_centres_on_the_contour() {
         (camera.cx, camera.cy) = (pixel - dx, pixel - dy);
         stages.load(&scene);
         let mut draw = |raster| {
-            let settings = Settings {
-                raster,
-                ..Settings::default()
-            };
+            let settings = Settings::default().raster(raster);
             stages.draw(&camera, &Clip::default(), &settings);
             stages.headless.picture().expect("reads back")
         };

@@ -1,6 +1,6 @@
 //! Stages `blocks` and `classify`: which Gaussians are in view, and what the clip does to them.
 
-use glam::{DMat3, DVec3, Quat, Vec3};
+use glam::{DMat4, Quat, Vec3};
 use rara::limits::BLOCK_SIZE;
 use rara::reference::{self, Side, View, classify};
 use rara::{Camera, Clip, ClipOp, Mode, Raster, Settings};
@@ -45,11 +45,7 @@ fn classes_are_the_twins() {
                 (Mode::Rara, 2, ClipOp::Or),
                 (Mode::Exact, 3, ClipOp::Or),
             ] {
-                let settings = Settings {
-                    mode,
-                    raster: Raster::Quad,
-                    ..Settings::default()
-                };
+                let settings = Settings::default().mode(mode).raster(Raster::Quad);
                 let planes = frame::clip(&scene, planes, op);
                 let counts = stages.draw(&camera, &planes, &settings).counts;
                 if count == 0 {
@@ -103,16 +99,8 @@ fn check(stages: &mut Stages, camera: &Camera, planes: &Clip, settings: &Setting
 /// Literally: what 3DGS does not draw is nearer than 0.2 along the view axis.
 #[test]
 fn the_near_cut_is_at_a_fifth() {
-    let camera = Camera {
-        width: 64,
-        height: 48,
-        fx: 60.0,
-        fy: 60.0,
-        cx: 32.0,
-        cy: 24.0,
-        eye: DVec3::ZERO,
-        rotation: DMat3::IDENTITY,
-    };
+    let camera = Camera::from_world_to_camera(DMat4::IDENTITY, (60.0, 60.0, 32.0, 24.0), (64, 48))
+        .expect("a camera at the origin");
     let mut stages = Stages::new();
     for (z, side) in [(0.199, Side::Culled), (0.201, Side::Visible)] {
         let scene = frame::one(
@@ -122,10 +110,7 @@ fn the_near_cut_is_at_a_fifth() {
             0.9,
         );
         stages.load(&scene);
-        let settings = Settings {
-            raster: Raster::Quad,
-            ..Settings::default()
-        };
+        let settings = Settings::default().raster(Raster::Quad);
         let clip = Clip::default();
         let counts = stages.draw(&camera, &clip, &settings).counts;
         assert_eq!(counts.visible, u32::from(side == Side::Visible), "{z}");

@@ -41,11 +41,7 @@ fn the_clips_sides_are_the_twins() {
         let mut cases = vec![(Mode::Exact, 1, ClipOp::And), (Mode::Rara, 3, ClipOp::Or)];
         cases.extend([(Mode::Hard, 2, ClipOp::And), (Mode::Exact, 3, ClipOp::Or)]);
         for (mode, planes, op) in cases {
-            let settings = Settings {
-                mode,
-                raster: Raster::Quad,
-                ..Settings::default()
-            };
+            let settings = Settings::default().mode(mode).raster(Raster::Quad);
             let planes = frame::clip(&scene, planes, op);
             stages.draw(&frame::views(&scene)[0], &planes, &settings);
             if count > 0 {
@@ -62,7 +58,7 @@ fn check(stages: &mut Stages, planes: &Clip, settings: &Settings) {
     let mut ties = 0;
     for (index, (ours, twin)) in ours.iter().zip(&twin).enumerate() {
         // Those that no pixel shows are nobody's: their block may be settled without them.
-        if ours != twin && stages.scene.opacities[index] >= ALPHA_MIN {
+        if ours != twin && stages.scene.opacities()[index] >= ALPHA_MIN {
             let possible = ties::classes(&stages.scene, index, None, planes, settings);
             assert!(
                 possible.contains(ours),
@@ -131,10 +127,7 @@ fn a_planes_distance_has_its_low_word() {
             planes: vec![Plane::new(DVec3::X, offset).expect("a finite normal")],
             op: ClipOp::And,
         };
-        let settings = Settings {
-            raster: Raster::Quad,
-            ..Settings::default()
-        };
+        let settings = Settings::default().raster(Raster::Quad);
         stages.draw(&camera, &planes, &settings);
         assert_eq!(sides(&mut stages), [side], "{offset}");
         assert_eq!(clip::clip::<f32>(&scene, &planes, &settings), [side]);

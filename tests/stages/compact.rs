@@ -20,11 +20,7 @@ fn survivors_are_in_the_scenes_order() {
             (1, Mode::Exact, ClipOp::Or),
             (1, Mode::Hard, ClipOp::And),
         ] {
-            let settings = Settings {
-                mode,
-                raster: Raster::Quad,
-                ..Settings::default()
-            };
+            let settings = Settings::default().mode(mode).raster(Raster::Quad);
             let planes = frame::clip(&scene, 2, op);
             let stats = stages.draw(&frame::views(&scene)[view], &planes, &settings);
             if count == 0 {

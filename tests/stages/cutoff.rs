@@ -40,12 +40,10 @@ fn records_are_the_twins() {
                 (Mode::Exact, ExactForm::Auto, 1, ClipOp::And),
                 (Mode::Rara, ExactForm::Auto, 2, ClipOp::And),
             ] {
-                let settings = Settings {
-                    mode,
-                    form,
-                    raster: Raster::Quad,
-                    ..Settings::default()
-                };
+                let settings = Settings::default()
+                    .mode(mode)
+                    .form(form)
+                    .raster(Raster::Quad);
                 let clip = frame::clip(&scene, planes, op);
                 let counts = stages.draw(&camera, &clip, &settings).counts;
                 if counts.cutoff > 0 {

@@ -46,11 +46,7 @@ fn depths(
 }
 
 fn settings() -> Settings {
-    Settings {
-        mode: Mode::Exact,
-        raster: Raster::Quad,
-        ..Settings::default()
-    }
+    Settings::default().mode(Mode::Exact).raster(Raster::Quad)
 }
 
 /// What the fragment stage makes of a record at an offset from the splat's centre: the mean, and the share that it is of.
@@ -75,18 +71,16 @@ fn mean(depth: &SplatDepth, [dx, dy]: [f64; 2]) -> [f64; 2] {
 
 #[test]
 fn mean_depths_are_the_twins() {
-    let device = Device::headless(&DeviceDesc {
-        selector: std::env::var("RARA_TEST_DEVICE").ok(),
-        validation: true,
-        ..DeviceDesc::default()
-    });
+    let device = Device::headless(
+        &DeviceDesc::default()
+            .selector(std::env::var("RARA_TEST_DEVICE").ok())
+            .validation(true),
+    );
     let device = device.expect("a device and the validation layer");
     let format = TargetFormat::Float.vulkan();
-    let desc = RendererDesc {
-        bindings: Bindings::Bound,
-        expected_depth: Some(ExpectedDepthDesc::new(format)),
-        ..RendererDesc::new(format)
-    };
+    let desc = RendererDesc::new(format)
+        .bindings(Bindings::Bound)
+        .expected_depth(Some(ExpectedDepthDesc::new(format)));
     let mut renderer = Renderer::new(&device, desc).expect("a renderer");
     let (mut worst, mut moved, mut compared) = (0.0_f64, 0.0_f64, 0);
     for count in SIZES {

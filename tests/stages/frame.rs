@@ -102,16 +102,16 @@ impl Stages {
 
 /// Some Gaussians of a scene.
 pub fn picked(scene: &Gaussians, numbers: &[u32]) -> Gaussians {
-    let mut picked = Gaussians {
-        sh_degree: scene.sh_degree,
-        ..Gaussians::default()
-    };
+    let mut picked = Gaussians::default();
+    picked.set_sh_degree(scene.sh_degree());
     for index in numbers.iter().map(|&number| number as usize) {
-        picked.positions.push(scene.positions[index]);
-        picked.scales.push(scene.scales[index]);
-        picked.rotations.push(scene.rotations[index]);
-        picked.opacities.push(scene.opacities[index]);
-        picked.sh.extend_from_slice(scene.sh_of(index));
+        picked.push(
+            scene.positions()[index],
+            scene.scales()[index],
+            scene.rotations()[index],
+            scene.opacities()[index],
+            scene.sh_of(index),
+        );
     }
     picked
 }
@@ -122,9 +122,9 @@ pub fn scene(count: usize) -> Gaussians {
     let mut scene = generate(Kind::General, count, 1);
     for index in 0..count {
         match index % 23 {
-            3 => scene.opacities[index] = (index % 9) as f32 / 1000.0,
-            7 => scene.opacities[index] *= 0.05,
-            11 => scene.scales[index].x = 0.0,
+            3 => scene.opacities_mut()[index] = (index % 9) as f32 / 1000.0,
+            7 => scene.opacities_mut()[index] *= 0.05,
+            11 => scene.scales_mut()[index].x = 0.0,
             _ => {}
         }
     }
@@ -170,12 +170,7 @@ pub fn clip(scene: &Gaussians, count: usize, op: ClipOp) -> Clip {
 
 /// One Gaussian of degree 0.
 pub fn one(position: Vec3, scale: Vec3, rotation: Quat, opacity: f32) -> Gaussians {
-    Gaussians {
-        positions: vec![position],
-        scales: vec![scale],
-        rotations: vec![rotation],
-        opacities: vec![opacity],
-        sh_degree: 0,
-        sh: vec![1.0, 0.5, 0.25],
-    }
+    let mut one = Gaussians::default();
+    one.push(position, scale, rotation, opacity, &[1.0, 0.5, 0.25]);
+    one
 }

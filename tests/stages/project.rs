@@ -1,6 +1,6 @@
 //! Stage `project`: place, shape and colour of each survivor.
 
-use glam::{DMat3, DVec3, Quat, Vec3};
+use glam::{DMat4, Quat, Vec3};
 use rara::reference::{View, harmonics, project, vec3};
 use rara::{Camera, Clip, Gaussians, Raster, Settings, ShFormat};
 
@@ -39,10 +39,7 @@ fn splats_are_the_twins() {
 }
 
 fn quads() -> Settings {
-    Settings {
-        raster: Raster::Quad,
-        ..Settings::default()
-    }
+    Settings::default().raster(Raster::Quad)
 }
 
 fn compare(stages: &mut Stages, camera: &Camera, worst: &mut Apart) {
@@ -56,7 +53,7 @@ fn compare(stages: &mut Stages, camera: &Camera, worst: &mut Apart) {
         assert_eq!(splat.middle[2].to_bits(), stages.numbers[index]);
         let [cx, cy, k0, k1] = splat.centre_conic;
         let [k2, opacity, z, _] = splat.conic_cut;
-        assert_eq!(opacity, stages.scene.opacities[index]);
+        assert_eq!(opacity, stages.scene.opacities()[index]);
         assert!(z > 1e30, "nothing is cut");
         let f = &twin.footprint;
         let distance = f.relative.largest();
@@ -132,10 +129,10 @@ fn the_harmonics_are_those_of_3dgs() {
             0.9,
         );
         scene.set_sh_degree(3);
-        scene.sh.fill(0.0);
+        scene.sh_mut().fill(0.0);
         // Red grows with the function, green falls; both stay above 0.
-        scene.sh[3 * index] = 0.25;
-        scene.sh[3 * index + 1] = -0.25;
+        scene.sh_mut()[3 * index] = 0.25;
+        scene.sh_mut()[3 * index + 1] = -0.25;
         stages.load(&scene);
         stages.draw(&ahead(), &Clip::default(), &quads());
         let [red, green, blue, _] = stages.splats()[0].colour_cut.map(f64::from);
@@ -156,16 +153,8 @@ fn the_harmonics_are_those_of_3dgs() {
 
 /// From the origin along z; wide enough for what stands well beside its axis.
 fn ahead() -> Camera {
-    Camera {
-        width: 96,
-        height: 96,
-        fx: 40.0,
-        fy: 40.0,
-        cx: 48.0,
-        cy: 48.0,
-        eye: DVec3::ZERO,
-        rotation: DMat3::IDENTITY,
-    }
+    Camera::from_world_to_camera(DMat4::IDENTITY, (40.0, 40.0, 48.0, 48.0), (96, 96))
+        .expect("a camera at the origin")
 }
 
 /// Coefficients that a format holds exactly are read as they are: its integers, its scales, and where each lies.
@@ -187,7 +176,7 @@ fn stored_harmonics_are_read_as_they_were() {
             }
             scene.set_sh_degree(degree);
             let stride = 3 * scene.sh_coefficients();
-            for (k, value) in scene.sh.iter_mut().enumerate() {
+            for (k, value) in scene.sh_mut().iter_mut().enumerate() {
                 let (number, channel) = (k % stride / 3, k % 3);
                 let at = (k * 7919 % 401) as f32 - 200.0;
                 let scale = scales[[0, 0, 1, 2][(number as f32).sqrt() as usize]];

@@ -45,10 +45,7 @@ fn keys_and_orders(stages: &mut Stages, count: usize) -> [(Vec<u32>, Vec<u32>); 
 #[test]
 fn the_order_is_the_twins() {
     let mut stages = Stages::new();
-    let settings = Settings {
-        raster: Raster::Quad,
-        ..Settings::default()
-    };
+    let settings = Settings::default().raster(Raster::Quad);
     assert_eq!(settings.precision.key_bits, 32);
     for count in SIZES {
         let scene = frame::scene(count);
@@ -70,13 +67,10 @@ fn equal_depths_are_in_the_files_order() {
     let mut camera = frame::views(&scene)[0];
     camera.rotation = glam::DMat3::IDENTITY;
     camera.eye = glam::DVec3::new(0.0, 0.0, -40.0);
-    let settings = Settings {
-        raster: Raster::Quad,
-        ..Settings::default()
-    };
+    let settings = Settings::default().raster(Raster::Quad);
     for layers in [1, 7, 40, 900] {
         let mut flat: Gaussians = scene.clone();
-        for (index, position) in flat.positions.iter_mut().enumerate() {
+        for (index, position) in flat.positions_mut().iter_mut().enumerate() {
             *position *= 0.5;
             position.z = (index * 7919 % layers) as f32 / 64.0;
         }
@@ -94,10 +88,7 @@ fn fewer_bits_keep_the_order_of_what_they_tell_apart() {
     let scene = frame::scene(50_000);
     stages.load(&scene);
     for bits in [8, 16, 24] {
-        let mut settings = Settings {
-            raster: Raster::Quad,
-            ..Settings::default()
-        };
+        let mut settings = Settings::default().raster(Raster::Quad);
         settings.precision.key_bits = bits;
         let camera = frame::views(&scene)[0];
         stages.draw(&camera, &Clip::default(), &settings);

@@ -31,11 +31,7 @@ fn a_moved_clip_changes_what_the_twin_says() {
             (Mode::Rara, 2, ClipOp::Or, Raster::Quad),
             (Mode::Hard, 1, ClipOp::And, Raster::Tiles),
         ] {
-            let settings = Settings {
-                mode,
-                raster,
-                ..Settings::default()
-            };
+            let settings = Settings::default().mode(mode).raster(raster);
             let clip = frame::clip(&scene, planes, op);
             stages.headless.forget();
             stages.again(&camera, &clip, &settings);

@@ -20,7 +20,7 @@ pub fn classes(
     settings: &Settings,
 ) -> Vec<Side> {
     let one = picked(scene, &[index as u32]);
-    let at = one.positions[0].as_dvec3();
+    let at = one.positions()[0].as_dvec3();
     let distance = camera.map_or(at.length(), |camera| (at - camera.eye).length());
     let ways = [DVec3::X, DVec3::Y, DVec3::Z];
     let turned = ways.map(|way| camera.map_or(way, |camera| camera.rotation.transpose() * way));
@@ -33,8 +33,8 @@ pub fn classes(
         for size in [1.0 - SLACK, 1.0, 1.0 + SLACK] {
             for &shift in &shifts {
                 let mut near = one.clone();
-                near.opacities[0] = (f64::from(one.opacities[0]) * opacity) as f32;
-                near.scales[0] = (one.scales[0].as_dvec3() * size).as_vec3();
+                near.opacities_mut()[0] = (f64::from(one.opacities()[0]) * opacity) as f32;
+                near.scales_mut()[0] = (one.scales()[0].as_dvec3() * size).as_vec3();
                 // Instead of the Gaussian, whose place is rounded, all else moves.
                 let moved = planes.planes.iter().map(|plane| {
                     let offset = plane.offset() + plane.normal().dot(shift);
@@ -47,7 +47,7 @@ pub fn classes(
                 let sides = match camera {
                     Some(camera) => {
                         let eye = camera.eye - shift;
-                        let view = View::<f64>::new(&Camera { eye, ..*camera });
+                        let view = View::<f64>::new(&camera.eye(eye));
                         classify::classify(&near, &view, &planes, settings)
                     }
                     None => clip::clip::<f64>(&near, &planes, settings),

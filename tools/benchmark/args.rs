@@ -101,10 +101,7 @@ impl Args {
     }
 
     pub(crate) fn desc(&self) -> HeadlessDesc {
-        HeadlessDesc {
-            device: self.device.clone(),
-            ..HeadlessDesc::default()
-        }
+        HeadlessDesc::default().device(self.device.clone())
     }
 
     /// The scenes of a section.

@@ -103,10 +103,7 @@ fn frames(child: Child, world: &World, args: &Args) -> Result<()> {
     let headless = Headless::new(&args.desc())?;
     let device = headless.device();
     let format = TargetFormat::default().vulkan();
-    let desc = RendererDesc {
-        bindings: Bindings::suiting(device),
-        ..RendererDesc::new(format)
-    };
+    let desc = RendererDesc::new(format).bindings(Bindings::suiting(device));
     let mut renderer = Renderer::new(device, desc)?;
     let variant = Variant::auto(MODES[3]);
     let scene = SceneBuffers::upload(device, &world.scene, variant.settings.precision.sh)?;

@@ -40,15 +40,8 @@ impl Look {
     fn camera(self, camera: Camera) -> Camera {
         match self {
             Self::Whole => camera,
-            Self::Nearer(by) => Camera {
-                fx: camera.fx * by,
-                fy: camera.fy * by,
-                ..camera
-            },
-            Self::Aside(by) => Camera {
-                rotation: DMat3::from_rotation_y(by) * camera.rotation,
-                ..camera
-            },
+            Self::Nearer(by) => camera.fx(camera.fx * by).fy(camera.fy * by),
+            Self::Aside(by) => camera.rotation(DMat3::from_rotation_y(by) * camera.rotation),
         }
     }
 }

@@ -32,11 +32,7 @@ impl Variant {
         (mode_name, mode): (&'static str, Mode),
         (raster_name, raster): (&'static str, Raster),
     ) -> Self {
-        let settings = Settings {
-            mode,
-            raster,
-            ..Settings::default()
-        };
+        let settings = Settings::default().mode(mode).raster(raster);
         Self {
             mode: mode_name,
             raster: raster_name,

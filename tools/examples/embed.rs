@@ -45,10 +45,7 @@ fn main() -> rara::Result<()> {
     )?;
     let mut renderer = Renderer::new(
         &device,
-        RendererDesc {
-            frames_in_flight: FRAMES as u32,
-            ..RendererDesc::new(FORMAT)
-        },
+        RendererDesc::new(FORMAT).frames_in_flight(FRAMES as u32),
     )?;
 
     let size = (VIEW.extent.width, VIEW.extent.height);

@@ -135,20 +135,17 @@ impl Host {
 
     /// What [`rara::gpu::Device::adopt`] wants to know. The host must outlive whatever is made from it.
     pub(crate) fn lend(&self) -> AdoptDesc {
-        AdoptDesc {
-            api_version: VERSION,
-            instance: self.instance.clone(),
-            physical_device: self.physical_device,
-            device: self.device.clone(),
-            queue: self.queue,
-            queue_family: self.support.queue_family,
-            mesh_shader: self.support.mesh_shader,
-            push_descriptor: self.support.push_descriptor,
-            debug_utils: self.messenger.is_some(),
-            pipeline_statistics: false,
-            pipeline_cache: self.pipeline_cache,
-            allocator: None,
-        }
+        AdoptDesc::new(
+            VERSION,
+            self.instance.clone(),
+            self.physical_device,
+            self.device.clone(),
+            (self.queue, self.support.queue_family),
+        )
+        .mesh_shader(self.support.mesh_shader)
+        .push_descriptor(self.support.push_descriptor)
+        .debug_utils(self.messenger.is_some())
+        .pipeline_cache(self.pipeline_cache)
     }
 
     /// Waits until the frame `FRAMES` ago is done, so that what it used may be used again; its picture, if there was

@@ -53,13 +53,10 @@ pub(super) struct Judge<'a> {
 
 /// The truth: exact in perspective for every splat, called cut or not, by optical depth.
 pub(super) fn truth_settings(look: &Settings) -> Settings {
-    Settings {
-        mode: Mode::Exact,
-        decay: Some(Decay::Depth),
-        form: ExactForm::Beam,
-        trace_all: true,
-        ..*look
-    }
+    look.mode(Mode::Exact)
+        .decay(Some(Decay::Depth))
+        .form(ExactForm::Beam)
+        .trace_all(true)
 }
 
 impl<'a> Judge<'a> {
@@ -74,10 +71,7 @@ impl<'a> Judge<'a> {
         let truth = truth_settings(look);
         let draw = |clip: &Clip| reference::render::<f64>(scene, camera, clip, &truth).picture;
         let truths: Vec<_> = clips.iter().map(draw).collect();
-        let hard = Settings {
-            mode: Mode::Hard,
-            ..*look
-        };
+        let hard = look.mode(Mode::Hard);
         let hard = reference::render::<f64>(scene, camera, &clips[0], &hard).picture;
         let band = Region::where_different(&hard, &truths[0], 1.0 / 255.0)?.dilated(BAND);
         Ok(Self {
@@ -115,13 +109,8 @@ impl<'a> Judge<'a> {
 
     fn twin_psnr(&self, picture: &Picture, settings: &Settings) -> Result<f64> {
         // The reference knows of a precision only where the forms of the weight change.
-        let key = Settings {
-            precision: Precision {
-                beam_switch: settings.precision.beam_switch,
-                ..Precision::default()
-            },
-            ..*settings
-        };
+        let key =
+            settings.precision(Precision::default().beam_switch(settings.precision.beam_switch));
         let mut twins = self.twins.borrow_mut();
         let known = twins.iter().position(|(have, _)| *have == key);
         let index = known.unwrap_or_else(|| {

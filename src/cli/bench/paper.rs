@@ -61,12 +61,8 @@ fn with_ratios(camera: &Camera, measured: Vec<(&'static str, Measures)>) -> Vec<
 
 /// By centre, the paper's text, our default reading of it, and exact, which the others are compared with.
 fn ways(look: Settings) -> [(&'static str, Settings); 4] {
-    let mode = |mode| Settings { mode, ..look };
-    let paper = Settings {
-        sigma: 1.0,
-        miss: Miss::Keep,
-        ..mode(Mode::Rara)
-    };
+    let mode = |mode| look.mode(mode);
+    let paper = mode(Mode::Rara).sigma(1.0).miss(Miss::Keep);
     [
         ("hard", mode(Mode::Hard)),
         ("rara, paper", paper),

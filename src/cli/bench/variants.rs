@@ -1,8 +1,7 @@
 //! What is compared: every mode, law and preset, and every choice of precision by itself.
 
 use rara::{
-    Decay, ExactForm, Miss, Mode, PhiForm, Precision, Preset, Raster, Settings, ShFormat,
-    TargetFormat,
+    Decay, ExactForm, Miss, Mode, PhiForm, Preset, Raster, Settings, ShFormat, TargetFormat,
 };
 
 /// One choice.
@@ -28,46 +27,22 @@ pub(super) fn variants(look: Settings) -> Vec<Variant> {
         flags,
         settings,
     };
-    let mode = |mode| Settings { mode, ..look };
+    let mode = |mode| look.mode(mode);
     let exact = mode(Mode::Exact);
-    let rara = |sigma, miss, decay| Settings {
-        sigma,
-        miss,
-        decay,
-        ..mode(Mode::Rara)
-    };
-    let precise = |precision| Settings { precision, ..exact };
+    let rara = |sigma, miss, decay| mode(Mode::Rara).sigma(sigma).miss(miss).decay(decay);
+    let precise = |precision| exact.precision(precision);
     let base = look.precision;
-    let target = |target| precise(Precision { target, ..base });
-    let sh = |sh| precise(Precision { sh, ..base });
-    let phi = |phi| precise(Precision { phi, ..base });
-    let keys = |key_bits| precise(Precision { key_bits, ..base });
-    let switch = |beam_switch| {
-        precise(Precision {
-            beam_switch,
-            ..base
-        })
-    };
-    let saturated = |transmittance_min| {
-        precise(Precision {
-            transmittance_min,
-            ..base
-        })
-    };
-    let quads = Settings {
-        raster: Raster::Quad,
-        ..exact
-    };
+    let target = |target| precise(base.target(target));
+    let sh = |sh| precise(base.sh(sh));
+    let phi = |phi| precise(base.phi(phi));
+    let keys = |key_bits| precise(base.key_bits(key_bits));
+    let switch = |beam_switch| precise(base.beam_switch(beam_switch));
+    let saturated = |transmittance_min| precise(base.transmittance_min(transmittance_min));
+    let quads = exact.raster(Raster::Quad);
     let keep = rara(1.0, Miss::Keep, None);
     let drop = rara(3.0, Miss::Drop, None);
-    let linear = Settings {
-        decay: Some(Decay::Linear),
-        ..exact
-    };
-    let affine = Settings {
-        form: ExactForm::Affine,
-        ..exact
-    };
+    let linear = exact.decay(Some(Decay::Linear));
+    let affine = exact.form(ExactForm::Affine);
     vec![
         variant("none", "--mode none", mode(Mode::None)),
         variant("hard", "--mode hard", mode(Mode::Hard)),

@@ -23,19 +23,16 @@ pub(super) fn flags(cut: &Cut, settings: &Settings) -> String {
 }
 
 fn add_settings(flags: &mut Vec<String>, settings: &Settings) {
-    // Nothing is left out by accident: each setting is named.
     let Settings {
-        mode: _,
         decay,
         sigma,
         miss,
         trace_all,
-        form: _, // no flag sets it
         background,
         sh_degree,
         raster,
         show,
-        precision: _,
+        ..
     } = *settings;
     let default = Settings::default();
     if let Some(decay) = decay {
@@ -90,6 +87,7 @@ fn differences(precision: &Precision, preset: &Precision) -> Vec<String> {
         key_bits,
         beam_switch,
         transmittance_min,
+        ..
     } = *precision;
     let mut flags = Vec::new();
     if target != preset.target {
@@ -163,21 +161,48 @@ mod tests {
     }
 
     #[test]
+    fn nothing_is_left_out_by_accident() {
+        let text = format!("{:?}", Settings::default());
+        let words = text.split(|letter: char| !(letter.is_alphanumeric() || "_:".contains(letter)));
+        let settings: Vec<&str> = words.filter_map(|word| word.strip_suffix(':')).collect();
+        let written = [
+            "mode",
+            "decay",
+            "sigma",
+            "miss",
+            "trace_all",
+            "background",
+            "sh_degree",
+            "raster",
+            "show",
+            "precision",
+            "target",
+            "sh",
+            "phi",
+            "key_bits",
+            "beam_switch",
+            "transmittance_min",
+        ];
+        let without_a_flag = ["form"];
+        for setting in settings {
+            assert!(
+                written.contains(&setting) || without_a_flag.contains(&setting),
+                "{setting} is new: write its flag, then name it here"
+            );
+        }
+    }
+
+    #[test]
     fn no_number_is_rounded() {
         let normal = DVec3::new(0.1, -0.7, 1.0 / 3.0);
         let clip = Clip {
             planes: vec![Plane::new(normal, 1e-9 / 7.0).unwrap()],
             op: ClipOp::And,
         };
-        let settings = Settings {
-            background: Some([1.0 / 3.0, f32::MIN_POSITIVE, 0.1 + 0.2]),
-            sigma: 1e-7 / 3.0,
-            precision: Precision {
-                beam_switch: 1e20 / 7.0,
-                ..Precision::default()
-            },
-            ..Settings::default()
-        };
+        let settings = Settings::default()
+            .background(Some([1.0 / 3.0, f32::MIN_POSITIVE, 0.1 + 0.2]))
+            .sigma(1e-7 / 3.0)
+            .precision(Precision::default().beam_switch(1e20 / 7.0));
         let cut = Cut::new(clip.clone(), DVec3::ZERO);
         let (read, again) = meant(&flags(&cut, &settings));
         assert_eq!(again, settings);

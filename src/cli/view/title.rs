@@ -89,15 +89,14 @@ mod tests {
 
     fn stats() -> FrameStats {
         let pass = |name, ms| PassTime { name, ms };
-        FrameStats {
-            passes: vec![
-                pass("clip", 0.4),
-                pass("project", 5.85),
-                pass("sort", 3.0),
-                pass("tiles", 14.25),
-            ],
-            ..FrameStats::default()
-        }
+        let mut stats = FrameStats::default();
+        stats.passes = vec![
+            pass("clip", 0.4),
+            pass("project", 5.85),
+            pass("sort", 3.0),
+            pass("tiles", 14.25),
+        ];
+        stats
     }
 
     #[test]

@@ -66,16 +66,14 @@ impl Viewpoint {
         let lens = &self.lens;
         let scale = f64::from(height) / f64::from(lens.height);
         let beside = lens.cx - f64::from(lens.width) / 2.0;
-        Camera {
-            width,
-            height,
-            fx: lens.fx * scale,
-            fy: lens.fy * scale,
-            cx: f64::from(width) / 2.0 + beside * scale,
-            cy: lens.cy * scale,
-            eye: self.pose.eye,
-            rotation: self.pose.axes.transpose(),
-        }
+        lens.width(width)
+            .height(height)
+            .fx(lens.fx * scale)
+            .fy(lens.fy * scale)
+            .cx(f64::from(width) / 2.0 + beside * scale)
+            .cy(lens.cy * scale)
+            .eye(self.pose.eye)
+            .rotation(self.pose.axes.transpose())
     }
 
     /// Turns so that what is in front goes right and down by so many degrees.

@@ -19,10 +19,7 @@ fn cutting_twice_is_cutting_once_and_the_order_of_planes_is_nobodys_business() {
     check(strategy, |headless, (scene, camera, planes, op, again)| {
         headless.load(&scene).expect("uploads");
         for mode in [Mode::Hard, Mode::Rara, Mode::Exact] {
-            let settings = Settings {
-                mode,
-                ..Settings::default()
-            };
+            let settings = Settings::default().mode(mode);
             let mut picture =
                 |planes: Vec<Plane>| draw(headless, &camera, &Clip { planes, op }, &settings);
             let expected = picture(planes.clone());

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use glam::{DMat3, DQuat, DVec3, Vec3};
+use glam::{DMat4, DQuat, DVec3, Vec3};
 use proptest::prelude::*;
 use rara::{Camera, Clip, Decay, ExactForm, Gaussians, Mode, Picture, Plane, Settings};
 
@@ -28,17 +28,9 @@ fn separated() -> impl Strategy<Value = (Gaussians, Camera)> {
             let colour = [1.0, 0.3, -0.7];
             scene.push(position, deviations.into(), rotation, opacity, &colour);
         }
-        let camera = Camera {
-            width: SIZE.0,
-            height: SIZE.1,
-            fx: 100.0,
-            fy: 100.0,
-            cx: 50.5,
-            cy: 38.5,
-            eye: DVec3::ZERO,
-            rotation: DMat3::IDENTITY,
-        };
-        (scene, camera)
+        let lens = (100.0, 100.0, 50.5, 38.5);
+        let camera = Camera::from_world_to_camera(DMat4::IDENTITY, lens, SIZE);
+        (scene, camera.expect("a camera at the origin"))
     })
 }
 
@@ -98,12 +90,10 @@ fn complementary_halves_as_two_layers_are_the_whole() {
             (Mode::Exact, beam),
         ];
         for (mode, form) in modes {
-            let settings = Settings {
-                mode,
-                form,
-                decay: Some(Decay::Depth),
-                ..Settings::default()
-            };
+            let settings = Settings::default()
+                .mode(mode)
+                .form(form)
+                .decay(Some(Decay::Depth));
             let clip = Clip {
                 planes: planes.clone(),
                 op,

@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
 use rara::measure::compare;
-use rara::{Camera, Clip, ClipOp, Gaussians, Mode, Plane, Settings};
+use rara::{Clip, ClipOp, Gaussians, Mode, Plane, Settings};
 
 use super::{check, directions, draw, planes, scenes, views};
 
@@ -34,11 +34,9 @@ fn a_rigid_motion_of_everything_leaves_the_picture() {
         |headless, (mut scene, camera, planes, ((axis, angle), step))| {
             scene.set_sh_degree(0);
             let (turn, step) = (DQuat::from_axis_angle(axis, angle), DVec3::from(step));
-            let away = Camera {
-                eye: turn * camera.eye + step,
-                rotation: camera.rotation * DMat3::from_quat(turn.inverse()),
-                ..camera
-            };
+            let away = camera
+                .eye(turn * camera.eye + step)
+                .rotation(camera.rotation * DMat3::from_quat(turn.inverse()));
             let carried = planes.iter().map(|p| {
                 let normal = turn * p.normal();
                 Plane::new(normal, p.offset() - normal.dot(step)).unwrap()
@@ -49,10 +47,7 @@ fn a_rigid_motion_of_everything_leaves_the_picture() {
                 op,
             };
             for mode in [Mode::Rara, Mode::Exact] {
-                let settings = Settings {
-                    mode,
-                    ..Settings::default()
-                };
+                let settings = Settings::default().mode(mode);
                 headless.load(&scene).expect("uploads");
                 let clip = Clip {
                     planes: planes.clone(),
@@ -92,17 +87,11 @@ fn a_world_of_another_power_of_two_is_the_same_picture_to_the_bit() {
             op: ClipOp::And,
         };
         for mode in [Mode::Rara, Mode::Exact] {
-            let settings = Settings {
-                mode,
-                ..Settings::default()
-            };
+            let settings = Settings::default().mode(mode);
             headless.load(&scene).expect("uploads");
             let expected = draw(headless, &camera, &clip(1.0), &settings);
             headless.load(&scaled).expect("uploads");
-            let away = Camera {
-                eye: camera.eye * factor,
-                ..camera
-            };
+            let away = camera.eye(camera.eye * factor);
             let picture = draw(headless, &away, &clip(factor), &settings);
             prop_assert!(
                 picture == expected,

@@ -55,17 +55,15 @@ fn settings(choice: u8) -> Settings {
     let form =
         [ExactForm::Auto, ExactForm::Beam, ExactForm::Affine][usize::from(choice & 3).min(2)];
     let miss = [Miss::Keep, Miss::Drop, Miss::Peak][usize::from((choice >> 2) & 3).min(2)];
-    Settings {
-        mode: if choice & 16 == 0 {
+    Settings::default()
+.mode(if choice & 16 == 0 {
             Mode::Exact
         } else {
             Mode::Rara
-        },
-        form,
-        miss,
-        trace_all: choice & 32 != 0,
-        ..Settings::default()
-    }
+        })
+.form(form)
+.miss(miss)
+.trace_all(choice & 32 != 0)
 }
 
 fn check<T: Real>(scene: &Gaussians, camera: &Camera, clip: &Clip, settings: &Settings) {

@@ -1,0 +1,21 @@
+//! Methods by which structs that grow are built: what a version adds has a default, and no caller has to name it.
+
+#![forbid(unsafe_code)]
+
+/// For each field that is named a method of the same name, which sets it.
+macro_rules! setters {
+    ($of:ident { $($field:ident: $value:ty),+ $(,)? }) => {
+        impl $of {
+            $(
+                #[doc = concat!("Sets `", stringify!($field), "`; the field says what it means.")]
+                #[must_use]
+                pub fn $field(mut self, $field: $value) -> Self {
+                    self.$field = $field;
+                    self
+                }
+            )+
+        }
+    };
+}
+
+pub(crate) use setters;

@@ -57,7 +57,7 @@ use shared::SharedPipelines;
 /// **What recording leaves behind.** `prepare` binds a compute pipeline, `draw` a graphics pipeline; both write push
 /// constants. The host binds its own pipelines again, pushes its own constants, and sets again what its pipelines have
 /// of dynamic state, all but viewport and scissor: a pipeline of rara's has the rest of it fixed, which is what binding it
-/// leaves behind. With [`Bindings::Bound`] both push descriptor set 0 too, by a layout of their own, so that the host
+/// leaves behind. With [`Bindings::Bound`](crate::gpu::Bindings::Bound) both push descriptor set 0 too, by a layout of their own, so that the host
 /// binds all of its sets again. No image, no layout, no query and no vertex buffer is touched. Of dynamic state `draw`
 /// needs viewport and scissor: the viewport of positive height, its depths from 0 to 1.
 ///

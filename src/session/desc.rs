@@ -10,7 +10,7 @@ use crate::trace::Trace;
 pub struct HeadlessDesc {
     /// Device number or part of its name; `None` is the best device.
     pub device: Option<String>,
-    /// Load the Khronos validation layer with synchronisation checks; any message becomes [`Error::Validation`].
+    /// Load the Khronos validation layer with synchronisation checks; any message becomes [`Error::Validation`](crate::Error::Validation).
     pub validation: bool,
     /// How buffers are reached; `None` is [what suits the device](Bindings::suiting), and bound under validation, whose
     /// synchronisation checks cannot watch an address.

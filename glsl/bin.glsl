@@ -2,7 +2,7 @@
 // reaches there. Exact but for a margin, where a bounding box would give a slanting needle its whole square.
 #ifndef RARA_BIN
 #define RARA_BIN
-#include "extent.glsl"
+#include "quad.glsl"
 #include "runs.glsl"
 
 struct Outline {
@@ -11,17 +11,17 @@ struct Outline {
     float power; // q on the contour
     float slope; // by how much the middle of the contour's chord moves along x a pixel along y
     float tip; // y relative to the centre, at which the contour reaches farthest to the right
-    float reach; // half the contour's height, px
+    float half_height; // half the contour's height, px
     float margin; // px
     vec2 sides; // what the splat's quad leaves: first and last x, px
-    vec3 line; // a cut splat is hidden where line.x + line.y dx + line.z dy is negative
+    vec3 line; // a cut splat is cut away where line.x + line.y dx + line.z dy is negative
     uvec2 rows; // first and last (exclusive) row of tiles
 };
 
 const vec3 NO_LINE = vec3(1.0, 0.0, 0.0);
 
 // Where a carried weight's z can exceed -TRIM_DEVIATIONS within a box around the splat's centre.
-vec3 hidden_beyond(vec3 plane, vec3 curvature, vec2 box) {
+vec3 cut_away_line(vec3 plane, vec3 curvature, vec2 box) {
     precise float rise = max(curvature.x, 0.0) * box.x * box.x + abs(curvature.y) * box.x * box.y
         + max(curvature.z, 0.0) * box.y * box.y;
     precise vec3 line = vec3(plane.x + TRIM_DEVIATIONS + rise, plane.yz);
@@ -29,7 +29,7 @@ vec3 hidden_beyond(vec3 plane, vec3 curvature, vec2 box) {
 }
 
 // The same of a record that is a curve (cut.glsl), whose coordinates are nowhere beyond the splat's extent.
-vec3 hidden_beyond_curve(vec4 linear, vec4 bend, vec4 twist, vec4 wave, vec3 conic, float extent) {
+vec3 cut_away_line_of_curve(vec4 linear, vec4 bend, vec4 twist, vec4 wave, vec3 conic, float extent) {
     float square = extent * extent;
     precise float rise = square * (max(bend.x, 0.0) + abs(bend.y) + max(bend.z, 0.0)
         + extent * dot(abs(twist), vec4(1.0)) + square * (dot(abs(wave), vec4(1.0)) + max(bend.w, 0.0)));
@@ -56,16 +56,16 @@ Outline outline(Splat splat) {
     o.tip = -o.conic.y / o.conic.z * width;
     // Near the contour's ends its chord is a root of a difference, off by the root of single precision.
     o.margin = 0.01 + 4e-4 * width + 1e-6 * largest(vec3(o.centre, 0.0));
-    o.reach = extent * sqrt(k) / (o.conic.x * o.conic.z) + o.margin;
+    o.half_height = extent * sqrt(k) / (o.conic.x * o.conic.z) + o.margin;
     vec2 middle = o.centre + splat.middle.xy;
     vec2 half_sides = abs(splat.axes.xy) + abs(splat.axes.zw);
     o.sides = middle.x + vec2(-half_sides.x, half_sides.x);
-    float top = max(middle.y - half_sides.y, o.centre.y - o.reach);
-    float bottom = min(middle.y + half_sides.y, o.centre.y + o.reach);
+    float top = max(middle.y - half_sides.y, o.centre.y - o.half_height);
+    float bottom = min(middle.y + half_sides.y, o.centre.y + o.half_height);
     o.line = NO_LINE;
     vec3 plane = vec3(splat.conic_cut.zw, splat.colour_cut.w);
-    if (abs(plane.x) < CUT_RANGE) {
-        o.line = hidden_beyond(plane, splat.curvature.xyz, vec2(width, o.reach));
+    if (abs(plane.x) < Z_RANGE) {
+        o.line = cut_away_line(plane, splat.curvature.xyz, vec2(width, o.half_height));
     }
     o.rows = tiles_between(top, bottom, FRAME.view.size.y, TILE_HEIGHT);
     return o;
@@ -81,8 +81,8 @@ float half_chord(Outline o, float y) {
 
 uvec2 tiles_in_row(Outline o, uint row) {
     precise float top = float(row * TILE_HEIGHT) + 0.5 - o.centre.y;
-    precise float bottom = min(top + float(TILE_HEIGHT - 1u), o.reach);
-    top = max(top, -o.reach);
+    precise float bottom = min(top + float(TILE_HEIGHT - 1u), o.half_height);
+    top = max(top, -o.half_height);
     // To the bit, wherever it is computed: what one shader counts another writes.
     precise float right_at = clamp(o.tip, top, bottom);
     precise float left_at = clamp(-o.tip, top, bottom);

@@ -4,7 +4,7 @@
 #include "bin.glsl"
 
 Carried whole_weight() {
-    return Carried(vec3(CUT_WHOLE, 0.0, 0.0), vec3(0.0));
+    return Carried(vec3(Z_WHOLE, 0.0, 0.0), vec3(0.0));
 }
 
 Carried carried_weight(uint cut) {
@@ -15,20 +15,20 @@ Carried carried_weight(uint cut) {
             weight.plane = cuts.at[base + CUT_HEADER].xyz;
             weight.curvature = cuts.at[base + CUT_HEADER + 1u].xyz;
         } else {
-            weight.plane = vec3(CUT_RECORD, float(cut & 0xffffu), float(cut >> 16));
+            weight.plane = vec3(Z_RECORD, float(cut & 0xffffu), float(cut >> 16));
         }
     }
     return weight;
 }
 
-// The line beyond which a splat's curve hides it, where a record holds that; else the line that there is.
-vec3 hidden_by_record(vec3 line, uint cut, Carried weight, vec3 conic, float extent) {
+// The line beyond which a splat's curve cuts it away, where a record holds that; else the line that there is.
+vec3 cut_away_line_of_record(vec3 line, uint cut, Carried weight, vec3 conic, float extent) {
     uint base = cut * FRAME.weight.cut_stride;
     vec4 linear = cuts.at[base];
-    if (weight.plane.x >= -CUT_RANGE || (to_uint(linear.w) & CUT_CURVE) == 0u) {
+    if (weight.plane.x >= -Z_RANGE || (to_uint(linear.w) & CUT_CURVE) == 0u) {
         return line;
     }
-    return hidden_beyond_curve(linear, cuts.at[base + 1u], cuts.at[base + 2u], cuts.at[base + CUT_HEADER], conic, 1.001 * extent);
+    return cut_away_line_of_curve(linear, cuts.at[base + 1u], cuts.at[base + 2u], cuts.at[base + CUT_HEADER], conic, 1.001 * extent);
 }
 
 #endif

@@ -23,20 +23,20 @@ shared uint cutoff_count;
 shared uint invisible_count;
 
 // Whether some pixel centre lies in the splat's bounding box and in the picture.
-bool covers_a_pixel(vec2 centre, vec2 extent) {
-    vec2 low = max(ceil(centre - extent - 0.5), vec2(0.0));
-    vec2 high = min(floor(centre + extent - 0.5), FRAME.view.size.xy - 1.0);
+bool covers_a_pixel(vec2 centre, vec2 half_sides) {
+    vec2 low = max(ceil(centre - half_sides - 0.5), vec2(0.0));
+    vec2 high = min(floor(centre + half_sides - 0.5), FRAME.view.size.xy - 1.0);
     return low.x <= high.x && low.y <= high.y;
 }
 
 // What the clip stage has found.
-uint clip_class(uint block, uint local) {
+uint clip_stage_side(uint block, uint local) {
     uint side = clip_sides.at[block];
     if (side != SIDE_CUTOFF) {
         return side;
     }
     uint word = block * 2u * WORDS + (local >> 5);
-    return class_of(clip_masks.at[word], clip_masks.at[word + WORDS], local);
+    return side_of(clip_masks.at[word], clip_masks.at[word + WORDS], local);
 }
 
 uint classify(uint block, uint local) {
@@ -63,7 +63,7 @@ uint classify(uint block, uint local) {
     if (FRAME.region.mode == MODE_EXACT && is_beam(f, sigma)) {
         return gaussian_side(f.world_factor, gaussian.position_opacity.xyz, band_in_view(f, sigma, extent));
     }
-    return clip_class(block, local);
+    return clip_stage_side(block, local);
 }
 
 void main() {

@@ -56,7 +56,7 @@ void carried_weights(vec3 plane, vec3 curvature, vec2 delta, float alpha[ROWS], 
     phi_or_side(z, alpha, weight);
 }
 
-// Whether nothing of a column is visible. Without a sweep the tiles' lists leave most of such out.
+// Whether nothing of a column is visible. Where the frame is not a reclipped one, the tiles' lists leave most of such out.
 bool is_carried_away(vec3 plane, vec3 curvature, vec2 delta) {
     float at = plane.x + delta.x * (plane.y + curvature.x * delta.x);
     float slope = plane.z + curvature.y * delta.x;
@@ -113,8 +113,8 @@ ColumnSight column_sight(uint base, vec2 delta, vec2 place) {
     return column;
 }
 
-// A plane's z in each row: ray_z of glsl/sight.glsl.
-void ray_zs(ColumnSight column, vec4 plane, out float z[ROWS]) {
+// A plane's z in each row: beam_z of glsl/sight.glsl.
+void beam_zs(ColumnSight column, vec4 plane, out float z[ROWS]) {
     Sight s = column.s;
     vec3 c_step = column.c_step;
     vec3 a = plane.xyz;
@@ -142,16 +142,16 @@ void exact_weights(uint base, uint flags, vec2 delta, vec2 place, float alpha[RO
     float z[ROWS];
     uint count = flags >> CUT_COUNT_SHIFT;
     if (!SEVERAL || count == 1u) {
-        ray_zs(column, cuts.at[base + CUT_HEADER], z);
+        beam_zs(column, cuts.at[base + CUT_HEADER], z);
         phi_or_side(z, alpha, weight);
         return;
     }
     if (count == 2u && cuts.at[base + CUT_HEADER].xyz == -cuts.at[base + CUT_HEADER + 1u].xyz) {
         // A slab: both planes are thresholds in one variable.
         float other[ROWS];
-        ray_zs(column, plane_of(base, 0u), z);
+        beam_zs(column, plane_of(base, 0u), z);
         phi_or_side(z, alpha, weight);
-        ray_zs(column, plane_of(base, 1u), z);
+        beam_zs(column, plane_of(base, 1u), z);
         phi_or_side(z, alpha, other);
         for (uint row = 0u; row < ROWS; row++) {
             weight[row] = combined(flags, max(0.0, weight[row] - (1.0 - other[row])));
@@ -166,7 +166,7 @@ void exact_weights(uint base, uint flags, vec2 delta, vec2 place, float alpha[RO
         opens[row] = 0u;
     }
     for (uint plane = 0u; plane < count; plane++) {
-        ray_zs(column, plane_of(base, plane), z);
+        beam_zs(column, plane_of(base, plane), z);
         for (uint row = 0u; row < ROWS; row++) {
             least[row] = min(least[row], z[row]);
             opens[row] += z[row] < PHI_ONE ? 1u : 0u;

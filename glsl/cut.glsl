@@ -1,12 +1,12 @@
 // The cutoff record: what the fragment stage needs to weight a cut splat, computed once a splat by cutoff.comp.
 // vec4s of a record (FRAME.weight.cut_stride of them):
 //   0      fx / Z m1, the screen gradient along x for a pixel on the principal axis, times scale; the sum of
-//          CUT_RAY, CUT_FRONT, CUT_UNION and 256 times the number of planes
+//          CUT_BEAM, CUT_FRONT, CUT_UNION and 256 times the number of planes
 //   1      fy / Z m2, the same along y, times scale; scale
 //   2      e = m3 / Z, how the gradients change with the pixel, times scale; low-pass times scale^2
 //   3...   a plane each: normal in unit space, and the centre's distance, both divided by the normal's largest component
 //   last   with CUT_FRONT: the plane through the eye across the view axis, in the same form
-// Several planes in the affine form are such a record with the footprint's gradients and e = 0. Without CUT_RAY there is
+// Several planes in the affine form are such a record with the footprint's gradients and e = 0. Without CUT_BEAM there is
 // one plane, which the rasteriser carries: 3 holds z at the centre, dz/dx and dz/dy, 4 its curvature, the factors of dx^2,
 // dx dy and dy^2. With CUT_CURVE, in the coordinates of curve.glsl, 0 holds z at the centre and its slopes, 1 the factors
 // of u^2, u v, v^2 and v^4, 2 those of u^3, u^2 v, u v^2 and v^3, 3 those of u^4, u^3 v, u^2 v^2 and u v^3.
@@ -15,7 +15,7 @@
 
 const uint CUT_HEADER = 3u;
 // The planes are evaluated on each pixel's line of sight.
-const uint CUT_RAY = 1u;
+const uint CUT_BEAM = 1u;
 // The splat reaches behind the eye.
 const uint CUT_FRONT = 2u;
 // The record is one plane's z as a polynomial of degree four.
@@ -26,14 +26,14 @@ const uint CUT_UNION = 8u;
 const uint CUT_COUNT_SHIFT = 8u;
 
 // What the rasteriser carries for a splat: z at its centre, dz/dx, dz/dy and its curvature, so that the usual case, one
-// plane, needs no record in the fragment stage. Beyond CUT_RANGE, z says that the splat is whole; below -CUT_RANGE that
+// plane, needs no record in the fragment stage. Beyond Z_RANGE, z says that the splat is whole; below -Z_RANGE that
 // the slopes hold the lower and upper 16 bits of its record's number, as numbers: the bits of a small integer are those
 // of a denormal float, which a rasteriser may flush.
-const float CUT_RANGE = 1e30;
-const float CUT_WHOLE = 2e30;
-const float CUT_RECORD = -2e30;
-// In a sweep, whose survivors are all in view, that the splat is clipped away.
-const float CUT_GONE = 4e30;
+const float Z_RANGE = 1e30;
+const float Z_WHOLE = 2e30;
+const float Z_RECORD = -2e30;
+// In a reclipped frame, whose survivors are all in view, that the splat is clipped away.
+const float Z_CUT_AWAY = 4e30;
 
 // Whether a plane keeps the far part of a line of sight: by its normal's component along the line. Where that is zero
 // (a Gaussian without thickness) any fixed rule would do, if it told opposed planes apart: the normal's first non-zero

@@ -13,8 +13,8 @@ BUFFER(readonly, 2, uint, cutoffs)
 BUFFER(readonly, 3, FrameCounts, counts)
 BUFFER(writeonly, 4, vec4, cuts)
 
-// A plane in the ray form. Dividing by the largest component keeps the squares of sigmas of 1e5 and 1e-7 in range.
-vec4 ray_plane(vec3 normal, float distance) {
+// A plane in the beam form. Dividing by the largest component keeps the squares of sigmas of 1e5 and 1e-7 in range.
+vec4 beam_plane(vec3 normal, float distance) {
     float size = largest(normal);
     return size > 0.0 ? vec4(normal, distance) / size : vec4(vec3(0.0), distance >= 0.0 ? 1.0 : -1.0);
 }
@@ -49,11 +49,11 @@ void main() {
     Footprint f = footprint(gaussian);
     float extent = opacity_extent(gaussian.position_opacity.w);
     float sigma = largest(gaussian.scale.xyz);
-    float reach = band_in_view(f, sigma, extent);
+    float deviations = band_in_view(f, sigma, extent);
 
     bool front = f.view.z < band(extent) * length(f.m3);
-    bool ray = FRAME.region.mode == MODE_RARA || is_beam(f, sigma) || (FRAME.weight.form == FORM_AUTO && front);
-    front = front && ray;
+    bool beam = FRAME.region.mode == MODE_RARA || is_beam(f, sigma) || (FRAME.weight.form == FORM_AUTO && front);
+    front = front && beam;
 
     uint base = cut * FRAME.weight.cut_stride;
     uint at = base + CUT_HEADER;
@@ -64,8 +64,8 @@ void main() {
         float distance = plane_distance(plane, position);
         vec3 normal = unit_normal(plane, f.world_factor);
         // A plane that keeps the whole splat changes no intersection, one that drops it no union.
-        if (plane_gaussian_side(distance, normal, reach) != kept) {
-            form = ray_plane(normal, distance);
+        if (plane_gaussian_side(distance, normal, deviations) != kept) {
+            form = beam_plane(normal, distance);
             cuts.at[at++] = is_union ? -form : form;
         }
     }
@@ -76,15 +76,15 @@ void main() {
     } else if (is_union) {
         flags |= CUT_UNION;
     }
-    if (!ray && count == 1u) {
+    if (!beam && count == 1u) {
         cuts.at[base] = vec4(vec3(0.0), float(flags));
         cuts.at[at - 1u] = affine_plane(f, form);
         cuts.at[at] = vec4(0.0);
         return;
     }
-    if (!ray) {
+    if (!beam) {
         // Several planes: the footprint's own gradients, the same in all pixels.
-        cuts.at[base] = vec4(f.b1, float(flags | CUT_RAY));
+        cuts.at[base] = vec4(f.b1, float(flags | CUT_BEAM));
         cuts.at[base + 1u] = vec4(f.b2, f.scale);
         cuts.at[base + 2u] = vec4(vec3(0.0), f.low_pass);
         return;
@@ -133,9 +133,9 @@ void main() {
     }
     if (front) {
         flags |= CUT_FRONT;
-        cuts.at[at] = ray_plane(f.m3, f.view.z);
+        cuts.at[at] = beam_plane(f.m3, f.view.z);
     }
-    cuts.at[base] = vec4(source.h0.xyz, float(flags | CUT_RAY));
+    cuts.at[base] = vec4(source.h0.xyz, float(flags | CUT_BEAM));
     cuts.at[base + 1u] = source.h1;
     cuts.at[base + 2u] = source.h2;
 }

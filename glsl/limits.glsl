@@ -29,7 +29,7 @@ const float ALPHA_MIN = 1.0 / ALPHA_MIN_INVERSE;
 const uint BLOCK_SIZE = 256u;
 // Blocks that a workgroup decides about at a time.
 const uint BLOCK_GROUP_SIZE = 64u;
-// Words that a sweep keeps of a block: see reclip.glsl.
+// Words that a reclipped frame keeps of a block: see reclip.glsl.
 const uint RECLIP_WORDS = 32u;
 // Opacity from which a splat's bounding box spans a pixel whatever the projection: its contour of 1/255 is then at 0.92
 // deviations or more, and the low-pass alone makes them 0.55 px.

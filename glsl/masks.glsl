@@ -13,7 +13,7 @@ uint bits_before(uint word, uint place, uint local) {
 }
 
 // A Gaussian's class by its words of the masks of what is visible and of what is cut.
-uint class_of(uint visible, uint cut, uint local) {
+uint side_of(uint visible, uint cut, uint local) {
     uint bit = 1u << (local & 31u);
     return (cut & bit) != 0u ? SIDE_CUTOFF : (visible & bit) != 0u ? SIDE_VISIBLE : SIDE_INVISIBLE;
 }

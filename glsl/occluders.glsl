@@ -10,7 +10,7 @@ float farness(float depth) {
 }
 
 // Beyond which farness a splat is hidden in a pixel. Whole numbers hide what rounds to more than they hold.
-float hidden_beyond(uvec2 pixel) {
+float occluder_farness(uvec2 pixel) {
     if (min(push.params.copy_size.x, push.params.copy_size.y) == 0u) {
         return 3.0e38; // the image is not under the picture: nothing is hidden
     }

@@ -76,7 +76,7 @@ void main() {
         Outline o = outline(splat);
         uint cut = survivors.at[survivor].y;
         if (CUT && cut != NOT_CUT) {
-            o.line = hidden_by_record(o.line, cut, weight, conic, extent);
+            o.line = cut_away_line_of_record(o.line, cut, weight, conic, extent);
         }
         tile_masks.at[survivor] = tile_mask(o);
     }

@@ -9,26 +9,26 @@ layout(local_size_x = BLOCK_SIZE) in;
 BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uint, block_list)
 BUFFER(readonly, 3, FrameCounts, counts)
-BUFFER(readonly, 4, uint, looks)
+BUFFER(readonly, 4, uint, revisits)
 BUFFER(readonly, 5, uint, block_sides)
 BUFFER(readonly, 6, uint, masks)
 BUFFER(, 7, uint, reclips)
 
 shared uint visible_mask[WORDS];
 shared uint cut_mask[WORDS];
-shared uint gone_mask[WORDS];
+shared uint invisible_mask[WORDS];
 shared uint changed_mask[WORDS];
 
-uint class_before(uint block, uint local) {
-    uint side = side_before(looks.at[block]);
+uint gaussian_side_before(uint block, uint local) {
+    uint side = block_side_before(revisits.at[block]);
     if (side != SIDE_CUTOFF) {
         return side;
     }
     uint word = block * RECLIP_WORDS + (local >> 5);
-    return class_of(reclips.at[word + RECLIP_VISIBLE], reclips.at[word + RECLIP_CUT], local);
+    return side_of(reclips.at[word + RECLIP_VISIBLE], reclips.at[word + RECLIP_CUT], local);
 }
 
-uint class_now(uint block, uint index) {
+uint gaussian_side_now(uint block, uint index) {
     uint side = reclips.at[block * RECLIP_WORDS + RECLIP_SIDE];
     if (side != SIDE_CUTOFF) {
         return side;
@@ -50,7 +50,7 @@ void main() {
     if (local < WORDS) {
         visible_mask[local] = 0u;
         cut_mask[local] = 0u;
-        gone_mask[local] = 0u;
+        invisible_mask[local] = 0u;
         changed_mask[local] = 0u;
     }
     barrier();
@@ -59,8 +59,8 @@ void main() {
     uint block = is_block ? block_list.at[group] : 0u;
     uint index = block * BLOCK_SIZE + local;
     if (is_block && index < FRAME.scene.gaussian_count && is_in_view(block, local)) {
-        uint before = class_before(block, local);
-        uint now = class_now(block, index);
+        uint before = gaussian_side_before(block, local);
+        uint now = gaussian_side_now(block, index);
         uint word = local >> 5;
         uint bit = 1u << (local & 31u);
         // Unions do not depend on the order of atomics.
@@ -69,7 +69,7 @@ void main() {
         } else if (now == SIDE_CUTOFF) {
             atomicOr(cut_mask[word], bit);
         } else {
-            atomicOr(gone_mask[word], bit);
+            atomicOr(invisible_mask[word], bit);
         }
         if (now != before || now == SIDE_CUTOFF) {
             atomicOr(changed_mask[word], bit);
@@ -88,7 +88,7 @@ void main() {
     if (local == 0u) {
         uvec4 totals = uvec4(0u);
         for (uint word = 0u; word < WORDS; word++) {
-            totals += uvec4(bitCount(visible_mask[word]), bitCount(cut_mask[word]), bitCount(gone_mask[word]),
+            totals += uvec4(bitCount(visible_mask[word]), bitCount(cut_mask[word]), bitCount(invisible_mask[word]),
                             bitCount(changed_mask[word]));
         }
         for (uint k = 0u; k < 4u; k++) {

@@ -1,5 +1,5 @@
-// What a sweep knows of each block, RECLIP_WORDS words: which of its Gaussians in view change, are visible or are cut, their
-// totals, their places in the lists, and its side. In a sweep the camera stands still; the survivors are all Gaussians in
+// What a reclipped frame knows of each block, RECLIP_WORDS words: which of its Gaussians in view change, are visible or are cut, their
+// totals, their places in the lists, and its side. In a reclipped frame the camera stands still; the survivors are all Gaussians in
 // view, clipped away or not.
 #ifndef RARA_RECLIP
 #define RARA_RECLIP
@@ -15,14 +15,14 @@ const uint RECLIP_TOTALS = 3u * WORDS;
 const uint RECLIP_PLACES = RECLIP_TOTALS + 4u;
 const uint RECLIP_SIDE = RECLIP_PLACES + 2u;
 
-// Whether the clip has to look at a block's Gaussians: it cuts the block, or settles it in another way than before.
-bool is_looked_at(uint look) {
-    return (look & 3u) == SIDE_CUTOFF;
+// Whether the clip has to revisit at a block's Gaussians: it cuts the block, or settles it in another way than before.
+bool is_revisited(uint revisit) {
+    return (revisit & 3u) == SIDE_CUTOFF;
 }
 
 // The side that the block had in the frame before.
-uint side_before(uint look) {
-    return look >> 2;
+uint block_side_before(uint revisit) {
+    return revisit >> 2;
 }
 
 #endif

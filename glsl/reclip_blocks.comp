@@ -13,11 +13,11 @@ layout(local_size_x = BLOCK_GROUP_SIZE) in;
 BUFFER(readonly, 1, Block, blocks)
 BUFFER(readonly, 2, uint, block_sides)
 BUFFER(readonly, 3, uvec4, block_counts)
-BUFFER(writeonly, 4, uint, looks)
+BUFFER(writeonly, 4, uint, revisits)
 BUFFER(, 5, uint, reclips)
 
 // Blocks only partly in view may hold Gaussians whose band the camera widens by any amount.
-uint side_now(Block block, uint view_side) {
+uint block_side_now(Block block, uint view_side) {
     uint side = block_clip_side(block, 1.0);
     return view_side == SIDE_VISIBLE ? block_side_in_view(block, side) : may_be_beam(block) ? SIDE_CUTOFF : side;
 }
@@ -37,7 +37,7 @@ void main() {
         reclips.at[base + RECLIP_TOTALS + 1u] = 0u;
         reclips.at[base + RECLIP_TOTALS + 2u] = 0u;
     }
-    uint now = in_view == 0u ? SIDE_VISIBLE : side_now(blocks.at[block], view_side);
+    uint now = in_view == 0u ? SIDE_VISIBLE : block_side_now(blocks.at[block], view_side);
     reclips.at[base + RECLIP_SIDE] = now;
-    looks.at[block] = now == SIDE_CUTOFF || now != before ? SIDE_CUTOFF | before << 2 : SIDE_CULLED;
+    revisits.at[block] = now == SIDE_CUTOFF || now != before ? SIDE_CUTOFF | before << 2 : SIDE_CULLED;
 }

@@ -7,7 +7,7 @@
 
 layout(local_size_x = BLOCK_SIZE) in;
 
-BUFFER(readonly, 1, uint, looks)
+BUFFER(readonly, 1, uint, revisits)
 BUFFER(, 2, uint, reclips)
 BUFFER(writeonly, 3, FrameCounts, counts)
 
@@ -15,7 +15,7 @@ shared uvec4 run_totals[BLOCK_SIZE];
 
 uvec4 totals_of(uint block) {
     uint base = block * RECLIP_WORDS + RECLIP_TOTALS;
-    uint changed = is_looked_at(looks.at[block]) ? reclips.at[base + 3u] : 0u;
+    uint changed = is_revisited(revisits.at[block]) ? reclips.at[base + 3u] : 0u;
     return uvec4(reclips.at[base], reclips.at[base + 1u], reclips.at[base + 2u], changed);
 }
 

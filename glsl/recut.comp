@@ -32,7 +32,7 @@ void mark(uint survivor, Quad whole) {
     }
     if (tiles.y != 0u) {
         Splat splat = splats.at[survivor];
-        splat.conic_cut.z = CUT_WHOLE;
+        splat.conic_cut.z = Z_WHOLE;
         splat.axes = vec4(whole.first, whole.second);
         splat.middle.xy = whole.middle;
         Outline o = outline(splat);
@@ -65,7 +65,7 @@ void main() {
     Quad quad = quad_around(f, extent, weight);
     if (cut == CUT_AWAY) {
         // Nothing to rasterise; tiles look at z.
-        weight.plane.x = CUT_GONE;
+        weight.plane.x = Z_CUT_AWAY;
         quad = Quad(vec2(0.0), vec2(0.0), vec2(0.0));
     }
     splats.at[survivor].conic_cut.zw = weight.plane.xy;

@@ -30,7 +30,7 @@ float determinant(Sight s) {
 }
 
 // `exact`, perspective included: the same update as the affine form with this pixel's own gradients.
-float ray_z(Sight s, float det, vec4 plane, out bool far) {
+float beam_z(Sight s, float det, vec4 plane, out bool far) {
     vec3 a = plane.xyz;
     vec3 a1 = cross(a, s.b1);
     vec3 a2 = cross(a, s.b2);

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // After the sort: splats of one depth, which are in the order of the blocks, into that of the file. Equal depths are rare
-// and few, so each invocation looks for them in a run of its own and orders them alone; where a whole layer has one depth
+// and few, so each invocation looks for them in a run of its own and orders them alone; where too many have one depth
 // its workgroup merges them together.
 #include "sort.glsl"
 
@@ -16,8 +16,8 @@ BUFFER(readonly, 5, Splat, splats)
 // Most that one invocation orders alone.
 const uint FEW = 24u;
 
-shared uvec2 layers[SORT_GROUP_SIZE]; // begin and end of equal keys that are too many for one
-shared uint layer_count;
+shared uvec2 ties[SORT_GROUP_SIZE]; // begin and end of equal keys that are too many for one
+shared uint tie_count;
 
 // A survivor's number in the file.
 uint number(uint survivor) {
@@ -96,38 +96,38 @@ void main() {
     }
     bool again;
     do {
-        uvec2 layer = uvec2(0u);
-        while (i < bounds.y && layer.y == 0u) {
+        uvec2 tie = uvec2(0u);
+        while (i < bounds.y && tie.y == 0u) {
             uint key = keys.at[i];
             uint end = i + 1u;
             while (end < count && keys.at[end] == key) {
                 end++;
             }
             if (end - i > FEW) {
-                layer = uvec2(i, end);
+                tie = uvec2(i, end);
             } else if (end - i > 1u) {
                 order_alone(i, end);
             }
             i = end;
         }
         if (local == 0u) {
-            layer_count = 0u;
+            tie_count = 0u;
         }
-        layers[local] = layer;
+        ties[local] = tie;
         barrier();
-        if (layer.y != 0u) {
-            atomicAdd(layer_count, 1u);
+        if (tie.y != 0u) {
+            atomicAdd(tie_count, 1u);
         }
         barrier();
-        if (layer_count > 0u) {
+        if (tie_count > 0u) {
             for (uint owner = 0u; owner < SORT_GROUP_SIZE; owner++) {
-                if (layers[owner].y != 0u) {
-                    order_together(layers[owner].x, layers[owner].y);
+                if (ties[owner].y != 0u) {
+                    order_together(ties[owner].x, ties[owner].y);
                 }
             }
         }
         // For all alike: the next round begins with setting the count.
-        again = layer_count > 0u;
+        again = tie_count > 0u;
         barrier();
     } while (again);
 }

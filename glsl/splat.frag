@@ -20,8 +20,8 @@ layout(location = 3) flat in vec3 curvature;
 layout(location = 0) out vec4 colour;
 
 void main() {
-    float kept;
-    float alpha = splat_alpha(centre_conic, conic_cut, colour_cut.w, curvature, kept);
+    float weight;
+    float alpha = splat_alpha(centre_conic, conic_cut, colour_cut.w, curvature, weight);
     // Blending nothing is cheaper than discard on lavapipe, which would lose early tests.
-    colour = vec4((SHOW_WEIGHT ? weight_colour(kept) : colour_cut.rgb) * alpha, alpha);
+    colour = vec4((SHOW_WEIGHT ? weight_colour(weight) : colour_cut.rgb) * alpha, alpha);
 }

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // One instance a splat, a strip of four corners.
 #include "splat_params.glsl"
-#include "quad.glsl"
+#include "corners.glsl"
 
 layout(location = 0) flat out vec4 centre_conic;
 layout(location = 1) flat out vec4 conic_cut;

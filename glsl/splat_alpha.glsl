@@ -1,11 +1,11 @@
 // Alpha of a splat in a pixel, by the Cholesky factor of the conic, then, for cut splats only, the clip's weight; 0 where
-// the splat does not count. `kept` is that weight, WHOLE for a splat that is not cut. Included after weight.glsl.
+// the splat does not count. `weight` is that weight, WEIGHT_WHOLE for a splat that is not cut. Included after weight.glsl.
 #ifndef RARA_SPLAT_ALPHA
 #define RARA_SPLAT_ALPHA
 #include "weight_colour.glsl"
 
-float splat_alpha(vec4 centre_conic, vec4 conic_cut, float slope, vec3 curvature, out float kept) {
-    kept = WHOLE;
+float splat_alpha(vec4 centre_conic, vec4 conic_cut, float slope, vec3 curvature, out float weight) {
+    weight = WEIGHT_WHOLE;
     vec2 delta = gl_FragCoord.xy - centre_conic.xy;
     float u = centre_conic.z * delta.x;
     float v = centre_conic.w * delta.x + conic_cut.x * delta.y;
@@ -14,16 +14,16 @@ float splat_alpha(vec4 centre_conic, vec4 conic_cut, float slope, vec3 curvature
     if (!(alpha >= ALPHA_MIN)) {
         return 0.0;
     }
-    if (CLIP_MODE >= MODE_RARA && conic_cut.z < CUT_RANGE) {
+    if (CLIP_MODE >= MODE_RARA && conic_cut.z < Z_RANGE) {
         vec3 plane = vec3(conic_cut.zw, slope);
-        if (CLIP_MODE == MODE_EXACT && plane.x > -CUT_RANGE) {
+        if (CLIP_MODE == MODE_EXACT && plane.x > -Z_RANGE) {
             float z = plane.x + delta.x * (plane.y + curvature.x * delta.x + curvature.y * delta.y)
                 + delta.y * (plane.z + curvature.z * delta.y);
-            kept = phi(z);
+            weight = phi(z);
         } else {
-            kept = cut_weight(record_number(plane), delta, vec2(u, v), gl_FragCoord.xy);
+            weight = cut_weight(record_number(plane), delta, vec2(u, v), gl_FragCoord.xy);
         }
-        alpha = decayed(alpha, kept);
+        alpha = decayed(alpha, weight);
     }
     return alpha;
 }

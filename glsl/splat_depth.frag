@@ -21,8 +21,8 @@ layout(location = 5) flat in vec4 near;
 layout(location = 0) out vec4 depth;
 
 void main() {
-    float kept;
-    float alpha = splat_alpha(centre_conic, conic_cut, slope_curvature.x, slope_curvature.yzw, kept);
+    float weight;
+    float alpha = splat_alpha(centre_conic, conic_cut, slope_curvature.x, slope_curvature.yzw, weight);
     float here = mean_depth(SplatDepth(mean, far, near), gl_FragCoord.xy - centre_conic.xy);
     depth = vec4(alpha * here * push.params.unit, alpha, 0.0, alpha);
 }

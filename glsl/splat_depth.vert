@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // One instance a splat, a strip of four corners, for the expected depth.
 #include "splat_depth_params.glsl"
-#include "quad.glsl"
+#include "corners.glsl"
 
 BUFFER(readonly, 5, SplatDepth, depths)
 

@@ -21,7 +21,7 @@ layout(constant_id = 5) const uint ROWS = 8u;
 layout(local_size_x = TILE_WIDTH, local_size_y_id = 6) in;
 // Whether the camera stands still and only the clip moves: tiles that nothing has changed keep their pixels, and some of
 // the splats are clipped away.
-layout(constant_id = 7) const bool SWEEP = false;
+layout(constant_id = 7) const bool RECLIPPED = false;
 // How the host's depth is stored that hides splats, if there is one.
 layout(constant_id = 8) const uint DEPTH_FORM = DEPTH_NONE;
 // The debug view.
@@ -55,8 +55,8 @@ BUFFER(readonly, 7, uint, occluders)
 // An invocation's pixels.
 vec2 place; // the first one's centre
 vec3 sum[ROWS];
-float light[ROWS];
-float limit[ROWS]; // the farness beyond which splats are hidden
+float transmittance[ROWS];
+float occluder[ROWS]; // the farness beyond which splats are hidden
 bool done; // no splat changes them any more
 
 // What the loop looks at of a splat.
@@ -68,20 +68,20 @@ struct Seen {
     vec3 curvature;
 };
 
-// Multiplies a cut splat's alphas by its weights; `kept` are these.
-void weigh(Seen splat, vec2 delta, vec2 uv, inout float alpha[ROWS], out float kept[ROWS]) {
-    if (CLIP_MODE == MODE_EXACT && splat.plane.x > -CUT_RANGE) {
-        carried_weights(splat.plane, splat.curvature, delta, alpha, kept);
+// Multiplies a cut splat's alphas by its weights; `weight` are these.
+void weigh(Seen splat, vec2 delta, vec2 uv, inout float alpha[ROWS], out float weight[ROWS]) {
+    if (CLIP_MODE == MODE_EXACT && splat.plane.x > -Z_RANGE) {
+        carried_weights(splat.plane, splat.curvature, delta, alpha, weight);
     } else {
-        cut_weights(record_number(splat.plane), delta, uv, splat.conic_opacity.x, place, alpha, kept);
+        cut_weights(record_number(splat.plane), delta, uv, splat.conic_opacity.x, place, alpha, weight);
     }
     bool whole = true;
     for (uint row = 0u; row < ROWS; row++) {
-        whole = whole && (kept[row] >= 1.0 || alpha[row] == 0.0);
+        whole = whole && (weight[row] >= 1.0 || alpha[row] == 0.0);
     }
     if (!whole) {
         for (uint row = 0u; row < ROWS; row++) {
-            alpha[row] = decayed(alpha[row], kept[row]);
+            alpha[row] = decayed(alpha[row], weight[row]);
         }
     }
 }
@@ -90,8 +90,8 @@ void weigh(Seen splat, vec2 delta, vec2 uv, inout float alpha[ROWS], out float k
 bool hide(float far, inout float alpha[ROWS]) {
     bool behind = true;
     for (uint row = 0u; row < ROWS; row++) {
-        alpha[row] = far > limit[row] ? 0.0 : alpha[row];
-        behind = behind && far > limit[row];
+        alpha[row] = far > occluder[row] ? 0.0 : alpha[row];
+        behind = behind && far > occluder[row];
     }
     return behind;
 }
@@ -109,29 +109,29 @@ void blend(Seen splat, vec2 delta, float far) {
     // So is all that follows, where the sort has looked at whole depths.
     done = DEPTH_FORM != DEPTH_NONE && hide(far, alpha) && FRAME.order.key_shift == 0u;
     if (!done) {
-        float kept[ROWS];
+        float weight[ROWS];
         if (SHOW_WEIGHT) {
             for (uint row = 0u; row < ROWS; row++) {
-                kept[row] = WHOLE;
+                weight[row] = WEIGHT_WHOLE;
             }
         }
-        if (CLIP_MODE >= MODE_RARA && splat.plane.x < CUT_RANGE) {
-            weigh(splat, delta, vec2(u, v + splat.conic_opacity.x * delta.y), alpha, kept);
+        if (CLIP_MODE >= MODE_RARA && splat.plane.x < Z_RANGE) {
+            weigh(splat, delta, vec2(u, v + splat.conic_opacity.x * delta.y), alpha, weight);
         }
         float most = 0.0;
         for (uint row = 0u; row < ROWS; row++) {
-            float share = light[row] * alpha[row];
-            sum[row] += share * (SHOW_WEIGHT ? weight_colour(kept[row]) : splat.colour);
-            light[row] -= share;
-            most = max(most, light[row]);
+            float added = transmittance[row] * alpha[row];
+            sum[row] += added * (SHOW_WEIGHT ? weight_colour(weight[row]) : splat.colour);
+            transmittance[row] -= added;
+            most = max(most, transmittance[row]);
         }
         done = most < FRAME.tiles.transmittance_min;
     }
 }
 
-// Of a sweep's list, which holds what is clipped away.
+// Of a reclipped frame's list, which holds what is clipped away.
 bool is_away(Seen splat, vec2 delta) {
-    return splat.plane.x == CUT_GONE || (CLIP_MODE == MODE_EXACT && abs(splat.plane.x) < CUT_RANGE
+    return splat.plane.x == Z_CUT_AWAY || (CLIP_MODE == MODE_EXACT && abs(splat.plane.x) < Z_RANGE
         && is_carried_away(splat.plane, splat.curvature, delta));
 }
 
@@ -140,7 +140,7 @@ void main() {
     // of it is then still in the cache, whichever neighbour that is.
     uvec2 tile_at = uvec2(gl_WorkGroupID.x / STRIP_ROWS, gl_WorkGroupID.y * STRIP_ROWS + gl_WorkGroupID.x % STRIP_ROWS);
     uint tile = tile_at.y * FRAME.tiles.tile_columns + tile_at.x;
-    if (tile >= FRAME.tiles.tile_count || (SWEEP && dirty.at[tile] == 0u)) {
+    if (tile >= FRAME.tiles.tile_count || (RECLIPPED && dirty.at[tile] == 0u)) {
         return;
     }
     uint begin = tile_begins.at[tile];
@@ -155,8 +155,8 @@ void main() {
     done = pixel.x >= size.x || pixel.y >= size.y;
     for (uint row = 0u; row < ROWS; row++) {
         sum[row] = vec3(0.0);
-        light[row] = pixel.y + row < size.y ? 1.0 : 0.0;
-        limit[row] = DEPTH_FORM != DEPTH_NONE ? hidden_beyond(pixel + uvec2(0u, row)) : 0.0;
+        transmittance[row] = pixel.y + row < size.y ? 1.0 : 0.0;
+        occluder[row] = DEPTH_FORM != DEPTH_NONE ? occluder_farness(pixel + uvec2(0u, row)) : 0.0;
     }
     for (uint first = begin; first < end && !EVERY(done); first += BATCH) {
         uint mine = tile_splats.at[min(first + IN_BATCH, end - 1u)];
@@ -164,7 +164,7 @@ void main() {
         vec4 my_conic_cut = splats.at[mine].conic_cut;
         vec4 my_colour_cut = splats.at[mine].colour_cut;
         vec3 my_curvature = vec3(0.0);
-        if (CLIP_MODE == MODE_EXACT && abs(my_conic_cut.z) < CUT_RANGE) {
+        if (CLIP_MODE == MODE_EXACT && abs(my_conic_cut.z) < Z_RANGE) {
             my_curvature = splats.at[mine].curvature.xyz;
         }
         float my_depth = DEPTH_FORM != DEPTH_NONE ? splats.at[mine].middle.w : 0.0;
@@ -175,9 +175,9 @@ void main() {
             splat.centre_conic = OF(i, my_centre_conic);
             splat.conic_opacity = OF(i, my_conic_cut.xy);
             splat.colour = OF(i, my_colour_cut.rgb);
-            splat.plane = vec3(CUT_WHOLE, 0.0, 0.0);
+            splat.plane = vec3(Z_WHOLE, 0.0, 0.0);
             splat.curvature = vec3(0.0);
-            if (CLIP_MODE >= MODE_RARA || SWEEP) {
+            if (CLIP_MODE >= MODE_RARA || RECLIPPED) {
                 splat.plane = vec3(OF(i, my_conic_cut.zw), OF(i, my_colour_cut.w));
             }
             if (CLIP_MODE == MODE_EXACT) {
@@ -185,14 +185,14 @@ void main() {
             }
             float far = DEPTH_FORM != DEPTH_NONE ? farness(host_depth(OF(i, my_depth))) : 0.0;
             vec2 delta = place - splat.centre_conic.xy;
-            if (!done && !(SWEEP && is_away(splat, delta))) {
+            if (!done && !(RECLIPPED && is_away(splat, delta))) {
                 blend(splat, delta, far);
             }
         }
     }
     for (uint row = 0u; row < ROWS; row++) {
         if (pixel.x < size.x && pixel.y + row < size.y) {
-            picture.at[(pixel.y + row) * size.x + pixel.x] = vec4(sum[row], 1.0 - light[row]);
+            picture.at[(pixel.y + row) * size.x + pixel.x] = vec4(sum[row], 1.0 - transmittance[row]);
         }
     }
 }

@@ -33,7 +33,7 @@ float exact_weight(uint base, uint flags, vec2 delta, vec2 place) {
     float det = determinant(s);
     if (!SEVERAL || count == 1u) {
         bool far;
-        return phi(ray_z(s, det, cuts.at[base + CUT_HEADER], far));
+        return phi(beam_z(s, det, cuts.at[base + CUT_HEADER], far));
     }
     return combined(flags, several_weight(s, det, base, count));
 }
@@ -48,9 +48,9 @@ float front_weight(uint base, uint flags, vec2 delta, vec2 place) {
     float far = 1.0;
     float gone = 0.0;
     bool keeps;
-    float front = ray_z(s, det, cuts.at[base + CUT_HEADER + count], keeps);
+    float front = beam_z(s, det, cuts.at[base + CUT_HEADER + count], keeps);
     for (uint plane = 0u; plane < count; plane++) {
-        float z = ray_z(s, det, plane_of(base, plane), keeps);
+        float z = beam_z(s, det, plane_of(base, plane), keeps);
         if (keeps) {
             far = min(far, tail_ratio(z, front));
         } else {

@@ -3,11 +3,11 @@
 #define RARA_WEIGHT_COLOUR
 
 // The weight of a splat that is not cut.
-const float WHOLE = 2.0;
+const float WEIGHT_WHOLE = 2.0;
 
 // Blue for what is not cut; for what is, from red, nothing is kept, to yellow, all is.
-vec3 weight_colour(float kept) {
-    return kept == WHOLE ? vec3(0.25, 0.45, 0.9) : vec3(1.0, clamp(kept, 0.0, 1.0), 0.0);
+vec3 weight_colour(float weight) {
+    return weight == WEIGHT_WHOLE ? vec3(0.25, 0.45, 0.9) : vec3(1.0, clamp(weight, 0.0, 1.0), 0.0);
 }
 
 #endif

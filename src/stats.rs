@@ -1,4 +1,4 @@
-//! What a frame tells about itself; the `--json` statistics are made of it.
+//! The statistics of a frame; the `--json` statistics are made of it.
 
 /// How many Gaussians ended where. `visible + cutoff + invisible + culled` is the scene's count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -17,7 +17,7 @@ pub struct Trace {
 
 #[derive(Debug, Default)]
 struct Events {
-    spans: Vec<Span>,
+    spans: Vec<TraceSpan>,
     /// How the device's clock was set against the processor's, and about the device.
     notes: Vec<(&'static str, Note)>,
 }
@@ -39,7 +39,7 @@ pub(crate) enum Note {
     not(feature = "json"),
     expect(dead_code, reason = "only the document reads it")
 )]
-struct Span {
+struct TraceSpan {
     lane: Lane,
     name: &'static str,
     /// Microseconds since the trace began.
@@ -111,7 +111,7 @@ impl Trace {
         end: f64,
         about: Option<PassStatistics>,
     ) {
-        self.events().spans.push(Span {
+        self.events().spans.push(TraceSpan {
             lane,
             name,
             begin,

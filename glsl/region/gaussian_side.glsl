@@ -6,10 +6,10 @@
 #define RARA_REGION_GAUSSIAN_SIDE
 #include "region/plane.glsl"
 
-uint gaussian_side(mat3 world_factor, vec3 position, float reach) {
+uint gaussian_side(mat3 world_factor, vec3 position, float deviations) {
     uint side = side_undecided();
     for (uint plane = 0u; plane < FRAME.region.plane_count; plane++) {
-        uint one = plane_gaussian_side(plane_distance(plane, position), unit_normal(plane, world_factor), reach);
+        uint one = plane_gaussian_side(plane_distance(plane, position), unit_normal(plane, world_factor), deviations);
         if (one == side_that_decides()) {
             return one;
         }

@@ -16,11 +16,11 @@ vec3 unit_normal(uint plane, mat3 world_factor) {
 
 // Of a Gaussian at a distance, with the normal in its unit space and a band of so many standard deviations: SIDE_VISIBLE
 // where the plane keeps all of it, SIDE_INVISIBLE where it keeps nothing, else SIDE_CUTOFF.
-uint plane_gaussian_side(float distance, vec3 normal, float reach) {
+uint plane_gaussian_side(float distance, vec3 normal, float deviations) {
     if (FRAME.region.mode == MODE_HARD) {
         return distance >= 0.0 ? SIDE_VISIBLE : SIDE_INVISIBLE;
     }
-    float support = reach * length(normal);
+    float support = deviations * length(normal);
     if (FRAME.region.trace_all != 0u) {
         return SIDE_CUTOFF;
     }

@@ -19,7 +19,7 @@ vec4 plane_of(uint base, uint plane) {
 Threshold threshold_of(Sight s, float det, uint base, uint plane) {
     vec4 form = plane_of(base, plane);
     Threshold t;
-    t.z = ray_z(s, det, form, t.far);
+    t.z = beam_z(s, det, form, t.far);
     t.direction = direction(s, form.xyz);
     return t;
 }
@@ -75,7 +75,7 @@ float several_weight(Sight s, float det, uint base, uint count) {
     uint opens = 0u;
     for (uint plane = 0u; plane < count; plane++) {
         bool far;
-        float here = ray_z(s, det, plane_of(base, plane), far);
+        float here = beam_z(s, det, plane_of(base, plane), far);
         if (here <= -PHI_ONE) {
             return 0.0;
         }

@@ -61,7 +61,7 @@ impl Log for Sink {
 
     fn log(&self, record: &Record<'_>) {
         // A record that cannot be written is lost, and what wrote it goes on. Dropping a payload may panic once more.
-        if let Err(payload) = catch_unwind(AssertUnwindSafe(|| tell(record))) {
+        if let Err(payload) = catch_unwind(AssertUnwindSafe(|| forward(record))) {
             std::mem::forget(payload);
         }
     }
@@ -69,7 +69,7 @@ impl Log for Sink {
     fn flush(&self) {}
 }
 
-fn tell(record: &Record<'_>) {
+fn forward(record: &Record<'_>) {
     if TELLING.get() {
         return; // the host's function does what it must not
     }

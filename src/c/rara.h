@@ -887,7 +887,7 @@ void rara_scene_buffers_destroy(struct RaraSceneBuffers *scene);
 // `settings` has room for `settings_size` bytes.
 RaraResult rara_settings_default(struct RaraSettings *settings, size_t settings_size, RaraPreset preset);
 
-// What a frame tells about itself; ask after waiting for it, before the next rara_renderer_prepare. `stats_size` is
+// The statistics of a frame; ask after waiting for it, before the next rara_renderer_prepare. `stats_size` is
 // sizeof *stats.
 //
 // # Safety

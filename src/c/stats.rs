@@ -1,4 +1,4 @@
-//! What a frame tells about itself.
+//! The statistics of a frame.
 
 use std::ffi::c_char;
 
@@ -68,7 +68,7 @@ unsafe impl Versioned for RaraFrameStats {
     const NAME: &'static str = "RaraFrameStats";
 }
 
-/// What a frame tells about itself; ask after waiting for it, before the next rara_renderer_prepare. `stats_size` is
+/// The statistics of a frame; ask after waiting for it, before the next rara_renderer_prepare. `stats_size` is
 /// sizeof *stats.
 ///
 /// # Safety

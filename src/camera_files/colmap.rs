@@ -20,7 +20,7 @@ pub(super) struct Lens {
 }
 
 /// A line or record of `images`.
-pub(super) struct Image {
+pub(super) struct ColmapImage {
     pub(super) name: String,
     pub(super) lens: u32,
     /// World to camera.
@@ -102,12 +102,12 @@ pub(super) fn parse(
 fn joined(
     lenses: Vec<Lens>,
     lenses_at: &Path,
-    mut images: Vec<Image>,
+    mut images: Vec<ColmapImage>,
     images_at: &Path,
 ) -> Result<Vec<NamedCamera>> {
     let lenses: HashMap<u32, Lens> = lenses.into_iter().map(|lens| (lens.id, lens)).collect();
     images.sort_by(|a, b| a.name.cmp(&b.name));
-    let named = |image: Image| {
+    let named = |image: ColmapImage| {
         let lens = lenses.get(&image.lens).ok_or_else(|| {
             let message = format!(
                 "the picture `{}` was taken with camera {}, which {} does not list; export the model again",
@@ -170,7 +170,7 @@ fn read<T>(path: &Path, binary: Read<T>, text: Read<T>) -> Result<Vec<T>> {
     }
 }
 
-fn parts(lens: &Lens, image: &Image) -> std::result::Result<Parts, String> {
+fn parts(lens: &Lens, image: &ColmapImage) -> std::result::Result<Parts, String> {
     let Model {
         name,
         shared_focal,

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::{DQuat, DVec3};
 
-use super::colmap::{Image, Lens, MODELS};
+use super::colmap::{ColmapImage, Lens, MODELS};
 use crate::error::{Error, Result};
 
 /// Longest picture name we read; paths are shorter on every system.
@@ -51,7 +51,7 @@ pub(super) fn lenses<R: Read + Seek>(source: R, path: &Path) -> Result<Vec<Lens>
     Ok(lenses)
 }
 
-pub(super) fn images<R: Read + Seek>(source: R, path: &Path) -> Result<Vec<Image>> {
+pub(super) fn images<R: Read + Seek>(source: R, path: &Path) -> Result<Vec<ColmapImage>> {
     let mut records = Records::new(source, path)?;
     let count = records.count("pictures", 4 + 7 * 8 + 4 + 1 + 8)?;
     let mut images = Vec::with_capacity(count);
@@ -63,7 +63,7 @@ pub(super) fn images<R: Read + Seek>(source: R, path: &Path) -> Result<Vec<Image
         let name = records.name()?;
         let points = u64::from_le_bytes(records.bytes()?);
         records.skip(points.saturating_mul(POINT_SIZE))?;
-        images.push(Image {
+        images.push(ColmapImage {
             name,
             lens,
             rotation: DQuat::from_xyzw(x, y, z, w),

@@ -6,7 +6,7 @@ use std::str::SplitAsciiWhitespace;
 
 use glam::{DQuat, DVec3};
 
-use super::colmap::{Image, Lens, MODELS};
+use super::colmap::{ColmapImage, Lens, MODELS};
 use crate::error::{Error, Result};
 
 /// A picture's line of points has some 30 bytes each, and never this many points.
@@ -46,7 +46,7 @@ pub(super) fn lenses<R: Read>(source: R, path: &Path) -> Result<Vec<Lens>> {
     Ok(lenses)
 }
 
-pub(super) fn images<R: Read>(source: R, path: &Path) -> Result<Vec<Image>> {
+pub(super) fn images<R: Read>(source: R, path: &Path) -> Result<Vec<ColmapImage>> {
     let mut lines = Lines::new(source, path);
     let mut images = Vec::new();
     while lines.next_data()? {
@@ -57,7 +57,7 @@ pub(super) fn images<R: Read>(source: R, path: &Path) -> Result<Vec<Image>> {
             let lens = word(words)?;
             // Names may hold blanks.
             let name = words.collect::<Vec<_>>().join(" ");
-            (!name.is_empty()).then_some(Image {
+            (!name.is_empty()).then_some(ColmapImage {
                 name,
                 lens,
                 rotation: DQuat::from_xyzw(x, y, z, w),

@@ -130,7 +130,7 @@ impl fmt::Display for Report {
         if !self.frames.is_empty() {
             write!(f, "; {} frames, medians:", self.frames.len())?;
         }
-        writeln!(f, "\ncounts   {}", Shown(&stats.counts))?;
+        writeln!(f, "\ncounts   {}", CountsText(&stats.counts))?;
         write!(f, "passes  ")?;
         for pass in &stats.passes {
             write!(f, " {} {:.2}", pass.name, pass.ms)?;
@@ -166,9 +166,9 @@ impl fmt::Display for Report {
 }
 
 /// Counts for people.
-struct Shown<'a>(&'a Counts);
+struct CountsText<'a>(&'a Counts);
 
-impl fmt::Display for Shown<'_> {
+impl fmt::Display for CountsText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Counts {
             visible,

@@ -26,14 +26,14 @@ struct Chain {
     transform: vk::SurfaceTransformFlagsKHR,
     /// The window's size for which it was made, as the window system told it.
     window: (u32, u32),
-    images: Vec<Shown>,
+    images: Vec<Presented>,
     /// It must be made anew before the next frame.
     outdated: bool,
     /// It works, but another might fit better.
     suboptimal: bool,
 }
 
-struct Shown {
+struct Presented {
     image: vk::Image,
     view: vk::ImageView,
     /// Signalled when the image is drawn. One for each image and not for each frame in flight: only acquiring the image
@@ -152,7 +152,7 @@ impl Swapchain {
                 .view_type(vk::ImageViewType::TYPE_2D)
                 .format(self.format.format)
                 .subresource_range(WHOLE);
-            chain.images.push(Shown {
+            chain.images.push(Presented {
                 image,
                 view: vk::ImageView::null(),
                 drawn: vk::Semaphore::null(),

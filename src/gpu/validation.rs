@@ -211,24 +211,24 @@ mod tests {
             nameless,
         ];
         let data = vk::DebugUtilsMessengerCallbackDataEXT::default().message(c"a hazard");
-        let told = |data: vk::DebugUtilsMessengerCallbackDataEXT<'_>| {
+        let message = |data: vk::DebugUtilsMessengerCallbackDataEXT<'_>| {
             // SAFETY: the struct was filled by its own setters.
             unsafe { describe(&data, &[]) }
         };
-        assert_eq!(told(data), "a hazard");
+        assert_eq!(message(data), "a hazard");
         // SAFETY: as above.
         let recording = unsafe { describe(&data, &["tiles".into()]) };
         assert_eq!(recording, "in pass tiles: a hazard");
         assert_eq!(
-            told(data.cmd_buf_labels(&labels)),
+            message(data.cmd_buf_labels(&labels)),
             "in pass sort > step: a hazard"
         );
         assert_eq!(
-            told(data.cmd_buf_labels(&labels[1..]).objects(&objects)),
+            message(data.cmd_buf_labels(&labels[1..]).objects(&objects)),
             "in pass sort: command buffer one-off, buffer splats: a hazard"
         );
         assert_eq!(
-            told(vk::DebugUtilsMessengerCallbackDataEXT::default()),
+            message(vk::DebugUtilsMessengerCallbackDataEXT::default()),
             "(no text)"
         );
     }

@@ -35,7 +35,7 @@ pub(crate) struct Buffers {
     /// Only where a host asks for expected depths.
     pub(crate) depth: Option<DepthBuffers>,
     /// Only where the camera has stood still.
-    pub(crate) sweep: Option<SweepBuffers>,
+    pub(crate) reclip: Option<ReclipBuffers>,
     sized_for: Sizes,
 }
 
@@ -62,10 +62,10 @@ pub(crate) struct DepthBuffers {
     pub(crate) draw: Buffer,
 }
 
-/// What a sweep of the clip needs besides.
+/// What a reclipped frame needs besides.
 #[derive(Debug)]
-pub(crate) struct SweepBuffers {
-    pub(crate) looks: Buffer,
+pub(crate) struct ReclipBuffers {
+    pub(crate) revisits: Buffer,
     pub(crate) reclips: Buffer,
     pub(crate) recuts: Buffer,
     pub(crate) dirty: Buffer,
@@ -194,21 +194,21 @@ impl Buffers {
             } else {
                 None
             },
-            sweep: None,
+            reclip: None,
             sized_for: sizes,
         })
     }
 
-    /// Allocates what a sweep needs besides.
+    /// Allocates what a reclipped frame needs besides.
     pub(crate) fn ensure_sweep(&mut self, device: &Device) -> Result<()> {
-        if self.sweep.is_some() {
+        if self.reclip.is_some() {
             return Ok(());
         }
         let gpu = |name, size| gpu_only(device, name, size);
         let n = self.sized_for.gaussians;
         let blocks = n.div_ceil(u64::from(limits::BLOCK_SIZE));
-        self.sweep = Some(SweepBuffers {
-            looks: gpu("looks", blocks * 4)?,
+        self.reclip = Some(ReclipBuffers {
+            revisits: gpu("revisits", blocks * 4)?,
             reclips: gpu("reclips", blocks * 4 * u64::from(limits::RECLIP_WORDS))?,
             recuts: gpu("recuts", n * 8)?,
             dirty: gpu("dirty", self.sized_for.tiles * 4)?,

@@ -11,15 +11,15 @@ use crate::types::FrameCounts;
 pub(crate) const STAGE: Stage = Stage {
     name: "cutoff",
     needed: |plan| plan.finds_view() && plan.view_is_cut(),
-    missed: |plan| !plan.sweeps(),
+    missed: |plan| !plan.reclips(),
     pipelines: |_, need| need(kernel().key()),
     record,
 };
 
 /// The same behind the classes that a moved clip has changed.
-pub(crate) const STAGE_OF_SWEEP: Stage = Stage {
-    needed: |plan| plan.sweeps() && plan.cuts(),
-    missed: |plan| plan.sweeps(),
+pub(crate) const STAGE_OF_RECLIP: Stage = Stage {
+    needed: |plan| plan.reclips() && plan.cuts(),
+    missed: |plan| plan.reclips(),
     ..STAGE
 };
 

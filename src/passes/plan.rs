@@ -165,23 +165,23 @@ impl Plan {
     pub(crate) fn finds_view(&self) -> bool {
         matches!(
             self.work,
-            Work::Whole { .. } | Work::Sweep { base: true, .. }
+            Work::Whole { .. } | Work::Reclip { base: true, .. }
         )
     }
 
     /// Whether the clip moves over what is in view, clipped away or not.
-    pub(crate) fn sweeps(&self) -> bool {
-        matches!(self.work, Work::Sweep { .. })
+    pub(crate) fn reclips(&self) -> bool {
+        matches!(self.work, Work::Reclip { .. })
     }
 
     /// Whether what is in view is found without what the clip removes.
     pub(crate) fn view_is_clipped(&self) -> bool {
-        self.mode() != types::MODE_NONE && !self.sweeps()
+        self.mode() != types::MODE_NONE && !self.reclips()
     }
 
     /// Whether what is in view is found with the cutoff records of what the clip cuts.
     pub(crate) fn view_is_cut(&self) -> bool {
-        self.cuts() && !self.sweeps()
+        self.cuts() && !self.reclips()
     }
 }
 

@@ -3,12 +3,12 @@
 use ash::vk;
 
 use crate::gpu::{Attachments, Recorder};
-use crate::passes::buffers::{Buffers, DepthBuffers, SweepBuffers, TileBuffers};
+use crate::passes::buffers::{Buffers, DepthBuffers, ReclipBuffers, TileBuffers};
 use crate::passes::pipelines::{PipelineKey, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::{
-    bin, blocks, classify, clip, compact, cutoff, depth, project, sort, splat, sweep, tiles,
+    bin, blocks, classify, clip, compact, cutoff, depth, project, reclip, sort, splat, tiles,
 };
 
 /// A step of the frame that is computed before the draw.
@@ -46,11 +46,11 @@ pub(crate) const STAGES: [&Stage; 13] = [
     // Which of them each tile of pixels holds.
     &bin::STAGE,
     // The camera stands still and the clip has moved: which Gaussians in view change their class,
-    &sweep::RECLIP,
+    &reclip::RECLIP,
     // what the fragment stage needs of those that are cut now,
-    &cutoff::STAGE_OF_SWEEP,
+    &cutoff::STAGE_OF_RECLIP,
     // and what the rasteriser holds of all that change.
-    &sweep::RECUT,
+    &reclip::RECUT,
     // The pixels, front to back.
     &tiles::STAGE,
     // How deep the splats are, for who asks.
@@ -92,10 +92,10 @@ impl<'a> Frame<'a> {
         depths.expect("a plan that expects depths has their buffers")
     }
 
-    /// The buffers of a sweep.
-    pub(crate) fn sweep(&self) -> &'a SweepBuffers {
-        let sweep = self.buffers.sweep.as_ref();
-        sweep.expect("configure() creates what a sweep needs")
+    /// The buffers of a reclipped frame.
+    pub(crate) fn reclip(&self) -> &'a ReclipBuffers {
+        let reclip = self.buffers.reclip.as_ref();
+        reclip.expect("configure() creates what a reclipped frame needs")
     }
 }
 

@@ -59,7 +59,7 @@ fn kernel(plan: &Plan) -> Kernel<tiles::Program> {
         phi_form: weight.phi,
         rows: work.rows,
         local_size_y: limits::TILE_HEIGHT / work.rows,
-        sweep: plan.sweeps(),
+        reclipped: plan.reclips(),
         depth_form: plan.occluders.map_or(types::DEPTH_NONE, |o| o.form),
         show_weight: plan.way.show == Show::Weight,
     };
@@ -80,8 +80,8 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         tile_begins: &t.begins,
         cuts: &b.cuts,
         picture: &t.picture,
-        // Only a sweep looks at what is dirty.
-        dirty: b.sweep.as_ref().map_or(&b.counts, |sweep| &sweep.dirty),
+        // Only a reclipped frame looks at what is dirty.
+        dirty: b.reclip.as_ref().map_or(&b.counts, |reclip| &reclip.dirty),
         occluders: plan.occluders.map_or(&b.counts, |_| &t.occluders),
     };
     let [_, _, cx, cy] = plan.data.view.focal;

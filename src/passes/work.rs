@@ -15,7 +15,7 @@ pub(crate) enum Work {
         clip: bool,
     },
     /// The camera stands still and the clip has moved: the classes that change, and what follows from them.
-    Sweep {
+    Reclip {
         /// Whether what is in view, clipped away or not, has to be found first.
         base: bool,
         /// Whether no clip has changed it yet.
@@ -49,11 +49,11 @@ impl Kept {
         if kept.holds && is_same {
             return Work::Draw;
         }
-        // The same frame in other buffers is no sweep.
+        // The same frame in other buffers is no reclipped frame.
         let is_still = kept.plan.sees_like(plan) && !is_same;
         if is_still && clip {
             let base = kept.base.filter(|_| kept.holds);
-            return Work::Sweep {
+            return Work::Reclip {
                 base: base.is_none(),
                 fresh: base.unwrap_or(true),
             };
@@ -72,7 +72,7 @@ impl Kept {
         let (base, region) = match plan.work {
             Work::Whole { .. } if plan.mode() == types::MODE_NONE => (Some(true), had),
             Work::Whole { .. } => (None, Some(plan.data.region)),
-            Work::Sweep { .. } => (Some(false), had),
+            Work::Reclip { .. } => (Some(false), had),
             Work::Draw => unreachable!("a frame that changes nothing leaves what there was"),
         };
         Self {

@@ -45,8 +45,8 @@ impl Buffers {
         if let Some(d) = &self.depth {
             all.extend([&d.depths, &d.draw]);
         }
-        if let Some(s) = &self.sweep {
-            all.extend([&s.looks, &s.reclips, &s.recuts, &s.dirty]);
+        if let Some(s) = &self.reclip {
+            all.extend([&s.revisits, &s.reclips, &s.recuts, &s.dirty]);
         }
         all
     }

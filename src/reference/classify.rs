@@ -39,8 +39,8 @@ pub fn side<T: Real>(
     clip: &Clip,
     settings: &Settings,
 ) -> Side {
-    let reach = band(scene, index, footprint, settings);
-    gaussian_side(scene, index, &footprint.axes, reach, clip, settings)
+    let deviations = band(scene, index, footprint, settings);
+    gaussian_side(scene, index, &footprint.axes, deviations, clip, settings)
 }
 
 /// The planes that cut a Gaussian of class [`Side::Cutoff`], in the clip's order.
@@ -51,13 +51,13 @@ pub fn cutting<T: Real>(
     clip: &Clip,
     settings: &Settings,
 ) -> Vec<UnitPlane<T>> {
-    let reach = band(scene, index, footprint, settings);
+    let deviations = band(scene, index, footprint, settings);
     let planes = clip
         .planes
         .iter()
         .map(|plane| UnitPlane::new(scene, index, &footprint.axes, plane));
     planes
-        .filter(|plane| plane.gaussian_side(reach, settings) == Side::Cutoff)
+        .filter(|plane| plane.gaussian_side(deviations, settings) == Side::Cutoff)
         .collect()
 }
 
@@ -71,7 +71,7 @@ fn band<T: Real>(
     if settings.mode == Mode::Exact && is_beam(scene, index, footprint, settings) {
         return beam_band(footprint);
     }
-    clip::band(footprint.reach, settings)
+    clip::band(footprint.extent, settings)
 }
 
 /// Half width of the band of a splat whose weight follows each pixel's true ray. The footprint is linear: a pixel at
@@ -81,9 +81,9 @@ fn band<T: Real>(
 /// no bound, but all rays pass through the eye; [`BEYOND_EYE`] deviations beyond it nothing counts.
 fn beam_band<T: Real>(footprint: &Footprint<T>) -> T {
     let depth_share = footprint.rows[2].length() / footprint.centre.z;
-    let rest = T::one() - footprint.reach * footprint.stretch * depth_share;
+    let rest = T::one() - footprint.extent * footprint.stretch * depth_share;
     if rest > T::of(f64::from(WIDENING_REST)) {
-        return footprint.reach * footprint.stretch / rest;
+        return footprint.extent * footprint.stretch / rest;
     }
     let eye = footprint
         .axes

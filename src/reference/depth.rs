@@ -24,7 +24,7 @@ use crate::{Camera, Clip, ClipOp, Gaussians, Mode, Settings};
 
 /// A linear function of u given a pixel: `at + slope . delta`, over its deviation.
 #[derive(Debug, Clone, Copy)]
-struct Threshold<T> {
+struct Bound<T> {
     z: [T; 3],
     /// Covariance with the depth over the deviation.
     shift: T,
@@ -32,11 +32,11 @@ struct Threshold<T> {
 
 /// How deep a splat is.
 #[derive(Debug, Clone, Copy)]
-pub struct Depth<T> {
+pub struct SplatDepth<T> {
     /// Of the whole splat: at its centre, and how it changes a pixel across and down.
     mean: [T; 3],
-    far: Threshold<T>,
-    near: Threshold<T>,
+    far: Bound<T>,
+    near: Bound<T>,
     op: ClipOp,
 }
 
@@ -83,7 +83,7 @@ const FARTHEST: f64 = 8.0;
 /// Shares below which a pixel shows nothing of a splat.
 const LEAST_SHARE: f64 = 1e-9;
 
-impl<T: Real> Depth<T> {
+impl<T: Real> SplatDepth<T> {
     /// For a splat and a clip.
     pub fn new(
         scene: &Gaussians,
@@ -95,7 +95,7 @@ impl<T: Real> Depth<T> {
         let given = Given::new(footprint);
         let m3 = footprint.rows[2];
         let [x, y] = given.slope(m3);
-        let open = Threshold {
+        let open = Bound {
             z: [T::of(FARTHEST), T::zero(), T::zero()],
             shift: T::zero(),
         };
@@ -120,7 +120,7 @@ impl<T: Real> Depth<T> {
             let deviation = given.covariance(a, a).max(T::of(1e-30)).sqrt();
             let z = plane.offset / size / deviation;
             let [x, y] = given.slope(a).map(|v| v / deviation);
-            let threshold = Threshold {
+            let threshold = Bound {
                 z: [z, x, y],
                 shift: given.covariance(a, m3) / deviation,
             };
@@ -176,7 +176,7 @@ pub fn expected<T: Real>(
     let mut pixels = vec![[0.0; 2]; (width * height) as usize];
     for splat in &splats {
         let footprint = &splat.footprint;
-        let depth = Depth::new(scene, splat.index as usize, footprint, clip, settings);
+        let depth = SplatDepth::new(scene, splat.index as usize, footprint, clip, settings);
         let span = |axis, size| footprint.span(axis, size, T::one());
         let (Some((left, right)), Some((top, bottom))) = (span(0, width), span(1, height)) else {
             continue;

@@ -53,7 +53,7 @@ fn condition<T: Real>(gradients: [Vec3<T>; 2], plane: &UnitPlane<T>) -> Conditio
     Conditional {
         mean: [g, kx * factor / det, ky * factor / det],
         deviation: (variance / det).sqrt(),
-        far: is_far(direction.along, a),
+        far: keeps_far(direction.along, a),
         direction: if variance > T::zero() {
             direction * (T::one() / variance.sqrt())
         } else {
@@ -67,7 +67,7 @@ fn condition<T: Real>(gradients: [Vec3<T>; 2], plane: &UnitPlane<T>) -> Conditio
 /// c points away from the eye: the depth changes along it by `m3 . c = fx fy / Z^2 det(M)`, which is not negative for
 /// a rotation and scales that are not negative. Flat Gaussians have `a . c = 0` for every plane: any rule will do
 /// then that gives opposite answers for a plane and its complement.
-fn is_far<T: Real>(along: T, a: Vec3<T>) -> bool {
+fn keeps_far<T: Real>(along: T, a: Vec3<T>) -> bool {
     let signs = [along, a.x, a.y, a.z];
     signs
         .iter()
@@ -173,7 +173,7 @@ impl<T: Real> Beam<T> {
 
 /// Whether the eye's plane reaches into the splat: the part behind it must not count.
 pub fn holds_the_eye<T: Real>(footprint: &Footprint<T>) -> bool {
-    footprint.centre.z < footprint.reach * footprint.rows[2].length()
+    footprint.centre.z < footprint.extent * footprint.rows[2].length()
 }
 
 /// What [`share`] says where the eye is within the splat: of what is before it, the part beyond `front` on the ray.

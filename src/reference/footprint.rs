@@ -37,7 +37,7 @@ pub struct Footprint<T> {
     /// Opacity at the centre, 0 to 1.
     pub opacity: T,
     /// K: the standard deviations out to which the splat counts, `opacity exp(-K^2 / 2) = 1/255`.
-    pub reach: T,
+    pub extent: T,
     /// Half extents of the footprint's box, pixels.
     pub half: [T; 2],
 }
@@ -68,7 +68,7 @@ impl<T: Real> Footprint<T> {
         let gradients = image_gradients(&rows, view.focal, clamped, centre.z);
         let (factors, deviations) = factorise(gradients);
 
-        let reach = (T::of(2.0) * brightness.ln()).sqrt();
+        let extent = (T::of(2.0) * brightness.ln()).sqrt();
         let footprint = Self {
             axes,
             rows,
@@ -85,8 +85,8 @@ impl<T: Real> Footprint<T> {
             pixel: [0, 1].map(|axis| view.focal[axis] * slopes[axis] + view.principal[axis]),
             factors,
             opacity,
-            reach,
-            half: deviations.map(|deviation| reach * deviation),
+            extent,
+            half: deviations.map(|deviation| extent * deviation),
         };
         let holds_a_pixel =
             (0..2).all(|axis| footprint.span(axis, view.size[axis], T::zero()).is_some());
@@ -111,12 +111,12 @@ impl<T: Real> Footprint<T> {
     /// First and last pixel whose centres the box covers along an axis, widened by `padding` pixels.
     pub fn span(&self, axis: usize, size: u32, padding: T) -> Option<(u32, u32)> {
         let half = T::of(0.5);
-        let (centre, reach) = (self.pixel[axis] - half, self.half[axis] + padding);
-        if !centre.is_finite() || reach.is_nan() {
+        let (centre, half) = (self.pixel[axis] - half, self.half[axis] + padding);
+        if !centre.is_finite() || half.is_nan() {
             return None;
         }
-        let first = (centre - reach).ceil().max(T::zero());
-        let last = (centre + reach).floor().min(T::of(f64::from(size) - 1.0));
+        let first = (centre - half).ceil().max(T::zero());
+        let last = (centre + half).floor().min(T::of(f64::from(size) - 1.0));
         (first <= last).then(|| (first.wide() as u32, last.wide() as u32))
     }
 }

@@ -140,7 +140,11 @@ fn blend<T: Real>(pixel: &mut [T; 4], alpha: T, colour: [T; 3]) {
 /// it must only never be too short.
 fn row_span<T: Real>(footprint: &Footprint<T>, dy: T, width: u32) -> Option<(u32, u32)> {
     let [k0, k1, k2] = footprint.factors.map(T::wide);
-    let (dy, reach, centre) = (dy.wide(), footprint.reach.wide(), footprint.pixel[0].wide());
+    let (dy, reach, centre) = (
+        dy.wide(),
+        footprint.extent.wide(),
+        footprint.pixel[0].wide(),
+    );
     // q = (k0 dx)^2 + (k1 dx + k2 dy)^2 is at its least in this row at `middle`, and at most K^2 within `half` of it.
     let squares = k0 * k0 + k1 * k1;
     let middle = -k1 * k2 * dy / squares;

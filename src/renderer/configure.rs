@@ -177,7 +177,7 @@ impl Renderer {
         // The host's depth may be another in each frame.
         let kept = self.kept.as_ref().filter(|_| plan.occluders.is_none());
         let work = Kept::work(kept, scene, plan);
-        if !matches!(work, Work::Sweep { .. }) {
+        if !matches!(work, Work::Reclip { .. }) {
             return Ok(work);
         }
         match self.memory.ensure_sweep(&self.device) {

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Quat, Vec3};
 
-use super::make::{PLAIN, Stage, any_normal, orientation, push, set_colour, strewn};
+use super::make::{PLAIN, Setup, any_normal, orientation, push, set_colour, strewn};
 use super::places::mix;
 use super::{Case, Regime};
 use crate::scene::Random;
@@ -136,7 +136,7 @@ fn counted(count: usize) -> Case {
 }
 
 fn sized(size: (u32, u32)) -> Vec<Case> {
-    let stage = Stage { size, ..PLAIN };
+    let stage = Setup { size, ..PLAIN };
     let mut random = Random::new(44);
     let mut one = |index: usize| {
         let (count, apart) = if index == 0 { (200, false) } else { (20, true) };

@@ -9,7 +9,7 @@ use crate::{Camera, Clip, ClipOp, Gaussians, Plane};
 
 /// Where a case takes place.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Stage {
+pub(super) struct Setup {
     /// What the camera looks at, world units.
     pub(super) centre: DVec3,
     /// How far it stands from there.
@@ -21,14 +21,14 @@ pub(super) struct Stage {
 }
 
 /// A view of 36 degrees from five units away.
-pub(super) const PLAIN: Stage = Stage {
+pub(super) const PLAIN: Setup = Setup {
     centre: DVec3::ZERO,
     distance: 5.0,
     focal: 300.0,
     size: (192, 192),
 };
 
-impl Stage {
+impl Setup {
     /// The camera, from a random direction.
     pub(super) fn camera(&self, random: &mut Random) -> Camera {
         let eye = self.centre - random.direction() * self.distance;
@@ -50,7 +50,7 @@ pub(super) fn axes(camera: &Camera) -> DMat3 {
 }
 
 /// Standard deviations of a splat, given the world size of a pixel where it stands.
-pub(super) type Shape<'a> = &'a dyn Fn(&mut Random, f64) -> DVec3;
+pub(super) type Deviations<'a> = &'a dyn Fn(&mut Random, f64) -> DVec3;
 /// The normal of the plane through the stage's centre.
 pub(super) type Normal<'a> = &'a dyn Fn(&mut Random, &Camera) -> DVec3;
 
@@ -73,7 +73,12 @@ pub(super) fn orientation(random: &mut Random) -> Quat {
 }
 
 /// Four cases of single splats and one crowd: what a regime of one plane consists of.
-pub(super) fn cases(seed: u64, stage: Stage, normal: Normal<'_>, shape: Shape<'_>) -> Vec<Case> {
+pub(super) fn cases(
+    seed: u64,
+    stage: Setup,
+    normal: Normal<'_>,
+    shape: Deviations<'_>,
+) -> Vec<Case> {
     let mut random = Random::new(seed);
     let mut single = |_| strewn(&mut random, stage, normal, shape, 40, true);
     let mut cases: Vec<_> = (0..4).map(&mut single).collect();
@@ -85,9 +90,9 @@ pub(super) fn cases(seed: u64, stage: Stage, normal: Normal<'_>, shape: Shape<'_
 /// plane is hardly in view.
 pub(super) fn strewn(
     random: &mut Random,
-    stage: Stage,
+    stage: Setup,
     normal: Normal<'_>,
-    shape: Shape<'_>,
+    shape: Deviations<'_>,
     count: usize,
     apart: bool,
 ) -> Case {
@@ -110,10 +115,10 @@ pub(super) fn strewn(
 /// The splats of [`strewn`].
 pub(super) fn on_plane(
     random: &mut Random,
-    stage: Stage,
+    stage: Setup,
     camera: &Camera,
     plane: &Plane,
-    shape: Shape<'_>,
+    shape: Deviations<'_>,
     count: usize,
     apart: bool,
 ) -> Gaussians {

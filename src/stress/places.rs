@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::make::{
-    PLAIN, Stage, any_normal, axes, between, cases, orientation, push, set_colour, strewn,
+    PLAIN, Setup, any_normal, axes, between, cases, orientation, push, set_colour, strewn,
 };
 use super::{Case, Regime};
 use crate::scene::Random;
@@ -12,20 +12,20 @@ use crate::scene::Random;
 pub fn regimes() -> Vec<Regime> {
     vec![
         Regime::new("camera 1e4 away, focal length 2e6 px", || {
-            mixed(Stage {
+            mixed(Setup {
                 distance: 1e4,
                 focal: 2e6,
                 ..PLAIN
             })
         }),
         Regime::new("world at 1e4", || {
-            mixed(Stage {
+            mixed(Setup {
                 centre: DVec3::new(1e4, -2.3e4, 0.7e4),
                 ..PLAIN
             })
         }),
         Regime::new("world at 1e6", || {
-            mixed(Stage {
+            mixed(Setup {
                 centre: DVec3::new(1e6, -2.3e6, 0.7e6),
                 distance: 50.0,
                 ..PLAIN
@@ -40,7 +40,7 @@ pub fn regimes() -> Vec<Regime> {
             (100..106).flat_map(inside).collect()
         }),
         Regime::new("straddling the near plane", || {
-            let near = Stage {
+            let near = Setup {
                 distance: 0.3,
                 ..PLAIN
             };
@@ -52,14 +52,14 @@ pub fn regimes() -> Vec<Regime> {
         Regime::new("centres to 3e4 px beside the picture", || beside(1e2)),
         Regime::new("centres to 3e6 px beside the picture", || beside(1e4)),
         Regime::new("150 degree view", || {
-            mixed(Stage {
+            mixed(Setup {
                 distance: 2.0,
                 focal: 128.0 / 75.0_f64.to_radians().tan(),
                 ..PLAIN
             })
         }),
         Regime::new("picture 2048 px wide", || {
-            let mut cases = mixed(Stage {
+            let mut cases = mixed(Setup {
                 focal: 2400.0,
                 size: (2048, 512),
                 ..PLAIN
@@ -97,7 +97,7 @@ fn beside(aside: f64) -> Vec<Case> {
 }
 
 /// Ordinary splats, needles and pancakes.
-pub(super) fn mixed(stage: Stage) -> Vec<Case> {
+pub(super) fn mixed(stage: Setup) -> Vec<Case> {
     cases(10, stage, &any_normal, &mix)
 }
 

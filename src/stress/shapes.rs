@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::make::{PLAIN, Stage, any_normal, between, cases};
+use super::make::{PLAIN, Setup, any_normal, between, cases};
 use super::{Case, Regime};
 use crate::scene::Random;
 
@@ -35,7 +35,7 @@ pub fn regimes() -> Vec<Regime> {
         Regime::new("sigma 1e3", || sigma(1e3)),
         Regime::new("sigma 1e5", || sigma(1e5)).limited(2e-3, 60.0, WIDE),
         Regime::new("sigma 1e5 seen whole", || {
-            let far = Stage {
+            let far = Setup {
                 distance: 1e6,
                 ..PLAIN
             };
@@ -64,7 +64,7 @@ fn pancakes(aspect: f64) -> Vec<Case> {
 
 /// Hundreds of pixels long, and thinner than one.
 fn large(aspect: f64, flat: bool) -> Vec<Case> {
-    let stage = Stage {
+    let stage = Setup {
         focal: 1200.0,
         size: (1024, 768),
         ..PLAIN

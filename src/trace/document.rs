@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Lane, Span, Trace};
+use super::{Lane, Trace, TraceSpan};
 
 impl Trace {
     /// The document that `chrome://tracing` and <https://ui.perfetto.dev> open.
@@ -15,7 +15,7 @@ impl Trace {
         };
         let mut list: Vec<Value> = named(Lane::Cpu, "CPU").into();
         list.extend(named(Lane::Gpu, "GPU"));
-        let mut spans: Vec<&Span> = events.spans.iter().collect();
+        let mut spans: Vec<&TraceSpan> = events.spans.iter().collect();
         // In the order of time, what holds others before them.
         spans.sort_by(|a, b| a.begin.total_cmp(&b.begin).then(b.end.total_cmp(&a.end)));
         list.extend(spans.iter().map(|span| {

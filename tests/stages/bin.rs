@@ -185,9 +185,9 @@ fn tiles_reach_pixel_centres_on_the_contour() {
         // The contour's ends to the left and to the right, above and below, each put onto a centre of a pixel that is the
         // first or the last of its tile.
         let [k0, k1, k2] = f.factors;
-        let right = [f.reach / k0, -k1 / k2 * f.reach / k0];
+        let right = [f.extent / k0, -k1 / k2 * f.extent / k0];
         let k = (k0 * k0 + k1 * k1).sqrt();
-        let below = [-k1 / k * f.reach / k0, f.reach * k / (k0 * k2)];
+        let below = [-k1 / k * f.extent / k0, f.extent * k / (k0 * k2)];
         let ends = [right, right.map(|x| -x), below, below.map(|x| -x)];
         let [dx, dy] = ends[step % 4];
         // A right or lower end on the first pixel of a tile, a left or upper one on the last.

@@ -131,7 +131,7 @@ fn compare(
 /// Offsets within the contour of 1/255, pixels, and where they are in deviations.
 fn within<T: Real>(f: &Footprint<T>) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
     let [k0, k1, k2] = f.factors.map(T::wide);
-    let reach = f.reach.wide();
+    let reach = f.extent.wide();
     (0..25).map(move |step| {
         let turn = f64::from(step) * 2.399_963;
         let r = reach * (f64::from(step) / 24.0).sqrt();

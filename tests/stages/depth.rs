@@ -1,7 +1,7 @@
 //! Stage `depth`: how deep each survivor is, on average of what the clip leaves of it.
 
 use rara::gpu::{Bindings, Device, DeviceDesc};
-use rara::reference::depth::Depth;
+use rara::reference::depth;
 use rara::reference::{Footprint, Real, View};
 use rara::types::{FrameCounts, Splat, SplatDepth};
 use rara::{
@@ -93,8 +93,14 @@ fn mean_depths_are_the_twins() {
                 let Some(footprint) = Footprint::new(&scene, index, &single) else {
                     continue; // a tie of stage classify
                 };
-                let twin = Depth::new(&scene, index, &footprint, &clip, &settings());
-                let whole = Depth::new(&scene, index, &footprint, &Clip::default(), &settings());
+                let twin = depth::SplatDepth::new(&scene, index, &footprint, &clip, &settings());
+                let whole = depth::SplatDepth::new(
+                    &scene,
+                    index,
+                    &footprint,
+                    &Clip::default(),
+                    &settings(),
+                );
                 let deviation = f64::from(footprint.rows[2].length());
                 let [k0, k1, k2] = footprint.factors.map(f64::from);
                 for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.5), (-1.2, -1.2)] {
@@ -104,7 +110,9 @@ fn mean_depths_are_the_twins() {
                     if share < 0.01 || deviation == 0.0 {
                         continue;
                     }
-                    let at = |depth: &Depth<f32>| f64::from(depth.mean(dx as f32, dy as f32));
+                    let at = |depth: &depth::SplatDepth<f32>| {
+                        f64::from(depth.mean(dx as f32, dy as f32))
+                    };
                     let ulp = f64::from(f32::EPSILON) * f64::from(footprint.relative.length());
                     let apart = (ours - at(&twin)).abs();
                     worst = worst.max(apart / (deviation + 1e3 * ulp));

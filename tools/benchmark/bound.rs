@@ -85,7 +85,7 @@ fn scene(bench: &mut Bench, source: &Source, place: &mut Place) -> Result<()> {
         fragments::count(&world.scene, &camera, settings) as f64,
         survivors,
     ];
-    tell(bench, place, &variant, (needs, &measured, &frames))
+    add_rows(bench, place, &variant, (needs, &measured, &frames))
 }
 
 /// The same centres, seen as nothing: what is left of a frame is its sort.
@@ -96,7 +96,7 @@ fn nothing_but_keys(scene: &Gaussians) -> Gaussians {
     keys
 }
 
-fn tell(
+fn add_rows(
     bench: &mut Bench,
     place: &Place,
     variant: &Variant,

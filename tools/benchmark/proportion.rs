@@ -91,7 +91,7 @@ fn scene(bench: &mut Bench, source: &Source, place: &mut Place) -> Result<()> {
         let view = (&camera, clip);
         frame(&mut headless, view, &variant.settings, Past::Forgotten)
     })?;
-    tell(bench, place, &views, &frames)
+    add_rows(bench, place, &views, &frames)
 }
 
 /// The look that lets the camera see a hundredth, from 0 for all of it to 1 for next to nothing.
@@ -119,7 +119,7 @@ fn search(
     Ok(look(low))
 }
 
-fn tell(bench: &mut Bench, place: &Place, views: &[View], frames: &[Vec<Timed>]) -> Result<()> {
+fn add_rows(bench: &mut Bench, place: &Place, views: &[View], frames: &[Vec<Timed>]) -> Result<()> {
     let title = format!("{}: ms, median (least-90 %)", place.title());
     let header = [
         "",

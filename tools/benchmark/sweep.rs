@@ -82,7 +82,7 @@ fn scene(bench: &mut Bench, source: &Source, place: &mut Place) -> Result<()> {
     let camera = world.camera(0, bench.args.size())?;
     place.size = [camera.width, camera.height];
     let times = sweeps(bench, &world, &mut lanes)?;
-    tell(bench, place, &times)
+    add_rows(bench, place, &times)
 }
 
 /// Sweeps all lanes at once, a frame of each in turn.
@@ -139,7 +139,7 @@ fn sweeps(bench: &Bench, world: &World, lanes: &mut [Lane]) -> Result<Vec<Times>
 }
 
 /// A table of times and one of the processor's; ratios are of frames a second: more is better.
-fn tell(bench: &mut Bench, place: &Place, all: &[Times]) -> Result<()> {
+fn add_rows(bench: &mut Bench, place: &Place, all: &[Times]) -> Result<()> {
     let frame: fn(&Times) -> &[f64] = |times| &times.frame;
     let processor: fn(&Times) -> &[f64] = |times| &times.processor;
     for (pass, values) in [("frame", frame), ("processor", processor)] {

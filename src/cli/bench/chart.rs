@@ -19,7 +19,7 @@ const RED: [u8; 3] = [200, 40, 30];
 
 /// What a chart is made of; coordinates in pixels from the top left.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Shape {
+pub(super) enum Mark {
     Line([f64; 2], [f64; 2], [u8; 3]),
     Dot([f64; 2], f64, [u8; 3]),
     /// A text and its middle left.
@@ -33,7 +33,7 @@ pub(super) fn write(folder: &Path, report: &Report) -> Result<()> {
     png(&shapes).save(folder.join("pareto.png"))
 }
 
-fn shapes(report: &Report) -> Vec<Shape> {
+fn shapes(report: &Report) -> Vec<Mark> {
     // The unclipped scene is no cut.
     let rows: Vec<_> = report
         .rows
@@ -58,35 +58,27 @@ fn shapes(report: &Report) -> Vec<Shape> {
 
     let title = format!("{}, {}x{}", report.scene, report.size[0], report.size[1]);
     let mut shapes = vec![
-        Shape::Text([left + 100.0, 25.0], title, BLACK),
-        Shape::Text(
+        Mark::Text([left + 100.0, 25.0], title, BLACK),
+        Mark::Text(
             [left + 300.0, bottom + 50.0],
             "ms a frame, the least".into(),
             BLACK,
         ),
-        Shape::Text([5.0, top - 25.0], "L1 of 255".into(), BLACK),
+        Mark::Text([5.0, top - 25.0], "L1 of 255".into(), BLACK),
     ];
     let mut ms = 0.0;
     while ms <= end * 1.0001 {
-        shapes.push(Shape::Line([x(ms), top], [x(ms), bottom], PALE));
-        shapes.push(Shape::Text(
-            [x(ms) - 12.0, bottom + 20.0],
-            number(ms),
-            BLACK,
-        ));
+        shapes.push(Mark::Line([x(ms), top], [x(ms), bottom], PALE));
+        shapes.push(Mark::Text([x(ms) - 12.0, bottom + 20.0], number(ms), BLACK));
         ms += step;
     }
     for decade in low as i32..=high as i32 {
         let at = y(decade.into());
-        shapes.push(Shape::Line([left, at], [right, at], PALE));
-        shapes.push(Shape::Text(
-            [10.0, at],
-            number(10.0_f64.powi(decade)),
-            BLACK,
-        ));
+        shapes.push(Mark::Line([left, at], [right, at], PALE));
+        shapes.push(Mark::Text([10.0, at], number(10.0_f64.powi(decade)), BLACK));
     }
-    shapes.push(Shape::Line([left, bottom], [right, bottom], BLACK));
-    shapes.push(Shape::Line([left, top], [left, bottom], BLACK));
+    shapes.push(Mark::Line([left, bottom], [right, bottom], BLACK));
+    shapes.push(Mark::Line([left, top], [left, bottom], BLACK));
 
     // The front as a staircase: nothing lies below and to its left.
     let mut best: Vec<[f64; 2]> = rows
@@ -98,21 +90,21 @@ fn shapes(report: &Report) -> Vec<Shape> {
     best.sort_by(|a, b| a[0].total_cmp(&b[0]));
     for pair in best.windows(2) {
         let corner = [pair[1][0], pair[0][1]];
-        shapes.push(Shape::Line(pair[0], corner, RED));
-        shapes.push(Shape::Line(corner, pair[1], RED));
+        shapes.push(Mark::Line(pair[0], corner, RED));
+        shapes.push(Mark::Line(corner, pair[1], RED));
     }
     for (place, (row, point)) in (1..).zip(rows.iter().zip(&points)) {
         let colour = if row.undominated { RED } else { GREY };
         let at = [x(point[0]), y(point[1].log10())];
-        shapes.push(Shape::Dot(at, 4.0, colour));
-        shapes.push(Shape::Text(
+        shapes.push(Mark::Dot(at, 4.0, colour));
+        shapes.push(Mark::Text(
             [at[0] + 7.0, at[1] - 7.0],
             place.to_string(),
             colour,
         ));
         let entry = [right + 25.0, top + 24.0 * f64::from(place)];
         let text = format!("{place:>2} {}", row.name);
-        shapes.push(Shape::Text(
+        shapes.push(Mark::Text(
             entry,
             text,
             if row.undominated { RED } else { BLACK },
@@ -139,7 +131,7 @@ fn number(value: f64) -> String {
     format!("{}", (value * 1e7).round() / 1e7)
 }
 
-fn svg(shapes: &[Shape]) -> String {
+fn svg(shapes: &[Mark]) -> String {
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" font-family=\"monospace\" \
          font-size=\"16\">\n<rect width=\"{WIDTH}\" height=\"{HEIGHT}\" fill=\"#fff\"/>\n"
@@ -147,17 +139,17 @@ fn svg(shapes: &[Shape]) -> String {
     let hex = |[r, g, b]: &[u8; 3]| format!("#{r:02x}{g:02x}{b:02x}");
     for shape in shapes {
         let _ = match shape {
-            Shape::Line([x1, y1], [x2, y2], colour) => writeln!(
+            Mark::Line([x1, y1], [x2, y2], colour) => writeln!(
                 text,
                 "<path d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}\" stroke=\"{}\"/>",
                 hex(colour)
             ),
-            Shape::Dot([x, y], radius, colour) => writeln!(
+            Mark::Dot([x, y], radius, colour) => writeln!(
                 text,
                 "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{}\"/>",
                 hex(colour)
             ),
-            Shape::Text([x, y], words, colour) => {
+            Mark::Text([x, y], words, colour) => {
                 let words = words.replace('&', "&amp;").replace('<', "&lt;");
                 writeln!(
                     text,
@@ -171,13 +163,13 @@ fn svg(shapes: &[Shape]) -> String {
     text + "</svg>\n"
 }
 
-fn png(shapes: &[Shape]) -> Picture {
+fn png(shapes: &[Mark]) -> Picture {
     let mut picture = Picture::filled(WIDTH as u32, HEIGHT as u32, [1.0; 4]);
     for shape in shapes {
         match shape {
-            Shape::Line(from, to, colour) => ink::line(&mut picture, *from, *to, *colour),
-            Shape::Dot(at, radius, colour) => ink::dot(&mut picture, *at, *radius, *colour),
-            Shape::Text([x, y], words, colour) => {
+            Mark::Line(from, to, colour) => ink::line(&mut picture, *from, *to, *colour),
+            Mark::Dot(at, radius, colour) => ink::dot(&mut picture, *at, *radius, *colour),
+            Mark::Text([x, y], words, colour) => {
                 ink::text(&mut picture, [*x, y - 7.0], words, 2, *colour);
             }
         }
@@ -202,9 +194,9 @@ mod tests {
     #[test]
     fn shapes_become_both_kinds_of_picture() {
         let shapes = [
-            Shape::Line([10.0, 10.0], [50.0, 10.0], RED),
-            Shape::Dot([100.0, 100.0], 4.0, BLACK),
-            Shape::Text([200.0, 200.0], "a<b".into(), GREY),
+            Mark::Line([10.0, 10.0], [50.0, 10.0], RED),
+            Mark::Dot([100.0, 100.0], 4.0, BLACK),
+            Mark::Text([200.0, 200.0], "a<b".into(), GREY),
         ];
         let text = svg(&shapes);
         assert!(text.contains("M10.0 10.0L50.0 10.0") && text.contains("a&lt;b"));

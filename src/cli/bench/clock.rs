@@ -96,12 +96,12 @@ impl Samples {
         };
         let passes: Vec<Pass> = names.map(|p| pass(p.name)).collect();
         let (ms_min, cpu_ms_min) = (passes.iter().map(|p| p.ms_min).sum(), least(&self.cpu));
-        let told = on_cpu && cpu_ms_min.is_finite() && cpu_ms_min > 0.0;
+        let has_cpu_time = on_cpu && cpu_ms_min.is_finite() && cpu_ms_min > 0.0;
         Times {
             ms: median(&self.ms),
             ms_min,
-            cpu_ms_min: if told { cpu_ms_min } else { 0.0 },
-            cost: if told { cpu_ms_min } else { ms_min },
+            cpu_ms_min: if has_cpu_time { cpu_ms_min } else { 0.0 },
+            cost: if has_cpu_time { cpu_ms_min } else { ms_min },
             wall_ms: median(&self.wall),
             cpu_ms: median(&self.cpu),
             passes,

@@ -19,7 +19,7 @@ use super::action::Action;
 use super::input::Input;
 use super::lost;
 use super::script;
-use super::stage::{Scenery, Stage};
+use super::stage::{Scenery, Viewer};
 use crate::cli::failure::Failure;
 use crate::cli::output::say;
 
@@ -41,7 +41,7 @@ pub(super) struct Start {
 
 struct App {
     start: Option<Start>,
-    stage: Option<Stage>,
+    stage: Option<Viewer>,
     input: Input,
     script: VecDeque<Action>,
     /// The script goes on when the window has this size, or fails at that time.
@@ -149,7 +149,7 @@ impl App {
             windowed.device().info().driver,
             windowed.format()
         ));
-        self.stage = Some(Stage::new(windowed, window, start.scenery));
+        self.stage = Some(Viewer::new(windowed, window, start.scenery));
         Ok(())
     }
 

@@ -35,7 +35,7 @@ pub(super) struct Scenery {
 }
 
 /// The open window.
-pub(super) struct Stage {
+pub(super) struct Viewer {
     windowed: Windowed,
     pub(super) window: Arc<Window>,
     scenery: Scenery,
@@ -65,7 +65,7 @@ const INTERVALS: usize = 10_000;
 /// The least and the most speed: one can still come back from them.
 const SPEEDS: (f64, f64) = (1e-6, 1e6);
 
-impl Stage {
+impl Viewer {
     pub(super) fn new(windowed: Windowed, window: Arc<Window>, scenery: Scenery) -> Self {
         let viewpoint = scenery.viewpoint(0);
         Self {
@@ -295,7 +295,7 @@ impl Stage {
     /// Frees what is on the device, after a failure.
     pub(super) fn abandon(self) {
         // The window goes with the process: freeing it talks to a server that may not be there any more, and Xlib then
-        // ends the process before the failure is told.
+        // ends the process before the failure is reported.
         std::mem::forget(self.window);
         drop(self.windowed);
     }

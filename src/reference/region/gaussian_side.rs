@@ -10,7 +10,7 @@ pub fn gaussian_side<T: Real>(
     scene: &Gaussians,
     index: usize,
     axes: &[Vec3<T>; 3],
-    reach: T,
+    deviations: T,
     clip: &Clip,
     settings: &Settings,
 ) -> Side {
@@ -24,7 +24,7 @@ pub fn gaussian_side<T: Real>(
     };
     let mut side = undecided;
     for plane in &clip.planes {
-        let one = UnitPlane::new(scene, index, axes, plane).gaussian_side(reach, settings);
+        let one = UnitPlane::new(scene, index, axes, plane).gaussian_side(deviations, settings);
         if one == decides {
             return one;
         }

@@ -25,14 +25,14 @@ impl<T: Real> UnitPlane<T> {
     }
 
     /// On which side a Gaussian is whose band reaches so many standard deviations.
-    pub fn gaussian_side(&self, reach: T, settings: &Settings) -> Side {
+    pub fn gaussian_side(&self, deviations: T, settings: &Settings) -> Side {
         if settings.mode == Mode::Hard {
             return match self.offset >= T::zero() {
                 true => Side::Visible,
                 false => Side::Invisible,
             };
         }
-        let half = reach * self.normal.length();
+        let half = deviations * self.normal.length();
         if settings.trace_all {
             Side::Cutoff
         } else if self.offset >= half {

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::*;
-use crate::reference::depth::Depth;
+use crate::reference::depth::SplatDepth;
 use crate::reference::quadrature::{Bundle, mean_depth};
 
 /// Random splats, planes and a pixel within a footprint: how far the mean depth is from the integrated one, in deviations of
@@ -34,8 +34,8 @@ fn errors(sigma: f64, op: ClipOp, planes: usize, slab: bool) -> (f64, f64) {
         };
         let scene = scene(&[one]);
         let footprint = Footprint::<f64>::new(&scene, 0, &View::new(&view)).expect("in view");
-        let depth = Depth::new(&scene, 0, &footprint, &clip, &settings);
-        let whole = Depth::new(&scene, 0, &footprint, &NO_CLIP, &settings);
+        let depth = SplatDepth::new(&scene, 0, &footprint, &clip, &settings);
+        let whole = SplatDepth::new(&scene, 0, &footprint, &NO_CLIP, &settings);
         let [k0, k1, k2] = footprint.factors;
         // A point within two deviations of the footprint.
         let (u, v) = (dice.between(-1.4, 1.4), dice.between(-1.4, 1.4));

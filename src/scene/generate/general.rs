@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::random::Random;
 use super::spherical::{COEFFICIENTS, Colours};
-use super::{Builder, Gaussians, Splat, axes_about, pattern, split};
+use super::{Builder, Draft, Gaussians, axes_about, pattern, split};
 
 /// Tangential deviation in units of the mean spacing. Below about 0.7 holes show, above 1 the pattern blurs.
 const COVERAGE: f64 = 0.8;
@@ -79,7 +79,7 @@ fn push_sample(builder: &mut Builder, sample: &Sample, sigma: f64, random: &mut 
         0.1 * random.factor(0.8).min(5.0)
     };
     let tilted = (normal + 0.08 * random.in_ball()).normalize();
-    let splat = Splat {
+    let splat = Draft {
         position: position
             + normal
                 * random
@@ -118,7 +118,7 @@ fn opacity(random: &mut Random) -> f64 {
 
 fn push_floater(builder: &mut Builder, sigma: f64, random: &mut Random) {
     let size = 2.5 * sigma * random.factor(0.4).min(3.0);
-    let splat = Splat {
+    let splat = Draft {
         position: 0.85 * random.in_ball() * DVec3::new(1.0, 0.6, 1.0),
         axes: axes_about(random.direction(), 0.0),
         scales: size * DVec3::new(random.factor(0.3), random.factor(0.3), random.factor(0.3)),

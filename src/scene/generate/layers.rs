@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::random::Random;
 use super::spherical::Colours;
-use super::{Builder, Gaussians, Splat, axes_about, pattern, split};
+use super::{Builder, Draft, Gaussians, axes_about, pattern, split};
 
 /// Half axes of the body's ellipsoid.
 const BODY: DVec3 = DVec3::new(0.74, 0.92, 0.66);
@@ -98,7 +98,7 @@ fn push(builder: &mut Builder, layer: &Layer, sigma: f64, random: &mut Random) {
     let share = random.range(inner.powi(3), outer.powi(3)).cbrt();
     let position = full * share;
     let normal = (direction / BODY).normalize();
-    let splat = Splat {
+    let splat = Draft {
         position,
         axes: axes_about(normal, random.range(0.0, TAU)),
         scales: DVec3::new(

@@ -39,7 +39,7 @@ pub fn generate(kind: Kind, count: usize, seed: u64) -> Gaussians {
 }
 
 /// One Gaussian in the units it is thought in.
-struct Splat {
+struct Draft {
     position: DVec3,
     /// Orthonormal and right-handed: the Gaussian's own axes in the world.
     axes: DMat3,
@@ -56,7 +56,7 @@ impl Builder {
     }
 
     /// `colours` are the coefficients in order; missing ones are zero.
-    fn push(&mut self, splat: &Splat, colours: &[DVec3]) {
+    fn push(&mut self, splat: &Draft, colours: &[DVec3]) {
         let rotation = DQuat::from_mat3(&splat.axes).normalize();
         let mut sh = [Vec3::ZERO; sh_coefficients(MAX_SH_DEGREE)];
         for (to, colour) in sh.iter_mut().zip(colours) {

@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 
 use super::random::Random;
 use super::spherical::Colours;
-use super::{Builder, Gaussians, Splat, pattern};
+use super::{Builder, Draft, Gaussians, pattern};
 
 /// Segments of a strand. Fewer make visible corners in the curls.
 const SEGMENTS: usize = 24;
@@ -87,7 +87,7 @@ fn push_needle(
     let (u, v) = tangent.any_orthonormal_pair();
     let long = OVERLAP * (to - from).length().max(1e-3);
     let thin = long / SLENDERNESS;
-    let splat = Splat {
+    let splat = Draft {
         position: (from + to) / 2.0,
         axes: DMat3::from_cols(tangent, u, v),
         scales: DVec3::new(long, thin, thin),

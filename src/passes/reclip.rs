@@ -16,7 +16,7 @@ use crate::types::FrameCounts;
 /// The classes that change.
 pub(crate) const RECLIP: Stage = Stage {
     name: "reclip",
-    needed: |plan| plan.sweeps(),
+    needed: |plan| plan.reclips(),
     missed: |_| false,
     pipelines: |_, need| {
         need(sides().key());
@@ -31,7 +31,7 @@ pub(crate) const RECLIP: Stage = Stage {
 /// What the rasteriser holds of the survivors that change.
 pub(crate) const RECUT: Stage = Stage {
     name: "recut",
-    needed: |plan| plan.sweeps(),
+    needed: |plan| plan.reclips(),
     missed: |_| false,
     pipelines: |plan, need| need(changes(plan).key()),
     record: record_recut,
@@ -59,30 +59,30 @@ fn changes(plan: &Plan) -> Kernel<recut::Program> {
 }
 
 fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let (pipelines, scene, b, s) = (frame.pipelines, frame.scene, frame.buffers, frame.sweep());
+    let (pipelines, scene, b, s) = (frame.pipelines, frame.scene, frame.buffers, frame.reclip());
     let buffers = reclip_blocks::Buffers {
         frame: &b.frame,
         blocks: &scene.blocks,
         block_sides: &b.block_sides,
         block_counts: &b.block_counts,
-        looks: &s.looks,
+        revisits: &s.revisits,
         reclips: &s.reclips,
     };
     // The survivors may have no clip yet.
-    let fresh = matches!(frame.plan.work, Work::Sweep { fresh: true, .. });
+    let fresh = matches!(frame.plan.work, Work::Reclip { fresh: true, .. });
     let params = reclip_blocks::Params {
         fresh: fresh.into(),
     };
     let groups = groups_of_blocks(frame.plan);
     sides().dispatch(pipelines, recorder, buffers, params, groups);
-    block_list::record(frame, recorder, &s.looks, ListFor::Clip);
+    block_list::record(frame, recorder, &s.revisits, ListFor::Clip);
     let looked_at = indirect!(b.counts, FrameCounts, clip_groups);
     let buffers = reclip::Buffers {
         frame: &b.frame,
         gaussians: &scene.gaussians,
         block_list: &b.block_list,
         counts: &b.counts,
-        looks: &s.looks,
+        revisits: &s.revisits,
         block_sides: &b.block_sides,
         masks: &b.masks,
         reclips: &s.reclips,
@@ -90,7 +90,7 @@ fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     classes().dispatch(pipelines, recorder, buffers, (), looked_at);
     let buffers = reclip_scan::Buffers {
         frame: &b.frame,
-        looks: &s.looks,
+        revisits: &s.revisits,
         reclips: &s.reclips,
         counts: &b.counts,
     };
@@ -110,7 +110,7 @@ fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
 }
 
 fn record_recut(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let (scene, b, s) = (frame.scene, frame.buffers, frame.sweep());
+    let (scene, b, s) = (frame.scene, frame.buffers, frame.reclip());
     // The tiles to draw again: all, where no frame has drawn what is in view.
     let all = frame.plan.finds_view();
     recorder.fill(&s.dirty, 0, s.dirty.size(), all.into());

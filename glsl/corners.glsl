@@ -1,0 +1,36 @@
+// What the two front ends of the splat pass share: which splat is the n-th, and where its corners are.
+#ifndef RARA_CORNERS
+#define RARA_CORNERS
+#include "frame.glsl"
+#include "host_depth.glsl"
+
+BUFFER(readonly, 1, FrameCounts, counts)
+BUFFER(readonly, 2, Splat, splats)
+BUFFER(readonly, 3, uint, order)
+
+// Back to front: the blend is the ordinary `over`, so that a host can draw splats onto what it has drawn already.
+uint number_at(uint number) {
+    return order.at[counts.at[0].mesh_groups.w - 1u - number];
+}
+
+Splat splat_at(uint number) {
+    return splats.at[number_at(number)];
+}
+
+// Whether splats have a depth in the host's buffer.
+layout(constant_id = 5) const bool DEPTH = false;
+
+// Corner 0 to 3 of a strip.
+vec4 corner(Splat splat, uint number) {
+    float first = (number & 1u) == 0u ? -1.0 : 1.0;
+    float second = (number & 2u) == 0u ? -1.0 : 1.0;
+    vec2 at = splat.centre_conic.xy + splat.middle.xy + first * splat.axes.xy + second * splat.axes.zw;
+    return vec4(2.0 * at * FRAME.view.size.zw - 1.0, DEPTH ? host_depth(splat.middle.w) : 0.0, 1.0);
+}
+
+// The centre in the coordinates of gl_FragCoord, and k0 k1.
+vec4 fragment_centre(Splat splat) {
+    return vec4(splat.centre_conic.xy + push.params.origin, splat.centre_conic.zw);
+}
+
+#endif

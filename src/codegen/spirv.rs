@@ -277,7 +277,7 @@ mod tests {
         assert_eq!(
             params,
             [
-                ("number", Scalar::Uint, 1, 0),
+                ("pass", Scalar::Uint, 1, 0),
                 ("passes", Scalar::Uint, 1, 4)
             ]
         );
@@ -289,7 +289,7 @@ mod tests {
         let found = declarations(&module("tiles.comp.bound.spv"));
         let find = |name: &str| found.constants.iter().find(|c| c.name == name);
         assert_eq!(find("local_size_y").map(|c| c.scalar), Some(Scalar::Uint));
-        assert_eq!(find("sweep").map(|c| c.scalar), Some(Scalar::Bool));
+        assert_eq!(find("reclipped").map(|c| c.scalar), Some(Scalar::Bool));
         let ids: Vec<_> = found.constants.iter().map(|c| c.id).collect();
         assert!(ids.is_sorted_by(|a, b| a < b), "{ids:?}");
     }

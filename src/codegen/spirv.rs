@@ -276,10 +276,7 @@ mod tests {
             .collect();
         assert_eq!(
             params,
-            [
-                ("pass", Scalar::Uint, 1, 0),
-                ("passes", Scalar::Uint, 1, 4)
-            ]
+            [("pass", Scalar::Uint, 1, 0), ("passes", Scalar::Uint, 1, 4)]
         );
         assert_eq!(found.constants, []);
     }

@@ -16,7 +16,7 @@ use super::instance::Instance;
 use super::submit::OneOff;
 use super::validation::Messages;
 use super::{
-    AdoptDesc, Buffer, BufferDesc, Calibration, DeviceInfo, Image, ImageDesc, Shape, Support,
+    AdoptDesc, Buffer, BufferDesc, Calibration, DeviceInfo, DeviceShape, Image, ImageDesc, Support,
 };
 use crate::Result;
 
@@ -30,7 +30,7 @@ pub(super) struct Inner {
     instance: ash::Instance,
     physical: vk::PhysicalDevice,
     raw: ash::Device,
-    shape: Shape,
+    shape: DeviceShape,
     info: DeviceInfo,
     support: Support,
     pub(super) queue: Mutex<vk::Queue>,
@@ -85,7 +85,7 @@ impl Device {
                     .debug_utils
                     .then(|| ext::debug_utils::Device::new(&instance, &raw)),
                 physical: desc.physical_device,
-                shape: Shape::of(&info),
+                shape: DeviceShape::of(&info),
                 info,
                 support,
                 queue: Mutex::new(desc.queue),
@@ -114,7 +114,7 @@ impl Device {
     }
 
     /// The kind of machine that it is, or that the environment variable `RARA_SHAPE` (`cpu` or `gpu`) says it is.
-    pub fn shape(&self) -> Shape {
+    pub fn shape(&self) -> DeviceShape {
         self.inner.shape
     }
 

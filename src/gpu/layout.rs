@@ -3,7 +3,7 @@
 use ash::vk;
 
 use super::failure::failed;
-use super::{Buffer, BufferUse, Device, MAX_BUFFERS, MAX_PARAMS, Shader, Shape};
+use super::{Buffer, BufferUse, Device, DeviceShape, MAX_BUFFERS, MAX_PARAMS, Shader};
 use crate::{Error, Result};
 
 /// How shaders reach their buffers.
@@ -21,7 +21,7 @@ impl Bindings {
     /// What is fastest on a device. CPU drivers load what all lanes share once where it is bound, and for each lane where
     /// it has an address: a frame takes lavapipe 0.87 of the time. On GPUs addresses cost nothing.
     pub fn suiting(device: &Device) -> Self {
-        if device.shape() == Shape::Cpu && device.support().push_descriptor {
+        if device.shape() == DeviceShape::Cpu && device.support().push_descriptor {
             Self::Bound
         } else {
             Self::Address

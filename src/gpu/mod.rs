@@ -56,7 +56,7 @@ pub use pipeline_cache::PipelineCacheId;
 pub use pipeline_file::PipelineCache;
 pub use recorder::DepthImage;
 pub use requirements::{Features, Support, check};
-pub use shape::Shape;
+pub use shape::DeviceShape;
 pub use timer::PassSpan;
 
 #[cfg(not(feature = "lab"))]

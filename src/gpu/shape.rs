@@ -8,14 +8,14 @@ use super::DeviceInfo;
 /// do not depend on it but for the rounding of sums.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-pub enum Shape {
+pub enum DeviceShape {
     /// A driver that runs shaders on the processor's cores: few invocations that each do much.
     Cpu,
     /// A graphics processor: many invocations, whose memory accesses are served together.
     Gpu,
 }
 
-impl Shape {
+impl DeviceShape {
     /// What a device is, unless `RARA_SHAPE` says otherwise: tests run the kernels of either kind on any device.
     pub(crate) fn of(info: &DeviceInfo) -> Self {
         let is = match info.kind {

@@ -1,5 +1,9 @@
 //! Stage `bin`: the splats of each tile, by depth. First the spans of each row of tiles, then their splats in each of the
 //! row's tiles.
+//!
+//! It is given the survivors' outlines, as masks or as splats, and their order; it gives back the tiles' lists and where they
+//! begin. Its own scratch are the counts and the spans of [`TileBuffers`](crate::passes::buffers::TileBuffers), and what the
+//! sort has left free.
 
 use crate::gpu::{Groups, Recorder};
 use crate::passes::buffers::indirect;

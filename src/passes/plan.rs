@@ -263,7 +263,7 @@ mod tests {
 
     use super::*;
     use crate::clip::{ClipOp, Plane};
-    use crate::gpu::Shape;
+    use crate::gpu::DeviceShape;
     use crate::passes::project;
     use crate::passes::weight::Weight;
     use crate::settings::Mode;
@@ -277,7 +277,7 @@ mod tests {
             sort_runs: 128,
             span_runs: 128,
             raster: Raster::Tiles,
-            tile_work: TileWork::suiting(Shape::Cpu, 8),
+            tile_work: TileWork::suiting(DeviceShape::Cpu, 8),
             pair_capacity: 1000,
             redrawn: false,
             occluders: None,

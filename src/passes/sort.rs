@@ -1,4 +1,8 @@
 //! Stage `sort`: stable radix sort of the survivors by linear view depth, ties by their number in the file.
+//!
+//! It is given as many keys as there are survivors, in both `keys`, and nothing in `order`; the survivors are then numbered
+//! from 0. What it gives back is in the `keys` and the `order` of [`Plan::sorted`](crate::passes::Plan::sorted): the others
+//! are free again. Its own scratch is `histogram`.
 
 use std::mem::offset_of;
 

@@ -3,7 +3,7 @@
 
 use std::mem::offset_of;
 
-use crate::gpu::{Attachments, Drawer, Recorder, Shape};
+use crate::gpu::{Attachments, DeviceShape, Drawer, Recorder};
 use crate::limits;
 use crate::passes::buffers::{Buffers, TileBuffers, indirect};
 use crate::passes::pipelines::{Draw, Kernel, Pipelines};
@@ -34,8 +34,8 @@ pub(crate) struct TileWork {
 
 impl TileWork {
     /// What suits a device whose subgroups can shuffle if their size is not 0.
-    pub(crate) fn suiting(shape: Shape, subgroup_size: u32) -> Self {
-        let is_cpu = shape == Shape::Cpu;
+    pub(crate) fn suiting(shape: DeviceShape, subgroup_size: u32) -> Self {
+        let is_cpu = shape == DeviceShape::Cpu;
         let rows = if is_cpu { limits::TILE_HEIGHT } else { 1 };
         let invocations = limits::TILE_WIDTH * (limits::TILE_HEIGHT / rows);
         Self {
@@ -131,11 +131,11 @@ mod tests {
     #[test]
     fn only_whole_subgroups_of_cpu_drivers_load_together() {
         for (shape, size, subgroups) in [
-            (Shape::Cpu, 4, true),
-            (Shape::Cpu, 8, true),
-            (Shape::Cpu, 16, false),
-            (Shape::Cpu, 0, false),
-            (Shape::Gpu, 32, false),
+            (DeviceShape::Cpu, 4, true),
+            (DeviceShape::Cpu, 8, true),
+            (DeviceShape::Cpu, 16, false),
+            (DeviceShape::Cpu, 0, false),
+            (DeviceShape::Gpu, 32, false),
         ] {
             assert_eq!(
                 TileWork::suiting(shape, size).subgroups,

@@ -1,7 +1,7 @@
 //! What suits a device: how splats become pixels on it, and how its sort is divided.
 
 use crate::error::{Error, Result};
-use crate::gpu::{Shape, Support};
+use crate::gpu::{DeviceShape, Support};
 use crate::limits;
 use crate::settings::Raster;
 
@@ -9,11 +9,11 @@ use crate::settings::Raster;
 pub(super) fn raster(
     wanted: Raster,
     support: &Support,
-    shape: Shape,
+    shape: DeviceShape,
     tiles: u32,
     hidden: bool,
 ) -> Result<(Raster, &'static str)> {
-    let tiled = wanted == Raster::Tiles || (wanted == Raster::Auto && shape == Shape::Cpu);
+    let tiled = wanted == Raster::Tiles || (wanted == Raster::Auto && shape == DeviceShape::Cpu);
     Ok(match wanted {
         Raster::Auto | Raster::Tiles if hidden && tiled => {
             let reason = "tiles need the host's depth before its scope (DepthDesc::readable)";
@@ -24,7 +24,7 @@ pub(super) fn raster(
             (Raster::Quad, reason)
         }
         // See the guide's measurements (src/guide/frame.md).
-        Raster::Auto if shape == Shape::Cpu => {
+        Raster::Auto if shape == DeviceShape::Cpu => {
             (Raster::Tiles, "a CPU driver charges for each drawn splat")
         }
         Raster::Auto if support.mesh_shader => (Raster::Mesh, "a GPU with mesh shaders"),
@@ -44,10 +44,10 @@ const MOST_PICTURE: u64 = 1 << 30;
 
 /// Runs of the sort, and of what finds the splats' spans of tiles: each costs a histogram, so few where there is little to sort and on CPU drivers; but at least the
 /// lanes of all cores there, and on GPUs enough invocations to hide the latency of their scattered writes.
-pub(super) fn runs(shape: Shape, gaussians: u32) -> u32 {
+pub(super) fn runs(shape: DeviceShape, gaussians: u32) -> u32 {
     match (shape, gaussians) {
-        (Shape::Cpu, ..32_768) => 128,
-        (Shape::Cpu, _) => 256,
-        (Shape::Gpu, _) => 2048,
+        (DeviceShape::Cpu, ..32_768) => 128,
+        (DeviceShape::Cpu, _) => 256,
+        (DeviceShape::Gpu, _) => 2048,
     }
 }

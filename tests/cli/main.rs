@@ -4,6 +4,7 @@
 mod folder;
 mod profile;
 mod refusals;
+mod shape;
 mod work;
 
 use std::path::{Path, PathBuf};
@@ -14,9 +15,18 @@ use serde_json::Value;
 
 /// Runs `rara` with these arguments.
 fn rara<A: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = A>) -> Output {
+    rara_with(arguments, None)
+}
+
+/// The same with a variable set in its environment.
+fn rara_with<A: AsRef<std::ffi::OsStr>>(
+    arguments: impl IntoIterator<Item = A>,
+    variable: Option<(&str, &str)>,
+) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_rara"));
     command
         .args(arguments)
+        .envs(variable)
         // The user's own cache is not the tests' business.
         .env("RARA_CACHE", "")
         .output()
@@ -25,6 +35,11 @@ fn rara<A: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = A>) -> Ou
 
 /// Runs `rara` with a line's words, `@` standing for `folder`; what draws, draws on `RARA_TEST_DEVICE` if that is set.
 fn line(folder: &Path, words: &str) -> Output {
+    line_with(folder, words, None)
+}
+
+/// The same with a variable set in its environment.
+fn line_with(folder: &Path, words: &str, variable: Option<(&str, &str)>) -> Output {
     let folder = folder.to_str().expect("the test folder's name is text");
     let mut words: Vec<String> = words
         .split_whitespace()
@@ -37,7 +52,7 @@ fn line(folder: &Path, words: &str) -> Output {
     {
         words.extend(["--device".into(), device]);
     }
-    rara(words)
+    rara_with(words, variable)
 }
 
 fn folder(test: &str) -> Folder {

@@ -1,0 +1,29 @@
+//! The kernels of either kind of machine, on whatever device there is.
+
+use super::{document, done, folder, line, line_with, scene};
+
+/// The kernels for GPUs cut the work more finely: other runs of the sort, a pixel an invocation in the tiles. The order of
+/// the splats is the same, so only the rounding of sums may differ.
+#[test]
+fn kernels_for_gpus_draw_the_picture_of_those_for_processors() {
+    let here = folder("shape");
+    scene(&here);
+    for (name, clip) in [
+        ("whole", ""),
+        (
+            "cut",
+            "--clip plane:1,0.2,0.1,0 --clip plane:0,1,0,0.1 --clip-op or",
+        ),
+    ] {
+        for shape in ["cpu", "gpu"] {
+            let words = format!(
+                "render @/scene.ply -o @/{name}_{shape}.exr --raster tiles --size 203x150 {clip}"
+            );
+            done(line_with(&here, &words, Some(("RARA_SHAPE", shape))));
+        }
+        let words = format!("compare @/{name}_cpu.exr @/{name}_gpu.exr --json");
+        let difference = document(line(&here, &words));
+        let max = difference["max"].as_f64().expect("a number, of 255");
+        assert!(max < 0.01, "{name}: {difference}");
+    }
+}

@@ -21,7 +21,7 @@ const uint CUT_FRONT = 2u;
 // The record is one plane's z as a polynomial of degree four.
 const uint CUT_CURVE = 4u;
 // The splat is cut by a union: the record holds the planes' complements, and what it keeps is the rest of what these keep
-// together. A plane alone is no union.
+// together. A plane alone is a union only where it is weighed as several are: in mode `rara`, and with CUT_FRONT.
 const uint CUT_UNION = 8u;
 const uint CUT_COUNT_SHIFT = 8u;
 

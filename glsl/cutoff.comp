@@ -72,7 +72,7 @@ void main() {
     uint count = at - base - CUT_HEADER;
     uint flags = count << CUT_COUNT_SHIFT;
     if (is_union && count == 1u && !front && FRAME.region.mode == MODE_EXACT) {
-        cuts.at[at - 1u] = form; // a plane alone is no union
+        cuts.at[at - 1u] = form; // written again as it is: without CUT_UNION it is read so
     } else if (is_union) {
         flags |= CUT_UNION;
     }

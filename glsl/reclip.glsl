@@ -1,6 +1,6 @@
-// What a reclipped frame knows of each block, RECLIP_WORDS words: which of its Gaussians in view change, are visible or are cut, their
-// totals, their places in the lists, and its side. In a reclipped frame the camera stands still; the survivors are all Gaussians in
-// view, clipped away or not.
+// What a reclipped frame knows of each block, RECLIP_WORDS words: which of its Gaussians in view change, are visible or are
+// cut, their totals, their places in the lists, and its side. In a reclipped frame the camera stands still; the survivors
+// are all Gaussians in view, clipped away or not.
 #ifndef RARA_RECLIP
 #define RARA_RECLIP
 #include "block.glsl"
@@ -15,7 +15,7 @@ const uint RECLIP_TOTALS = 3u * WORDS;
 const uint RECLIP_PLACES = RECLIP_TOTALS + 4u;
 const uint RECLIP_SIDE = RECLIP_PLACES + 2u;
 
-// Whether the clip has to revisit at a block's Gaussians: it cuts the block, or settles it in another way than before.
+// Whether the clip has to revisit a block's Gaussians: it cuts the block, or settles it in another way than before.
 bool is_revisited(uint revisit) {
     return (revisit & 3u) == SIDE_CUTOFF;
 }

@@ -44,7 +44,7 @@ struct OrderData {
 struct TilesData {
     uint tile_columns; // tiles across the picture
     uint tile_count; // tiles in the picture
-    uint span_runs; // invocations that find the splats' spans of tiles; none where no tiles are wanted
+    uint span_runs; // invocations that find the splats' spans of tiles
     uint row_parts; // parts of the spans of a row of tiles
     float transmittance_min; // below it a tile's pixel is saturated: what lies behind changes it by less
     uint pad[3]; // unused

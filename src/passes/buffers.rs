@@ -200,7 +200,7 @@ impl Buffers {
     }
 
     /// Allocates what a reclipped frame needs besides.
-    pub(crate) fn ensure_sweep(&mut self, device: &Device) -> Result<()> {
+    pub(crate) fn ensure_reclip(&mut self, device: &Device) -> Result<()> {
         if self.reclip.is_some() {
             return Ok(());
         }

@@ -28,6 +28,7 @@ pub(crate) mod tiles;
 mod view;
 mod weight;
 mod work;
+#[cfg(feature = "lab")]
 mod working;
 
 pub(crate) use buffers::Buffers;
@@ -36,6 +37,6 @@ pub(crate) use occluders::Occluders;
 pub(crate) use pipelines::Pipelines;
 pub(crate) use plan::{Plan, SceneFacts};
 pub use scene_buffers::{SceneBuffers, Staging};
-pub(crate) use stage::{Frame, Targets};
+pub(crate) use stage::{DRAW, Frame, Targets};
 pub(crate) use tiles::TileWork;
 pub(crate) use work::{Kept, Work};

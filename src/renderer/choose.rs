@@ -23,7 +23,7 @@ pub(super) fn raster(
             let reason = "the tiles' picture would take more than 1 GiB";
             (Raster::Quad, reason)
         }
-        // See the guide's measurements (src/guide/frame.md).
+        // See the guide's measurements (src/guide/speed.md).
         Raster::Auto if shape == DeviceShape::Cpu => {
             (Raster::Tiles, "a CPU driver charges for each drawn splat")
         }

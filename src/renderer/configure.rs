@@ -129,6 +129,7 @@ impl Renderer {
             targets,
             depth_map,
             unit: self.placement.scale(),
+            submission,
             redrawn,
             prepared: false,
         });
@@ -180,7 +181,7 @@ impl Renderer {
         if !matches!(work, Work::Reclip { .. }) {
             return Ok(work);
         }
-        match self.memory.ensure_sweep(&self.device) {
+        match self.memory.ensure_reclip(&self.device) {
             Ok(()) => Ok(work),
             // A frame of its own needs less.
             Err(Error::Memory(_)) => {

@@ -41,7 +41,7 @@ fn life(host: &Device) -> Result<()> {
     };
     let mut renderer = Renderer::new(&device, desc)?;
     let mut buffers = None;
-    // A frame from nothing, one of a sweep, and one that outgrows the memory of both.
+    // A frame from nothing, one in which only the clip has moved, and one that outgrows the memory of both.
     for (frame, planes) in [1, 1, 3].into_iter().enumerate() {
         let plane = |i| {
             let normal = DVec3::new(1.0, f64::from(i), 0.0);
@@ -108,7 +108,7 @@ fn memory_may_run_out_where_a_host_draws() {
             places += 1;
             match lived {
                 Err(Error::Memory(_)) => {}
-                // Times are left out, tiles become quads and a sweep's frame one of its own.
+                // Times are left out, tiles become quads and a reclipped frame a whole one.
                 Ok(()) => assert!(
                     [
                         "vkGetQueryPoolResults",

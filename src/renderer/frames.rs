@@ -21,6 +21,8 @@ pub(super) struct Configured {
     pub(super) depth_map: Option<DepthMap>,
     /// World units in one of the scene's.
     pub(super) unit: f64,
+    /// How it is submitted.
+    pub(super) submission: Submission,
     /// Without room for its pairs of tile and splat nothing is drawn of it.
     pub(super) redrawn: bool,
     /// It has been prepared.

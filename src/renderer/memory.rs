@@ -48,10 +48,10 @@ impl WorkingMemory {
         self.retired.retain(|(prepared, _)| *prepared > finished);
     }
 
-    /// Adds what a sweep needs besides.
-    pub(super) fn ensure_sweep(&mut self, device: &Device) -> Result<()> {
+    /// Adds what a reclipped frame needs besides.
+    pub(super) fn ensure_reclip(&mut self, device: &Device) -> Result<()> {
         let buffers = self.buffers.as_mut().expect("replace() allocates them");
-        buffers.ensure_sweep(device)
+        buffers.ensure_reclip(device)
     }
 
     /// The buffers, if a frame has been configured.

@@ -23,6 +23,7 @@ mod shared;
 mod stats;
 #[cfg(test)]
 mod tests;
+#[cfg(feature = "lab")]
 mod working;
 
 pub(crate) use configure::FrameRequest;

@@ -2,8 +2,9 @@
 
 use super::Renderer;
 use super::frames::{Configured, RecordedFrame};
-use super::outcome::Outcome;
+use super::outcome::{Outcome, Submission};
 use crate::gpu::{PassSpan, Timer};
+use crate::passes::DRAW;
 use crate::settings::Raster;
 use crate::stats::{Counts, FrameStats, PassStatistics, PassTime, RasterChoice};
 use crate::types::FrameCounts;
@@ -85,7 +86,9 @@ impl Renderer {
         let fell_back = newest.is_some_and(RecordedFrame::fell_back);
         let raster = self.configured.as_ref().map(|c| c.raster(fell_back));
         let mut skipped = self.skipped();
-        skipped.push("splat");
+        if !skipped.contains(&DRAW) {
+            skipped.push(DRAW);
+        }
         FrameStats {
             counts: newest.map(RecordedFrame::counts).unwrap_or_default(),
             skipped,
@@ -119,6 +122,12 @@ impl Configured {
 }
 
 impl RecordedFrame {
+    /// Whether it was submitted while earlier frames were unfinished.
+    pub(crate) fn is_in_flight(&self) -> bool {
+        let configured = self.configured.as_ref();
+        configured.is_some_and(|configured| configured.submission == Submission::InFlight)
+    }
+
     /// All that is known of it but the time until it was ready, which is whoever's who waited.
     pub(crate) fn stats(&self) -> FrameStats {
         let passes = self.pass_times();

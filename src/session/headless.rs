@@ -139,6 +139,7 @@ impl Headless {
     }
 }
 
+#[cfg(feature = "lab")]
 mod working;
 
 #[cfg(test)]

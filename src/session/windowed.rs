@@ -199,7 +199,8 @@ impl Windowed {
             return Ok(None);
         };
         let outcome = renderer.outcome(frame);
-        if outcome != Outcome::Unchanged {
+        // A picture beside the window is not the window's frame.
+        if outcome != Outcome::Unchanged && frame.is_in_flight() {
             self.stats = Some(frame.stats());
         }
         Ok(Some(outcome))

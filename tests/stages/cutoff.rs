@@ -6,10 +6,12 @@ use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings};
 
 use crate::frame::{self, SIZES, Stages};
 
-/// The planes are on each pixel's line of sight; the splat reaches behind the eye; a plane's z is a polynomial.
-const RAY: u32 = 1;
+/// The planes are on each pixel's line of sight; the splat reaches behind the eye; a plane's z is a polynomial; the planes
+/// are the complements of a union's.
+const BEAM: u32 = 1;
 const FRONT: u32 = 2;
 const CURVE: u32 = 4;
+const UNION: u32 = 8;
 
 /// How far apart device and twin are.
 #[derive(Debug, Default, Clone, Copy)]
@@ -21,8 +23,11 @@ struct Apart {
     planes: f32,
     /// Of the alpha of what is fitted.
     curves: f64,
-    /// Records of each kind: carried, curves, rays, rays before the eye.
+    /// Records of each kind: carried, curves, beams, beams before the eye.
     kinds: [usize; 4],
+    /// Records whose planes were compared, of intersections and of unions, and those that hold another number of them.
+    compared: [usize; 2],
+    other: usize,
 }
 
 #[test]
@@ -37,8 +42,10 @@ fn records_are_the_twins() {
                 (Mode::Exact, ExactForm::Affine, 1, ClipOp::And),
                 (Mode::Exact, ExactForm::Affine, 3, ClipOp::Or),
                 (Mode::Exact, ExactForm::Beam, 3, ClipOp::And),
+                (Mode::Exact, ExactForm::Beam, 3, ClipOp::Or),
                 (Mode::Exact, ExactForm::Auto, 1, ClipOp::And),
                 (Mode::Rara, ExactForm::Auto, 2, ClipOp::And),
+                (Mode::Rara, ExactForm::Auto, 2, ClipOp::Or),
             ] {
                 let settings = Settings::default()
                     .mode(mode)
@@ -60,6 +67,10 @@ fn records_are_the_twins() {
     // Twice the fit's tolerance: pixels lie between its samples.
     assert!(worst.curves <= 3e-4, "{worst:?}");
     assert!(worst.kinds.iter().all(|&count| count > 20), "{worst:?}");
+    assert!(worst.compared.iter().all(|&count| count > 100), "{worst:?}");
+    // A plane at the edge of the band cuts one of the two only.
+    let all = worst.compared[0] + worst.compared[1];
+    assert!(worst.other <= 1 + all / 1_000, "{worst:?}");
 }
 
 fn compare(
@@ -85,33 +96,37 @@ fn compare(
         let aside = [0, 1].map(|axis| footprint.pixel[axis] - single.principal[axis]);
         let flags = record[0][3] as u32;
         let count = (flags >> 8) as usize;
-        match (&twin, flags & (RAY | CURVE)) {
+        let is_alone = count == 1 && settings.mode == Mode::Exact && flags & FRONT == 0;
+        let is_union = clip.op == ClipOp::Or && clip.planes.len() > 1 && !is_alone;
+        assert_eq!(flags & UNION != 0, is_union, "{index}: flags {flags}");
+        match (&twin, flags & (BEAM | CURVE)) {
             (Cut::Affine { planes, .. }, 0) => {
                 assert!(planes.len() == 1 && count == 1);
                 worst.kinds[0] += 1;
                 assert_eq!(record[4], [0.0; 4], "no curvature");
                 compare_z(&record[3], planes[0].z, &footprint, worst);
             }
-            (Cut::Affine { planes, .. }, RAY) => {
+            (Cut::Affine { planes, .. }, BEAM) => {
                 if planes.len() == count {
                     worst.kinds[2] += 1;
                     let still = vec3(0.0, 0.0, 0.0);
                     compare_rays(record, footprint.gradients, still, [0.0; 2], worst);
                 }
             }
-            (Cut::Beam(beam), RAY) => {
+            (Cut::Beam(beam), BEAM) => {
                 assert_eq!(beam.front.is_some(), flags & FRONT != 0, "{index}");
                 worst.kinds[2 + usize::from(flags & FRONT != 0)] += 1;
                 compare_rays(record, beam.gradients, beam.lean, aside, worst);
-                compare_planes(&record[3..], count, &beam.planes, worst);
+                compare_planes(&record[3..], (count, is_union), &beam.planes, worst);
                 if let Some(front) = &beam.front {
-                    compare_planes(&record[3 + count..], 1, std::slice::from_ref(front), worst);
+                    let front = std::slice::from_ref(front);
+                    compare_planes(&record[3 + count..], (1, false), front, worst);
                 }
             }
-            (Cut::Chord(chord), RAY) => {
+            (Cut::Chord(chord), BEAM) => {
                 let lean = chord.rows[2] * (1.0 / chord.depth);
                 compare_rays(record, chord.gradients, lean, aside, worst);
-                compare_planes(&record[3..], count, &chord.planes, worst);
+                compare_planes(&record[3..], (count, is_union), &chord.planes, worst);
             }
             (Cut::Beam(_), _) => {
                 worst.kinds[usize::from(flags & CURVE != 0)] += 1;
@@ -183,21 +198,24 @@ fn compare_rays(
 
 fn compare_planes(
     records: &[[f32; 4]],
-    count: usize,
+    (count, is_union): (usize, bool),
     planes: &[UnitPlane<f32>],
     worst: &mut Apart,
 ) {
     if planes.len() != count {
-        return; // a tie: the band's edge
+        worst.other += 1;
+        return;
     }
+    worst.compared[usize::from(is_union)] += 1;
+    let sign = if is_union { -1.0 } else { 1.0 };
     for (&[x, y, z, distance], plane) in records.iter().zip(planes) {
         let size = plane.normal.largest();
         if size > 0.0 {
-            let ours = Vec3::new(x, y, z);
+            let ours = sign * Vec3::new(x, y, z);
             let twin = Vec3::new(plane.normal.x, plane.normal.y, plane.normal.z) / size;
             let apart = (ours - twin).abs().max_element();
             let offset = plane.offset / size;
-            let far = (distance - offset).abs() / offset.abs().max(1.0);
+            let far = (sign * distance - offset).abs() / offset.abs().max(1.0);
             worst.planes = worst.planes.max(apart).max(far);
         }
     }

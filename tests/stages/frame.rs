@@ -78,7 +78,7 @@ impl Stages {
         survivors
     }
 
-    /// The same after a sweep, whose survivors are all in view, clipped away or not.
+    /// The same after a reclipped frame, whose survivors are all in view, clipped away or not.
     pub fn survivors_in_view(&mut self) -> Vec<[u32; 2]> {
         let in_view = self.counts().mesh_groups[3] as usize;
         let mut survivors = self.read("survivors");

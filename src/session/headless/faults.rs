@@ -10,7 +10,7 @@ use crate::settings::Raster;
 use ash::vk::{self, Result as Code};
 use glam::DVec3;
 
-/// A scene, a frame of it from nothing, a sweep's frames, and pictures of the first and the last.
+/// A scene, a frame of it from nothing, reclipped frames, and pictures of the first and the last.
 fn life(headless: &mut Headless, raster: Raster) -> Result<[Picture; 2]> {
     let scene = generate(Kind::General, 600, 1);
     let camera = Camera::frame(&Bounds::of(&scene), -DVec3::Y, 50.0, (24, 16))?;
@@ -112,7 +112,7 @@ fn fails(device: &Device, call: &'static &'static str, after: usize) -> bool {
             let says = text.contains("memory") || text.contains("allocated");
             assert!(says, "{text}");
         }
-        // Times are left out, tiles become quads and a sweep's frame one of its own.
+        // Times are left out, tiles become quads and a reclipped frame a whole one.
         None => {
             let tolerated = [
                 "vkGetQueryPoolResults",

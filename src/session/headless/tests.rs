@@ -26,7 +26,7 @@ fn what_tiles_never_have_room_for_is_drawn_as_quads() {
     headless.session.renderer.limit_pairs(1 << 11);
     let bounds = Bounds::of(&scene);
     let camera = Camera::frame(&bounds, -DVec3::Y, 50.0, (200, 150)).expect("a view");
-    // The second and the third are a sweep, whose base has no room either.
+    // The second and the third are reclipped frames, whose base has no room either.
     for offset in [0.0, 0.1, 0.2] {
         let clip = Clip {
             planes: vec![Plane::new(DVec3::X, offset).expect("a finite normal")],
@@ -167,7 +167,7 @@ fn blocks_change_nothing() {
                 DVec3::new(-0.4, -0.2, 0.7),
             ];
             let (planes, op) = (pick(4), [ClipOp::And, ClipOp::Or][pick(2)]);
-            // The second begins a sweep, the third goes on with it.
+            // The second and the third are reclipped frames.
             for share in [0.02, 0.5, 0.8].map(|share| share + 0.01 * pick(10) as f64) {
                 let plane = |&normal: &DVec3| {
                     let (low, high) = extent_along(&scene, normal);
@@ -259,7 +259,7 @@ fn an_error_comes_behind_what_the_layer_has_said() {
     }
 }
 
-/// Tiles that end beyond the picture, in more than one strip; every way to weigh, and a sweep.
+/// Tiles that end beyond the picture, in more than one strip; every way to weigh, and reclipped frames.
 #[test]
 fn subgroups_that_load_splats_together_change_nothing() {
     let scene = generate(Kind::General, 3_000, 1);

@@ -1,8 +1,47 @@
-//! The frame, from its constants to the draw.
+//! The frame on one page: its stages in order, from its constants to the draw.
 
 use crate::gpu::{Buffer, Recorder};
-use crate::passes::stage::{Frame, STAGES};
+use crate::passes::pipelines::PipelineKey;
+use crate::passes::plan::Plan;
+use crate::passes::stage::{Frame, Stage, Targets};
 use crate::passes::work::Work;
+use crate::passes::{
+    bin, blocks, classify, clip, compact, cutoff, depth, project, reclip, sort, splat, tiles,
+};
+
+/// All stages in the order in which a frame has them. Nothing waits or is read back in between; each stage's work follows
+/// from what the ones before it left on the device.
+pub(crate) const STAGES: [&Stage; 13] = [
+    // On which side of the clip each block of Gaussians lies, and each Gaussian of those that it cuts.
+    &clip::STAGE,
+    // Which blocks are in view.
+    &blocks::STAGE,
+    // Which Gaussians of those that are so in part.
+    &classify::STAGE,
+    // Their numbers, in order, and the sizes of all that follows.
+    &compact::STAGE,
+    // What the fragment stage needs of the cut ones.
+    &cutoff::STAGE,
+    // Conic, quad, colour and depth key of the survivors.
+    &project::STAGE,
+    // Their order.
+    &sort::STAGE,
+    // Which of them each tile of pixels holds.
+    &bin::STAGE,
+    // The camera stands still and the clip has moved: which Gaussians in view change their class,
+    &reclip::RECLIP,
+    // what the fragment stage needs of those that are cut now,
+    &cutoff::STAGE_OF_RECLIP,
+    // and what the rasteriser holds of all that change.
+    &reclip::RECUT,
+    // The pixels, front to back.
+    &tiles::STAGE,
+    // How deep the splats are, for who asks.
+    &depth::STAGE,
+];
+
+/// The name of the draw, the last step.
+pub(crate) const DRAW: &str = "splat";
 
 /// Records everything up to the draw. `readback` gets a copy of the counts for the host.
 pub(crate) fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>, readback: &Buffer) {
@@ -28,4 +67,33 @@ pub(crate) fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>, readback: &
     });
     let order = &b.order[plan.sorted()];
     recorder.ready_to_draw(&[&b.frame, &b.counts, &b.splats, order, &b.cuts]);
+}
+
+impl Plan {
+    /// The pipelines of the whole frame.
+    pub(crate) fn pipelines(&self, targets: Targets, need: &mut dyn FnMut(PipelineKey)) {
+        for stage in STAGES.iter().filter(|stage| (stage.needed)(self)) {
+            (stage.pipelines)(self, need);
+        }
+        need(splat::draw(self, targets.colour).key());
+        if self.is_tiled() {
+            need(tiles::composite(targets.colour).key());
+        }
+        if let Some(attachments) = targets.expected_depth {
+            need(depth::draw(self, attachments).key());
+        }
+    }
+
+    /// The stages that this frame does not need, among those of a whole one.
+    pub(crate) fn skipped(&self) -> Vec<&'static str> {
+        let is_empty = self.gaussians() == 0;
+        let missed = |stage: &&&Stage| (stage.missed)(self) && (is_empty || !(stage.needed)(self));
+        let mut skipped: Vec<_> = STAGES
+            .iter()
+            .filter(missed)
+            .map(|stage| stage.name)
+            .collect();
+        skipped.extend(is_empty.then_some(DRAW));
+        skipped
+    }
 }

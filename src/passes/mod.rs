@@ -1,4 +1,4 @@
-//! The stages of the frame, one file each: buffers in, buffers out. [`stage::STAGES`] lists them in order.
+//! The stages of the frame, one file each: buffers in, buffers out. [`frame::STAGES`] lists them in order.
 
 mod bin;
 mod block_list;
@@ -32,11 +32,11 @@ mod work;
 mod working;
 
 pub(crate) use buffers::Buffers;
-pub(crate) use frame::record;
+pub(crate) use frame::{DRAW, record};
 pub(crate) use occluders::Occluders;
 pub(crate) use pipelines::Pipelines;
 pub(crate) use plan::{Plan, SceneFacts};
 pub use scene_buffers::{SceneBuffers, Staging};
-pub(crate) use stage::{DRAW, Frame, Targets};
+pub(crate) use stage::{Frame, Targets};
 pub(crate) use tiles::TileWork;
 pub(crate) use work::{Kept, Work};

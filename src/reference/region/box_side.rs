@@ -3,12 +3,13 @@
 use glam::DVec3;
 
 use super::Side;
-use crate::{Clip, ClipOp, Mode, Plane, Settings};
+use super::sides::combined;
+use crate::{Clip, Mode, Plane, Settings};
 
 /// Gaussians whose centres lie in a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// The box's middle and half its sides, world units.
+    /// The box's middle, world units.
     pub middle: DVec3,
     /// Half its sides, world units.
     pub half: DVec3,
@@ -27,21 +28,11 @@ pub fn box_side(bounds: &Bounds, clip: &Clip, settings: &Settings) -> Side {
     if settings.trace_all && settings.mode != Mode::Hard {
         return Side::Cutoff;
     }
-    let (decides, undecided) = match clip.op {
-        ClipOp::And => (Side::Invisible, Side::Visible),
-        ClipOp::Or => (Side::Visible, Side::Invisible),
-    };
-    let mut side = undecided;
-    for plane in &clip.planes {
-        let one = plane_box_side(plane, bounds, settings);
-        if one == decides {
-            return one;
-        }
-        if one == Side::Cutoff {
-            side = one;
-        }
-    }
-    side
+    let planes = clip.planes.iter();
+    combined(
+        clip.op,
+        planes.map(|plane| plane_box_side(plane, bounds, settings)),
+    )
 }
 
 fn plane_box_side(plane: &Plane, bounds: &Bounds, settings: &Settings) -> Side {

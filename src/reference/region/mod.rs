@@ -5,6 +5,7 @@ mod box_side;
 mod gaussian_side;
 mod plane;
 mod share;
+mod sides;
 
 pub use box_side::{Bounds, box_side};
 pub use gaussian_side::gaussian_side;

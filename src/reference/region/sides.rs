@@ -1,0 +1,23 @@
+//! How the surfaces' answers make the region's.
+
+use super::Side;
+use crate::ClipOp;
+
+/// The region's side of something, from what each of its surfaces says of it. What one drops no intersection holds and
+/// what one keeps every union does, whatever the others say; else it is cut where one of them cuts it.
+pub(super) fn combined(op: ClipOp, sides: impl Iterator<Item = Side>) -> Side {
+    let (decides, undecided) = match op {
+        ClipOp::And => (Side::Invisible, Side::Visible),
+        ClipOp::Or => (Side::Visible, Side::Invisible),
+    };
+    let mut side = undecided;
+    for one in sides {
+        if one == decides {
+            return one;
+        }
+        if one == Side::Cutoff {
+            side = one;
+        }
+    }
+    side
+}

@@ -3,10 +3,10 @@
 #define RARA_BAND
 #include "footprint.glsl"
 
-// Whether the exact form of a splat follows each pixel's true ray.
+// Whether the exact form of a splat follows each pixel's true ray. `sigma` is its largest deviation, the layer's units.
 bool is_beam(Footprint f, float sigma) {
     return FRAME.weight.form == FORM_BEAM
-        || (FRAME.weight.form == FORM_AUTO && (f.clamped || sigma > FRAME.weight.beam_switch * f.view.z));
+        || (FRAME.weight.form == FORM_AUTO && (f.clamped || LAYER.view.unit * sigma > FRAME.weight.beam_switch * f.view.z));
 }
 
 // How far the band of a splat reaches whose weight follows each pixel's true ray: a pixel at delta sees the point u with
@@ -39,7 +39,7 @@ float beam_band(Footprint f, float extent) {
     if (rest > WIDENING_REST) {
         return extent * stretch / rest;
     }
-    mat3 m = f.world_factor;
+    mat3 m = f.layer_factor;
     vec3 eye = f.relative * m / vec3(dot(m[0], m[0]), dot(m[1], m[1]), dot(m[2], m[2]));
     // What is no number bounds nothing: every plane then cuts.
     return length(eye) + BEYOND_EYE;

@@ -2,7 +2,9 @@
 // reaches there. Exact but for a margin, where a bounding box would give a slanting needle its whole square.
 #ifndef RARA_BIN
 #define RARA_BIN
-#include "quad.glsl"
+#include "cut.glsl"
+#include "extent.glsl"
+#include "frame.glsl"
 #include "runs.glsl"
 
 struct Outline {

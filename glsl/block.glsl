@@ -25,12 +25,13 @@ uint block_clip_side(Block block, float widening) {
     return box_side(block_middle(block), block_half(block), reach, abs(block.high_sigma.w));
 }
 
-// A linear function a x + b z of the camera's frame over the box: its middle and by how much it can differ from that.
+// A linear function a x + b z of the camera's frame over the box: its middle and by how much it can differ from that, the
+// scene's units.
 vec2 range_over(vec3 relative, vec3 half_box, vec3 row, float a, float b) {
-    vec3 gradient = a * row + b * FRAME.view.rotation_z.xyz;
+    vec3 gradient = a * row + b * LAYER.view.rotation_z.xyz;
     float spread = dot(abs(gradient), half_box);
     // The eye's rows and the differences are rounded.
-    float slack = 4e-6 * (abs(a) + abs(b)) * (length(relative) + length(half_box));
+    float slack = LAYER.view.unit * 4e-6 * (abs(a) + abs(b)) * (length(relative) + length(half_box));
     return vec2(dot(gradient, relative), spread + slack);
 }
 
@@ -53,9 +54,9 @@ uint axis_side(vec3 relative, vec3 half_box, vec3 row, float focal, float centre
 
 // SIDE_CULLED where no Gaussian is in view, SIDE_VISIBLE where all are, else SIDE_CUTOFF.
 uint block_view_side(Block block) {
-    float reach = block.low_reach.w;
-    float sigma = block.high_sigma.w;
-    if (reach < 0.0) {
+    float reach = LAYER.view.unit * block.low_reach.w;
+    float sigma = LAYER.view.unit * block.high_sigma.w;
+    if (reach < 0.0 || LAYER.content.visible == 0u) {
         return SIDE_CULLED;
     }
     vec3 relative = eye_relative(block_middle(block));
@@ -67,17 +68,18 @@ uint block_view_side(Block block) {
         return SIDE_CULLED;
     }
     vec4 focal = FRAME.view.focal;
-    uint x = axis_side(relative, half_box, FRAME.view.rotation_x.xyz, focal.x, focal.z, FRAME.view.size.x, FRAME.view.slope_bounds.xy, reach);
-    uint y = axis_side(relative, half_box, FRAME.view.rotation_y.xyz, focal.y, focal.w, FRAME.view.size.y, FRAME.view.slope_bounds.zw, reach);
+    uint x = axis_side(relative, half_box, LAYER.view.rotation_x.xyz, focal.x, focal.z, FRAME.view.size.x, FRAME.view.slope_bounds.xy, reach);
+    uint y = axis_side(relative, half_box, LAYER.view.rotation_y.xyz, focal.y, focal.w, FRAME.view.size.y, FRAME.view.slope_bounds.zw, reach);
     if (x == SIDE_CULLED || y == SIDE_CULLED) {
         return SIDE_CULLED;
     }
-    bool drawable = sigma >= 0.0 && nearest > 1.0001 * NEAR_Z
+    // A layer's opacity may leave some of them fainter than the block knows.
+    bool drawable = sigma >= 0.0 && LAYER.content.opacity == 1.0 && nearest > 1.0001 * NEAR_Z
         && 4.0 * sigma * max(focal.x, focal.y) < DRAWABLE_DEVIATION * nearest;
     return x == SIDE_VISIBLE && y == SIDE_VISIBLE && drawable ? SIDE_VISIBLE : SIDE_CUTOFF;
 }
 
-// Least depth of a centre.
+// Least depth of a centre, the scene's units.
 float block_nearest(Block block) {
     vec2 depth = range_over(eye_relative(block_middle(block)), block_half(block), vec3(0.0), 0.0, 1.0);
     return depth.x - depth.y;
@@ -91,12 +93,12 @@ bool may_be_beam(Block block) {
     vec3 relative = eye_relative(block_middle(block));
     vec3 half_box = block_half(block);
     vec4 bounds = FRAME.view.slope_bounds;
-    vec2 left = range_over(relative, half_box, FRAME.view.rotation_x.xyz, 1.0, -bounds.x);
-    vec2 right = range_over(relative, half_box, FRAME.view.rotation_x.xyz, 1.0, -bounds.y);
-    vec2 top = range_over(relative, half_box, FRAME.view.rotation_y.xyz, 1.0, -bounds.z);
-    vec2 bottom = range_over(relative, half_box, FRAME.view.rotation_y.xyz, 1.0, -bounds.w);
+    vec2 left = range_over(relative, half_box, LAYER.view.rotation_x.xyz, 1.0, -bounds.x);
+    vec2 right = range_over(relative, half_box, LAYER.view.rotation_x.xyz, 1.0, -bounds.y);
+    vec2 top = range_over(relative, half_box, LAYER.view.rotation_y.xyz, 1.0, -bounds.z);
+    vec2 bottom = range_over(relative, half_box, LAYER.view.rotation_y.xyz, 1.0, -bounds.w);
     bool clamped = !(left.x - left.y > 0.0 && right.x + right.y < 0.0 && top.x - top.y > 0.0 && bottom.x + bottom.y < 0.0);
-    return FRAME.weight.form == FORM_BEAM || clamped || abs(block.high_sigma.w) > FRAME.weight.beam_switch * max(block_nearest(block), 0.0);
+    return FRAME.weight.form == FORM_BEAM || clamped || LAYER.view.unit * abs(block.high_sigma.w) > FRAME.weight.beam_switch * max(block_nearest(block), 0.0);
 }
 
 // The clip's side of a block that is in view as a whole, so that no slope is clamped. Without large splats it does not
@@ -105,13 +107,8 @@ uint block_side_in_view(Block block, uint side) {
     if (!may_be_beam(block)) {
         return side;
     }
-    float rest = 1.0 - 1.001 * block.low_reach.w / block_nearest(block);
+    float rest = 1.0 - 1.001 * LAYER.view.unit * block.low_reach.w / block_nearest(block);
     return rest > WIDENING_REST ? block_clip_side(block, 1.0 / rest) : SIDE_CUTOFF;
-}
-
-// Gaussians of a block: all but the last are full.
-uint block_length(uint block) {
-    return min(FRAME.scene.gaussian_count - block * BLOCK_SIZE, BLOCK_SIZE);
 }
 
 #endif

@@ -5,7 +5,8 @@ struct Params {
     uint stage; // which stage they are for: 0 clip, 1 classify
 };
 #define PARAMS Params
-#include "block.glsl"
+#include "frame.glsl"
+#include "region/sides.glsl"
 #include "groups.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;

@@ -6,15 +6,16 @@
 layout(local_size_x = BLOCK_GROUP_SIZE) in;
 layout(constant_id = 0) const bool CLIP = false;
 
-BUFFER(readonly, 1, Block, blocks)
-BUFFER(readonly, 2, uint, clip_sides)
-BUFFER(writeonly, 3, uint, block_sides)
+BUFFER(readonly, 2, Block, blocks)
+BUFFER(readonly, 3, uint, clip_sides)
+BUFFER(writeonly, 4, uint, block_sides)
 
 void main() {
     uint block = LINEAR_GROUP * BLOCK_GROUP_SIZE + gl_LocalInvocationIndex;
     if (block >= FRAME.scene.block_count) {
         return;
     }
+    enter_layer_of_block(block);
     uint side = block_view_side(blocks.at[block]);
     if (CLIP && side == SIDE_VISIBLE) {
         side = block_side_in_view(blocks.at[block], clip_sides.at[block]);

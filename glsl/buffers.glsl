@@ -24,8 +24,8 @@ layout(push_constant, std430) uniform Push {
     PARAMS params;
 } push;
 #endif
-#define BUFFER(access, index, Type, name) \
-    layout(set = 0, binding = index, std430) access buffer name##Block { Type at[]; } name;
+#define BUFFER_OF(access, index, name, members) \
+    layout(set = 0, binding = index, std430) access buffer name##Block { members; } name;
 #else
 layout(push_constant, std430) uniform Push {
     uvec2 address[MAX_BUFFERS];
@@ -33,10 +33,11 @@ layout(push_constant, std430) uniform Push {
     PARAMS params;
 #endif
 } push;
-#define BUFFER(access, index, Type, name) \
-    layout(buffer_reference, std430, buffer_reference_align = 16) access buffer name##Block { Type at[]; }; \
+#define BUFFER_OF(access, index, name, members) \
+    layout(buffer_reference, std430, buffer_reference_align = 16) access buffer name##Block { members; }; \
     name##Block name = name##Block(push.address[index]);
 #endif
+#define BUFFER(access, index, Type, name) BUFFER_OF(access, index, name, Type at[])
 
 // The number of this workgroup when a dispatch is folded into rows.
 #define LINEAR_GROUP (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x)

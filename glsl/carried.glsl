@@ -2,6 +2,7 @@
 #ifndef RARA_CARRIED
 #define RARA_CARRIED
 #include "bin.glsl"
+#include "quad.glsl"
 
 Carried whole_weight() {
     return Carried(vec3(Z_WHOLE, 0.0, 0.0), vec3(0.0));

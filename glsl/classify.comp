@@ -3,18 +3,20 @@
 // One workgroup a block that neither view nor clip settles as a whole, one invocation a Gaussian: view culling by
 // footprint, opacity and size; of what is in view, the clip's class. Writes one bit a Gaussian (survives; is cut) and the
 // block's totals; compact turns them into ordered lists.
+#include "band.glsl"
 #include "masks.glsl"
+#include "region/gaussian_side.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
 layout(constant_id = 0) const bool CLIP = false;
 
-BUFFER(readonly, 1, Gaussian, gaussians)
-BUFFER(readonly, 2, uint, block_list)
-BUFFER(readonly, 3, FrameCounts, counts)
-BUFFER(readonly, 4, uint, clip_sides)
-BUFFER(readonly, 5, uint, clip_masks)
-BUFFER(writeonly, 6, uint, masks)
-BUFFER(writeonly, 7, uvec4, block_counts)
+BUFFER(readonly, 2, Gaussian, gaussians)
+BUFFER(readonly, 3, uint, block_list)
+BUFFER(readonly, 4, FrameCounts, counts)
+BUFFER(readonly, 5, uint, clip_sides)
+BUFFER(readonly, 6, uint, clip_masks)
+BUFFER(writeonly, 7, uint, masks)
+BUFFER(writeonly, 8, uvec4, block_counts)
 
 shared uint survivor_mask[WORDS];
 shared uint cutoff_mask[WORDS];
@@ -42,9 +44,9 @@ uint clip_stage_side(uint block, uint local) {
 uint classify(uint block, uint local) {
     uint index = block * BLOCK_SIZE + local;
     Gaussian gaussian = gaussians.at[index];
-    float opacity = gaussian.position_opacity.w;
+    float opacity = opacity_in_layer(gaussian);
     // Depth first: it is cheap and drops what is behind the eye. Negated, so that a NaN is culled too.
-    float depth = dot(FRAME.view.rotation_z.xyz, eye_relative(gaussian.position_opacity.xyz));
+    float depth = dot(LAYER.view.rotation_z.xyz, eye_relative(gaussian.position_opacity.xyz));
     if (!(depth >= NEAR_Z) || opacity < ALPHA_MIN) {
         return SIDE_CULLED;
     }
@@ -61,7 +63,7 @@ uint classify(uint block, uint local) {
     }
     float sigma = largest(gaussian.scale.xyz);
     if (FRAME.region.mode == MODE_EXACT && is_beam(f, sigma)) {
-        return gaussian_side(f.world_factor, gaussian.position_opacity.xyz, band_in_view(f, sigma, extent));
+        return gaussian_side(f.layer_factor, gaussian.position_opacity.xyz, band_in_view(f, sigma, extent));
     }
     return clip_stage_side(block, local);
 }
@@ -81,7 +83,8 @@ void main() {
     uint group = LINEAR_GROUP;
     bool is_block = group < counts.at[0].classify_groups.w;
     uint block = is_block ? block_list.at[group] : 0u;
-    if (is_block && block * BLOCK_SIZE + local < FRAME.scene.gaussian_count) {
+    enter_layer_of_block(block);
+    if (is_block && local < block_length(block)) {
         uint side = classify(block, local);
         uint bit = 1u << (local & 31u);
         // Sums and unions do not depend on the order of atomics.

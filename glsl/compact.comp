@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // One workgroup a block with survivors, one invocation a Gaussian: ordered stream compaction. The place of a survivor is
 // its block's offset plus the set bits before its own, so the lists are in the order of the scene in every run.
+#include "layer.glsl"
 #include "masks.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
@@ -30,10 +31,11 @@ void main() {
         return;
     }
     uint block = block_list.at[group];
-    uint index = block * BLOCK_SIZE + local;
-    if (index >= FRAME.scene.gaussian_count) {
+    enter_layer_of_block(block);
+    if (local >= block_length(block)) {
         return;
     }
+    uint index = block * BLOCK_SIZE + local;
     uvec2 offset = block_offsets.at[block];
     if (block_sides.at[block] == SIDE_VISIBLE) {
         survivors.at[offset.x + local] = uvec2(index, NOT_CUT);

@@ -2,7 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // One workgroup: turns the blocks' totals into each one's place in the lists, the frame's counts and the indirect
 // commands of everything after. Each invocation owns a run of blocks, so the order is that of the scene.
-#include "block.glsl"
+#include "layer.glsl"
+#include "region/sides.glsl"
 #include "groups.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
@@ -17,6 +18,7 @@ shared uvec4 run_totals[BLOCK_SIZE];
 
 // Visible, cut and invisible Gaussians of a block, and 1 where some survive.
 uvec4 totals_of(uint block) {
+    enter_layer_of_block(block);
     uint side = block_sides.at[block];
     uvec3 totals = side == SIDE_CUTOFF ? block_counts.at[block].xyz
         : uvec3(side == SIDE_VISIBLE ? 1u : 0u, 0u, side == SIDE_INVISIBLE ? 1u : 0u) * block_length(block);

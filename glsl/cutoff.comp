@@ -8,15 +8,15 @@
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 
-BUFFER(readonly, 1, Gaussian, gaussians)
-BUFFER(readonly, 2, uint, cutoffs)
-BUFFER(readonly, 3, FrameCounts, counts)
-BUFFER(writeonly, 4, vec4, cuts)
+BUFFER(readonly, 2, Gaussian, gaussians)
+BUFFER(readonly, 3, uint, cutoffs)
+BUFFER(readonly, 4, FrameCounts, counts)
+BUFFER(writeonly, 5, vec4, cuts)
 
 // A plane in the beam form. Dividing by the largest component keeps the squares of sigmas of 1e5 and 1e-7 in range.
-vec4 beam_plane(vec3 normal, float distance) {
-    float size = largest(normal);
-    return size > 0.0 ? vec4(normal, distance) / size : vec4(vec3(0.0), distance >= 0.0 ? 1.0 : -1.0);
+vec4 beam_plane(vec4 half_space) {
+    float size = largest(half_space.xyz);
+    return size > 0.0 ? half_space / size : vec4(vec3(0.0), half_space.w >= 0.0 ? 1.0 : -1.0);
 }
 
 // One plane in the affine form. Given the pixel, the Gaussian seen through the low-pass has, along the plane's normal,
@@ -44,10 +44,13 @@ void main() {
     if (cut >= counts.at[0].cutoff) {
         return;
     }
-    Gaussian gaussian = gaussians.at[cutoffs.at[cut]];
+    uint index = cutoffs.at[cut];
+    enter_layer_of_block(index / BLOCK_SIZE);
+    Gaussian gaussian = gaussians.at[index];
     vec3 position = gaussian.position_opacity.xyz;
     Footprint f = footprint(gaussian);
-    float extent = opacity_extent(gaussian.position_opacity.w);
+    float opacity = opacity_in_layer(gaussian);
+    float extent = opacity_extent(opacity);
     float sigma = largest(gaussian.scale.xyz);
     float deviations = band_in_view(f, sigma, extent);
 
@@ -57,15 +60,13 @@ void main() {
 
     uint base = cut * FRAME.weight.cut_stride;
     uint at = base + CUT_HEADER;
-    uint kept = FRAME.region.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
-    bool is_union = FRAME.region.op == OP_OR && FRAME.region.plane_count > 1u;
+    bool is_union = LAYER.region.op == OP_OR && LAYER.region.surface_count > 1u;
     vec4 form;
-    for (uint plane = 0u; plane < FRAME.region.plane_count; plane++) {
-        float distance = plane_distance(plane, position);
-        vec3 normal = unit_normal(plane, f.world_factor);
-        // A plane that keeps the whole splat changes no intersection, one that drops it no union.
-        if (plane_gaussian_side(distance, normal, deviations) != kept) {
-            form = beam_plane(normal, distance);
+    for (uint i = 0u; i < LAYER.region.surface_count; i++) {
+        uint surface = LAYER.region.first_surface + i;
+        // A surface that keeps the whole splat changes no intersection, one that drops it no union.
+        if (surface_gaussian_side(surface, f.layer_factor, position, deviations) != side_undecided()) {
+            form = beam_plane(surface_half_space(surface, f.layer_factor, position));
             cuts.at[at++] = is_union ? -form : form;
         }
     }
@@ -113,7 +114,6 @@ void main() {
         Curve square;
         Curve quartic;
         fitted(samples, square, quartic);
-        float opacity = gaussian.position_opacity.w;
         if (is_good(square, samples, opacity, extent)) {
             vec3 plane;
             vec3 curvature;
@@ -133,7 +133,7 @@ void main() {
     }
     if (front) {
         flags |= CUT_FRONT;
-        cuts.at[at] = beam_plane(f.m3, f.view.z);
+        cuts.at[at] = beam_plane(vec4(f.m3, f.view.z));
     }
     cuts.at[base] = vec4(source.h0.xyz, float(flags | CUT_BEAM));
     cuts.at[base + 1u] = source.h1;

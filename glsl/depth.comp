@@ -7,10 +7,10 @@
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 
-BUFFER(readonly, 1, Gaussian, gaussians)
-BUFFER(readonly, 2, uvec2, survivors)
-BUFFER(readonly, 3, FrameCounts, counts)
-BUFFER(writeonly, 4, SplatDepth, depths)
+BUFFER(readonly, 2, Gaussian, gaussians)
+BUFFER(readonly, 3, uvec2, survivors)
+BUFFER(readonly, 4, FrameCounts, counts)
+BUFFER(writeonly, 5, SplatDepth, depths)
 
 // By how much the mean of a.u changes a pixel, given the pixel: the update of affine_plane in cutoff.comp.
 vec2 slope_of(Footprint f, vec3 c, vec3 a) {
@@ -29,20 +29,23 @@ void main() {
     if (survivor >= counts.at[0].visible + counts.at[0].cutoff) {
         return;
     }
-    Gaussian gaussian = gaussians.at[survivors.at[survivor].x];
+    uint index = survivors.at[survivor].x;
+    enter_layer_of_block(index / BLOCK_SIZE);
+    Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
     vec3 c = cross(f.b1, f.b2);
     SplatDepth depth;
-    bool is_union = FRAME.region.op == OP_OR;
+    bool is_union = LAYER.region.op == OP_OR;
     depth.mean = vec4(f.view.z, slope_of(f, c, f.m3), is_union ? 1.0 : 0.0);
     depth.far = vec4(8.0, 0.0, 0.0, 0.0);
     depth.near = depth.far;
-    for (uint plane = 0u; plane < FRAME.region.plane_count && FRAME.region.mode >= MODE_RARA; plane++) {
-        float sign = is_union ? -1.0 : 1.0;
-        vec3 normal = sign * unit_normal(plane, f.world_factor);
-        float size = max(largest(normal), 1e-30);
-        vec3 a = normal / size;
-        float distance = sign * plane_distance(plane, gaussian.position_opacity.xyz) / size;
+    for (uint i = 0u; i < LAYER.region.surface_count && FRAME.region.mode >= MODE_RARA; i++) {
+        vec3 position = gaussian.position_opacity.xyz;
+        vec4 half_space = surface_half_space(LAYER.region.first_surface + i, f.layer_factor, position);
+        half_space = is_union ? -half_space : half_space;
+        float size = max(largest(half_space.xyz), 1e-30);
+        vec3 a = half_space.xyz / size;
+        float distance = half_space.w / size;
         float variance = covariance(f, c, a, a);
         float inverse = inversesqrt(max(variance / f.det, 1e-30));
         float z = clamp(distance * inverse, -1e20, 1e20);

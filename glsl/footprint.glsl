@@ -5,13 +5,14 @@
 // is a sum of non-negative terms where the textbook subtracts.
 #ifndef RARA_FOOTPRINT
 #define RARA_FOOTPRINT
-#include "frame.glsl"
+#include "extent.glsl"
+#include "layer.glsl"
 #include "two_float.glsl"
 
 struct Footprint {
-    vec3 view; // centre in the camera's frame
-    vec3 relative; // centre relative to the eye, world axes
-    mat3 world_factor; // columns: the Gaussian's axes in the world, times their standard deviations
+    vec3 view; // centre in the camera's frame, the scene's units
+    vec3 relative; // centre relative to the eye, the layer's axes and units
+    mat3 layer_factor; // columns: the Gaussian's axes in the layer, times their standard deviations
     vec3 m1, m2, m3; // rows of the view-space factor
     vec3 b1, b2; // screen gradients, times scale
     vec2 slope; // x/z and y/z at which they were evaluated
@@ -34,14 +35,14 @@ mat3 rotation_matrix(vec4 q) {
                 x.z + w.y, yz - w.x, 1.0 - (x.x + yy));
 }
 
-// The centre relative to the eye, world axes.
+// The centre relative to the eye, the layer's axes and units.
 vec3 eye_relative(vec3 position) {
-    return two_float_difference(position, FRAME.view.eye_high.xyz, FRAME.view.eye_low.xyz);
+    return two_float_difference(position, LAYER.view.eye_high.xyz, LAYER.view.eye_low.xyz);
 }
 
 vec3 to_view(vec3 relative) {
-    return vec3(dot(FRAME.view.rotation_x.xyz, relative), dot(FRAME.view.rotation_y.xyz, relative),
-                dot(FRAME.view.rotation_z.xyz, relative));
+    return vec3(dot(LAYER.view.rotation_x.xyz, relative), dot(LAYER.view.rotation_y.xyz, relative),
+                dot(LAYER.view.rotation_z.xyz, relative));
 }
 
 // The centre in the camera's frame.
@@ -49,15 +50,11 @@ vec3 view_position(vec3 position, vec3 relative) {
     if (FRAME.view.precise_view == 0u) {
         return to_view(relative);
     }
-    vec3 high = FRAME.view.eye_high.xyz;
-    vec3 low = FRAME.view.eye_low.xyz;
-    return vec3(two_float_view(FRAME.view.rotation_x.xyz, FRAME.view.rotation_low[0].xyz, position, high, low),
-                two_float_view(FRAME.view.rotation_y.xyz, FRAME.view.rotation_low[1].xyz, position, high, low),
-                two_float_view(FRAME.view.rotation_z.xyz, FRAME.view.rotation_low[2].xyz, position, high, low));
-}
-
-float largest(vec3 v) {
-    return max(abs(v.x), max(abs(v.y), abs(v.z)));
+    vec3 high = LAYER.view.eye_high.xyz;
+    vec3 low = LAYER.view.eye_low.xyz;
+    return vec3(two_float_view(LAYER.view.rotation_x.xyz, LAYER.view.rotation_low[0].xyz, position, high, low),
+                two_float_view(LAYER.view.rotation_y.xyz, LAYER.view.rotation_low[1].xyz, position, high, low),
+                two_float_view(LAYER.view.rotation_z.xyz, LAYER.view.rotation_low[2].xyz, position, high, low));
 }
 
 // Screen gradients at a slope, unscaled.
@@ -66,7 +63,7 @@ void screen_gradients(Footprint f, vec2 slope, out vec3 b1, out vec3 b2) {
     b2 = FRAME.view.focal.y / f.view.z * (f.m2 - slope.y * f.m3);
 }
 
-mat3 world_factor(Gaussian gaussian) {
+mat3 layer_factor(Gaussian gaussian) {
     mat3 axes = rotation_matrix(gaussian.rotation);
     return mat3(axes[0] * gaussian.scale.x, axes[1] * gaussian.scale.y, axes[2] * gaussian.scale.z);
 }
@@ -75,10 +72,10 @@ Footprint footprint(Gaussian gaussian) {
     Footprint f;
     f.relative = eye_relative(gaussian.position_opacity.xyz);
     f.view = view_position(gaussian.position_opacity.xyz, f.relative);
-    f.world_factor = world_factor(gaussian);
-    f.m1 = FRAME.view.rotation_x.xyz * f.world_factor;
-    f.m2 = FRAME.view.rotation_y.xyz * f.world_factor;
-    f.m3 = FRAME.view.rotation_z.xyz * f.world_factor;
+    f.layer_factor = layer_factor(gaussian);
+    f.m1 = LAYER.view.rotation_x.xyz * f.layer_factor;
+    f.m2 = LAYER.view.rotation_y.xyz * f.layer_factor;
+    f.m3 = LAYER.view.rotation_z.xyz * f.layer_factor;
     vec2 slope = f.view.xy / f.view.z;
     f.centre = FRAME.view.focal.xy * slope + FRAME.view.focal.zw;
     f.slope = clamp(slope, FRAME.view.slope_bounds.xz, FRAME.view.slope_bounds.yw);
@@ -108,11 +105,6 @@ vec3 cholesky(Footprint f) {
 // Half the sides of the bounding box of the splat's contour at q = extent^2, px.
 vec2 box_extent(Footprint f, float extent) {
     return extent * sqrt(vec2(f.xx, f.yy)) / f.scale;
-}
-
-// The contour at which alpha falls to 1/255: opacity exp(-K^2/2) = 1/255, in standard deviations.
-float opacity_extent(float opacity) {
-    return sqrt(max(0.0, 2.0 * log(opacity * ALPHA_MIN_INVERSE)));
 }
 
 #endif

@@ -1,8 +1,8 @@
 // A bit for each Gaussian of a block.
 #ifndef RARA_MASKS
 #define RARA_MASKS
-#include "band.glsl"
-#include "region/gaussian_side.glsl"
+#include "frame.glsl"
+#include "region/sides.glsl"
 
 // Words of a block's mask.
 const uint WORDS = BLOCK_SIZE / 32u;

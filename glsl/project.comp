@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // One invocation a survivor: conic, quad and colour for the rasteriser, and the key that orders it.
 #include "footprint.glsl"
+#include "quad.glsl"
 #include "spherical_harmonics.glsl"
-#include "cut.glsl"
 #include "bin.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
@@ -56,9 +56,10 @@ void main() {
         return;
     }
     uint index = survivors.at[survivor].x;
+    enter_layer_of_block(index / BLOCK_SIZE);
     Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
-    float opacity = gaussian.position_opacity.w;
+    float opacity = opacity_in_layer(gaussian);
     float extent = opacity_extent(opacity);
 
     Splat splat;

@@ -77,9 +77,6 @@ float area(Quad quad) {
     return length(quad.first) * length(quad.second);
 }
 
-// Beyond this many deviations behind the plane nothing is drawn: a little more than where tiles take a weight for zero.
-const float TRIM_DEVIATIONS = 4.55;
-
 Quad quad_around(Footprint f, float extent, Carried weight) {
     Quad quad = along_axes(f, extent);
     if (max(largest(vec3(quad.first, 0.0)), largest(vec3(quad.second, 0.0))) > QUAD_MAX_EXTENT) {

@@ -2,17 +2,19 @@
 #extension GL_GOOGLE_include_directive : require
 // One workgroup a block between the clip's old and new surface, one invocation a Gaussian: its class now, and whether what
 // the rasteriser holds of it has to change.
+#include "band.glsl"
 #include "reclip.glsl"
+#include "region/gaussian_side.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
 
-BUFFER(readonly, 1, Gaussian, gaussians)
-BUFFER(readonly, 2, uint, block_list)
-BUFFER(readonly, 3, FrameCounts, counts)
-BUFFER(readonly, 4, uint, revisits)
-BUFFER(readonly, 5, uint, block_sides)
-BUFFER(readonly, 6, uint, masks)
-BUFFER(, 7, uint, reclips)
+BUFFER(readonly, 2, Gaussian, gaussians)
+BUFFER(readonly, 3, uint, block_list)
+BUFFER(readonly, 4, FrameCounts, counts)
+BUFFER(readonly, 5, uint, revisits)
+BUFFER(readonly, 6, uint, block_sides)
+BUFFER(readonly, 7, uint, masks)
+BUFFER(, 8, uint, reclips)
 
 shared uint visible_mask[WORDS];
 shared uint cut_mask[WORDS];
@@ -35,8 +37,8 @@ uint gaussian_side_now(uint block, uint index) {
     }
     Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
-    float extent = opacity_extent(gaussian.position_opacity.w);
-    return gaussian_side(f.world_factor, gaussian.position_opacity.xyz, band_in_view(f, largest(gaussian.scale.xyz), extent));
+    float extent = opacity_extent(opacity_in_layer(gaussian));
+    return gaussian_side(f.layer_factor, gaussian.position_opacity.xyz, band_in_view(f, largest(gaussian.scale.xyz), extent));
 }
 
 bool is_in_view(uint block, uint local) {
@@ -57,8 +59,9 @@ void main() {
     uint group = LINEAR_GROUP;
     bool is_block = group < counts.at[0].clip_groups.w;
     uint block = is_block ? block_list.at[group] : 0u;
-    uint index = block * BLOCK_SIZE + local;
-    if (is_block && index < FRAME.scene.gaussian_count && is_in_view(block, local)) {
+    enter_layer_of_block(block);
+    if (is_block && local < block_length(block) && is_in_view(block, local)) {
+        uint index = block * BLOCK_SIZE + local;
         uint before = gaussian_side_before(block, local);
         uint now = gaussian_side_now(block, index);
         uint word = local >> 5;

@@ -3,7 +3,6 @@
 // are all Gaussians in view, clipped away or not.
 #ifndef RARA_RECLIP
 #define RARA_RECLIP
-#include "block.glsl"
 #include "masks.glsl"
 
 const uint RECLIP_CHANGED = 0u;

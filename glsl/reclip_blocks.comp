@@ -6,15 +6,16 @@ struct Params {
     uint fresh; // 1: the frame before knew no clip
 };
 #define PARAMS Params
+#include "block.glsl"
 #include "reclip.glsl"
 
 layout(local_size_x = BLOCK_GROUP_SIZE) in;
 
-BUFFER(readonly, 1, Block, blocks)
-BUFFER(readonly, 2, uint, block_sides)
-BUFFER(readonly, 3, uvec4, block_counts)
-BUFFER(writeonly, 4, uint, revisits)
-BUFFER(, 5, uint, reclips)
+BUFFER(readonly, 2, Block, blocks)
+BUFFER(readonly, 3, uint, block_sides)
+BUFFER(readonly, 4, uvec4, block_counts)
+BUFFER(writeonly, 5, uint, revisits)
+BUFFER(, 6, uint, reclips)
 
 // Blocks only partly in view may hold Gaussians whose band the camera widens by any amount.
 uint block_side_now(Block block, uint view_side) {
@@ -27,6 +28,7 @@ void main() {
     if (block >= FRAME.scene.block_count) {
         return;
     }
+    enter_layer_of_block(block);
     uint base = block * RECLIP_WORDS;
     uint view_side = block_sides.at[block];
     uint in_view = view_side == SIDE_VISIBLE ? block_length(block) : view_side == SIDE_CUTOFF ? block_counts.at[block].x : 0u;

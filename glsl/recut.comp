@@ -3,7 +3,7 @@
 // One invocation a survivor that a moved clip changes: what of it depends on the clip, and the tiles to draw again. Its
 // place, colour, depth and tiles stay.
 #include "footprint.glsl"
-#include "cut.glsl"
+#include "quad.glsl"
 #include "bin.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
@@ -52,13 +52,15 @@ void main() {
     }
     uint survivor = recuts.at[change].x;
     uint cut = recuts.at[change].y;
-    Gaussian gaussian = gaussians.at[survivors.at[survivor].x];
+    uint index = survivors.at[survivor].x;
+    enter_layer_of_block(index / BLOCK_SIZE);
+    Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
     Carried weight = whole_weight();
     if (cut < CUT_AWAY) {
         weight = carried_weight(cut);
     }
-    float extent = opacity_extent(gaussian.position_opacity.w);
+    float extent = opacity_extent(opacity_in_layer(gaussian));
     if (TILES) {
         mark(survivor, quad_around(f, extent, whole_weight()));
     }

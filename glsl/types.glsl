@@ -13,17 +13,11 @@ struct SceneData {
     uint gaussian_count; // Gaussians in the scene
     uint block_count; // blocks of Gaussians
     uint sh_coefficients; // coefficients a colour channel in the scene
-    uint pad; // unused
+    uint layer_count; // layers of the scene, at least one
 };
 
-// The camera, and what of the scene it looks at.
+// The camera's picture; where the camera stands, each layer has in its own space.
 struct ViewData {
-    vec4 rotation_x; // world to camera, first row; w unused
-    vec4 rotation_y; // second row
-    vec4 rotation_z; // third row: the view direction
-    vec4 rotation_low[3]; // what rounding the rows lost, for views of long focal length
-    vec4 eye_high; // the eye, rounded to single precision; w unused
-    vec4 eye_low; // what the rounding lost
     vec4 focal; // fx, fy, cx, cy, px
     vec4 slope_bounds; // lowest and highest x/z, lowest and highest y/z at which the Jacobian is evaluated
     vec4 size; // width, height, px; reciprocals
@@ -65,16 +59,12 @@ struct WeightData {
     uint pad; // unused
 };
 
-// What is kept of the scene: all that a Gaussian's class depends on besides the Gaussian and, for large ones, the view.
+// What all layers' regions have in common.
 struct RegionData {
     uint mode; // MODE_*
-    uint op; // OP_*
     uint trace_all; // 1: every Gaussian in view is cutoff
     float sigma; // rara: the traced ellipsoid, standard deviations; else 0
-    uint plane_count; // half-spaces of the clip
-    uint pad[3]; // unused
-    vec4 plane_high[MAX_CLIP_PLANES]; // unit normal and distance, rounded to single precision
-    vec4 plane_low[MAX_CLIP_PLANES]; // what the rounding lost
+    uint pad; // unused
 };
 
 // What is constant in a frame.
@@ -86,6 +76,50 @@ struct FrameData {
     RoomData room; // the room that there is
     WeightData weight; // the weights of what is cut
     RegionData region; // what is kept
+};
+
+// The camera as a layer sees it that is placed in the scene. The rows are the layer's rotation times its unit, so that all
+// that is computed in the camera's frame is in the scene's units, and all before it in the layer's own.
+struct LayerView {
+    vec4 rotation_x; // layer to camera, first row; w unused
+    vec4 rotation_y; // second row
+    vec4 rotation_z; // third row: the view direction
+    vec4 rotation_low[3]; // what rounding the rows lost, for views of long focal length
+    vec4 eye_high; // the eye, rounded to single precision; w unused
+    vec4 eye_low; // what the rounding lost
+    float unit; // units of the scene in one of the layer's
+    uint pad[3]; // unused
+};
+
+// What a layer holds, and how much of it shows.
+struct LayerContent {
+    uint first_block; // its first block; the next layer's first one is behind its last
+    uint gaussian_end; // its Gaussians fill its blocks up to this number
+    float opacity; // what its Gaussians' opacities are multiplied by, 0 to 1
+    uint visible; // 0: nothing of it is drawn
+};
+
+// What is kept of a layer.
+struct LayerRegion {
+    uint op; // OP_*: how its surfaces combine
+    uint first_surface; // its first one
+    uint surface_count; // how many it has
+    uint pad; // unused
+};
+
+// A layer of the scene in a frame: a struct for each reason to change, as above.
+struct LayerData {
+    LayerView view; // where the camera is
+    LayerContent content; // its Gaussians
+    LayerRegion region; // what is kept of them
+};
+
+// A surface of a region, in the units of the layer that it cuts.
+struct Surface {
+    vec4 high; // SURFACE_PLANE: unit normal and distance, rounded to single precision
+    vec4 low; // SURFACE_PLANE: what the rounding lost
+    uint kind; // SURFACE_*
+    uint pad[3]; // unused
 };
 
 // A Gaussian without its colour.
@@ -151,6 +185,7 @@ const uint MODE_NONE = 0u;
 const uint MODE_HARD = 1u;
 const uint MODE_RARA = 2u;
 const uint MODE_EXACT = 3u;
+const uint SURFACE_PLANE = 0u;
 const uint OP_AND = 0u;
 const uint OP_OR = 1u;
 const uint DECAY_LINEAR = 0u;

@@ -58,13 +58,13 @@ pub use depth::DepthMap;
 pub use error::{Error, Result};
 #[doc(inline)]
 pub use gpu::PipelineCache;
-pub use passes::{SceneBuffers, Staging};
+pub use passes::{SceneBuffers, SceneLayer, Staging};
 pub use picture::Picture;
 pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 pub use renderer::{DepthDesc, ExpectedDepthDesc, Renderer, RendererDesc};
 #[doc(inline)]
-pub use scene::{Bounds, GaussianArrays, Gaussians};
+pub use scene::{Bounds, GaussianArrays, Gaussians, Layer, LayerState, Scene};
 pub use session::{Headless, HeadlessDesc};
 #[cfg(feature = "view")]
 pub use session::{Redraw, Windowed};

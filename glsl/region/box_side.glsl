@@ -2,7 +2,7 @@
 // where each of them alone would be. Twin: src/reference/region/box_side.rs.
 #ifndef RARA_REGION_BOX_SIDE
 #define RARA_REGION_BOX_SIDE
-#include "region/plane.glsl"
+#include "region/surface.glsl"
 
 // `reach` is the farthest that a contour of 1/255 lies from its centre, and `sigma` the largest standard deviation.
 uint box_side(vec3 middle, vec3 half_size, float reach, float sigma) {
@@ -12,12 +12,8 @@ uint box_side(vec3 middle, vec3 half_size, float reach, float sigma) {
     float traced = FRAME.region.sigma * sigma;
     float support = FRAME.region.mode == MODE_HARD ? 0.0 : FRAME.region.mode == MODE_RARA ? max(reach, traced) : reach;
     uint side = side_undecided();
-    for (uint plane = 0u; plane < FRAME.region.plane_count; plane++) {
-        uint one = plane_box_side(plane, middle, half_size, support);
-        if (one == side_that_decides()) {
-            return one;
-        }
-        side = one == SIDE_CUTOFF ? SIDE_CUTOFF : side;
+    for (uint i = 0u; i < LAYER.region.surface_count && side != side_that_decides(); i++) {
+        side = combined_side(side, surface_box_side(LAYER.region.first_surface + i, middle, half_size, support));
     }
     return side;
 }

@@ -4,16 +4,12 @@
 // (band.glsl). Twin: src/reference/region/gaussian_side.rs.
 #ifndef RARA_REGION_GAUSSIAN_SIDE
 #define RARA_REGION_GAUSSIAN_SIDE
-#include "region/plane.glsl"
+#include "region/surface.glsl"
 
-uint gaussian_side(mat3 world_factor, vec3 position, float deviations) {
+uint gaussian_side(mat3 layer_factor, vec3 position, float deviations) {
     uint side = side_undecided();
-    for (uint plane = 0u; plane < FRAME.region.plane_count; plane++) {
-        uint one = plane_gaussian_side(plane_distance(plane, position), unit_normal(plane, world_factor), deviations);
-        if (one == side_that_decides()) {
-            return one;
-        }
-        side = one == SIDE_CUTOFF ? SIDE_CUTOFF : side;
+    for (uint i = 0u; i < LAYER.region.surface_count && side != side_that_decides(); i++) {
+        side = combined_side(side, surface_gaussian_side(LAYER.region.first_surface + i, layer_factor, position, deviations));
     }
     return side;
 }

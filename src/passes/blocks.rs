@@ -21,14 +21,18 @@ pub(crate) const STAGE: Stage = Stage {
 };
 
 fn kernel(plan: &Plan) -> Kernel<blocks::Program> {
-    let clip = plan.view_is_clipped();
-    Kernel::new(&blocks::COMP, blocks::Constants { clip })
+    let constants = blocks::Constants {
+        clip: plan.view_is_clipped(),
+        layered: plan.way.layered,
+    };
+    Kernel::new(&blocks::COMP, constants)
 }
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
     let buffers = blocks::Buffers {
         frame: &b.frame,
+        surfaces: &b.surfaces,
         blocks: &frame.scene.blocks,
         clip_sides: &b.clip_sides,
         block_sides: &b.block_sides,

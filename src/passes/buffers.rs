@@ -5,13 +5,15 @@ use crate::error::Result;
 use crate::gpu::{Buffer, BufferDesc, Device, Location};
 use crate::limits;
 use crate::passes::plan::Plan;
-use crate::types::{self, FrameCounts, FrameData, Splat, SplatDepth};
+use crate::types::{self, FrameCounts, FrameData, LayerData, Splat, SplatDepth, Surface};
 
 /// Everything the stages hand to each other. No stage reads a count on the CPU, so each array but the
 /// tiles' lists has room for every Gaussian of the scene; drivers back untouched memory lazily.
 #[derive(Debug)]
 pub(crate) struct Buffers {
     pub(crate) frame: Buffer,
+    /// The surfaces of the layers' regions; empty without a clip.
+    pub(crate) surfaces: Buffer,
     pub(crate) masks: Buffer,
     /// The clip's sides and masks of the blocks; empty without a clip.
     pub(crate) clip_sides: Buffer,
@@ -75,6 +77,9 @@ pub(crate) struct ReclipBuffers {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Sizes {
     gaussians: u64,
+    blocks: u64,
+    layers: u64,
+    surfaces: u64,
     clip_blocks: u64,
     cut_bytes: u64,
     sort_runs: u64,
@@ -103,12 +108,16 @@ impl Sizes {
         let rows = u64::from(plan.data.tiles.tile_count / plan.data.tiles.tile_columns);
         let parts = u64::from(plan.data.tiles.row_parts);
         let pixels = plan.data.view.size[0] as u64 * plan.data.view.size[1] as u64;
+        let blocks = u64::from(plan.data.scene.block_count);
         Self {
             gaussians,
+            blocks,
+            layers: plan.layers.layers().len() as u64,
+            surfaces: plan.layers.surfaces().len() as u64,
             clip_blocks: if plan.mode() == types::MODE_NONE {
                 0
             } else {
-                plan.data.scene.block_count.into()
+                blocks
             },
             cut_bytes,
             sort_runs: u64::from(plan.data.order.sort_runs),
@@ -147,13 +156,15 @@ impl Buffers {
     pub(crate) fn new(device: &Device, plan: &Plan) -> Result<Self> {
         let sizes = Sizes::of(plan);
         let gpu = |name, size| gpu_only(device, name, size);
-        let n = sizes.gaussians;
-        let blocks = n.div_ceil(u64::from(limits::BLOCK_SIZE));
+        let (n, blocks) = (sizes.gaussians, sizes.blocks);
         let mask_bytes = u64::from(limits::BLOCK_SIZE) / 4; // two bits a Gaussian
+        let frame_bytes =
+            size_of::<FrameData>() as u64 + sizes.layers * size_of::<LayerData>() as u64;
         // Of a run: its keys of each digit, the least and the greatest.
         let digits = (1_u64 << limits::SORT_BITS) + 2;
         Ok(Self {
-            frame: gpu("frame", size_of::<FrameData>() as u64)?,
+            frame: gpu("frame", frame_bytes)?,
+            surfaces: gpu("surfaces", sizes.surfaces * size_of::<Surface>() as u64)?,
             masks: gpu("masks", blocks * mask_bytes)?,
             clip_sides: gpu("clip_sides", sizes.clip_blocks * 4)?,
             clip_masks: gpu("clip_masks", sizes.clip_blocks * mask_bytes)?,
@@ -205,8 +216,11 @@ impl Buffers {
             return Ok(());
         }
         let gpu = |name, size| gpu_only(device, name, size);
-        let n = self.sized_for.gaussians;
-        let blocks = n.div_ceil(u64::from(limits::BLOCK_SIZE));
+        let Sizes {
+            gaussians: n,
+            blocks,
+            ..
+        } = self.sized_for;
         self.reclip = Some(ReclipBuffers {
             revisits: gpu("revisits", blocks * 4)?,
             reclips: gpu("reclips", blocks * 4 * u64::from(limits::RECLIP_WORDS))?,
@@ -220,6 +234,9 @@ impl Buffers {
     pub(crate) fn fit(&self, plan: &Plan) -> bool {
         let (have, need) = (self.sized_for, Sizes::of(plan));
         have.gaussians == need.gaussians
+            && have.blocks == need.blocks
+            && have.layers >= need.layers
+            && have.surfaces >= need.surfaces
             && have.clip_blocks >= need.clip_blocks
             && have.cut_bytes >= need.cut_bytes
             && have.sort_runs == need.sort_runs

@@ -19,14 +19,18 @@ pub(crate) const STAGE: Stage = Stage {
 
 /// Without a clip the shader holds no clip code.
 fn kernel(plan: &Plan) -> Kernel<classify::Program> {
-    let clip = plan.view_is_clipped();
-    Kernel::new(&classify::COMP, classify::Constants { clip })
+    let constants = classify::Constants {
+        clip: plan.view_is_clipped(),
+        layered: plan.way.layered,
+    };
+    Kernel::new(&classify::COMP, constants)
 }
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
     let buffers = classify::Buffers {
         frame: &b.frame,
+        surfaces: &b.surfaces,
         gaussians: &frame.scene.gaussians,
         block_list: &b.block_list,
         counts: &b.counts,

@@ -4,6 +4,7 @@
 use crate::gpu::{Groups, Recorder};
 use crate::passes::buffers::indirect;
 use crate::passes::pipelines::Kernel;
+use crate::passes::plan::Plan;
 use crate::passes::shaders::{compact, compact_scan};
 use crate::passes::stage::{Frame, Stage};
 use crate::types::FrameCounts;
@@ -12,19 +13,21 @@ pub(crate) const STAGE: Stage = Stage {
     name: "compact",
     needed: |plan| plan.finds_view(),
     missed: |_| true,
-    pipelines: |_, need| {
-        need(places().key());
-        need(lists().key());
+    pipelines: |plan, need| {
+        need(places(plan).key());
+        need(lists(plan).key());
     },
     record,
 };
 
-fn places() -> Kernel<compact_scan::Program> {
-    Kernel::new(&compact_scan::COMP, ())
+fn places(plan: &Plan) -> Kernel<compact_scan::Program> {
+    let layered = plan.way.layered;
+    Kernel::new(&compact_scan::COMP, compact_scan::Constants { layered })
 }
 
-fn lists() -> Kernel<compact::Program> {
-    Kernel::new(&compact::COMP, ())
+fn lists(plan: &Plan) -> Kernel<compact::Program> {
+    let layered = plan.way.layered;
+    Kernel::new(&compact::COMP, compact::Constants { layered })
 }
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
@@ -37,7 +40,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         block_list: &b.block_list,
         counts: &b.counts,
     };
-    places().dispatch(pipelines, recorder, buffers, (), Groups::Count(1));
+    places(frame.plan).dispatch(pipelines, recorder, buffers, (), Groups::Count(1));
     let buffers = compact::Buffers {
         frame: &b.frame,
         block_list: &b.block_list,
@@ -49,5 +52,5 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         cutoffs: &b.cutoffs,
     };
     let groups = indirect!(b.counts, FrameCounts, compact_groups);
-    lists().dispatch(pipelines, recorder, buffers, (), groups);
+    lists(frame.plan).dispatch(pipelines, recorder, buffers, (), groups);
 }

@@ -3,6 +3,7 @@
 use crate::gpu::Recorder;
 use crate::passes::buffers::indirect;
 use crate::passes::pipelines::Kernel;
+use crate::passes::plan::Plan;
 use crate::passes::shaders::cutoff;
 use crate::passes::stage::{Frame, Stage};
 use crate::types::FrameCounts;
@@ -12,7 +13,7 @@ pub(crate) const STAGE: Stage = Stage {
     name: "cutoff",
     needed: |plan| plan.finds_view() && plan.view_is_cut(),
     missed: |plan| !plan.reclips(),
-    pipelines: |_, need| need(kernel().key()),
+    pipelines: |plan, need| need(kernel(plan).key()),
     record,
 };
 
@@ -23,19 +24,21 @@ pub(crate) const STAGE_OF_RECLIP: Stage = Stage {
     ..STAGE
 };
 
-fn kernel() -> Kernel<cutoff::Program> {
-    Kernel::new(&cutoff::COMP, ())
+fn kernel(plan: &Plan) -> Kernel<cutoff::Program> {
+    let layered = plan.way.layered;
+    Kernel::new(&cutoff::COMP, cutoff::Constants { layered })
 }
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
     let buffers = cutoff::Buffers {
         frame: &b.frame,
+        surfaces: &b.surfaces,
         gaussians: &frame.scene.gaussians,
         cutoffs: &b.cutoffs,
         counts: &b.counts,
         cuts: &b.cuts,
     };
     let groups = indirect!(b.counts, FrameCounts, cutoff_groups);
-    kernel().dispatch(frame.pipelines, recorder, buffers, (), groups);
+    kernel(frame.plan).dispatch(frame.pipelines, recorder, buffers, (), groups);
 }

@@ -19,25 +19,27 @@ pub(crate) const STAGE: Stage = Stage {
     name: "depth",
     needed: |plan| plan.way.expects_depth && plan.work != Work::Draw,
     missed: |_| false,
-    pipelines: |_, need| need(kernel().key()),
+    pipelines: |plan, need| need(kernel(plan).key()),
     record,
 };
 
-fn kernel() -> Kernel<depth::Program> {
-    Kernel::new(&depth::COMP, ())
+fn kernel(plan: &Plan) -> Kernel<depth::Program> {
+    let layered = plan.way.layered;
+    Kernel::new(&depth::COMP, depth::Constants { layered })
 }
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (b, d) = (frame.buffers, frame.depths());
     let buffers = depth::Buffers {
         frame: &b.frame,
+        surfaces: &b.surfaces,
         gaussians: &frame.scene.gaussians,
         survivors: &b.survivors,
         counts: &b.counts,
         depths: &d.depths,
     };
     let groups = indirect!(b.counts, FrameCounts, project_groups);
-    kernel().dispatch(frame.pipelines, recorder, buffers, (), groups);
+    kernel(frame.plan).dispatch(frame.pipelines, recorder, buffers, (), groups);
     // A quad a survivor, also where tiles draw their colours.
     let quad = [4_u32, 0, 0, 0];
     recorder.update(&d.draw, 0, bytemuck::bytes_of(&quad));

@@ -1,5 +1,7 @@
 //! What the sort compares: the bits of a view depth, counted from the nearest one that the scene's bounds allow.
 
+use std::ops::Deref;
+
 use glam::Vec3;
 
 use crate::camera::Camera;
@@ -15,15 +17,22 @@ pub(super) struct DepthKeys {
 }
 
 impl DepthKeys {
-    /// Keys of at most `bits` bits for centres within a box.
-    pub(super) fn new(bounds: [Vec3; 2], camera: &Camera, bits: u32) -> Result<Self> {
+    /// Keys of at most `bits` bits for centres within boxes: of each the camera in its space, its corners, and the scene's
+    /// units in one of its own.
+    pub(super) fn new<C: Deref<Target = Camera>>(
+        boxes: impl Iterator<Item = (C, [Vec3; 2], f64)>,
+        bits: u32,
+    ) -> Result<Self> {
         if !(limits::SORT_BITS..=u32::BITS).contains(&bits) {
             return Err(Error::Invalid(format!(
                 "sort keys of {bits} bits are not possible; give {} to 32",
                 limits::SORT_BITS
             )));
         }
-        let [near, far] = depths(bounds, camera).map(f32::to_bits);
+        let all = boxes.filter_map(|(camera, bounds, unit)| depths(bounds, &camera, unit));
+        let all = all.reduce(|[near, far], [nearer, farther]| [near.min(nearer), far.max(farther)]);
+        // Without centres any range will do.
+        let [near, far] = all.unwrap_or([limits::NEAR_Z, f32::MAX]).map(f32::to_bits);
         let span = far - near;
         Ok(Self {
             near,
@@ -44,20 +53,20 @@ fn width(value: u32) -> u32 {
     u32::BITS - value.leading_zeros()
 }
 
-/// Least and greatest depth of what is not culled, a little wider than the box for single precision's sake.
-fn depths(bounds: [Vec3; 2], camera: &Camera) -> [f32; 2] {
-    let nearest = limits::NEAR_Z;
+/// Least and greatest depth of what is not culled, the scene's units, a little wider than the box for single precision's
+/// sake. `None` without centres.
+fn depths(bounds: [Vec3; 2], camera: &Camera, unit: f64) -> Option<[f32; 2]> {
     if !bounds[0].cmple(bounds[1]).all() {
-        return [nearest, f32::MAX]; // no centres: any range will do
+        return None;
     }
     let [low, high] = bounds.map(|corner| corner.as_dvec3() - camera.eye);
-    let forward = camera.rotation.row(2);
+    let forward = unit * camera.rotation.row(2);
     let (a, b) = (forward * low, forward * high);
-    let slack = 1e-5 * low.abs().max(high.abs()).element_sum();
-    let near = (a.min(b).element_sum() - slack).max(f64::from(nearest));
+    let slack = unit * 1e-5 * low.abs().max(high.abs()).element_sum();
+    let near = (a.min(b).element_sum() - slack).max(f64::from(limits::NEAR_Z));
     let far = (a.max(b).element_sum() + slack).max(near);
     // A 32-bit float beyond the range is infinite; the clamp to the largest keeps the difference of the bits right.
-    [near as f32, far as f32].map(|depth| depth.min(f32::MAX))
+    Some([near as f32, far as f32].map(|depth| depth.min(f32::MAX)))
 }
 
 #[cfg(test)]
@@ -76,6 +85,10 @@ mod tests {
         .unwrap()
     }
 
+    fn keys(bounds: [Vec3; 2], bits: u32) -> Result<DepthKeys> {
+        DepthKeys::new([(&camera(), bounds, 1.0)].into_iter(), bits)
+    }
+
     fn key(keys: DepthKeys, depth: f32) -> u32 {
         let bits = depth.to_bits().max(keys.near) - keys.near;
         bits.min(keys.span) >> keys.shift
@@ -83,9 +96,9 @@ mod tests {
 
     #[test]
     fn a_scene_seen_from_outside_needs_three_passes_and_loses_nothing() {
-        let keys = DepthKeys::new([Vec3::NEG_ONE, Vec3::ONE], &camera(), 32).unwrap();
+        let keys = keys([Vec3::NEG_ONE, Vec3::ONE], 32).unwrap();
         assert_eq!((keys.shift, keys.passes()), (0, 3));
-        let two = DepthKeys::new([Vec3::NEG_ONE, Vec3::ONE], &camera(), 16).unwrap();
+        let two = keys([Vec3::NEG_ONE, Vec3::ONE], 16).unwrap();
         assert_eq!(two.passes(), 2);
         // Three to five units deep: 2^24 values or fewer in 16 bits, one part in 2^15 told apart.
         assert!(key(two, 4.0) < key(two, 4.0 * (1.0 + 1.0 / 16384.0)));
@@ -96,7 +109,7 @@ mod tests {
         for size in [1e-3_f32, 1.0, 3.9, 4.1, 1e3, 1e30, f32::MAX] {
             for bits in [8, 16, 24, 32] {
                 let bounds = [Vec3::splat(-size), Vec3::splat(size)];
-                let keys = DepthKeys::new(bounds, &camera(), bits).unwrap();
+                let keys = keys(bounds, bits).unwrap();
                 let mut last = 0;
                 for step in 0..4000 {
                     let key = key(keys, 0.2 * 1.05_f32.powi(step).min(f32::MAX));
@@ -109,11 +122,29 @@ mod tests {
     }
 
     #[test]
+    fn keys_of_several_boxes_are_of_the_nearest_and_the_farthest() {
+        let (near, far) = ([Vec3::NEG_ONE, Vec3::ONE], [Vec3::ONE, Vec3::splat(5.0)]);
+        let empty = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+        let camera = camera();
+        let boxes = [near, empty, far].map(|bounds| (&camera, bounds, 1.0));
+        let all = DepthKeys::new(boxes.into_iter(), 32).unwrap();
+        let ends = |keys: DepthKeys| (keys.near, keys.near + keys.span);
+        let (first, last) = (keys(near, 32).unwrap(), keys(far, 32).unwrap());
+        assert_eq!(ends(all), (ends(first).0, ends(last).1));
+        // A box of twice the size whose units count half is the same one.
+        let doubled = far.map(|corner| 2.0 * corner);
+        let eye = DVec3::new(0.0, 0.0, -8.0);
+        let twice = Camera { eye, ..camera };
+        let halved = DepthKeys::new([(&twice, doubled, 0.5)].into_iter(), 32).unwrap();
+        assert_eq!(ends(halved), ends(last));
+    }
+
+    #[test]
     fn no_centres_and_impossible_widths() {
         let empty = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-        assert!(DepthKeys::new(empty, &camera(), 32).unwrap().passes() <= 4);
+        assert!(keys(empty, 32).unwrap().passes() <= 4);
         for bits in [0, 7, 33] {
-            assert!(DepthKeys::new(empty, &camera(), bits).is_err());
+            assert!(keys(empty, bits).is_err());
         }
     }
 }

@@ -48,7 +48,11 @@ pub(crate) fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>, readback: &
     let (plan, b) = (frame.plan, frame.buffers);
     if plan.work != Work::Draw {
         recorder.label("frame", |r| {
+            let (layers, surfaces) = (plan.layers.layers(), plan.layers.surfaces());
             r.update(&b.frame, 0, bytemuck::bytes_of(&plan.data));
+            let behind = size_of_val(&plan.data) as u64;
+            r.update(&b.frame, behind, bytemuck::cast_slice(layers));
+            r.update(&b.surfaces, 0, bytemuck::cast_slice(surfaces));
         });
     }
     for stage in STAGES.iter().filter(|stage| (stage.needed)(plan)) {

@@ -1,15 +1,15 @@
 //! What a frame needs, decided on the CPU before anything is recorded: which stages run, and the frame's constants.
 
 use ash::vk;
-use glam::Vec3;
-
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::limits;
 use crate::passes::depth_keys::DepthKeys;
+use crate::passes::layers::{self, Layers};
 use crate::passes::occluders::Occluders;
 use crate::passes::region::region_data;
+use crate::passes::scene_buffers::SceneLayer;
 use crate::passes::tiles::TileWork;
 use crate::passes::view::view_data;
 use crate::passes::weight::Laws;
@@ -32,6 +32,8 @@ pub(crate) struct Plan {
     pub(crate) occluders: Option<Occluders>,
     /// The frame's constants.
     pub(crate) data: FrameData,
+    /// And those of its layers.
+    pub(crate) layers: Layers,
 }
 
 /// By which stages and variants of them a frame goes: what kinds of things it leaves in which buffers.
@@ -41,6 +43,8 @@ pub(crate) struct Way {
     pub(crate) raster: Raster,
     /// How the scene's spherical harmonics are stored.
     pub(crate) sh_format: ShFormat,
+    /// Whether the scene has several layers.
+    pub(crate) layered: bool,
     /// Passes of the sort that the scene's bounds ask for, at least one.
     pub(crate) sort_passes: u32,
     /// Whether the splats' depths are wanted.
@@ -51,12 +55,13 @@ pub(crate) struct Way {
 
 /// What a plan is made from besides camera, clip and settings.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct SceneFacts {
+pub(crate) struct SceneFacts<'a> {
+    /// At least one.
+    pub(crate) layers: &'a [SceneLayer],
     pub(crate) gaussians: u32,
+    pub(crate) blocks: u32,
     pub(crate) sh_degree: u32,
     pub(crate) sh_format: ShFormat,
-    /// The corners of the box around the centres.
-    pub(crate) bounds: [Vec3; 2],
     /// Invocations of the sort, and of what finds the splats' spans of tiles.
     pub(crate) sort_runs: u32,
     pub(crate) span_runs: u32,
@@ -76,14 +81,16 @@ pub(crate) struct SceneFacts {
 impl Plan {
     /// Decides what a frame needs.
     pub(crate) fn new(
-        scene: SceneFacts,
+        scene: SceneFacts<'_>,
         camera: &Camera,
         clip: &Clip,
         settings: &Settings,
     ) -> Result<Self> {
         let region = region_data(clip, settings)?;
-        let weight = weight_data(&scene, &region, settings)?;
-        let keys = DepthKeys::new(scene.bounds, camera, settings.precision.key_bits)?;
+        let layers = Layers::new(scene.layers, camera, clip, &region)?;
+        let weight = weight_data(&scene, &region, layers.most_surfaces(), settings)?;
+        let boxes = layers::boxes(scene.layers, camera);
+        let keys = DepthKeys::new(boxes, settings.precision.key_bits)?;
         let degree = settings.sh_degree.unwrap_or(scene.sh_degree);
         let size = vk::Extent2D {
             width: camera.width,
@@ -98,6 +105,7 @@ impl Plan {
             way: Way {
                 raster: scene.raster,
                 sh_format: scene.sh_format,
+                layered: scene.layers.len() > 1,
                 sort_passes: keys.passes(),
                 expects_depth: scene.expects_depth,
                 show: settings.show,
@@ -108,9 +116,9 @@ impl Plan {
             data: FrameData {
                 scene: SceneData {
                     gaussian_count: scene.gaussians,
-                    block_count: scene.gaussians.div_ceil(limits::BLOCK_SIZE),
+                    block_count: scene.blocks,
                     sh_coefficients: (scene.sh_degree + 1) * (scene.sh_degree + 1),
-                    pad: 0,
+                    layer_count: scene.layers.len() as u32,
                 },
                 view: view_data(camera, degree.min(scene.sh_degree)),
                 order: OrderData {
@@ -128,6 +136,7 @@ impl Plan {
                 weight,
                 region,
             },
+            layers,
         })
     }
 
@@ -192,8 +201,9 @@ fn cuts(mode: u32) -> bool {
 
 /// How what the region cuts is weighted.
 fn weight_data(
-    scene: &SceneFacts,
+    scene: &SceneFacts<'_>,
     region: &types::RegionData,
+    most_surfaces: u32,
     settings: &Settings,
 ) -> Result<WeightData> {
     if !(settings.sigma.is_finite() && settings.sigma > 0.0) {
@@ -208,9 +218,9 @@ fn weight_data(
             "a beam switch of {switch} is not a size; give zero or more"
         )));
     }
-    // A header of three, the planes, and the eye's own plane where the camera may be inside a splat.
+    // A header of three, the surfaces, and the eye's own plane where the camera may be inside a splat.
     let cut_stride = if cuts(region.mode) {
-        3 + region.plane_count + 1
+        3 + most_surfaces + 1
     } else {
         0
     };
@@ -218,7 +228,7 @@ fn weight_data(
     if u64::from(scene.gaussians) * u64::from(cut_stride) > u64::from(u32::MAX) {
         return Err(Error::Invalid(format!(
             "{} Gaussians cut by {} planes are beyond what a frame can address; use fewer planes or split the scene",
-            scene.gaussians, region.plane_count
+            scene.gaussians, most_surfaces
         )));
     }
     Ok(WeightData {
@@ -259,7 +269,7 @@ fn tiles_data(size: vk::Extent2D, span_runs: u32, settings: &Settings) -> Result
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
+    use glam::{DVec3, Vec3};
 
     use super::*;
     use crate::clip::{ClipOp, Plane};
@@ -269,11 +279,13 @@ mod tests {
     use crate::settings::Mode;
 
     fn plan(mode: Mode, planes: usize) -> Plan {
+        let layer = SceneLayer::new("one".into(), 0, 1000, [Vec3::NEG_ONE, Vec3::ONE]);
         let facts = SceneFacts {
+            layers: &[layer],
             gaussians: 1000,
+            blocks: 4,
             sh_degree: 0,
             sh_format: ShFormat::Float,
-            bounds: [Vec3::NEG_ONE, Vec3::ONE],
             sort_runs: 128,
             span_runs: 128,
             raster: Raster::Tiles,

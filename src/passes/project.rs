@@ -20,6 +20,7 @@ pub(crate) const STAGE: Stage = Stage {
 pub(super) fn kernel(plan: &Plan) -> Kernel<project::Program> {
     let constants = project::Constants {
         cut: plan.view_is_cut(),
+        layered: plan.way.layered,
         sh_format: plan.way.sh_format.code(),
         tiles: plan.is_tiled(),
     };

@@ -18,10 +18,10 @@ pub(crate) const RECLIP: Stage = Stage {
     name: "reclip",
     needed: |plan| plan.reclips(),
     missed: |_| false,
-    pipelines: |_, need| {
-        need(sides().key());
+    pipelines: |plan, need| {
+        need(sides(plan).key());
         need(block_list::kernel().key());
-        need(classes().key());
+        need(classes(plan).key());
         need(places().key());
         need(lists().key());
     },
@@ -37,12 +37,14 @@ pub(crate) const RECUT: Stage = Stage {
     record: record_recut,
 };
 
-fn sides() -> Kernel<reclip_blocks::Program> {
-    Kernel::new(&reclip_blocks::COMP, ())
+fn sides(plan: &Plan) -> Kernel<reclip_blocks::Program> {
+    let layered = plan.way.layered;
+    Kernel::new(&reclip_blocks::COMP, reclip_blocks::Constants { layered })
 }
 
-fn classes() -> Kernel<reclip::Program> {
-    Kernel::new(&reclip::COMP, ())
+fn classes(plan: &Plan) -> Kernel<reclip::Program> {
+    let layered = plan.way.layered;
+    Kernel::new(&reclip::COMP, reclip::Constants { layered })
 }
 
 fn places() -> Kernel<reclip_scan::Program> {
@@ -54,14 +56,18 @@ fn lists() -> Kernel<reclip_compact::Program> {
 }
 
 fn changes(plan: &Plan) -> Kernel<recut::Program> {
-    let tiles = plan.is_tiled();
-    Kernel::new(&recut::COMP, recut::Constants { tiles })
+    let constants = recut::Constants {
+        tiles: plan.is_tiled(),
+        layered: plan.way.layered,
+    };
+    Kernel::new(&recut::COMP, constants)
 }
 
 fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (pipelines, scene, b, s) = (frame.pipelines, frame.scene, frame.buffers, frame.reclip());
     let buffers = reclip_blocks::Buffers {
         frame: &b.frame,
+        surfaces: &b.surfaces,
         blocks: &scene.blocks,
         block_sides: &b.block_sides,
         block_counts: &b.block_counts,
@@ -74,11 +80,12 @@ fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         fresh: fresh.into(),
     };
     let groups = groups_of_blocks(frame.plan);
-    sides().dispatch(pipelines, recorder, buffers, params, groups);
+    sides(frame.plan).dispatch(pipelines, recorder, buffers, params, groups);
     block_list::record(frame, recorder, &s.revisits, ListFor::Clip);
     let looked_at = indirect!(b.counts, FrameCounts, clip_groups);
     let buffers = reclip::Buffers {
         frame: &b.frame,
+        surfaces: &b.surfaces,
         gaussians: &scene.gaussians,
         block_list: &b.block_list,
         counts: &b.counts,
@@ -87,7 +94,7 @@ fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         masks: &b.masks,
         reclips: &s.reclips,
     };
-    classes().dispatch(pipelines, recorder, buffers, (), looked_at);
+    classes(frame.plan).dispatch(pipelines, recorder, buffers, (), looked_at);
     let buffers = reclip_scan::Buffers {
         frame: &b.frame,
         revisits: &s.revisits,

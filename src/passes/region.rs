@@ -1,17 +1,18 @@
-//! The region's part of a frame's constants: what the clip keeps, as the shaders have it.
+//! What the clip keeps, as the shaders have it: what all layers' regions have in common, and the surfaces of one.
 
 use crate::clip::{Clip, ClipOp, Plane};
 use crate::error::{Error, Result};
 use crate::limits;
 use crate::passes::view::two_float;
 use crate::settings::{Mode, Settings};
-use crate::types::{self, RegionData};
+use crate::types::{self, RegionData, Surface};
 
 /// Largest offset of a plane that is told from infinity, world units: a power of two below the end of single
 /// precision's range.
 const FARTHEST: f64 = (1_u128 << 126) as f64;
 
-/// The constants of a clip in the mode of the settings. Without anything to clip with they are those of mode `none`.
+/// What all regions have in common that a clip in the mode of the settings makes. Without anything to clip with that is what
+/// mode `none` has.
 pub(super) fn region_data(clip: &Clip, settings: &Settings) -> Result<RegionData> {
     if clip.planes.len() > limits::MAX_CLIP_PLANES as usize {
         let (have, most) = (clip.planes.len(), limits::MAX_CLIP_PLANES);
@@ -27,29 +28,38 @@ pub(super) fn region_data(clip: &Clip, settings: &Settings) -> Result<RegionData
         Mode::Rara => types::MODE_RARA,
         Mode::Exact => types::MODE_EXACT,
     };
-    if region.mode == types::MODE_NONE {
-        return Ok(region);
+    if region.mode != types::MODE_NONE {
+        region.trace_all = settings.trace_all.into();
     }
-    region.trace_all = settings.trace_all.into();
     if region.mode == types::MODE_RARA {
         region.sigma = settings.sigma;
     }
-    region.op = match clip.op {
+    Ok(region)
+}
+
+/// How the surfaces of a clip combine, `OP_*`.
+pub(super) fn op(clip: &Clip) -> u32 {
+    match clip.op {
         ClipOp::And => types::OP_AND,
         ClipOp::Or => types::OP_OR,
-    };
-    let planes = distinct(&clip.planes);
-    region.plane_count = planes.len() as u32;
-    for (index, plane) in planes.iter().enumerate() {
+    }
+}
+
+/// The surfaces of a clip, which is given in the space of the layer that it cuts.
+pub(super) fn surfaces(clip: &Clip) -> impl Iterator<Item = Surface> {
+    distinct(&clip.planes).into_iter().map(|plane| {
         let (high, low) = two_float(plane.normal());
         // Farther away than single precision reaches: beyond every splat.
         let offset = plane.offset().clamp(-FARTHEST, FARTHEST);
         let offset_high = offset as f32;
         let offset_low = (offset - f64::from(offset_high)) as f32;
-        region.plane_high[index] = [high[0], high[1], high[2], offset_high];
-        region.plane_low[index] = [low[0], low[1], low[2], offset_low];
-    }
-    Ok(region)
+        Surface {
+            high: [high[0], high[1], high[2], offset_high],
+            low: [low[0], low[1], low[2], offset_low],
+            kind: types::SURFACE_PLANE,
+            pad: [0; 3],
+        }
+    })
 }
 
 /// The planes without repetitions, since cutting twice is cutting once, and in an order of their own: to the bit no

@@ -12,7 +12,7 @@ use crate::limits;
 use crate::passes::buffers::gpu_only;
 use crate::passes::{block_order, sh_storage};
 use crate::precision::ShFormat;
-use crate::scene::Gaussians;
+use crate::scene::{Gaussians, LayerState, Scene, sh_coefficients};
 use crate::types::{Block, Gaussian};
 
 /// A scene's Gaussians in device memory.
@@ -28,8 +28,58 @@ pub struct SceneBuffers {
     pub(crate) count: u32,
     pub(crate) sh_degree: u32,
     pub(crate) sh_format: ShFormat,
-    /// The corners of the box around all centres.
+    layers: Vec<SceneLayer>,
+}
+
+/// A layer of a scene that is on the device.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct SceneLayer {
+    /// How the next frame that is configured shows it.
+    pub state: LayerState,
+    name: String,
+    gaussians: u32,
+    /// The layer's first block; it fills whole blocks.
+    pub(crate) first_block: u32,
+    /// The corners of the box around its centres, in its own units.
     pub(crate) bounds: [Vec3; 2],
+}
+
+impl SceneLayer {
+    pub(crate) fn new(
+        name: String,
+        first_block: u32,
+        gaussians: u32,
+        bounds: [Vec3; 2],
+    ) -> Self {
+        Self {
+            state: LayerState::default(),
+            name,
+            gaussians,
+            first_block,
+            bounds,
+        }
+    }
+
+    /// The name that it was uploaded with.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Gaussians in it.
+    pub fn gaussians(&self) -> u32 {
+        self.gaussians
+    }
+
+    /// Its blocks' Gaussians end before this place.
+    pub(crate) fn gaussian_end(&self) -> u32 {
+        self.first_block * limits::BLOCK_SIZE + self.gaussians
+    }
+
+    /// The first block behind it.
+    fn block_end(&self) -> u32 {
+        self.first_block + self.gaussians.div_ceil(limits::BLOCK_SIZE)
+    }
 }
 
 static NEXT_ID: AtomicU64 = AtomicU64::new(0);
@@ -40,18 +90,36 @@ const UPLOAD_CHUNK: usize = 1 << 16;
 const WRITE_CHUNK: usize = 1 << 10;
 
 impl SceneBuffers {
-    /// Uploads a scene, its spherical harmonics stored as `format` says, in chunks, and waits for it. Beside the scene it
-    /// takes 32 MiB at most.
-    pub fn upload(device: &Device, scene: &Gaussians, format: ShFormat) -> Result<Self> {
-        let (buffers, order, blocks) = Self::allocate(device, scene, format)?;
-        upload_in_chunks(device, &buffers.gaussians, &order, |index, out| {
-            out.push(pack(scene, index));
-        })?;
-        upload_in_chunks(device, &buffers.sh, &order, |index, out| {
-            sh_storage::pack(format, scene.sh_of(index as usize), out);
-        })?;
-        device.upload(&buffers.blocks, 0, cast_slice(&blocks))?;
+    /// Uploads a scene, Gaussians or [layers](Scene) of them, its spherical harmonics stored as `format` says, in chunks, and
+    /// waits for it. Beside the scene it takes 32 MiB at most.
+    pub fn upload<'a>(
+        device: &Device,
+        scene: impl Into<Scene<'a>>,
+        format: ShFormat,
+    ) -> Result<Self> {
+        let scene = scene.into();
+        let (buffers, packed) = Self::allocate(device, &scene, format)?;
+        for layer in &packed {
+            let [gaussians, sh, blocks] = layer.offsets();
+            upload_in_chunks(device, &buffers.gaussians, gaussians, &layer.order, |i, out| {
+                out.push(layer.gaussian(i));
+            })?;
+            upload_in_chunks(device, &buffers.sh, sh, &layer.order, |i, out| {
+                layer.append_sh(i, out);
+            })?;
+            device.upload(&buffers.blocks, blocks, cast_slice(&layer.blocks))?;
+        }
         Ok(buffers)
+    }
+
+    /// Its layers, at least one, in the order in which they were given.
+    pub fn layers(&self) -> &[SceneLayer] {
+        &self.layers
+    }
+
+    /// Its layers, whose states the next [`Renderer::configure`](crate::Renderer::configure) takes as they are then.
+    pub fn layers_mut(&mut self) -> &mut [SceneLayer] {
+        &mut self.layers
     }
 
     /// Whether it was uploaded to this device.
@@ -60,8 +128,8 @@ impl SceneBuffers {
     }
 
     /// Bytes of staging memory that [`upload_with`](Self::upload_with) needs for a scene.
-    pub fn staging_bytes(scene: &Gaussians, format: ShFormat) -> u64 {
-        let [gaussians, sh, blocks] = sizes(scene, format);
+    pub fn staging_bytes<'a>(scene: impl Into<Scene<'a>>, format: ShFormat) -> u64 {
+        let [gaussians, sh, blocks] = sizes(&scene.into(), format);
         gaussians + sh + blocks
     }
 
@@ -83,30 +151,39 @@ impl SceneBuffers {
     ///
     /// `cmd` is recording on `device`, outside a rendering scope, and will be submitted to the device's queue, or never;
     /// `staging` is as [`Staging`] says, and nothing on the device uses its range.
-    pub unsafe fn upload_with(
+    pub unsafe fn upload_with<'a>(
         device: &Device,
         cmd: vk::CommandBuffer,
         staging: Staging<'_>,
-        scene: &Gaussians,
+        scene: impl Into<Scene<'a>>,
         format: ShFormat,
     ) -> Result<Self> {
-        let needed = Self::staging_bytes(scene, format);
+        let scene = scene.into();
+        let sizes = sizes(&scene, format);
+        let needed = sizes.iter().sum::<u64>();
         if (staging.bytes.len() as u64) < needed {
             return Err(Error::Invalid(format!(
                 "this scene needs {needed} bytes of staging memory and {} were lent; SceneBuffers::staging_bytes tells",
                 staging.bytes.len()
             )));
         }
-        let (buffers, order, blocks) = Self::allocate(device, scene, format)?;
-        let [gaussians, sh, _] = sizes(scene, format).map(|size| size as usize);
+        let (buffers, packed) = Self::allocate(device, &scene, format)?;
+        let [gaussians, sh, blocks] = sizes.map(|size| size as usize);
         let (first, rest) = staging.bytes.split_at_mut(gaussians);
         let (second, rest) = rest.split_at_mut(sh);
-        write_in_chunks(first, &order, |index, out| out.push(pack(scene, index)));
-        write_in_chunks(second, &order, |index, out| {
-            sh_storage::pack(format, scene.sh_of(index as usize), out);
-        });
-        let third: &[u8] = cast_slice(&blocks);
-        rest[..third.len()].copy_from_slice(third);
+        let third = &mut rest[..blocks];
+        for layer in &packed {
+            let [gaussians, sh, blocks] = layer.offsets().map(|offset| offset as usize);
+            // What is between the layers is no Gaussian's, and nobody reads it.
+            write_in_chunks(&mut first[gaussians..], &layer.order, |i, out| {
+                out.push(layer.gaussian(i));
+            });
+            write_in_chunks(&mut second[sh..], &layer.order, |i, out| {
+                layer.append_sh(i, out);
+            });
+            let own: &[u8] = cast_slice(&layer.blocks);
+            third[blocks..][..own.len()].copy_from_slice(own);
+        }
         // SAFETY: the caller vouches for `cmd`, and keeps the buffers alive until it has executed.
         let mut recorder = unsafe { Recorder::begin(device, cmd, None) };
         recorder.label("upload", |recorder| {
@@ -114,7 +191,7 @@ impl SceneBuffers {
             for (target, length) in [
                 (&buffers.gaussians, gaussians),
                 (&buffers.sh, sh),
-                (&buffers.blocks, third.len()),
+                (&buffers.blocks, blocks),
             ] {
                 // SAFETY: the caller vouches for the staging buffer, whose range holds so many bytes here.
                 unsafe { recorder.copy_from(staging.buffer, from, target, length as u64) };
@@ -124,45 +201,75 @@ impl SceneBuffers {
         Ok(buffers)
     }
 
-    /// The buffers, still empty, the order of the Gaussians in them, and the bounds of their blocks.
-    fn allocate(
+    /// The buffers, still empty, and what goes into them of each layer.
+    fn allocate<'a>(
         device: &Device,
-        scene: &Gaussians,
+        scene: &Scene<'a>,
         format: ShFormat,
-    ) -> Result<(Self, Vec<u32>, Vec<Block>)> {
-        let too_many = |_| {
-            Error::Invalid(format!(
+    ) -> Result<(Self, Vec<PackedLayer<'a>>)> {
+        // Places, of which each layer's last block may have some that hold nothing.
+        let places = scene.layers().len() * limits::BLOCK_SIZE as usize + scene.gaussians();
+        if u32::try_from(places).is_err() {
+            return Err(Error::Invalid(format!(
                 "a scene of {} Gaussians is beyond the 2^32 of an index",
-                scene.len()
-            ))
-        };
-        let count = u32::try_from(scene.len()).map_err(too_many)?;
+                scene.gaussians()
+            )));
+        }
+        if scene.layers().is_empty() {
+            return Err(Error::Invalid("a scene has at least one layer".into()));
+        }
         let sizes = sizes(scene, format);
         if sizes[1] > u64::from(u32::MAX) * 4 {
             return Err(Error::Invalid(format!(
                 "{} Gaussians of spherical-harmonics degree {} need more than 2^32 numbers; lower the degree or store them in fewer bits",
-                scene.len(),
+                scene.gaussians(),
                 scene.sh_degree()
             )));
         }
-        let order = block_order::order(scene);
-        let blocks = block_order::blocks(scene, &order);
-        let centres = scene.positions().iter();
-        let bounds = centres.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], &x| {
-            [low.min(x), high.max(x)]
-        });
+        let sh = (format, 3 * sh_coefficients(scene.sh_degree()));
+        let (mut layers, mut packed) = (Vec::<SceneLayer>::new(), Vec::new());
+        let mut count = 0;
+        for layer in scene.layers() {
+            let gaussians = layer.gaussians();
+            let own = SceneLayer {
+                state: layer.state(),
+                ..SceneLayer::new(
+                    layer.name().into(),
+                    layers.last().map_or(0, SceneLayer::block_end),
+                    gaussians.len() as u32,
+                    bounds(gaussians),
+                )
+            };
+            own.state.check(own.name())?;
+            let order = block_order::order(gaussians);
+            packed.push(PackedLayer {
+                gaussians,
+                blocks: block_order::blocks(gaussians, &order),
+                order,
+                first_block: own.first_block,
+                first_number: count,
+                sh,
+            });
+            count += own.gaussians;
+            layers.push(own);
+        }
         let buffers = Self {
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
             gaussians: gpu_only(device, "gaussians", sizes[0])?,
             sh: gpu_only(device, "sh", sizes[1])?,
             blocks: gpu_only(device, "blocks", sizes[2])?,
-            reordered: !order.is_sorted(),
+            reordered: !packed.iter().all(|layer| layer.order.is_sorted()),
             count,
             sh_degree: scene.sh_degree(),
             sh_format: format,
-            bounds,
+            layers,
         };
-        Ok((buffers, order, blocks))
+        Ok((buffers, packed))
+    }
+
+    /// Blocks of all layers.
+    pub(crate) fn block_count(&self) -> u32 {
+        self.layers.last().map_or(0, SceneLayer::block_end)
     }
 
     /// Bytes of device memory that the scene takes.
@@ -178,7 +285,7 @@ impl SceneBuffers {
             low_reach: [-FAR, -FAR, -FAR, FAR],
             high_sigma: [FAR, FAR, FAR, -FAR],
         };
-        let count = self.count.div_ceil(limits::BLOCK_SIZE) as usize;
+        let count = self.block_count() as usize;
         device.upload(&self.blocks, 0, cast_slice(&vec![anywhere; count]))
     }
 
@@ -200,15 +307,79 @@ pub struct Staging<'a> {
 }
 
 /// Bytes of the Gaussians, their spherical harmonics, and the bounds of their blocks.
-fn sizes(scene: &Gaussians, format: ShFormat) -> [u64; 3] {
-    let words = sh_storage::words(format, 3 * scene.sh_coefficients());
-    let blocks = scene.len().div_ceil(limits::BLOCK_SIZE as usize);
+fn sizes(scene: &Scene<'_>, format: ShFormat) -> [u64; 3] {
+    let words = sh_storage::words(format, 3 * sh_coefficients(scene.sh_degree()));
+    let block = limits::BLOCK_SIZE as usize;
+    let (mut blocks, mut end) = (0, 0);
+    for layer in scene.layers() {
+        end = blocks * block + layer.gaussians().len();
+        blocks = end.div_ceil(block);
+    }
     [
-        scene.len() * size_of::<Gaussian>(),
-        scene.len() * words * size_of::<u32>(),
+        end * size_of::<Gaussian>(),
+        end * words * size_of::<u32>(),
         blocks * size_of::<Block>(),
     ]
     .map(|bytes| bytes as u64)
+}
+
+/// The corners of the box around all centres.
+fn bounds(gaussians: &Gaussians) -> [Vec3; 2] {
+    let centres = gaussians.positions().iter();
+    centres.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], &x| {
+        [low.min(x), high.max(x)]
+    })
+}
+
+/// A layer as the device gets it.
+struct PackedLayer<'a> {
+    gaussians: &'a Gaussians,
+    /// The numbers of its Gaussians in the order of the device.
+    order: Vec<u32>,
+    blocks: Vec<Block>,
+    first_block: u32,
+    /// Its first Gaussian's number in the scene.
+    first_number: u32,
+    /// How spherical harmonics are stored, and how many numbers there are of each Gaussian.
+    sh: (ShFormat, usize),
+}
+
+impl PackedLayer<'_> {
+    /// Where its Gaussians, their spherical harmonics and its blocks begin, bytes.
+    fn offsets(&self) -> [u64; 3] {
+        let first = u64::from(self.first_block) * u64::from(limits::BLOCK_SIZE);
+        let words = sh_storage::words(self.sh.0, self.sh.1);
+        [
+            first * size_of::<Gaussian>() as u64,
+            first * (words * size_of::<u32>()) as u64,
+            u64::from(self.first_block) * size_of::<Block>() as u64,
+        ]
+    }
+
+    fn gaussian(&self, number: u32) -> Gaussian {
+        let (scene, index) = (self.gaussians, number as usize);
+        let in_scene = f32::from_bits(self.first_number + number);
+        Gaussian {
+            position_opacity: scene.positions()[index]
+                .extend(scene.opacities()[index])
+                .into(),
+            scale: scene.scales()[index].extend(in_scene).into(),
+            rotation: scene.rotations()[index].into(),
+        }
+    }
+
+    /// Degrees that only other layers have are zero.
+    fn append_sh(&self, number: u32, out: &mut Vec<u32>) {
+        let own = self.gaussians.sh_of(number as usize);
+        let (format, numbers) = self.sh;
+        if own.len() == numbers {
+            sh_storage::pack(format, own, out);
+        } else {
+            let mut all = [0.0; 3 * limits::MAX_SH_COEFFICIENTS as usize];
+            all[..own.len()].copy_from_slice(own);
+            sh_storage::pack(format, &all[..numbers], out);
+        }
+    }
 }
 
 /// Writes what `append` makes of each Gaussian, in an order, to memory that is slow to read.
@@ -230,14 +401,14 @@ fn write_in_chunks<T: bytemuck::NoUninit>(
     }
 }
 
-/// Uploads what `append` makes of each Gaussian, in an order.
+/// Uploads what `append` makes of each Gaussian, in an order, to a buffer from an offset on.
 fn upload_in_chunks<T: bytemuck::NoUninit>(
     device: &Device,
     buffer: &Buffer,
+    mut offset: u64,
     order: &[u32],
     mut append: impl FnMut(u32, &mut Vec<T>),
 ) -> Result<()> {
-    let mut offset = 0;
     let mut packed = Vec::new();
     for chunk in order.chunks(UPLOAD_CHUNK) {
         packed.clear();
@@ -248,16 +419,6 @@ fn upload_in_chunks<T: bytemuck::NoUninit>(
         offset += size_of_val(packed.as_slice()) as u64;
     }
     Ok(())
-}
-
-fn pack(scene: &Gaussians, number: u32) -> Gaussian {
-    let index = number as usize;
-    let position = scene.positions()[index];
-    Gaussian {
-        position_opacity: position.extend(scene.opacities()[index]).into(),
-        scale: scene.scales()[index].extend(f32::from_bits(number)).into(),
-        rotation: scene.rotations()[index].into(),
-    }
 }
 
 #[cfg(test)]
@@ -321,12 +482,12 @@ mod tests {
                 (&whole.sh, &ours.sh),
                 (&whole.blocks, &ours.blocks),
             ];
-            for ((theirs, ours), size) in pairs.into_iter().zip(sizes(&scene, format)) {
+            for ((theirs, ours), size) in pairs.into_iter().zip(sizes(&(&scene).into(), format)) {
                 let read = |buffer| device.download_range(buffer, 0, size).expect("reads back");
                 assert!(read(theirs) == read(ours), "{count}, {format:?}");
             }
             let facts =
-                |b: &SceneBuffers| (b.reordered, b.count, b.sh_degree, b.sh_format, b.bounds);
+                |b: &SceneBuffers| (b.reordered, b.count, b.sh_degree, b.sh_format, b.layers.clone());
             assert_eq!(facts(&whole), facts(&ours));
         }
         assert_eq!(device.close(), Vec::<String>::new());

@@ -56,7 +56,7 @@ impl Weight {
         let (cuts, mode, laws) = (plan.cuts(), plan.mode(), plan.laws);
         Self {
             mode: when(cuts, mode),
-            several: cuts && plan.data.region.plane_count > 1,
+            several: cuts && plan.layers.most_surfaces() > 1,
             decay: when(cuts, laws.decay),
             miss: when(cuts && mode == types::MODE_RARA, laws.miss),
             phi: when(cuts && mode == types::MODE_EXACT, laws.phi),

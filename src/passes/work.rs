@@ -4,6 +4,7 @@ use bytemuck::bytes_of;
 
 use crate::passes::plan::Plan;
 use crate::passes::weight::Weight;
+use crate::passes::layers::Layers;
 use crate::types::{self, RegionData};
 
 /// What of a frame has to be computed.
@@ -35,7 +36,7 @@ pub(crate) struct Kept {
     /// The survivors are all in view, clipped away or not; `Some(true)` if no clip has changed them yet.
     base: Option<bool>,
     /// What the classes of the clip stage are of.
-    region: Option<RegionData>,
+    region: Option<(RegionData, Layers)>,
 }
 
 impl Kept {
@@ -59,7 +60,7 @@ impl Kept {
             };
         }
         let has_classes =
-            kept.holds && kept.region.is_some_and(|had| same(&had, &plan.data.region));
+            kept.holds && kept.region.as_ref().is_some_and(|had| plan.has_classes_of(had));
         Work::Whole {
             clip: clip && !has_classes,
         }
@@ -71,7 +72,7 @@ impl Kept {
         let had = before.and_then(|kept| kept.region);
         let (base, region) = match plan.work {
             Work::Whole { .. } if plan.mode() == types::MODE_NONE => (Some(true), had),
-            Work::Whole { .. } => (None, Some(plan.data.region)),
+            Work::Whole { .. } => (None, Some((plan.data.region, plan.layers.clone()))),
             Work::Reclip { .. } => (Some(false), had),
             Work::Draw => unreachable!("a frame that changes nothing leaves what there was"),
         };
@@ -91,7 +92,15 @@ impl Plan {
         self.sees_like(other)
             && same(&self.data.weight, &other.data.weight)
             && same(&self.data.region, &other.data.region)
+            && self.layers.keep_like(&other.layers)
             && Weight::of(self) == Weight::of(other)
+    }
+
+    /// Whether the clip stage would find the classes that it has found of such regions and layers.
+    fn has_classes_of(&self, (region, layers): &(RegionData, Layers)) -> bool {
+        same(region, &self.data.region)
+            && self.layers.contain_like(layers)
+            && self.layers.keep_like(layers)
     }
 
     /// Whether another plan differs in nothing but the clip and its weights, and its stages leave the same kinds of things
@@ -101,11 +110,13 @@ impl Plan {
             && same(&self.data.view, &other.data.view)
             && same(&self.data.order, &other.data.order)
             && same(&self.data.tiles, &other.data.tiles)
+            && self.layers.contain_like(&other.layers)
+            && self.layers.see_like(&other.layers)
             && self.way == other.way
     }
 }
 
 /// By their bytes: what is no number is itself.
-fn same<T: bytemuck::NoUninit>(a: &T, b: &T) -> bool {
+pub(super) fn same<T: bytemuck::NoUninit>(a: &T, b: &T) -> bool {
     bytes_of(a) == bytes_of(b)
 }

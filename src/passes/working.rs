@@ -13,6 +13,7 @@ impl Buffers {
     fn all(&self) -> Vec<&Buffer> {
         let mut all = vec![
             &self.frame,
+            &self.surfaces,
             &self.masks,
             &self.clip_sides,
             &self.clip_masks,

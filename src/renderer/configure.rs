@@ -82,10 +82,11 @@ impl Renderer {
             .depth
             .map(|depth| depth.map.in_scene(&self.placement));
         let facts = SceneFacts {
+            layers: scene.layers(),
             gaussians: scene.count,
+            blocks: scene.block_count(),
             sh_degree: scene.sh_degree,
             sh_format: scene.sh_format,
-            bounds: scene.bounds,
             sort_runs: choose::runs(shape, scene.count),
             span_runs: choose::runs(shape, scene.count),
             raster,

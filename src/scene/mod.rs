@@ -5,6 +5,7 @@
 mod bounds;
 mod gaussians;
 mod generate;
+mod layer;
 #[cfg(feature = "ply")]
 mod ply;
 #[cfg(feature = "ply")]
@@ -17,6 +18,7 @@ pub use gaussians::{GaussianArrays, Gaussians, sh_coefficients};
 #[cfg(feature = "lab")]
 pub(crate) use generate::random::Random;
 pub use generate::{Kind, generate};
+pub use layer::{Layer, LayerState, Scene};
 #[cfg(feature = "ply")]
 pub use {
     ply::{Loaded, load, load_from},

@@ -6,11 +6,11 @@ use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::gpu::{Device, DeviceDesc, PipelineFile};
-use crate::passes::SceneBuffers;
+use crate::passes::{SceneBuffers, SceneLayer};
 use crate::picture::Picture;
 use crate::precision::{ShFormat, TargetFormat};
 use crate::renderer::RendererDesc;
-use crate::scene::Gaussians;
+use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
 use crate::trace;
@@ -86,16 +86,30 @@ impl Headless {
         self.kept_pipeline_bytes
     }
 
-    /// Uploads a scene in place of the one before, its spherical harmonics as they are: 192 bytes a Gaussian at degree
+    /// Uploads a scene, Gaussians or [layers](Scene) of them, in place of the one before, its spherical harmonics as they are: 192 bytes a Gaussian at degree
     /// 3. [`load_as`](Self::load_as) with [`Precision::sh`](crate::Precision::sh) of a preset takes 68.
-    pub fn load(&mut self, scene: &Gaussians) -> Result<()> {
+    pub fn load<'a>(&mut self, scene: impl Into<Scene<'a>>) -> Result<()> {
         self.load_as(scene, ShFormat::Float)
     }
 
     /// Uploads a scene in place of the one before, its spherical harmonics stored as `format` says.
-    pub fn load_as(&mut self, scene: &Gaussians, format: ShFormat) -> Result<()> {
+    pub fn load_as<'a>(
+        &mut self,
+        scene: impl Into<Scene<'a>>,
+        format: ShFormat,
+    ) -> Result<()> {
         self.target.forget();
-        self.session.load(scene, format)
+        self.session.load(scene.into(), format)
+    }
+
+    /// The layers of the scene; none without one.
+    pub fn layers(&self) -> &[SceneLayer] {
+        self.session.layers()
+    }
+
+    /// The layers of the scene, whose states the next frame takes as they are then; none without a scene.
+    pub fn layers_mut(&mut self) -> &mut [SceneLayer] {
+        self.session.layers_mut()
     }
 
     /// Forgets what earlier frames have computed: the next one computes everything. Without it a frame takes over what

@@ -7,10 +7,10 @@ use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::gpu::{Device, Drawer, PipelineFile};
-use crate::passes::SceneBuffers;
+use crate::passes::{SceneBuffers, SceneLayer};
 use crate::precision::ShFormat;
 use crate::renderer::{FrameRequest, Outcome, Renderer, RendererDesc, Submission};
-use crate::scene::Gaussians;
+use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
 use crate::trace::{self, Trace};
@@ -66,13 +66,22 @@ impl Session {
     }
 
     /// Uploads a scene in place of the one before, which no frame in flight needs any more.
-    fn load(&mut self, scene: &Gaussians, format: ShFormat) -> Result<()> {
+    fn load(&mut self, scene: Scene<'_>, format: ShFormat) -> Result<()> {
         self.renderer.forget();
         // Free first: both together may not fit.
         self.scene = None;
         let upload = || SceneBuffers::upload(&self.device, scene, format);
         self.scene = Some(trace::span(self.trace.as_ref(), "upload", upload)?);
         Ok(())
+    }
+
+    fn layers(&self) -> &[SceneLayer] {
+        self.scene.as_ref().map_or(&[], SceneBuffers::layers)
+    }
+
+    fn layers_mut(&mut self) -> &mut [SceneLayer] {
+        let scene = self.scene.as_mut();
+        scene.map_or(&mut [], SceneBuffers::layers_mut)
     }
 
     /// Draws a frame into a target and waits for it; does nothing where the target has that picture already. All earlier

@@ -14,7 +14,8 @@ use crate::gpu::{Device, DeviceDesc, FRAMES, InFlight, Surface, Swapchain, Windo
 use crate::picture::Picture;
 use crate::precision::ShFormat;
 use crate::renderer::{FrameRequest, Outcome, RendererDesc, Submission};
-use crate::scene::Gaussians;
+use crate::passes::SceneLayer;
+use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
 
@@ -86,9 +87,23 @@ impl Windowed {
     }
 
     /// Uploads a scene in place of the one before, its spherical harmonics stored as `format` says.
-    pub fn load_as(&mut self, scene: &Gaussians, format: ShFormat) -> Result<()> {
+    pub fn load_as<'a>(
+        &mut self,
+        scene: impl Into<Scene<'a>>,
+        format: ShFormat,
+    ) -> Result<()> {
         self.frames.wait_for_all()?;
-        self.session.load(scene, format)
+        self.session.load(scene.into(), format)
+    }
+
+    /// The layers of the scene; none without one.
+    pub fn layers(&self) -> &[SceneLayer] {
+        self.session.layers()
+    }
+
+    /// The layers of the scene, whose states the next frame takes as they are then; none without a scene.
+    pub fn layers_mut(&mut self) -> &mut [SceneLayer] {
+        self.session.layers_mut()
     }
 
     /// Makes the window's images fit a window of this many pixels. The size that the next frame's camera needs, which

@@ -1,0 +1,53 @@
+// The surfaces of the layers' regions, what the stages ask of one, and how their answers make the region's. A shape answers
+// the three questions in a file of its own. Twin: src/reference/region/surface.rs.
+#ifndef RARA_REGION_SURFACE
+#define RARA_REGION_SURFACE
+#include "region/sides.glsl"
+#include "layer.glsl"
+
+BUFFER(readonly, 1, Surface, surfaces)
+
+#include "region/plane.glsl"
+
+// On which side of a surface a Gaussian is whose band reaches so many standard deviations.
+uint surface_gaussian_side(uint surface, mat3 layer_factor, vec3 position, float deviations) {
+    switch (surfaces.at[surface].kind) {
+    default: // SURFACE_PLANE
+        return plane_gaussian_side(surface, layer_factor, position, deviations);
+    }
+}
+
+// On which side all Gaussians are whose centres lie in a box and that reach at most so far from them, the layer's units.
+uint surface_box_side(uint surface, vec3 middle, vec3 half_size, float support) {
+    switch (surfaces.at[surface].kind) {
+    default: // SURFACE_PLANE
+        return plane_box_side(surface, middle, half_size, support);
+    }
+}
+
+// The half-space that a surface keeps of a Gaussian that it cuts: its normal in the Gaussian's unit space, and the centre's
+// distance, the layer's units.
+vec4 surface_half_space(uint surface, mat3 layer_factor, vec3 position) {
+    switch (surfaces.at[surface].kind) {
+    default: // SURFACE_PLANE
+        return plane_half_space(surface, layer_factor, position);
+    }
+}
+
+// The answer of one surface that is the region's, whatever the others say: what one drops no intersection holds, what one
+// keeps every union does.
+uint side_that_decides() {
+    return LAYER.region.op == OP_AND ? SIDE_INVISIBLE : SIDE_VISIBLE;
+}
+
+// The region's answer where no surface decides and none cuts.
+uint side_undecided() {
+    return LAYER.region.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
+}
+
+// The region's answer by what one more surface says, given what it was by those before.
+uint combined_side(uint side, uint one) {
+    return side != side_that_decides() && (one == side_that_decides() || one == SIDE_CUTOFF) ? one : side;
+}
+
+#endif

@@ -1,0 +1,138 @@
+//! The layers of a frame, as the shaders have them: where each has the camera, what of it shows, and what is kept of it.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::camera::Camera;
+use crate::clip::Clip;
+use crate::error::Result;
+use crate::passes::scene_buffers::SceneLayer;
+use crate::passes::view::layer_view;
+use crate::passes::{region, work};
+use crate::placement::Placement;
+use crate::types::{self, LayerContent, LayerData, LayerRegion, RegionData, Surface};
+
+/// The layers and their surfaces. A copy has the same ones.
+#[derive(Debug, Clone)]
+pub(crate) struct Layers {
+    lists: Arc<(Vec<LayerData>, Vec<Surface>)>,
+}
+
+impl Layers {
+    /// Those of a scene; camera and clip are in its space, and `region` is what the clip makes of the settings.
+    pub(super) fn new(
+        scene: &[SceneLayer],
+        camera: &Camera,
+        clip: &Clip,
+        region: &RegionData,
+    ) -> Result<Self> {
+        let has_region = region.mode != types::MODE_NONE;
+        let (mut layers, mut surfaces) = (Vec::<LayerData>::with_capacity(scene.len()), Vec::new());
+        for (index, layer) in scene.iter().enumerate() {
+            let state = &layer.state;
+            state.check(layer.name())?;
+            // Layers of one placement see one region.
+            let mut before = scene[..index].iter();
+            let region = match before.position(|other| other.state.placement == state.placement) {
+                Some(other) => layers[other].region,
+                None if has_region => {
+                    let first = surfaces.len();
+                    surfaces.extend(region::surfaces(&in_layer(clip, &state.placement)));
+                    LayerRegion {
+                        op: region::op(clip),
+                        first_surface: first as u32,
+                        surface_count: (surfaces.len() - first) as u32,
+                        pad: 0,
+                    }
+                }
+                None => bytemuck::Zeroable::zeroed(),
+            };
+            layers.push(LayerData {
+                view: layer_view(
+                    &camera_in_layer(camera, &state.placement),
+                    state.placement.scale(),
+                ),
+                content: LayerContent {
+                    first_block: layer.first_block,
+                    gaussian_end: layer.gaussian_end(),
+                    opacity: state.opacity,
+                    visible: state.visible.into(),
+                },
+                region,
+            });
+        }
+        Ok(Self {
+            lists: Arc::new((layers, surfaces)),
+        })
+    }
+
+    /// The layers, in the scene's order.
+    pub(crate) fn layers(&self) -> &[LayerData] {
+        &self.lists.0
+    }
+
+    /// The surfaces of their regions.
+    pub(crate) fn surfaces(&self) -> &[Surface] {
+        &self.lists.1
+    }
+
+    /// The most surfaces that a layer's region has.
+    pub(crate) fn most_surfaces(&self) -> u32 {
+        let counts = self.layers().iter().map(|layer| layer.region.surface_count);
+        counts.max().unwrap_or(0)
+    }
+
+    /// Whether other layers hold and show the same.
+    pub(super) fn contain_like(&self, other: &Self) -> bool {
+        self.are_like(other, |layer| layer.content)
+    }
+
+    /// Whether other layers have the camera where these have it.
+    pub(super) fn see_like(&self, other: &Self) -> bool {
+        self.are_like(other, |layer| layer.view)
+    }
+
+    /// Whether the same is kept of other layers.
+    pub(super) fn keep_like(&self, other: &Self) -> bool {
+        self.are_like(other, |layer| layer.region)
+            && bytemuck::cast_slice::<_, u8>(self.surfaces())
+                == bytemuck::cast_slice::<_, u8>(other.surfaces())
+    }
+
+    fn are_like<T: bytemuck::NoUninit>(&self, other: &Self, part: fn(&LayerData) -> T) -> bool {
+        let (ours, theirs) = (self.layers(), other.layers());
+        let mut pairs = ours.iter().zip(theirs);
+        ours.len() == theirs.len() && pairs.all(|(a, b)| work::same(&part(a), &part(b)))
+    }
+}
+
+/// What the depth keys need to know of a layer: the camera in its space, the box around its centres, and the scene's units in
+/// one of its own.
+pub(super) fn boxes<'a>(
+    scene: &'a [SceneLayer],
+    camera: &'a Camera,
+) -> impl Iterator<Item = (Cow<'a, Camera>, [Vec3; 2], f64)> {
+    let visible = scene.iter().filter(|layer| layer.state.visible);
+    visible.map(move |layer| {
+        let placement = &layer.state.placement;
+        let camera = camera_in_layer(camera, placement);
+        (camera, layer.bounds, placement.scale())
+    })
+}
+
+/// The camera as a layer sees it; to the bit the same where the layer is the scene as it is.
+fn camera_in_layer<'a>(camera: &'a Camera, placement: &Placement) -> Cow<'a, Camera> {
+    match *placement == Placement::IDENTITY {
+        true => Cow::Borrowed(camera),
+        false => Cow::Owned(camera.in_scene(placement)),
+    }
+}
+
+fn in_layer<'a>(clip: &'a Clip, placement: &Placement) -> Cow<'a, Clip> {
+    match *placement == Placement::IDENTITY {
+        true => Cow::Borrowed(clip),
+        false => Cow::Owned(clip.in_scene(placement)),
+    }
+}

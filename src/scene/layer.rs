@@ -1,0 +1,140 @@
+//! A scene is a list of layers: Gaussians with a name that are placed, faded and hidden together.
+
+use crate::error::{Error, Result};
+use crate::placement::Placement;
+use crate::scene::Gaussians;
+use crate::setters::setters;
+
+/// What of a layer may change from frame to frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct LayerState {
+    /// Where the layer stands in its scene.
+    pub placement: Placement,
+    /// What the opacities of its Gaussians are multiplied by, 0 to 1.
+    pub opacity: f32,
+    /// Whether it is drawn. A hidden layer costs a test for each of its blocks of 256 Gaussians.
+    pub visible: bool,
+}
+
+setters!(LayerState {
+    placement: Placement,
+    opacity: f32,
+    visible: bool,
+});
+
+impl Default for LayerState {
+    fn default() -> Self {
+        Self {
+            placement: Placement::IDENTITY,
+            opacity: 1.0,
+            visible: true,
+        }
+    }
+}
+
+impl LayerState {
+    /// That the opacity is one; `name` is the layer's.
+    pub(crate) fn check(&self, name: &str) -> Result<()> {
+        if (0.0..=1.0).contains(&self.opacity) {
+            return Ok(());
+        }
+        Err(Error::Invalid(format!(
+            "the opacity of layer '{name}' is {}; give 0 to 1",
+            self.opacity
+        )))
+    }
+}
+
+/// A layer of a scene that is to be uploaded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layer<'a> {
+    name: String,
+    gaussians: &'a Gaussians,
+    state: LayerState,
+}
+
+impl<'a> Layer<'a> {
+    /// Gaussians with a name, as they are.
+    pub fn new(name: impl Into<String>, gaussians: &'a Gaussians) -> Self {
+        Self {
+            name: name.into(),
+            gaussians,
+            state: LayerState::default(),
+        }
+    }
+
+    /// The same layer in another state.
+    #[must_use]
+    pub fn with(mut self, state: LayerState) -> Self {
+        self.state = state;
+        self
+    }
+
+    /// Its name; several layers may have the same.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its Gaussians.
+    pub fn gaussians(&self) -> &'a Gaussians {
+        self.gaussians
+    }
+
+    /// How it is shown at first.
+    pub fn state(&self) -> LayerState {
+        self.state
+    }
+}
+
+/// A scene that is to be uploaded: layers that are sorted and blended together, wherever they reach into each other. Where
+/// two Gaussians are equally deep, the earlier layer's is in front.
+///
+/// ```
+/// use rara::{Gaussians, Layer, LayerState, Scene};
+///
+/// let (skin, vessels) = (Gaussians::default(), Gaussians::default());
+/// let faded = LayerState::default().opacity(0.4);
+/// let scene = Scene::from_iter([
+///     Layer::new("skin", &skin).with(faded),
+///     Layer::new("vessels", &vessels),
+/// ]);
+/// assert_eq!(scene.layers().len(), 2);
+/// ```
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Scene<'a> {
+    layers: Vec<Layer<'a>>,
+}
+
+impl<'a> Scene<'a> {
+    /// Its layers.
+    pub fn layers(&self) -> &[Layer<'a>] {
+        &self.layers
+    }
+
+    /// Gaussians of all layers.
+    pub fn gaussians(&self) -> usize {
+        self.layers.iter().map(|layer| layer.gaussians.len()).sum()
+    }
+
+    /// The highest degree of spherical harmonics of any layer.
+    pub fn sh_degree(&self) -> u32 {
+        let degrees = self.layers.iter().map(|layer| layer.gaussians.sh_degree());
+        degrees.max().unwrap_or(0)
+    }
+}
+
+/// A scene of one layer, which is named `scene`.
+impl<'a> From<&'a Gaussians> for Scene<'a> {
+    fn from(gaussians: &'a Gaussians) -> Self {
+        Self::from_iter([Layer::new("scene", gaussians)])
+    }
+}
+
+impl<'a> FromIterator<Layer<'a>> for Scene<'a> {
+    fn from_iter<T: IntoIterator<Item = Layer<'a>>>(layers: T) -> Self {
+        Self {
+            layers: layers.into_iter().collect(),
+        }
+    }
+}

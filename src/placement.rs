@@ -80,6 +80,9 @@ impl Camera {
     /// The same view, as a scene sees it that is placed so.
     #[must_use]
     pub fn in_scene(&self, placement: &Placement) -> Self {
+        if *placement == Placement::IDENTITY {
+            return *self; // to the bit
+        }
         Self {
             eye: placement.to_scene(self.eye),
             rotation: self.rotation * DMat3::from_quat(placement.rotation),
@@ -92,6 +95,9 @@ impl Plane {
     /// The same plane, as a scene sees it that is placed so.
     #[must_use]
     pub fn in_scene(&self, placement: &Placement) -> Self {
+        if *placement == Placement::IDENTITY {
+            return *self; // to the bit
+        }
         let normal = placement.rotation.inverse() * self.normal();
         let offset = self.distance(placement.position) / placement.scale;
         Self::new(normal, offset).unwrap_or(*self)

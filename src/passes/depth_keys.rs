@@ -1,7 +1,5 @@
 //! What the sort compares: the bits of a view depth, counted from the nearest one that the scene's bounds allow.
 
-use std::ops::Deref;
-
 use glam::Vec3;
 
 use crate::camera::Camera;
@@ -19,8 +17,8 @@ pub(super) struct DepthKeys {
 impl DepthKeys {
     /// Keys of at most `bits` bits for centres within boxes: of each the camera in its space, its corners, and the scene's
     /// units in one of its own.
-    pub(super) fn new<C: Deref<Target = Camera>>(
-        boxes: impl Iterator<Item = (C, [Vec3; 2], f64)>,
+    pub(super) fn new(
+        boxes: impl Iterator<Item = (Camera, [Vec3; 2], f64)>,
         bits: u32,
     ) -> Result<Self> {
         if !(limits::SORT_BITS..=u32::BITS).contains(&bits) {
@@ -85,8 +83,8 @@ mod tests {
         .unwrap()
     }
 
-    fn keys(bounds: [Vec3; 2], bits: u32) -> Result<DepthKeys> {
-        DepthKeys::new([(&camera(), bounds, 1.0)].into_iter(), bits)
+    fn keys_of(bounds: [Vec3; 2], bits: u32) -> Result<DepthKeys> {
+        DepthKeys::new([(camera(), bounds, 1.0)].into_iter(), bits)
     }
 
     fn key(keys: DepthKeys, depth: f32) -> u32 {
@@ -96,9 +94,9 @@ mod tests {
 
     #[test]
     fn a_scene_seen_from_outside_needs_three_passes_and_loses_nothing() {
-        let keys = keys([Vec3::NEG_ONE, Vec3::ONE], 32).unwrap();
+        let keys = keys_of([Vec3::NEG_ONE, Vec3::ONE], 32).unwrap();
         assert_eq!((keys.shift, keys.passes()), (0, 3));
-        let two = keys([Vec3::NEG_ONE, Vec3::ONE], 16).unwrap();
+        let two = keys_of([Vec3::NEG_ONE, Vec3::ONE], 16).unwrap();
         assert_eq!(two.passes(), 2);
         // Three to five units deep: 2^24 values or fewer in 16 bits, one part in 2^15 told apart.
         assert!(key(two, 4.0) < key(two, 4.0 * (1.0 + 1.0 / 16384.0)));
@@ -109,7 +107,7 @@ mod tests {
         for size in [1e-3_f32, 1.0, 3.9, 4.1, 1e3, 1e30, f32::MAX] {
             for bits in [8, 16, 24, 32] {
                 let bounds = [Vec3::splat(-size), Vec3::splat(size)];
-                let keys = keys(bounds, bits).unwrap();
+                let keys = keys_of(bounds, bits).unwrap();
                 let mut last = 0;
                 for step in 0..4000 {
                     let key = key(keys, 0.2 * 1.05_f32.powi(step).min(f32::MAX));
@@ -126,25 +124,25 @@ mod tests {
         let (near, far) = ([Vec3::NEG_ONE, Vec3::ONE], [Vec3::ONE, Vec3::splat(5.0)]);
         let empty = [Vec3::INFINITY, Vec3::NEG_INFINITY];
         let camera = camera();
-        let boxes = [near, empty, far].map(|bounds| (&camera, bounds, 1.0));
+        let boxes = [near, empty, far].map(|bounds| (camera, bounds, 1.0));
         let all = DepthKeys::new(boxes.into_iter(), 32).unwrap();
         let ends = |keys: DepthKeys| (keys.near, keys.near + keys.span);
-        let (first, last) = (keys(near, 32).unwrap(), keys(far, 32).unwrap());
+        let (first, last) = (keys_of(near, 32).unwrap(), keys_of(far, 32).unwrap());
         assert_eq!(ends(all), (ends(first).0, ends(last).1));
         // A box of twice the size whose units count half is the same one.
         let doubled = far.map(|corner| 2.0 * corner);
         let eye = DVec3::new(0.0, 0.0, -8.0);
         let twice = Camera { eye, ..camera };
-        let halved = DepthKeys::new([(&twice, doubled, 0.5)].into_iter(), 32).unwrap();
+        let halved = DepthKeys::new([(twice, doubled, 0.5)].into_iter(), 32).unwrap();
         assert_eq!(ends(halved), ends(last));
     }
 
     #[test]
     fn no_centres_and_impossible_widths() {
         let empty = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-        assert!(keys(empty, 32).unwrap().passes() <= 4);
+        assert!(keys_of(empty, 32).unwrap().passes() <= 4);
         for bits in [0, 7, 33] {
-            assert!(keys(empty, bits).is_err());
+            assert!(keys_of(empty, bits).is_err());
         }
     }
 }

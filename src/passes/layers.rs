@@ -1,6 +1,5 @@
 //! The layers of a frame, as the shaders have them: where each has the camera, what of it shows, and what is kept of it.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::Vec3;
@@ -11,7 +10,6 @@ use crate::error::Result;
 use crate::passes::scene_buffers::SceneLayer;
 use crate::passes::view::layer_view;
 use crate::passes::{region, work};
-use crate::placement::Placement;
 use crate::types::{self, LayerContent, LayerData, LayerRegion, RegionData, Surface};
 
 /// The layers and their surfaces. A copy has the same ones.
@@ -39,7 +37,7 @@ impl Layers {
                 Some(other) => layers[other].region,
                 None if has_region => {
                     let first = surfaces.len();
-                    surfaces.extend(region::surfaces(&in_layer(clip, &state.placement)));
+                    surfaces.extend(region::surfaces(&clip.in_scene(&state.placement)));
                     LayerRegion {
                         op: region::op(clip),
                         first_surface: first as u32,
@@ -50,10 +48,7 @@ impl Layers {
                 None => bytemuck::Zeroable::zeroed(),
             };
             layers.push(LayerData {
-                view: layer_view(
-                    &camera_in_layer(camera, &state.placement),
-                    state.placement.scale(),
-                ),
+                view: layer_view(&camera.in_scene(&state.placement), state.placement.scale()),
                 content: LayerContent {
                     first_block: layer.first_block,
                     gaussian_end: layer.gaussian_end(),
@@ -113,26 +108,10 @@ impl Layers {
 pub(super) fn boxes<'a>(
     scene: &'a [SceneLayer],
     camera: &'a Camera,
-) -> impl Iterator<Item = (Cow<'a, Camera>, [Vec3; 2], f64)> {
+) -> impl Iterator<Item = (Camera, [Vec3; 2], f64)> {
     let visible = scene.iter().filter(|layer| layer.state.visible);
     visible.map(move |layer| {
         let placement = &layer.state.placement;
-        let camera = camera_in_layer(camera, placement);
-        (camera, layer.bounds, placement.scale())
+        (camera.in_scene(placement), layer.bounds, placement.scale())
     })
-}
-
-/// The camera as a layer sees it; to the bit the same where the layer is the scene as it is.
-fn camera_in_layer<'a>(camera: &'a Camera, placement: &Placement) -> Cow<'a, Camera> {
-    match *placement == Placement::IDENTITY {
-        true => Cow::Borrowed(camera),
-        false => Cow::Owned(camera.in_scene(placement)),
-    }
-}
-
-fn in_layer<'a>(clip: &'a Clip, placement: &Placement) -> Cow<'a, Clip> {
-    match *placement == Placement::IDENTITY {
-        true => Cow::Borrowed(clip),
-        false => Cow::Owned(clip.in_scene(placement)),
-    }
 }

@@ -1,6 +1,5 @@
 //! What a frame needs, decided on the CPU before anything is recorded: which stages run, and the frame's constants.
 
-use ash::vk;
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
@@ -17,6 +16,7 @@ use crate::passes::work::Work;
 use crate::precision::ShFormat;
 use crate::settings::{ExactForm, Raster, Settings, Show};
 use crate::types::{self, FrameData, OrderData, RoomData, SceneData, TilesData, WeightData};
+use ash::vk;
 
 /// A frame, decided but not recorded.
 #[derive(Debug, Clone)]

@@ -46,12 +46,7 @@ pub struct SceneLayer {
 }
 
 impl SceneLayer {
-    pub(crate) fn new(
-        name: String,
-        first_block: u32,
-        gaussians: u32,
-        bounds: [Vec3; 2],
-    ) -> Self {
+    pub(crate) fn new(name: String, first_block: u32, gaussians: u32, bounds: [Vec3; 2]) -> Self {
         Self {
             state: LayerState::default(),
             name,
@@ -101,9 +96,15 @@ impl SceneBuffers {
         let (buffers, packed) = Self::allocate(device, &scene, format)?;
         for layer in &packed {
             let [gaussians, sh, blocks] = layer.offsets();
-            upload_in_chunks(device, &buffers.gaussians, gaussians, &layer.order, |i, out| {
-                out.push(layer.gaussian(i));
-            })?;
+            upload_in_chunks(
+                device,
+                &buffers.gaussians,
+                gaussians,
+                &layer.order,
+                |i, out| {
+                    out.push(layer.gaussian(i));
+                },
+            )?;
             upload_in_chunks(device, &buffers.sh, sh, &layer.order, |i, out| {
                 layer.append_sh(i, out);
             })?;
@@ -486,8 +487,15 @@ mod tests {
                 let read = |buffer| device.download_range(buffer, 0, size).expect("reads back");
                 assert!(read(theirs) == read(ours), "{count}, {format:?}");
             }
-            let facts =
-                |b: &SceneBuffers| (b.reordered, b.count, b.sh_degree, b.sh_format, b.layers.clone());
+            let facts = |b: &SceneBuffers| {
+                (
+                    b.reordered,
+                    b.count,
+                    b.sh_degree,
+                    b.sh_format,
+                    b.layers.clone(),
+                )
+            };
             assert_eq!(facts(&whole), facts(&ours));
         }
         assert_eq!(device.close(), Vec::<String>::new());

@@ -2,9 +2,9 @@
 
 use bytemuck::bytes_of;
 
+use crate::passes::layers::Layers;
 use crate::passes::plan::Plan;
 use crate::passes::weight::Weight;
-use crate::passes::layers::Layers;
 use crate::types::{self, RegionData};
 
 /// What of a frame has to be computed.
@@ -59,8 +59,11 @@ impl Kept {
                 fresh: base.unwrap_or(true),
             };
         }
-        let has_classes =
-            kept.holds && kept.region.as_ref().is_some_and(|had| plan.has_classes_of(had));
+        let has_classes = kept.holds
+            && kept
+                .region
+                .as_ref()
+                .is_some_and(|had| plan.has_classes_of(had));
         Work::Whole {
             clip: clip && !has_classes,
         }

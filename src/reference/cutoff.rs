@@ -86,7 +86,7 @@ pub(super) fn is_beam<T: Real>(
         ExactForm::Beam => true,
         ExactForm::Affine => false,
         ExactForm::Auto => {
-            let sigma_max = T::of(f64::from(scene.scales()[index].max_element()));
+            let sigma_max = footprint.unit * T::of(f64::from(scene.scales()[index].max_element()));
             let large =
                 sigma_max / footprint.centre.z > T::of(f64::from(settings.precision.beam_switch));
             large || footprint.clamped

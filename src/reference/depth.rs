@@ -18,9 +18,8 @@
 use super::footprint::{Footprint, determinant, scaled};
 use super::real::{Real, Vec3};
 use super::region::UnitPlane;
-use super::view::View;
-use super::{classify, splat};
-use crate::{Camera, Clip, ClipOp, Gaussians, Mode, Settings};
+use super::{SeenLayer, layer, splat};
+use crate::{Camera, Clip, ClipOp, Gaussians, Mode, Scene, Settings};
 
 /// A linear function of u given a pixel: `at + slope . delta`, over its deviation.
 #[derive(Debug, Clone, Copy)]
@@ -163,20 +162,31 @@ impl<T: Real> SplatDepth<T> {
 
 /// A picture of expected depths: for each pixel the sum of the splats' depths, each times what its splat adds to the pixel's
 /// alpha, and that alpha.
-pub fn expected<T: Real>(
-    scene: &Gaussians,
+pub fn expected<'a, T: Real>(
+    scene: impl Into<Scene<'a>>,
     camera: &Camera,
     clip: &Clip,
     settings: &Settings,
 ) -> Vec<[f64; 2]> {
-    let view = View::<T>::new(camera);
-    let sides = classify::classify(scene, &view, clip, settings);
-    let splats = super::in_order(scene, &view, &sides, clip, settings);
-    let [width, height] = view.size;
+    let layers = layer::layers(&scene.into(), camera, clip);
+    let sides: Vec<_> = layers
+        .iter()
+        .map(|layer| super::sides(layer, settings))
+        .collect();
+    let splats = super::in_order::<T>(&layers, &sides, settings);
+    let [width, height] = [camera.width, camera.height];
     let mut pixels = vec![[0.0; 2]; (width * height) as usize];
     for splat in &splats {
         let footprint = &splat.footprint;
-        let depth = SplatDepth::new(scene, splat.index as usize, footprint, clip, settings);
+        let after = layers.partition_point(|layer| layer.first <= splat.index);
+        let SeenLayer {
+            gaussians,
+            clip,
+            first,
+            ..
+        } = &layers[after - 1];
+        let index = (splat.index - first) as usize;
+        let depth = SplatDepth::new(gaussians, index, footprint, clip, settings);
         let span = |axis, size| footprint.span(axis, size, T::one());
         let (Some((left, right)), Some((top, bottom))) = (span(0, width), span(1, height)) else {
             continue;

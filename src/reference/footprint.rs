@@ -15,14 +15,16 @@ use crate::limits::{ALPHA_MIN_INVERSE, LOW_PASS, NEAR_Z};
 /// A Gaussian in view: what every later stage is computed from.
 #[derive(Debug, Clone, Copy)]
 pub struct Footprint<T> {
-    /// Columns of M: the Gaussian's half axes in the world, one standard deviation long.
+    /// Columns of M: the Gaussian's half axes in its layer, one standard deviation long.
     pub axes: [Vec3<T>; 3],
-    /// Rows of M in camera axes, m1, m2 and m3: the derivatives of the point's X, Y and Z by u, world units.
+    /// Rows of M in camera axes, m1, m2 and m3: the derivatives of the point's X, Y and Z by u, scene units.
     pub rows: [Vec3<T>; 3],
-    /// The centre relative to the eye, world axes.
+    /// The centre relative to the eye, the layer's axes and units.
     pub relative: Vec3<T>,
-    /// The centre in camera axes (X, Y, Z), world units.
+    /// The centre in camera axes (X, Y, Z), scene units.
     pub centre: Vec3<T>,
+    /// Units of the scene in one of the layer's.
+    pub unit: T,
     /// Image derivatives b1, b2 of the footprint, evaluated at the clamped direction, pixels.
     pub gradients: [Vec3<T>; 2],
     /// Whether that direction was clamped.
@@ -74,6 +76,7 @@ impl<T: Real> Footprint<T> {
             rows,
             relative,
             centre,
+            unit: view.unit,
             gradients,
             clamped: clamped != slopes,
             stretch: if clamped == slopes {

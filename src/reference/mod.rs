@@ -15,6 +15,7 @@ pub mod depth;
 pub mod exact;
 pub mod footprint;
 pub mod harmonics;
+pub mod layer;
 pub mod orthant;
 pub mod project;
 pub mod quadrature;
@@ -26,12 +27,13 @@ mod view;
 
 pub use cutoff::Cut;
 pub use footprint::Footprint;
+pub use layer::SeenLayer;
 pub use project::Splat;
 pub use real::{Real, Vec3, vec3};
 pub use region::{Side, UnitPlane};
 pub use view::View;
 
-use crate::{Camera, Clip, Counts, Gaussians, Picture, Settings};
+use crate::{Camera, Clip, Counts, Picture, Scene, Settings};
 
 /// A rendered frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,41 +45,56 @@ pub struct Frame {
 }
 
 /// Renders a frame: the stages in order.
-pub fn render<T: Real>(
-    scene: &Gaussians,
+pub fn render<'a, T: Real>(
+    scene: impl Into<Scene<'a>>,
     camera: &Camera,
     clip: &Clip,
     settings: &Settings,
 ) -> Frame {
-    let view = View::<T>::new(camera);
+    let layers = layer::layers(&scene.into(), camera, clip);
     // What the clip does to each Gaussian.
-    let sides = classify::classify(scene, &view, clip, settings);
-    let splats = in_order(scene, &view, &sides, clip, settings);
+    let sides: Vec<_> = layers.iter().map(|layer| sides(layer, settings)).collect();
+    let splats = in_order::<T>(&layers, &sides, settings);
     // Blended.
-    let picture = splat::splat(&splats, &view, settings);
+    let picture = splat::splat(&splats, &View::new(camera), settings);
     Frame {
         picture,
-        counts: counts(&sides),
+        counts: counts(&sides.concat()),
+    }
+}
+
+/// The classes of a layer's Gaussians.
+fn sides<T: Real>(layer: &SeenLayer<'_, T>, settings: &Settings) -> Vec<Side> {
+    match layer.visible {
+        true => classify::classify(&layer.gaussians, &layer.view, &layer.clip, settings),
+        false => vec![Side::Culled; layer.gaussians.len()],
     }
 }
 
 /// The splats that are drawn, front to back.
 fn in_order<T: Real>(
-    scene: &Gaussians,
-    view: &View<T>,
-    sides: &[Side],
-    clip: &Clip,
+    layers: &[SeenLayer<'_, T>],
+    sides: &[Vec<Side>],
     settings: &Settings,
 ) -> Vec<project::Splat<T>> {
-    let drawn = compact::compact(sides);
-    // Their footprints and colours, and how the cut ones vary over their pixels.
-    let splats = drawn.iter().filter_map(|&index| {
-        let index = index as usize;
-        let mut splat = project::project(scene, index, view, settings)?;
-        splat.cut = cutoff::cutoff(scene, index, &splat.footprint, view, clip, settings);
-        Some(splat)
-    });
-    let mut splats: Vec<_> = splats.collect();
+    let mut splats = Vec::new();
+    for (layer, sides) in layers.iter().zip(sides) {
+        let SeenLayer {
+            gaussians: scene,
+            view,
+            clip,
+            first,
+            ..
+        } = layer;
+        // Their footprints and colours, and how the cut ones vary over their pixels.
+        splats.extend(compact::compact(sides).into_iter().filter_map(|number| {
+            let index = number as usize;
+            let mut splat = project::project(scene, index, view, settings)?;
+            splat.cut = cutoff::cutoff(scene, index, &splat.footprint, view, clip, settings);
+            splat.index = first + number;
+            Some(splat)
+        }));
+    }
     sort::sort(&mut splats);
     splats
 }

@@ -10,7 +10,7 @@ use crate::{Gaussians, Settings};
 /// A splat, ready to be drawn.
 #[derive(Debug, Clone)]
 pub struct Splat<T> {
-    /// Its index in the scene.
+    /// Its number in the scene, where the layers' Gaussians stand one after the other.
     pub index: u32,
     /// Where and how large it is, and how opaque.
     pub footprint: Footprint<T>,

@@ -1,8 +1,8 @@
 //! The camera as the stages use it: its numbers in the reference's own type.
 
 use super::real::{Real, Vec3};
-use crate::Camera;
 use crate::limits::CLAMP_MARGIN;
+use crate::{Camera, Placement};
 
 /// What the stages need to know about the camera. In f32 these are the numbers that the GPU is given.
 #[derive(Debug, Clone, Copy)]
@@ -17,17 +17,26 @@ pub struct View<T> {
     pub slope_min: [T; 2],
     /// Largest x/z and y/z at which the projection's Jacobian is evaluated.
     pub slope_max: [T; 2],
-    /// Rows of the world to camera rotation: right, down, forward.
+    /// Rows of the layer to camera rotation, right, down and forward, times the layer's unit: what is turned by them is in
+    /// the scene's units.
     pub rows: [Vec3<T>; 3],
-    /// The eye rounded to `T`, world units.
+    /// The eye in the layer, rounded to `T`.
     pub eye_high: Vec3<T>,
-    /// What that rounding lost, world units: zero in f64.
+    /// What that rounding lost: zero in f64.
     pub eye_low: Vec3<T>,
+    /// Units of the scene in one of the layer's.
+    pub unit: T,
 }
 
 impl<T: Real> View<T> {
-    /// The view of a camera.
+    /// The view of a camera that a layer has which is the scene as it is.
     pub fn new(camera: &Camera) -> Self {
+        Self::in_layer(camera, &Placement::IDENTITY)
+    }
+
+    /// The view of a scene's camera that a layer has which is placed in the scene.
+    pub fn in_layer(camera: &Camera, placement: &Placement) -> Self {
+        let (camera, unit) = (&camera.in_scene(placement), placement.scale());
         let margin = f64::from(CLAMP_MARGIN);
         let size = [camera.width, camera.height].map(f64::from);
         let (focal, principal) = ([camera.fx, camera.fy], [camera.cx, camera.cy]);
@@ -42,19 +51,20 @@ impl<T: Real> View<T> {
             principal: principal.map(T::of),
             slope_min: [slope(0, -margin), slope(1, -margin)],
             slope_max: [slope(0, 1.0 + margin), slope(1, 1.0 + margin)],
-            rows: [rows.x_axis, rows.y_axis, rows.z_axis].map(Vec3::of),
+            rows: [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| Vec3::of(unit * row)),
             eye_high,
             eye_low: Vec3::of(camera.eye - rounded),
+            unit: T::of(unit),
         }
     }
 
-    /// A point relative to the eye, along the world's axes. Subtracting the eye in two steps keeps the digits that a
+    /// A point of the layer relative to the eye, along the layer's axes. Subtracting the eye in two steps keeps the digits that a
     /// single-precision eye far from the origin would lose.
     pub fn relative(&self, point: glam::Vec3) -> Vec3<T> {
         (Vec3::of(point.as_dvec3()) - self.eye_high) - self.eye_low
     }
 
-    /// A direction of the world in camera axes.
+    /// A vector of the layer in camera axes, the scene's units.
     pub fn turn(&self, v: Vec3<T>) -> Vec3<T> {
         Vec3 {
             x: self.rows[0].dot(v),

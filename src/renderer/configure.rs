@@ -10,7 +10,6 @@ use crate::error::{Error, Result};
 use crate::gpu::Bindings;
 use crate::limits;
 use crate::passes::{Kept, Occluders, Plan, SceneBuffers, SceneFacts, Targets, TileWork, Work};
-use crate::placement::Placement;
 use crate::settings::{Raster, Settings};
 
 /// What a frame is to show, and how it is submitted.
@@ -47,9 +46,6 @@ impl Renderer {
 
     /// As [`configure`](Self::configure), for a frame that is submitted as the request says.
     pub(crate) fn configure_frame(&mut self, request: &FrameRequest<'_>) -> Result<()> {
-        if self.placement == Placement::IDENTITY {
-            return self.configure_in_scene(request);
-        }
         let camera = request.camera.in_scene(&self.placement);
         let clip = request.clip.in_scene(&self.placement);
         self.configure_in_scene(&FrameRequest {

@@ -93,11 +93,7 @@ impl Headless {
     }
 
     /// Uploads a scene in place of the one before, its spherical harmonics stored as `format` says.
-    pub fn load_as<'a>(
-        &mut self,
-        scene: impl Into<Scene<'a>>,
-        format: ShFormat,
-    ) -> Result<()> {
+    pub fn load_as<'a>(&mut self, scene: impl Into<Scene<'a>>, format: ShFormat) -> Result<()> {
         self.target.forget();
         self.session.load(scene.into(), format)
     }

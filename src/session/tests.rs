@@ -4,7 +4,7 @@ use super::*;
 use crate::gpu::{DeviceDesc, PipelineCache};
 use crate::precision::TargetFormat;
 use crate::renderer::RecordedFrame;
-use crate::scene::{Bounds, Kind, generate};
+use crate::scene::{Bounds, Gaussians, Kind, generate};
 use crate::settings::Raster;
 use glam::{DVec3, Vec3};
 
@@ -77,7 +77,9 @@ fn a_picture_after_frames_in_flight_has_the_room_it_needs() {
     let mut pictures = Vec::new();
     for frames_before in 0..3 {
         let mut session = session();
-        session.load(&scene, ShFormat::Float).expect("uploads");
+        session
+            .load((&scene).into(), ShFormat::Float)
+            .expect("uploads");
         for frame in 0..frames_before {
             let outcome = show(&mut session, &camera, &settings);
             let expected = [Outcome::NeedsRoom, Outcome::Unchanged][frame];
@@ -107,7 +109,9 @@ fn a_picture_after_frames_in_flight_has_the_room_it_needs() {
 fn a_frame_that_was_not_submitted_has_no_statistics() {
     let mut session = session();
     let (scene, camera) = crowded();
-    session.load(&scene, ShFormat::Float).expect("uploads");
+    session
+        .load((&scene).into(), ShFormat::Float)
+        .expect("uploads");
     let settings = Settings::default();
     show(&mut session, &camera, &settings);
     let failed = session.device.submit_and_wait(|cmd| {

@@ -11,10 +11,10 @@ use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::gpu::{Device, DeviceDesc, FRAMES, InFlight, Surface, Swapchain, Window};
+use crate::passes::SceneLayer;
 use crate::picture::Picture;
 use crate::precision::ShFormat;
 use crate::renderer::{FrameRequest, Outcome, RendererDesc, Submission};
-use crate::passes::SceneLayer;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
@@ -87,11 +87,7 @@ impl Windowed {
     }
 
     /// Uploads a scene in place of the one before, its spherical harmonics stored as `format` says.
-    pub fn load_as<'a>(
-        &mut self,
-        scene: impl Into<Scene<'a>>,
-        format: ShFormat,
-    ) -> Result<()> {
+    pub fn load_as<'a>(&mut self, scene: impl Into<Scene<'a>>, format: ShFormat) -> Result<()> {
         self.frames.wait_for_all()?;
         self.session.load(scene.into(), format)
     }

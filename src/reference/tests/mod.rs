@@ -13,7 +13,7 @@ mod weights;
 use glam::{DMat3, DVec3, Quat, Vec3 as Point};
 
 use super::*;
-use crate::{ClipOp, Mode, Plane};
+use crate::{ClipOp, Gaussians, Mode, Plane};
 
 /// Y_00, the constant of the harmonics' first band.
 const Y00: f64 = 0.282_094_791_773_878_14;

@@ -4,7 +4,7 @@ use super::*;
 use crate::clip::{ClipOp, Plane};
 use crate::gpu::faults;
 use crate::limits;
-use crate::scene::{Bounds, Kind, extent_along, generate};
+use crate::scene::{Bounds, Gaussians, Kind, extent_along, generate};
 use crate::settings::{ExactForm, Mode, Raster, Show};
 use ash::vk;
 use glam::{DVec3, Vec3};

@@ -1,0 +1,55 @@
+//! The layers of a scene, as the stages see them: each by itself, with the camera and the clip in its own space.
+
+use std::borrow::Cow;
+
+use super::real::Real;
+use super::view::View;
+use crate::{Camera, Clip, Gaussians, Layer, Scene};
+
+/// A layer with what a frame asks of it.
+#[derive(Debug, Clone)]
+pub struct SeenLayer<'a, T> {
+    /// Its Gaussians, as opaque as the layer leaves them.
+    pub gaussians: Cow<'a, Gaussians>,
+    /// Where it has the camera.
+    pub view: View<T>,
+    /// What is kept of it, in its own space.
+    pub clip: Clip,
+    /// The number of its first Gaussian in the scene.
+    pub first: u32,
+    /// Whether it is drawn.
+    pub visible: bool,
+}
+
+/// The layers of a scene.
+pub fn layers<'a, T: Real>(
+    scene: &Scene<'a>,
+    camera: &Camera,
+    clip: &Clip,
+) -> Vec<SeenLayer<'a, T>> {
+    let mut first = 0;
+    let seen = scene.layers().iter().map(|layer| {
+        let state = layer.state();
+        let seen = SeenLayer {
+            gaussians: faded(layer),
+            view: View::in_layer(camera, &state.placement),
+            clip: clip.in_scene(&state.placement),
+            first,
+            visible: state.visible,
+        };
+        first += layer.gaussians().len() as u32;
+        seen
+    });
+    seen.collect()
+}
+
+fn faded<'a>(layer: &Layer<'a>) -> Cow<'a, Gaussians> {
+    let mut gaussians = Cow::Borrowed(layer.gaussians());
+    let opacity = layer.state().opacity;
+    if opacity != 1.0 {
+        for value in gaussians.to_mut().opacities_mut() {
+            *value *= opacity;
+        }
+    }
+    gaussians
+}

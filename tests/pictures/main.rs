@@ -11,6 +11,7 @@ mod debug_view;
 mod determinism;
 mod invariance;
 mod large;
+mod layers;
 mod memory;
 mod paper;
 mod pipeline_cache;

@@ -58,9 +58,10 @@ impl Ablate {
             ));
         }
         let views = self.camera.meant()?;
-        let scene = scenes::load(&self.scenes)?;
-        let camera = views.of(&scene.gaussians)?.remove(0).camera;
-        let bounds = Bounds::of(&scene.gaussians);
+        let loaded = scenes::load(&self.scenes)?;
+        let scene = loaded.scene();
+        let camera = views.of(&scene)?.remove(0).camera;
+        let bounds = Bounds::of(&scene);
         let reach = bounds
             .min
             .abs()
@@ -72,7 +73,7 @@ impl Ablate {
             op: ClipOp::And,
         };
 
-        let mut session = Session::open(&self.device.meant(), &scene.gaussians, look.precision.sh)?;
+        let mut session = Session::open(&self.device.meant(), &scene, look.precision.sh)?;
         let unclipped = look.mode(Mode::None);
         let (truth, _) = session.picture(&camera, &Clip::default(), &unclipped)?;
         let mut rows = Vec::new();

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::DVec3;
-use rara::{Camera, Gaussians};
+use rara::{Camera, Gaussians, Scene};
 
 use super::failure::Failure;
 use super::values;
@@ -165,7 +165,7 @@ impl CameraArgs {
 
 impl Views {
     /// The cameras, now that the scene is known.
-    pub(super) fn of(self, scene: &Gaussians) -> Result<Vec<View>, Failure> {
+    pub(super) fn of(self, scene: &Scene<'_>) -> Result<Vec<View>, Failure> {
         match self {
             Self::Given(views) => Ok(views),
             Self::Framed { up, fov_y, size } => {

@@ -3,14 +3,16 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use rara::{Camera, Clip, ClipOp, Decay, ExactForm, FrameStats, Mode, Picture, Plane, Settings};
+use rara::{
+    Camera, Clip, ClipOp, Decay, ExactForm, FrameStats, Mode, Picture, Plane, Scene, Settings,
+};
 use rara::{measure, reference, scene};
 
 use super::camera::CameraArgs;
 use super::compare::Measures;
 use super::failure::Failure;
 use super::output::{self, grouped, say};
-use super::scenes::{self, Scene};
+use super::scenes::{self, Loaded};
 use super::session::Session;
 use super::settings::{DeviceArgs, LookArgs, name};
 use super::sheet;
@@ -61,20 +63,21 @@ impl Demo {
         }
         let views = self.camera.meant()?;
         output::make_folder(&self.output)?;
-        let scene = if self.scenes.is_empty() {
+        let loaded = if self.scenes.is_empty() {
             made_up()
         } else {
             scenes::load(&self.scenes)?
         };
-        let camera = views.of(&scene.gaussians)?.remove(0).camera;
+        let scene = loaded.scene();
+        let camera = views.of(&scene)?.remove(0).camera;
         let clip = Clip {
             planes: vec![middle(&scene, &camera)?],
             op: ClipOp::And,
         };
 
-        let mut session = Session::open(&self.device.meant(), &scene.gaussians, look.precision.sh)?;
+        let mut session = Session::open(&self.device.meant(), &scene, look.precision.sh)?;
         let (device, driver, _) = session.about();
-        let count = grouped(scene.gaussians.len() as u64);
+        let count = grouped(scene.gaussians() as u64);
         say(format_args!(
             "{device} ({driver}); {count} Gaussians, {}x{}",
             camera.width, camera.height
@@ -108,20 +111,16 @@ impl Demo {
 }
 
 /// The scene that is there without a file.
-fn made_up() -> Scene {
+fn made_up() -> Loaded {
     let gaussians = scene::generate(scene::Kind::General, 60_000, 1);
-    Scene {
-        gaussians,
-        repaired: 0,
-        dropped: 0,
-        notes: Vec::new(),
-    }
+    Loaded::made_up("demo", gaussians)
 }
 
 /// A plane that shows the camera the cut: what is near and to the left goes, and that is half of the Gaussians.
-pub(super) fn middle(scene: &Scene, camera: &Camera) -> rara::Result<Plane> {
+pub(super) fn middle(scene: &Scene<'_>, camera: &Camera) -> rara::Result<Plane> {
     let normal = camera.rotation.row(0) * 0.8 + camera.rotation.row(2) * 0.6;
-    let centres = scene.gaussians.positions().iter();
+    let layers = scene.layers().iter();
+    let centres = layers.flat_map(|layer| layer.gaussians().positions());
     let mut along: Vec<f64> = centres.map(|p| normal.dot(p.as_dvec3())).collect();
     along.sort_unstable_by(f64::total_cmp);
     // Between two centres: through one, rounding would decide whether a hard clip keeps it.
@@ -158,14 +157,13 @@ fn print_frames(shots: &[Shot]) {
 /// Each picture against its own mode in f64, and the cuts against the exact cut.
 fn print_errors(
     shots: &[Shot],
-    scene: &Scene,
+    scene: &Scene<'_>,
     camera: &Camera,
     clip: &Clip,
 ) -> Result<(), Failure> {
     say("\nmeasuring against the double-precision reference on the CPU ...");
-    let render = |settings: &Settings| {
-        reference::render::<f64>(&scene.gaussians, camera, clip, settings).picture
-    };
+    let render =
+        |settings: &Settings| reference::render::<f64>(scene, camera, clip, settings).picture;
     let exact = shots[0]
         .settings
         .mode(Mode::Exact)

@@ -96,8 +96,10 @@ impl Extent {
 
 impl Info {
     pub(super) fn run(self) -> Result<(), Failure> {
-        let scene = scenes::load(&self.scenes)?;
-        let gaussians = &scene.gaussians;
+        let mut loaded = scenes::load(&self.scenes)?;
+        let (repaired, dropped) = (loaded.repaired, loaded.dropped);
+        let notes = std::mem::take(&mut loaded.notes);
+        let gaussians = &loaded.merged();
         let sorted = |index: usize| {
             let mut axes = gaussians.scales()[index].to_array();
             axes.sort_unstable_by(f32::total_cmp);
@@ -115,9 +117,9 @@ impl Info {
         let document = Document {
             gaussians: gaussians.len(),
             sh_degree: gaussians.sh_degree(),
-            repaired: scene.repaired,
-            dropped: scene.dropped,
-            notes: scene.notes,
+            repaired,
+            dropped,
+            notes,
             centres: Extent::new(
                 centres.clone().fold(empty, DVec3::min),
                 centres.fold(-empty, DVec3::max),

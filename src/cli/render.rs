@@ -75,11 +75,12 @@ impl Render {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<(), Failure> {
-        let scene = profile.span("load", || scenes::load(&self.scenes))?;
-        let views = views.of(&scene.gaussians)?;
+        let loaded = profile.span("load", || scenes::load(&self.scenes))?;
+        let scene = loaded.scene();
+        let views = views.of(&scene)?;
         let mut session = Session::open(
             &profile.of(self.device.meant()),
-            &scene.gaussians,
+            &scene,
             settings.precision.sh,
         )?;
         profile.check(&session);
@@ -100,7 +101,7 @@ impl Render {
         let size = views
             .first()
             .map_or((0, 0), |v| (v.camera.width, v.camera.height));
-        let report = Report::new(&session, &scene, size, name(settings.mode), &frames);
+        let report = Report::new(&session, &loaded, size, name(settings.mode), &frames);
         let report = if self.camera.all() {
             report.with_frames(frames)
         } else {

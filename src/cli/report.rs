@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::combine::{Combine, combine};
 use super::output::grouped;
-use super::scenes::Scene;
+use super::scenes::Loaded;
 use super::session::Session;
 
 /// The statistics of a command. Its keys are what scripts rely on.
@@ -34,6 +34,14 @@ struct SceneReport {
     sh_degree: u32,
     repaired: u64,
     dropped: u64,
+    /// One of each file, in order.
+    layers: Vec<LayerReport>,
+}
+
+#[derive(Debug, Serialize)]
+struct LayerReport {
+    name: String,
+    gaussians: usize,
 }
 
 #[derive(Debug, Serialize)]
@@ -52,21 +60,30 @@ impl Report {
     /// A report whose top level holds the frames' medians.
     pub(super) fn new(
         session: &Session,
-        scene: &Scene,
+        loaded: &Loaded,
         size: (u32, u32),
         mode: String,
         frames: &[FrameStats],
     ) -> Self {
         let (device, driver, device_bytes) = session.about();
         let scene_bytes = session.scene_bytes();
+        let scene = loaded.scene();
         Self {
             device,
             driver,
             scene: SceneReport {
-                gaussians: scene.gaussians.len(),
-                sh_degree: scene.gaussians.sh_degree(),
-                repaired: scene.repaired,
-                dropped: scene.dropped,
+                gaussians: scene.gaussians(),
+                sh_degree: scene.sh_degree(),
+                repaired: loaded.repaired,
+                dropped: loaded.dropped,
+                layers: scene
+                    .layers()
+                    .iter()
+                    .map(|layer| LayerReport {
+                        name: layer.name().to_owned(),
+                        gaussians: layer.gaussians().len(),
+                    })
+                    .collect(),
             },
             size: [size.0, size.1],
             mode,
@@ -74,7 +91,7 @@ impl Report {
             memory: Memory {
                 device_bytes,
                 scene_bytes,
-                scene_bytes_per_gaussian: scene_bytes as f64 / scene.gaussians.len().max(1) as f64,
+                scene_bytes_per_gaussian: scene_bytes as f64 / scene.gaussians().max(1) as f64,
                 peak_rss_bytes: peak_rss_bytes(),
                 purposes: session.memory_by_name(),
             },

@@ -1,16 +1,17 @@
-//! Scene files to one set of Gaussians.
+//! Scene files to the layers of a scene.
 
 use std::path::{Path, PathBuf};
 
-use rara::Gaussians;
+use rara::{Gaussians, Layer};
 
 use super::failure::Failure;
 use super::output::{Progress, say};
 use rara::scene;
 
-/// One or more scene files, merged.
-pub(super) struct Scene {
-    pub(super) gaussians: Gaussians,
+/// One or more scene files.
+pub(super) struct Loaded {
+    /// The Gaussians of each file, and what people call it: its name without what says that it is a scene.
+    pub(super) files: Vec<(String, Gaussians)>,
     /// Gaussians that had a field put right.
     pub(super) repaired: u64,
     /// Gaussians that could not be used.
@@ -19,34 +20,60 @@ pub(super) struct Scene {
     pub(super) notes: Vec<String>,
 }
 
-/// Reads the files in order and merges them; tells people what had to be repaired.
-pub(super) fn load(paths: &[PathBuf]) -> Result<Scene, Failure> {
-    let mut merged = Scene {
-        gaussians: Gaussians::default(),
+impl Loaded {
+    /// Gaussians that come from no file.
+    pub(super) fn made_up(name: &str, gaussians: Gaussians) -> Self {
+        Self {
+            files: vec![(name.to_owned(), gaussians)],
+            repaired: 0,
+            dropped: 0,
+            notes: Vec::new(),
+        }
+    }
+
+    /// A scene with a layer for each file.
+    pub(super) fn scene(&self) -> rara::Scene<'_> {
+        let files = self.files.iter();
+        files
+            .map(|(name, gaussians)| Layer::new(name, gaussians))
+            .collect()
+    }
+
+    /// All files' Gaussians as one set.
+    pub(super) fn merged(self) -> Gaussians {
+        let mut files = self.files.into_iter().map(|(_, gaussians)| gaussians);
+        let mut merged = files.next().unwrap_or_default();
+        files.for_each(|more| merged.append(&more));
+        merged
+    }
+}
+
+/// Reads the files in order; tells people what had to be repaired.
+pub(super) fn load(paths: &[PathBuf]) -> Result<Loaded, Failure> {
+    let mut all = Loaded {
+        files: Vec::new(),
         repaired: 0,
         dropped: 0,
         notes: Vec::new(),
     };
     for path in paths {
         let loaded = load_one(path)?;
-        merged.repaired += loaded.report.repaired;
-        merged.dropped += loaded.report.dropped;
+        all.repaired += loaded.report.repaired;
+        all.dropped += loaded.report.dropped;
         let lines = loaded.report.lines();
-        merged.notes.extend(
+        all.notes.extend(
             lines
                 .into_iter()
                 .map(|line| format!("{}: {line}", path.display())),
         );
-        if merged.gaussians.is_empty() {
-            merged.gaussians = loaded.gaussians;
-        } else {
-            merged.gaussians.append(&loaded.gaussians);
-        }
+        let name = path.file_stem().unwrap_or_default();
+        let name = name.to_string_lossy().into_owned();
+        all.files.push((name, loaded.gaussians));
     }
-    for note in &merged.notes {
+    for note in &all.notes {
         say(format_args!("note: {note}"));
     }
-    Ok(merged)
+    Ok(all)
 }
 
 fn load_one(path: &Path) -> rara::Result<scene::Loaded> {

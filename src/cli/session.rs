@@ -1,8 +1,7 @@
 //! A device with a scene on it.
 
 use rara::{
-    Camera, Clip, FrameStats, Gaussians, Headless, HeadlessDesc, Picture, Result, Settings,
-    ShFormat,
+    Camera, Clip, FrameStats, Headless, HeadlessDesc, Picture, Result, Scene, Settings, ShFormat,
 };
 
 use super::combine::{Combine, combine};
@@ -13,14 +12,14 @@ pub(super) struct Session {
 }
 
 impl Session {
-    pub(super) fn open(desc: &HeadlessDesc, scene: &Gaussians, sh: ShFormat) -> Result<Self> {
+    pub(super) fn open(desc: &HeadlessDesc, scene: &Scene<'_>, sh: ShFormat) -> Result<Self> {
         let mut headless = Headless::new(desc)?;
         headless.load_as(scene, sh)?;
         Ok(Self { headless })
     }
 
     /// Uploads the scene once more, its spherical harmonics stored in another way.
-    pub(super) fn reload(&mut self, scene: &Gaussians, sh: ShFormat) -> Result<()> {
+    pub(super) fn reload(&mut self, scene: &Scene<'_>, sh: ShFormat) -> Result<()> {
         self.headless.load_as(scene, sh)
     }
 

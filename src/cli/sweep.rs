@@ -95,12 +95,13 @@ impl Sweep {
     ) -> Result<(), Failure> {
         let normal = Plane::new(self.clip_normal, 0.0)?.normal();
         let op = self.clip.op();
-        let scene = profile.span("load", || scenes::load(&self.scenes))?;
-        let camera = views.of(&scene.gaussians)?.remove(0).camera;
-        let range = extent_along(&scene.gaussians, normal);
+        let loaded = profile.span("load", || scenes::load(&self.scenes))?;
+        let scene = loaded.scene();
+        let camera = views.of(&scene)?.remove(0).camera;
+        let range = extent_along(&scene, normal);
         let mut session = Session::open(
             &profile.of(self.device.meant()),
-            &scene.gaussians,
+            &scene,
             settings.precision.sh,
         )?;
         profile.check(&session);
@@ -128,7 +129,7 @@ impl Sweep {
         drop(progress);
 
         let size = (camera.width, camera.height);
-        let report = Report::new(&session, &scene, size, name(settings.mode), &frames);
+        let report = Report::new(&session, &loaded, size, name(settings.mode), &frames);
         let report = report.with_frames(frames).with_mean();
         session.close()?;
         if self.json {

@@ -1,8 +1,8 @@
 //! Where a scene is, by percentiles: scanner exports carry far shells, and trained scenes a few strays at infinity.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
-use super::Gaussians;
+use super::{Layer, Scene};
 
 /// Share of the centres that may lie beyond each end. A smaller one lets a scanner's far shell decide how the scene
 /// is framed, a larger one cuts visible parts off.
@@ -20,8 +20,11 @@ pub struct Bounds {
 impl Bounds {
     /// Bounds that hold all but the outermost percent of the centres at each end of each axis, wider by the median
     /// Gaussian's largest standard deviation. They are never empty: an empty scene has the unit box about the origin.
-    pub fn of(gaussians: &Gaussians) -> Self {
-        let axis = |axis: DVec3| extent_along(gaussians, axis);
+    ///
+    /// Of a scene's layers those count that are visible, where they are placed.
+    pub fn of<'a>(scene: impl Into<Scene<'a>>) -> Self {
+        let scene = scene.into();
+        let axis = |axis: DVec3| extent_along(scene.clone(), axis);
         let (x, y, z) = (axis(DVec3::X), axis(DVec3::Y), axis(DVec3::Z));
         Self {
             min: DVec3::new(x.0, y.0, z.0),
@@ -55,16 +58,21 @@ impl Bounds {
 /// Smallest and largest `normal . x` of the scene, with the outermost percent of the centres left out at each end and
 /// the median Gaussian's largest standard deviation added: where a plane that sweeps along `normal` enters and leaves.
 /// The first is always less than the second; an empty scene is the unit box about the origin.
-pub fn extent_along(gaussians: &Gaussians, normal: DVec3) -> (f64, f64) {
-    if gaussians.is_empty() {
+pub fn extent_along<'a>(scene: impl Into<Scene<'a>>, normal: DVec3) -> (f64, f64) {
+    let scene = scene.into();
+    let mut along: Vec<f64> = Vec::new();
+    for layer in visible(&scene) {
+        let placement = layer.state().placement;
+        // normal . to_world(p), which is linear in p.
+        let start = normal.dot(placement.position());
+        let step = placement.scale() * (placement.rotation().inverse() * normal);
+        let positions = layer.gaussians().positions().iter();
+        along.extend(positions.map(|p| start + step.dot(p.as_dvec3())));
+    }
+    if along.is_empty() {
         let half = 0.5 * (normal.x.abs() + normal.y.abs() + normal.z.abs());
         return widened(-half, half, 0.0);
     }
-    let mut along: Vec<f64> = gaussians
-        .positions()
-        .iter()
-        .map(|p| normal.dot(p.as_dvec3()))
-        .collect();
     let last = along.len() - 1;
     let outliers = (OUTLIERS * last as f64).round() as usize;
     let (_, &mut low, above) = along.select_nth_unstable_by(outliers, f64::total_cmp);
@@ -74,16 +82,20 @@ pub fn extent_along(gaussians: &Gaussians, normal: DVec3) -> (f64, f64) {
         None => low,
     };
     drop(along);
-    widened(low, high, median_size(gaussians) * normal.length())
+    widened(low, high, median_size(&scene) * normal.length())
 }
 
-fn median_size(gaussians: &Gaussians) -> f64 {
-    let mut sizes: Vec<f32> = gaussians
-        .scales()
-        .iter()
-        .copied()
-        .map(Vec3::max_element)
-        .collect();
+fn visible<'s, 'a>(scene: &'s Scene<'a>) -> impl Iterator<Item = &'s Layer<'a>> {
+    scene.layers().iter().filter(|layer| layer.state().visible)
+}
+
+fn median_size(scene: &Scene<'_>) -> f64 {
+    let mut sizes: Vec<f32> = Vec::new();
+    for layer in visible(scene) {
+        let unit = layer.state().placement.scale() as f32;
+        let scales = layer.gaussians().scales().iter();
+        sizes.extend(scales.map(|scale| unit * scale.max_element()));
+    }
     let middle = sizes.len() / 2;
     f64::from(*sizes.select_nth_unstable_by(middle, f32::total_cmp).1)
 }
@@ -98,7 +110,9 @@ fn widened(low: f64, high: f64, by: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Quat;
+    use crate::placement::Placement;
+    use crate::scene::{Gaussians, LayerState};
+    use glam::{DQuat, Quat, Vec3};
 
     fn line(positions: impl Iterator<Item = f32>) -> Gaussians {
         let mut line = Gaussians::default();
@@ -126,6 +140,21 @@ mod tests {
             (low + 1.98).abs() < 0.008 && (high + 0.02).abs() < 0.008,
             "{low} {high}"
         );
+    }
+
+    #[test]
+    fn layers_count_where_they_are_placed_and_visible() {
+        let scene = line((0..=1000).map(|i| i as f32 / 1000.0));
+        let turn = DQuat::from_axis_angle(DVec3::Z, 90_f64.to_radians());
+        let placement = Placement::new(DVec3::new(5.0, 0.0, 0.0), turn, 2.0).unwrap();
+        let placed = LayerState::default().placement(placement);
+        let hidden = LayerState::default().visible(false);
+        let layers = [placed, hidden].map(|state| Layer::new("line", &scene).with(state));
+        let bounds = Bounds::of(Scene::from_iter(layers));
+        // From (5, 0, 0) along y.
+        let corners = [DVec3::new(5.0, 0.02, 0.0), DVec3::new(5.0, 1.98, 0.0)];
+        assert!(bounds.min.distance(corners[0]) < 0.01, "{bounds:?}");
+        assert!(bounds.max.distance(corners[1]) < 0.01, "{bounds:?}");
     }
 
     #[test]

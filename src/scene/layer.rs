@@ -131,6 +131,13 @@ impl<'a> From<&'a Gaussians> for Scene<'a> {
     }
 }
 
+/// The same layers.
+impl<'a> From<&Scene<'a>> for Scene<'a> {
+    fn from(scene: &Scene<'a>) -> Self {
+        scene.clone()
+    }
+}
+
 impl<'a> FromIterator<Layer<'a>> for Scene<'a> {
     fn from_iter<T: IntoIterator<Item = Layer<'a>>>(layers: T) -> Self {
         Self {

@@ -1,7 +1,7 @@
 //! Times of several choices, taken in turn so that their ratios hold on a machine that does other things too.
 
 use rara::measure::processor_ms;
-use rara::{Camera, Clip, Gaussians, PassTime, Result, Settings};
+use rara::{Camera, Clip, PassTime, Result, Scene, Settings};
 use serde::Serialize;
 
 use super::Session;
@@ -37,7 +37,7 @@ pub(super) struct Pass {
 /// Times each of the settings: a round is one frame of each, and there are `rounds`, the first one on top and unused.
 pub(super) fn time(
     session: &mut Session,
-    scene: &Gaussians,
+    scene: &Scene<'_>,
     (camera, clip): (&Camera, &Clip),
     all: &[Settings],
     rounds: u32,

@@ -6,7 +6,7 @@ use glam::DVec3;
 use rara::measure::{self, Popping, Region};
 use rara::scene::extent_along;
 use rara::{
-    Camera, Clip, Decay, ExactForm, Gaussians, Mode, Picture, Plane, Precision, Result, Settings,
+    Camera, Clip, Decay, ExactForm, Mode, Picture, Plane, Precision, Result, Scene, Settings,
     reference,
 };
 use serde::Serialize;
@@ -41,7 +41,7 @@ fn finite<S: serde::Serializer>(psnr: &f64, serializer: S) -> std::result::Resul
 
 /// The truth about one view of one cut scene.
 pub(super) struct Judge<'a> {
-    scene: &'a Gaussians,
+    scene: &'a Scene<'a>,
     camera: &'a Camera,
     /// The clip, and where it stands in each step of the sweep; the first is where it stands in all else.
     clips: Vec<Clip>,
@@ -61,7 +61,7 @@ pub(super) fn truth_settings(look: &Settings) -> Settings {
 
 impl<'a> Judge<'a> {
     pub(super) fn new(
-        scene: &'a Gaussians,
+        scene: &'a Scene<'a>,
         camera: &'a Camera,
         clip: &Clip,
         look: &Settings,
@@ -123,7 +123,7 @@ impl<'a> Judge<'a> {
 }
 
 /// The clip, and `steps` more, each of whose planes stands a little further towards what it keeps.
-fn sweep(scene: &Gaussians, clip: &Clip, steps: u32) -> Result<Vec<Clip>> {
+fn sweep(scene: &Scene<'_>, clip: &Clip, steps: u32) -> Result<Vec<Clip>> {
     let extent = |normal: DVec3| {
         let (low, high) = extent_along(scene, normal);
         high - low

@@ -108,8 +108,9 @@ impl Bench {
         if let Some(folder) = &self.output {
             output::make_folder(folder)?;
         }
-        let scene = scenes::load(&self.scenes)?;
-        let camera = views.of(&scene.gaussians)?.remove(0).camera;
+        let loaded = scenes::load(&self.scenes)?;
+        let scene = loaded.scene();
+        let camera = views.of(&scene)?.remove(0).camera;
         let clip = if clip.planes.is_empty() {
             Clip {
                 planes: vec![middle(&scene, &camera)?],
@@ -120,16 +121,16 @@ impl Bench {
         };
         let mut all = variants(look);
         all.retain(|v| self.only.is_empty() || self.only.iter().any(|name| name == v.name));
-        let mut session = Session::open(&self.device.meant(), &scene.gaussians, look.precision.sh)?;
+        let mut session = Session::open(&self.device.meant(), &scene, look.precision.sh)?;
 
         // Which pictures are right, and how far each is from the truth; then what they cost.
         let mut progress = Progress::new("measuring");
         let total = all.len() as u64 + 2;
-        let judge = Judge::new(&scene.gaussians, &camera, &clip, &look, self.steps)?;
+        let judge = Judge::new(&scene, &camera, &clip, &look, self.steps)?;
         let (mut right, mut measured, mut refused) = (Vec::new(), Vec::new(), Vec::new());
         for (done, variant) in all.into_iter().enumerate() {
             progress.update(done as u64, total);
-            session.reload(&scene.gaussians, variant.settings.precision.sh)?;
+            session.reload(&scene, variant.settings.precision.sh)?;
             let measures = judge.measure(&mut session, &variant.settings)?;
             let least = variant.settings.precision.least_psnr();
             if measures.twin_psnr >= least {
@@ -146,7 +147,7 @@ impl Bench {
         let named: Vec<_> = right.iter().map(|v| v.name).zip(&measured).collect();
         let paper = paper::lines(
             &mut session,
-            &scene.gaussians,
+            &scene,
             (&camera, &clip),
             &look,
             self.steps,
@@ -155,7 +156,7 @@ impl Bench {
         let settings: Vec<_> = right.iter().map(|variant| variant.settings).collect();
         let times = clock::time(
             &mut session,
-            &scene.gaussians,
+            &scene,
             (&camera, &clip),
             &settings,
             self.frames,
@@ -189,7 +190,7 @@ impl Bench {
         let names: Vec<_> = names.map(|name| name.to_string_lossy()).collect();
         let report = Report {
             scene: names.join(" + "),
-            gaussians: scene.gaussians.len(),
+            gaussians: scene.gaussians(),
             size: [camera.width, camera.height],
             device,
             driver,

@@ -1,6 +1,6 @@
 //! The three ways of cutting that the paper compares, against the truth, at a small size and at the size asked for.
 
-use rara::{Camera, Clip, Gaussians, Miss, Mode, Result, Settings};
+use rara::{Camera, Clip, Miss, Mode, Result, Scene, Settings};
 use serde::Serialize;
 
 use super::Session;
@@ -24,7 +24,7 @@ pub(super) struct Line {
 /// asked for.
 pub(super) fn lines(
     session: &mut Session,
-    scene: &Gaussians,
+    scene: &Scene<'_>,
     (camera, clip): (&Camera, &Clip),
     look: &Settings,
     steps: u32,

@@ -8,7 +8,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
-use rara::{Error, Gaussians, HeadlessDesc, ShFormat, Windowed};
+use rara::{Error, HeadlessDesc, ShFormat, Windowed};
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::WindowEvent;
@@ -22,6 +22,7 @@ use super::script;
 use super::stage::{Scenery, Viewer};
 use crate::cli::failure::Failure;
 use crate::cli::output::say;
+use crate::cli::scenes::Loaded;
 
 /// What standard input, followed as a script, sends to the event loop.
 pub(super) type Sent = Result<Vec<Action>, Failure>;
@@ -29,7 +30,7 @@ pub(super) type Sent = Result<Vec<Action>, Failure>;
 /// What a window is opened with.
 pub(super) struct Start {
     pub(super) device: HeadlessDesc,
-    pub(super) scene: Gaussians,
+    pub(super) loaded: Loaded,
     pub(super) sh: ShFormat,
     pub(super) size: (u32, u32),
     pub(super) scenery: Scenery,
@@ -142,7 +143,7 @@ impl App {
         })?;
         let window = Arc::new(window);
         let mut windowed = Windowed::new(&start.device, window.clone())?;
-        windowed.load_as(&start.scene, start.sh)?;
+        windowed.load_as(start.loaded.scene(), start.sh)?;
         say(format_args!(
             "device   {} ({}), {:?}; H lists the keys",
             windowed.device().info().name,

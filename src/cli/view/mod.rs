@@ -89,7 +89,8 @@ impl View {
         };
         let events = app::connect()?;
 
-        let scene = scenes::load(&self.scenes)?.gaussians;
+        let loaded = scenes::load(&self.scenes)?;
+        let scene = loaded.scene();
         let views = views.of(&scene)?.into_iter();
         // Without a direction that was typed, up is what is up in the camera's own picture.
         let up = |camera: &rara::Camera| camera.rotation.transpose() * -glam::DVec3::Y;
@@ -115,7 +116,7 @@ impl View {
                     shots,
                     views,
                 },
-                scene,
+                loaded,
                 script,
                 follow,
             },

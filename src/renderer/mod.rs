@@ -77,8 +77,8 @@ use shared::SharedPipelines;
 /// **Several scenes.** Each is prepared and drawn for itself, where [`set_placement`](Self::set_placement) puts it, by a
 /// renderer of its own: one that goes from scene to scene gets its working memory anew where their sizes differ. They are
 /// composited in the order in which they are drawn, the farthest first: where scenes reach into each other the last one
-/// drawn is before all of the others. What has to be right there is one scene:
-/// [`Gaussians::append`](crate::Gaussians::append).
+/// drawn is before all of the others. What has to be right there is one scene of
+/// several [layers](crate::Scene).
 #[derive(Debug)]
 pub struct Renderer {
     device: Device,

@@ -3,6 +3,7 @@
 use std::any::Any;
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_void};
+use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
@@ -278,17 +279,68 @@ fn is_a_version<T: Versioned>(size: usize) -> bool {
 pub(crate) unsafe fn read<T: Versioned>(pointer: *const T, default: T, name: &str) -> Result<T> {
     // SAFETY: the caller's promise.
     let size = *unsafe { shared(pointer.cast::<usize>(), name) }?;
-    if !is_a_version::<T>(size) || size > size_of::<T>() {
-        return invalid(format!(
-            "{name}->struct_size is {size}, and this library's {} has {} bytes: set it to sizeof({}), and link a library \
-             that is not older than its header",
-            T::NAME,
-            size_of::<T>(),
-            T::NAME,
-        ));
+    check_size::<T>(size, format_args!("{name}->struct_size"))?;
+    // SAFETY: as above, and the size is no larger than a `T`'s.
+    Ok(unsafe { copied(pointer, size, default) })
+}
+
+/// A host's structs one after the other, all of the size that the first says; what their version does not have yet is as in
+/// `default`. No pointer is needed to none.
+///
+/// # Safety
+/// `first` is null, or points to `count` structs of one size that each begins with.
+pub(crate) unsafe fn read_list<T: Versioned>(
+    first: *const T,
+    count: usize,
+    default: T,
+    name: &str,
+) -> Result<Vec<T>> {
+    if count == 0 {
+        return Ok(Vec::new());
     }
+    check_count::<T>(count, name)?;
+    // SAFETY: the caller's promise.
+    let size = *unsafe { shared(first.cast::<usize>(), name) }?;
+    check_size::<T>(size, format_args!("{name}[0].struct_size"))?;
+    let read = |index| {
+        // SAFETY: the caller's promise; the size is no larger than a `T`'s, of which memory holds so many.
+        let (pointer, own) = unsafe {
+            let pointer = first.byte_add(index * size);
+            (pointer, *pointer.cast::<usize>())
+        };
+        if own != size {
+            return invalid(format!(
+                "{name}[{index}].struct_size is {own}, and {name}[0].struct_size is {size}: set all of them to sizeof({})",
+                T::NAME
+            ));
+        }
+        // SAFETY: as above.
+        Ok(unsafe { copied(pointer, size, default) })
+    };
+    (0..count).map(read).collect()
+}
+
+/// That a host's struct is of this version or an older one; `field` is where it says its size.
+fn check_size<T: Versioned>(size: usize, field: fmt::Arguments<'_>) -> Result<()> {
+    if is_a_version::<T>(size) && size <= size_of::<T>() {
+        return Ok(());
+    }
+    invalid(format!(
+        "{field} is {size}, and this library's {} has {} bytes: set it to sizeof({}), and link a library that is not older \
+         than its header",
+        T::NAME,
+        size_of::<T>(),
+        T::NAME,
+    ))
+}
+
+/// A struct of which so many bytes are a host's.
+///
+/// # Safety
+/// `pointer` points to `size` bytes, no more than a `T` has.
+unsafe fn copied<T: Versioned>(pointer: *const T, size: usize, default: T) -> T {
     let mut value = default;
-    // SAFETY: as above; the struct may hold any bytes, and is no smaller.
+    // SAFETY: the caller's promise; the struct may hold any bytes.
     unsafe {
         std::ptr::copy_nonoverlapping(
             pointer.cast::<u8>(),
@@ -296,7 +348,7 @@ pub(crate) unsafe fn read<T: Versioned>(pointer: *const T, default: T, name: &st
             size,
         );
     }
-    Ok(value)
+    value
 }
 
 /// As much of a struct as the host's has room for.

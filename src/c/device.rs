@@ -264,7 +264,7 @@ pub unsafe extern "C" fn rara_adopt_desc_default(
 }
 
 /// Works with the host's device. Of what is in `desc` nothing is ever destroyed, and nothing is submitted to the queue but
-/// by rara_scene_buffers_upload.
+/// by rara_scene_buffers_upload and rara_scene_buffers_upload_layers.
 ///
 /// # Safety
 /// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice.

@@ -13,6 +13,7 @@ pub mod camera_files;
 pub mod clip;
 pub mod depth;
 pub mod device;
+pub mod layer;
 pub mod logging;
 #[cfg(test)]
 mod nulls;

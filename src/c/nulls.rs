@@ -10,6 +10,7 @@ use crate::camera::*;
 use crate::camera_files::*;
 use crate::depth::*;
 use crate::device::*;
+use crate::layer::*;
 use crate::logging::*;
 use crate::placement::*;
 use crate::renderer::*;
@@ -83,6 +84,38 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
     );
     call!(
         rara_scene_buffers_upload_with(null(), no_cmd, null(), null(), 0, null_mut()),
+        "scene is null"
+    );
+    call!(
+        rara_layer_state_default(null_mut(), size_of::<RaraLayerState>()),
+        "state is null"
+    );
+    call!(
+        rara_layer_default(null_mut(), size_of::<RaraLayer>(), null(), null()),
+        "layer is null"
+    );
+    call!(
+        rara_scene_buffers_upload_layers(null(), null(), 0, 0, null_mut()),
+        "scene is null"
+    );
+    call!(
+        rara_scene_buffers_staging_bytes_of_layers(null(), 0, 0, null_mut()),
+        "bytes is null"
+    );
+    call!(
+        rara_scene_buffers_upload_layers_with(null(), no_cmd, null(), null(), 0, 0, null_mut()),
+        "scene is null"
+    );
+    call!(
+        rara_scene_buffers_layer_info(null(), 0, null_mut(), 0),
+        "scene is null"
+    );
+    call!(
+        rara_scene_buffers_layer_state(null(), 0, null_mut(), 0),
+        "scene is null"
+    );
+    call!(
+        rara_scene_buffers_set_layer_state(null_mut(), 0, null()),
         "scene is null"
     );
     call!(
@@ -170,6 +203,7 @@ fn assert_nothing_comes_of_null() {
             rara_device_bytes(null()) + rara_scene_buffers_bytes(null()),
             0
         );
+        assert_eq!(rara_scene_buffers_layer_count(null()), 0);
     }
 }
 

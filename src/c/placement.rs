@@ -19,6 +19,16 @@ pub struct RaraPlacement {
     pub scale: f64,
 }
 
+impl From<Placement> for RaraPlacement {
+    fn from(placement: Placement) -> Self {
+        Self {
+            position: placement.position().into(),
+            rotation: placement.rotation().into(),
+            scale: placement.scale(),
+        }
+    }
+}
+
 impl RaraPlacement {
     pub(crate) fn placement(&self) -> Result<Placement> {
         let rotation = DQuat::from_array(self.rotation);

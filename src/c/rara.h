@@ -56,7 +56,8 @@ typedef struct RaraGaussians RaraGaussians;
 // again. No other state, no image and no layout is touched.
 typedef struct RaraRenderer RaraRenderer;
 
-// A scene in device memory. May be used by several threads and renderers at once.
+// A scene in device memory: one layer or several. May be used by several threads and renderers at once, but by nobody
+// else while rara_scene_buffers_set_layer_state runs.
 typedef struct RaraSceneBuffers RaraSceneBuffers;
 
 // What every function that can fail returns. Of anything but RARA_OK rara_last_error_message says more.
@@ -358,6 +359,42 @@ typedef struct RaraStaging {
     // Its length in bytes; it may be longer than what is needed.
     size_t size;
 } RaraStaging;
+
+// What of a layer may change from frame to frame.
+typedef struct RaraLayerState {
+    // Set by rara_layer_state_default and rara_scene_buffers_layer_state.
+    size_t struct_size;
+    // Where the layer stands in its scene, which rara_renderer_set_placement places as a whole. Default: where it was made.
+    struct RaraPlacement placement;
+    // What the opacities of its Gaussians are multiplied by, 0 to 1. Default: 1.
+    float opacity;
+    // Whether it is drawn. A hidden layer costs next to nothing. Default: yes.
+    VkBool32 visible;
+} RaraLayerState;
+
+// A layer of a scene that is to be uploaded. All of it is read by the call alone: the name is copied, and the Gaussians
+// may be destroyed when it returns.
+typedef struct RaraLayer {
+    // Set by rara_layer_default.
+    size_t struct_size;
+    // Its name: UTF-8, ends in NUL. Several layers may have the same.
+    const char *name;
+    // Its Gaussians. Several layers may have the same.
+    const struct RaraGaussians *gaussians;
+    // How it is shown at first; null, the default, is as rara_layer_state_default says.
+    const struct RaraLayerState *state;
+} RaraLayer;
+
+// What a layer of a scene in device memory is.
+typedef struct RaraLayerInfo {
+    // Set by rara_scene_buffers_layer_info.
+    size_t struct_size;
+    // Its name: UTF-8, ends in NUL, lives as long as the RaraSceneBuffers. The one layer of rara_scene_buffers_upload and
+    // rara_scene_buffers_upload_with is named "scene".
+    const char *name;
+    // Gaussians in it.
+    uint64_t count;
+} RaraLayerInfo;
 
 // A choice of all that is given up for time: phi, key_bits, beam_switch and transmittance_min.
 typedef uint32_t RaraPreset;
@@ -661,7 +698,7 @@ RaraResult rara_support_features(const struct RaraSupport *support, void *p_next
 RaraResult rara_adopt_desc_default(struct RaraAdoptDesc *desc, size_t desc_size);
 
 // Works with the host's device. Of what is in `desc` nothing is ever destroyed, and nothing is submitted to the queue but
-// by rara_scene_buffers_upload.
+// by rara_scene_buffers_upload and rara_scene_buffers_upload_layers.
 //
 // # Safety
 // The handles belong together, are as the description says, and outlive all that is made from the RaraDevice.
@@ -828,7 +865,8 @@ RaraResult rara_gaussians_info(const struct RaraGaussians *gaussians, struct Rar
 // `gaussians` is null, or alive and not used any more.
 void rara_gaussians_destroy(struct RaraGaussians *gaussians);
 
-// Uploads a scene. This is the one function that submits to the host's queue, and waits.
+// Uploads a scene of one layer. This and rara_scene_buffers_upload_layers are the functions that submit to the host's
+// queue, and wait.
 //
 // # Safety
 // `device` and `gaussians` are alive; nobody else uses the queue meanwhile; `scene` may be overwritten.
@@ -837,7 +875,7 @@ RaraResult rara_scene_buffers_upload(const struct RaraDevice *device,
                                      RaraShFormat sh_format,
                                      struct RaraSceneBuffers **scene);
 
-// Bytes of staging memory that rara_scene_buffers_upload_with needs for a scene.
+// Bytes of staging memory that rara_scene_buffers_upload_with needs for a scene of one layer.
 //
 // # Safety
 // `gaussians` is alive; `bytes` may be overwritten.
@@ -845,9 +883,9 @@ RaraResult rara_scene_buffers_staging_bytes(const struct RaraGaussians *gaussian
                                             RaraShFormat sh_format,
                                             uint64_t *bytes);
 
-// Uploads a scene by the host's own means: allocates its buffers, writes it into the host's staging memory and records
-// the copies. Nothing is submitted and nothing waited for, so that a scene can come or be replaced while frames are in
-// flight. The calling thread converts the scene meanwhile; it may be another one than the one that draws.
+// Uploads a scene of one layer by the host's own means: allocates its buffers, writes it into the host's staging memory
+// and records the copies. Nothing is submitted and nothing waited for, so that a scene can come or be replaced while
+// frames are in flight. The calling thread converts the scene meanwhile; it may be another one than the one that draws.
 //
 // Synchronisation: the copies are ordered behind everything earlier in the queue, and nothing is needed after them:
 // rara_renderer_prepare begins with a barrier that waits for transfers. It may be recorded later into the same command
@@ -880,6 +918,90 @@ uint64_t rara_scene_buffers_bytes(const struct RaraSceneBuffers *scene);
 // # Safety
 // `scene` is null, or alive and not used any more, by the device neither.
 void rara_scene_buffers_destroy(struct RaraSceneBuffers *scene);
+
+// A layer where it was made, visible, with the opacities of its Gaussians. `state_size` is sizeof *state.
+//
+// # Safety
+// `state` has room for `state_size` bytes.
+RaraResult rara_layer_state_default(struct RaraLayerState *state, size_t state_size);
+
+// Gaussians with a name, as they are; both pointers are kept in `layer` as they come. `layer_size` is sizeof *layer.
+//
+// # Safety
+// `layer` has room for `layer_size` bytes.
+RaraResult rara_layer_default(struct RaraLayer *layer,
+                              size_t layer_size,
+                              const char *name,
+                              const struct RaraGaussians *gaussians);
+
+// As rara_scene_buffers_upload, a scene of several layers, which are sorted and blended together, wherever they reach
+// into each other. Where two Gaussians are equally deep, the earlier layer's is in front.
+//
+// # Safety
+// `device` is alive; `layers` points to `layer_count` of them, which are as they say and of one struct_size; nobody else
+// uses the queue meanwhile; `scene` may be overwritten.
+RaraResult rara_scene_buffers_upload_layers(const struct RaraDevice *device,
+                                            const struct RaraLayer *layers,
+                                            size_t layer_count,
+                                            RaraShFormat sh_format,
+                                            struct RaraSceneBuffers **scene);
+
+// Bytes of staging memory that rara_scene_buffers_upload_layers_with needs for a scene.
+//
+// # Safety
+// `layers` points to `layer_count` of them, which are as they say and of one struct_size; `bytes` may be overwritten.
+RaraResult rara_scene_buffers_staging_bytes_of_layers(const struct RaraLayer *layers,
+                                                      size_t layer_count,
+                                                      RaraShFormat sh_format,
+                                                      uint64_t *bytes);
+
+// As rara_scene_buffers_upload_with, a scene of several layers. `layers` and what they point to may be gone when it
+// returns.
+//
+// # Safety
+// As of rara_scene_buffers_upload_with and, for the layers, of rara_scene_buffers_upload_layers.
+RaraResult rara_scene_buffers_upload_layers_with(const struct RaraDevice *device,
+                                                 VkCommandBuffer cmd,
+                                                 const struct RaraStaging *staging,
+                                                 const struct RaraLayer *layers,
+                                                 size_t layer_count,
+                                                 RaraShFormat sh_format,
+                                                 struct RaraSceneBuffers **scene);
+
+// How many layers a scene has, one or more; 0 for null.
+//
+// # Safety
+// `scene` is null or alive.
+size_t rara_scene_buffers_layer_count(const struct RaraSceneBuffers *scene);
+
+// What a layer is. Layers are numbered from 0, in the order in which they were given. `info_size` is sizeof *info.
+//
+// # Safety
+// `scene` is alive; `info` has room for `info_size` bytes.
+RaraResult rara_scene_buffers_layer_info(const struct RaraSceneBuffers *scene,
+                                         size_t index,
+                                         struct RaraLayerInfo *info,
+                                         size_t info_size);
+
+// The state of a layer, as it was uploaded or set last; its rotation has length one. `state_size` is sizeof *state.
+//
+// # Safety
+// `scene` is alive, and no other thread sets a state meanwhile; `state` has room for `state_size` bytes.
+RaraResult rara_scene_buffers_layer_state(const struct RaraSceneBuffers *scene,
+                                          size_t index,
+                                          struct RaraLayerState *state,
+                                          size_t state_size);
+
+// Sets the state of a layer: the next rara_renderer_configure of every renderer takes it, and frames that are configured
+// already keep theirs, so that nothing has to be waited for. RARA_ERROR_INVALID for an opacity that is not 0 to 1 and
+// for what is no placement; the state before then stays.
+//
+// # Safety
+// `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;
+// `state` points to one.
+RaraResult rara_scene_buffers_set_layer_state(struct RaraSceneBuffers *scene,
+                                              size_t index,
+                                              const struct RaraLayerState *state);
 
 // The usual settings, as exact as a preset has it. `settings_size` is sizeof *settings.
 //

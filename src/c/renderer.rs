@@ -246,7 +246,9 @@ pub unsafe extern "C" fn rara_renderer_configure(
         let scene = shared(scene, "scene")?;
         let camera = shared(camera, "camera")?.camera()?;
         let (clip, settings) = (clip::clip(clip)?, settings::settings(settings)?);
-        renderer.0.configure(&scene.0, &camera, &clip, &settings)
+        renderer
+            .0
+            .configure(&scene.buffers, &camera, &clip, &settings)
     })
 }
 
@@ -265,7 +267,7 @@ pub unsafe extern "C" fn rara_renderer_prepare(
     guard(|| unsafe {
         let renderer = exclusive(renderer, "renderer")?;
         let scene = shared(scene, "scene")?;
-        renderer.0.prepare(recording(cmd)?, &scene.0)
+        renderer.0.prepare(recording(cmd)?, &scene.buffers)
     })
 }
 
@@ -289,7 +291,9 @@ pub unsafe extern "C" fn rara_renderer_prepare_behind(
         let renderer = exclusive(renderer, "renderer")?;
         let scene = shared(scene, "scene")?;
         let depth = depth::depth_image(depth)?;
-        renderer.0.prepare_behind(recording(cmd)?, &scene.0, &depth)
+        renderer
+            .0
+            .prepare_behind(recording(cmd)?, &scene.buffers, &depth)
     })
 }
 

@@ -1,6 +1,6 @@
 //! Scenes: from files and memory, and onto the device.
 
-use std::ffi::{c_char, c_void};
+use std::ffi::{CString, c_char, c_void};
 use std::io::Cursor;
 
 use rara::ash::vk;
@@ -8,16 +8,31 @@ use rara::scene::{Bounds, Loaded, load, load_from};
 use rara::{Gaussians, Result, SceneBuffers, ShFormat, Staging};
 
 use crate::boundary::{
-    self, RaraResult, Versioned, create, destroy, exclusive, guard, invalid, list, memory,
-    recording, shared, write,
+    self, RaraResult, Versioned, c_string, create, destroy, exclusive, guard, invalid, list,
+    memory, recording, shared, write,
 };
 use crate::device::RaraDevice;
 
 /// A scene in the host's memory. It may be destroyed when it is on the device. May be read by several threads at once.
 pub struct RaraGaussians(pub(crate) Loaded);
 
-/// A scene in device memory. May be used by several threads and renderers at once.
-pub struct RaraSceneBuffers(pub(crate) SceneBuffers);
+/// A scene in device memory: one layer or several. May be used by several threads and renderers at once, but by nobody
+/// else while rara_scene_buffers_set_layer_state runs.
+pub struct RaraSceneBuffers {
+    pub(crate) buffers: SceneBuffers,
+    /// The layers' names.
+    pub(crate) names: Vec<CString>,
+}
+
+impl RaraSceneBuffers {
+    pub(crate) fn new(buffers: SceneBuffers) -> Self {
+        let layers = buffers.layers().iter();
+        Self {
+            names: layers.map(|layer| c_string(layer.name())).collect(),
+            buffers,
+        }
+    }
+}
 
 /// What a scene is, and what of its file could not be used.
 #[repr(C)]
@@ -56,7 +71,7 @@ pub const RARA_SH_FORMAT_HALF: RaraShFormat = 2;
 /// 32-bit floats: 192 bytes.
 pub const RARA_SH_FORMAT_FLOAT: RaraShFormat = 3;
 
-fn sh_format(value: RaraShFormat) -> Result<ShFormat> {
+pub(crate) fn sh_format(value: RaraShFormat) -> Result<ShFormat> {
     Ok(match value {
         RARA_SH_FORMAT_BYTE => ShFormat::Byte,
         RARA_SH_FORMAT_PACKED => ShFormat::Packed,
@@ -167,7 +182,8 @@ pub unsafe extern "C" fn rara_gaussians_destroy(gaussians: *mut RaraGaussians) {
     unsafe { destroy(gaussians) };
 }
 
-/// Uploads a scene. This is the one function that submits to the host's queue, and waits.
+/// Uploads a scene of one layer. This and rara_scene_buffers_upload_layers are the functions that submit to the host's
+/// queue, and wait.
 ///
 /// # Safety
 /// `device` and `gaussians` are alive; nobody else uses the queue meanwhile; `scene` may be overwritten.
@@ -184,7 +200,7 @@ pub unsafe extern "C" fn rara_scene_buffers_upload(
             let device = &shared(device, "device")?.0;
             let gaussians: &Gaussians = &shared(gaussians, "gaussians")?.0.gaussians;
             let format = self::sh_format(sh_format)?;
-            SceneBuffers::upload(device, gaussians, format).map(RaraSceneBuffers)
+            SceneBuffers::upload(device, gaussians, format).map(RaraSceneBuffers::new)
         })
     })
 }
@@ -203,7 +219,7 @@ pub struct RaraStaging {
     pub size: usize,
 }
 
-/// Bytes of staging memory that rara_scene_buffers_upload_with needs for a scene.
+/// Bytes of staging memory that rara_scene_buffers_upload_with needs for a scene of one layer.
 ///
 /// # Safety
 /// `gaussians` is alive; `bytes` may be overwritten.
@@ -222,9 +238,9 @@ pub unsafe extern "C" fn rara_scene_buffers_staging_bytes(
     })
 }
 
-/// Uploads a scene by the host's own means: allocates its buffers, writes it into the host's staging memory and records
-/// the copies. Nothing is submitted and nothing waited for, so that a scene can come or be replaced while frames are in
-/// flight. The calling thread converts the scene meanwhile; it may be another one than the one that draws.
+/// Uploads a scene of one layer by the host's own means: allocates its buffers, writes it into the host's staging memory
+/// and records the copies. Nothing is submitted and nothing waited for, so that a scene can come or be replaced while
+/// frames are in flight. The calling thread converts the scene meanwhile; it may be another one than the one that draws.
 ///
 /// Synchronisation: the copies are ordered behind everything earlier in the queue, and nothing is needed after them:
 /// rara_renderer_prepare begins with a barrier that waits for transfers. It may be recorded later into the same command
@@ -256,7 +272,8 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_with(
             let staging = shared(staging, "staging")?.staging()?;
             let gaussians = &shared(gaussians, "gaussians")?.0.gaussians;
             let format = self::sh_format(sh_format)?;
-            SceneBuffers::upload_with(device, cmd, staging, gaussians, format).map(RaraSceneBuffers)
+            SceneBuffers::upload_with(device, cmd, staging, gaussians, format)
+                .map(RaraSceneBuffers::new)
         })
     })
 }
@@ -264,7 +281,7 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_with(
 impl RaraStaging {
     /// # Safety
     /// It is as it says, and nobody else uses its range for `'a`.
-    unsafe fn staging<'a>(&self) -> Result<Staging<'a>> {
+    pub(crate) unsafe fn staging<'a>(&self) -> Result<Staging<'a>> {
         if self.buffer == vk::Buffer::null() {
             return invalid("staging->buffer is null");
         }
@@ -289,7 +306,7 @@ pub unsafe extern "C" fn rara_scene_buffers_bytes(scene: *const RaraSceneBuffers
     let mut bytes = 0;
     guard(|| {
         // SAFETY: the caller's promise.
-        bytes = unsafe { shared(scene, "scene") }?.0.bytes();
+        bytes = unsafe { shared(scene, "scene") }?.buffers.bytes();
         Ok(())
     });
     bytes

@@ -34,8 +34,12 @@ impl Default for LayerState {
 }
 
 impl LayerState {
-    /// That the opacity is one; `name` is the layer's.
-    pub(crate) fn check(&self, name: &str) -> Result<()> {
+    /// Checks it as the upload and [`Renderer::configure`](crate::Renderer::configure) do, so that a wrong one is known of
+    /// before; `name` is the layer's, for the message.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for an opacity that is not 0 to 1.
+    pub fn check(&self, name: &str) -> Result<()> {
         if (0.0..=1.0).contains(&self.opacity) {
             return Ok(());
         }

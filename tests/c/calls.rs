@@ -12,6 +12,7 @@ use rara_c::camera::*;
 use rara_c::clip::*;
 use rara_c::depth::*;
 use rara_c::device::*;
+use rara_c::layer::*;
 use rara_c::renderer::*;
 use rara_c::scene::*;
 use rara_c::stats::*;
@@ -137,6 +138,7 @@ fn what_is_wrong_is_said() {
             rara_scene_buffers_upload(device, gaussians, RARA_SH_FORMAT_FLOAT, &mut scene);
         assert_ok(uploaded);
         assert!(rara_scene_buffers_bytes(scene) > 0);
+        what_is_wrong_with_layers_is_said(device, gaussians, scene);
         let mut camera: RaraCamera = std::mem::zeroed();
         let up = [0.0, -1.0, 0.0];
         assert_ok(rara_camera_frame(
@@ -225,6 +227,81 @@ fn what_is_wrong_is_said() {
         rara_device_destroy(device);
     }
     assert_eq!(host.close(), Vec::<String>::new());
+}
+
+/// # Safety
+/// The handles are alive, and nobody else uses them; the scene is of one layer.
+unsafe fn what_is_wrong_with_layers_is_said(
+    device: *mut RaraDevice,
+    gaussians: *mut RaraGaussians,
+    scene: *mut RaraSceneBuffers,
+) {
+    let format = RARA_SH_FORMAT_FLOAT;
+    // SAFETY: the caller's promises; every pointer below is alive, null, or to be overwritten.
+    unsafe {
+        let mut layer: RaraLayer = std::mem::zeroed();
+        let size = size_of_val(&layer);
+        let filled = rara_layer_default(&mut layer, size, c"mine".as_ptr(), gaussians);
+        assert_ok(filled);
+        let mut other = null_mut();
+        let mut upload = |layers: *const RaraLayer, count, format| {
+            let result =
+                rara_scene_buffers_upload_layers(device, layers, count, format, &mut other);
+            assert!(other.is_null());
+            result
+        };
+        let failed = upload(&layer, 0, format);
+        assert_fails(failed, RARA_ERROR_INVALID, "layer_count is 0");
+        let failed = upload(null(), 1, format);
+        assert_fails(failed, RARA_ERROR_INVALID, "layers is null");
+        let failed = upload(&layer, 1, 4);
+        assert_fails(failed, RARA_ERROR_INVALID, "sh_format 4");
+        let mut state: RaraLayerState = std::mem::zeroed();
+        let size = size_of_val(&state);
+        assert_ok(rara_layer_state_default(&mut state, size));
+        state.opacity = 1.1;
+        layer.state = &state;
+        let failed = upload(&layer, 1, format);
+        let says = "layers[0].state: the opacity of layer 'mine' is 1.1; give 0 to 1";
+        assert_fails(failed, RARA_ERROR_INVALID, says);
+
+        assert_eq!(rara_scene_buffers_layer_count(scene), 1);
+        let mut info: RaraLayerInfo = std::mem::zeroed();
+        let info_size = size_of_val(&info);
+        let told = rara_scene_buffers_layer_info(scene, 0, &mut info, info_size);
+        assert_ok(told);
+        assert_eq!((CStr::from_ptr(info.name), info.count), (c"scene", 1));
+        let beyond = "index is 1, and rara_scene_buffers_layer_count is 1: give less than that";
+        let failed = rara_scene_buffers_layer_info(scene, 1, &mut info, info_size);
+        assert_fails(failed, RARA_ERROR_INVALID, beyond);
+        let failed = rara_scene_buffers_layer_info(scene, 0, &mut info, 3);
+        assert_fails(failed, RARA_ERROR_INVALID, "sizeof(RaraLayerInfo)");
+        let failed = rara_scene_buffers_layer_state(scene, 1, &mut state, size);
+        assert_fails(failed, RARA_ERROR_INVALID, beyond);
+        let failed = rara_scene_buffers_layer_state(scene, 0, null_mut(), size);
+        assert_fails(failed, RARA_ERROR_INVALID, "state is null");
+
+        let set = |index, state: *const RaraLayerState| {
+            rara_scene_buffers_set_layer_state(scene, index, state)
+        };
+        let failed = set(0, &state);
+        let says = "state: the opacity of layer 'scene' is 1.1; give 0 to 1";
+        assert_fails(failed, RARA_ERROR_INVALID, says);
+        let failed = set(0, null());
+        assert_fails(failed, RARA_ERROR_INVALID, "state is null");
+        state.opacity = 0.5;
+        let failed = set(1, &state);
+        assert_fails(failed, RARA_ERROR_INVALID, beyond);
+        state.placement.rotation = [0.0; 4];
+        let failed = set(0, &state);
+        assert_fails(failed, RARA_ERROR_INVALID, "a rotation that is not zero");
+        state.struct_size = 3;
+        let failed = set(0, &state);
+        assert_fails(failed, RARA_ERROR_INVALID, "state->struct_size is 3");
+        // The state is still the one before.
+        assert_ok(rara_scene_buffers_layer_state(scene, 0, &mut state, size));
+        assert_eq!(state, rara::LayerState::default().into());
+    }
 }
 
 /// The system's functions, below those that lose the device.

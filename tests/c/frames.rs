@@ -1,26 +1,28 @@
 //! Frames through the functions of `rara.h` on the example host's device are those of the Rust interface to the byte: splats
-//! behind what the host has drawn, expected depths, a scene placed in a world, a scene by the host's own staging memory.
+//! behind what the host has drawn, expected depths, a scene placed in a world, a scene by the host's own staging memory,
+//! layers that are hidden, moved and faded.
 
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
-use std::path::Path;
-use std::ptr::null_mut;
+use std::path::{Path, PathBuf};
+use std::ptr::{null, null_mut};
 
 use crate::canvas::{Canvas, CanvasDesc, with_host};
 use crate::folder::Folder;
 use rara::ash::{Entry, vk};
 use rara::glam::{DQuat, DVec3};
-use rara::gpu::{AdoptDesc, Bindings, BufferDesc, Device, Location};
+use rara::gpu::{AdoptDesc, Bindings, Buffer, BufferDesc, Device, Location};
 use rara::scene::{Bounds, Kind, generate, load, save_ply};
 use rara::{
-    Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, Gaussians, Placement, Plane,
-    Raster, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat,
+    Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, Gaussians, Layer, LayerState,
+    Placement, Plane, Raster, Renderer, RendererDesc, Scene, SceneBuffers, Settings, ShFormat,
 };
 use rara_c::boundary::*;
 use rara_c::camera::*;
 use rara_c::clip::*;
 use rara_c::depth::*;
 use rara_c::device::*;
+use rara_c::layer::*;
 use rara_c::placement::*;
 use rara_c::renderer::*;
 use rara_c::scene::*;
@@ -57,7 +59,10 @@ fn assert_fails(result: RaraResult, part: &str) {
 
 /// What both interfaces draw.
 struct World<'a> {
+    /// What the camera looks at.
     scene: &'a Gaussians,
+    /// What is drawn: that and no more, unless a test has more.
+    layers: Scene<'a>,
     camera: Camera,
     plane: Plane,
     raster: Raster,
@@ -72,6 +77,7 @@ impl<'a> World<'a> {
         let normal = DVec3::new(0.6, 0.0, 0.8);
         Self {
             scene,
+            layers: scene.into(),
             camera: Camera::frame(&bounds, DVec3::NEG_Y, 50.0, VIEW).expect("a view"),
             plane: Plane::new(normal, 0.1 - normal.dot(bounds.centre())).expect("a normal"),
             raster,
@@ -103,7 +109,7 @@ impl<'a> World<'a> {
             .depth(Some(DepthDesc::new(DEPTH, map()).readable(true)))
             .expected_depth(Some(ExpectedDepthDesc::new(DEPTHS)))
             .bindings(Bindings::Bound);
-        let scene = SceneBuffers::upload(device, self.scene, ShFormat::Packed);
+        let scene = SceneBuffers::upload(device, self.layers.clone(), ShFormat::Packed);
         let scene = scene.expect("uploads");
         let renderer = RefCell::new(Renderer::new(device, desc).expect("a renderer"));
         renderer.borrow_mut().set_placement(self.placement);
@@ -137,25 +143,18 @@ impl<'a> World<'a> {
         pixels
     }
 
-    /// By rara.h: with a scene that is uploaded before, or in the frame's own commands.
+    /// By rara.h: the scene that `scene` gives, which may upload it in the frame's own commands.
     ///
     /// # Safety
-    /// The handles are alive, and the staging memory is as it says.
+    /// The device and the scene are alive.
     unsafe fn drawn_in_c(
         &self,
-        ours: &Ours,
+        device: *mut RaraDevice,
         canvas: &Canvas,
-        staging: Option<RaraStaging>,
+        scene: impl Fn(vk::CommandBuffer) -> *mut RaraSceneBuffers,
     ) -> Pixels {
-        let Ours { device, gaussians } = *ours;
-        let scene = Cell::new(null_mut());
         // SAFETY: the caller's promises; everything below is alive, or to be overwritten.
         unsafe {
-            if staging.is_none() {
-                let format = RARA_SH_FORMAT_PACKED;
-                let result = rara_scene_buffers_upload(device, gaussians, format, scene.as_ptr());
-                assert_ok(result);
-            }
             let mut depth: RaraDepthDesc = std::mem::zeroed();
             let size = size_of_val(&depth);
             assert_ok(rara_depth_desc_default(&mut depth, size, DEPTH, MAP));
@@ -167,11 +166,7 @@ impl<'a> World<'a> {
             desc.bindings = RARA_BINDINGS_BOUND;
             let mut renderer = null_mut();
             assert_ok(rara_renderer_create(device, &desc, &mut renderer));
-            let placement = RaraPlacement {
-                position: self.placement.position().into(),
-                rotation: self.placement.rotation().into(),
-                scale: self.placement.scale(),
-            };
+            let placement = RaraPlacement::from(self.placement);
             assert_ok(rara_renderer_set_placement(renderer, &placement));
             let nowhere = RaraPlacement {
                 scale: 0.0,
@@ -209,10 +204,7 @@ impl<'a> World<'a> {
                 y: shown.origin.y,
             };
             let before = |cmd| {
-                if let Some(staging) = &staging {
-                    upload_with(ours, cmd, staging, scene.as_ptr());
-                }
-                let scene = scene.get();
+                let scene = scene(cmd);
                 let configured =
                     rara_renderer_configure(renderer, scene, &camera, &clip, &settings);
                 assert_ok(configured);
@@ -227,12 +219,6 @@ impl<'a> World<'a> {
             };
             let [pixels, _] = canvas.draw(before, inside);
             rara_renderer_destroy(renderer);
-            rara_scene_buffers_destroy(scene.get());
-            assert_eq!(
-                rara_device_bytes(device),
-                0,
-                "all that was allocated was freed"
-            );
             pixels
         }
     }
@@ -252,8 +238,7 @@ impl Ours {
     /// # Safety
     /// The host and its loader outlive what is returned.
     unsafe fn new(entry: &Entry, host: &AdoptDesc, path: &Path) -> Self {
-        let (mut device, mut gaussians) = (null_mut(), null_mut());
-        let name = CString::new(path.to_str().expect("UTF-8")).expect("no NUL");
+        let mut device = null_mut();
         // SAFETY: the caller's promise; the others are alive, or to be overwritten.
         unsafe {
             let mut desc: RaraAdoptDesc = std::mem::zeroed();
@@ -268,10 +253,36 @@ impl Ours {
             desc.debug_utils = host.debug_utils.into();
             desc.api_version = host.api_version;
             assert_ok(rara_device_adopt(&desc, &mut device));
-            assert_ok(rara_gaussians_load(name.as_ptr(), &mut gaussians));
         }
+        let gaussians = loaded_in_c(path);
         Self { device, gaussians }
     }
+
+    /// Its Gaussians on its device.
+    fn uploaded(&self) -> *mut RaraSceneBuffers {
+        let (mut scene, format) = (null_mut(), RARA_SH_FORMAT_PACKED);
+        // SAFETY: both are alive, and the pointer may be overwritten.
+        assert_ok(unsafe {
+            rara_scene_buffers_upload(self.device, self.gaussians, format, &mut scene)
+        });
+        scene
+    }
+}
+
+/// So many made-up Gaussians in a file, and as they are loaded from it: a file has opacities and scales in another form.
+fn saved(folder: &Folder, kind: Kind, count: usize) -> (PathBuf, Gaussians) {
+    let path = folder.join("scene.ply");
+    save_ply(&path, &generate(kind, count, 5)).expect("a temporary file");
+    let loaded = load(&path, &mut |_, _| ()).expect("loads");
+    (path, loaded.gaussians)
+}
+
+fn loaded_in_c(path: &Path) -> *mut RaraGaussians {
+    let mut gaussians = null_mut();
+    let name = CString::new(path.to_str().expect("UTF-8")).expect("no NUL");
+    // SAFETY: the name ends in NUL, and the pointer may be overwritten.
+    assert_ok(unsafe { rara_gaussians_load(name.as_ptr(), &mut gaussians) });
+    gaussians
 }
 
 /// # Safety
@@ -322,10 +333,7 @@ unsafe fn upload_with(
 /// Draws with a scene of this many Gaussians, on the example host's device by both interfaces.
 fn with_both(count: usize, test: impl FnOnce(&Gaussians, &AdoptDesc, &Device, &Ours)) {
     let folder = Folder::new(&format!("c-frames-{count}"));
-    let path = folder.join("scene.ply");
-    save_ply(&path, &generate(Kind::General, count, 5)).expect("a temporary file");
-    // As loaded: a file has opacities and scales in another form.
-    let scene = load(&path, &mut |_, _| ()).expect("loads").gaussians;
+    let (path, scene) = saved(&folder, Kind::General, count);
     with_host(true, |host, device| {
         // SAFETY: the system's loader; the host outlives what is made here.
         unsafe {
@@ -334,10 +342,11 @@ fn with_both(count: usize, test: impl FnOnce(&Gaussians, &AdoptDesc, &Device, &O
             let ours = Ours::new(&entry, &lent, &path);
             test(&scene, &lent, device, &ours);
             rara_gaussians_destroy(ours.gaussians);
+            let bytes = rara_device_bytes(ours.device);
+            assert_eq!(bytes, 0, "all that was allocated was freed");
             rara_device_destroy(ours.device);
         }
     });
-    std::fs::remove_file(&path).expect("is there");
 }
 
 #[test]
@@ -346,6 +355,7 @@ fn what_is_behind_a_mesh_and_expected_depths_are_the_same_bytes() {
         let turn = DQuat::from_xyzw(0.1, -0.2, 0.05, 0.9);
         let placed = Placement::new(DVec3::new(0.3, -0.1, 0.2), turn, 0.8).expect("possible");
         let mut seen: Vec<Pixels> = Vec::new();
+        let uploaded = ours.uploaded();
         for raster in [Raster::Tiles, Raster::Quad] {
             for (placement, depths) in [
                 (Placement::IDENTITY, false),
@@ -361,7 +371,7 @@ fn what_is_behind_a_mesh_and_expected_depths_are_the_same_bytes() {
                 let canvas = world.canvas(lent, device);
                 let truth = world.drawn(device, &canvas);
                 // SAFETY: the handles are alive.
-                let drawn = unsafe { world.drawn_in_c(ours, &canvas, None) };
+                let drawn = unsafe { world.drawn_in_c(ours.device, &canvas, |_| uploaded) };
                 assert!(drawn == truth, "{what}");
                 let filled = drawn.iter().filter(|pixel| pixel[1] > 0.05).count();
                 assert!(filled > 1_000, "{what}: {filled} pixels");
@@ -369,6 +379,8 @@ fn what_is_behind_a_mesh_and_expected_depths_are_the_same_bytes() {
             }
         }
         assert!(seen[0] != seen[1] && seen[3] != seen[4], "placed elsewhere");
+        // SAFETY: all frames were waited for.
+        unsafe { rara_scene_buffers_destroy(uploaded) };
     });
 }
 
@@ -388,21 +400,158 @@ fn a_scene_by_the_hosts_own_staging_memory_is_the_same_bytes() {
             assert_ok(ask(RARA_SH_FORMAT_PACKED, &mut needed));
         }
         assert_eq!(needed, SceneBuffers::staging_bytes(scene, ShFormat::Packed));
-        let mut memory = device
-            .create_buffer(&BufferDesc {
-                name: "host's staging",
-                size: needed + 64,
-                location: Location::Upload,
-            })
-            .expect("a buffer");
-        let staging = RaraStaging {
-            buffer: memory.handle(),
-            offset: 64,
-            mapped: memory.mapped_mut()[64..].as_mut_ptr().cast(),
-            size: needed as usize,
-        };
-        // SAFETY: the handles and the memory are alive.
-        let drawn = unsafe { world.drawn_in_c(ours, &canvas, Some(staging)) };
-        assert!(drawn == truth);
+        let (_memory, staging) = staging(device, needed);
+        let scene = Cell::new(null_mut());
+        // SAFETY: the handles and the memory are alive; the scene is when its frame has been waited for.
+        unsafe {
+            let drawn = world.drawn_in_c(ours.device, &canvas, |cmd| {
+                upload_with(ours, cmd, &staging, scene.as_ptr());
+                scene.get()
+            });
+            assert!(drawn == truth);
+            rara_scene_buffers_destroy(scene.get());
+        }
+    });
+}
+
+/// Memory of the host's for so many bytes, behind some that are not lent.
+fn staging(device: &Device, bytes: u64) -> (Buffer, RaraStaging) {
+    let offset = 64;
+    let mut memory = device
+        .create_buffer(&BufferDesc {
+            name: "host's staging",
+            size: offset + bytes,
+            location: Location::Upload,
+        })
+        .expect("a buffer");
+    let staging = RaraStaging {
+        buffer: memory.handle(),
+        offset,
+        mapped: memory.mapped_mut()[offset as usize..].as_mut_ptr().cast(),
+        size: bytes as usize,
+    };
+    (memory, staging)
+}
+
+const NAMES: [&CStr; 2] = [c"first", c"zweite \u{e4}"];
+
+/// Two layers as rara.h has them.
+fn layers_in_c(
+    gaussians: [*mut RaraGaussians; 2],
+    states: [*const RaraLayerState; 2],
+) -> [RaraLayer; 2] {
+    [0, 1].map(|index| {
+        // SAFETY: the struct may hold any bytes, and has the room that is said.
+        unsafe {
+            let mut layer: RaraLayer = std::mem::zeroed();
+            let (size, name) = (size_of_val(&layer), NAMES[index].as_ptr());
+            assert_ok(rara_layer_default(&mut layer, size, name, gaussians[index]));
+            layer.state = states[index];
+            layer
+        }
+    })
+}
+
+#[test]
+fn layers_are_the_same_bytes() {
+    let own = Folder::new("c-frames-layers");
+    let (path, other) = saved(&own, Kind::Strands, 1_300);
+    with_both(2_100, |scene, lent, device, ours| {
+        let gaussians = [ours.gaussians, loaded_in_c(&path)];
+        let counts = [scene.len(), other.len()];
+        let shown = LayerState::default();
+        let turn = DQuat::from_xyzw(0.1, 0.3, -0.2, 0.9);
+        let moved = Placement::new(DVec3::new(0.4, -0.2, 0.1), turn, 1.2).expect("possible");
+        let faded = shown.placement(moved).opacity(0.35);
+        let format = RARA_SH_FORMAT_PACKED;
+        let mut uploaded = null_mut();
+        // SAFETY: the layers are alive, the pointer may be overwritten.
+        unsafe {
+            let layers = layers_in_c(gaussians, [null(); 2]);
+            assert_ok(rara_scene_buffers_upload_layers(
+                ours.device,
+                layers.as_ptr(),
+                layers.len(),
+                format,
+                &mut uploaded,
+            ));
+            assert_eq!(rara_scene_buffers_layer_count(uploaded), layers.len());
+            for (index, count) in counts.into_iter().enumerate() {
+                let mut info: RaraLayerInfo = std::mem::zeroed();
+                let size = size_of_val(&info);
+                let told = rara_scene_buffers_layer_info(uploaded, index, &mut info, size);
+                assert_ok(told);
+                assert_eq!((info.struct_size, info.count), (size, count as u64));
+                assert_eq!(CStr::from_ptr(info.name), NAMES[index]);
+            }
+        }
+        let mut seen: Vec<Pixels> = Vec::new();
+        for (raster, states) in [
+            (Raster::Tiles, [shown, shown]),
+            (Raster::Tiles, [shown.visible(false), shown]),
+            (Raster::Tiles, [shown, faded]),
+            (Raster::Quad, [shown, faded]),
+        ] {
+            let names = NAMES.map(|name| name.to_str().expect("UTF-8"));
+            let world = World {
+                layers: Scene::from_iter([
+                    Layer::new(names[0], scene).with(states[0]),
+                    Layer::new(names[1], &other).with(states[1]),
+                ]),
+                ..World::new(scene, raster)
+            };
+            let canvas = world.canvas(lent, device);
+            let truth = world.drawn(device, &canvas);
+            let what = format!("{raster:?}, {states:?}");
+
+            // Of a scene that has been drawn in another state.
+            let given = states.map(RaraLayerState::from);
+            // SAFETY: the scene is alive, and nobody else uses it.
+            unsafe {
+                for (index, given) in given.iter().enumerate() {
+                    assert_ok(rara_scene_buffers_set_layer_state(uploaded, index, given));
+                    let mut state: RaraLayerState = std::mem::zeroed();
+                    let size = size_of_val(&state);
+                    let told = rara_scene_buffers_layer_state(uploaded, index, &mut state, size);
+                    assert_ok(told);
+                    assert_eq!(state, *given, "{what}");
+                }
+                let drawn = world.drawn_in_c(ours.device, &canvas, |_| uploaded);
+                assert!(drawn == truth, "{what}");
+            }
+
+            // Of one that is uploaded in that state, by the host's staging memory.
+            let layers = layers_in_c(gaussians, given.each_ref().map(std::ptr::from_ref));
+            let (list, count) = (layers.as_ptr(), layers.len());
+            let (mut bytes, staged) = (0, Cell::new(null_mut()));
+            // SAFETY: the handles and the memory are alive; the scene is when its frame has been waited for.
+            unsafe {
+                assert_ok(rara_scene_buffers_staging_bytes_of_layers(
+                    list, count, format, &mut bytes,
+                ));
+                let (_memory, staging) = staging(device, bytes);
+                let drawn = world.drawn_in_c(ours.device, &canvas, |cmd| {
+                    assert_ok(rara_scene_buffers_upload_layers_with(
+                        ours.device,
+                        cmd,
+                        &staging,
+                        list,
+                        count,
+                        format,
+                        staged.as_ptr(),
+                    ));
+                    staged.get()
+                });
+                assert!(drawn == truth, "{what}, staged");
+                rara_scene_buffers_destroy(staged.get());
+            }
+            seen.push(truth);
+        }
+        assert!(seen[0] != seen[1] && seen[0] != seen[2] && seen[1] != seen[2]);
+        // SAFETY: all frames were waited for.
+        unsafe {
+            rara_scene_buffers_destroy(uploaded);
+            rara_gaussians_destroy(gaussians[1]);
+        }
     });
 }

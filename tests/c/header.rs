@@ -24,6 +24,7 @@ fn the_header_is_current() {
         "placement",
         "renderer",
         "scene",
+        "layer",
         "settings",
         "stats",
     ];

@@ -1,0 +1,354 @@
+//! Layers: scenes of several sets of Gaussians, and how each of them is shown.
+
+use std::ffi::c_char;
+use std::ptr::null;
+
+use rara::ash::vk;
+use rara::{Error, Layer, LayerState, Result, Scene, SceneBuffers};
+
+use crate::boundary::{
+    RaraResult, Versioned, create, exclusive, guard, invalid, read, read_list, recording, shared,
+    string, write,
+};
+use crate::device::RaraDevice;
+use crate::placement::RaraPlacement;
+use crate::scene::{RaraGaussians, RaraSceneBuffers, RaraShFormat, RaraStaging, sh_format};
+
+/// What of a layer may change from frame to frame.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RaraLayerState {
+    /// Set by rara_layer_state_default and rara_scene_buffers_layer_state.
+    pub struct_size: usize,
+    /// Where the layer stands in its scene, which rara_renderer_set_placement places as a whole. Default: where it was made.
+    pub placement: RaraPlacement,
+    /// What the opacities of its Gaussians are multiplied by, 0 to 1. Default: 1.
+    pub opacity: f32,
+    /// Whether it is drawn. A hidden layer costs next to nothing. Default: yes.
+    pub visible: vk::Bool32,
+}
+
+// SAFETY: repr(C), plain numbers, the size first.
+unsafe impl Versioned for RaraLayerState {
+    const NAME: &'static str = "RaraLayerState";
+}
+
+impl From<LayerState> for RaraLayerState {
+    fn from(state: LayerState) -> Self {
+        Self {
+            struct_size: size_of::<Self>(),
+            placement: state.placement.into(),
+            opacity: state.opacity,
+            visible: state.visible.into(),
+        }
+    }
+}
+
+/// What a host says of a state; `layer` is the name of the one that it is for.
+///
+/// # Safety
+/// `state` is null, or points to one.
+unsafe fn state(state: *const RaraLayerState, name: &str, layer: &str) -> Result<LayerState> {
+    let default = LayerState::default();
+    // SAFETY: the caller's promise.
+    let given = unsafe { read(state, default.into(), name) }?;
+    let made = given.placement.placement().and_then(|placement| {
+        let made = default
+            .placement(placement)
+            .opacity(given.opacity)
+            .visible(given.visible != 0);
+        made.check(layer).map(|()| made)
+    });
+    made.map_err(|error| Error::Invalid(format!("{name}: {error}")))
+}
+
+/// A layer of a scene that is to be uploaded. All of it is read by the call alone: the name is copied, and the Gaussians
+/// may be destroyed when it returns.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RaraLayer {
+    /// Set by rara_layer_default.
+    pub struct_size: usize,
+    /// Its name: UTF-8, ends in NUL. Several layers may have the same.
+    pub name: *const c_char,
+    /// Its Gaussians. Several layers may have the same.
+    pub gaussians: *const RaraGaussians,
+    /// How it is shown at first; null, the default, is as rara_layer_state_default says.
+    pub state: *const RaraLayerState,
+}
+
+// SAFETY: repr(C), a number and pointers, the size first.
+unsafe impl Versioned for RaraLayer {
+    const NAME: &'static str = "RaraLayer";
+}
+
+impl RaraLayer {
+    fn new(name: *const c_char, gaussians: *const RaraGaussians) -> Self {
+        Self {
+            struct_size: size_of::<Self>(),
+            name,
+            gaussians,
+            state: null(),
+        }
+    }
+
+    /// `place` is what messages call it.
+    ///
+    /// # Safety
+    /// Its pointers are null, or to what they say, which nobody changes for `'a`.
+    unsafe fn layer<'a>(&self, place: &str) -> Result<Layer<'a>> {
+        // SAFETY: the caller's promise.
+        let name = unsafe { string(self.name, &format!("{place}.name")) }?;
+        let Ok(name) = name.to_str() else {
+            return invalid(format!("{place}.name is not UTF-8: give it in UTF-8"));
+        };
+        // SAFETY: as above.
+        let gaussians = unsafe { shared(self.gaussians, &format!("{place}.gaussians")) }?;
+        let layer = Layer::new(name, &gaussians.0.gaussians);
+        if self.state.is_null() {
+            return Ok(layer);
+        }
+        // SAFETY: as above.
+        let state = unsafe { state(self.state, &format!("{place}.state"), name) }?;
+        Ok(layer.with(state))
+    }
+}
+
+/// # Safety
+/// `layers` is null, or points to `layer_count` of them, which are as they say and nobody changes for `'a`.
+unsafe fn scene<'a>(layers: *const RaraLayer, layer_count: usize) -> Result<Scene<'a>> {
+    if layer_count == 0 {
+        return invalid("layer_count is 0, and a scene has at least one layer: give one or more");
+    }
+    // SAFETY: the caller's promise.
+    let layers = unsafe {
+        read_list(
+            layers,
+            layer_count,
+            RaraLayer::new(null(), null()),
+            "layers",
+        )
+    }?;
+    let layers = layers.iter().enumerate();
+    // SAFETY: as above.
+    let made = layers.map(|(index, layer)| unsafe { layer.layer(&format!("layers[{index}]")) });
+    made.collect()
+}
+
+/// A layer where it was made, visible, with the opacities of its Gaussians. `state_size` is sizeof *state.
+///
+/// # Safety
+/// `state` has room for `state_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_layer_state_default(
+    state: *mut RaraLayerState,
+    state_size: usize,
+) -> RaraResult {
+    let default = LayerState::default().into();
+    // SAFETY: the caller's promise.
+    guard(|| unsafe { write(state, state_size, &default, "state") })
+}
+
+/// Gaussians with a name, as they are; both pointers are kept in `layer` as they come. `layer_size` is sizeof *layer.
+///
+/// # Safety
+/// `layer` has room for `layer_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_layer_default(
+    layer: *mut RaraLayer,
+    layer_size: usize,
+    name: *const c_char,
+    gaussians: *const RaraGaussians,
+) -> RaraResult {
+    let default = RaraLayer::new(name, gaussians);
+    // SAFETY: the caller's promise.
+    guard(|| unsafe { write(layer, layer_size, &default, "layer") })
+}
+
+/// As rara_scene_buffers_upload, a scene of several layers, which are sorted and blended together, wherever they reach
+/// into each other. Where two Gaussians are equally deep, the earlier layer's is in front.
+///
+/// # Safety
+/// `device` is alive; `layers` points to `layer_count` of them, which are as they say and of one struct_size; nobody else
+/// uses the queue meanwhile; `scene` may be overwritten.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_scene_buffers_upload_layers(
+    device: *const RaraDevice,
+    layers: *const RaraLayer,
+    layer_count: usize,
+    sh_format: RaraShFormat,
+    scene: *mut *mut RaraSceneBuffers,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        create(scene, "scene", || {
+            let device = &shared(device, "device")?.0;
+            let layers = self::scene(layers, layer_count)?;
+            let format = self::sh_format(sh_format)?;
+            SceneBuffers::upload(device, layers, format).map(RaraSceneBuffers::new)
+        })
+    })
+}
+
+/// Bytes of staging memory that rara_scene_buffers_upload_layers_with needs for a scene.
+///
+/// # Safety
+/// `layers` points to `layer_count` of them, which are as they say and of one struct_size; `bytes` may be overwritten.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_scene_buffers_staging_bytes_of_layers(
+    layers: *const RaraLayer,
+    layer_count: usize,
+    sh_format: RaraShFormat,
+    bytes: *mut u64,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let bytes = exclusive(bytes, "bytes")?;
+        let layers = scene(layers, layer_count)?;
+        *bytes = SceneBuffers::staging_bytes(layers, self::sh_format(sh_format)?);
+        Ok(())
+    })
+}
+
+/// As rara_scene_buffers_upload_with, a scene of several layers. `layers` and what they point to may be gone when it
+/// returns.
+///
+/// # Safety
+/// As of rara_scene_buffers_upload_with and, for the layers, of rara_scene_buffers_upload_layers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_scene_buffers_upload_layers_with(
+    device: *const RaraDevice,
+    cmd: vk::CommandBuffer,
+    staging: *const RaraStaging,
+    layers: *const RaraLayer,
+    layer_count: usize,
+    sh_format: RaraShFormat,
+    scene: *mut *mut RaraSceneBuffers,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        create(scene, "scene", || {
+            let device = &shared(device, "device")?.0;
+            let cmd = recording(cmd)?;
+            let staging = shared(staging, "staging")?.staging()?;
+            let layers = self::scene(layers, layer_count)?;
+            let format = self::sh_format(sh_format)?;
+            SceneBuffers::upload_with(device, cmd, staging, layers, format)
+                .map(RaraSceneBuffers::new)
+        })
+    })
+}
+
+/// What a layer of a scene in device memory is.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RaraLayerInfo {
+    /// Set by rara_scene_buffers_layer_info.
+    pub struct_size: usize,
+    /// Its name: UTF-8, ends in NUL, lives as long as the RaraSceneBuffers. The one layer of rara_scene_buffers_upload and
+    /// rara_scene_buffers_upload_with is named "scene".
+    pub name: *const c_char,
+    /// Gaussians in it.
+    pub count: u64,
+}
+
+// SAFETY: repr(C), numbers and a pointer, the size first.
+unsafe impl Versioned for RaraLayerInfo {
+    const NAME: &'static str = "RaraLayerInfo";
+}
+
+/// How many layers a scene has, one or more; 0 for null.
+///
+/// # Safety
+/// `scene` is null or alive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_scene_buffers_layer_count(scene: *const RaraSceneBuffers) -> usize {
+    let mut count = 0;
+    guard(|| {
+        // SAFETY: the caller's promise.
+        count = unsafe { shared(scene, "scene") }?.names.len();
+        Ok(())
+    });
+    count
+}
+
+/// That a scene has a layer of this number.
+fn check_index(scene: &RaraSceneBuffers, index: usize) -> Result<()> {
+    let count = scene.names.len();
+    if index < count {
+        return Ok(());
+    }
+    invalid(format!(
+        "index is {index}, and rara_scene_buffers_layer_count is {count}: give less than that"
+    ))
+}
+
+/// What a layer is. Layers are numbered from 0, in the order in which they were given. `info_size` is sizeof *info.
+///
+/// # Safety
+/// `scene` is alive; `info` has room for `info_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_scene_buffers_layer_info(
+    scene: *const RaraSceneBuffers,
+    index: usize,
+    info: *mut RaraLayerInfo,
+    info_size: usize,
+) -> RaraResult {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let scene = unsafe { shared(scene, "scene") }?;
+        check_index(scene, index)?;
+        let found = RaraLayerInfo {
+            struct_size: size_of::<RaraLayerInfo>(),
+            name: scene.names[index].as_ptr(),
+            count: scene.buffers.layers()[index].gaussians().into(),
+        };
+        // SAFETY: the caller's promise.
+        unsafe { write(info, info_size, &found, "info") }
+    })
+}
+
+/// The state of a layer, as it was uploaded or set last; its rotation has length one. `state_size` is sizeof *state.
+///
+/// # Safety
+/// `scene` is alive, and no other thread sets a state meanwhile; `state` has room for `state_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_scene_buffers_layer_state(
+    scene: *const RaraSceneBuffers,
+    index: usize,
+    state: *mut RaraLayerState,
+    state_size: usize,
+) -> RaraResult {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let scene = unsafe { shared(scene, "scene") }?;
+        check_index(scene, index)?;
+        let found = scene.buffers.layers()[index].state.into();
+        // SAFETY: the caller's promise.
+        unsafe { write(state, state_size, &found, "state") }
+    })
+}
+
+/// Sets the state of a layer: the next rara_renderer_configure of every renderer takes it, and frames that are configured
+/// already keep theirs, so that nothing has to be waited for. RARA_ERROR_INVALID for an opacity that is not 0 to 1 and
+/// for what is no placement; the state before then stays.
+///
+/// # Safety
+/// `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;
+/// `state` points to one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_scene_buffers_set_layer_state(
+    scene: *mut RaraSceneBuffers,
+    index: usize,
+    state: *const RaraLayerState,
+) -> RaraResult {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let scene = unsafe { exclusive(scene, "scene") }?;
+        check_index(scene, index)?;
+        let layer = &mut scene.buffers.layers_mut()[index];
+        // SAFETY: as above.
+        layer.state = unsafe { self::state(state, "state", layer.name()) }?;
+        Ok(())
+    })
+}

@@ -1,7 +1,11 @@
 //! Stage `sort`: the survivors' order, from the depths that the stage before has found.
 
+use std::collections::BTreeSet;
+
+use rara::limits::SORT_BITS;
 use rara::reference::sort;
 use rara::scene::{Kind, generate};
+use rara::types::FrameData;
 use rara::{Clip, Gaussians, Raster, Settings};
 
 use crate::frame::{self, SIZES, Stages};
@@ -17,29 +21,27 @@ pub fn places(stages: &mut Stages) -> (Vec<f32>, Vec<u32>) {
 fn check(stages: &mut Stages, what: &str) {
     let (depths, numbers) = places(stages);
     let twin = sort::order(&depths, &numbers);
-    let is_sorted = |(keys, order): &(Vec<u32>, Vec<u32>)| {
-        // All bits count here: keys are the depths' bits, counted from one number on.
-        let near =
-            |(key, place): (&u32, &u32)| depths[*place as usize].to_bits().wrapping_sub(*key);
-        let mut nears = keys.iter().zip(&twin).map(near);
-        let first = nears.next();
-        *order == twin && nears.all(|near| Some(near) == first)
-    };
-    let pairs = keys_and_orders(stages, depths.len());
-    assert!(
-        pairs.iter().any(is_sorted),
-        "{what}: neither order is the twin's"
-    );
+    let (keys, order) = sorted(stages, depths.len());
+    assert!(order == twin, "{what}: the order is not the twin's");
+    // All bits count here: keys are the depths' bits, counted from one number on.
+    let near = |(key, place): (&u32, &u32)| depths[*place as usize].to_bits().wrapping_sub(*key);
+    let nears = keys.iter().zip(&twin).map(near);
+    let firsts: BTreeSet<_> = nears.collect();
+    assert!(firsts.len() <= 1, "{what}: keys are not the depths' bits");
 }
 
-/// Each pass carries the keys and the order to the other pair of buffers; the number of passes says which is the last.
-fn keys_and_orders(stages: &mut Stages, count: usize) -> [(Vec<u32>, Vec<u32>); 2] {
-    [("keys", "order"), ("sorted_keys", "sorted_order")].map(|names| {
-        let [mut keys, mut order] = [names.0, names.1].map(|name| stages.read::<u32>(name));
-        keys.truncate(count);
-        order.truncate(count);
-        (keys, order)
-    })
+/// The keys and the order where the draw reads them: each pass carries them to the other pair of buffers, and the span of
+/// the keys says how many passes there are.
+fn sorted(stages: &mut Stages, count: usize) -> (Vec<u32>, Vec<u32>) {
+    let frame: FrameData = stages.read("frame")[0];
+    let span = frame.order.key_span >> frame.order.key_shift;
+    let bits = u32::BITS - span.leading_zeros();
+    let passes = bits.div_ceil(SORT_BITS).max(1);
+    let names = [("keys", "order"), ("sorted_keys", "sorted_order")][passes as usize % 2];
+    let [mut keys, mut order] = [names.0, names.1].map(|name| stages.read::<u32>(name));
+    keys.truncate(count);
+    order.truncate(count);
+    (keys, order)
 }
 
 #[test]
@@ -93,26 +95,21 @@ fn fewer_bits_keep_the_order_of_what_they_tell_apart() {
         let camera = frame::views(&scene)[0];
         stages.draw(&camera, &Clip::default(), &settings);
         let (depths, numbers) = places(&mut stages);
-        let is_sorted = |(keys, order): &(Vec<u32>, Vec<u32>)| {
-            let mut once = order.clone();
-            once.sort_unstable();
-            if !once.into_iter().eq(0..depths.len() as u32) {
-                return false;
+        let (keys, order) = sorted(&mut stages, depths.len());
+        let mut once = order.clone();
+        once.sort_unstable();
+        assert!(once.into_iter().eq(0..depths.len() as u32), "each once");
+        let at = |i: usize| order[i] as usize;
+        let mut deepest = 0.0_f32; // of the keys before
+        let mut of_key = 0.0_f32;
+        for i in 1..order.len() {
+            of_key = of_key.max(depths[at(i - 1)]);
+            if keys[i] != keys[i - 1] {
+                deepest = of_key;
             }
-            let at = |i: usize| order[i] as usize;
-            let mut deepest = 0.0_f32; // of the keys before
-            let mut of_key = 0.0_f32;
-            (1..order.len()).all(|i| {
-                of_key = of_key.max(depths[at(i - 1)]);
-                if keys[i] != keys[i - 1] {
-                    deepest = of_key;
-                }
-                (keys[i - 1], numbers[at(i - 1)]) < (keys[i], numbers[at(i)])
-                    && depths[at(i)] >= deepest
-                    && u64::from(keys[i]) < 1 << bits
-            })
-        };
-        let pairs = keys_and_orders(&mut stages, depths.len());
-        assert!(pairs.iter().any(is_sorted), "{bits} bits");
+            assert!((keys[i - 1], numbers[at(i - 1)]) < (keys[i], numbers[at(i)]));
+            assert!(depths[at(i)] >= deepest, "{bits} bits");
+            assert!(u64::from(keys[i]) < 1 << bits, "{bits} bits");
+        }
     }
 }

@@ -3,6 +3,7 @@
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
+use crate::gpu::DeviceShape;
 use crate::limits;
 use crate::passes::depth_keys::DepthKeys;
 use crate::passes::layers::{self, Layers};
@@ -41,6 +42,8 @@ pub(crate) struct Plan {
 pub(crate) struct Way {
     /// How splats become pixels; never `Auto`.
     pub(crate) raster: Raster,
+    /// For what kind of device kernels are chosen.
+    pub(crate) shape: DeviceShape,
     /// How the scene's spherical harmonics are stored.
     pub(crate) sh_format: ShFormat,
     /// Whether the scene has several layers.
@@ -62,6 +65,8 @@ pub(crate) struct SceneFacts<'a> {
     pub(crate) blocks: u32,
     pub(crate) sh_degree: u32,
     pub(crate) sh_format: ShFormat,
+    /// For what kind of device kernels are chosen.
+    pub(crate) shape: DeviceShape,
     /// Invocations of the sort, and of what finds the splats' spans of tiles.
     pub(crate) sort_runs: u32,
     pub(crate) span_runs: u32,
@@ -104,6 +109,7 @@ impl Plan {
             },
             way: Way {
                 raster: scene.raster,
+                shape: scene.shape,
                 sh_format: scene.sh_format,
                 layered: scene.layers.len() > 1,
                 sort_passes: keys.passes(),
@@ -273,7 +279,6 @@ mod tests {
 
     use super::*;
     use crate::clip::{ClipOp, Plane};
-    use crate::gpu::DeviceShape;
     use crate::passes::project;
     use crate::passes::weight::Weight;
     use crate::settings::Mode;
@@ -286,6 +291,7 @@ mod tests {
             blocks: 4,
             sh_degree: 0,
             sh_format: ShFormat::Float,
+            shape: DeviceShape::Cpu,
             sort_runs: 128,
             span_runs: 128,
             raster: Raster::Tiles,

@@ -23,6 +23,15 @@ pub(crate) struct Stage {
     pub(crate) record: fn(&Frame<'_>, &mut Recorder<'_>),
 }
 
+/// One way to do what a stage is there for, where there may be several.
+#[derive(Debug)]
+pub(crate) struct KernelSet {
+    /// As of a [`Stage`].
+    pub(crate) pipelines: fn(&Plan, &mut dyn FnMut(PipelineKey)),
+    /// As of a [`Stage`].
+    pub(crate) record: fn(&Frame<'_>, &mut Recorder<'_>),
+}
+
 /// What a stage records with.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Frame<'a> {

@@ -83,6 +83,7 @@ impl Renderer {
             blocks: scene.block_count(),
             sh_degree: scene.sh_degree,
             sh_format: scene.sh_format,
+            shape,
             sort_runs: choose::runs(shape, scene.count),
             span_runs: choose::runs(shape, scene.count),
             raster,

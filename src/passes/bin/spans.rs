@@ -1,9 +1,5 @@
-//! Stage `bin`: the splats of each tile, by depth. First the spans of each row of tiles, then their splats in each of the
-//! row's tiles.
-//!
-//! It is given the survivors' outlines, as masks or as splats, and their order; it gives back the tiles' lists and where they
-//! begin. Its own scratch are the counts and the spans of [`TileBuffers`](crate::passes::buffers::TileBuffers), and what the
-//! sort has left free.
+//! First the spans of each row of tiles, by runs of consecutive splats, then their splats in each of the row's tiles. Its
+//! scratch are the counts and the spans of [`TileBuffers`](crate::passes::buffers::TileBuffers).
 
 use crate::gpu::{Groups, Recorder};
 use crate::passes::buffers::indirect;
@@ -11,13 +7,11 @@ use crate::passes::pipelines::Kernel;
 use crate::passes::shaders::{
     span_count, span_scan, span_scatter, tile_count, tile_scan, tile_scatter,
 };
-use crate::passes::stage::{Frame, Stage};
+use crate::passes::sort;
+use crate::passes::stage::{Frame, KernelSet};
 use crate::types::FrameCounts;
 
-pub(crate) const STAGE: Stage = Stage {
-    name: "bin",
-    needed: |plan| plan.finds_view() && plan.is_tiled(),
-    missed: |plan| plan.is_tiled() || plan.gaussians() == 0,
+pub(super) const KERNELS: KernelSet = KernelSet {
     pipelines: |_, need| {
         need(counts_spans().key());
         need(places_spans().key());
@@ -55,10 +49,11 @@ fn lists_tiles() -> Kernel<tile_scatter::Program> {
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (pipelines, b, t) = (frame.pipelines, frame.buffers, frame.tiles());
-    let sorted = frame.plan.sorted();
-    let order = &b.order[sorted];
-    // What the sort has done with has room for the masks in the order of depth.
-    let [mask_origins, masks_above, masks_below] = [&b.keys[0], &b.keys[1], &b.order[sorted ^ 1]];
+    // What the sort has left over has room for the masks in the order of depth.
+    let sort::Sorted {
+        order,
+        spare: [mask_origins, masks_above, masks_below],
+    } = sort::sorted(frame);
     let runs = indirect!(b.counts, FrameCounts, span_count_groups);
     let runs_with_room = indirect!(b.counts, FrameCounts, span_groups);
     let parts = indirect!(b.counts, FrameCounts, part_groups);

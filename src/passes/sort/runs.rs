@@ -1,8 +1,5 @@
-//! Stage `sort`: stable radix sort of the survivors by linear view depth, ties by their number in the file.
-//!
-//! It is given as many keys as there are survivors, in both `keys`, and nothing in `order`; the survivors are then numbered
-//! from 0. What it gives back is in the `keys` and the `order` of [`Plan::sorted`](crate::passes::Plan::sorted): the others
-//! are free again. Its own scratch is `histogram`.
+//! A radix sort by runs of consecutive keys, each owned by one invocation: of few and long ones, as processors like them.
+//! Its scratch is `histogram`.
 
 use std::mem::offset_of;
 
@@ -11,16 +8,13 @@ use crate::limits;
 use crate::passes::buffers::indirect;
 use crate::passes::pipelines::Kernel;
 use crate::passes::shaders::{sort_count, sort_scan, sort_scatter, sort_ties};
-use crate::passes::stage::{Frame, Stage};
+use crate::passes::stage::{Frame, KernelSet};
 use crate::types::FrameCounts;
 
 // So many passes have indirect commands of their own in FrameCounts.
 const _: () = assert!(u32::BITS.div_ceil(limits::SORT_BITS) <= 4);
 
-pub(crate) const STAGE: Stage = Stage {
-    name: "sort",
-    needed: |plan| plan.finds_view(),
-    missed: |_| true,
+pub(super) const KERNELS: KernelSet = KernelSet {
     pipelines: |_, need| {
         need(counts().key());
         need(places().key());

@@ -1,0 +1,44 @@
+//! Stage `sort`: a stable sort of the survivors by linear view depth, ties by their number in the scene.
+//!
+//! It is given as many keys as there are survivors, in both `keys`, and nothing in `order`; the survivors are then numbered
+//! from 0. It leaves what [`sorted`] names. Which kernels do it, the plan says: each set has a file here, shaders and scratch
+//! of its own.
+
+mod runs;
+
+use crate::gpu::{Buffer, DeviceShape};
+use crate::passes::plan::Plan;
+use crate::passes::stage::{Frame, KernelSet, Stage};
+
+pub(crate) const STAGE: Stage = Stage {
+    name: "sort",
+    needed: |plan| plan.finds_view(),
+    missed: |_| true,
+    pipelines: |plan, need| (kernels(plan).pipelines)(plan, need),
+    record: |frame, recorder| (kernels(frame.plan).record)(frame, recorder),
+};
+
+/// The kernels that suit the plan's kind of device.
+fn kernels(plan: &Plan) -> &'static KernelSet {
+    match plan.way.shape {
+        DeviceShape::Cpu | DeviceShape::Gpu => &runs::KERNELS,
+    }
+}
+
+/// What the sort leaves.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sorted<'a> {
+    /// The survivors, front to back.
+    pub(super) order: &'a Buffer,
+    /// What it has no more use for: a word a Gaussian each, for whoever comes next.
+    pub(super) spare: [&'a Buffer; 3],
+}
+
+/// What the sort of a frame leaves.
+pub(super) fn sorted<'a>(frame: &Frame<'a>) -> Sorted<'a> {
+    let (b, at) = (frame.buffers, frame.plan.sorted());
+    Sorted {
+        order: &b.order[at],
+        spare: [&b.keys[0], &b.keys[1], &b.order[at ^ 1]],
+    }
+}

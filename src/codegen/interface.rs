@@ -77,9 +77,16 @@ fn module(shaders: &[Source]) -> String {
         "/// What its shaders declare.\n#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]\npub(crate) struct Program;\n\
          impl super::Interface for Program {{\n\
          const NAME: &'static str = {name:?};\n\
-         type Buffers<'a> = Buffers<'a>;\ntype Params = {};\ntype Constants = {};\n}}\n}}",
+         type Buffers<'a> = Buffers<'a>;\ntype Params = {};\ntype Constants = {};\n}}\n{}}}",
         if whole.params.is_empty() { "()" } else { "Params" },
         if whole.constants.is_empty() { "()" } else { "Constants" },
+        match shaders {
+            [only] if only.stage() == "COMPUTE" => format!(
+                "impl super::Compute for Program {{ const SHADER: &'static super::Shader = &{}; }}\n",
+                only.names().1
+            ),
+            _ => String::new(),
+        },
     )
     .unwrap();
     out
@@ -145,6 +152,7 @@ fn buffers(buffers: &[Buffer]) -> String {
     format!(
         "/// Its buffers.\n#[derive(Debug, Clone, Copy)]\npub(crate) struct Buffers<'a> {{\n{}}}\n\
          impl<'a> super::BufferSet<'a> for Buffers<'a> {{\n\
+         type Program = Program;\n\
          fn list(self) -> super::BufferList<'a> {{ super::BufferList::from_slice(&[{}]) }}\n}}\n",
         each(&|b| format!("pub(crate) {}: &'a super::Buffer,\n", b.name)),
         each(&|b| format!("self.{}, ", b.name)),
@@ -249,6 +257,7 @@ mod tests {
             "&[(0, self.mode), (5, self.depth), ]",
             "pub(crate) static SUBGROUP_COMP:",
             "type Constants = ();",
+            "const SHADER: &'static super::Shader = &SUBGROUP_COMP;",
         ] {
             assert!(text.contains(expected), "{expected} is not in\n{text}");
         }

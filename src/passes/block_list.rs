@@ -1,19 +1,16 @@
 //! Lists the blocks whose Gaussians differ, for one stage.
 
 use crate::gpu::{Buffer, Groups, Recorder};
-use crate::passes::pipelines::Kernel;
 use crate::passes::shaders::block_list;
 use crate::passes::stage::Frame;
+
+pub(super) use block_list::Program;
 
 /// The stage that will look at the blocks of the list.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ListFor {
     Clip = 0,
     Classify = 1,
-}
-
-pub(crate) fn kernel() -> Kernel<block_list::Program> {
-    Kernel::new(&block_list::COMP, ())
 }
 
 /// Lists those whose two low bits in `sides` say that they differ.
@@ -33,5 +30,5 @@ pub(crate) fn record(
     let params = block_list::Params {
         stage: list_for as u32,
     };
-    kernel().dispatch(frame.pipelines, recorder, buffers, params, Groups::Count(1));
+    frame.dispatch(recorder, buffers, params, Groups::Count(1));
 }

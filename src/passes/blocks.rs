@@ -4,28 +4,29 @@
 use crate::gpu::{Groups, Recorder};
 use crate::limits;
 use crate::passes::block_list::{self, ListFor};
-use crate::passes::pipelines::Kernel;
+use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::shaders::blocks;
-use crate::passes::stage::{Frame, Stage};
+use crate::passes::stage::{Frame, Stage, key};
 
 pub(crate) const STAGE: Stage = Stage {
     name: "blocks",
     needed: |plan| plan.finds_view(),
     missed: |_| true,
     pipelines: |plan, need| {
-        need(kernel(plan).key());
-        need(block_list::kernel().key());
+        need(key::<blocks::Program>(plan));
+        need(key::<block_list::Program>(plan));
     },
     record,
 };
 
-fn kernel(plan: &Plan) -> Kernel<blocks::Program> {
-    let constants = blocks::Constants {
-        clip: plan.view_is_clipped(),
-        layered: plan.way.layered,
-    };
-    Kernel::new(&blocks::COMP, constants)
+impl OfPlan for blocks::Constants {
+    fn of(plan: &Plan) -> Self {
+        Self {
+            clip: plan.view_is_clipped(),
+            layered: plan.way.layered,
+        }
+    }
 }
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
@@ -38,7 +39,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         block_sides: &b.block_sides,
     };
     let groups = groups_of_blocks(frame.plan);
-    kernel(frame.plan).dispatch(frame.pipelines, recorder, buffers, (), groups);
+    frame.dispatch(recorder, buffers, (), groups);
     block_list::record(frame, recorder, &b.block_sides, ListFor::Classify);
 }
 

@@ -3,27 +3,28 @@
 
 use crate::gpu::Recorder;
 use crate::passes::buffers::indirect;
-use crate::passes::pipelines::Kernel;
+use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::shaders::classify;
-use crate::passes::stage::{Frame, Stage};
+use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
 
 pub(crate) const STAGE: Stage = Stage {
     name: "classify",
     needed: |plan| plan.finds_view(),
     missed: |_| true,
-    pipelines: |plan, need| need(kernel(plan).key()),
+    pipelines: |plan, need| need(key::<classify::Program>(plan)),
     record,
 };
 
 /// Without a clip the shader holds no clip code.
-fn kernel(plan: &Plan) -> Kernel<classify::Program> {
-    let constants = classify::Constants {
-        clip: plan.view_is_clipped(),
-        layered: plan.way.layered,
-    };
-    Kernel::new(&classify::COMP, constants)
+impl OfPlan for classify::Constants {
+    fn of(plan: &Plan) -> Self {
+        Self {
+            clip: plan.view_is_clipped(),
+            layered: plan.way.layered,
+        }
+    }
 }
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
@@ -40,5 +41,5 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         block_counts: &b.block_counts,
     };
     let groups = indirect!(b.counts, FrameCounts, classify_groups);
-    kernel(frame.plan).dispatch(frame.pipelines, recorder, buffers, (), groups);
+    frame.dispatch(recorder, buffers, (), groups);
 }

@@ -5,10 +5,8 @@ use crate::gpu::Recorder;
 use crate::passes::block_list::{self, ListFor};
 use crate::passes::blocks::groups_of_blocks;
 use crate::passes::buffers::indirect;
-use crate::passes::pipelines::Kernel;
-use crate::passes::plan::Plan;
 use crate::passes::shaders::{clip, clip_blocks};
-use crate::passes::stage::{Frame, Stage};
+use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
 
 pub(crate) const STAGE: Stage = Stage {
@@ -16,38 +14,22 @@ pub(crate) const STAGE: Stage = Stage {
     needed: |plan| plan.finds_clip(),
     missed: |_| true,
     pipelines: |plan, need| {
-        need(sides(plan).key());
-        need(block_list::kernel().key());
-        need(classes(plan).key());
+        need(key::<clip_blocks::Program>(plan));
+        need(key::<block_list::Program>(plan));
+        need(key::<clip::Program>(plan));
     },
     record,
 };
 
-fn sides(plan: &Plan) -> Kernel<clip_blocks::Program> {
-    let layered = plan.way.layered;
-    Kernel::new(&clip_blocks::COMP, clip_blocks::Constants { layered })
-}
-
-fn classes(plan: &Plan) -> Kernel<clip::Program> {
-    let layered = plan.way.layered;
-    Kernel::new(&clip::COMP, clip::Constants { layered })
-}
-
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let (pipelines, scene, b) = (frame.pipelines, frame.scene, frame.buffers);
+    let (scene, b) = (frame.scene, frame.buffers);
     let buffers = clip_blocks::Buffers {
         frame: &b.frame,
         surfaces: &b.surfaces,
         blocks: &scene.blocks,
         clip_sides: &b.clip_sides,
     };
-    sides(frame.plan).dispatch(
-        pipelines,
-        recorder,
-        buffers,
-        (),
-        groups_of_blocks(frame.plan),
-    );
+    frame.dispatch(recorder, buffers, (), groups_of_blocks(frame.plan));
     block_list::record(frame, recorder, &b.clip_sides, ListFor::Clip);
     let buffers = clip::Buffers {
         frame: &b.frame,
@@ -58,5 +40,5 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         clip_masks: &b.clip_masks,
     };
     let groups = indirect!(b.counts, FrameCounts, clip_groups);
-    classes(frame.plan).dispatch(pipelines, recorder, buffers, (), groups);
+    frame.dispatch(recorder, buffers, (), groups);
 }

@@ -3,10 +3,8 @@
 
 use crate::gpu::{Groups, Recorder};
 use crate::passes::buffers::indirect;
-use crate::passes::pipelines::Kernel;
-use crate::passes::plan::Plan;
 use crate::passes::shaders::{compact, compact_scan};
-use crate::passes::stage::{Frame, Stage};
+use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
 
 pub(crate) const STAGE: Stage = Stage {
@@ -14,24 +12,14 @@ pub(crate) const STAGE: Stage = Stage {
     needed: |plan| plan.finds_view(),
     missed: |_| true,
     pipelines: |plan, need| {
-        need(places(plan).key());
-        need(lists(plan).key());
+        need(key::<compact_scan::Program>(plan));
+        need(key::<compact::Program>(plan));
     },
     record,
 };
 
-fn places(plan: &Plan) -> Kernel<compact_scan::Program> {
-    let layered = plan.way.layered;
-    Kernel::new(&compact_scan::COMP, compact_scan::Constants { layered })
-}
-
-fn lists(plan: &Plan) -> Kernel<compact::Program> {
-    let layered = plan.way.layered;
-    Kernel::new(&compact::COMP, compact::Constants { layered })
-}
-
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let (pipelines, b) = (frame.pipelines, frame.buffers);
+    let b = frame.buffers;
     let buffers = compact_scan::Buffers {
         frame: &b.frame,
         block_sides: &b.block_sides,
@@ -40,7 +28,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         block_list: &b.block_list,
         counts: &b.counts,
     };
-    places(frame.plan).dispatch(pipelines, recorder, buffers, (), Groups::Count(1));
+    frame.dispatch(recorder, buffers, (), Groups::Count(1));
     let buffers = compact::Buffers {
         frame: &b.frame,
         block_list: &b.block_list,
@@ -52,5 +40,5 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         cutoffs: &b.cutoffs,
     };
     let groups = indirect!(b.counts, FrameCounts, compact_groups);
-    lists(frame.plan).dispatch(pipelines, recorder, buffers, (), groups);
+    frame.dispatch(recorder, buffers, (), groups);
 }

@@ -2,10 +2,8 @@
 
 use crate::gpu::Recorder;
 use crate::passes::buffers::indirect;
-use crate::passes::pipelines::Kernel;
-use crate::passes::plan::Plan;
 use crate::passes::shaders::cutoff;
-use crate::passes::stage::{Frame, Stage};
+use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
 
 /// In a frame that finds its view anew.
@@ -13,7 +11,7 @@ pub(crate) const STAGE: Stage = Stage {
     name: "cutoff",
     needed: |plan| plan.finds_view() && plan.view_is_cut(),
     missed: |plan| !plan.reclips(),
-    pipelines: |plan, need| need(kernel(plan).key()),
+    pipelines: |plan, need| need(key::<cutoff::Program>(plan)),
     record,
 };
 
@@ -23,11 +21,6 @@ pub(crate) const STAGE_OF_RECLIP: Stage = Stage {
     missed: |plan| plan.reclips(),
     ..STAGE
 };
-
-fn kernel(plan: &Plan) -> Kernel<cutoff::Program> {
-    let layered = plan.way.layered;
-    Kernel::new(&cutoff::COMP, cutoff::Constants { layered })
-}
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
@@ -40,5 +33,5 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         cuts: &b.cuts,
     };
     let groups = indirect!(b.counts, FrameCounts, cutoff_groups);
-    kernel(frame.plan).dispatch(frame.pipelines, recorder, buffers, (), groups);
+    frame.dispatch(recorder, buffers, (), groups);
 }

@@ -6,10 +6,10 @@ use std::mem::offset_of;
 use crate::depth::DepthMap;
 use crate::gpu::{Attachments, Drawer, Recorder};
 use crate::passes::buffers::{Buffers, DepthBuffers, indirect};
-use crate::passes::pipelines::{Draw, Kernel, Pipelines};
+use crate::passes::pipelines::{Draw, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{depth, splat_depth};
-use crate::passes::stage::{Frame, Stage};
+use crate::passes::stage::{Frame, Stage, key};
 use crate::passes::weight::Weight;
 use crate::passes::work::Work;
 use crate::types::FrameCounts;
@@ -19,14 +19,9 @@ pub(crate) const STAGE: Stage = Stage {
     name: "depth",
     needed: |plan| plan.way.expects_depth && plan.work != Work::Draw,
     missed: |_| false,
-    pipelines: |plan, need| need(kernel(plan).key()),
+    pipelines: |plan, need| need(key::<depth::Program>(plan)),
     record,
 };
-
-fn kernel(plan: &Plan) -> Kernel<depth::Program> {
-    let layered = plan.way.layered;
-    Kernel::new(&depth::COMP, depth::Constants { layered })
-}
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (b, d) = (frame.buffers, frame.depths());
@@ -39,7 +34,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         depths: &d.depths,
     };
     let groups = indirect!(b.counts, FrameCounts, project_groups);
-    kernel(frame.plan).dispatch(frame.pipelines, recorder, buffers, (), groups);
+    frame.dispatch(recorder, buffers, (), groups);
     // A quad a survivor, also where tiles draw their colours.
     let quad = [4_u32, 0, 0, 0];
     recorder.update(&d.draw, 0, bytemuck::bytes_of(&quad));

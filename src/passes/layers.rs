@@ -7,10 +7,36 @@ use glam::Vec3;
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::Result;
+use crate::passes::pipelines::OfPlan;
+use crate::passes::plan::Plan;
 use crate::passes::scene_buffers::SceneLayer;
 use crate::passes::view::layer_view;
-use crate::passes::{region, work};
+use crate::passes::{region, shaders, work};
 use crate::types::{self, LayerContent, LayerData, LayerRegion, RegionData, Surface};
+
+/// Programs to which it matters alone whether there are several layers.
+macro_rules! layered {
+    ($($program:ident),+ $(,)?) => {
+        $(impl OfPlan for shaders::$program::Constants {
+            fn of(plan: &Plan) -> Self {
+                Self {
+                    layered: plan.way.layered,
+                }
+            }
+        })+
+    };
+}
+
+layered!(
+    clip_blocks,
+    clip,
+    compact_scan,
+    compact,
+    cutoff,
+    depth,
+    reclip_blocks,
+    reclip
+);
 
 /// The layers and their surfaces. A copy has the same ones.
 #[derive(Debug, Clone)]

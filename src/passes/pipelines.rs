@@ -12,7 +12,8 @@ use crate::gpu::{
     Attachments, Bindings, Buffer, ComputeDesc, ComputePipeline, Device, Drawer, GraphicsDesc,
     GraphicsPipeline, Groups, Recorder, Shader,
 };
-use crate::passes::shaders::{BufferSet, ConstantList, ConstantSet, Interface};
+use crate::passes::plan::Plan;
+use crate::passes::shaders::{BufferSet, Compute, ConstantList, ConstantSet, Interface};
 
 /// What tells a pipeline from all others: its shaders, their constants, and what it draws into.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -43,6 +44,16 @@ impl Hash for Identity {
     }
 }
 
+/// Constants that follow from a plan.
+pub(crate) trait OfPlan {
+    /// Those of the plan.
+    fn of(plan: &Plan) -> Self;
+}
+
+impl OfPlan for () {
+    fn of(_: &Plan) {}
+}
+
 /// A compute pipeline that a stage dispatches: a shader of a program, with constants.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Kernel<P> {
@@ -62,6 +73,15 @@ impl<P: Interface> Kernel<P> {
             key,
             program: PhantomData,
         }
+    }
+
+    /// What a plan makes of a program.
+    pub(crate) fn of(plan: &Plan) -> Self
+    where
+        P: Compute,
+        P::Constants: OfPlan,
+    {
+        Self::new(P::SHADER, P::Constants::of(plan))
     }
 
     /// What it is made of.

@@ -279,7 +279,8 @@ mod tests {
 
     use super::*;
     use crate::clip::{ClipOp, Plane};
-    use crate::passes::project;
+    use crate::passes::shaders::project;
+    use crate::passes::stage::key;
     use crate::passes::weight::Weight;
     use crate::settings::Mode;
 
@@ -333,7 +334,10 @@ mod tests {
                 "the blocks' and the classes' pipeline"
             );
             assert_eq!(Weight::of(&plan), Weight::of(&none));
-            assert_eq!(project::kernel(&plan), project::kernel(&none));
+            assert_eq!(
+                key::<project::Program>(&plan),
+                key::<project::Program>(&none)
+            );
             assert_eq!(
                 (plan.cuts(), plan.data.weight.cut_stride),
                 (false, 0),
@@ -349,6 +353,9 @@ mod tests {
         let (none, hard) = (plan(Mode::None, 0), plan(Mode::Hard, 1));
         assert_eq!(hard.skipped(), ["cutoff"]);
         assert_eq!(Weight::of(&hard), Weight::of(&none));
-        assert_eq!(project::kernel(&hard), project::kernel(&none));
+        assert_eq!(
+            key::<project::Program>(&hard),
+            key::<project::Program>(&none)
+        );
     }
 }

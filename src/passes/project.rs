@@ -2,29 +2,30 @@
 
 use crate::gpu::Recorder;
 use crate::passes::buffers::indirect;
-use crate::passes::pipelines::Kernel;
+use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::shaders::project;
-use crate::passes::stage::{Frame, Stage};
+use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
 
 pub(crate) const STAGE: Stage = Stage {
     name: "project",
     needed: |plan| plan.finds_view(),
     missed: |_| true,
-    pipelines: |plan, need| need(kernel(plan).key()),
+    pipelines: |plan, need| need(key::<project::Program>(plan)),
     record,
 };
 
 /// For spherical harmonics stored in one way; without cut splats the shader knows no cutoff records.
-pub(super) fn kernel(plan: &Plan) -> Kernel<project::Program> {
-    let constants = project::Constants {
-        cut: plan.view_is_cut(),
-        layered: plan.way.layered,
-        sh_format: plan.way.sh_format.code(),
-        tiles: plan.is_tiled(),
-    };
-    Kernel::new(&project::COMP, constants)
+impl OfPlan for project::Constants {
+    fn of(plan: &Plan) -> Self {
+        Self {
+            cut: plan.view_is_cut(),
+            layered: plan.way.layered,
+            sh_format: plan.way.sh_format.code(),
+            tiles: plan.is_tiled(),
+        }
+    }
 }
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
@@ -43,5 +44,5 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         tile_masks: &b.tile_masks,
     };
     let groups = indirect!(b.counts, FrameCounts, project_groups);
-    kernel(frame.plan).dispatch(frame.pipelines, recorder, buffers, (), groups);
+    frame.dispatch(recorder, buffers, (), groups);
 }

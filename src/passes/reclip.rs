@@ -6,10 +6,10 @@ use crate::gpu::{Groups, Recorder};
 use crate::passes::block_list::{self, ListFor};
 use crate::passes::blocks::groups_of_blocks;
 use crate::passes::buffers::indirect;
-use crate::passes::pipelines::Kernel;
+use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{reclip, reclip_blocks, reclip_compact, reclip_scan, recut};
-use crate::passes::stage::{Frame, Stage};
+use crate::passes::stage::{Frame, Stage, key};
 use crate::passes::work::Work;
 use crate::types::FrameCounts;
 
@@ -19,11 +19,11 @@ pub(crate) const RECLIP: Stage = Stage {
     needed: |plan| plan.reclips(),
     missed: |_| false,
     pipelines: |plan, need| {
-        need(sides(plan).key());
-        need(block_list::kernel().key());
-        need(classes(plan).key());
-        need(places().key());
-        need(lists().key());
+        need(key::<reclip_blocks::Program>(plan));
+        need(key::<block_list::Program>(plan));
+        need(key::<reclip::Program>(plan));
+        need(key::<reclip_scan::Program>(plan));
+        need(key::<reclip_compact::Program>(plan));
     },
     record: record_reclip,
 };
@@ -33,38 +33,21 @@ pub(crate) const RECUT: Stage = Stage {
     name: "recut",
     needed: |plan| plan.reclips(),
     missed: |_| false,
-    pipelines: |plan, need| need(changes(plan).key()),
+    pipelines: |plan, need| need(key::<recut::Program>(plan)),
     record: record_recut,
 };
 
-fn sides(plan: &Plan) -> Kernel<reclip_blocks::Program> {
-    let layered = plan.way.layered;
-    Kernel::new(&reclip_blocks::COMP, reclip_blocks::Constants { layered })
-}
-
-fn classes(plan: &Plan) -> Kernel<reclip::Program> {
-    let layered = plan.way.layered;
-    Kernel::new(&reclip::COMP, reclip::Constants { layered })
-}
-
-fn places() -> Kernel<reclip_scan::Program> {
-    Kernel::new(&reclip_scan::COMP, ())
-}
-
-fn lists() -> Kernel<reclip_compact::Program> {
-    Kernel::new(&reclip_compact::COMP, ())
-}
-
-fn changes(plan: &Plan) -> Kernel<recut::Program> {
-    let constants = recut::Constants {
-        tiles: plan.is_tiled(),
-        layered: plan.way.layered,
-    };
-    Kernel::new(&recut::COMP, constants)
+impl OfPlan for recut::Constants {
+    fn of(plan: &Plan) -> Self {
+        Self {
+            tiles: plan.is_tiled(),
+            layered: plan.way.layered,
+        }
+    }
 }
 
 fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let (pipelines, scene, b, s) = (frame.pipelines, frame.scene, frame.buffers, frame.reclip());
+    let (scene, b, s) = (frame.scene, frame.buffers, frame.reclip());
     let buffers = reclip_blocks::Buffers {
         frame: &b.frame,
         surfaces: &b.surfaces,
@@ -80,7 +63,7 @@ fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         fresh: fresh.into(),
     };
     let groups = groups_of_blocks(frame.plan);
-    sides(frame.plan).dispatch(pipelines, recorder, buffers, params, groups);
+    frame.dispatch(recorder, buffers, params, groups);
     block_list::record(frame, recorder, &s.revisits, ListFor::Clip);
     let looked_at = indirect!(b.counts, FrameCounts, clip_groups);
     let buffers = reclip::Buffers {
@@ -94,14 +77,14 @@ fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         masks: &b.masks,
         reclips: &s.reclips,
     };
-    classes(frame.plan).dispatch(pipelines, recorder, buffers, (), looked_at);
+    frame.dispatch(recorder, buffers, (), looked_at);
     let buffers = reclip_scan::Buffers {
         frame: &b.frame,
         revisits: &s.revisits,
         reclips: &s.reclips,
         counts: &b.counts,
     };
-    places().dispatch(pipelines, recorder, buffers, (), Groups::Count(1));
+    frame.dispatch(recorder, buffers, (), Groups::Count(1));
     let buffers = reclip_compact::Buffers {
         frame: &b.frame,
         block_list: &b.block_list,
@@ -113,7 +96,7 @@ fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         recuts: &s.recuts,
         cutoffs: &b.cutoffs,
     };
-    lists().dispatch(pipelines, recorder, buffers, (), looked_at);
+    frame.dispatch(recorder, buffers, (), looked_at);
 }
 
 fn record_recut(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
@@ -133,5 +116,5 @@ fn record_recut(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         dirty: &s.dirty,
     };
     let groups = indirect!(b.counts, FrameCounts, recut_groups);
-    changes(frame.plan).dispatch(frame.pipelines, recorder, buffers, (), groups);
+    frame.dispatch(recorder, buffers, (), groups);
 }

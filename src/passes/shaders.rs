@@ -23,8 +23,16 @@ pub(crate) trait Interface {
     type Constants: ConstantSet;
 }
 
+/// A program of one compute shader.
+pub(crate) trait Compute: Interface {
+    /// The shader.
+    const SHADER: &'static Shader;
+}
+
 /// The buffers of a program, by name.
 pub(crate) trait BufferSet<'a> {
+    /// The program that has them.
+    type Program: Interface<Buffers<'a> = Self>;
     /// By binding.
     fn list(self) -> BufferList<'a>;
 }

@@ -2,11 +2,12 @@
 
 use ash::vk;
 
-use crate::gpu::{Attachments, Recorder};
+use crate::gpu::{Attachments, Groups, Recorder};
 use crate::passes::buffers::{Buffers, DepthBuffers, ReclipBuffers, TileBuffers};
-use crate::passes::pipelines::{PipelineKey, Pipelines};
+use crate::passes::pipelines::{Kernel, OfPlan, PipelineKey, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::scene_buffers::SceneBuffers;
+use crate::passes::shaders::{BufferSet, Compute};
 
 /// A step of the frame that is computed before the draw.
 #[derive(Debug)]
@@ -51,7 +52,32 @@ pub(crate) struct Targets {
     pub(crate) expected_depth: Option<Attachments>,
 }
 
+/// The pipeline that a plan makes of a program.
+pub(crate) fn key<P>(plan: &Plan) -> PipelineKey
+where
+    P: Compute,
+    P::Constants: OfPlan,
+{
+    Kernel::<P>::of(plan).key()
+}
+
 impl<'a> Frame<'a> {
+    /// Records a dispatch of the program that has these buffers.
+    pub(crate) fn dispatch<'b, B, P>(
+        &self,
+        recorder: &mut Recorder<'_>,
+        buffers: B,
+        params: P::Params,
+        groups: Groups<'_>,
+    ) where
+        B: BufferSet<'b, Program = P>,
+        P: Compute<Buffers<'b> = B>,
+        P::Constants: OfPlan,
+    {
+        let kernel = Kernel::<P>::of(self.plan);
+        kernel.dispatch(self.pipelines, recorder, buffers, params, groups);
+    }
+
     /// The buffers of the tile rasteriser.
     pub(crate) fn tiles(&self) -> &'a TileBuffers {
         let tiles = self.buffers.tiles.as_ref();

@@ -6,45 +6,28 @@ use std::mem::offset_of;
 use crate::gpu::{Groups, Recorder};
 use crate::limits;
 use crate::passes::buffers::indirect;
-use crate::passes::pipelines::Kernel;
 use crate::passes::shaders::{sort_count, sort_scan, sort_scatter, sort_ties};
-use crate::passes::stage::{Frame, KernelSet};
+use crate::passes::stage::{Frame, KernelSet, key};
 use crate::types::FrameCounts;
 
 // So many passes have indirect commands of their own in FrameCounts.
 const _: () = assert!(u32::BITS.div_ceil(limits::SORT_BITS) <= 4);
 
 pub(super) const KERNELS: KernelSet = KernelSet {
-    pipelines: |_, need| {
-        need(counts().key());
-        need(places().key());
-        need(carries().key());
-        need(ties().key());
+    pipelines: |plan, need| {
+        need(key::<sort_count::Program>(plan));
+        need(key::<sort_scan::Program>(plan));
+        need(key::<sort_scatter::Program>(plan));
+        need(key::<sort_ties::Program>(plan));
     },
     record,
 };
-
-fn counts() -> Kernel<sort_count::Program> {
-    Kernel::new(&sort_count::COMP, ())
-}
-
-fn places() -> Kernel<sort_scan::Program> {
-    Kernel::new(&sort_scan::COMP, ())
-}
-
-fn carries() -> Kernel<sort_scatter::Program> {
-    Kernel::new(&sort_scatter::COMP, ())
-}
-
-fn ties() -> Kernel<sort_ties::Program> {
-    Kernel::new(&sort_ties::COMP, ())
-}
 
 /// Sorts the survivors by their depths, and those of one depth by their number in the file; the result is in
 /// `keys[plan.sorted()]` and `order[plan.sorted()]`. Of the passes that the scene's bounds ask for the device leaves
 /// out the first ones, as many as there are leading digits in which the keys agree (sort.glsl).
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let (pipelines, b) = (frame.pipelines, frame.buffers);
+    let b = frame.buffers;
     let passes = frame.plan.way.sort_passes;
     let of_pass = |pass: u32| {
         let size = size_of::<[u32; 4]>();
@@ -65,14 +48,14 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         // The first count is needed before anybody knows which pass is the first one.
         let groups = if pass == 0 { runs } else { of_pass(pass - 1) };
         let params = sort_count::Params { pass };
-        counts().dispatch(pipelines, recorder, buffers, params, groups);
+        frame.dispatch(recorder, buffers, params, groups);
         let buffers = sort_scan::Buffers {
             frame: &b.frame,
             counts: &b.counts,
             histogram: &b.histogram,
         };
         let params = sort_scan::Params { pass, passes };
-        places().dispatch(pipelines, recorder, buffers, params, Groups::Count(1));
+        frame.dispatch(recorder, buffers, params, Groups::Count(1));
         let buffers = sort_scatter::Buffers {
             frame: &b.frame,
             counts: &b.counts,
@@ -83,7 +66,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
             sorted_order,
         };
         let params = sort_scatter::Params { pass };
-        carries().dispatch(pipelines, recorder, buffers, params, of_pass(pass));
+        frame.dispatch(recorder, buffers, params, of_pass(pass));
     }
     if frame.scene.reordered {
         let sorted = frame.plan.sorted();
@@ -95,6 +78,6 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
             scratch: &b.order[sorted ^ 1],
             splats: &b.splats,
         };
-        ties().dispatch(pipelines, recorder, buffers, (), runs);
+        frame.dispatch(recorder, buffers, (), runs);
     }
 }

@@ -1,8 +1,6 @@
 //! `rara ablate`: the paper's second table. The plane stands so far away that nothing is cut, so every mode should
 //! draw what no clipping draws; only tracing Gaussians that are not cut can make a difference.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use glam::DVec3;
 use rara::{Clip, ClipOp, Miss, Mode, Plane, Settings};
@@ -12,7 +10,7 @@ use super::camera::CameraArgs;
 use super::compare::Measures;
 use super::failure::Failure;
 use super::output::{self, say};
-use super::scenes;
+use super::scenes::SceneArgs;
 use super::session::Session;
 use super::settings::{DeviceArgs, LookArgs};
 use rara::measure;
@@ -27,9 +25,8 @@ Example:
 Each row is compared with the picture of mode none. The rows that trace everything say what a pixel keeps whose ray
 misses the ellipsoid; the paper's text keeps all of it at 1 sigma, its released code drops it at 3 sigma.")]
 pub(super) struct Ablate {
-    /// Scene files (3DGS .ply); several are merged
-    #[arg(value_name = "SCENE", required = true)]
-    scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    scenes: SceneArgs,
     /// Print the table as JSON to stdout
     #[arg(long)]
     json: bool,
@@ -52,13 +49,9 @@ struct Row {
 impl Ablate {
     pub(super) fn run(self) -> Result<(), Failure> {
         let look = self.look.meant()?;
-        if self.camera.all() {
-            return Err(Failure::Usage(
-                "an ablation has one camera: give --view a number or a name".into(),
-            ));
-        }
+        self.camera.single("an ablation")?;
         let views = self.camera.meant()?;
-        let loaded = scenes::load(&self.scenes)?;
+        let loaded = self.scenes.load()?;
         let scene = loaded.scene();
         let camera = views.of(&scene)?.remove(0).camera;
         let bounds = Bounds::of(&scene);

@@ -95,6 +95,16 @@ impl CameraArgs {
         self.view == "all"
     }
 
+    /// That one camera was meant, as `what` needs it.
+    pub(super) fn single(&self, what: &str) -> Result<(), Failure> {
+        match self.all() {
+            false => Ok(()),
+            true => Err(Failure::Usage(format!(
+                "{what} has one camera: give --view a number or a name"
+            ))),
+        }
+    }
+
     /// The same flags for a command with another default size than the usual.
     #[cfg(feature = "view")]
     pub(super) fn sized_by_default(self, size: (u32, u32)) -> Self {

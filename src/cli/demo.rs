@@ -28,7 +28,7 @@ Writes none.png, hard.png, rara.png, exact.png and sheet.png, which also magnifi
 differ most. \"own\" compares the picture with the same mode computed
 in double precision on the CPU; \"truth\" with the exact cut.")]
 pub(super) struct Demo {
-    /// Scene files (3DGS .ply); several are merged. Without any, a made-up scene
+    /// Scene files (3DGS .ply); several are the layers of one scene. Without any, a made-up scene
     #[arg(value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     /// Folder for the pictures; made unless it is there
@@ -56,11 +56,7 @@ struct Shot {
 impl Demo {
     pub(super) fn run(self) -> Result<(), Failure> {
         let look = self.look.meant()?;
-        if self.camera.all() {
-            return Err(Failure::Usage(
-                "a demo has one camera: give --view a number or a name".into(),
-            ));
-        }
+        self.camera.single("a demo")?;
         let views = self.camera.meant()?;
         output::make_folder(&self.output)?;
         let loaded = if self.scenes.is_empty() {

@@ -1,14 +1,12 @@
 //! `rara info`: what stands in a scene.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use glam::DVec3;
 use serde::Serialize;
 
 use super::failure::Failure;
 use super::output::{self, grouped, say};
-use super::scenes;
+use super::scenes::SceneArgs;
 use rara::reference::classify::{Bands, bands};
 use rara::scene::Bounds;
 
@@ -21,9 +19,8 @@ Example:
 Statistics are the least value, the 1st, 50th and 99th percentiles, and the greatest. What the loader repaired or
 dropped is told first.")]
 pub(super) struct Info {
-    /// Scene files (3DGS .ply); several are merged
-    #[arg(value_name = "SCENE", required = true)]
-    scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    scenes: SceneArgs,
     /// Print it as JSON to stdout
     #[arg(long)]
     json: bool,
@@ -96,7 +93,7 @@ impl Extent {
 
 impl Info {
     pub(super) fn run(self) -> Result<(), Failure> {
-        let mut loaded = scenes::load(&self.scenes)?;
+        let mut loaded = self.scenes.load()?;
         let (repaired, dropped) = (loaded.repaired, loaded.dropped);
         let notes = std::mem::take(&mut loaded.notes);
         let gaussians = &loaded.merged();

@@ -11,9 +11,10 @@ use super::failure::Failure;
 use super::output::{self, Progress, say};
 use super::profile::{Profile, ProfileArgs};
 use super::report::{self, Report};
+use super::scenes::SceneArgs;
 use super::session::Session;
 use super::settings::{DeviceArgs, SettingsArgs, name};
-use super::{scenes, values};
+use super::values;
 
 /// Draw one picture, or one for each camera of a file
 #[derive(Debug, Args)]
@@ -29,9 +30,8 @@ Examples:
 
 Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premultiplied.")]
 pub(super) struct Render {
-    /// Scene files (3DGS .ply); several are merged
-    #[arg(value_name = "SCENE", required = true)]
-    scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    scenes: SceneArgs,
     /// Where the picture goes, .png or .exr; {} becomes the camera's number. May be left out with --json
     #[arg(short, long, value_name = "OUT", value_parser = values::picture_path, required_unless_present = "json")]
     output: Option<PathBuf>,
@@ -75,7 +75,7 @@ impl Render {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<(), Failure> {
-        let loaded = profile.span("load", || scenes::load(&self.scenes))?;
+        let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
         let views = views.of(&scene)?;
         let mut session = Session::open(

@@ -2,11 +2,27 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::Args;
 use rara::{Gaussians, Layer};
 
 use super::failure::Failure;
 use super::output::{Progress, say};
 use rara::scene;
+
+/// Which scene.
+#[derive(Debug, Args)]
+pub(super) struct SceneArgs {
+    /// Scene files (3DGS .ply); several are the layers of one scene
+    #[arg(value_name = "SCENE", required = true)]
+    files: Vec<PathBuf>,
+}
+
+impl SceneArgs {
+    /// Reads the files.
+    pub(super) fn load(&self) -> Result<Loaded, Failure> {
+        load(&self.files)
+    }
+}
 
 /// One or more scene files.
 pub(super) struct Loaded {

@@ -12,9 +12,10 @@ use super::failure::Failure;
 use super::output::{self, Progress, say};
 use super::profile::{Profile, ProfileArgs};
 use super::report::{self, Report};
+use super::scenes::SceneArgs;
 use super::session::Session;
 use super::settings::{DeviceArgs, SettingsArgs, name};
-use super::{scenes, values};
+use super::values;
 use rara::scene::extent_along;
 
 /// Move a clip plane across the scene in equal steps
@@ -29,9 +30,8 @@ The first frame keeps the whole of the scene's robust bounds, the last one nothi
 frame_000.png and so on. The third frame and those after it compute only what the plane changes. Other clip shapes stand still; --clip-op joins the moving plane to them too. The
 JSON has the frames, their medians on top and their means under \"mean\".")]
 pub(super) struct Sweep {
-    /// Scene files (3DGS .ply); several are merged
-    #[arg(value_name = "SCENE", required = true)]
-    scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    scenes: SceneArgs,
     /// The moving plane's normal; it points to the side that stays
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     clip_normal: DVec3,
@@ -70,11 +70,7 @@ impl Sweep {
         let mut shapes = self.clip.shapes()?;
         shapes.push(plane.into());
         Clip::of_shapes(&shapes, self.clip.op()).map_err(Failure::usage)?;
-        if self.camera.all() {
-            return Err(Failure::Usage(
-                "a sweep has one camera: give --view a number or a name".into(),
-            ));
-        }
+        self.camera.single("a sweep")?;
         let views = self.camera.meant()?;
         if let Some(folder) = &self.output {
             output::make_folder(folder)?;
@@ -95,7 +91,7 @@ impl Sweep {
     ) -> Result<(), Failure> {
         let normal = Plane::new(self.clip_normal, 0.0)?.normal();
         let op = self.clip.op();
-        let loaded = profile.span("load", || scenes::load(&self.scenes))?;
+        let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
         let camera = views.of(&scene)?.remove(0).camera;
         let range = extent_along(&scene, normal);

@@ -19,7 +19,7 @@ use super::clip::ClipArgs;
 use super::demo::middle;
 use super::failure::Failure;
 use super::output::{self, Progress, say};
-use super::scenes;
+use super::scenes::SceneArgs;
 use super::session::Session;
 use super::settings::{DeviceArgs, LookArgs};
 use clock::Times;
@@ -38,9 +38,8 @@ in the form that is exact in perspective, in double precision. What is not withi
 double precision is not timed, and exit status 1 says so. The folder of -o gets bench.md, bench.csv, bench.json and
 pareto.svg and pareto.png.")]
 pub(super) struct Bench {
-    /// Scene files (3DGS .ply); several are merged
-    #[arg(value_name = "SCENE", required = true)]
-    scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    scenes: SceneArgs,
     /// Frames of each choice, one of each in turn
     #[arg(long, value_name = "N", default_value_t = 11, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     frames: u32,
@@ -99,16 +98,12 @@ struct Row {
 impl Bench {
     pub(super) fn run(self) -> Result<(), Failure> {
         let look = self.look.meant()?;
-        if self.camera.all() {
-            return Err(Failure::Usage(
-                "a bench has one camera: give --view a number or a name".into(),
-            ));
-        }
+        self.camera.single("a bench")?;
         let (clip, views) = (self.clip.meant()?, self.camera.meant()?);
         if let Some(folder) = &self.output {
             output::make_folder(folder)?;
         }
-        let loaded = scenes::load(&self.scenes)?;
+        let loaded = self.scenes.load()?;
         let scene = loaded.scene();
         let camera = views.of(&scene)?.remove(0).camera;
         let clip = if clip.planes.is_empty() {
@@ -186,8 +181,7 @@ impl Bench {
         }
         let (device, driver, _) = session.about();
         session.close()?;
-        let names = self.scenes.iter().filter_map(|path| path.file_stem());
-        let names: Vec<_> = names.map(|name| name.to_string_lossy()).collect();
+        let names: Vec<_> = scene.layers().iter().map(|layer| layer.name()).collect();
         let report = Report {
             scene: names.join(" + "),
             gaussians: scene.gaussians(),

@@ -15,6 +15,7 @@ mod viewpoint;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use rara::Scene;
 use rara::scene::Bounds;
 
 use self::cut::Cut;
@@ -24,8 +25,9 @@ use self::stage::Scenery;
 use super::camera::CameraArgs;
 use super::clip::ClipArgs;
 use super::failure::Failure;
+use super::scenes::SceneArgs;
 use super::settings::{DeviceArgs, SettingsArgs};
-use super::{output, scenes, values};
+use super::{output, values};
 
 /// Look at a scene in a window, and drag a clip plane through it
 #[derive(Debug, Args)]
@@ -52,9 +54,8 @@ Examples:
   rara view scene.ply --clip plane:0,0,1,-2 --mode hard --size 1600x900
   printf 'plane +0.1\\nscreenshot cut.png\\nquit\\n' | rara view scene.ply --script -"))]
 pub(super) struct View {
-    /// Scene files (3DGS .ply); several are merged
-    #[arg(value_name = "SCENE", required = true)]
-    scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    scenes: SceneArgs,
     /// Where screenshots go, .png or .exr; {} becomes their number
     #[arg(short, long, value_name = "OUT", default_value = "view_{}.png", value_parser = values::picture_path)]
     output: PathBuf,
@@ -89,7 +90,7 @@ impl View {
         };
         let events = app::connect()?;
 
-        let loaded = scenes::load(&self.scenes)?;
+        let loaded = self.scenes.load()?;
         let scene = loaded.scene();
         let views = views.of(&scene)?.into_iter();
         // Without a direction that was typed, up is what is up in the camera's own picture.
@@ -108,7 +109,7 @@ impl View {
                 sh: settings.precision.sh,
                 size: (first.width, first.height),
                 scenery: Scenery {
-                    name: name(&self.scenes),
+                    name: name(&scene),
                     cut: Cut::new(clip, bounds.centre()),
                     settings,
                     centre: bounds.centre(),
@@ -138,11 +139,10 @@ fn shots(pattern: &Path) -> Result<Shots, Failure> {
 }
 
 /// A short name for the title.
-fn name(scenes: &[PathBuf]) -> String {
-    let first = scenes.first().and_then(|path| path.file_name());
-    let first = first.unwrap_or_default().to_string_lossy();
-    match scenes.len() {
-        0 | 1 => first.into_owned(),
+fn name(scene: &Scene<'_>) -> String {
+    let first = scene.layers().first().map_or("", |layer| layer.name());
+    match scene.layers().len() {
+        0 | 1 => first.to_owned(),
         more => format!("{first} and {} more", more - 1),
     }
 }

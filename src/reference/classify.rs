@@ -14,7 +14,7 @@ use super::real::{Real, vec3};
 use super::region::{Side, UnitPlane, gaussian_side};
 use super::view::View;
 use crate::limits::{ALPHA_MIN_INVERSE, BEYOND_EYE, WIDENING_REST};
-use crate::{Clip, Gaussians, Mode, Settings};
+use crate::{Clip, Gaussians, Mode, Settings, Surface};
 
 /// The class of every Gaussian of the scene.
 pub fn classify<T: Real>(
@@ -52,10 +52,8 @@ pub fn cutting<T: Real>(
     settings: &Settings,
 ) -> Vec<UnitPlane<T>> {
     let deviations = band(scene, index, footprint, settings);
-    let planes = clip
-        .planes
-        .iter()
-        .map(|plane| UnitPlane::new(scene, index, &footprint.axes, plane));
+    let planes = clip.surfaces.iter().filter_map(Surface::as_plane);
+    let planes = planes.map(|plane| UnitPlane::new(scene, index, &footprint.axes, &plane));
     planes
         .filter(|plane| plane.gaussian_side(deviations, settings) == Side::Cutoff)
         .collect()

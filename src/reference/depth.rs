@@ -19,7 +19,7 @@ use super::footprint::{Footprint, determinant, scaled};
 use super::real::{Real, Vec3};
 use super::region::UnitPlane;
 use super::{SeenLayer, layer, splat};
-use crate::{Camera, Clip, ClipOp, Gaussians, Mode, Scene, Settings};
+use crate::{Camera, Clip, ClipOp, Gaussians, Mode, Scene, Settings, Surface};
 
 /// A linear function of u given a pixel: `at + slope . delta`, over its deviation.
 #[derive(Debug, Clone, Copy)]
@@ -104,13 +104,13 @@ impl<T: Real> SplatDepth<T> {
             near: open,
             op: clip.op,
         };
-        if clip.planes.is_empty() || !matches!(settings.mode, Mode::Rara | Mode::Exact) {
+        if clip.surfaces.is_empty() || !matches!(settings.mode, Mode::Rara | Mode::Exact) {
             depth.op = ClipOp::And;
             return depth;
         }
-        for plane in &clip.planes {
+        for plane in clip.surfaces.iter().filter_map(Surface::as_plane) {
             let plane = match clip.op {
-                ClipOp::And => *plane,
+                ClipOp::And => plane,
                 ClipOp::Or => plane.flipped(),
             };
             let plane = UnitPlane::new(scene, index, &footprint.axes, &plane);

@@ -9,7 +9,7 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::limits::LOW_PASS;
-use crate::{Camera, Clip, ClipOp, Gaussians};
+use crate::{Camera, Clip, ClipOp, Gaussians, Surface};
 
 /// Which rays a pixel's low-pass gathers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,9 +71,8 @@ fn sums(
 ) -> [f64; 3] {
     let pixel = Pixel::new(scene, index, camera, position, bundle);
     let (middle, spread) = pixel.densest();
-    let planes: Vec<_> = clip
-        .planes
-        .iter()
+    let planes = clip.surfaces.iter().filter_map(Surface::as_plane);
+    let planes: Vec<_> = planes
         .map(|p| (p.normal(), p.distance(pixel.centre)))
         .collect();
     let nodes = legendre();

@@ -81,7 +81,7 @@ fn compare(
     worst: &mut Apart,
 ) {
     let cuts: Vec<[f32; 4]> = stages.read("cuts");
-    let stride = 4 + clip.planes.len();
+    let stride = 4 + clip.surfaces.len();
     let cut = stages.counts().cutoff as usize;
     let cutoffs: Vec<u32> = stages.read("cutoffs");
     let (single, double) = (View::<f32>::new(camera), View::<f64>::new(camera));
@@ -97,7 +97,7 @@ fn compare(
         let flags = record[0][3] as u32;
         let count = (flags >> 8) as usize;
         let is_alone = count == 1 && settings.mode == Mode::Exact && flags & FRONT == 0;
-        let is_union = clip.op == ClipOp::Or && clip.planes.len() > 1 && !is_alone;
+        let is_union = clip.op == ClipOp::Or && clip.surfaces.len() > 1 && !is_alone;
         assert_eq!(flags & UNION != 0, is_union, "{index}: flags {flags}");
         match (&twin, flags & (BEAM | CURVE)) {
             (Cut::Affine { planes, .. }, 0) => {

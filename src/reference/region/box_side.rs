@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::Side;
 use super::sides::combined;
-use crate::{Clip, Mode, Plane, Settings};
+use crate::{Clip, Mode, Plane, Settings, Surface};
 
 /// Gaussians whose centres lie in a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,16 +22,16 @@ pub struct Bounds {
 /// The side that all of them have; [`Side::Cutoff`] where they may differ. Conservative: a box has a side only where each
 /// Gaussian alone has it.
 pub fn box_side(bounds: &Bounds, clip: &Clip, settings: &Settings) -> Side {
-    if clip.planes.is_empty() || settings.mode == Mode::None {
+    if clip.surfaces.is_empty() || settings.mode == Mode::None {
         return Side::Visible;
     }
     if settings.trace_all && settings.mode != Mode::Hard {
         return Side::Cutoff;
     }
-    let planes = clip.planes.iter();
+    let planes = clip.surfaces.iter().filter_map(Surface::as_plane);
     combined(
         clip.op,
-        planes.map(|plane| plane_box_side(plane, bounds, settings)),
+        planes.map(|plane| plane_box_side(&plane, bounds, settings)),
     )
 }
 

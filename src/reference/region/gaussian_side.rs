@@ -1,9 +1,10 @@
 //! On which side of the region a Gaussian is (the paper, section 3.2).
 
+use super::Side;
 use super::sides::combined;
-use super::{Side, UnitPlane};
+use super::surface::surface_gaussian_side;
 use crate::reference::real::{Real, Vec3};
-use crate::{Clip, Gaussians, Mode, Settings, Surface};
+use crate::{Clip, Gaussians, Mode, Settings};
 
 /// The side of Gaussian `index`, whose half axes these are and whose band reaches so many standard deviations. None is
 /// [`Side::Culled`].
@@ -18,11 +19,6 @@ pub fn gaussian_side<T: Real>(
     if clip.surfaces.is_empty() || settings.mode == Mode::None {
         return Side::Visible;
     }
-    let of_plane = |plane| UnitPlane::new(scene, index, axes, &plane);
-    let planes = clip.surfaces.iter().filter_map(Surface::as_plane);
-    let planes = planes.map(of_plane);
-    combined(
-        clip.op,
-        planes.map(|plane| plane.gaussian_side(deviations, settings)),
-    )
+    let side = |surface| surface_gaussian_side(surface, scene, index, axes, deviations, settings);
+    combined(clip.op, clip.surfaces.iter().map(side))
 }

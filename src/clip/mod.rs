@@ -16,8 +16,6 @@ pub use shape::Shape;
 pub use shape::numbers;
 pub use surface::Surface;
 
-use crate::limits;
-
 /// How several surfaces combine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
@@ -51,7 +49,7 @@ pub struct Clip {
 
 impl Clip {
     /// The most surfaces that a clip can have. Raising it lengthens the cutoff records of such clips.
-    pub const MAX_SURFACES: usize = limits::MAX_CLIP_PLANES as usize;
+    pub const MAX_SURFACES: usize = 32;
 
     /// The clip of these surfaces.
     ///

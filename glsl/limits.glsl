@@ -19,8 +19,6 @@ const float BEAM_SWITCH = 0.005;
 const float WIDENING_REST = 0.05;
 // Deviations beyond the eye at which a plane cuts nothing off that is in front of it: 2e-9 of that at most.
 const float BEYOND_EYE = 6.0;
-// Most half-spaces in a clip. Raising it lengthens the frame's uniform block and the cutoff records of such clips.
-const uint MAX_CLIP_PLANES = 32u;
 // Degree 3: the most coefficients a colour channel has.
 const uint MAX_SH_COEFFICIENTS = 16u;
 // Opacity below which a splat is invisible everywhere, and more of a cut splat is never computed: 1/255.

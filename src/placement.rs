@@ -5,7 +5,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::camera::Camera;
-use crate::clip::{Clip, Plane};
+use crate::clip::{Clip, Plane, Surface};
 use crate::error::{Error, Result};
 
 /// Where a scene stands in a world: its points are scaled, then turned, then moved.
@@ -104,15 +104,22 @@ impl Plane {
     }
 }
 
+impl Surface {
+    /// The same surface, as a scene sees it that is placed so.
+    #[must_use]
+    pub fn in_scene(&self, placement: &Placement) -> Self {
+        match self {
+            Self::Plane(plane) => plane.in_scene(placement).into(),
+        }
+    }
+}
+
 impl Clip {
     /// The same region, as a scene sees it that is placed so.
     #[must_use]
     pub fn in_scene(&self, placement: &Placement) -> Self {
-        let planes = self.planes.iter().map(|plane| plane.in_scene(placement));
-        Self {
-            planes: planes.collect(),
-            op: self.op,
-        }
+        let surfaces = self.surfaces.iter();
+        Self::of(surfaces.map(|s| s.in_scene(placement)), self.op)
     }
 }
 

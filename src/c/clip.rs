@@ -42,11 +42,11 @@ pub(crate) unsafe fn clip(clip: *const RaraClip) -> Result<Clip> {
     let Some(clip) = (unsafe { clip.as_ref() }) else {
         return Ok(Clip::default());
     };
-    if clip.plane_count > Clip::MAX_PLANES {
+    if clip.plane_count > Clip::MAX_SURFACES {
         return invalid(format!(
             "clip->plane_count is {}, and a clip has at most {} planes",
             clip.plane_count,
-            Clip::MAX_PLANES
+            Clip::MAX_SURFACES
         ));
     }
     // SAFETY: the caller's promise.
@@ -55,16 +55,11 @@ pub(crate) unsafe fn clip(clip: *const RaraClip) -> Result<Clip> {
         let made = Plane::new(DVec3::from(plane.normal), plane.offset);
         made.map_err(|error| Error::Invalid(format!("clip->planes[{index}]: {error}")))
     };
-    Ok(Clip {
-        planes: planes
-            .iter()
-            .enumerate()
-            .map(plane)
-            .collect::<Result<_>>()?,
-        op: match clip.op {
-            RARA_CLIP_OP_AND => ClipOp::And,
-            RARA_CLIP_OP_OR => ClipOp::Or,
-            other => return invalid(format!("clip->op {other} is no RaraClipOp")),
-        },
-    })
+    let planes: Vec<_> = (planes.iter().enumerate().map(plane)).collect::<Result<_>>()?;
+    let op = match clip.op {
+        RARA_CLIP_OP_AND => ClipOp::And,
+        RARA_CLIP_OP_OR => ClipOp::Or,
+        other => return invalid(format!("clip->op {other} is no RaraClipOp")),
+    };
+    Ok(Clip::of(planes, op))
 }

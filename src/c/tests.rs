@@ -159,7 +159,7 @@ fn planes() {
         "{error}"
     );
     given.plane_count = 1;
-    assert_eq!(clip(&given).expect("one plane").planes.len(), 1);
+    assert_eq!(clip(&given).expect("one plane").surfaces.len(), 1);
     given.op = 2;
     assert_eq!(
         clip(&given).expect_err("no op"),
@@ -171,7 +171,7 @@ fn planes() {
     assert_eq!(clip(&given).expect_err("no planes"), "clip->planes is null");
     // SAFETY: null is no clip.
     let none = unsafe { super::clip::clip(null()) };
-    assert!(none.expect("everything").planes.is_empty());
+    assert!(none.expect("everything").surfaces.is_empty());
 }
 
 #[test]

@@ -61,10 +61,7 @@ impl Ablate {
             .max(bounds.max.abs())
             .max_element()
             .max(1.0);
-        let far = Clip {
-            planes: vec![Plane::new(DVec3::Z, 1e9 * reach)?],
-            op: ClipOp::And,
-        };
+        let far = Clip::of([Plane::new(DVec3::Z, 1e9 * reach)?], ClipOp::And);
 
         let mut session = Session::open(&self.device.meant(), &scene, look.precision.sh)?;
         let unclipped = look.mode(Mode::None);

@@ -104,7 +104,7 @@ mod tests {
 
     fn keeps(clip: &Clip, x: f64, y: f64, z: f64) -> bool {
         let mut inside = clip
-            .planes
+            .surfaces
             .iter()
             .map(|p| p.distance(DVec3::new(x, y, z)) >= 0.0);
         match clip.op {
@@ -174,7 +174,8 @@ mod tests {
         ] {
             assert!(shape(text).is_err(), "{text}");
         }
-        let many: Vec<&str> = std::iter::repeat_n("plane:1,0,0,0", Clip::MAX_PLANES + 1).collect();
+        let many: Vec<&str> =
+            std::iter::repeat_n("plane:1,0,0,0", Clip::MAX_SURFACES + 1).collect();
         assert!(clip(&many, ClipOp::And).is_err());
     }
 }

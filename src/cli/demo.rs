@@ -66,10 +66,7 @@ impl Demo {
         };
         let scene = loaded.scene();
         let camera = views.of(&scene)?.remove(0).camera;
-        let clip = Clip {
-            planes: vec![middle(&scene, &camera)?],
-            op: ClipOp::And,
-        };
+        let clip = Clip::of([middle(&scene, &camera)?], ClipOp::And);
 
         let mut session = Session::open(&self.device.meant(), &scene, look.precision.sh)?;
         let (device, driver, _) = session.about();

@@ -1,87 +1,29 @@
-//! What a clip keeps: half-spaces and how they combine.
+//! What a clip keeps: surfaces, of which each keeps one side, and how they combine.
 
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "json")]
 mod file;
+mod plane;
 mod shape;
+mod surface;
 
 #[cfg(feature = "json")]
 pub use file::{NamedPlane, load_planes, planes_from_json};
+pub use plane::Plane;
 pub use shape::Shape;
 #[cfg(feature = "lab")]
 pub use shape::numbers;
+pub use surface::Surface;
 
-use glam::DVec3;
-
-use crate::error::{Error, Result};
-use crate::limits;
-
-/// A half-space: the points x with `normal . x + offset >= 0` are visible.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plane {
-    normal: DVec3,
-    offset: f64,
-}
-
-impl Plane {
-    /// A plane from any non-zero normal; both are divided by the normal's length, in f64.
-    pub fn new(normal: DVec3, offset: f64) -> Result<Self> {
-        // Scale by the largest component first, so that normals of 1e-300 or 1e300 do not under- or overflow.
-        let largest = normal.abs().max_element();
-        if !(largest > 0.0 && normal.is_finite() && offset.is_finite()) {
-            return Err(Error::Invalid(format!(
-                "the clip plane {},{},{},{offset} needs a finite, non-zero normal and a finite distance",
-                normal.x, normal.y, normal.z
-            )));
-        }
-        let scaled = normal / largest;
-        let length = scaled.length();
-        let offset = offset / largest / length;
-        if !offset.is_finite() {
-            return Err(Error::Invalid(
-                "the clip plane's distance overflows once its normal is made a unit vector".into(),
-            ));
-        }
-        Ok(Self {
-            normal: scaled / length,
-            offset,
-        })
-    }
-
-    /// The unit normal; it points to the visible side.
-    pub fn normal(&self) -> DVec3 {
-        self.normal
-    }
-
-    /// The distance term of `normal . x + offset`, world units.
-    pub fn offset(&self) -> f64 {
-        self.offset
-    }
-
-    /// The plane that keeps the other side.
-    #[must_use]
-    pub fn flipped(&self) -> Self {
-        Self {
-            normal: -self.normal,
-            offset: -self.offset,
-        }
-    }
-
-    /// Signed distance of a point, positive on the visible side, world units.
-    pub fn distance(&self, point: DVec3) -> f64 {
-        self.normal.dot(point) + self.offset
-    }
-}
-
-/// How several planes combine.
+/// How several surfaces combine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum ClipOp {
-    /// Visible where every plane keeps it (an intersection).
+    /// Visible where every surface keeps it (an intersection).
     #[default]
     And,
-    /// Visible where any plane keeps it (a union).
+    /// Visible where any surface keeps it (a union).
     Or,
 }
 
@@ -96,16 +38,32 @@ impl ClipOp {
     }
 }
 
-/// The region that stays visible. No planes means that everything does.
+/// The region that stays visible. No surfaces means that everything does.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Clip {
-    /// The half-spaces, at most [`MAX_PLANES`](Self::MAX_PLANES).
-    pub planes: Vec<Plane>,
+    /// The surfaces that bound it, at most [`MAX_SURFACES`](Self::MAX_SURFACES).
+    pub surfaces: Vec<Surface>,
     /// How they combine.
     pub op: ClipOp,
 }
 
 impl Clip {
-    /// The most half-spaces that a frame can have.
-    pub const MAX_PLANES: usize = limits::MAX_CLIP_PLANES as usize;
+    /// The most surfaces that a clip can have. Raising it lengthens the cutoff records of such clips.
+    pub const MAX_SURFACES: usize = 32;
+
+    /// The clip of these surfaces.
+    ///
+    /// ```
+    /// use rara::{Clip, ClipOp, Plane, glam::DVec3};
+    ///
+    /// let clip = Clip::of([Plane::new(DVec3::X, 0.0)?, Plane::new(DVec3::Y, -1.0)?], ClipOp::And);
+    /// assert_eq!(clip.surfaces[1].distance(DVec3::ZERO), -1.0);
+    /// # Ok::<(), rara::Error>(())
+    /// ```
+    pub fn of(surfaces: impl IntoIterator<Item = impl Into<Surface>>, op: ClipOp) -> Self {
+        Self {
+            surfaces: surfaces.into_iter().map(Into::into).collect(),
+            op,
+        }
+    }
 }

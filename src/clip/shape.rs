@@ -1,26 +1,27 @@
-//! Shapes as half-spaces, and their textual form: `plane:nx,ny,nz,d`, `box:cx,cy,cz,hx,hy,hz[,qw,qx,qy,qz]`.
+//! Shapes as surfaces, and their textual form: `plane:nx,ny,nz,d`, `box:cx,cy,cz,hx,hy,hz[,qw,qx,qy,qz]`.
 
+use std::fmt;
 use std::str::FromStr;
 
 use glam::{DQuat, DVec3};
 
-use super::{Clip, ClipOp, Plane};
+use super::{Clip, ClipOp, Plane, Surface};
 use crate::error::{Error, Result, shortened};
 
-/// A shape as the half-spaces that bound what it keeps. Parses from text; a leading `!` keeps the outside.
+/// A shape as the surfaces that bound what it keeps. Parses from text; a leading `!` keeps the outside.
 ///
 /// ```
 /// use rara::{Clip, ClipOp, clip::Shape};
 ///
 /// let shapes: Vec<Shape> = vec!["plane:0,0,1,-2".parse()?, "box:0,0,3,1,1,1".parse()?];
 /// let clip = Clip::of_shapes(&shapes, ClipOp::And)?;
-/// assert_eq!(clip.planes.len(), 7);
+/// assert_eq!(clip.surfaces.len(), 7);
 /// # Ok::<(), rara::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shape {
-    planes: Vec<Plane>,
-    /// How the shape's own planes combine; a single plane fits either way, and has `And`.
+    surfaces: Vec<Surface>,
+    /// How the shape's own surfaces combine; a single one fits either way, and has `And`.
     op: ClipOp,
 }
 
@@ -43,17 +44,17 @@ impl Shape {
         let side = |index: usize| {
             let inward = if index < 3 { -1.0 } else { 1.0 };
             let normal = turn * (DVec3::AXES[index % 3] * inward);
-            Plane::new(normal, half[index % 3] - normal.dot(centre))
+            Plane::new(normal, half[index % 3] - normal.dot(centre)).map(Surface::from)
         };
         Ok(Self {
-            planes: (0..6).map(side).collect::<Result<_>>()?,
+            surfaces: (0..6).map(side).collect::<Result<_>>()?,
             op: ClipOp::And,
         })
     }
 
-    /// The half-spaces that bound the shape.
-    pub fn planes(&self) -> &[Plane] {
-        &self.planes
+    /// The surfaces that bound the shape.
+    pub fn surfaces(&self) -> &[Surface] {
+        &self.surfaces
     }
 
     /// How they combine: the inside of a box is where all of them keep a point, its outside is where any does.
@@ -64,22 +65,28 @@ impl Shape {
     /// The shape that keeps what this one does not.
     #[must_use]
     pub fn complement(mut self) -> Self {
-        for plane in &mut self.planes {
-            *plane = plane.flipped();
+        for surface in &mut self.surfaces {
+            *surface = surface.complement();
         }
-        if self.planes.len() > 1 {
+        if self.surfaces.len() > 1 {
             self.op = self.op.dual();
         }
         self
     }
 }
 
-impl From<Plane> for Shape {
-    fn from(plane: Plane) -> Self {
+impl From<Surface> for Shape {
+    fn from(surface: Surface) -> Self {
         Self {
-            planes: vec![plane],
+            surfaces: vec![surface],
             op: ClipOp::And,
         }
+    }
+}
+
+impl From<Plane> for Shape {
+    fn from(plane: Plane) -> Self {
+        Surface::from(plane).into()
     }
 }
 
@@ -90,6 +97,18 @@ impl FromStr for Shape {
         match text.strip_prefix('!') {
             Some(shape) => inside(shape).map(Self::complement),
             None => inside(text),
+        }
+    }
+}
+
+/// The text of a shape that has this surface alone.
+impl fmt::Display for Surface {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Plane(plane) => {
+                let (n, d) = (plane.normal(), plane.offset());
+                write!(f, "plane:{},{},{},{d}", n.x, n.y, n.z)
+            }
         }
     }
 }
@@ -154,14 +173,14 @@ impl Clip {
     /// with, so its own operation holds.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if they do not fit one list of half-spaces that one operation joins, or make more than
-    /// [`Clip::MAX_PLANES`].
+    /// [`Error::Invalid`] if they do not fit one list of surfaces that one operation joins, or make more than
+    /// [`Clip::MAX_SURFACES`].
     pub fn of_shapes(shapes: &[Shape], op: ClipOp) -> Result<Self> {
         let op = match shapes {
             [only] => only.op,
             _ => op,
         };
-        if let Some(misfit) = shapes.iter().find(|s| s.planes.len() > 1 && s.op != op) {
+        if let Some(misfit) = shapes.iter().find(|s| s.surfaces.len() > 1 && s.op != op) {
             let (what, other) = match misfit.op {
                 ClipOp::And => ("the inside of a box", "and"),
                 ClipOp::Or => ("the outside of a box (!box)", "or"),
@@ -172,14 +191,40 @@ impl Clip {
                 if op == ClipOp::And { "and" } else { "or" },
             )));
         }
-        let planes: Vec<Plane> = shapes.iter().flat_map(|s| s.planes.clone()).collect();
-        if planes.len() > Clip::MAX_PLANES {
+        let surfaces: Vec<Surface> = shapes.iter().flat_map(|s| s.surfaces.clone()).collect();
+        if surfaces.len() > Clip::MAX_SURFACES {
             return Err(Error::Invalid(format!(
                 "the clip shapes make {} half-spaces (a box makes six), and a clip has at most {}",
-                planes.len(),
-                Clip::MAX_PLANES
+                surfaces.len(),
+                Clip::MAX_SURFACES
             )));
         }
-        Ok(Self { planes, op })
+        Ok(Self { surfaces, op })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_surface_says_what_it_parses_from() {
+        for text in ["plane:0,0,1,-2", "plane:-1,0,0,0.125"] {
+            let shape: Shape = text.parse().unwrap();
+            assert_eq!(shape.surfaces()[0].to_string(), text);
+        }
+    }
+
+    #[test]
+    fn a_complement_keeps_what_its_shape_does_not() {
+        let shape: Shape = "box:1,2,3,1,1,1".parse().unwrap();
+        let outside = shape.clone().complement();
+        assert_eq!((shape.op(), outside.op()), (ClipOp::And, ClipOp::Or));
+        for (inner, outer) in shape.surfaces().iter().zip(outside.surfaces()) {
+            let point = DVec3::new(0.3, 2.1, 7.0);
+            assert_eq!(inner.distance(point), -outer.distance(point));
+            assert!(inner.distance(DVec3::new(1.0, 2.0, 3.0)) > 0.0);
+            assert_eq!(outer.complement(), *inner);
+        }
     }
 }

@@ -233,7 +233,7 @@ fn weight_data(
     // Shaders count the records' elements in 32 bits.
     if u64::from(scene.gaussians) * u64::from(cut_stride) > u64::from(u32::MAX) {
         return Err(Error::Invalid(format!(
-            "{} Gaussians cut by {} planes are beyond what a frame can address; use fewer planes or split the scene",
+            "{} Gaussians cut by {} surfaces are beyond what a frame can address; use fewer or split the scene",
             scene.gaussians, most_surfaces
         )));
     }
@@ -305,10 +305,7 @@ mod tests {
         let eye = DVec3::new(0.0, 0.0, -4.0);
         let camera = Camera::look_at(eye, DVec3::ZERO, -DVec3::Y, 50.0, (64, 64));
         let plane = Plane::new(DVec3::X, 0.0).expect("a finite normal");
-        let clip = Clip {
-            planes: vec![plane; planes],
-            op: ClipOp::And,
-        };
+        let clip = Clip::of(vec![plane; planes], ClipOp::And);
         let settings = Settings {
             mode,
             ..Settings::default()

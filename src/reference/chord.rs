@@ -7,7 +7,7 @@
 //! `|u*| = |p| / |c|`. Where the paper leaves a case open, the reading is the limit of the length ratio.
 
 use super::real::{Real, Vec3};
-use super::region::UnitPlane;
+use super::region::{HalfSpace, keeps};
 use crate::{ClipOp, Miss};
 
 /// A cut splat traced by mode `rara`.
@@ -19,8 +19,8 @@ pub struct Chord<T> {
     pub rows: [Vec3<T>; 3],
     /// Depth Z of the centre, world units.
     pub depth: T,
-    /// The planes that cut the splat.
-    pub planes: Vec<UnitPlane<T>>,
+    /// What the surfaces that cut the splat keep of it.
+    pub half_spaces: Vec<HalfSpace<T>>,
     /// How they combine.
     pub op: ClipOp,
     /// Radius of the traced ellipsoid, standard deviations.
@@ -29,7 +29,7 @@ pub struct Chord<T> {
     pub miss: Miss,
 }
 
-/// A plane function on the ray: `at_peak + slope tau`, tau counted from the densest point.
+/// The function of a half-space on the ray: `at_peak + slope tau`, tau counted from the densest point.
 struct OnRay<T> {
     at_peak: T,
     slope: T,
@@ -62,11 +62,11 @@ impl<T: Real> Chord<T> {
         }
 
         let half = squared.sqrt();
-        let on_ray = |plane: &UnitPlane<T>| OnRay {
-            at_peak: plane.offset + plane.normal.dot(peak),
-            slope: plane.normal.dot(direction),
+        let on_ray = |half_space: &HalfSpace<T>| OnRay {
+            at_peak: half_space.distance(peak),
+            slope: half_space.normal.dot(direction),
         };
-        let front = UnitPlane {
+        let front = HalfSpace {
             normal: self.rows[2],
             offset: self.depth,
         };
@@ -75,30 +75,29 @@ impl<T: Real> Chord<T> {
         if whole <= T::zero() {
             return self.missed(peak);
         }
-        let planes = self.planes.iter().map(on_ray);
+        let on_rays = self.half_spaces.iter().map(on_ray);
         let part = |(start, end): (T, T)| ((end - start) / whole).max(T::zero());
         match self.op {
-            ClipOp::And => part(planes.fold((start, end), |kept, plane| plane.visible(kept))),
-            // What a union leaves out is what every plane leaves out.
+            ClipOp::And => part(on_rays.fold((start, end), |part, one| one.visible(part))),
+            // What a union leaves out is what every one of them leaves out.
             ClipOp::Or => {
-                T::one() - part(planes.fold((start, end), |lost, plane| plane.invisible(lost)))
+                T::one() - part(on_rays.fold((start, end), |part, one| one.invisible(part)))
             }
         }
     }
 
     /// What a pixel keeps whose ray has no chord in front of the eye.
     fn missed(&self, peak: Vec3<T>) -> T {
-        let mut kept = self
-            .planes
+        let kept = self
+            .half_spaces
             .iter()
-            .map(|plane| plane.offset + plane.normal.dot(peak) >= T::zero());
-        let keeps = match (self.miss, self.op) {
-            (Miss::Keep, _) => true,
-            (Miss::Drop, _) => false,
-            (Miss::Peak, ClipOp::And) => kept.all(|k| k),
-            (Miss::Peak, ClipOp::Or) => kept.any(|k| k),
+            .map(|h| h.distance(peak) >= T::zero());
+        let is_kept = match self.miss {
+            Miss::Keep => true,
+            Miss::Drop => false,
+            Miss::Peak => keeps(self.op, kept),
         };
-        if keeps { T::one() } else { T::zero() }
+        if is_kept { T::one() } else { T::zero() }
     }
 }
 

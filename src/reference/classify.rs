@@ -11,10 +11,10 @@ use super::clip;
 use super::cutoff::is_beam;
 use super::footprint::Footprint;
 use super::real::{Real, vec3};
-use super::region::{Side, UnitPlane, gaussian_side};
+use super::region::{HalfSpace, Side, gaussian_side, surface_gaussian_side, surface_half_space};
 use super::view::View;
 use crate::limits::{ALPHA_MIN_INVERSE, BEYOND_EYE, WIDENING_REST};
-use crate::{Clip, Gaussians, Mode, Settings};
+use crate::{Clip, Gaussians, Mode, Settings, Surface};
 
 /// The class of every Gaussian of the scene.
 pub fn classify<T: Real>(
@@ -43,25 +43,26 @@ pub fn side<T: Real>(
     gaussian_side(scene, index, &footprint.axes, deviations, clip, settings)
 }
 
-/// The planes that cut a Gaussian of class [`Side::Cutoff`], in the clip's order.
+/// What the surfaces keep of a Gaussian of class [`Side::Cutoff`] that cut it, in the clip's order.
 pub fn cutting<T: Real>(
     scene: &Gaussians,
     index: usize,
     footprint: &Footprint<T>,
     clip: &Clip,
     settings: &Settings,
-) -> Vec<UnitPlane<T>> {
+) -> Vec<HalfSpace<T>> {
     let deviations = band(scene, index, footprint, settings);
-    let planes = clip
-        .planes
-        .iter()
-        .map(|plane| UnitPlane::new(scene, index, &footprint.axes, plane));
-    planes
-        .filter(|plane| plane.gaussian_side(deviations, settings) == Side::Cutoff)
+    let axes = &footprint.axes;
+    let cuts = |surface: &&Surface| {
+        surface_gaussian_side(surface, scene, index, axes, deviations, settings) == Side::Cutoff
+    };
+    let cutting = clip.surfaces.iter().filter(cuts);
+    cutting
+        .map(|surface| surface_half_space(surface, scene, index, axes))
         .collect()
 }
 
-/// Half width of the band in which a plane cuts, standard deviations, with what perspective adds to it.
+/// Half width of the band in which a surface cuts, standard deviations, with what perspective adds to it.
 fn band<T: Real>(
     scene: &Gaussians,
     index: usize,

@@ -20,7 +20,7 @@ pub fn clip<T: Real>(scene: &Gaussians, clip: &Clip, settings: &Settings) -> Vec
     (0..scene.len()).map(side).collect()
 }
 
-/// Half width of the band in which a plane cuts, standard deviations. The paper's chord can be longer than the
+/// Half width of the band in which a surface cuts, standard deviations. The paper's chord can be longer than the
 /// visible footprint; a splat is then cut as soon as its traced ellipsoid is.
 pub(super) fn band<T: Real>(reach: T, settings: &Settings) -> T {
     match settings.mode {

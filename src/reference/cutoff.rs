@@ -12,9 +12,9 @@ use crate::{Clip, ClipOp, ExactForm, Gaussians, Mode, Settings};
 /// The record of a cut splat: everything that its weight in a pixel depends on.
 #[derive(Debug, Clone)]
 pub enum Cut<T> {
-    /// The exact share, affine in the pixel within each plane's normal distribution function.
+    /// The exact share, affine in the pixel within each half-space's normal distribution function.
     Affine {
-        /// The planes that cut the splat.
+        /// The half-spaces that are kept of the splat.
         planes: Vec<AffinePlane<T>>,
         /// How they combine.
         op: ClipOp,
@@ -50,24 +50,24 @@ pub fn cutoff<T: Real>(
     if side(scene, index, footprint, clip, settings) != Side::Cutoff {
         return None;
     }
-    let planes = cutting(scene, index, footprint, clip, settings);
+    let half_spaces = cutting(scene, index, footprint, clip, settings);
     Some(match settings.mode {
         Mode::Rara => Cut::Chord(Chord {
             gradients: footprint.true_gradients(view),
             rows: footprint.rows,
             depth: footprint.centre.z,
-            planes,
+            half_spaces,
             op: clip.op,
             sigma: T::of(f64::from(settings.sigma)),
             miss: settings.miss,
         }),
         _ if is_beam(scene, index, footprint, settings) => {
-            Cut::Beam(Beam::new(footprint, view, planes, clip.op))
+            Cut::Beam(Beam::new(footprint, view, half_spaces, clip.op))
         }
         _ => Cut::Affine {
-            planes: planes
+            planes: half_spaces
                 .iter()
-                .map(|plane| AffinePlane::new(footprint.gradients, plane))
+                .map(|half_space| AffinePlane::new(footprint.gradients, half_space))
                 .collect(),
             op: clip.op,
         },

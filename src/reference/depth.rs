@@ -3,21 +3,21 @@
 //!
 //! As in [`exact`](super::exact), u ~ N(0, I) is the Gaussian's unit space, a pixel an observation of two linear functions
 //! of u, and `C = I - B^T S^-1 B` (with `S = B B^T + L`) the covariance that it leaves. The depth is one more linear
-//! function, `Z + m3 . u`: given the pixel it is normal with a mean that is affine in delta, `Z + (S^-1 B m3) . delta`. A
-//! plane function `g + a . u` is normal too, with mean over deviation z and deviation s, and their covariance is
+//! function, `Z + m3 . u`: given the pixel it is normal with a mean that is affine in delta, `Z + (S^-1 B m3) . delta`. The
+//! function `g + a . u` of a half-space that a surface keeps is normal too, with mean over deviation z and deviation s, and their covariance is
 //! `m3^T C a`. Of a normal pair (d, p) the mean of d where p is positive follows from regressing d on p,
 //! `d = mean + cov / s (p - mean p) / s + rest`, with a rest that does not depend on p, and from the mean of a truncated
 //! normal variable: `E[d | p > 0] = mean + cov / s phi(z) / Phi(z)`, the shift `cov / s` times the inverse of Mills's ratio.
 //!
-//! Several planes are thresholds on the line of sight: the strictest that keeps the far side bounds it from below, the
+//! Several half-spaces are thresholds on the line of sight: the strictest that keeps the far side bounds it from below, the
 //! strictest that keeps the near side from above, each with its own shift:
-//! `E = mean + (shift_far phi(low) + shift_near phi(high)) / (Phi(high) - Phi(low))`. That is exact for one plane, and for
+//! `E = mean + (shift_far phi(low) + shift_near phi(high)) / (Phi(high) - Phi(low))`. That is exact for one, and for
 //! two where both are thresholds in one variable, as on a ray without low-pass. A union leaves out such an interval of its
 //! complements, and what that takes of the whole's mean is left to the rest.
 
 use super::footprint::{Footprint, determinant, scaled};
 use super::real::{Real, Vec3};
-use super::region::UnitPlane;
+use super::region::surface_half_space;
 use super::{SeenLayer, layer, splat};
 use crate::{Camera, Clip, ClipOp, Gaussians, Mode, Scene, Settings};
 
@@ -77,7 +77,7 @@ impl<T: Real> Given<T> {
     }
 }
 
-/// Beyond so many deviations a plane is as good as not there.
+/// Beyond so many deviations a surface is as good as not there.
 const FARTHEST: f64 = 8.0;
 /// Shares below which a pixel shows nothing of a splat.
 const LEAST_SHARE: f64 = 1e-9;
@@ -104,20 +104,20 @@ impl<T: Real> SplatDepth<T> {
             near: open,
             op: clip.op,
         };
-        if clip.planes.is_empty() || !matches!(settings.mode, Mode::Rara | Mode::Exact) {
+        if clip.surfaces.is_empty() || !matches!(settings.mode, Mode::Rara | Mode::Exact) {
             depth.op = ClipOp::And;
             return depth;
         }
-        for plane in &clip.planes {
-            let plane = match clip.op {
-                ClipOp::And => *plane,
-                ClipOp::Or => plane.flipped(),
+        for surface in &clip.surfaces {
+            let half_space = surface_half_space(surface, scene, index, &footprint.axes);
+            let half_space = match clip.op {
+                ClipOp::And => half_space,
+                ClipOp::Or => half_space.complement(),
             };
-            let plane = UnitPlane::new(scene, index, &footprint.axes, &plane);
-            let size = plane.normal.largest().max(T::of(1e-30));
-            let a = plane.normal * (T::one() / size);
+            let size = half_space.normal.largest().max(T::of(1e-30));
+            let a = half_space.normal * (T::one() / size);
             let deviation = given.covariance(a, a).max(T::of(1e-30)).sqrt();
-            let z = plane.offset / size / deviation;
+            let z = half_space.offset / size / deviation;
             let [x, y] = given.slope(a).map(|v| v / deviation);
             let threshold = Bound {
                 z: [z, x, y],

@@ -3,7 +3,7 @@
 //! Seen from a Gaussian's unit space (u ~ N(0, I)), a pixel at offset delta from the splat's centre is an observation
 //! of two linear functions of u: `(b1 . u, b2 . u) = delta + noise`, where the noise is the low-pass that 3DGS adds
 //! to each footprint. The evidence of that observation is the footprint `exp(-q / 2)` itself, and given it, the
-//! plane function `g + a . u` is again a normal variable. Its mean is affine in delta and its variance does not
+//! function `g + a . u` of a half-space is again a normal variable. Its mean is affine in delta and its variance does not
 //! depend on delta: conditioning a Gaussian on a linear observation (the update of a Kalman filter). The share of
 //! the splat on the visible side is therefore `Phi(mean / deviation)`, and alpha times that share is what EWA
 //! splatting (the paper's equation 9) makes of the truncated Gaussian, filtered like every other splat.
@@ -11,11 +11,11 @@
 use super::footprint::{Footprint, determinant, scaled};
 use super::orthant::{Direction, Threshold};
 use super::real::{Real, Vec3};
-use super::region::{UnitPlane, share};
+use super::region::{HalfSpace, share};
 use super::view::View;
 use crate::ClipOp;
 
-/// The plane function given a pixel: normal with mean `mean[0] + mean[1] dx + mean[2] dy`.
+/// The function of a half-space given a pixel: normal with mean `mean[0] + mean[1] dx + mean[2] dy`.
 #[derive(Debug, Clone, Copy)]
 struct Conditional<T> {
     mean: [T; 3],
@@ -24,20 +24,20 @@ struct Conditional<T> {
     direction: Direction<T>,
 }
 
-/// Conditions a plane function on a pixel whose image derivatives are b1 and b2.
+/// Conditions the function of a half-space on a pixel whose image derivatives are b1 and b2.
 ///
 /// With `c = b1 x b2` (the ray's direction in unit space) and L the low-pass, the textbook expressions
 /// `k = Sigma'^-1 B a` and `s^2 = |a|^2 - (B a)^T Sigma'^-1 (B a)` become sums of terms that do not cancel:
 /// `s^2 det = (a . c)^2 + L (|a x b1|^2 + |a x b2|^2) + L^2 |a|^2`, which keeps needles and grazing planes accurate in
 /// single precision.
-fn condition<T: Real>(gradients: [Vec3<T>; 2], plane: &UnitPlane<T>) -> Conditional<T> {
-    let largest = plane.normal.largest();
+fn condition<T: Real>(gradients: [Vec3<T>; 2], half_space: &HalfSpace<T>) -> Conditional<T> {
+    let largest = half_space.normal.largest();
     let unit = if largest > T::zero() {
         T::one() / largest
     } else {
         T::one()
     };
-    let (a, g) = (plane.normal * unit, plane.offset * unit);
+    let (a, g) = (half_space.normal * unit, half_space.offset * unit);
     let ([b1, b2], factor, low_pass) = scaled(gradients);
     let c = b1.cross(b2);
     let det = determinant([b1, b2], c, low_pass);
@@ -62,11 +62,11 @@ fn condition<T: Real>(gradients: [Vec3<T>; 2], plane: &UnitPlane<T>) -> Conditio
     }
 }
 
-/// Whether a plane keeps the farther side of a ray, from `along = a . c`.
+/// Whether a half-space holds the farther side of a ray, from `along = a . c`.
 ///
 /// c points away from the eye: the depth changes along it by `m3 . c = fx fy / Z^2 det(M)`, which is not negative for
-/// a rotation and scales that are not negative. Flat Gaussians have `a . c = 0` for every plane: any rule will do
-/// then that gives opposite answers for a plane and its complement.
+/// a rotation and scales that are not negative. Flat Gaussians have `a . c = 0` for every half-space: any rule
+/// will do then that gives opposite answers for one and its complement.
 fn keeps_far<T: Real>(along: T, a: Vec3<T>) -> bool {
     let signs = [along, a.x, a.y, a.z];
     signs
@@ -75,27 +75,27 @@ fn keeps_far<T: Real>(along: T, a: Vec3<T>) -> bool {
         .is_none_or(|&v| v > T::zero())
 }
 
-/// One plane of a cut splat in the affine form: `w = Phi(z[0] + z[1] dx + z[2] dy)`.
+/// A half-space that is kept of a cut splat, in the affine form: `w = Phi(z[0] + z[1] dx + z[2] dy)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AffinePlane<T> {
     /// Coefficients of the argument; dx and dy in pixels from the splat's centre.
     pub z: [T; 3],
     /// Whether the visible side is the farther one.
     pub far: bool,
-    /// What correlates it with other planes.
+    /// What correlates it with others.
     pub direction: Direction<T>,
 }
 
 impl<T: Real> AffinePlane<T> {
-    /// The form for a plane and the footprint's own image derivatives.
-    pub fn new(gradients: [Vec3<T>; 2], plane: &UnitPlane<T>) -> Self {
+    /// The form for a half-space and the footprint's own image derivatives.
+    pub fn new(gradients: [Vec3<T>; 2], half_space: &HalfSpace<T>) -> Self {
         let Conditional {
             mean,
             deviation,
             far,
             direction,
-        } = condition(gradients, plane);
-        // No deviation: the Gaussian is a point, wholly on one side (the plane itself is visible).
+        } = condition(gradients, half_space);
+        // No deviation: the Gaussian is a point, wholly on one side (the boundary itself is visible).
         let z = if deviation > T::zero() {
             mean.map(|m| m / deviation)
         } else if mean[0] >= T::zero() {
@@ -106,7 +106,7 @@ impl<T: Real> AffinePlane<T> {
         Self { z, far, direction }
     }
 
-    /// The plane at an offset from the splat's centre, pixels.
+    /// The threshold at an offset from the splat's centre, pixels.
     pub fn threshold(&self, dx: T, dy: T) -> Threshold<T> {
         let [z0, zx, zy] = self.z;
         Threshold {
@@ -129,29 +129,29 @@ pub struct Beam<T> {
     pub gradients: [Vec3<T>; 2],
     /// `e = m3 / Z`.
     pub lean: Vec3<T>,
-    /// The planes that cut the splat.
-    pub planes: Vec<UnitPlane<T>>,
+    /// What the surfaces that cut the splat keep of it.
+    pub half_spaces: Vec<HalfSpace<T>>,
     /// How they combine.
     pub op: ClipOp,
-    /// If the eye is within the splat: the plane through the eye that bounds what is in front of it.
-    pub front: Option<UnitPlane<T>>,
+    /// If the eye is within the splat: what is in front of the eye.
+    pub front: Option<HalfSpace<T>>,
 }
 
 impl<T: Real> Beam<T> {
-    /// The form for a splat and the planes that cut it.
+    /// The form for a splat and what the surfaces that cut it keep of it.
     pub fn new(
         footprint: &Footprint<T>,
         view: &View<T>,
-        planes: Vec<UnitPlane<T>>,
+        half_spaces: Vec<HalfSpace<T>>,
         op: ClipOp,
     ) -> Self {
         let (m3, depth) = (footprint.rows[2], footprint.centre.z);
         Self {
             gradients: footprint.true_gradients(view),
             lean: m3 * (T::one() / depth),
-            planes,
+            half_spaces,
             op,
-            front: holds_the_eye(footprint).then_some(UnitPlane {
+            front: holds_the_eye(footprint).then_some(HalfSpace {
                 normal: m3,
                 offset: depth,
             }),
@@ -162,11 +162,12 @@ impl<T: Real> Beam<T> {
     pub fn weight(&self, dx: T, dy: T) -> T {
         let [b1, b2] = self.gradients;
         let ray = [b1 - self.lean * dx, b2 - self.lean * dy];
-        let threshold = |plane: &UnitPlane<T>| AffinePlane::new(ray, plane).threshold(dx, dy);
-        let planes = self.planes.iter().map(threshold);
+        let threshold =
+            |half_space: &HalfSpace<T>| AffinePlane::new(ray, half_space).threshold(dx, dy);
+        let thresholds = self.half_spaces.iter().map(threshold);
         match &self.front {
-            Some(front) => in_front(self.op, planes, threshold(front).z),
-            None => share(self.op, planes),
+            Some(front) => in_front(self.op, thresholds, threshold(front).z),
+            None => share(self.op, thresholds),
         }
     }
 }

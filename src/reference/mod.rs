@@ -30,7 +30,7 @@ pub use footprint::Footprint;
 pub use layer::SeenLayer;
 pub use project::Splat;
 pub use real::{Real, Vec3, vec3};
-pub use region::{Side, UnitPlane};
+pub use region::{HalfSpace, Side};
 pub use view::View;
 
 use crate::{Camera, Clip, Counts, Picture, Scene, Settings};

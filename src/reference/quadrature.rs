@@ -6,10 +6,11 @@
 //! that a pixel sees a bundle of rays, weighted by a Gaussian of [`LOW_PASS`] px^2. There are two readings of that
 //! bundle, see [`Bundle`]; they differ by what the low-pass does at depths other than the splat's own.
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 
+use super::region::{keeps, surface_crossings};
 use crate::limits::LOW_PASS;
-use crate::{Camera, Clip, ClipOp, Gaussians};
+use crate::{Camera, Clip, Gaussians, Placement};
 
 /// Which rays a pixel's low-pass gathers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,15 +72,13 @@ fn sums(
 ) -> [f64; 3] {
     let pixel = Pixel::new(scene, index, camera, position, bundle);
     let (middle, spread) = pixel.densest();
-    let planes: Vec<_> = clip
-        .planes
-        .iter()
-        .map(|p| (p.normal(), p.distance(pixel.centre)))
-        .collect();
+    // Relative to the Gaussian's centre, as the rays are: near it nothing cancels, however far it is from the origin.
+    let centred = Placement::new(pixel.centre, DQuat::IDENTITY, 1.0);
+    let clip = clip.in_scene(&centred.expect("centres are finite"));
     let nodes = legendre();
     let peak = pixel.exponent(middle);
 
-    // A grid over the offsets that matter, turned so that no plane's edge lies along its lines.
+    // A grid over the offsets that matter, turned so that no straight edge lies along its lines.
     let step = 2.0 * EXTENT / f64::from(steps);
     let turn = DVec2::from_angle(0.5);
     let mut total = [0.0; 3];
@@ -91,7 +90,7 @@ fn sums(
             }
             let white = turn.rotate(white);
             let offset = middle + spread[0] * white.x + spread[1] * white.y;
-            let parts = pixel.integrate(offset, peak, &planes, clip.op, &nodes);
+            let parts = pixel.integrate(offset, peak, &clip, &nodes);
             for (total, part) in total.iter_mut().zip(parts) {
                 *total += part;
             }
@@ -231,8 +230,7 @@ impl Pixel {
         &self,
         offset: DVec2,
         peak: f64,
-        planes: &[(DVec3, f64)],
-        op: ClipOp,
+        clip: &Clip,
         nodes: &[(f64, f64); NODES],
     ) -> [f64; 3] {
         let ray = self.ray(offset);
@@ -242,11 +240,8 @@ impl Pixel {
         if start >= end {
             return [0.0; 3];
         }
-        let on_ray = |(normal, distance): &(DVec3, f64)| {
-            (distance + normal.dot(ray.start), normal.dot(ray.step))
-        };
-        let planes: Vec<_> = planes.iter().map(on_ray).collect();
-        let crossings = planes.iter().map(|(at, slope)| -at / slope);
+        let surfaces = clip.surfaces.iter();
+        let crossings = surfaces.flat_map(|s| surface_crossings(s, ray.start, ray.step));
         let mut ends: Vec<_> = crossings
             .filter(|t| *t > start && *t < end)
             .chain([start, end])
@@ -270,12 +265,9 @@ impl Pixel {
                 sum += mass;
                 depths += mass * t;
             }
-            let mut kept = planes.iter().map(|(at, slope)| at + slope * centre >= 0.0);
-            let seen = match op {
-                ClipOp::And => kept.all(|k| k),
-                ClipOp::Or => kept.any(|k| k),
-            };
-            let seen = if seen { 1.0 } else { 0.0 };
+            let point = ray.start + ray.step * centre;
+            let kept = clip.surfaces.iter().map(|s| s.distance(point) >= 0.0);
+            let seen = if keeps(clip.op, kept) { 1.0 } else { 0.0 };
             for (total, part) in sums.iter_mut().zip([seen * sum, sum, seen * depths]) {
                 *total += part;
             }

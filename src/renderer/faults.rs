@@ -47,10 +47,10 @@ fn life(host: &Device) -> Result<()> {
             let normal = DVec3::new(1.0, f64::from(i), 0.0);
             Plane::new(normal, 0.1 * frame as f64)
         };
-        let clip = Clip {
-            planes: (0..planes).map(plane).collect::<Result<_>>()?,
-            op: ClipOp::And,
-        };
+        let clip = Clip::of(
+            (0..planes).map(plane).collect::<Result<Vec<_>>>()?,
+            ClipOp::And,
+        );
         host.submit_and_wait(|cmd| {
             if buffers.is_none() {
                 let staging = Staging {

@@ -84,10 +84,7 @@ fn from_file(rows: &[Row]) -> Case {
     Case {
         scene,
         camera,
-        clip: Clip {
-            planes: vec![plane],
-            op: ClipOp::And,
-        },
+        clip: Clip::of([plane], ClipOp::And),
         apart: false,
     }
 }

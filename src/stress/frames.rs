@@ -36,10 +36,10 @@ fn straight() -> Camera {
 }
 
 fn oblique(offset: f64) -> Clip {
-    Clip {
-        planes: vec![Plane::new(DVec3::new(1.0, 0.4, 0.3), offset).expect("a finite normal")],
-        op: ClipOp::And,
-    }
+    Clip::of(
+        [Plane::new(DVec3::new(1.0, 0.4, 0.3), offset).expect("a finite normal")],
+        ClipOp::And,
+    )
 }
 
 /// Sheets across the view, `spacing` apart, all over each other; shuffled, so that the order is the sort's.

@@ -100,10 +100,7 @@ pub(super) fn strewn(
     let normal = normal(random, &camera);
     let plane = Plane::new(normal, -normal.dot(stage.centre)).expect("a finite normal");
     let scene = on_plane(random, stage, &camera, &plane, shape, count, apart);
-    let clip = Clip {
-        planes: vec![plane],
-        op: ClipOp::And,
-    };
+    let clip = Clip::of([plane], ClipOp::And);
     Case {
         scene,
         camera,

@@ -6,7 +6,7 @@ use super::make::{PLAIN, any_normal, axes, cases, on_plane, pop};
 use super::places::mix;
 use super::{Case, Regime};
 use crate::scene::Random;
-use crate::{Camera, Clip, ClipOp, Plane};
+use crate::{Camera, Clip, ClipOp, Plane, Surface};
 
 /// Planes at extreme angles and in extreme company.
 pub fn regimes() -> Vec<Regime> {
@@ -68,7 +68,7 @@ fn grazing(tilt: f64) -> Vec<Case> {
 fn parallel() -> Vec<Case> {
     let mut cases = grazing(0.0);
     for case in &mut cases {
-        let shift = case.clip.planes[0].normal() * 0.4;
+        let shift = first_normal(case) * 0.4;
         case.camera.eye -= shift;
     }
     cases
@@ -86,10 +86,7 @@ fn together(op: ClipOp, planes: fn(Plane) -> Vec<Plane>) -> Vec<Case> {
         Case {
             scene,
             camera,
-            clip: Clip {
-                planes: planes(first),
-                op,
-            },
+            clip: Clip::of(planes(first), op),
             apart,
         }
     };
@@ -103,7 +100,7 @@ fn edge(op: ClipOp, count: usize) -> Vec<Case> {
     let mut cases = cases(24, PLAIN, &any_normal, &small);
     let mut random = Random::new(25);
     for case in &mut cases {
-        let first = case.clip.planes[0].normal();
+        let first = first_normal(case);
         let line = first.cross(axes(&case.camera).z_axis).normalize();
         let scene = &mut case.scene;
         while case.apart && scene.len() > 20 {
@@ -118,10 +115,16 @@ fn edge(op: ClipOp, count: usize) -> Vec<Case> {
             let turn = random.range(-1.2, 1.2);
             plane(first * turn.cos() + first.cross(line) * turn.sin(), 0.0)
         };
-        case.clip.planes.extend((1..count).map(&mut turned));
+        let more = (1..count).map(&mut turned).map(Surface::from);
+        case.clip.surfaces.extend(more);
         case.clip.op = op;
     }
     cases
+}
+
+fn first_normal(case: &Case) -> DVec3 {
+    let plane = case.clip.surfaces[0].as_plane();
+    plane.expect("a plane").normal()
 }
 
 fn plane(normal: DVec3, offset: f64) -> Plane {

@@ -2,7 +2,7 @@
 
 use crate::common;
 use rara::scene::{Kind, generate};
-use rara::{Camera, Clip, ClipOp, Gaussians, Headless, HeadlessDesc, PipelineCache, Settings};
+use rara::{Camera, ClipOp, Gaussians, Headless, HeadlessDesc, PipelineCache, Settings};
 
 /// Frames before a scene gives way to the next.
 const STAY: usize = 20;
@@ -49,10 +49,8 @@ fn soak(frames: usize) {
         }
         // The clip moves each frame, the camera each fifth; every other stay has several planes.
         let camera: Camera = common::views(&scenes[at], 5, (33, 25))[frame / 5 % 5];
-        let mut clip: Clip = common::clip(&scenes[at], 1 + swap % 2 * 3, ClipOp::And);
-        let plane = clip.planes[0];
-        let moved = plane.offset() + 0.01 * (frame % STAY) as f64;
-        clip.planes[0] = rara::Plane::new(plane.normal(), moved).expect("a plane");
+        let clip = common::clip(&scenes[at], 1 + swap % 2 * 3, ClipOp::And);
+        let clip = common::moved(clip, 0.01 * (frame % STAY) as f64);
         headless
             .render(&camera, &clip, &Settings::default())
             .expect("renders");

@@ -88,10 +88,10 @@ fn truth(scene: &Gaussians) -> (Vec<u8>, String) {
     let camera = Camera::frame(&bounds, -DVec3::Y, 50.0, SIZE).expect("a view");
     let normal = DVec3::new(-0.28, 0.0, 0.96);
     let centre = bounds.centre();
-    let clip = Clip {
-        planes: vec![Plane::new(normal, -normal.dot(centre)).expect("a normal")],
-        op: ClipOp::And,
-    };
+    let clip = Clip::of(
+        [Plane::new(normal, -normal.dot(centre)).expect("a normal")],
+        ClipOp::And,
+    );
     let settings = Settings::default()
         .background(Some([0.0; 3]))
         .raster(Raster::Quad); // tiles want to be shown the host's depth

@@ -114,10 +114,7 @@ impl<'a> World<'a> {
         let renderer = RefCell::new(Renderer::new(device, desc).expect("a renderer"));
         renderer.borrow_mut().set_placement(self.placement);
         let settings = Settings::default().raster(self.raster);
-        let clip = Clip {
-            planes: vec![self.plane],
-            op: ClipOp::And,
-        };
+        let clip = Clip::of([self.plane], ClipOp::And);
         let configured = (renderer.borrow_mut()).configure(&scene, &self.camera, &clip, &settings);
         configured.expect("configures");
         let depth = canvas.depth_image(0, 0);

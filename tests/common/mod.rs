@@ -173,10 +173,15 @@ pub fn clip(scene: &Gaussians, count: usize, op: ClipOp) -> Clip {
         )
         .expect("a proper plane")
     };
-    Clip {
-        planes: normals.iter().take(count).enumerate().map(plane).collect(),
-        op,
-    }
+    Clip::of(normals.iter().take(count).enumerate().map(plane), op)
+}
+
+/// A clip whose first plane keeps so much more.
+pub fn moved(mut clip: Clip, by: f64) -> Clip {
+    let plane = clip.surfaces[0].as_plane().expect("a plane");
+    let moved = Plane::new(plane.normal(), plane.offset() + by);
+    clip.surfaces[0] = moved.expect("a plane").into();
+    clip
 }
 
 /// The bounds of the project's promise: 60 dB into a 32-bit target, 48 dB through 8 bits, and at most one pixel in a
@@ -228,7 +233,7 @@ pub fn check(
     let what = format!(
         "{name}, {:?}, {} planes {:?}",
         settings.mode,
-        clip.planes.len(),
+        clip.surfaces.len(),
         clip.op
     );
     assert_agrees(&what, &picture, &truth.picture);

@@ -184,10 +184,7 @@ fn sweep(scene: &Gaussians) -> Vec<(Camera, Clip, Settings)> {
     ];
     let frame = |(camera, share): (usize, f64)| {
         let plane = rara::Plane::new(glam::DVec3::X, -(low + share * (high - low)));
-        let clip = Clip {
-            planes: vec![plane.expect("a finite normal")],
-            op: ClipOp::And,
-        };
+        let clip = Clip::of([plane.expect("a finite normal")], ClipOp::And);
         (cameras[camera], clip, Settings::default())
     };
     steps.map(frame).to_vec()

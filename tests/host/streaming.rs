@@ -64,11 +64,8 @@ fn upload(device: &Device, cmd: vk::CommandBuffer, scene: &Gaussians) -> (SceneB
 
 /// A clip that moves with each frame and has other planes in each stay.
 fn clip(scene: &Gaussians, frame: usize) -> Clip {
-    let mut clip = common::clip(scene, 1 + frame / STAY, ClipOp::And);
-    let plane = clip.planes[0];
-    let offset = plane.offset() + 0.05 * (frame % STAY) as f64;
-    clip.planes[0] = rara::Plane::new(plane.normal(), offset).expect("a plane");
-    clip
+    let clip = common::clip(scene, 1 + frame / STAY, ClipOp::And);
+    common::moved(clip, 0.05 * (frame % STAY) as f64)
 }
 
 fn check(what: &str, host: &Host, pixels: &[[f32; 4]], truth: &Picture) {
@@ -196,10 +193,8 @@ fn memory_stays_flat_over_a_thousand_frames_of_a_host() {
         let (scene, _) = current.as_ref().expect("uploaded");
         let camera = common::views(&scenes[at], 1, (VIEW.width, VIEW.height))[0];
         // Planes of one number, so that stays can be compared.
-        let mut cut = common::clip(&scenes[at], 2, ClipOp::And);
-        let moved = cut.planes[0].offset() + 0.05 * (frame % STAY) as f64;
-        let normal = cut.planes[0].normal();
-        cut.planes[0] = rara::Plane::new(normal, moved).expect("a plane");
+        let cut = common::clip(&scenes[at], 2, ClipOp::And);
+        let cut = common::moved(cut, 0.05 * (frame % STAY) as f64);
         let configured = renderer.configure(scene, &camera, &cut, &Settings::default());
         configured.expect("configures");
         record(&mut host, &mut renderer, cmd, scene);

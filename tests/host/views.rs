@@ -246,13 +246,13 @@ fn world_camera() -> Camera {
 
 fn world_clip() -> Clip {
     let plane = |normal: DVec3, offset| Plane::new(normal, offset).expect("a normal");
-    Clip {
-        planes: vec![
+    Clip::of(
+        [
             plane(DVec3::new(0.8, 0.3, 0.1), 0.1),
             plane(DVec3::new(0.1, -0.2, 0.9), 0.4),
         ],
-        op: ClipOp::Or,
-    }
+        ClipOp::Or,
+    )
 }
 
 /// Degree 0, where nothing but places turn, and degree 3, where colours do with them.

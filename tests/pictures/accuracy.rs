@@ -20,10 +20,10 @@ fn view(scene: &Gaussians) -> (Camera, Clip) {
     let bounds = Bounds::of(scene);
     let size = common::scaled((256, 256));
     let camera = Camera::frame(&bounds, -DVec3::Y, 50.0, size).expect("a view");
-    let clip = Clip {
-        planes: vec![Plane::new(DVec3::X, -bounds.centre().x).expect("a plane")],
-        op: ClipOp::And,
-    };
+    let clip = Clip::of(
+        [Plane::new(DVec3::X, -bounds.centre().x).expect("a plane")],
+        ClipOp::And,
+    );
     (camera, clip)
 }
 

@@ -22,10 +22,10 @@ fn one(scales: Vec3, rotation: Quat, opacity: f32) -> Gaussians {
 }
 
 fn cut_by(normal: DVec3, offset: f64) -> Clip {
-    Clip {
-        planes: vec![Plane::new(normal, offset).expect("a finite normal")],
-        op: ClipOp::And,
-    }
+    Clip::of(
+        [Plane::new(normal, offset).expect("a finite normal")],
+        ClipOp::And,
+    )
 }
 
 /// Standard deviation of a Gaussian along a direction, from its definition.
@@ -157,10 +157,7 @@ fn hardly_more_needles_are_called_cut_than_are() {
 
     let mut headless = common::headless();
     headless.load(&scene).expect("uploads");
-    let clip = Clip {
-        planes: vec![plane],
-        op: ClipOp::And,
-    };
+    let clip = Clip::of([plane], ClipOp::And);
     let counts = headless
         .render(&camera, &clip, &Settings::default())
         .expect("renders")
@@ -278,10 +275,7 @@ fn fewer_are_cut_than_by_the_paper_in_trained_scenes() {
 fn modes_without_a_band_call_nothing_cut() {
     let (scene, camera, plane) = needles(500);
     let view = View::<f64>::new(&camera);
-    let clip = Clip {
-        planes: vec![plane],
-        op: ClipOp::And,
-    };
+    let clip = Clip::of([plane], ClipOp::And);
     for mode in [Mode::None, Mode::Hard] {
         let settings = Settings::default().mode(mode);
         let sides = classify::classify(&scene, &view, &clip, &settings);

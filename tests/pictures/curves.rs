@@ -68,10 +68,7 @@ fn case(random: &mut Random, size: u32) -> (Gaussians, Camera, Clip) {
         (size, size),
     );
     let plane = Plane::new(normal, offset).expect("a finite normal");
-    let clip = Clip {
-        planes: vec![plane],
-        op: ClipOp::And,
-    };
+    let clip = Clip::of([plane], ClipOp::And);
     (scene, camera.expect("a camera"), clip)
 }
 

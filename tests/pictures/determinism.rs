@@ -122,10 +122,7 @@ fn a_lone_survivor_after_many_is_itself() {
         // Keeps the centres from `end` to `end`: each of the eight alone.
         let x = f64::from(scene.positions()[end].x);
         let keep = |sign: f64| Plane::new(sign * DVec3::X, 0.1 - sign * x).expect("a proper plane");
-        let clip = Clip {
-            planes: vec![keep(1.0), keep(-1.0)],
-            op: ClipOp::And,
-        };
+        let clip = Clip::of([keep(1.0), keep(-1.0)], ClipOp::And);
         let hard = Settings::default().mode(Mode::Hard);
         reused
             .render(&camera, &Clip::default(), &hard)

@@ -77,10 +77,10 @@ fn five_million_gaussians_exceed_bindings_and_rows_and_agree() {
     let bounds = Bounds::of(&scene);
     let normal = DVec3::new(0.9, 0.3, 0.2).normalize();
     let offset = 0.85 * bounds.radius() - normal.dot(bounds.centre());
-    let clip = Clip {
-        planes: vec![Plane::new(normal, offset).expect("a proper plane")],
-        op: ClipOp::And,
-    };
+    let clip = Clip::of(
+        [Plane::new(normal, offset).expect("a proper plane")],
+        ClipOp::And,
+    );
     let settings = Settings::default().trace_all(true);
 
     let begin = Instant::now();

@@ -187,15 +187,13 @@ fn colours_turn_with_their_layer() {
     let mut world = camera;
     world.eye = placement.to_world(camera.eye);
     world.rotation = camera.rotation * glam::DMat3::from_quat(placement.rotation().inverse());
-    let carried = clip.planes.iter().map(|plane| {
+    let planes = clip.surfaces.iter().filter_map(rara::Surface::as_plane);
+    let carried = planes.map(|plane| {
         let normal = placement.rotation() * plane.normal();
         let offset = plane.offset() - normal.dot(placement.position());
         rara::Plane::new(normal, offset).expect("a plane")
     });
-    let carried = Clip {
-        planes: carried.collect(),
-        op: clip.op,
-    };
+    let carried = Clip::of(carried, clip.op);
     headless
         .render(&world, &carried, &Settings::default())
         .expect("renders");
@@ -287,9 +285,7 @@ fn layers_that_change_leave_nothing_behind() {
                 }
             }
         }
-        let mut clip = common::clip(&scene, 2, ClipOp::And);
-        let plane = clip.planes[0];
-        clip.planes[0] = rara::Plane::new(plane.normal(), plane.offset() + shift).expect("a plane");
+        let clip = common::moved(common::clip(&scene, 2, ClipOp::And), shift);
         forgets.forget();
         let [ours, theirs] = [&mut keeps, &mut forgets].map(|headless| {
             headless

@@ -11,10 +11,10 @@ fn far_plane(scene: &rara::Gaussians) -> Clip {
     let bounds = rara::scene::Bounds::of(scene);
     let normal = DVec3::new(0.4, -0.5, 0.7).normalize();
     let offset = 1e6 * bounds.radius() - normal.dot(bounds.centre());
-    Clip {
-        planes: vec![Plane::new(normal, offset).expect("a proper plane")],
-        op: ClipOp::And,
-    }
+    Clip::of(
+        [Plane::new(normal, offset).expect("a proper plane")],
+        ClipOp::And,
+    )
 }
 
 /// Trained scenes carry strays far outside their bounds, so only generated ones are wholly in front of the plane.

@@ -86,10 +86,7 @@ fn nudged(plane: &Plane, by: f64) -> Plane {
 }
 
 fn cut(scene: &Gaussians, normal: DVec3, share: f64) -> Clip {
-    Clip {
-        planes: vec![plane(scene, normal, share)],
-        op: ClipOp::And,
-    }
+    Clip::of([plane(scene, normal, share)], ClipOp::And)
 }
 
 fn rasters(headless: &Headless) -> Vec<Raster> {
@@ -237,13 +234,12 @@ fn whatever_changes_the_bytes_are_those_of_a_whole_frame() {
                 let mut cameras = common::views(&scene, 3, frame.size);
                 // Inside the scene, where splats are large, beside the picture and behind the eye.
                 cameras[2].eye = rara::scene::Bounds::of(&scene).centre();
-                let clip = Clip {
-                    planes: normals[..frame.planes]
+                let clip = Clip::of(
+                    normals[..frame.planes]
                         .iter()
-                        .map(|&normal| nudged(&plane(&scene, normal, frame.share), frame.nudge))
-                        .collect(),
-                    op: frame.op,
-                };
+                        .map(|&normal| nudged(&plane(&scene, normal, frame.share), frame.nudge)),
+                    frame.op,
+                );
                 let skipped = pair.draw(&cameras[frame.camera], &clip, &frame.settings);
                 sweeps += usize::from(skipped.contains(&"project") && !skipped.contains(&"splat"));
             }
@@ -331,10 +327,7 @@ fn a_planes_low_word_alone_changes_what_it_should() {
     let clips = [0.01, -0.01].map(|beside| {
         let plane = Plane::new(DVec3::X, beside - sheet).expect("a finite normal");
         assert_eq!(f64::from(plane.offset() as f32), -sheet, "the high word");
-        Clip {
-            planes: vec![plane],
-            op: ClipOp::And,
-        }
+        Clip::of([plane], ClipOp::And)
     });
     for (raster, mode) in [(Raster::Tiles, Mode::Hard), (Raster::Quad, Mode::Exact)] {
         let settings = Settings::default().mode(mode).raster(raster);

@@ -123,10 +123,10 @@ fn a_planes_distance_has_its_low_word() {
         (-1e6 - 0.01, Side::Invisible),
     ] {
         assert_eq!(offset as f32, -1e6, "one number in single precision");
-        let planes = Clip {
-            planes: vec![Plane::new(DVec3::X, offset).expect("a finite normal")],
-            op: ClipOp::And,
-        };
+        let planes = Clip::of(
+            [Plane::new(DVec3::X, offset).expect("a finite normal")],
+            ClipOp::And,
+        );
         let settings = Settings::default().raster(Raster::Quad);
         stages.draw(&camera, &planes, &settings);
         assert_eq!(sides(&mut stages), [side], "{offset}");

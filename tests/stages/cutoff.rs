@@ -1,7 +1,7 @@
 //! Stage `cutoff`: the records of the cut splats, from which pixels are weighted.
 
 use glam::Vec3;
-use rara::reference::{Cut, Footprint, Real, UnitPlane, Vec3 as Vector, View, cutoff, vec3};
+use rara::reference::{Cut, Footprint, HalfSpace, Real, Vec3 as Vector, View, cutoff, vec3};
 use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings};
 
 use crate::frame::{self, SIZES, Stages};
@@ -81,7 +81,7 @@ fn compare(
     worst: &mut Apart,
 ) {
     let cuts: Vec<[f32; 4]> = stages.read("cuts");
-    let stride = 4 + clip.planes.len();
+    let stride = 4 + clip.surfaces.len();
     let cut = stages.counts().cutoff as usize;
     let cutoffs: Vec<u32> = stages.read("cutoffs");
     let (single, double) = (View::<f32>::new(camera), View::<f64>::new(camera));
@@ -97,7 +97,7 @@ fn compare(
         let flags = record[0][3] as u32;
         let count = (flags >> 8) as usize;
         let is_alone = count == 1 && settings.mode == Mode::Exact && flags & FRONT == 0;
-        let is_union = clip.op == ClipOp::Or && clip.planes.len() > 1 && !is_alone;
+        let is_union = clip.op == ClipOp::Or && clip.surfaces.len() > 1 && !is_alone;
         assert_eq!(flags & UNION != 0, is_union, "{index}: flags {flags}");
         match (&twin, flags & (BEAM | CURVE)) {
             (Cut::Affine { planes, .. }, 0) => {
@@ -117,7 +117,7 @@ fn compare(
                 assert_eq!(beam.front.is_some(), flags & FRONT != 0, "{index}");
                 worst.kinds[2 + usize::from(flags & FRONT != 0)] += 1;
                 compare_rays(record, beam.gradients, beam.lean, aside, worst);
-                compare_planes(&record[3..], (count, is_union), &beam.planes, worst);
+                compare_planes(&record[3..], (count, is_union), &beam.half_spaces, worst);
                 if let Some(front) = &beam.front {
                     let front = std::slice::from_ref(front);
                     compare_planes(&record[3 + count..], (1, false), front, worst);
@@ -126,7 +126,7 @@ fn compare(
             (Cut::Chord(chord), BEAM) => {
                 let lean = chord.rows[2] * (1.0 / chord.depth);
                 compare_rays(record, chord.gradients, lean, aside, worst);
-                compare_planes(&record[3..], (count, is_union), &chord.planes, worst);
+                compare_planes(&record[3..], (count, is_union), &chord.half_spaces, worst);
             }
             (Cut::Beam(_), _) => {
                 worst.kinds[usize::from(flags & CURVE != 0)] += 1;
@@ -199,7 +199,7 @@ fn compare_rays(
 fn compare_planes(
     records: &[[f32; 4]],
     (count, is_union): (usize, bool),
-    planes: &[UnitPlane<f32>],
+    planes: &[HalfSpace<f32>],
     worst: &mut Apart,
 ) {
     if planes.len() != count {

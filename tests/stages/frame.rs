@@ -162,10 +162,7 @@ pub fn clip(scene: &Gaussians, count: usize, op: ClipOp) -> Clip {
         .iter()
         .take(count)
         .map(|normal| Plane::new(*normal, -normal.dot(centre)).expect("a proper plane"));
-    Clip {
-        planes: planes.collect(),
-        op,
-    }
+    Clip::of(planes, op)
 }
 
 /// One Gaussian of degree 0.

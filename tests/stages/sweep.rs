@@ -2,20 +2,18 @@
 
 use rara::reference::{Side, View, classify};
 use rara::types::{CUT_AWAY, NOT_CUT};
-use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings};
+use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings, Surface};
 
 use crate::frame::{self, SIZES, Stages};
 use crate::ties;
 
 fn moved(clip: &Clip, by: f64) -> Clip {
-    let planes = clip
-        .planes
-        .iter()
-        .map(|plane| Plane::new(plane.normal(), plane.offset() + by).expect("a finite normal"));
-    Clip {
-        planes: planes.collect(),
-        op: clip.op,
-    }
+    let planes = clip.surfaces.iter().filter_map(Surface::as_plane);
+    let moved = |plane: Plane| Plane::new(plane.normal(), plane.offset() + by);
+    Clip::of(
+        planes.map(|plane| moved(plane).expect("a finite normal")),
+        clip.op,
+    )
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Where single precision may find another class than the twin: at a threshold, and nowhere else.
 
-use glam::{DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec3};
 use rara::reference::{Side, View, classify, clip};
-use rara::{Camera, Clip, Gaussians, Plane, Settings};
+use rara::{Camera, Clip, Gaussians, Placement, Settings};
 
 use crate::frame::picked;
 
@@ -36,14 +36,8 @@ pub fn classes(
                 near.opacities_mut()[0] = (f64::from(one.opacities()[0]) * opacity) as f32;
                 near.scales_mut()[0] = (one.scales()[0].as_dvec3() * size).as_vec3();
                 // Instead of the Gaussian, whose place is rounded, all else moves.
-                let moved = planes.planes.iter().map(|plane| {
-                    let offset = plane.offset() + plane.normal().dot(shift);
-                    Plane::new(plane.normal(), offset).expect("a finite normal")
-                });
-                let planes = Clip {
-                    planes: moved.collect(),
-                    op: planes.op,
-                };
+                let place = Placement::new(shift, DQuat::IDENTITY, 1.0);
+                let planes = planes.in_scene(&place.expect("a finite shift"));
                 let sides = match camera {
                     Some(camera) => {
                         let eye = camera.eye - shift;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::DVec3;
 use rara::camera_files::load_cameras;
 use rara::scene::{Bounds, Kind, generate, load};
-use rara::{Camera, Clip, Error, Gaussians, Plane, Result, glam};
+use rara::{Camera, Clip, ClipOp, Error, Gaussians, Plane, Result, glam};
 
 /// Degrees that the camera moves in a frame, as in measurements of other renderers.
 const STEP: f64 = 4.0;
@@ -122,8 +122,5 @@ impl World {
 
 /// Keeps the points with `normal . x` at least `at`.
 pub(crate) fn clip_at(normal: DVec3, at: f64) -> Result<Clip> {
-    Ok(Clip {
-        planes: vec![Plane::new(normal, -at)?],
-        ..Clip::default()
-    })
+    Ok(Clip::of([Plane::new(normal, -at)?], ClipOp::And))
 }

@@ -53,10 +53,7 @@ fn main() -> rara::Result<()> {
         let turn = f64::from(frame) * 0.1;
         let eye = 2.6 * DVec3::new(turn.sin(), -0.35, -turn.cos());
         let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, size)?;
-        let clip = Clip {
-            planes: vec![Plane::new(DVec3::X, 0.1 * f64::from(frame))?],
-            op: ClipOp::And,
-        };
+        let clip = Clip::of([Plane::new(DVec3::X, 0.1 * f64::from(frame))?], ClipOp::And);
 
         host.wait()?;
         renderer.configure(&scene, &camera, &clip, &Settings::default())?;

@@ -3,7 +3,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rara::{Camera, Gaussians, Plane};
+use rara::{Camera, Gaussians, Plane, Surface};
 
 /// The system's allocator, which ends the process when a run needs more than its share.
 struct Counting;
@@ -86,6 +86,14 @@ pub fn assert_camera(camera: &Camera) {
 pub fn assert_plane(plane: &Plane) {
     assert!((plane.normal().length() - 1.0).abs() < 1e-12, "{plane:?}");
     assert!(plane.offset().is_finite(), "{plane:?}");
+}
+
+/// What is asked of each kind of surface.
+pub fn assert_surface(surface: &Surface) {
+    match surface {
+        Surface::Plane(plane) => assert_plane(plane),
+        other => panic!("nothing is asked of {other:?}"),
+    }
 }
 
 /// An error's text is for people: something to read, on one line, without control characters.

@@ -7,7 +7,7 @@ use rara::measure::{self, Popping, Region};
 use rara::scene::extent_along;
 use rara::{
     Camera, Clip, Decay, ExactForm, Mode, Picture, Plane, Precision, Result, Scene, Settings,
-    reference,
+    Surface, reference,
 };
 use serde::Serialize;
 
@@ -128,16 +128,16 @@ fn sweep(scene: &Scene<'_>, clip: &Clip, steps: u32) -> Result<Vec<Clip>> {
         let (low, high) = extent_along(scene, normal);
         high - low
     };
-    let moved = |plane: &Plane, step: u32| {
+    let moved = |surface: &Surface, step: u32| {
+        let Some(plane) = surface.as_plane() else {
+            return Ok(*surface);
+        };
         let by = STEP * f64::from(step) * extent(plane.normal());
-        Plane::new(plane.normal(), plane.offset() - by)
+        Plane::new(plane.normal(), plane.offset() - by).map(Surface::from)
     };
     let at = |step: u32| {
-        let planes = clip.planes.iter().map(|plane| moved(plane, step));
-        Ok(Clip {
-            planes: planes.collect::<Result<_>>()?,
-            op: clip.op,
-        })
+        let surfaces = clip.surfaces.iter().map(|surface| moved(surface, step));
+        Ok(Clip::of(surfaces.collect::<Result<Vec<_>>>()?, clip.op))
     };
     (0..=steps).map(at).collect()
 }

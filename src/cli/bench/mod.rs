@@ -106,11 +106,8 @@ impl Bench {
         let loaded = self.scenes.load()?;
         let scene = loaded.scene();
         let camera = views.of(&scene)?.remove(0).camera;
-        let clip = if clip.planes.is_empty() {
-            Clip {
-                planes: vec![middle(&scene, &camera)?],
-                op: ClipOp::And,
-            }
+        let clip = if clip.surfaces.is_empty() {
+            Clip::of([middle(&scene, &camera)?], ClipOp::And)
         } else {
             clip
         };

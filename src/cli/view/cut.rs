@@ -3,13 +3,15 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::{DQuat, DVec2, DVec3};
-use rara::{Camera, Clip, ClipOp, Plane};
+use rara::{Camera, Clip, ClipOp, Plane, Surface};
 
-/// The planes, which of them is held, and whether they cut at all.
+/// The planes, which of them is held and whether they cut at all, and what else cuts.
 #[derive(Debug, Clone)]
 pub(super) struct Cut {
     pub(super) on: bool,
     planes: Vec<Plane>,
+    /// What else was typed: it stays where it is.
+    rest: Vec<Surface>,
     op: ClipOp,
     held: usize,
     /// The scene's middle.
@@ -19,9 +21,14 @@ pub(super) struct Cut {
 impl Cut {
     /// The clip that was typed; without one a plane through the middle of the scene, not yet on.
     pub(super) fn new(clip: Clip, centre: DVec3) -> Self {
+        let planes = clip.surfaces.iter().filter_map(Surface::as_plane);
+        let planes: Vec<Plane> = planes.collect();
+        let mut rest = clip.surfaces;
+        rest.retain(|surface| surface.as_plane().is_none());
         let mut this = Self {
-            on: !clip.planes.is_empty(),
-            planes: clip.planes,
+            on: !planes.is_empty(),
+            planes,
+            rest,
             op: clip.op,
             held: 0,
             centre,
@@ -34,14 +41,9 @@ impl Cut {
 
     /// What is cut away now.
     pub(super) fn clip(&self) -> Clip {
-        if self.on {
-            Clip {
-                planes: self.planes.clone(),
-                op: self.op,
-            }
-        } else {
-            Clip::default()
-        }
+        let planes = self.planes.iter().filter(|_| self.on);
+        let planes = planes.map(|&plane| plane.into());
+        Clip::of(self.rest.iter().copied().chain(planes), self.op)
     }
 
     /// How the planes combine.
@@ -149,32 +151,31 @@ mod tests {
         let mut cut = cut();
         assert_eq!(cut.clip(), Clip::default());
         cut.go(0.25);
-        let planes = cut.clip().planes;
-        assert_eq!(planes.len(), 1);
+        let surfaces = cut.clip().surfaces;
+        assert_eq!(surfaces.len(), 1);
         assert!(
-            (planes[0].distance(CENTRE) + 0.25).abs() < 1e-12,
-            "{planes:?}"
+            (surfaces[0].distance(CENTRE) + 0.25).abs() < 1e-12,
+            "{surfaces:?}"
         );
     }
 
     #[test]
     fn planes_that_were_typed_are_held_in_turn() {
-        let planes = vec![
+        let planes = [
             Plane::new(DVec3::X, 0.0).unwrap(),
             Plane::new(DVec3::Y, 0.0).unwrap(),
         ];
-        let clip = Clip {
-            planes,
-            op: ClipOp::Or,
-        };
+        let clip = Clip::of(planes, ClipOp::Or);
         let mut cut = Cut::new(clip.clone(), CENTRE);
         assert_eq!(cut.clip(), clip);
         cut.next();
         cut.flip();
-        assert_eq!(cut.clip().planes[1].normal(), -DVec3::Y);
-        assert_eq!(cut.clip().planes[0], clip.planes[0]);
+        assert_eq!(
+            cut.clip(),
+            Clip::of([planes[0], planes[1].flipped()], ClipOp::Or)
+        );
         cut.next();
-        assert_eq!(cut.plane(), clip.planes[0]);
+        assert_eq!(cut.plane(), planes[0]);
     }
 
     #[test]

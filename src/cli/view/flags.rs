@@ -8,12 +8,9 @@ use crate::cli::settings::name;
 /// `rara render`'s flags for a clip and settings, as typed. What they do not say is the default.
 pub(super) fn flags(cut: &Cut, settings: &Settings) -> String {
     let mut flags = Vec::new();
-    let planes = cut.clip().planes;
-    for plane in &planes {
-        let (n, d) = (plane.normal(), plane.offset());
-        flags.push(format!("--clip plane:{},{},{},{d}", n.x, n.y, n.z));
-    }
-    if planes.len() > 1 && cut.op() == ClipOp::Or {
+    let surfaces = cut.clip().surfaces;
+    flags.extend(surfaces.iter().map(|surface| format!("--clip {surface}")));
+    if surfaces.len() > 1 && cut.op() == ClipOp::Or {
         flags.push("--clip-op or".into());
     }
     flags.push(format!("--mode {}", name(settings.mode)));
@@ -195,10 +192,7 @@ mod tests {
     #[test]
     fn no_number_is_rounded() {
         let normal = DVec3::new(0.1, -0.7, 1.0 / 3.0);
-        let clip = Clip {
-            planes: vec![Plane::new(normal, 1e-9 / 7.0).unwrap()],
-            op: ClipOp::And,
-        };
+        let clip = Clip::of([Plane::new(normal, 1e-9 / 7.0).unwrap()], ClipOp::And);
         let settings = Settings::default()
             .background(Some([1.0 / 3.0, f32::MIN_POSITIVE, 0.1 + 0.2]))
             .sigma(1e-7 / 3.0)
@@ -206,7 +200,7 @@ mod tests {
         let cut = Cut::new(clip.clone(), DVec3::ZERO);
         let (read, again) = meant(&flags(&cut, &settings));
         assert_eq!(again, settings);
-        let (read, plane) = (read.planes[0], clip.planes[0]);
+        let [read, plane] = [read, clip].map(|clip| clip.surfaces[0].as_plane().unwrap());
         assert!((read.normal() - plane.normal()).length() < 1e-15);
         assert!((read.offset() / plane.offset() - 1.0).abs() < 1e-15);
     }

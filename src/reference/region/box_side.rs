@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::Side;
 use super::sides::combined;
-use crate::{Clip, Mode, Plane, Settings};
+use super::surface::surface_box_side;
+use crate::{Clip, Mode, Settings};
 
 /// Gaussians whose centres lie in a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,29 +23,17 @@ pub struct Bounds {
 /// The side that all of them have; [`Side::Cutoff`] where they may differ. Conservative: a box has a side only where each
 /// Gaussian alone has it.
 pub fn box_side(bounds: &Bounds, clip: &Clip, settings: &Settings) -> Side {
-    if clip.planes.is_empty() || settings.mode == Mode::None {
+    if clip.surfaces.is_empty() || settings.mode == Mode::None {
         return Side::Visible;
     }
     if settings.trace_all && settings.mode != Mode::Hard {
         return Side::Cutoff;
     }
-    let planes = clip.planes.iter();
-    combined(
-        clip.op,
-        planes.map(|plane| plane_box_side(plane, bounds, settings)),
-    )
-}
-
-fn plane_box_side(plane: &Plane, bounds: &Bounds, settings: &Settings) -> Side {
     let support = match settings.mode {
         Mode::Hard | Mode::None => 0.0,
         Mode::Rara => bounds.reach.max(f64::from(settings.sigma) * bounds.sigma),
         Mode::Exact => bounds.reach,
     };
-    let margin = plane.normal().abs().dot(bounds.half) + support;
-    match plane.distance(bounds.middle) {
-        distance if distance > margin => Side::Visible,
-        distance if distance < -margin => Side::Invisible,
-        _ => Side::Cutoff,
-    }
+    let side = |surface| surface_box_side(surface, bounds.middle, bounds.half, support);
+    combined(clip.op, clip.surfaces.iter().map(side))
 }

@@ -1,7 +1,8 @@
 //! On which side of the region a Gaussian is (the paper, section 3.2).
 
+use super::Side;
 use super::sides::combined;
-use super::{Side, UnitPlane};
+use super::surface::surface_gaussian_side;
 use crate::reference::real::{Real, Vec3};
 use crate::{Clip, Gaussians, Mode, Settings};
 
@@ -15,13 +16,9 @@ pub fn gaussian_side<T: Real>(
     clip: &Clip,
     settings: &Settings,
 ) -> Side {
-    if clip.planes.is_empty() || settings.mode == Mode::None {
+    if clip.surfaces.is_empty() || settings.mode == Mode::None {
         return Side::Visible;
     }
-    let of_plane = |plane| UnitPlane::new(scene, index, axes, plane);
-    let planes = clip.planes.iter().map(of_plane);
-    combined(
-        clip.op,
-        planes.map(|plane| plane.gaussian_side(deviations, settings)),
-    )
+    let side = |surface| surface_gaussian_side(surface, scene, index, axes, deviations, settings);
+    combined(clip.op, clip.surfaces.iter().map(side))
 }

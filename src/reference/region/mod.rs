@@ -3,14 +3,18 @@
 
 mod box_side;
 mod gaussian_side;
+mod half_space;
 mod plane;
 mod share;
 mod sides;
+mod surface;
 
 pub use box_side::{Bounds, box_side};
 pub use gaussian_side::gaussian_side;
-pub use plane::UnitPlane;
+pub use half_space::HalfSpace;
 pub use share::share;
+pub(super) use sides::keeps;
+pub(super) use surface::{surface_crossings, surface_gaussian_side, surface_half_space};
 
 /// The paper's three classes, and what is not seen anyway.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

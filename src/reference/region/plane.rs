@@ -1,46 +1,65 @@
-//! The shape of a clip: a half-space, whose unit normal points to what it keeps.
+//! The first shape: a half-space, whose unit normal points to what it keeps.
 
-use super::Side;
+use glam::DVec3;
+
+use super::{HalfSpace, Side};
 use crate::reference::real::{Real, Vec3, vec3};
 use crate::{Gaussians, Mode, Plane, Settings};
 
-/// A clip plane in a Gaussian's unit space: the point `mu + M u` is visible iff `offset + normal . u >= 0`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct UnitPlane<T> {
-    /// `a = M^T n`, world units.
-    pub normal: Vec3<T>,
-    /// `g = n . mu + d`: the signed distance of the Gaussian's centre, world units.
-    pub offset: T,
+/// The plane seen from inside Gaussian `index`. The distance is taken in double precision and rounded even in f32: far
+/// from the world's origin its two terms cancel, and the GPU computes it in two floats for that reason.
+pub(super) fn half_space<T: Real>(
+    plane: &Plane,
+    scene: &Gaussians,
+    index: usize,
+    axes: &[Vec3<T>; 3],
+) -> HalfSpace<T> {
+    let n = Vec3::of(plane.normal());
+    HalfSpace {
+        normal: vec3(axes[0].dot(n), axes[1].dot(n), axes[2].dot(n)),
+        offset: T::of(plane.distance(scene.positions()[index].as_dvec3())),
+    }
 }
 
-impl<T: Real> UnitPlane<T> {
-    /// The plane seen from inside Gaussian `index`. The distance is taken in double precision and rounded even in
-    /// f32: far from the world's origin its two terms cancel, and the GPU computes it in two floats for that reason.
-    pub fn new(scene: &Gaussians, index: usize, axes: &[Vec3<T>; 3], plane: &Plane) -> Self {
-        let n = Vec3::of(plane.normal());
-        Self {
-            normal: vec3(axes[0].dot(n), axes[1].dot(n), axes[2].dot(n)),
-            offset: T::of(plane.distance(scene.positions()[index].as_dvec3())),
-        }
+/// The length of the normal in the Gaussian's unit space is the standard deviation along the normal.
+pub(super) fn gaussian_side<T: Real>(
+    plane: &Plane,
+    scene: &Gaussians,
+    index: usize,
+    axes: &[Vec3<T>; 3],
+    deviations: T,
+    settings: &Settings,
+) -> Side {
+    let HalfSpace { normal, offset } = half_space(plane, scene, index, axes);
+    if settings.mode == Mode::Hard {
+        return match offset >= T::zero() {
+            true => Side::Visible,
+            false => Side::Invisible,
+        };
     }
+    let support = deviations * normal.length();
+    if settings.trace_all {
+        Side::Cutoff
+    } else if offset >= support {
+        Side::Visible
+    } else if offset <= -support {
+        Side::Invisible
+    } else {
+        Side::Cutoff
+    }
+}
 
-    /// On which side a Gaussian is whose band reaches so many standard deviations.
-    pub fn gaussian_side(&self, deviations: T, settings: &Settings) -> Side {
-        if settings.mode == Mode::Hard {
-            return match self.offset >= T::zero() {
-                true => Side::Visible,
-                false => Side::Invisible,
-            };
-        }
-        let half = deviations * self.normal.length();
-        if settings.trace_all {
-            Side::Cutoff
-        } else if self.offset >= half {
-            Side::Visible
-        } else if self.offset <= -half {
-            Side::Invisible
-        } else {
-            Side::Cutoff
-        }
+pub(super) fn box_side(plane: &Plane, middle: DVec3, half: DVec3, support: f64) -> Side {
+    let margin = plane.normal().abs().dot(half) + support;
+    match plane.distance(middle) {
+        distance if distance > margin => Side::Visible,
+        distance if distance < -margin => Side::Invisible,
+        _ => Side::Cutoff,
     }
+}
+
+/// One, or none where the line runs along the plane.
+pub(super) fn crossings(plane: &Plane, start: DVec3, step: DVec3) -> Vec<f64> {
+    let at = -plane.distance(start) / plane.normal().dot(step);
+    if at.is_finite() { vec![at] } else { Vec::new() }
 }

@@ -4,10 +4,10 @@ use crate::ClipOp;
 use crate::reference::orthant::{Threshold, orthant};
 use crate::reference::real::Real;
 
-/// The share of a splat in one pixel that is kept by all planes, or by any.
-pub fn share<T: Real>(op: ClipOp, planes: impl Iterator<Item = Threshold<T>>) -> T {
+/// The share of a splat in one pixel that is kept by all surfaces, or by any.
+pub fn share<T: Real>(op: ClipOp, surfaces: impl Iterator<Item = Threshold<T>>) -> T {
     match op {
-        ClipOp::And => orthant(planes),
-        ClipOp::Or => T::one() - orthant(planes.map(Threshold::complement)),
+        ClipOp::And => orthant(surfaces),
+        ClipOp::Or => T::one() - orthant(surfaces.map(Threshold::complement)),
     }
 }

@@ -99,14 +99,12 @@ fn a_rigid_motion_of_everything_changes_nothing() {
         rotation: home.rotation * DMat3::from_quat(turn.inverse()),
         ..home
     };
-    let planes = still.planes.iter().map(|p| {
+    let planes = still.surfaces.iter().map(|surface| {
+        let p = surface.as_plane().expect("a plane");
         let normal = turn * p.normal();
         Plane::new(normal, p.offset() - normal.dot(step)).unwrap()
     });
-    let carried = Clip {
-        planes: planes.collect(),
-        op: still.op,
-    };
+    let carried = Clip::of(planes, still.op);
     for settings in every_setting() {
         let a = render::<f64>(&base, &home, &still, &settings);
         let b = render::<f64>(&moved, &view, &carried, &settings);

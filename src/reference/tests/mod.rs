@@ -19,7 +19,7 @@ use crate::{ClipOp, Gaussians, Mode, Plane};
 const Y00: f64 = 0.282_094_791_773_878_14;
 
 const NO_CLIP: Clip = Clip {
-    planes: Vec::new(),
+    surfaces: Vec::new(),
     op: ClipOp::And,
 };
 
@@ -84,10 +84,7 @@ fn plane(normal: [f64; 3], offset: f64) -> Plane {
 }
 
 fn clip(op: ClipOp, planes: &[Plane]) -> Clip {
-    Clip {
-        planes: planes.to_vec(),
-        op,
-    }
+    Clip::of(planes.iter().copied(), op)
 }
 
 /// The plane whose visible side is the other one.

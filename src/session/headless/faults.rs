@@ -15,10 +15,7 @@ fn life(headless: &mut Headless, raster: Raster) -> Result<[Picture; 2]> {
     let scene = generate(Kind::General, 600, 1);
     let camera = Camera::frame(&Bounds::of(&scene), -DVec3::Y, 50.0, (24, 16))?;
     let draw = |headless: &mut Headless, offset| {
-        let clip = Clip {
-            planes: vec![Plane::new(DVec3::X, offset)?],
-            op: ClipOp::And,
-        };
+        let clip = Clip::of([Plane::new(DVec3::X, offset)?], ClipOp::And);
         let settings = Settings {
             raster,
             ..Settings::default()
@@ -279,10 +276,10 @@ fn every_object_has_a_name_and_every_command_a_label() {
             if headless.session.scene.is_none() {
                 headless.load(&scene).expect("uploads");
             }
-            let clip = Clip {
-                planes: vec![Plane::new(DVec3::X, offset).expect("a plane")],
-                op: ClipOp::And,
-            };
+            let clip = Clip::of(
+                [Plane::new(DVec3::X, offset).expect("a plane")],
+                ClipOp::And,
+            );
             let settings = Settings {
                 raster,
                 ..Settings::default()

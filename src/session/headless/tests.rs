@@ -28,10 +28,10 @@ fn what_tiles_never_have_room_for_is_drawn_as_quads() {
     let camera = Camera::frame(&bounds, -DVec3::Y, 50.0, (200, 150)).expect("a view");
     // The second and the third are reclipped frames, whose base has no room either.
     for offset in [0.0, 0.1, 0.2] {
-        let clip = Clip {
-            planes: vec![Plane::new(DVec3::X, offset).expect("a finite normal")],
-            op: ClipOp::And,
-        };
+        let clip = Clip::of(
+            [Plane::new(DVec3::X, offset).expect("a finite normal")],
+            ClipOp::And,
+        );
         let draw = |headless: &mut Headless, raster| {
             let settings = Settings {
                 raster,
@@ -173,10 +173,7 @@ fn blocks_change_nothing() {
                     let (low, high) = extent_along(&scene, normal);
                     Plane::new(normal, -(low + share * (high - low))).expect("a finite normal")
                 };
-                let clip = Clip {
-                    planes: normals[..planes].iter().map(plane).collect(),
-                    op,
-                };
+                let clip = Clip::of(normals[..planes].iter().map(plane), op);
                 let draw = |headless: &mut Headless| {
                     let stats = headless.render(&camera, &clip, &settings).expect("renders");
                     let picture = headless.picture().expect("reads back");
@@ -287,12 +284,10 @@ fn subgroups_that_load_splats_together_change_nothing() {
             for d in [0.0, 0.1, 0.2] {
                 let normals = [DVec3::X, DVec3::new(0.3, 1.0, 0.2)];
                 let planes = normals.iter().take(planes);
-                let clip = Clip {
-                    planes: planes
-                        .map(|&n| Plane::new(n, d).expect("a finite normal"))
-                        .collect(),
-                    op: ClipOp::And,
-                };
+                let clip = Clip::of(
+                    planes.map(|&n| Plane::new(n, d).expect("a finite normal")),
+                    ClipOp::And,
+                );
                 let settings = Settings {
                     mode,
                     show,

@@ -21,7 +21,7 @@ fn cutting_twice_is_cutting_once_and_the_order_of_planes_is_nobodys_business() {
         for mode in [Mode::Hard, Mode::Rara, Mode::Exact] {
             let settings = Settings::default().mode(mode);
             let mut picture =
-                |planes: Vec<Plane>| draw(headless, &camera, &Clip { planes, op }, &settings);
+                |planes: Vec<Plane>| draw(headless, &camera, &Clip::of(planes, op), &settings);
             let expected = picture(planes.clone());
             // A plane given twice is the plane once, and planes are put into an order of their own: not a bit may differ.
             let mut doubled = planes.clone();
@@ -48,10 +48,7 @@ fn splitting_a_scene_into_files_gives_the_same_bytes() {
                 save_ply(&path, &part(&scene, from, to)).expect("saves");
                 load(&path, &mut |_, _| ()).expect("loads").gaussians
             };
-            let clip = Clip {
-                planes,
-                op: ClipOp::And,
-            };
+            let clip = Clip::of(planes, ClipOp::And);
             let mut picture = |scene: &Gaussians| {
                 headless.load(scene).expect("uploads");
                 draw(headless, &camera, &clip, &Settings::default())

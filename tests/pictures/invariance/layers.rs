@@ -78,10 +78,7 @@ fn complementary_halves_as_two_layers_are_the_whole() {
         let planes = resolved(&scene, &planes);
         headless.load(&scene).expect("uploads");
         let whole = draw(headless, &camera, &Clip::default(), &Settings::default());
-        let other = Clip {
-            planes: planes.iter().map(Plane::flipped).collect(),
-            op: op.dual(),
-        };
+        let other = Clip::of(planes.iter().map(Plane::flipped), op.dual());
         let [auto, beam] = [ExactForm::Auto, ExactForm::Beam];
         let modes = [
             (Mode::Hard, auto),
@@ -94,10 +91,7 @@ fn complementary_halves_as_two_layers_are_the_whole() {
                 .mode(mode)
                 .form(form)
                 .decay(Some(Decay::Depth));
-            let clip = Clip {
-                planes: planes.clone(),
-                op,
-            };
+            let clip = Clip::of(planes.clone(), op);
             let halves = [clip, other.clone()].map(|c| draw(headless, &camera, &c, &settings));
             let difference = apart(&halves[0], &halves[1], &whole);
             prop_assert!(difference <= LAYERS, "{mode:?}: {difference:e}");

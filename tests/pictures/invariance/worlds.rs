@@ -42,17 +42,11 @@ fn a_rigid_motion_of_everything_leaves_the_picture() {
                 Plane::new(normal, p.offset() - normal.dot(step)).unwrap()
             });
             let op = ClipOp::And;
-            let carried = Clip {
-                planes: carried.collect(),
-                op,
-            };
+            let carried = Clip::of(carried, op);
             for mode in [Mode::Rara, Mode::Exact] {
                 let settings = Settings::default().mode(mode);
                 headless.load(&scene).expect("uploads");
-                let clip = Clip {
-                    planes: planes.clone(),
-                    op,
-                };
+                let clip = Clip::of(planes.clone(), op);
                 let still = draw(headless, &camera, &clip, &settings);
                 headless.load(&moved(&scene, turn, step)).expect("uploads");
                 let result = compare(&still, &draw(headless, &away, &carried, &settings)).unwrap();
@@ -79,12 +73,13 @@ fn a_world_of_another_power_of_two_is_the_same_picture_to_the_bit() {
         for scale in scaled.scales_mut() {
             *scale *= factor as f32;
         }
-        let clip = |factor: f64| Clip {
-            planes: planes
-                .iter()
-                .map(|p| Plane::new(p.normal(), p.offset() * factor).unwrap())
-                .collect(),
-            op: ClipOp::And,
+        let clip = |factor: f64| {
+            Clip::of(
+                planes
+                    .iter()
+                    .map(|p| Plane::new(p.normal(), p.offset() * factor).unwrap()),
+                ClipOp::And,
+            )
         };
         for mode in [Mode::Rara, Mode::Exact] {
             let settings = Settings::default().mode(mode);

@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use rara::{Clip, ClipOp, Shape};
-use rara_fuzz::{assert_plane, assert_readable, within};
+use rara_fuzz::{assert_readable, assert_surface, within};
 
 fuzz_target!(|bytes: &[u8]| {
     let Ok(text) = std::str::from_utf8(bytes) else {
@@ -19,13 +19,13 @@ fuzz_target!(|bytes: &[u8]| {
         text.lines().filter_map(|line| line.parse().ok()).collect()
     });
     for shape in &shapes {
-        shape.planes().iter().for_each(assert_plane);
+        shape.surfaces().iter().for_each(assert_surface);
         // Twice outside is inside, to the bit; a plane alone has no operation to come back to.
         let back = shape.clone().complement().complement();
-        assert_eq!((back.planes(), back.op()), (shape.planes(), shape.op()));
+        assert_eq!((back.surfaces(), back.op()), (shape.surfaces(), shape.op()));
     }
     match Clip::of_shapes(&shapes, op) {
-        Ok(clip) => assert!(clip.planes.len() <= Clip::MAX_PLANES),
+        Ok(clip) => assert!(clip.surfaces.len() <= Clip::MAX_SURFACES),
         Err(error) => assert_readable(&error),
     }
 });

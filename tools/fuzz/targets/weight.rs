@@ -120,7 +120,7 @@ fuzz_target!(|bytes: &[u8]| {
     } else {
         ClipOp::Or
     };
-    let (clip, settings) = (Clip { planes, op }, settings(choice));
+    let (clip, settings) = (Clip::of(planes, op), settings(choice));
     check::<f64>(&scene, &camera, &clip, &settings);
     check::<f32>(&scene, &camera, &clip, &settings);
 });

@@ -1,0 +1,44 @@
+//! What a clip is made of.
+
+use glam::DVec3;
+
+use super::Plane;
+
+/// A surface that divides space into what it keeps and what it does not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Surface {
+    /// Keeps a half-space.
+    Plane(Plane),
+}
+
+impl Surface {
+    /// The surface that keeps what this one does not.
+    #[must_use]
+    pub fn complement(&self) -> Self {
+        match self {
+            Self::Plane(plane) => plane.flipped().into(),
+        }
+    }
+
+    /// A measure of how far a point is from the surface, world units: positive where the surface keeps the point. Of a plane
+    /// it is the signed distance.
+    pub fn distance(&self, point: DVec3) -> f64 {
+        match self {
+            Self::Plane(plane) => plane.distance(point),
+        }
+    }
+
+    /// The plane, if the surface is one: for what handles nothing else.
+    pub fn as_plane(&self) -> Option<Plane> {
+        match *self {
+            Self::Plane(plane) => Some(plane),
+        }
+    }
+}
+
+impl From<Plane> for Surface {
+    fn from(plane: Plane) -> Self {
+        Self::Plane(plane)
+    }
+}

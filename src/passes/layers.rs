@@ -59,9 +59,13 @@ impl Layers {
             state.check(layer.name())?;
             // Layers of one placement see one region.
             let mut before = scene[..index].iter();
-            let region = match before.position(|other| other.state.placement == state.placement) {
+            let is_alike = |other: &SceneLayer| {
+                other.state.placement == state.placement && other.clip == layer.clip
+            };
+            let region = match before.position(is_alike) {
                 Some(other) => layers[other].region,
                 None if has_region => {
+                    let clip = layer.clip.as_ref().unwrap_or(clip);
                     let first = surfaces.len();
                     surfaces.extend(region::surfaces(&clip.in_scene(&state.placement)));
                     LayerRegion {

@@ -91,7 +91,8 @@ impl Plan {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<Self> {
-        let region = region_data(clip, settings)?;
+        let own = scene.layers.iter().filter_map(|layer| layer.clip.as_ref());
+        let region = region_data(own.chain([clip]), settings)?;
         let layers = Layers::new(scene.layers, camera, clip, &region)?;
         let weight = weight_data(&scene, &region, layers.most_surfaces(), settings)?;
         let boxes = layers::boxes(scene.layers, camera);

@@ -13,8 +13,12 @@ const FARTHEST: f64 = (1_u128 << 126) as f64;
 
 /// What all regions have in common that a clip in the mode of the settings makes. Without anything to clip with that is what
 /// mode `none` has.
-pub(super) fn region_data(clip: &Clip, settings: &Settings) -> Result<RegionData> {
-    let (have, most) = (clip.surfaces.len(), Clip::MAX_SURFACES);
+pub(super) fn region_data<'a>(
+    clips: impl Iterator<Item = &'a Clip>,
+    settings: &Settings,
+) -> Result<RegionData> {
+    let have = clips.map(|clip| clip.surfaces.len()).max().unwrap_or(0);
+    let most = Clip::MAX_SURFACES;
     if have > most {
         return Err(Error::Invalid(format!(
             "a clip of {have} surfaces is beyond the {most} supported; use fewer"
@@ -22,7 +26,7 @@ pub(super) fn region_data(clip: &Clip, settings: &Settings) -> Result<RegionData
     }
     let mut region: RegionData = bytemuck::Zeroable::zeroed();
     region.mode = match settings.mode {
-        _ if clip.surfaces.is_empty() => types::MODE_NONE,
+        _ if have == 0 => types::MODE_NONE,
         Mode::None => types::MODE_NONE,
         Mode::Hard => types::MODE_HARD,
         Mode::Rara => types::MODE_RARA,

@@ -6,6 +6,7 @@ use ash::vk;
 use bytemuck::cast_slice;
 use glam::Vec3;
 
+use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::gpu::{Buffer, Device, Recorder};
 use crate::limits;
@@ -37,6 +38,9 @@ pub struct SceneBuffers {
 pub struct SceneLayer {
     /// How the next frame that is configured shows it.
     pub state: LayerState,
+    /// The clip of the next frame that is configured, for this layer alone and in place of the frame's; it stands in the
+    /// scene.
+    pub clip: Option<Clip>,
     name: String,
     gaussians: u32,
     /// The layer's first block; it fills whole blocks.
@@ -49,6 +53,7 @@ impl SceneLayer {
     pub(crate) fn new(name: String, first_block: u32, gaussians: u32, bounds: [Vec3; 2]) -> Self {
         Self {
             state: LayerState::default(),
+            clip: None,
             name,
             gaussians,
             first_block,
@@ -234,6 +239,7 @@ impl SceneBuffers {
             let gaussians = layer.gaussians();
             let own = SceneLayer {
                 state: layer.state(),
+                clip: layer.clip().cloned(),
                 ..SceneLayer::new(
                     layer.name().into(),
                     layers.last().map_or(0, SceneLayer::block_end),

@@ -33,7 +33,7 @@ pub fn layers<'a, T: Real>(
         let seen = SeenLayer {
             gaussians: faded(layer),
             view: View::in_layer(camera, &state.placement),
-            clip: clip.in_scene(&state.placement),
+            clip: layer.clip().unwrap_or(clip).in_scene(&state.placement),
             first,
             visible: state.visible,
         };

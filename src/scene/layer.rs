@@ -1,5 +1,6 @@
 //! A scene is a list of layers: Gaussians with a name that are placed, faded and hidden together.
 
+use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::placement::Placement;
 use crate::scene::Gaussians;
@@ -56,6 +57,7 @@ pub struct Layer<'a> {
     name: String,
     gaussians: &'a Gaussians,
     state: LayerState,
+    clip: Option<Clip>,
 }
 
 impl<'a> Layer<'a> {
@@ -65,6 +67,7 @@ impl<'a> Layer<'a> {
             name: name.into(),
             gaussians,
             state: LayerState::default(),
+            clip: None,
         }
     }
 
@@ -73,6 +76,19 @@ impl<'a> Layer<'a> {
     pub fn with(mut self, state: LayerState) -> Self {
         self.state = state;
         self
+    }
+
+    /// The same layer with a clip of its own in place of the frame's. It stands in the scene: the layer's placement moves
+    /// the layer and not its clip.
+    #[must_use]
+    pub fn clipped(mut self, clip: Clip) -> Self {
+        self.clip = Some(clip);
+        self
+    }
+
+    /// Its own clip; `None` where the frame's holds.
+    pub fn clip(&self) -> Option<&Clip> {
+        self.clip.as_ref()
     }
 
     /// Its name; several layers may have the same.

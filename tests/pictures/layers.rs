@@ -264,17 +264,20 @@ fn layers_that_change_leave_nothing_behind() {
     let cameras = common::views(&scene, 2, common::scaled((125, 95)));
     let (mut camera, mut shift, mut settings) = (0, 0.0, Settings::default());
     let (mut seen, mut changes) = (None, 0);
-    for _ in 0..60 {
-        match pick(8) {
+    for _ in 0..90 {
+        match pick(9) {
             0 => camera = pick(2),
             1 => settings.mode = [Mode::Exact, Mode::Hard, Mode::Rara, Mode::None][pick(4)],
             2 => shift = [0.0, 0.1, -0.1][pick(3)],
             kind => {
                 let layer = pick(parts.len());
                 let value = pick(3);
+                let own = common::clip(&scene, 1 + value, [ClipOp::And, ClipOp::Or][layer % 2]);
                 for headless in [&mut keeps, &mut forgets] {
-                    let state = &mut headless.layers_mut()[layer].state;
+                    let layer = &mut headless.layers_mut()[layer];
+                    let state = &mut layer.state;
                     match kind {
+                        8 => layer.clip = (value > 0).then(|| own.clone()),
                         3 => state.opacity = [1.0, 0.5, 0.0][value],
                         4 | 5 => state.visible = value > 0,
                         _ => {
@@ -299,7 +302,7 @@ fn layers_that_change_leave_nothing_behind() {
     }
     assert!(
         changes > 25,
-        "only {changes} of 60 frames were another picture"
+        "only {changes} of 90 frames were another picture"
     );
     keeps.close().expect("nothing to say");
     forgets.close().expect("nothing to say");
@@ -330,5 +333,32 @@ fn what_is_no_layer_is_refused() {
     let error = headless.render(&camera, &Clip::default(), &Settings::default());
     let text = error.expect_err("no opacity").to_string();
     assert!(text.contains("'layer 0'"), "{text}");
+    headless.close().expect("nothing to say");
+}
+
+/// Unions and intersections of so many surfaces, and none at all, in one frame that has no clip itself.
+#[test]
+fn each_layer_may_have_a_clip_of_its_own() {
+    let (scene, parts) = in_parts(6_000);
+    let mut headless = common::headless();
+    let camera = common::views(&scene, 1, common::scaled(SIZE))[0];
+    let clips = [
+        common::clip(&scene, 2, ClipOp::Or),
+        common::clip(&scene, 1, ClipOp::And),
+        Clip::default(),
+        common::clip(&scene, 3, ClipOp::And),
+    ];
+    let layer =
+        |(index, part): (usize, _)| Layer::new("own", part).clipped(clips[index % 4].clone());
+    let layers: Scene<'_> = parts.iter().enumerate().map(layer).collect();
+    headless.load(layers.clone()).expect("uploads");
+    for mode in [Mode::Exact, Mode::Rara] {
+        let settings = Settings::default().mode(mode);
+        headless
+            .render(&camera, &Clip::default(), &settings)
+            .expect("renders");
+        let truth = reference::render::<f64>(layers.clone(), &camera, &Clip::default(), &settings);
+        common::assert_agrees("own clips", &picture(&mut headless), &truth.picture);
+    }
     headless.close().expect("nothing to say");
 }

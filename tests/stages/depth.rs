@@ -5,21 +5,23 @@ use rara::reference::depth;
 use rara::reference::{Footprint, Real, View};
 use rara::types::{FrameCounts, Splat, SplatDepth};
 use rara::{
-    Camera, Clip, ClipOp, ExpectedDepthDesc, Gaussians, Mode, Raster, Renderer, RendererDesc,
-    SceneBuffers, Settings, ShFormat, TargetFormat,
+    Camera, Clip, ClipOp, ExpectedDepthDesc, Layer, LayerState, Mode, Raster, Renderer,
+    RendererDesc, Scene, SceneBuffers, Settings, ShFormat, TargetFormat,
 };
 
 use crate::frame::{self, SIZES};
+use crate::layers;
 
 /// What the stage has written of each survivor, and the survivor's number in the file.
-fn depths(
+fn depths<'a>(
     device: &Device,
     renderer: &mut Renderer,
-    scene: &Gaussians,
+    scene: impl Into<Scene<'a>>,
     camera: &Camera,
     clip: &Clip,
 ) -> Vec<(usize, SplatDepth)> {
-    let there = SceneBuffers::upload(device, scene, ShFormat::Float).expect("uploads");
+    let scene = scene.into();
+    let there = SceneBuffers::upload(device, &scene, ShFormat::Float).expect("uploads");
     let configured = renderer.configure(&there, camera, clip, &settings());
     configured.expect("configures");
     let submitted = device.submit_and_wait(|cmd| {
@@ -27,7 +29,7 @@ fn depths(
         unsafe { renderer.prepare(cmd, &there) }
     });
     submitted.expect("runs");
-    if scene.is_empty() {
+    if scene.gaussians() == 0 {
         return Vec::new();
     }
     let read = |name| renderer.working_buffer(name).expect(name);
@@ -69,8 +71,8 @@ fn mean(depth: &SplatDepth, [dx, dy]: [f64; 2]) -> [f64; 2] {
     }
 }
 
-#[test]
-fn mean_depths_are_the_twins() {
+/// A device under validation, and a renderer that draws depths.
+fn renderer() -> (Device, Renderer) {
     let device = Device::headless(
         &DeviceDesc::default()
             .selector(std::env::var("RARA_TEST_DEVICE").ok())
@@ -81,7 +83,55 @@ fn mean_depths_are_the_twins() {
     let desc = RendererDesc::new(format)
         .bindings(Bindings::Bound)
         .expected_depth(Some(ExpectedDepthDesc::new(format)));
-    let mut renderer = Renderer::new(&device, desc).expect("a renderer");
+    let renderer = Renderer::new(&device, desc).expect("a renderer");
+    (device, renderer)
+}
+
+/// Where layers are placed depths are in the scene's units: each layer's are those of the layer alone, times its unit, of
+/// powers of two, by which no number is rounded.
+#[test]
+fn depths_of_layers_are_in_the_scenes_units() {
+    let (device, mut renderer) = renderer();
+    let parts = [300, 2_000].map(frame::scene);
+    let placements = layers::placements();
+    let placements = [placements[0], placements[2]];
+    let of_layers = parts.iter().zip(placements).map(|(part, placement)| {
+        Layer::new("part", part).with(LayerState::default().placement(placement))
+    });
+    let scene: Scene<'_> = of_layers.collect();
+    let camera = frame::views(&parts[1])[0];
+    for (planes, op) in [(1, ClipOp::And), (2, ClipOp::Or)] {
+        let clip = frame::clip(&parts[1], planes, op);
+        let mut together = depths(&device, &mut renderer, &scene, &camera, &clip).into_iter();
+        let mut first = 0;
+        for (part, placement) in parts.iter().zip(placements) {
+            let (own, kept) = (camera.in_scene(&placement), clip.in_scene(&placement));
+            let unit = placement.scale() as f32;
+            let alone = depths(&device, &mut renderer, part, &own, &kept);
+            assert!(alone.len() > 100, "{} survive", alone.len());
+            for (number, mut one) in alone {
+                one.mean = [0, 1, 2, 3].map(|i| one.mean[i] * if i < 3 { unit } else { 1.0 });
+                one.far[3] *= unit;
+                one.near[3] *= unit;
+                let (ours, theirs) = together.next().expect("as many survive");
+                assert_eq!(ours, first + number);
+                assert_eq!(
+                    bytemuck::bytes_of(&theirs),
+                    bytemuck::bytes_of(&one),
+                    "{number}"
+                );
+            }
+            first += part.len();
+        }
+        assert!(together.next().is_none(), "as many survive");
+    }
+    drop(renderer);
+    assert_eq!(device.close(), Vec::<String>::new());
+}
+
+#[test]
+fn mean_depths_are_the_twins() {
+    let (device, mut renderer) = renderer();
     let (mut worst, mut moved, mut compared) = (0.0_f64, 0.0_f64, 0);
     for count in SIZES {
         let scene = frame::scene(count);

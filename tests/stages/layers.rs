@@ -7,7 +7,7 @@ use rara::{ClipOp, Layer, LayerState, Mode, Placement, Raster, Scene, Settings, 
 use crate::frame::{self, Stages};
 
 /// Of powers of two, by which no number is rounded.
-fn placements() -> [Placement; 3] {
+pub fn placements() -> [Placement; 3] {
     let turn = DQuat::from_axis_angle(DVec3::new(0.3, 0.9, -0.2).normalize(), 0.4);
     let at = |shift: DVec3, turn, scale| Placement::new(shift, turn, scale).expect("a placement");
     [

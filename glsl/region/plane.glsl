@@ -16,13 +16,7 @@ vec4 plane_half_space(uint surface, mat3 layer_factor, vec3 position) {
 uint plane_gaussian_side(uint surface, mat3 layer_factor, vec3 position, float deviations) {
     vec4 half_space = plane_half_space(surface, layer_factor, position);
     float distance = half_space.w;
-    if (FRAME.region.mode == MODE_HARD) {
-        return distance >= 0.0 ? SIDE_VISIBLE : SIDE_INVISIBLE;
-    }
     float support = deviations * length(half_space.xyz);
-    if (FRAME.region.trace_all != 0u) {
-        return SIDE_CUTOFF;
-    }
     return distance >= support ? SIDE_VISIBLE : distance <= -support ? SIDE_INVISIBLE : SIDE_CUTOFF;
 }
 

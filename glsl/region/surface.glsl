@@ -1,5 +1,5 @@
 // The surfaces of the layers' regions, what the stages ask of one, and how their answers make the region's. A shape answers
-// the three questions in a file of its own. Twin: src/reference/region/surface.rs.
+// the questions in a file of its own. Twin: src/reference/region/surface.rs.
 #ifndef RARA_REGION_SURFACE
 #define RARA_REGION_SURFACE
 #include "region/sides.glsl"
@@ -9,8 +9,22 @@ BUFFER(readonly, 1, Surface, surfaces)
 
 #include "region/plane.glsl"
 
-// On which side of a surface a Gaussian is whose band reaches so many standard deviations.
+// How far a point is from a surface, the layer's units: positive where the surface keeps the point.
+float surface_distance(uint surface, vec3 position) {
+    switch (surfaces.at[surface].kind) {
+    default: // SURFACE_PLANE
+        return plane_distance(surface, position);
+    }
+}
+
+// On which side of a surface a Gaussian is whose band reaches so many standard deviations; of a hard clip, its centre.
 uint surface_gaussian_side(uint surface, mat3 layer_factor, vec3 position, float deviations) {
+    if (FRAME.region.mode == MODE_HARD) {
+        return surface_distance(surface, position) >= 0.0 ? SIDE_VISIBLE : SIDE_INVISIBLE;
+    }
+    if (FRAME.region.trace_all != 0u) {
+        return SIDE_CUTOFF;
+    }
     switch (surfaces.at[surface].kind) {
     default: // SURFACE_PLANE
         return plane_gaussian_side(surface, layer_factor, position, deviations);

@@ -41,11 +41,11 @@ pub(super) fn region_data<'a>(
     Ok(region)
 }
 
-/// How the surfaces of a clip combine, `OP_*`.
+/// How the surfaces of a clip combine, `OP_*`. A clip without any keeps everything, as an intersection of none does.
 pub(super) fn op(clip: &Clip) -> u32 {
     match clip.op {
-        ClipOp::And => types::OP_AND,
-        ClipOp::Or => types::OP_OR,
+        ClipOp::Or if !clip.surfaces.is_empty() => types::OP_OR,
+        ClipOp::And | ClipOp::Or => types::OP_AND,
     }
 }
 

@@ -345,7 +345,7 @@ fn each_layer_may_have_a_clip_of_its_own() {
     let clips = [
         common::clip(&scene, 2, ClipOp::Or),
         common::clip(&scene, 1, ClipOp::And),
-        Clip::default(),
+        common::clip(&scene, 0, ClipOp::Or), // keeps everything
         common::clip(&scene, 3, ClipOp::And),
     ];
     let layer =

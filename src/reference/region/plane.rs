@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{HalfSpace, Side};
 use crate::reference::real::{Real, Vec3, vec3};
-use crate::{Gaussians, Mode, Plane, Settings};
+use crate::{Gaussians, Plane};
 
 /// The plane seen from inside Gaussian `index`. The distance is taken in double precision and rounded even in f32: far
 /// from the world's origin its two terms cancel, and the GPU computes it in two floats for that reason.
@@ -28,19 +28,10 @@ pub(super) fn gaussian_side<T: Real>(
     index: usize,
     axes: &[Vec3<T>; 3],
     deviations: T,
-    settings: &Settings,
 ) -> Side {
     let HalfSpace { normal, offset } = half_space(plane, scene, index, axes);
-    if settings.mode == Mode::Hard {
-        return match offset >= T::zero() {
-            true => Side::Visible,
-            false => Side::Invisible,
-        };
-    }
     let support = deviations * normal.length();
-    if settings.trace_all {
-        Side::Cutoff
-    } else if offset >= support {
+    if offset >= support {
         Side::Visible
     } else if offset <= -support {
         Side::Invisible

@@ -4,10 +4,10 @@ use glam::DVec3;
 
 use super::{HalfSpace, Side, plane};
 use crate::reference::real::{Real, Vec3};
-use crate::{Gaussians, Settings, Surface};
+use crate::{Gaussians, Mode, Settings, Surface};
 
 /// On which side of a surface Gaussian `index` is, whose half axes these are and whose band reaches so many standard
-/// deviations.
+/// deviations; of a hard clip, its centre.
 pub(in crate::reference) fn surface_gaussian_side<T: Real>(
     surface: &Surface,
     scene: &Gaussians,
@@ -16,10 +16,17 @@ pub(in crate::reference) fn surface_gaussian_side<T: Real>(
     deviations: T,
     settings: &Settings,
 ) -> Side {
+    if settings.mode == Mode::Hard {
+        return match surface.distance(scene.positions()[index].as_dvec3()) >= 0.0 {
+            true => Side::Visible,
+            false => Side::Invisible,
+        };
+    }
+    if settings.trace_all {
+        return Side::Cutoff;
+    }
     match surface {
-        Surface::Plane(plane) => {
-            plane::gaussian_side(plane, scene, index, axes, deviations, settings)
-        }
+        Surface::Plane(plane) => plane::gaussian_side(plane, scene, index, axes, deviations),
     }
 }
 

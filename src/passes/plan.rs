@@ -10,6 +10,7 @@ use crate::passes::layers::{self, Layers};
 use crate::passes::occluders::Occluders;
 use crate::passes::region::region_data;
 use crate::passes::scene_buffers::SceneLayer;
+use crate::passes::sort;
 use crate::passes::tiles::TileWork;
 use crate::passes::view::view_data;
 use crate::passes::weight::Laws;
@@ -162,9 +163,9 @@ impl Plan {
         cuts(self.mode())
     }
 
-    /// Which of the two pairs of key and order buffers holds the sorted ones: each pass carries them to the other.
+    /// Which of the two pairs of key and order buffers holds the sorted ones.
     pub(crate) fn sorted(&self) -> usize {
-        (self.way.sort_passes % 2) as usize
+        sort::result(self)
     }
 
     /// Whether splats become pixels by tiles.

@@ -1,8 +1,9 @@
 //! Stage `sort`: a stable sort of the survivors by linear view depth, ties by their number in the scene.
 //!
-//! It is given as many keys as there are survivors, in both `keys`, and nothing in `order`; the survivors are then numbered
-//! from 0. It leaves what [`sorted`] names. Which kernels do it, the plan says: each set has a file here, shaders and scratch
-//! of its own.
+//! It is given as many keys as there are survivors, in both `keys`; `order` holds nothing yet, and the first pass takes a
+//! key's place for its survivor. It leaves the sorted keys and their survivors in the pair of buffers that [`result`] says,
+//! on which all later stages rely, and the rest to whoever comes next ([`Sorted::spare`]). Which kernels do it, the plan
+//! says: each set has a file here, shaders and scratch of its own.
 
 mod runs;
 
@@ -25,12 +26,19 @@ fn kernels(plan: &Plan) -> &'static KernelSet {
     }
 }
 
+/// In which of the two pairs of `keys` and `order` those kernels leave the sorted ones.
+pub(super) fn result(plan: &Plan) -> usize {
+    match plan.way.shape {
+        DeviceShape::Cpu | DeviceShape::Gpu => runs::result(plan),
+    }
+}
+
 /// What the sort leaves.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sorted<'a> {
     /// The survivors, front to back.
     pub(super) order: &'a Buffer,
-    /// What it has no more use for: a word a Gaussian each, for whoever comes next.
+    /// What nobody needs any more once the order is known: a word a Gaussian each.
     pub(super) spare: [&'a Buffer; 3],
 }
 

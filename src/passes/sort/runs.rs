@@ -6,6 +6,7 @@ use std::mem::offset_of;
 use crate::gpu::{Groups, Recorder};
 use crate::limits;
 use crate::passes::buffers::indirect;
+use crate::passes::plan::Plan;
 use crate::passes::shaders::{sort_count, sort_scan, sort_scatter, sort_ties};
 use crate::passes::stage::{Frame, KernelSet, key};
 use crate::types::FrameCounts;
@@ -23,8 +24,12 @@ pub(super) const KERNELS: KernelSet = KernelSet {
     record,
 };
 
-/// Sorts the survivors by their depths, and those of one depth by their number in the file; the result is in
-/// `keys[plan.sorted()]` and `order[plan.sorted()]`. Of the passes that the scene's bounds ask for the device leaves
+/// Each pass carries keys and survivors to the other pair of buffers.
+pub(super) fn result(plan: &Plan) -> usize {
+    (plan.way.sort_passes % 2) as usize
+}
+
+/// Sorts the survivors by their depths, and those of one depth by their number in the scene. Of the passes that the scene's bounds ask for the device leaves
 /// out the first ones, as many as there are leading digits in which the keys agree (sort.glsl).
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;

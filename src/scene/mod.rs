@@ -7,6 +7,8 @@ mod gaussians;
 mod generate;
 mod layer;
 #[cfg(feature = "ply")]
+mod load;
+#[cfg(feature = "ply")]
 mod ply;
 #[cfg(feature = "ply")]
 mod report;
@@ -21,7 +23,7 @@ pub use generate::{Kind, generate};
 pub use layer::{Layer, LayerState, Scene};
 #[cfg(feature = "ply")]
 pub use {
-    ply::{Loaded, load, load_from},
+    load::{Loaded, load, load_from},
     report::{LoadReport, Remark},
     save::save_ply,
 };

@@ -71,10 +71,10 @@ bool is_carried_away(vec3 plane, vec3 curvature, vec2 delta) {
 // Of a record that is a curve, a polynomial of degree four in the splat's own coordinates: u is that of the column, v
 // that of the first row, and v_step by how much v changes a row.
 void curve_weights(uint base, float u, float v, float v_step, float alpha[ROWS], out float weight[ROWS]) {
-    vec4 linear = cuts.at[base];
-    vec4 bend = cuts.at[base + 1u];
-    vec4 twist = cuts.at[base + 2u];
-    vec4 wave = cuts.at[base + CUT_HEADER];
+    vec4 linear = cut_records.at[base];
+    vec4 bend = cut_records.at[base + 1u];
+    vec4 twist = cut_records.at[base + 2u];
+    vec4 wave = cut_records.at[base + CUT_HEADER];
     float at = linear.x + u * (linear.y + u * (bend.x + u * (twist.x + u * wave.x)));
     float slope = linear.z + u * (bend.y + u * (twist.y + u * wave.y));
     float second = bend.z + u * (twist.z + u * wave.z);
@@ -99,10 +99,10 @@ struct ColumnSight {
 
 // `delta` and `place` are the middle's.
 ColumnSight column_sight(uint base, vec2 delta, vec2 place) {
-    vec4 h1 = cuts.at[base + 1u];
-    vec4 h2 = cuts.at[base + 2u];
+    vec4 h1 = cut_records.at[base + 1u];
+    vec4 h2 = cut_records.at[base + 2u];
     ColumnSight column;
-    Sight s = sight_through(cuts.at[base], h1, h2, place - principal_point(), delta);
+    Sight s = sight_through(cut_records.at[base], h1, h2, place - principal_point(), delta);
     column.s = s;
     column.b2_step = -h2.xyz;
     column.c_step = cross(s.b1, column.b2_step);
@@ -142,11 +142,11 @@ void exact_weights(uint base, uint flags, vec2 delta, vec2 place, float alpha[RO
     float z[ROWS];
     uint count = flags >> CUT_COUNT_SHIFT;
     if (!SEVERAL || count == 1u) {
-        beam_zs(column, cuts.at[base + CUT_HEADER], z);
+        beam_zs(column, cut_records.at[base + CUT_HEADER], z);
         phi_or_side(z, alpha, weight);
         return;
     }
-    if (count == 2u && cuts.at[base + CUT_HEADER].xyz == -cuts.at[base + CUT_HEADER + 1u].xyz) {
+    if (count == 2u && cut_records.at[base + CUT_HEADER].xyz == -cut_records.at[base + CUT_HEADER + 1u].xyz) {
         // A slab: both planes are thresholds in one variable.
         float other[ROWS];
         beam_zs(column, plane_of(base, 0u), z);
@@ -246,7 +246,7 @@ void chord_weights(uint base, uint flags, vec2 delta, vec2 place, out float weig
 // row.
 void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 place, float alpha[ROWS], out float weight[ROWS]) {
     uint base = cut * push.params.cut_stride;
-    uint flags = to_uint(cuts.at[base].w);
+    uint flags = to_uint(cut_records.at[base].w);
     if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         curve_weights(base, uv.x, uv.y, v_step, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) == 0u) {

@@ -11,7 +11,7 @@ layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 BUFFER(readonly, 2, Gaussian, gaussians)
 BUFFER(readonly, 3, uint, cutoffs)
 BUFFER(readonly, 4, FrameCounts, counts)
-BUFFER(writeonly, 5, vec4, cuts)
+BUFFER(writeonly, 5, vec4, cut_records)
 
 // A plane in the beam form. Dividing by the largest component keeps the squares of sigmas of 1e5 and 1e-7 in range.
 vec4 beam_plane(vec4 half_space) {
@@ -67,27 +67,27 @@ void main() {
         // A surface that keeps the whole splat changes no intersection, one that drops it no union.
         if (surface_gaussian_side(surface, f.layer_factor, position, deviations) != side_undecided()) {
             form = beam_plane(surface_half_space(surface, f.layer_factor, position));
-            cuts.at[at++] = is_union ? -form : form;
+            cut_records.at[at++] = is_union ? -form : form;
         }
     }
     uint count = at - base - CUT_HEADER;
     uint flags = count << CUT_COUNT_SHIFT;
     if (is_union && count == 1u && !front && FRAME.region.mode == MODE_EXACT) {
-        cuts.at[at - 1u] = form; // written again as it is: without CUT_UNION it is read so
+        cut_records.at[at - 1u] = form; // written again as it is: without CUT_UNION it is read so
     } else if (is_union) {
         flags |= CUT_UNION;
     }
     if (!beam && count == 1u) {
-        cuts.at[base] = vec4(vec3(0.0), float(flags));
-        cuts.at[at - 1u] = affine_plane(f, form);
-        cuts.at[at] = vec4(0.0);
+        cut_records.at[base] = vec4(vec3(0.0), float(flags));
+        cut_records.at[at - 1u] = affine_plane(f, form);
+        cut_records.at[at] = vec4(0.0);
         return;
     }
     if (!beam) {
         // Several planes: the footprint's own gradients, the same in all pixels.
-        cuts.at[base] = vec4(f.b1, float(flags | CUT_BEAM));
-        cuts.at[base + 1u] = vec4(f.b2, f.scale);
-        cuts.at[base + 2u] = vec4(vec3(0.0), f.low_pass);
+        cut_records.at[base] = vec4(f.b1, float(flags | CUT_BEAM));
+        cut_records.at[base + 1u] = vec4(f.b2, f.scale);
+        cut_records.at[base + 2u] = vec4(vec3(0.0), f.low_pass);
         return;
     }
 
@@ -118,24 +118,24 @@ void main() {
             vec3 plane;
             vec3 curvature;
             in_pixels(square, source.conic, plane, curvature);
-            cuts.at[base] = vec4(vec3(0.0), float(flags));
-            cuts.at[at - 1u] = vec4(plane, 0.0);
-            cuts.at[at] = vec4(curvature, 0.0);
+            cut_records.at[base] = vec4(vec3(0.0), float(flags));
+            cut_records.at[at - 1u] = vec4(plane, 0.0);
+            cut_records.at[at] = vec4(curvature, 0.0);
             return;
         }
         if (is_good(quartic, samples, opacity, extent)) {
-            cuts.at[base] = vec4(quartic.at, quartic.slope, float(flags | CUT_CURVE));
-            cuts.at[base + 1u] = vec4(quartic.bend, quartic.ripple);
-            cuts.at[base + 2u] = quartic.twist;
-            cuts.at[base + CUT_HEADER] = quartic.wave;
+            cut_records.at[base] = vec4(quartic.at, quartic.slope, float(flags | CUT_CURVE));
+            cut_records.at[base + 1u] = vec4(quartic.bend, quartic.ripple);
+            cut_records.at[base + 2u] = quartic.twist;
+            cut_records.at[base + CUT_HEADER] = quartic.wave;
             return;
         }
     }
     if (front) {
         flags |= CUT_FRONT;
-        cuts.at[at] = beam_plane(vec4(f.m3, f.view.z));
+        cut_records.at[at] = beam_plane(vec4(f.m3, f.view.z));
     }
-    cuts.at[base] = vec4(source.h0.xyz, float(flags | CUT_BEAM));
-    cuts.at[base + 1u] = source.h1;
-    cuts.at[base + 2u] = source.h2;
+    cut_records.at[base] = vec4(source.h0.xyz, float(flags | CUT_BEAM));
+    cut_records.at[base + 1u] = source.h1;
+    cut_records.at[base + 2u] = source.h2;
 }

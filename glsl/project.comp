@@ -19,7 +19,7 @@ BUFFER(writeonly, 5, Splat, splats)
 BUFFER(writeonly, 6, uint, keys)
 BUFFER(writeonly, 7, uint, same_keys)
 #include "sh_storage.glsl"
-BUFFER(readonly, 8, vec4, cuts)
+BUFFER(readonly, 8, vec4, cut_records)
 BUFFER(writeonly, 9, uvec4, tile_masks)
 
 #include "carried.glsl"

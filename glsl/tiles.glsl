@@ -30,7 +30,7 @@ layout(constant_id = 9) const bool SHOW_WEIGHT = false;
 BUFFER(readonly, 1, Splat, splats)
 BUFFER(readonly, 2, uint, tile_splats)
 BUFFER(readonly, 3, uint, tile_begins)
-BUFFER(readonly, 4, vec4, cuts)
+BUFFER(readonly, 4, vec4, cut_records)
 BUFFER(writeonly, 5, vec4, picture)
 BUFFER(readonly, 6, uint, dirty)
 BUFFER(readonly, 7, uint, occluders)

@@ -1,5 +1,5 @@
 // The weight w of a cut splat in a pixel, and what it does to alpha. Included by what turns splats into pixels, after it
-// has declared the buffer `cuts`, the constants of weight_constants.glsl, and the parameters sigma, cut_stride and
+// has declared the buffer `cut_records`, the constants of weight_constants.glsl, and the parameters sigma, cut_stride and
 // principal_point.
 #ifndef RARA_WEIGHT
 #define RARA_WEIGHT
@@ -12,7 +12,7 @@ vec2 principal_point() {
 
 Sight line_of_sight(uint base, vec2 delta, vec2 place) {
     vec2 pixel = place - principal_point();
-    return sight_through(cuts.at[base], cuts.at[base + 1u], cuts.at[base + 2u], pixel, delta);
+    return sight_through(cut_records.at[base], cut_records.at[base + 1u], cut_records.at[base + 2u], pixel, delta);
 }
 
 // Phi(z) / Phi(front), at most 1, with a relative error of 4e-5 however little of the normal distribution is left.
@@ -33,7 +33,7 @@ float exact_weight(uint base, uint flags, vec2 delta, vec2 place) {
     float det = determinant(s);
     if (!SEVERAL || count == 1u) {
         bool far;
-        return phi(beam_z(s, det, cuts.at[base + CUT_HEADER], far));
+        return phi(beam_z(s, det, cut_records.at[base + CUT_HEADER], far));
     }
     return combined(flags, several_weight(s, det, base, count));
 }
@@ -48,7 +48,7 @@ float front_weight(uint base, uint flags, vec2 delta, vec2 place) {
     float far = 1.0;
     float gone = 0.0;
     bool keeps;
-    float front = beam_z(s, det, cuts.at[base + CUT_HEADER + count], keeps);
+    float front = beam_z(s, det, cut_records.at[base + CUT_HEADER + count], keeps);
     for (uint plane = 0u; plane < count; plane++) {
         float z = beam_z(s, det, plane_of(base, plane), keeps);
         if (keeps) {
@@ -77,7 +77,7 @@ float chord_weight(uint base, uint flags, vec2 delta, vec2 place) {
     float high = half_square > 0.0 ? sqrt(half_square) : 0.0;
     float low = -high;
     if ((flags & CUT_FRONT) != 0u) {
-        vec4 front = cuts.at[base + CUT_HEADER + count];
+        vec4 front = cut_records.at[base + CUT_HEADER + count];
         // The view direction's component along the line is never negative.
         low = max(low, -(front.w + dot(front.xyz, nearest)) / max(dot(front.xyz, direction), 1e-30));
     }
@@ -108,7 +108,7 @@ float chord_weight(uint base, uint flags, vec2 delta, vec2 place) {
 // splat's centre, `uv` that in the splat's own coordinates (curve.glsl).
 float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 place) {
     uint base = cut * push.params.cut_stride;
-    uint flags = to_uint(cuts.at[base].w);
+    uint flags = to_uint(cut_records.at[base].w);
     if (CLIP_MODE == MODE_RARA) {
         return chord_weight(base, flags, delta, place);
     }
@@ -116,10 +116,10 @@ float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 place) {
         return front_weight(base, flags, delta, place);
     }
     if ((flags & CUT_CURVE) != 0u) {
-        vec4 linear = cuts.at[base];
-        vec4 bend = cuts.at[base + 1u];
-        vec4 twist = cuts.at[base + 2u];
-        vec4 wave = cuts.at[base + CUT_HEADER];
+        vec4 linear = cut_records.at[base];
+        vec4 bend = cut_records.at[base + 1u];
+        vec4 twist = cut_records.at[base + 2u];
+        vec4 wave = cut_records.at[base + CUT_HEADER];
         float at = linear.x + uv.x * (linear.y + uv.x * (bend.x + uv.x * (twist.x + uv.x * wave.x)));
         float slope = linear.z + uv.x * (bend.y + uv.x * (twist.y + uv.x * wave.y));
         float second = bend.z + uv.x * (twist.z + uv.x * wave.z);

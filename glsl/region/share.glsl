@@ -1,5 +1,5 @@
 // What a pixel's share of a splat is: the chance that a point of the Gaussian on the pixel's line of sight is kept by all
-// surfaces of the splat's cutoff record, or of a union by any. Included after the buffer `cuts` is declared. Twin:
+// surfaces of the splat's cutoff record, or of a union by any. Included after the buffer `cut_records` is declared. Twin:
 // src/reference/region/share.rs.
 #ifndef RARA_REGION_SHARE
 #define RARA_REGION_SHARE
@@ -13,7 +13,7 @@ float combined(uint flags, float share) {
 
 // A plane of a record.
 vec4 plane_of(uint base, uint plane) {
-    return cuts.at[base + CUT_HEADER + plane];
+    return cut_records.at[base + CUT_HEADER + plane];
 }
 
 Threshold threshold_of(Sight s, float det, uint base, uint plane) {

@@ -245,7 +245,7 @@ mod tests {
     #[test]
     fn shaders_of_a_name_are_one_program() {
         let text = programs(&[
-            source("splat.frag", &[(1, "cuts")], &[(0, "mode")]),
+            source("splat.frag", &[(1, "cut_records")], &[(0, "mode")]),
             source("splat.vert", &[(0, "frame")], &[(5, "depth")]),
             source("tiles.subgroup.comp", &[(0, "frame")], &[]),
         ]);
@@ -253,7 +253,7 @@ mod tests {
             "pub(crate) mod splat {",
             "pub(crate) static FRAG:",
             "pub(crate) static VERT:",
-            "&[self.frame, self.cuts, ]",
+            "&[self.frame, self.cut_records, ]",
             "&[(0, self.mode), (5, self.depth), ]",
             "pub(crate) static SUBGROUP_COMP:",
             "type Constants = ();",

@@ -30,7 +30,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         gaussians: &frame.scene.gaussians,
         cutoffs: &b.cutoffs,
         counts: &b.counts,
-        cuts: &b.cuts,
+        cut_records: &b.cut_records,
     };
     let groups = indirect!(b.counts, FrameCounts, cutoff_groups);
     frame.dispatch(recorder, buffers, (), groups);

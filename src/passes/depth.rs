@@ -78,7 +78,7 @@ pub(crate) fn record_draw(
         counts: &b.counts,
         splats: &b.splats,
         order: &b.order[plan.sorted()],
-        cuts: &b.cuts,
+        cut_records: &b.cut_records,
         depths: &d.depths,
     };
     let [_, _, cx, cy] = plan.data.view.focal;

@@ -70,7 +70,7 @@ pub(crate) fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>, readback: &
         r.ready_for_host(&[readback]);
     });
     let order = &b.order[plan.sorted()];
-    recorder.ready_to_draw(&[&b.frame, &b.counts, &b.splats, order, &b.cuts]);
+    recorder.ready_to_draw(&[&b.frame, &b.counts, &b.splats, order, &b.cut_records]);
 }
 
 impl Plan {

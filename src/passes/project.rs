@@ -40,7 +40,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         splats: &b.splats,
         keys,
         same_keys,
-        cuts: &b.cuts,
+        cut_records: &b.cut_records,
         tile_masks: &b.tile_masks,
     };
     let groups = indirect!(b.counts, FrameCounts, project_groups);

@@ -110,7 +110,7 @@ fn record_recut(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         survivors: &b.survivors,
         counts: &b.counts,
         recuts: &s.recuts,
-        cuts: &b.cuts,
+        cut_records: &b.cut_records,
         tile_masks: &b.tile_masks,
         splats: &b.splats,
         dirty: &s.dirty,

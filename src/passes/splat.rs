@@ -48,7 +48,7 @@ pub(crate) fn record(
         counts: &b.counts,
         splats: &b.splats,
         order: &b.order[plan.sorted()],
-        cuts: &b.cuts,
+        cut_records: &b.cut_records,
     };
     let [_, _, cx, cy] = plan.data.view.focal;
     let [depth_offset, depth_scale] = map.map_or([0.0; 2], |map| map.factors());

@@ -78,7 +78,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         splats: &b.splats,
         tile_splats: &t.splats,
         tile_begins: &t.begins,
-        cuts: &b.cuts,
+        cut_records: &b.cut_records,
         picture: &t.picture,
         // Only a reclipped frame looks at what is dirty.
         dirty: b.reclip.as_ref().map_or(&b.counts, |reclip| &reclip.dirty),

@@ -24,7 +24,7 @@ impl Buffers {
             &self.counts,
             &self.survivors,
             &self.cutoffs,
-            &self.cuts,
+            &self.cut_records,
             &self.splats,
             &self.histogram,
             &self.tile_masks,

@@ -80,12 +80,12 @@ fn compare(
     settings: &Settings,
     worst: &mut Apart,
 ) {
-    let cuts: Vec<[f32; 4]> = stages.read("cuts");
+    let records: Vec<[f32; 4]> = stages.read("cut_records");
     let stride = 4 + clip.surfaces.len();
     let cut = stages.counts().cutoff as usize;
     let cutoffs: Vec<u32> = stages.read("cutoffs");
     let (single, double) = (View::<f32>::new(camera), View::<f64>::new(camera));
-    for (record, index) in cuts.chunks(stride).zip(&cutoffs[..cut]) {
+    for (record, index) in records.chunks(stride).zip(&cutoffs[..cut]) {
         let index = *index as usize;
         let Some(footprint) = Footprint::new(&stages.scene, index, &single) else {
             continue; // a tie of stage classify

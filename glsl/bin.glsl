@@ -23,10 +23,10 @@ struct Outline {
 const vec3 NO_LINE = vec3(1.0, 0.0, 0.0);
 
 // Where a carried weight's z can exceed -TRIM_DEVIATIONS within a box around the splat's centre.
-vec3 cut_away_line(vec3 plane, vec3 curvature, vec2 box) {
+vec3 cut_away_line(vec3 linear, vec3 curvature, vec2 box) {
     precise float rise = max(curvature.x, 0.0) * box.x * box.x + abs(curvature.y) * box.x * box.y
         + max(curvature.z, 0.0) * box.y * box.y;
-    precise vec3 line = vec3(plane.x + TRIM_DEVIATIONS + rise, plane.yz);
+    precise vec3 line = vec3(linear.x + TRIM_DEVIATIONS + rise, linear.yz);
     return line;
 }
 
@@ -65,9 +65,9 @@ Outline outline(Splat splat) {
     float top = max(middle.y - half_sides.y, o.centre.y - o.half_height);
     float bottom = min(middle.y + half_sides.y, o.centre.y + o.half_height);
     o.line = NO_LINE;
-    vec3 plane = vec3(splat.conic_cut.zw, splat.colour_cut.w);
-    if (abs(plane.x) < Z_RANGE) {
-        o.line = cut_away_line(plane, splat.curvature.xyz, vec2(width, o.half_height));
+    vec3 linear = vec3(splat.conic_cut.zw, splat.colour_cut.w);
+    if (abs(linear.x) < Z_RANGE) {
+        o.line = cut_away_line(linear, splat.curvature.xyz, vec2(width, o.half_height));
     }
     o.rows = tiles_between(top, bottom, FRAME.view.size.y, TILE_HEIGHT);
     return o;

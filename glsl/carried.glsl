@@ -13,10 +13,10 @@ Carried carried_weight(uint cut) {
     if (cut != NOT_CUT) {
         uint base = cut * FRAME.weight.cut_stride;
         if (cut_records.at[base].w == float(1u << CUT_COUNT_SHIFT)) {
-            weight.plane = cut_records.at[base + CUT_HEADER].xyz;
+            weight.linear = cut_records.at[base + CUT_HEADER].xyz;
             weight.curvature = cut_records.at[base + CUT_HEADER + 1u].xyz;
         } else {
-            weight.plane = vec3(Z_RECORD, float(cut & 0xffffu), float(cut >> 16));
+            weight.linear = vec3(Z_RECORD, float(cut & 0xffffu), float(cut >> 16));
         }
     }
     return weight;
@@ -26,7 +26,7 @@ Carried carried_weight(uint cut) {
 vec3 cut_away_line_of_record(vec3 line, uint cut, Carried weight, vec3 conic, float extent) {
     uint base = cut * FRAME.weight.cut_stride;
     vec4 linear = cut_records.at[base];
-    if (weight.plane.x >= -Z_RANGE || (to_uint(linear.w) & CUT_CURVE) == 0u) {
+    if (weight.linear.x >= -Z_RANGE || (to_uint(linear.w) & CUT_CURVE) == 0u) {
         return line;
     }
     return cut_away_line_of_curve(linear, cut_records.at[base + 1u], cut_records.at[base + 2u], cut_records.at[base + CUT_HEADER], conic, 1.001 * extent);

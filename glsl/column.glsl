@@ -45,9 +45,9 @@ void phi_or_side(float z[ROWS], float alpha[ROWS], out float share[ROWS]) {
 }
 
 // Of a splat that carries its curve, a polynomial of degree two in the pixel.
-void carried_weights(vec3 plane, vec3 curvature, vec2 delta, float alpha[ROWS], out float weight[ROWS]) {
-    float at = plane.x + delta.x * (plane.y + curvature.x * delta.x);
-    float slope = plane.z + curvature.y * delta.x;
+void carried_weights(vec3 linear, vec3 curvature, vec2 delta, float alpha[ROWS], out float weight[ROWS]) {
+    float at = linear.x + delta.x * (linear.y + curvature.x * delta.x);
+    float slope = linear.z + curvature.y * delta.x;
     float z[ROWS];
     for (uint row = 0u; row < ROWS; row++) {
         float y = delta.y + float(row);
@@ -57,9 +57,9 @@ void carried_weights(vec3 plane, vec3 curvature, vec2 delta, float alpha[ROWS], 
 }
 
 // Whether nothing of a column is visible. Where the frame is not a reclipped one, the tiles' lists leave most of such out.
-bool is_carried_away(vec3 plane, vec3 curvature, vec2 delta) {
-    float at = plane.x + delta.x * (plane.y + curvature.x * delta.x);
-    float slope = plane.z + curvature.y * delta.x;
+bool is_carried_away(vec3 linear, vec3 curvature, vec2 delta) {
+    float at = linear.x + delta.x * (linear.y + curvature.x * delta.x);
+    float slope = linear.z + curvature.y * delta.x;
     float high = -8.0;
     for (uint row = 0u; row < ROWS; row++) {
         float y = delta.y + float(row);

@@ -179,11 +179,11 @@ bool is_good(Curve curve, CurveSamples z, float opacity, float extent) {
     return true;
 }
 
-// The plane and the curvature of a curve of degree two, per pixel: what the rasteriser carries.
-void in_pixels(Curve c, vec3 conic, out vec3 plane, out vec3 curvature) {
+// A curve of degree two by the pixel, as the rasteriser carries it.
+void in_pixels(Curve c, vec3 conic, out vec3 linear, out vec3 curvature) {
     vec2 u = vec2(conic.x, 0.0);
     vec2 v = conic.yz;
-    plane = vec3(c.at, c.slope.x * u + c.slope.y * v);
+    linear = vec3(c.at, c.slope.x * u + c.slope.y * v);
     curvature = vec3(c.bend.x * u.x * u.x + c.bend.y * u.x * v.x + c.bend.z * v.x * v.x,
                      c.bend.y * u.x * v.y + 2.0 * c.bend.z * v.x * v.y, c.bend.z * v.y * v.y);
 }

@@ -50,8 +50,8 @@ uint to_uint(float number) {
 }
 
 // Which record a splat's carried slopes name.
-uint record_number(vec3 plane) {
-    return to_uint(plane.y) | to_uint(plane.z) << 16;
+uint record_number(vec3 linear) {
+    return to_uint(linear.y) | to_uint(linear.z) << 16;
 }
 
 #endif

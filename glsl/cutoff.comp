@@ -115,11 +115,11 @@ void main() {
         Curve quartic;
         fitted(samples, square, quartic);
         if (is_good(square, samples, opacity, extent)) {
-            vec3 plane;
+            vec3 linear;
             vec3 curvature;
-            in_pixels(square, source.conic, plane, curvature);
+            in_pixels(square, source.conic, linear, curvature);
             cut_records.at[base] = vec4(vec3(0.0), float(flags));
-            cut_records.at[at - 1u] = vec4(plane, 0.0);
+            cut_records.at[at - 1u] = vec4(linear, 0.0);
             cut_records.at[at] = vec4(curvature, 0.0);
             return;
         }

@@ -67,8 +67,8 @@ void main() {
     Carried weight = CUT ? carried_weight(survivors.at[survivor].y) : whole_weight();
     Quad quad = quad_around(f, extent, weight);
     splat.centre_conic = vec4(f.centre, conic.xy);
-    splat.conic_cut = vec4(conic.z, opacity, weight.plane.xy);
-    splat.colour_cut = vec4(colour(index, normalize(f.relative / largest(f.relative))), weight.plane.z);
+    splat.conic_cut = vec4(conic.z, opacity, weight.linear.xy);
+    splat.colour_cut = vec4(colour(index, normalize(f.relative / largest(f.relative))), weight.linear.z);
     splat.axes = vec4(quad.first, quad.second);
     splat.middle = vec4(quad.middle, gaussian.scale.w, f.view.z);
     splat.curvature = vec4(weight.curvature, 0.0);

@@ -50,8 +50,8 @@ vec2 kept_interval(float slope, float offset) {
 
 // What the rasteriser carries of a cut splat's weight: see cut.glsl.
 struct Carried {
-    vec3 plane;
-    vec3 curvature;
+    vec3 linear; // z at the centre, dz/dx, dz/dy
+    vec3 curvature; // the factors of dx^2, dx dy and dy^2
 };
 
 // By how much curvature can raise z anywhere in the quad.
@@ -64,12 +64,12 @@ float rise(Quad quad, vec3 curvature) {
     return max(ss, 0.0) + max(tt, 0.0) + abs(st);
 }
 
-// Cuts off what lies wholly behind the line plane.x + plane.yz . delta = 0.
-Quad trimmed(Quad quad, vec3 plane) {
-    float a = dot(plane.yz, quad.first);
-    float b = dot(plane.yz, quad.second);
-    vec2 s = kept_interval(a, plane.x + abs(b));
-    vec2 t = kept_interval(b, plane.x + abs(a));
+// Cuts off what lies wholly where line.x + line.yz . delta is negative.
+Quad trimmed(Quad quad, vec3 line) {
+    float a = dot(line.yz, quad.first);
+    float b = dot(line.yz, quad.second);
+    vec2 s = kept_interval(a, line.x + abs(b));
+    vec2 t = kept_interval(b, line.x + abs(a));
     return Quad(quad.middle + s.x * quad.first + t.x * quad.second, s.y * quad.first, t.y * quad.second);
 }
 
@@ -88,12 +88,12 @@ Quad quad_around(Footprint f, float extent, Carried weight) {
         vec2 half_sides = 0.5 * (high - low) + 1.0 + 1e-6 * abs(f.centre);
         return Quad(0.5 * (low + high) - f.centre, vec2(half_sides.x, 0.0), vec2(0.0, half_sides.y));
     }
-    float steepness = length(weight.plane.yz);
-    if (abs(weight.plane.x) < Z_RANGE && steepness > 0.0) {
-        vec3 line = vec3(weight.plane.x + TRIM_DEVIATIONS + rise(quad, weight.curvature), weight.plane.yz);
+    float steepness = length(weight.linear.yz);
+    if (abs(weight.linear.x) < Z_RANGE && steepness > 0.0) {
+        vec3 line = vec3(weight.linear.x + TRIM_DEVIATIONS + rise(quad, weight.curvature), weight.linear.yz);
         Quad straight = trimmed(quad, line);
         // The contour is inside the first quad too, whose bound on the rise serves both.
-        Quad turned = trimmed(along_direction(f, extent, weight.plane.yz / steepness), line);
+        Quad turned = trimmed(along_direction(f, extent, weight.linear.yz / steepness), line);
         return area(turned) < area(straight) ? turned : straight;
     }
     return quad;

@@ -67,11 +67,11 @@ void main() {
     Quad quad = quad_around(f, extent, weight);
     if (cut == CUT_AWAY) {
         // Nothing to rasterise; tiles look at z.
-        weight.plane.x = Z_CUT_AWAY;
+        weight.linear.x = Z_CUT_AWAY;
         quad = Quad(vec2(0.0), vec2(0.0), vec2(0.0));
     }
-    splats.at[survivor].conic_cut.zw = weight.plane.xy;
-    splats.at[survivor].colour_cut.w = weight.plane.z;
+    splats.at[survivor].conic_cut.zw = weight.linear.xy;
+    splats.at[survivor].colour_cut.w = weight.linear.z;
     splats.at[survivor].axes = vec4(quad.first, quad.second);
     splats.at[survivor].middle.xy = quad.middle;
     splats.at[survivor].curvature = vec4(weight.curvature, 0.0);

@@ -64,16 +64,16 @@ struct Seen {
     vec4 centre_conic;
     vec2 conic_opacity;
     vec3 colour;
-    vec3 plane;
+    vec3 linear;
     vec3 curvature;
 };
 
 // Multiplies a cut splat's alphas by its weights; `weight` are these.
 void weigh(Seen splat, vec2 delta, vec2 uv, inout float alpha[ROWS], out float weight[ROWS]) {
-    if (CLIP_MODE == MODE_EXACT && splat.plane.x > -Z_RANGE) {
-        carried_weights(splat.plane, splat.curvature, delta, alpha, weight);
+    if (CLIP_MODE == MODE_EXACT && splat.linear.x > -Z_RANGE) {
+        carried_weights(splat.linear, splat.curvature, delta, alpha, weight);
     } else {
-        cut_weights(record_number(splat.plane), delta, uv, splat.conic_opacity.x, place, alpha, weight);
+        cut_weights(record_number(splat.linear), delta, uv, splat.conic_opacity.x, place, alpha, weight);
     }
     bool whole = true;
     for (uint row = 0u; row < ROWS; row++) {
@@ -115,7 +115,7 @@ void blend(Seen splat, vec2 delta, float far) {
                 weight[row] = WEIGHT_WHOLE;
             }
         }
-        if (CLIP_MODE >= MODE_RARA && splat.plane.x < Z_RANGE) {
+        if (CLIP_MODE >= MODE_RARA && splat.linear.x < Z_RANGE) {
             weigh(splat, delta, vec2(u, v + splat.conic_opacity.x * delta.y), alpha, weight);
         }
         float most = 0.0;
@@ -131,8 +131,8 @@ void blend(Seen splat, vec2 delta, float far) {
 
 // Of a reclipped frame's list, which holds what is clipped away.
 bool is_away(Seen splat, vec2 delta) {
-    return splat.plane.x == Z_CUT_AWAY || (CLIP_MODE == MODE_EXACT && abs(splat.plane.x) < Z_RANGE
-        && is_carried_away(splat.plane, splat.curvature, delta));
+    return splat.linear.x == Z_CUT_AWAY || (CLIP_MODE == MODE_EXACT && abs(splat.linear.x) < Z_RANGE
+        && is_carried_away(splat.linear, splat.curvature, delta));
 }
 
 void main() {
@@ -175,10 +175,10 @@ void main() {
             splat.centre_conic = OF(i, my_centre_conic);
             splat.conic_opacity = OF(i, my_conic_cut.xy);
             splat.colour = OF(i, my_colour_cut.rgb);
-            splat.plane = vec3(Z_WHOLE, 0.0, 0.0);
+            splat.linear = vec3(Z_WHOLE, 0.0, 0.0);
             splat.curvature = vec3(0.0);
             if (CLIP_MODE >= MODE_RARA || RECLIPPED) {
-                splat.plane = vec3(OF(i, my_conic_cut.zw), OF(i, my_colour_cut.w));
+                splat.linear = vec3(OF(i, my_conic_cut.zw), OF(i, my_colour_cut.w));
             }
             if (CLIP_MODE == MODE_EXACT) {
                 splat.curvature = OF(i, my_curvature);

@@ -114,10 +114,10 @@ ColumnSight column_sight(uint base, vec2 delta, vec2 place) {
 }
 
 // A plane's z in each row: beam_z of glsl/sight.glsl.
-void beam_zs(ColumnSight column, vec4 plane, out float z[ROWS]) {
+void beam_zs(ColumnSight column, vec4 half_space, out float z[ROWS]) {
     Sight s = column.s;
     vec3 c_step = column.c_step;
-    vec3 a = plane.xyz;
+    vec3 a = half_space.xyz;
     vec3 a1 = cross(a, s.b1);
     vec3 a2 = cross(a, s.b2);
     vec3 a2_step = cross(a, column.b2_step);
@@ -127,7 +127,7 @@ void beam_zs(ColumnSight column, vec4 plane, out float z[ROWS]) {
     vec3 kx = product(s.c, c_step, a2, a2_step);
     kx.x += s.low_pass * dot(a, s.b1);
     vec2 ky = s.low_pass * vec2(dot(a, s.b2), dot(a, column.b2_step)) - vec2(dot(s.c, a1), dot(c_step, a1));
-    vec3 mean = plane.w * column.det + s.delta.x * kx + product(column.delta_y, ky);
+    vec3 mean = half_space.w * column.det + s.delta.x * kx + product(column.delta_y, ky);
     for (uint row = 0u; row < ROWS; row++) {
         float y = row_place(row);
         float inverse = 1.0 / quadratic(column.det, y);
@@ -217,12 +217,12 @@ void chord_weights(uint base, uint flags, vec2 delta, vec2 place, out float weig
         whole[row] = 2.0 * high[row];
     }
     for (uint plane = 0u; plane < count; plane++) {
-        vec4 form = plane_of(base, plane);
-        vec2 along = vec2(dot(form.xyz, s.c), dot(form.xyz, c_step));
-        vec3 nearest = product(offset, offset_step, cross(s.c, form.xyz), cross(c_step, form.xyz));
+        vec4 half_space = plane_of(base, plane);
+        vec2 along = vec2(dot(half_space.xyz, s.c), dot(half_space.xyz, c_step));
+        vec3 nearest = product(offset, offset_step, cross(s.c, half_space.xyz), cross(c_step, half_space.xyz));
         for (uint row = 0u; row < ROWS; row++) {
             float y = row_place(row);
-            float value = form.w + quadratic(nearest, y) * inverse[row];
+            float value = half_space.w + quadratic(nearest, y) * inverse[row];
             float slope = (along.x + y * along.y) * sqrt(inverse[row]);
             if (!(whole[row] > 0.0) || slope == 0.0) {
                 bool is_inside = value > 0.0 || (value == 0.0 && (flags & CUT_UNION) == 0u);

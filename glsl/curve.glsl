@@ -25,7 +25,7 @@ const float CURVE_TOLERANCE = 1.5e-4;
 // Everything needed to evaluate the exact form at a point of the splat.
 struct CurveSource {
     vec4 h0, h1, h2; // header of the cutoff record
-    vec4 plane; // in the beam form
+    vec4 half_space; // in the beam form
     vec2 centre; // relative to the principal point, px
     vec3 conic; // Cholesky factor, 1/px
 };
@@ -35,7 +35,7 @@ float exact_z(CurveSource source, vec2 uv) {
     vec2 delta = vec2(dx, (uv.y - source.conic.y * dx) / source.conic.z);
     Sight sight = sight_through(source.h0, source.h1, source.h2, source.centre + delta, delta);
     bool far;
-    return beam_z(sight, determinant(sight), source.plane, far);
+    return beam_z(sight, determinant(sight), source.half_space, far);
 }
 
 // The samples: eight on each of five rings around the centre, every other ring turned by half a step. The first two are

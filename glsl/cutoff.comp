@@ -23,8 +23,8 @@ vec4 beam_plane(vec4 half_space) {
 // mean g + k.delta and variance s^2 (the update of a Kalman filter that has observed the pixel):
 //   k = S^-1 B a, s^2 = |a|^2 - (B a)^T S^-1 (B a), with S = B B^T + L the splat's 2D covariance,
 // so the share on the visible side is Phi((g + k.delta) / s). Both written as sums of squares over det S.
-vec4 affine_plane(Footprint f, vec4 plane) {
-    vec3 a = plane.xyz;
+vec4 affine_plane(Footprint f, vec4 half_space) {
+    vec3 a = half_space.xyz;
     vec3 c = cross(f.b1, f.b2);
     vec3 a1 = cross(a, f.b1);
     vec3 a2 = cross(a, f.b2);
@@ -32,11 +32,11 @@ vec4 affine_plane(Footprint f, vec4 plane) {
     float variance = ac * ac + f.low_pass * (dot(a1, a1) + dot(a2, a2)) + f.low_pass * f.low_pass * dot(a, a);
     vec2 slope = vec2(dot(c, a2) + f.low_pass * dot(a, f.b1), -dot(c, a1) + f.low_pass * dot(a, f.b2));
     if (!(variance > 0.0)) {
-        return vec4(plane.w >= 0.0 ? 40.0 : -40.0, 0.0, 0.0, 0.0);
+        return vec4(half_space.w >= 0.0 ? 40.0 : -40.0, 0.0, 0.0, 0.0);
     }
     float inverse = inversesqrt(variance / f.det);
     // Within what the rasteriser carries: beyond 40 deviations all distances are one.
-    return vec4(clamp(plane.w * inverse, -1e20, 1e20), slope * (f.scale / f.det * inverse), 0.0);
+    return vec4(clamp(half_space.w * inverse, -1e20, 1e20), slope * (f.scale / f.det * inverse), 0.0);
 }
 
 void main() {
@@ -61,25 +61,25 @@ void main() {
     uint base = cut * FRAME.weight.cut_stride;
     uint at = base + CUT_HEADER;
     bool is_union = LAYER.region.op == OP_OR && LAYER.region.surface_count > 1u;
-    vec4 form;
+    vec4 half_space;
     for (uint i = 0u; i < LAYER.region.surface_count; i++) {
         uint surface = LAYER.region.first_surface + i;
         // A surface that keeps the whole splat changes no intersection, one that drops it no union.
         if (surface_gaussian_side(surface, f.layer_factor, position, deviations) != side_undecided()) {
-            form = beam_plane(surface_half_space(surface, f.layer_factor, position));
-            cut_records.at[at++] = is_union ? -form : form;
+            half_space = beam_plane(surface_half_space(surface, f.layer_factor, position));
+            cut_records.at[at++] = is_union ? -half_space : half_space;
         }
     }
     uint count = at - base - CUT_HEADER;
     uint flags = count << CUT_COUNT_SHIFT;
     if (is_union && count == 1u && !front && FRAME.region.mode == MODE_EXACT) {
-        cut_records.at[at - 1u] = form; // written again as it is: without CUT_UNION it is read so
+        cut_records.at[at - 1u] = half_space; // written again as it is: without CUT_UNION it is read so
     } else if (is_union) {
         flags |= CUT_UNION;
     }
     if (!beam && count == 1u) {
         cut_records.at[base] = vec4(vec3(0.0), float(flags));
-        cut_records.at[at - 1u] = affine_plane(f, form);
+        cut_records.at[at - 1u] = affine_plane(f, half_space);
         cut_records.at[at] = vec4(0.0);
         return;
     }
@@ -107,7 +107,7 @@ void main() {
 
     // A switch of zero asks for the exact form itself.
     if (FRAME.region.mode == MODE_EXACT && FRAME.weight.form == FORM_AUTO && FRAME.weight.beam_switch > 0.0 && count == 1u && !front) {
-        source.plane = form;
+        source.half_space = half_space;
         source.centre = f.centre - FRAME.view.focal.zw;
         source.conic = cholesky(f);
         CurveSamples samples = sampled(source, extent);

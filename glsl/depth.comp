@@ -49,12 +49,12 @@ void main() {
         float variance = covariance(f, c, a, a);
         float inverse = inversesqrt(max(variance / f.det, 1e-30));
         float z = clamp(distance * inverse, -1e20, 1e20);
-        vec4 form = vec4(z, slope_of(f, c, a) * inverse, covariance(f, c, a, f.m3) / f.det * inverse);
+        vec4 bound = vec4(z, slope_of(f, c, a) * inverse, covariance(f, c, a, f.m3) / f.det * inverse);
         bool far = keeps_far(dot(a, c), a);
         if (far && z < depth.far.x) {
-            depth.far = form;
+            depth.far = bound;
         } else if (!far && z < depth.near.x) {
-            depth.near = form;
+            depth.near = bound;
         }
     }
     depths.at[survivor] = depth;

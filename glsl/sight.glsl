@@ -30,8 +30,8 @@ float determinant(Sight s) {
 }
 
 // `exact`, perspective included: the same update as the affine form with this pixel's own gradients.
-float beam_z(Sight s, float det, vec4 plane, out bool far) {
-    vec3 a = plane.xyz;
+float beam_z(Sight s, float det, vec4 half_space, out bool far) {
+    vec3 a = half_space.xyz;
     vec3 a1 = cross(a, s.b1);
     vec3 a2 = cross(a, s.b2);
     float along = dot(a, s.c);
@@ -39,7 +39,7 @@ float beam_z(Sight s, float det, vec4 plane, out bool far) {
     float variance = along * along + s.low_pass * (dot(a1, a1) + dot(a2, a2))
         + s.low_pass * s.low_pass * dot(a, a);
     vec2 k = vec2(dot(s.c, a2) + s.low_pass * dot(a, s.b1), -dot(s.c, a1) + s.low_pass * dot(a, s.b2));
-    float mean = plane.w + dot(k, s.delta) / det;
+    float mean = half_space.w + dot(k, s.delta) / det;
     return mean * inversesqrt(max(variance / det, 1e-30));
 }
 

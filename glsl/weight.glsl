@@ -88,9 +88,9 @@ float chord_weight(uint base, uint flags, vec2 delta, vec2 place) {
     }
     bool inside = true;
     for (uint plane = 0u; plane < count; plane++) {
-        vec4 form = plane_of(base, plane);
-        float value = form.w + dot(form.xyz, nearest);
-        float slope = dot(form.xyz, direction);
+        vec4 half_space = plane_of(base, plane);
+        float value = half_space.w + dot(half_space.xyz, nearest);
+        float slope = dot(half_space.xyz, direction);
         if (miss || slope == 0.0) {
             // The plane itself is visible, so it is no part of a complement.
             inside = inside && (value > 0.0 || (value == 0.0 && (flags & CUT_UNION) == 0u));

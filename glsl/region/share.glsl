@@ -17,10 +17,10 @@ vec4 plane_of(uint base, uint plane) {
 }
 
 Threshold threshold_of(Sight s, float det, uint base, uint plane) {
-    vec4 form = plane_of(base, plane);
+    vec4 half_space = plane_of(base, plane);
     Threshold t;
-    t.z = beam_z(s, det, form, t.far);
-    t.direction = direction(s, form.xyz);
+    t.z = beam_z(s, det, half_space, t.far);
+    t.direction = direction(s, half_space.xyz);
     return t;
 }
 

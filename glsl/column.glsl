@@ -97,12 +97,12 @@ struct ColumnSight {
     vec3 det;
 };
 
-// `delta` and `place` are the middle's.
-ColumnSight column_sight(uint base, vec2 delta, vec2 place) {
+// `delta` and `pixel_centre` are the middle's.
+ColumnSight column_sight(uint base, vec2 delta, vec2 pixel_centre) {
     vec4 h1 = cut_records.at[base + 1u];
     vec4 h2 = cut_records.at[base + 2u];
     ColumnSight column;
-    Sight s = sight_through(cut_records.at[base], h1, h2, place - principal_point(), delta);
+    Sight s = sight_through(cut_records.at[base], h1, h2, pixel_centre - principal_point(), delta);
     column.s = s;
     column.b2_step = -h2.xyz;
     column.c_step = cross(s.b1, column.b2_step);
@@ -135,10 +135,11 @@ void beam_zs(ColumnSight column, vec4 half_space, out float z[ROWS]) {
     }
 }
 
-// `exact` with the camera outside the splat: exact_weight of glsl/weight.glsl. `delta` and `place` are the first row's.
-void exact_weights(uint base, uint flags, vec2 delta, vec2 place, float alpha[ROWS], out float weight[ROWS]) {
+// `exact` with the camera outside the splat: exact_weight of glsl/weight.glsl. `delta` and `pixel_centre` are the first
+// row's.
+void exact_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS]) {
     vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
-    ColumnSight column = column_sight(base, delta + middle, place + middle);
+    ColumnSight column = column_sight(base, delta + middle, pixel_centre + middle);
     float z[ROWS];
     uint count = flags >> CUT_COUNT_SHIFT;
     if (!SEVERAL || count == 1u) {
@@ -182,18 +183,19 @@ void exact_weights(uint base, uint flags, vec2 delta, vec2 place, float alpha[RO
     for (; edges != 0u; edges &= edges - 1u) {
         uint edge = uint(findLSB(edges));
         vec2 below = vec2(0.0, float(edge));
-        float share = exact_weight(base, flags, delta + below, place + below);
+        float share = exact_weight(base, flags, delta + below, pixel_centre + below);
         for (uint row = 0u; row < ROWS; row++) {
             weight[row] = row == edge ? share : weight[row];
         }
     }
 }
 
-// `rara` with the camera outside the splat: chord_weight of glsl/weight.glsl. `delta` and `place` are the first row's.
-void chord_weights(uint base, uint flags, vec2 delta, vec2 place, out float weight[ROWS]) {
+// `rara` with the camera outside the splat: chord_weight of glsl/weight.glsl. `delta` and `pixel_centre` are the first
+// row's.
+void chord_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, out float weight[ROWS]) {
     uint count = flags >> CUT_COUNT_SHIFT;
     vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
-    ColumnSight column = column_sight(base, delta + middle, place + middle);
+    ColumnSight column = column_sight(base, delta + middle, pixel_centre + middle);
     Sight s = column.s;
     vec3 c_step = column.c_step;
     // |offset|^2 / |c|^2 is the square of the line's distance from the centre, offset x c / |c|^2 its nearest point.
@@ -242,21 +244,21 @@ void chord_weights(uint base, uint flags, vec2 delta, vec2 place, out float weig
     }
 }
 
-// The weight of each pixel of a column. `delta`, `uv` and `place` are the first row's, `v_step` is how much v changes a
-// row.
-void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 place, float alpha[ROWS], out float weight[ROWS]) {
+// The weight of each pixel of a column. `delta`, `uv` and `pixel_centre` are the first row's; v changes by `v_step` a row.
+void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 pixel_centre, float alpha[ROWS],
+                 out float weight[ROWS]) {
     uint base = cut * push.params.cut_stride;
     uint flags = to_uint(cut_records.at[base].w);
     if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         curve_weights(base, uv.x, uv.y, v_step, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) == 0u) {
-        exact_weights(base, flags, delta, place, alpha, weight);
+        exact_weights(base, flags, delta, pixel_centre, alpha, weight);
     } else if (CLIP_MODE == MODE_RARA && (flags & CUT_FRONT) == 0u) {
-        chord_weights(base, flags, delta, place, weight);
+        chord_weights(base, flags, delta, pixel_centre, weight);
     } else {
         for (uint row = 0u; row < ROWS; row++) {
             vec2 below = vec2(0.0, float(row));
-            weight[row] = cut_weight(cut, delta + below, uv + v_step * below, place + below);
+            weight[row] = cut_weight(cut, delta + below, uv + v_step * below, pixel_centre + below);
         }
     }
 }

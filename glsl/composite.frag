@@ -13,9 +13,9 @@ layout(location = 0) flat in uvec2 filled; // of this quad's tiles, as composite
 layout(location = 0) out vec4 colour;
 
 void main() {
-    vec2 place = gl_FragCoord.xy - push.params.origin;
+    vec2 pixel_centre = gl_FragCoord.xy - push.params.origin;
     uvec2 size = uvec2(FRAME.view.size.xy);
-    uvec2 pixel = min(uvec2(place), size - 1u);
+    uvec2 pixel = min(uvec2(pixel_centre), size - 1u);
     uvec2 tile = pixel / uvec2(TILE_WIDTH, TILE_HEIGHT) % QUAD_TILES;
     uint bit = tile.y * QUAD_TILES + tile.x;
     bool is_filled = ((bit < 32u ? filled.x : filled.y) >> bit % 32u & 1u) != 0u;

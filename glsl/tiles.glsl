@@ -53,7 +53,7 @@ BUFFER(readonly, 7, uint, occluders)
 #endif
 
 // An invocation's pixels.
-vec2 place; // the first one's centre
+vec2 pixel_centre; // of the first one
 vec3 sum[ROWS];
 float transmittance[ROWS];
 float occluder[ROWS]; // the farness beyond which splats are hidden
@@ -73,7 +73,7 @@ void weigh(Seen splat, vec2 delta, vec2 uv, inout float alpha[ROWS], out float w
     if (CLIP_MODE == MODE_EXACT && splat.linear.x > -Z_RANGE) {
         carried_weights(splat.linear, splat.curvature, delta, alpha, weight);
     } else {
-        cut_weights(record_number(splat.linear), delta, uv, splat.conic_opacity.x, place, alpha, weight);
+        cut_weights(record_number(splat.linear), delta, uv, splat.conic_opacity.x, pixel_centre, alpha, weight);
     }
     bool whole = true;
     for (uint row = 0u; row < ROWS; row++) {
@@ -101,7 +101,7 @@ void blend(Seen splat, vec2 delta, float far) {
     float v = splat.centre_conic.w * delta.x;
     float alpha[ROWS];
     for (uint row = 0u; row < ROWS; row++) {
-        float y = place.y + float(row) - splat.centre_conic.y;
+        float y = pixel_centre.y + float(row) - splat.centre_conic.y;
         float w = v + splat.conic_opacity.x * y;
         float a = min(ALPHA_MAX, splat.conic_opacity.y * exp(-0.5 * (u * u + w * w)));
         alpha[row] = a >= ALPHA_MIN ? a : 0.0;
@@ -150,7 +150,7 @@ void main() {
     }
     uvec2 size = uvec2(FRAME.view.size.xy);
     uvec2 pixel = tile_at * uvec2(TILE_WIDTH, TILE_HEIGHT) + gl_LocalInvocationID.xy * uvec2(1u, ROWS);
-    place = vec2(pixel) + 0.5;
+    pixel_centre = vec2(pixel) + 0.5;
     // Pixels beyond the picture keep nobody waiting.
     done = pixel.x >= size.x || pixel.y >= size.y;
     for (uint row = 0u; row < ROWS; row++) {
@@ -184,7 +184,7 @@ void main() {
                 splat.curvature = OF(i, my_curvature);
             }
             float far = DEPTH_FORM != DEPTH_NONE ? farness(host_depth(OF(i, my_depth))) : 0.0;
-            vec2 delta = place - splat.centre_conic.xy;
+            vec2 delta = pixel_centre - splat.centre_conic.xy;
             if (!done && !(RECLIPPED && is_away(splat, delta))) {
                 blend(splat, delta, far);
             }

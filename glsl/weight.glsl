@@ -10,8 +10,8 @@ vec2 principal_point() {
     return push.params.principal_point;
 }
 
-Sight line_of_sight(uint base, vec2 delta, vec2 place) {
-    vec2 pixel = place - principal_point();
+Sight line_of_sight(uint base, vec2 delta, vec2 pixel_centre) {
+    vec2 pixel = pixel_centre - principal_point();
     return sight_through(cut_records.at[base], cut_records.at[base + 1u], cut_records.at[base + 2u], pixel, delta);
 }
 
@@ -27,9 +27,9 @@ float tail_ratio(float z, float front) {
 }
 
 // `exact`, with the planes of a record.
-float exact_weight(uint base, uint flags, vec2 delta, vec2 place) {
+float exact_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
     uint count = flags >> CUT_COUNT_SHIFT;
-    Sight s = line_of_sight(base, delta, place);
+    Sight s = line_of_sight(base, delta, pixel_centre);
     float det = determinant(s);
     if (!SEVERAL || count == 1u) {
         bool far;
@@ -41,9 +41,9 @@ float exact_weight(uint base, uint flags, vec2 delta, vec2 place) {
 // The same with the camera inside the splat: only what is in front of the eye counts, as part and as whole. Such a splat
 // is so large that the low-pass is nothing: the planes are thresholds in one variable along the ray, those that keep the
 // far side bound it from below, as the eye does, the others from above.
-float front_weight(uint base, uint flags, vec2 delta, vec2 place) {
+float front_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
     uint count = flags >> CUT_COUNT_SHIFT;
-    Sight s = line_of_sight(base, delta, place);
+    Sight s = line_of_sight(base, delta, pixel_centre);
     float det = determinant(s);
     float far = 1.0;
     float gone = 0.0;
@@ -63,9 +63,9 @@ float front_weight(uint base, uint flags, vec2 delta, vec2 place) {
 // `rara`: the visible share of the chord that the ray cuts out of the ellipsoid (paper section 3.3 and eq. 11). The
 // line is p + t c/|c| with p its point nearest the centre; |p|^2 = |delta.x b2 - delta.y b1|^2 / |c|^2 needs no
 // inverse of M and no B^2 - 4 A C.
-float chord_weight(uint base, uint flags, vec2 delta, vec2 place) {
+float chord_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
     uint count = flags >> CUT_COUNT_SHIFT;
-    Sight s = line_of_sight(base, delta, place);
+    Sight s = line_of_sight(base, delta, pixel_centre);
     float cc = dot(s.c, s.c);
     float sigma = push.params.sigma;
     bool degenerate = !(cc > 0.0);
@@ -104,16 +104,16 @@ float chord_weight(uint base, uint flags, vec2 delta, vec2 place) {
     return combined(flags, share);
 }
 
-// Which of them by the frame's mode and the record's form. `place` is the pixel's, `delta` the same relative to the
-// splat's centre, `uv` that in the splat's own coordinates (curve.glsl).
-float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 place) {
+// The weight by the frame's mode and the record's form. `delta` is the pixel's centre relative to the splat's centre, `uv`
+// the same in the splat's own coordinates (curve.glsl).
+float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 pixel_centre) {
     uint base = cut * push.params.cut_stride;
     uint flags = to_uint(cut_records.at[base].w);
     if (CLIP_MODE == MODE_RARA) {
-        return chord_weight(base, flags, delta, place);
+        return chord_weight(base, flags, delta, pixel_centre);
     }
     if ((flags & CUT_FRONT) != 0u) {
-        return front_weight(base, flags, delta, place);
+        return front_weight(base, flags, delta, pixel_centre);
     }
     if ((flags & CUT_CURVE) != 0u) {
         vec4 linear = cut_records.at[base];
@@ -126,7 +126,7 @@ float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 place) {
         float third = twist.w + uv.x * wave.w;
         return phi(at + uv.y * (slope + uv.y * (second + uv.y * (third + uv.y * bend.w))));
     }
-    return exact_weight(base, flags, delta, place);
+    return exact_weight(base, flags, delta, pixel_centre);
 }
 
 // The paper scales alpha (eq. 12). The default for `exact` scales optical depth, -ln(1 - alpha): then complementary

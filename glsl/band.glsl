@@ -6,7 +6,7 @@
 // Whether the exact form of a splat follows each pixel's true ray. `sigma` is its largest deviation, the layer's units.
 bool is_beam(Footprint f, float sigma) {
     return FRAME.weight.form == FORM_BEAM
-        || (FRAME.weight.form == FORM_AUTO && (f.clamped || LAYER.view.unit * sigma > FRAME.weight.beam_switch * f.view.z));
+        || (FRAME.weight.form == FORM_AUTO && (f.clamped || LAYER.view.unit * sigma > FRAME.weight.beam_switch * f.view_centre.z));
 }
 
 // How far the band of a splat reaches whose weight follows each pixel's true ray: a pixel at delta sees the point u with
@@ -18,7 +18,7 @@ float beam_band(Footprint f, float extent) {
     if (f.clamped) {
         vec3 b1;
         vec3 b2;
-        screen_gradients(f, f.view.xy / f.view.z, b1, b2);
+        screen_gradients(f, f.view_centre.xy / f.view_centre.z, b1, b2);
         b1 *= f.scale;
         b2 *= f.scale;
         vec3 across = cross(b1, b2);
@@ -35,11 +35,11 @@ float beam_band(Footprint f, float extent) {
         trace /= det;
         stretch = max(1.0, sqrt(trace));
     }
-    float rest = 1.0 - extent * stretch * length(f.m3) / f.view.z;
+    float rest = 1.0 - extent * stretch * length(f.m3) / f.view_centre.z;
     if (rest > WIDENING_REST) {
         return extent * stretch / rest;
     }
-    mat3 m = f.layer_factor;
+    mat3 m = f.axes;
     vec3 eye = f.relative * m / vec3(dot(m[0], m[0]), dot(m[1], m[1]), dot(m[2], m[2]));
     // What is no number bounds nothing: every plane then cuts.
     return length(eye) + BEYOND_EYE;

@@ -54,8 +54,8 @@ uint classify(uint block, uint local) {
     float extent = opacity_extent(opacity);
     // Finite, each for itself, since max() may drop a NaN: deviations beyond the range of single precision have no
     // footprint.
-    bool drawable = all(lessThan(abs(cholesky(f)), vec3(3e38))) && all(lessThan(abs(f.centre), vec2(3e38)));
-    if (!drawable || !covers_a_pixel(f.centre, box_extent(f, extent))) {
+    bool drawable = all(lessThan(abs(conic_of(f)), vec3(3e38))) && all(lessThan(abs(f.screen_centre), vec2(3e38)));
+    if (!drawable || !covers_a_pixel(f.screen_centre, box_half_sides(f, extent))) {
         return SIDE_CULLED;
     }
     if (!CLIP) {
@@ -63,7 +63,7 @@ uint classify(uint block, uint local) {
     }
     float sigma = largest(gaussian.scale.xyz);
     if (FRAME.region.mode == MODE_EXACT && is_beam(f, sigma)) {
-        return gaussian_side(f.layer_factor, gaussian.position_opacity.xyz, band_in_view(f, sigma, extent));
+        return gaussian_side(f.axes, gaussian.position_opacity.xyz, band_in_view(f, sigma, extent));
     }
     return clip_stage_side(block, local);
 }

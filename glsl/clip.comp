@@ -27,7 +27,7 @@ void main() {
     enter_layer_of_block(block);
     if (is_block && local < block_length(block)) {
         Gaussian gaussian = gaussians.at[block * BLOCK_SIZE + local];
-        uint side = gaussian_side(layer_factor(gaussian), gaussian.position_opacity.xyz,
+        uint side = gaussian_side(half_axes(gaussian), gaussian.position_opacity.xyz,
                                   band(opacity_extent(opacity_in_layer(gaussian))));
         if (side >= SIDE_VISIBLE) {
             // A union does not depend on the order of atomics.

@@ -54,7 +54,7 @@ void main() {
     float sigma = largest(gaussian.scale.xyz);
     float deviations = band_in_view(f, sigma, extent);
 
-    bool front = f.view.z < band(extent) * length(f.m3);
+    bool front = f.view_centre.z < band(extent) * length(f.m3);
     bool beam = FRAME.region.mode == MODE_RARA || is_beam(f, sigma) || (FRAME.weight.form == FORM_AUTO && front);
     front = front && beam;
 
@@ -65,8 +65,8 @@ void main() {
     for (uint i = 0u; i < LAYER.region.surface_count; i++) {
         uint surface = LAYER.region.first_surface + i;
         // A surface that keeps the whole splat changes no intersection, one that drops it no union.
-        if (surface_gaussian_side(surface, f.layer_factor, position, deviations) != side_undecided()) {
-            half_space = beam_plane(surface_half_space(surface, f.layer_factor, position));
+        if (surface_gaussian_side(surface, f.axes, position, deviations) != side_undecided()) {
+            half_space = beam_plane(surface_half_space(surface, f.axes, position));
             cut_records.at[at++] = is_union ? -half_space : half_space;
         }
     }
@@ -91,25 +91,25 @@ void main() {
         return;
     }
 
-    // True rays. The gradients at a pixel are these less its place times e.
-    vec3 b1 = FRAME.view.focal.x / f.view.z * f.m1;
-    vec3 b2 = FRAME.view.focal.y / f.view.z * f.m2;
-    vec3 e = f.m3 / f.view.z;
+    // The weight follows true rays. The gradients at a pixel are these less the pixel's position times `lean`.
+    vec3 b1 = FRAME.view.focal.x / f.view_centre.z * f.m1;
+    vec3 b2 = FRAME.view.focal.y / f.view_centre.z * f.m2;
+    vec3 lean = f.m3 / f.view_centre.z;
     // They grow with the distance from the principal point: scale for the farthest pixel.
     vec2 far = max(abs(FRAME.view.focal.zw), abs(FRAME.view.size.xy - FRAME.view.focal.zw));
-    float size = max(largest(b1) + far.x * largest(e), largest(b2) + far.y * largest(e));
+    float size = max(largest(b1) + far.x * largest(lean), largest(b2) + far.y * largest(lean));
     // Without the low-pass there is nothing to keep in proportion: rara also scales up what is tiny.
     float scale = 1.0 / max(size, FRAME.region.mode == MODE_RARA ? 1e-30 : 1.0);
     CurveSource source;
     source.h0 = vec4(b1 * scale, 0.0);
     source.h1 = vec4(b2 * scale, scale);
-    source.h2 = vec4(e * scale, LOW_PASS * scale * scale);
+    source.h2 = vec4(lean * scale, LOW_PASS * scale * scale);
 
     // A switch of zero asks for the exact form itself.
     if (FRAME.region.mode == MODE_EXACT && FRAME.weight.form == FORM_AUTO && FRAME.weight.beam_switch > 0.0 && count == 1u && !front) {
         source.half_space = half_space;
-        source.centre = f.centre - FRAME.view.focal.zw;
-        source.conic = cholesky(f);
+        source.centre = f.screen_centre - FRAME.view.focal.zw;
+        source.conic = conic_of(f);
         CurveSamples samples = sampled(source, extent);
         Curve square;
         Curve quartic;
@@ -133,7 +133,7 @@ void main() {
     }
     if (front) {
         flags |= CUT_FRONT;
-        cut_records.at[at] = beam_plane(vec4(f.m3, f.view.z));
+        cut_records.at[at] = beam_plane(vec4(f.m3, f.view_centre.z));
     }
     cut_records.at[base] = vec4(source.h0.xyz, float(flags | CUT_BEAM));
     cut_records.at[base + 1u] = source.h1;

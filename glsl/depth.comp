@@ -36,12 +36,12 @@ void main() {
     vec3 c = cross(f.b1, f.b2);
     SplatDepth depth;
     bool is_union = LAYER.region.op == OP_OR;
-    depth.mean = vec4(f.view.z, slope_of(f, c, f.m3), is_union ? 1.0 : 0.0);
+    depth.mean = vec4(f.view_centre.z, slope_of(f, c, f.m3), is_union ? 1.0 : 0.0);
     depth.far = vec4(8.0, 0.0, 0.0, 0.0);
     depth.near = depth.far;
     for (uint i = 0u; i < LAYER.region.surface_count && FRAME.region.mode >= MODE_RARA; i++) {
         vec3 position = gaussian.position_opacity.xyz;
-        vec4 half_space = surface_half_space(LAYER.region.first_surface + i, f.layer_factor, position);
+        vec4 half_space = surface_half_space(LAYER.region.first_surface + i, f.axes, position);
         half_space = is_union ? -half_space : half_space;
         float size = max(largest(half_space.xyz), 1e-30);
         vec3 a = half_space.xyz / size;

@@ -63,14 +63,14 @@ void main() {
     float extent = opacity_extent(opacity);
 
     Splat splat;
-    vec3 conic = cholesky(f);
+    vec3 conic = conic_of(f);
     Carried weight = CUT ? carried_weight(survivors.at[survivor].y) : whole_weight();
     Quad quad = quad_around(f, extent, weight);
-    splat.centre_conic = vec4(f.centre, conic.xy);
+    splat.centre_conic = vec4(f.screen_centre, conic.xy);
     splat.conic_cut = vec4(conic.z, opacity, weight.linear.xy);
     splat.colour_cut = vec4(colour(index, normalize(f.relative / largest(f.relative))), weight.linear.z);
     splat.axes = vec4(quad.first, quad.second);
-    splat.middle = vec4(quad.middle, gaussian.scale.w, f.view.z);
+    splat.middle = vec4(quad.middle, gaussian.scale.w, f.view_centre.z);
     splat.curvature = vec4(weight.curvature, 0.0);
     splats.at[survivor] = splat;
     if (TILES) {
@@ -83,7 +83,7 @@ void main() {
     }
     // Positive floats order like their bits. Counted from the nearest depth that the scene's bounds allow they need
     // fewer of them, and fewer passes of the sort; dropping low bits never turns an order round.
-    uint depth = max(floatBitsToUint(f.view.z), FRAME.order.key_near) - FRAME.order.key_near;
+    uint depth = max(floatBitsToUint(f.view_centre.z), FRAME.order.key_near) - FRAME.order.key_near;
     uint key = min(depth, FRAME.order.key_span) >> FRAME.order.key_shift;
     keys.at[survivor] = key;
     same_keys.at[survivor] = key; // for whichever pass of the sort is the first

@@ -80,13 +80,13 @@ float area(Quad quad) {
 Quad quad_around(Footprint f, float extent, Carried weight) {
     Quad quad = along_axes(f, extent);
     if (max(largest(vec3(quad.first, 0.0)), largest(vec3(quad.second, 0.0))) > QUAD_MAX_EXTENT) {
-        vec2 box = box_extent(f, extent);
-        vec2 low = max(f.centre - vec2(widened(box.x), widened(box.y)), vec2(0.0));
-        vec2 high = min(f.centre + vec2(widened(box.x), widened(box.y)), FRAME.view.size.xy);
+        vec2 box = box_half_sides(f, extent);
+        vec2 low = max(f.screen_centre - vec2(widened(box.x), widened(box.y)), vec2(0.0));
+        vec2 high = min(f.screen_centre + vec2(widened(box.x), widened(box.y)), FRAME.view.size.xy);
         // A centre far outside the picture is known to a few units in its last place only, and the corners are sums
         // with it.
-        vec2 half_sides = 0.5 * (high - low) + 1.0 + 1e-6 * abs(f.centre);
-        return Quad(0.5 * (low + high) - f.centre, vec2(half_sides.x, 0.0), vec2(0.0, half_sides.y));
+        vec2 half_sides = 0.5 * (high - low) + 1.0 + 1e-6 * abs(f.screen_centre);
+        return Quad(0.5 * (low + high) - f.screen_centre, vec2(half_sides.x, 0.0), vec2(0.0, half_sides.y));
     }
     float steepness = length(weight.linear.yz);
     if (abs(weight.linear.x) < Z_RANGE && steepness > 0.0) {

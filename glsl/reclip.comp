@@ -38,7 +38,7 @@ uint gaussian_side_now(uint block, uint index) {
     Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
     float extent = opacity_extent(opacity_in_layer(gaussian));
-    return gaussian_side(f.layer_factor, gaussian.position_opacity.xyz, band_in_view(f, largest(gaussian.scale.xyz), extent));
+    return gaussian_side(f.axes, gaussian.position_opacity.xyz, band_in_view(f, largest(gaussian.scale.xyz), extent));
 }
 
 bool is_in_view(uint block, uint local) {

@@ -10,10 +10,10 @@ BUFFER(readonly, 1, Surface, surfaces)
 #include "region/plane.glsl"
 
 // On which side of a surface a Gaussian is whose band reaches so many standard deviations.
-uint surface_gaussian_side(uint surface, mat3 layer_factor, vec3 position, float deviations) {
+uint surface_gaussian_side(uint surface, mat3 axes, vec3 position, float deviations) {
     switch (surfaces.at[surface].kind) {
     default: // SURFACE_PLANE
-        return plane_gaussian_side(surface, layer_factor, position, deviations);
+        return plane_gaussian_side(surface, axes, position, deviations);
     }
 }
 
@@ -27,10 +27,10 @@ uint surface_box_side(uint surface, vec3 middle, vec3 half_size, float support) 
 
 // The half-space that a surface keeps of a Gaussian that it cuts: its normal in the Gaussian's unit space, and the centre's
 // distance, the layer's units.
-vec4 surface_half_space(uint surface, mat3 layer_factor, vec3 position) {
+vec4 surface_half_space(uint surface, mat3 axes, vec3 position) {
     switch (surfaces.at[surface].kind) {
     default: // SURFACE_PLANE
-        return plane_half_space(surface, layer_factor, position);
+        return plane_half_space(surface, axes, position);
     }
 }
 

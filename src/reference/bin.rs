@@ -13,8 +13,8 @@ use crate::limits::{ALPHA_MIN_INVERSE, TILE_HEIGHT, TILE_WIDTH};
 pub struct Outline<T> {
     /// The centre, pixels.
     pub centre: [T; 2],
-    /// Cholesky factors k0, k1, k2 of the footprint's inverse covariance, 1/pixels.
-    pub factors: [T; 3],
+    /// The Cholesky factor k0, k1, k2 of the footprint's inverse covariance, 1/pixels.
+    pub conic: [T; 3],
     /// Opacity at the centre, 0 to 1.
     pub opacity: T,
     /// First and last x, and first and last y, of the quad that it is drawn with, pixels.
@@ -37,7 +37,7 @@ impl<T: Real> Outline<T> {
     /// difference, which is off by the root of single precision.
     pub fn margin(&self) -> T {
         let [x, y] = self.centre.map(|c| c.abs());
-        T::of(0.01) + T::of(4e-4) * self.extent() / self.factors[0] + T::of(1e-6) * x.max(y)
+        T::of(0.01) + T::of(4e-4) * self.extent() / self.conic[0] + T::of(1e-6) * x.max(y)
     }
 
     fn extent(&self) -> T {
@@ -47,7 +47,7 @@ impl<T: Real> Outline<T> {
 
     /// The tiles of a picture of `size` pixels that the splat reaches, with a margin in pixels.
     pub fn spans(&self, size: [u32; 2], margin: T) -> Vec<Span> {
-        let ([k0, k1, k2], extent) = (self.factors, self.extent());
+        let ([k0, k1, k2], extent) = (self.conic, self.extent());
         let k = k0 * k0 + k1 * k1;
         let tip = -k1 / k2 * (extent / k0);
         let slope = -k1 * k2 / k;

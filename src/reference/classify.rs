@@ -81,7 +81,7 @@ fn band<T: Real>(
 /// So no ray within K deviations passes farther than `K / (1 - K |e|)`. Where the splat reaches around the eye that has
 /// no bound, but all rays pass through the eye; [`BEYOND_EYE`] deviations beyond it nothing counts.
 fn beam_band<T: Real>(footprint: &Footprint<T>) -> T {
-    let depth_share = footprint.rows[2].length() / footprint.centre.z;
+    let depth_share = footprint.rows[2].length() / footprint.view_centre.z;
     let rest = T::one() - footprint.extent * footprint.stretch * depth_share;
     if rest > T::of(f64::from(WIDENING_REST)) {
         return footprint.extent * footprint.stretch / rest;

@@ -99,7 +99,7 @@ impl<T: Real> SplatDepth<T> {
             shift: T::zero(),
         };
         let mut depth = Self {
-            mean: [footprint.centre.z, x, y],
+            mean: [footprint.view_centre.z, x, y],
             far: open,
             near: open,
             op: clip.op,
@@ -193,8 +193,9 @@ pub fn expected<'a, T: Real>(
         };
         for y in top..=bottom {
             for x in left..=right {
-                let offset =
-                    |at: u32, axis: usize| T::of(f64::from(at) + 0.5) - footprint.pixel[axis];
+                let offset = |at: u32, axis: usize| {
+                    T::of(f64::from(at) + 0.5) - footprint.screen_centre[axis]
+                };
                 let (dx, dy) = (offset(x, 0), offset(y, 1));
                 if let Some(alpha) = splat::alpha(splat, dx, dy, settings.decay_law()) {
                     let [sum, coverage] = &mut pixels[(y * width + x) as usize];

@@ -145,7 +145,7 @@ impl<T: Real> Beam<T> {
         half_spaces: Vec<HalfSpace<T>>,
         op: ClipOp,
     ) -> Self {
-        let (m3, depth) = (footprint.rows[2], footprint.centre.z);
+        let (m3, depth) = (footprint.rows[2], footprint.view_centre.z);
         Self {
             gradients: footprint.true_gradients(view),
             lean: m3 * (T::one() / depth),
@@ -174,7 +174,7 @@ impl<T: Real> Beam<T> {
 
 /// Whether the eye's plane reaches into the splat: the part behind it must not count.
 pub fn holds_the_eye<T: Real>(footprint: &Footprint<T>) -> bool {
-    footprint.centre.z < footprint.extent * footprint.rows[2].length()
+    footprint.view_centre.z < footprint.extent * footprint.rows[2].length()
 }
 
 /// What [`share`] says where the eye is within the splat: of what is before it, the part beyond `front` on the ray.

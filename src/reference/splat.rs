@@ -62,12 +62,12 @@ fn draw_band<T: Real>(
     let mut blended = vec![[T::zero(); 4]; pixels.len()];
     for splat in splats {
         for (y, row) in (top..).zip(blended.chunks_mut(width as usize)) {
-            let dy = T::of(f64::from(y) + 0.5) - splat.footprint.pixel[1];
+            let dy = T::of(f64::from(y) + 0.5) - splat.footprint.screen_centre[1];
             let Some((first, last)) = row_span(&splat.footprint, dy, width) else {
                 continue;
             };
             for (x, pixel) in (first..=last).zip(&mut row[first as usize..]) {
-                let dx = T::of(f64::from(x) + 0.5) - splat.footprint.pixel[0];
+                let dx = T::of(f64::from(x) + 0.5) - splat.footprint.screen_centre[0];
                 if let Some(alpha) = alpha(splat, dx, dy, law) {
                     let colour = match settings.show {
                         Show::Colour => splat.colour,
@@ -139,11 +139,11 @@ fn blend<T: Real>(pixel: &mut [T; 4], alpha: T, colour: [T; 3]) {
 /// The pixels of one row that a footprint can reach, a pixel more on either side. In double precision for either type:
 /// it must only never be too short.
 fn row_span<T: Real>(footprint: &Footprint<T>, dy: T, width: u32) -> Option<(u32, u32)> {
-    let [k0, k1, k2] = footprint.factors.map(T::wide);
+    let [k0, k1, k2] = footprint.conic.map(T::wide);
     let (dy, reach, centre) = (
         dy.wide(),
         footprint.extent.wide(),
-        footprint.pixel[0].wide(),
+        footprint.screen_centre[0].wide(),
     );
     // q = (k0 dx)^2 + (k1 dx + k2 dy)^2 is at its least in this row at `middle`, and at most K^2 within `half` of it.
     let squares = k0 * k0 + k1 * k1;

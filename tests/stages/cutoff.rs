@@ -93,7 +93,7 @@ fn compare(
         let twin = cutoff::cutoff(&stages.scene, index, &footprint, &single, clip, settings);
         let Some(twin) = twin else { continue };
         // Along true rays a record's gradients are those of a pixel on the principal axis.
-        let aside = [0, 1].map(|axis| footprint.pixel[axis] - single.principal[axis]);
+        let aside = [0, 1].map(|axis| footprint.screen_centre[axis] - single.principal[axis]);
         let flags = record[0][3] as u32;
         let count = (flags >> 8) as usize;
         let is_alone = count == 1 && settings.mode == Mode::Exact && flags & FRONT == 0;
@@ -145,7 +145,7 @@ fn compare(
 
 /// Offsets within the contour of 1/255, pixels, and where they are in deviations.
 fn within<T: Real>(f: &Footprint<T>) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
-    let [k0, k1, k2] = f.factors.map(T::wide);
+    let [k0, k1, k2] = f.conic.map(T::wide);
     let reach = f.extent.wide();
     (0..25).map(move |step| {
         let turn = f64::from(step) * 2.399_963;

@@ -8,7 +8,7 @@
 // Parameters: before it includes anything, a shader that has some declares a struct and says which it is, as in
 //     struct Params { uint pass; };
 //     #define PARAMS Params
-// and uses push.params.pass. Numbers that tell pipelines apart are specialisation constants with names.
+// and uses push.params.pass. Numbers in which pipelines differ are specialisation constants with names.
 //
 // build.rs reads all three from the SPIR-V and makes Rust structs of them (src/codegen), so that a pass that lacks one or
 // gives it another type does not compile.

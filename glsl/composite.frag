@@ -9,7 +9,7 @@ struct Params {
 
 BUFFER(readonly, 1, vec4, picture)
 
-layout(location = 0) flat in uvec2 filled; // of this quad's tiles, as composite.vert tells
+layout(location = 0) flat in uvec2 filled; // of this quad's tiles, as composite.vert says
 layout(location = 0) out vec4 colour;
 
 void main() {

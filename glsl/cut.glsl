@@ -36,7 +36,7 @@ const float Z_RECORD = -2e30;
 const float Z_CUT_AWAY = 4e30;
 
 // Whether a plane keeps the far part of a line of sight: by its normal's component along the line. Where that is zero
-// (a Gaussian without thickness) any fixed rule would do, if it told opposed planes apart: the normal's first non-zero
+// (a Gaussian without thickness) any fixed rule would do, if it distinguished opposed planes: the normal's first non-zero
 // component does.
 bool keeps_far(float along, vec3 normal) {
     float first = along != 0.0 ? along : normal.x != 0.0 ? normal.x : normal.y != 0.0 ? normal.y : normal.z;

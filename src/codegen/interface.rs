@@ -194,14 +194,14 @@ fn constants(constants: &[Constant]) -> String {
         return String::new();
     }
     let mut out = String::from(
-        "/// Its specialisation constants: they tell one of its pipelines from another.\n\
+        "/// Its specialisation constants: its pipelines differ in them.\n\
          #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]\npub(crate) struct Constants {\n",
     );
     let mut words = String::new();
     for Constant { id, name, scalar } in constants {
         assert!(
             *scalar != Scalar::Float,
-            "{name}: a float cannot tell pipelines apart"
+            "{name}: pipelines cannot differ in a float"
         );
         writeln!(out, "pub(crate) {name}: {},", scalar.rust()).unwrap();
         let word = match scalar {

@@ -113,7 +113,7 @@ fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// FNV-1a of 64 bits: it tells versions apart, and keeps nobody out.
+/// FNV-1a of 64 bits: it distinguishes versions, and keeps nobody out.
 struct Hash(u64);
 
 impl Hash {
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn every_change_is_noticed_and_told_by_its_shader() {
+    fn every_change_is_noticed_and_named_by_its_shader() {
         let folder = std::env::temp_dir().join(format!("rara-manifest-{}", std::process::id()));
         let spirv = folder.join("spirv");
         fs::create_dir_all(&spirv).unwrap();

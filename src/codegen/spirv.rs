@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn a_compute_shader_tells_its_buffers_params_and_constants() {
+    fn a_compute_shader_declares_its_buffers_params_and_constants() {
         let found = declarations(&module("sort_scan.comp.bound.spv"));
         let buffers: Vec<_> = found
             .buffers

@@ -71,7 +71,7 @@ fn with<R>(act: impl FnOnce(&mut State) -> R) -> R {
     STATE.with_borrow_mut(act)
 }
 
-/// An instance under validation whose devices are as `pretence` says and fail as told from then on.
+/// An instance under validation whose devices are as `pretence` says and fail as `set_among` asks from then on.
 pub(crate) fn instance(pretence: Option<Pretence>) -> Instance {
     let mut instance = Instance::new("rara", true, &[]).expect("the validation layer");
     let raw = instance.raw.clone();
@@ -95,7 +95,7 @@ pub(crate) fn instance(pretence: Option<Pretence>) -> Instance {
     instance
 }
 
-/// A device under validation that fails as told.
+/// A device under validation that fails as `set_among` asks.
 pub(crate) fn device(pretence: Option<Pretence>) -> Result<Device> {
     let desc = DeviceDesc {
         selector: std::env::var("RARA_TEST_DEVICE").ok(),
@@ -205,7 +205,7 @@ fn under_label(call: &'static str) {
     });
 }
 
-/// Functions that fail when they are due, or tell something; the others are the driver's.
+/// Functions that fail when they are due, or report something; the others are the driver's.
 macro_rules! functions {
     (
         fallible { $($fallible:ident = $name:literal: $pfn:ident($($arg:ident: $type:ty),*)

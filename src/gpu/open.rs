@@ -23,7 +23,7 @@ pub struct DeviceDesc {
     pub validation: bool,
     /// Enable pipeline statistics where the device has them.
     pub statistics: bool,
-    /// What drivers and capture tools are told.
+    /// The name that drivers and capture tools show.
     pub application_name: String,
 }
 

@@ -8,7 +8,7 @@ use super::Device;
 use super::failure::failed;
 use crate::Result;
 
-/// A command buffer for one submission at a time, with the fence that tells when it is done.
+/// A command buffer for one submission at a time, with the fence that says when it is done.
 pub(super) struct OneOff {
     pool: vk::CommandPool,
     cmd: vk::CommandBuffer,

@@ -24,7 +24,7 @@ struct Chain {
     handle: vk::SwapchainKHR,
     extent: vk::Extent2D,
     transform: vk::SurfaceTransformFlagsKHR,
-    /// The window's size for which it was made, as the window system told it.
+    /// The window's size for which it was made, as the window system reported it.
     window: (u32, u32),
     images: Vec<Presented>,
     /// It must be made anew before the next frame.
@@ -37,7 +37,7 @@ struct Presented {
     image: vk::Image,
     view: vk::ImageView,
     /// Signalled when the image is drawn. One for each image and not for each frame in flight: only acquiring the image
-    /// again tells that showing it has waited.
+    /// again shows that its presentation has waited.
     drawn: vk::Semaphore,
 }
 

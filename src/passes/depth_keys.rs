@@ -98,7 +98,7 @@ mod tests {
         assert_eq!((keys.shift, keys.passes()), (0, 3));
         let two = keys_of([Vec3::NEG_ONE, Vec3::ONE], 16).unwrap();
         assert_eq!(two.passes(), 2);
-        // Three to five units deep: 2^24 values or fewer in 16 bits, one part in 2^15 told apart.
+        // Three to five units deep: 2^24 values or fewer in 16 bits, which distinguish one part in 2^15.
         assert!(key(two, 4.0) < key(two, 4.0 * (1.0 + 1.0 / 16384.0)));
     }
 

@@ -15,7 +15,7 @@ use crate::gpu::{
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{BufferSet, Compute, ConstantList, ConstantSet, Interface};
 
-/// What tells a pipeline from all others: its shaders, their constants, and what it draws into.
+/// What identifies a pipeline: its shaders, their constants, and what it draws into.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct PipelineKey {
     /// For debuggers, validation messages and errors.

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::settings::{Mode, Settings};
 use crate::types::{self, RegionData};
 
-/// Largest distance of a surface that is told from infinity, world units, and beyond every splat: a power of two below the
+/// Largest distance of a surface that is not taken for infinity, world units, and beyond every splat: a power of two below the
 /// end of single precision's range.
 const FARTHEST: f64 = (1_u128 << 126) as f64;
 
@@ -54,7 +54,7 @@ pub(super) fn surfaces(clip: &Clip) -> impl Iterator<Item = types::Surface> {
     surfaces.into_iter().map(Numbers::packed)
 }
 
-/// What tells one surface from another.
+/// What two surfaces that are not the same differ in.
 #[derive(Clone, Copy, PartialEq)]
 struct Numbers {
     /// `SURFACE_*`.

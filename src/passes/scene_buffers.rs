@@ -164,7 +164,7 @@ impl SceneBuffers {
         let needed = sizes.iter().sum::<u64>();
         if (staging.bytes.len() as u64) < needed {
             return Err(Error::Invalid(format!(
-                "this scene needs {needed} bytes of staging memory and {} were lent; SceneBuffers::staging_bytes tells",
+                "this scene needs {needed} bytes of staging memory and {} were lent; SceneBuffers::staging_bytes says",
                 staging.bytes.len()
             )));
         }

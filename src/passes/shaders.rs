@@ -19,7 +19,7 @@ pub(crate) trait Interface {
     type Buffers<'a>: BufferSet<'a>;
     /// Its parameters, as they lie in the push constants.
     type Params: bytemuck::Pod;
-    /// What tells its pipelines apart.
+    /// What its pipelines differ in.
     type Constants: ConstantSet;
 }
 

@@ -1,5 +1,5 @@
-//! What of a frame the weight of cut splats depends on, fixed in the pipelines that compute it: what a mode does not ask for
-//! does not tell pipelines apart.
+//! The settings that the weight of cut splats depends on, as constants of the pipelines that compute it. Settings that a
+//! mode does not use are left at one value, so that no two pipelines differ in them alone.
 
 use crate::passes::plan::Plan;
 use crate::settings::{Decay, Miss, Settings};

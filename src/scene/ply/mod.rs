@@ -113,7 +113,7 @@ pub fn load_from<R: Read + Seek>(
     Ok(Loaded { gaussians, report })
 }
 
-/// The caller's progress callback, told in bytes that remain.
+/// The caller's progress callback, called with the bytes that remain.
 struct Progress<'a> {
     total: u64,
     call: &'a mut dyn FnMut(u64, u64),

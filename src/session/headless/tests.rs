@@ -228,7 +228,7 @@ fn an_empty_scene_after_another_shows_nothing() {
 }
 
 #[test]
-fn what_is_left_alive_is_told_at_the_end() {
+fn what_is_left_alive_is_reported_at_the_end() {
     let headless = headless();
     // SAFETY: the device is alive; that the fence is never destroyed is what is tested.
     let fence = unsafe {

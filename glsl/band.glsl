@@ -9,10 +9,10 @@ bool is_beam(Footprint f, float sigma) {
         || (FRAME.weight.form == FORM_AUTO && (f.clamped || LAYER.view.unit * sigma > FRAME.weight.beam_switch * f.view_centre.z));
 }
 
-// How far the band of a splat reaches whose weight follows each pixel's true ray: a pixel at delta sees the point u with
-// B u = delta in the footprint, and on its ray u / (1 - e.u), with e = m3 / Z. Where the slope was clamped, the root of the
-// trace of one covariance by the other's inverse bounds how far apart the two footprints are. Around the eye that has no
-// bound, but all rays pass through the eye, and beyond it by BEYOND_EYE deviations nothing counts.
+// How far the band of a splat reaches whose weight follows each pixel's true ray. A pixel at delta sees the point u with
+// B u = delta in the footprint, and on its ray u / (1 - e.u), with the lean e = m3 / Z. Where the slope was clamped, the
+// root of the trace of one covariance by the other's inverse bounds how far apart the two footprints are. Around the eye that
+// has no bound, but all rays pass through the eye, and nothing counts that lies BEYOND_EYE deviations beyond it.
 float beam_band(Footprint f, float extent) {
     float stretch = 1.0;
     if (f.clamped) {
@@ -41,11 +41,11 @@ float beam_band(Footprint f, float extent) {
     }
     mat3 m = f.axes;
     vec3 eye = f.relative * m / vec3(dot(m[0], m[0]), dot(m[1], m[1]), dot(m[2], m[2]));
-    // What is no number bounds nothing: every plane then cuts.
+    // A distance that is no number bounds nothing: every plane then cuts.
     return length(eye) + BEYOND_EYE;
 }
 
-// How far the band reaches, in standard deviations. rara also traces its own ellipsoid.
+// How far the band reaches, in standard deviations. Mode `rara` also traces its own ellipsoid.
 float band(float extent) {
     return FRAME.region.mode == MODE_RARA ? max(extent, FRAME.region.sigma) : extent;
 }

@@ -22,7 +22,7 @@ Carried carried_weight(uint cut) {
     return weight;
 }
 
-// The line beyond which a splat's curve cuts it away, where a record holds that; else the line that there is.
+// The line beyond which a splat is cut away: by its curve where a record holds one, else the given line.
 vec3 cut_away_line_of_record(vec3 line, uint cut, Carried weight, vec3 conic, float extent) {
     uint base = cut * FRAME.weight.cut_stride;
     vec4 linear = cut_records.at[base];

@@ -25,7 +25,7 @@ vec3 product(vec3 a0, vec3 a1, vec3 b0, vec3 b1) {
     return vec3(dot(a0, b0), dot(a0, b1) + dot(a1, b0), dot(a1, b1));
 }
 
-// Phi where it matters: pixels without alpha have no say in whether all of the column is on one side.
+// Computes Phi only where the column is not all on one side; pixels without alpha have no say in that.
 void phi_or_side(float z[ROWS], float alpha[ROWS], out float share[ROWS]) {
     float low = 8.0;
     float high = -8.0;
@@ -44,7 +44,7 @@ void phi_or_side(float z[ROWS], float alpha[ROWS], out float share[ROWS]) {
     }
 }
 
-// Of a splat that carries its curve, a polynomial of degree two in the pixel.
+// The weights of a splat that carries its curve, a polynomial of degree two in the pixel.
 void carried_weights(vec3 linear, vec3 curvature, vec2 delta, float alpha[ROWS], out float weight[ROWS]) {
     float at = linear.x + delta.x * (linear.y + curvature.x * delta.x);
     float slope = linear.z + curvature.y * delta.x;
@@ -56,7 +56,7 @@ void carried_weights(vec3 linear, vec3 curvature, vec2 delta, float alpha[ROWS],
     phi_or_side(z, alpha, weight);
 }
 
-// Whether nothing of a column is visible. Where the frame is not a reclipped one, the tiles' lists leave most of such out.
+// Whether nothing of a column is visible. Outside reclipped frames the tiles' lists leave most such splats out.
 bool is_carried_away(vec3 linear, vec3 curvature, vec2 delta) {
     float at = linear.x + delta.x * (linear.y + curvature.x * delta.x);
     float slope = linear.z + curvature.y * delta.x;
@@ -68,8 +68,8 @@ bool is_carried_away(vec3 linear, vec3 curvature, vec2 delta) {
     return high < -PHI_ONE;
 }
 
-// Of a record that is a curve, a polynomial of degree four in the splat's own coordinates: u is that of the column, v
-// that of the first row, and v_step by how much v changes a row.
+// The weights of a record that is a curve, a polynomial of degree four in the splat's own coordinates: u is the column's,
+// v the first row's, and v changes by v_step a row.
 void curve_weights(uint base, float u, float v, float v_step, float alpha[ROWS], out float weight[ROWS]) {
     vec4 linear = cut_records.at[base];
     vec4 bend = cut_records.at[base + 1u];
@@ -87,8 +87,8 @@ void curve_weights(uint base, float u, float v, float v_step, float alpha[ROWS],
     phi_or_side(z, alpha, weight);
 }
 
-// What all planes of a splat have in common in a column: the line of sight in its middle, by how much b2 and c change a
-// row, and the determinant, a polynomial in the row.
+// What all planes of a splat share in a column: the line of sight in its middle, by how much b2 and c change a row, and
+// the determinant, a polynomial in the row.
 struct ColumnSight {
     Sight s;
     vec3 b2_step;
@@ -97,7 +97,7 @@ struct ColumnSight {
     vec3 det;
 };
 
-// `delta` and `pixel_centre` are the middle's.
+// `delta` and `pixel_centre` are those of the column's middle.
 ColumnSight column_sight(uint base, vec2 delta, vec2 pixel_centre) {
     vec4 h1 = cut_records.at[base + 1u];
     vec4 h2 = cut_records.at[base + 2u];
@@ -148,7 +148,7 @@ void exact_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, float a
         return;
     }
     if (count == 2u && cut_records.at[base + CUT_HEADER].xyz == -cut_records.at[base + CUT_HEADER + 1u].xyz) {
-        // A slab: both planes are thresholds in one variable.
+        // The planes bound a slab: both are thresholds in one variable.
         float other[ROWS];
         beam_zs(column, plane_of(base, 0u), z);
         phi_or_side(z, alpha, weight);
@@ -179,7 +179,7 @@ void exact_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, float a
         weight[row] = combined(flags, weight[row]);
         edges |= opens[row] > 1u && least[row] > -PHI_ONE && alpha[row] > 0.0 ? 1u << row : 0u;
     }
-    // Not a loop over all rows: the body would be there once for each.
+    // A loop over all rows would be unrolled, with the body once for each.
     for (; edges != 0u; edges &= edges - 1u) {
         uint edge = uint(findLSB(edges));
         vec2 below = vec2(0.0, float(edge));

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The tiles' picture, for the blend onto what the host has drawn.
+// Reads the tiles' picture, which is blended onto what the host has drawn.
 struct Params {
     vec2 origin; // where the viewport begins in the attachment, px
 };

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a cutoff Gaussian: everything the fragment stage needs to weight it, into its cutoff record.
+// One invocation a cutoff Gaussian writes its cutoff record: everything that the fragment stage needs to weight it.
 #include "band.glsl"
 #include "region/gaussian_side.glsl"
 #include "cut.glsl"
@@ -13,16 +13,16 @@ BUFFER(readonly, 3, uint, cutoffs)
 BUFFER(readonly, 4, FrameCounts, counts)
 BUFFER(writeonly, 5, vec4, cut_records)
 
-// A plane in the beam form. Dividing by the largest component keeps the squares of sigmas of 1e5 and 1e-7 in range.
+// A half-space in the beam form. Dividing by the largest component keeps the squares of sigmas of 1e5 and 1e-7 in range.
 vec4 beam_plane(vec4 half_space) {
     float size = largest(half_space.xyz);
     return size > 0.0 ? half_space / size : vec4(vec3(0.0), half_space.w >= 0.0 ? 1.0 : -1.0);
 }
 
-// One plane in the affine form. Given the pixel, the Gaussian seen through the low-pass has, along the plane's normal,
+// A half-space in the affine form. Given the pixel, the Gaussian seen through the low-pass has, along the normal a,
 // mean g + k.delta and variance s^2 (the update of a Kalman filter that has observed the pixel):
 //   k = S^-1 B a, s^2 = |a|^2 - (B a)^T S^-1 (B a), with S = B B^T + L the splat's 2D covariance,
-// so the share on the visible side is Phi((g + k.delta) / s). Both written as sums of squares over det S.
+// so the share on the visible side is Phi((g + k.delta) / s). Both are written as sums of squares over det S.
 vec4 affine_plane(Footprint f, vec4 half_space) {
     vec3 a = half_space.xyz;
     vec3 c = cross(f.b1, f.b2);
@@ -35,7 +35,7 @@ vec4 affine_plane(Footprint f, vec4 half_space) {
         return vec4(half_space.w >= 0.0 ? 40.0 : -40.0, 0.0, 0.0, 0.0);
     }
     float inverse = inversesqrt(variance / f.det);
-    // Within what the rasteriser carries: beyond 40 deviations all distances are one.
+    // The rasteriser carries no more than that; beyond 40 deviations all distances are alike.
     return vec4(clamp(half_space.w * inverse, -1e20, 1e20), slope * (f.scale / f.det * inverse), 0.0);
 }
 
@@ -64,7 +64,7 @@ void main() {
     vec4 half_space;
     for (uint i = 0u; i < LAYER.region.surface_count; i++) {
         uint surface = LAYER.region.first_surface + i;
-        // A surface that keeps the whole splat changes no intersection, one that drops it no union.
+        // A surface that keeps the whole splat changes no intersection, and one that drops it changes no union.
         if (surface_gaussian_side(surface, f.axes, position, deviations) != side_undecided()) {
             half_space = beam_plane(surface_half_space(surface, f.axes, position));
             cut_records.at[at++] = is_union ? -half_space : half_space;
@@ -73,7 +73,7 @@ void main() {
     uint count = at - base - CUT_HEADER;
     uint flags = count << CUT_COUNT_SHIFT;
     if (is_union && count == 1u && !front && FRAME.region.mode == MODE_EXACT) {
-        cut_records.at[at - 1u] = half_space; // written again as it is: without CUT_UNION it is read so
+        cut_records.at[at - 1u] = half_space; // not its complement: without CUT_UNION a record holds what is kept
     } else if (is_union) {
         flags |= CUT_UNION;
     }
@@ -84,7 +84,7 @@ void main() {
         return;
     }
     if (!beam) {
-        // Several planes: the footprint's own gradients, the same in all pixels.
+        // Several planes take the footprint's own gradients, which are the same in all pixels.
         cut_records.at[base] = vec4(f.b1, float(flags | CUT_BEAM));
         cut_records.at[base + 1u] = vec4(f.b2, f.scale);
         cut_records.at[base + 2u] = vec4(vec3(0.0), f.low_pass);
@@ -95,10 +95,10 @@ void main() {
     vec3 b1 = FRAME.view.focal.x / f.view_centre.z * f.m1;
     vec3 b2 = FRAME.view.focal.y / f.view_centre.z * f.m2;
     vec3 lean = f.m3 / f.view_centre.z;
-    // They grow with the distance from the principal point: scale for the farthest pixel.
+    // They grow with the distance from the principal point, so the scale is the farthest pixel's.
     vec2 far = max(abs(FRAME.view.focal.zw), abs(FRAME.view.size.xy - FRAME.view.focal.zw));
     float size = max(largest(b1) + far.x * largest(lean), largest(b2) + far.y * largest(lean));
-    // Without the low-pass there is nothing to keep in proportion: rara also scales up what is tiny.
+    // Mode `rara` has no low-pass to keep in proportion, so it also scales up what is tiny.
     float scale = 1.0 / max(size, FRAME.region.mode == MODE_RARA ? 1e-30 : 1.0);
     CurveSource source;
     source.h0 = vec4(b1 * scale, 0.0);

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a survivor: how deep it is in each pixel, and what of that depends on the clip.
+// One invocation a survivor finds how deep it is in each pixel, and how the clip changes that.
 #include "band.glsl"
 #include "region/gaussian_side.glsl"
 #include "cut.glsl"

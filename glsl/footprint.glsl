@@ -1,4 +1,4 @@
-// A Gaussian on the screen: EWA projection as published with 3DGS (Kerbl et al. 2023), in forms without cancelling
+// A Gaussian on the screen, by EWA projection as published with 3DGS (Kerbl et al. 2023), in forms without cancelling
 // determinants. With the view-space factor M (rows m1 m2 m3, covariance M M^T) the screen gradient in the Gaussian's
 // own unit space is b1 = fx/Z (m1 - X/Z m3), b2 = fy/Z (m2 - Y/Z m3); the 2D covariance is
 // [b1.b1 + L, b1.b2; b1.b2, b2.b2 + L] with the low-pass L, and its determinant |b1 x b2|^2 + L(|b1|^2+|b2|^2) + L^2
@@ -95,8 +95,8 @@ Footprint footprint(Gaussian gaussian) {
     return f;
 }
 
-// Cholesky factor k0 k1 k2 of the inverse 2D covariance, 1/px: q = (k0 dx)^2 + (k1 dx + k2 dy)^2. A sum of squares, so
-// alpha never exceeds the opacity, where the three coefficients of the inverse would cancel for needles.
+// The Cholesky factor k0 k1 k2 of the inverse 2D covariance, 1/px: q = (k0 dx)^2 + (k1 dx + k2 dy)^2. This is a sum of
+// squares, so that alpha never exceeds the opacity; the three coefficients of the inverse would cancel for needles.
 vec3 conic_of(Footprint f) {
     float k2 = sqrt(f.xx / f.det);
     return vec3(inversesqrt(f.xx), -k2 * (f.xy / f.xx), k2) * f.scale;

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a survivor: conic, quad and colour for the rasteriser, and the key that orders it.
+// One invocation a survivor computes its conic, quad and colour for the rasteriser, and the key that orders it.
 #include "footprint.glsl"
 #include "quad.glsl"
 #include "spherical_harmonics.glsl"
@@ -8,7 +8,7 @@
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 layout(constant_id = 0) const bool CUT = false;
-// Whether tiles are wanted of it.
+// Whether tiles are wanted.
 layout(constant_id = 2) const bool TILES = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
@@ -29,7 +29,7 @@ vec3 colour(uint index, vec3 direction) {
     sh_basis(direction, FRAME.view.sh_degree, basis);
     uint base = index * sh_words(FRAME.scene.sh_coefficients);
     vec3 sum = 0.5 + basis[0] * sh_constant(base);
-    // A loop a degree: the compiler unrolls what has a fixed length.
+    // Each degree has its own loop, since the compiler unrolls loops of a fixed length.
     if (FRAME.view.sh_degree > 0u) {
         mat3 units = sh_units(base);
         for (uint i = 1u; i < 4u; i++) {
@@ -46,7 +46,7 @@ vec3 colour(uint index, vec3 direction) {
             }
         }
     }
-    // Finite, so that a share of nothing stays nothing.
+    // The colour stays finite: infinity times an alpha of 0 would be no number.
     return clamp(sum, vec3(0.0), vec3(3e38));
 }
 
@@ -82,7 +82,7 @@ void main() {
         tile_masks.at[survivor] = tile_mask(o);
     }
     // Positive floats order like their bits. Counted from the nearest depth that the scene's bounds allow they need
-    // fewer of them, and fewer passes of the sort; dropping low bits never turns an order round.
+    // fewer bits, and the sort fewer passes; dropping low bits never reverses an order.
     uint depth = max(floatBitsToUint(f.view_centre.z), FRAME.order.key_near) - FRAME.order.key_near;
     uint key = min(depth, FRAME.order.key_span) >> FRAME.order.key_shift;
     keys.at[survivor] = key;

@@ -1,4 +1,4 @@
-// The quad a splat is drawn with: a parallelogram that covers every pixel in which it contributes, and few others.
+// The quad that a splat is drawn with: a parallelogram that covers every pixel to which it contributes, and few others.
 #ifndef RARA_QUAD
 #define RARA_QUAD
 #include "footprint.glsl"
@@ -11,8 +11,8 @@ struct Quad {
     vec2 second;
 };
 
-// A little wider than exact: the fragment stage decides what is inside, the quad must only not be too small. Rasterisers
-// may move its corners by half of the least precision that Vulkan allows them, 1/32 px.
+// A little wider than exact: the fragment stage decides what is inside, and the quad must only not be too small.
+// Rasterisers may move its corners by half of the least precision that Vulkan allows them, 1/32 px.
 float widened(float half_side) {
     return 1.001 * half_side + 0.04;
 }
@@ -48,7 +48,7 @@ vec2 kept_interval(float slope, float offset) {
     return vec2(0.5 * (low + high), 0.5 * (high - low));
 }
 
-// What the rasteriser carries of a cut splat's weight: see cut.glsl.
+// The part of a cut splat's weight that the rasteriser carries: see cut.glsl.
 struct Carried {
     vec3 linear; // z at the centre, dz/dx, dz/dy
     vec3 curvature; // the factors of dx^2, dx dy and dy^2
@@ -92,7 +92,7 @@ Quad quad_around(Footprint f, float extent, Carried weight) {
     if (abs(weight.linear.x) < Z_RANGE && steepness > 0.0) {
         vec3 line = vec3(weight.linear.x + TRIM_DEVIATIONS + rise(quad, weight.curvature), weight.linear.yz);
         Quad straight = trimmed(quad, line);
-        // The contour is inside the first quad too, whose bound on the rise serves both.
+        // The contour is inside the first quad too, so its bound on the rise serves both.
         Quad turned = trimmed(along_direction(f, extent, weight.linear.yz / steepness), line);
         return area(turned) < area(straight) ? turned : straight;
     }

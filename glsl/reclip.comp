@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup a block between the clip's old and new surface, one invocation a Gaussian: its class now, and whether what
-// the rasteriser holds of it has to change.
+// One workgroup a block between the clip's old and new surface, one invocation a Gaussian, which finds its side now, and
+// whether what the rasteriser holds of it has to change.
 #include "band.glsl"
 #include "reclip.glsl"
 #include "region/gaussian_side.glsl"
@@ -66,7 +66,7 @@ void main() {
         uint now = gaussian_side_now(block, index);
         uint word = local >> 5;
         uint bit = 1u << (local & 31u);
-        // Unions do not depend on the order of atomics.
+        // Unions do not depend on the order of the atomics.
         if (now == SIDE_VISIBLE) {
             atomicOr(visible_mask[word], bit);
         } else if (now == SIDE_CUTOFF) {

@@ -1,5 +1,5 @@
-// Alpha of a splat in a pixel, by the Cholesky factor of the conic, then, for cut splats only, the clip's weight; 0 where
-// the splat does not count. `weight` is that weight, WEIGHT_WHOLE for a splat that is not cut. Included after weight.glsl.
+// Alpha of a splat in a pixel, from its conic and, for cut splats only, the clip's weight; 0 where the splat does not count.
+// `weight` is that weight, WEIGHT_WHOLE for a splat that is not cut. Included after weight.glsl.
 #ifndef RARA_SPLAT_ALPHA
 #define RARA_SPLAT_ALPHA
 #include "weight_colour.glsl"

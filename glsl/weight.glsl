@@ -1,5 +1,5 @@
-// The weight w of a cut splat in a pixel, and what it does to alpha. Included by what turns splats into pixels, after it
-// has declared the buffer `cut_records`, the constants of weight_constants.glsl, and the parameters sigma, cut_stride and
+// The weight w of a cut splat in a pixel, and what it does to alpha. Included by stages that turn splats into pixels, after
+// they have declared the buffer `cut_records`, the constants of weight_constants.glsl, and the parameters sigma, cut_stride and
 // principal_point.
 #ifndef RARA_WEIGHT
 #define RARA_WEIGHT
@@ -26,7 +26,7 @@ float tail_ratio(float z, float front) {
     return tail_phi(z) / tail_phi(front);
 }
 
-// `exact`, with the planes of a record.
+// The weight of mode `exact`, from the planes of a record.
 float exact_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
     uint count = flags >> CUT_COUNT_SHIFT;
     Sight s = line_of_sight(base, delta, pixel_centre);
@@ -39,8 +39,8 @@ float exact_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
 }
 
 // The same with the camera inside the splat: only what is in front of the eye counts, as part and as whole. Such a splat
-// is so large that the low-pass is nothing: the planes are thresholds in one variable along the ray, those that keep the
-// far side bound it from below, as the eye does, the others from above.
+// is so large that the low-pass is nothing. The planes are thresholds in one variable along the ray: those that keep the
+// far side bound it from below, as the eye does, and the others from above.
 float front_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
     uint count = flags >> CUT_COUNT_SHIFT;
     Sight s = line_of_sight(base, delta, pixel_centre);
@@ -60,8 +60,8 @@ float front_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
     return combined(flags, max(0.0, far - gone));
 }
 
-// `rara`: the visible share of the chord that the ray cuts out of the ellipsoid (paper section 3.3 and eq. 11). The
-// line is p + t c/|c| with p its point nearest the centre; |p|^2 = |delta.x b2 - delta.y b1|^2 / |c|^2 needs no
+// The weight of mode `rara`: the visible share of the chord that the ray cuts out of the ellipsoid (paper section 3.3 and
+// eq. 11). The line is p + t c/|c| with p its point nearest the centre; |p|^2 = |delta.x b2 - delta.y b1|^2 / |c|^2 needs no
 // inverse of M and no B^2 - 4 A C.
 float chord_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
     uint count = flags >> CUT_COUNT_SHIFT;
@@ -92,7 +92,7 @@ float chord_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
         float value = half_space.w + dot(half_space.xyz, nearest);
         float slope = dot(half_space.xyz, direction);
         if (miss || slope == 0.0) {
-            // The plane itself is visible, so it is no part of a complement.
+            // A plane's own points are visible, so that they are no part of a complement.
             inside = inside && (value > 0.0 || (value == 0.0 && (flags & CUT_UNION) == 0u));
         } else if (slope > 0.0) {
             low = max(low, -value / slope);

@@ -9,7 +9,7 @@ BUFFER(readonly, 1, Surface, surfaces)
 
 #include "region/plane.glsl"
 
-// On which side of a surface a Gaussian is whose band reaches so many standard deviations.
+// On which side of a surface a Gaussian is, whose band reaches the given number of standard deviations.
 uint surface_gaussian_side(uint surface, mat3 axes, vec3 position, float deviations) {
     switch (surfaces.at[surface].kind) {
     default: // SURFACE_PLANE
@@ -17,7 +17,7 @@ uint surface_gaussian_side(uint surface, mat3 axes, vec3 position, float deviati
     }
 }
 
-// On which side all Gaussians are whose centres lie in a box and that reach at most so far from them, the layer's units.
+// On which side all Gaussians are whose centres lie in a box and that reach at most `support` from them, the layer's units.
 uint surface_box_side(uint surface, vec3 middle, vec3 half_size, float support) {
     switch (surfaces.at[surface].kind) {
     default: // SURFACE_PLANE
@@ -34,8 +34,8 @@ vec4 surface_half_space(uint surface, mat3 axes, vec3 position) {
     }
 }
 
-// The answer of one surface that is the region's, whatever the others say: what one drops no intersection holds, what one
-// keeps every union does.
+// The answer of one surface that is the region's, whatever the others say: no intersection holds what one drops, and every
+// union holds what one keeps.
 uint side_that_decides() {
     return LAYER.region.op == OP_AND ? SIDE_INVISIBLE : SIDE_VISIBLE;
 }
@@ -45,7 +45,7 @@ uint side_undecided() {
     return LAYER.region.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
 }
 
-// The region's answer by what one more surface says, given what it was by those before.
+// The region's answer after one more surface, from the answer by those before.
 uint combined_side(uint side, uint one) {
     return side != side_that_decides() && (one == side_that_decides() || one == SIDE_CUTOFF) ? one : side;
 }

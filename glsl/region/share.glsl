@@ -26,8 +26,8 @@ Threshold threshold_of(Sight s, float det, uint base, uint plane) {
 
 // The share that four or more planes keep whose edges one pixel sees. It is taken as if the pairs' dependences added up,
 // between two bounds that follow from the pairs. The upper one is the least of the pairs' shares. The lower one is the share
-// of the two kinds' strictest planes, less what each other plane takes of what the strictest of its kind leaves. There are no
-// arrays: they would cost every splat their room.
+// of the two kinds' strictest planes, less what each other plane takes of what the strictest of its kind leaves. There are
+// no arrays: they would cost every splat their room.
 float many_weight(Sight s, float det, uint base, uint count) {
     // The first is of the planes that keep the far side, the second of the others.
     uvec2 strictest = uvec2(count);

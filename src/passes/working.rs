@@ -1,4 +1,4 @@
-//! The working memory by its names, for tests that hold what a stage has written to the stage's twin.
+//! The working memory by its debug names, for tests that compare what a stage has written with the stage's twin.
 
 use crate::gpu::Buffer;
 use crate::passes::buffers::Buffers;

@@ -12,7 +12,7 @@ use super::view::View;
 use crate::Gaussians;
 use crate::limits::{ALPHA_MIN_INVERSE, LOW_PASS, NEAR_Z};
 
-/// A Gaussian in view: what every later stage is computed from.
+/// A Gaussian in view, from which every later stage computes.
 #[derive(Debug, Clone, Copy)]
 pub struct Footprint<T> {
     /// Columns of M: the Gaussian's half axes in its layer, one standard deviation long.
@@ -45,8 +45,8 @@ pub struct Footprint<T> {
 }
 
 impl<T: Real> Footprint<T> {
-    /// The footprint of one Gaussian, or nothing if it is culled: nearer than [`NEAR_Z`] or behind the eye, fainter
-    /// than 1/255 even at its centre, or its box holds no pixel centre of the picture.
+    /// The footprint of one Gaussian, or nothing if it is culled: it is nearer than [`NEAR_Z`] or behind the eye, or
+    /// fainter than 1/255 even at its centre, or its box holds no pixel centre of the picture.
     pub fn new(scene: &Gaussians, index: usize, view: &View<T>) -> Option<Self> {
         let relative = view.relative(scene.positions()[index]);
         let view_centre = view.turn(relative);
@@ -98,7 +98,7 @@ impl<T: Real> Footprint<T> {
         (holds_a_pixel && drawable).then_some(footprint)
     }
 
-    /// Image derivatives at the centre's true direction, for what is computed along true rays.
+    /// Image derivatives at the centre's true direction, for computations along true rays.
     pub fn true_gradients(&self, view: &View<T>) -> [Vec3<T>; 2] {
         let slopes = [
             self.view_centre.x / self.view_centre.z,
@@ -107,8 +107,8 @@ impl<T: Real> Footprint<T> {
         image_gradients(&self.rows, view.focal, slopes, self.view_centre.z)
     }
 
-    /// The exponent q of the footprint `exp(-q / 2)` at an offset from its centre, pixels. A sum of two squares: the
-    /// three coefficients of the inverse covariance would cancel for needles.
+    /// The exponent q of the footprint `exp(-q / 2)` at an offset from its centre, pixels. It is a sum of two squares:
+    /// the three coefficients of the inverse covariance would cancel for needles.
     pub fn power(&self, dx: T, dy: T) -> T {
         let [k0, k1, k2] = self.conic;
         let (u, v) = (k0 * dx, k1 * dx + k2 * dy);

@@ -1,4 +1,4 @@
-//! Stage `sort`: front to back.
+//! Stage `sort` orders the splats front to back.
 
 use std::cmp::Ordering;
 

@@ -1,8 +1,8 @@
 //! Stage `sort`: a stable sort of the survivors by linear view depth, ties by their number in the scene.
 //!
-//! It is given as many keys as there are survivors, in both `keys`, and nothing in `order`; the survivors are then numbered
-//! from 0. It leaves what [`sorted`] names. Which kernels do it, the plan says: each set has a file here, shaders and scratch
-//! of its own.
+//! It is given as many keys as there are survivors, in both `keys`, and nothing in `order`: the survivors are numbered from
+//! 0. It leaves what [`sorted`] names. The plan says which kernels do it: each set has a file here, shaders and scratch of
+//! its own.
 
 mod runs;
 
@@ -25,16 +25,16 @@ fn kernels(plan: &Plan) -> &'static KernelSet {
     }
 }
 
-/// What the sort leaves.
+/// The buffers that the sort leaves.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sorted<'a> {
     /// The survivors, front to back.
     pub(super) order: &'a Buffer,
-    /// What it has no more use for: a word a Gaussian each, for whoever comes next.
+    /// Buffers of a word a Gaussian that the sort no longer needs, for the stages that follow.
     pub(super) spare: [&'a Buffer; 3],
 }
 
-/// What the sort of a frame leaves.
+/// The buffers that the sort of a frame leaves.
 pub(super) fn sorted<'a>(frame: &Frame<'a>) -> Sorted<'a> {
     let (b, at) = (frame.buffers, frame.plan.sorted());
     Sorted {

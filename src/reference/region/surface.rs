@@ -1,4 +1,4 @@
-//! What the stages ask of a surface. A shape answers in a file of its own.
+//! The questions that the stages ask of a surface. Each kind answers in a file of its own.
 
 use glam::DVec3;
 
@@ -6,7 +6,7 @@ use super::{HalfSpace, Side, plane};
 use crate::reference::real::{Real, Vec3};
 use crate::{Gaussians, Settings, Surface};
 
-/// On which side of a surface Gaussian `index` is, whose half axes these are and whose band reaches so many standard
+/// On which side of a surface Gaussian `index` is, which has the half axes `axes` and a band of `deviations` standard
 /// deviations.
 pub(in crate::reference) fn surface_gaussian_side<T: Real>(
     surface: &Surface,
@@ -23,7 +23,7 @@ pub(in crate::reference) fn surface_gaussian_side<T: Real>(
     }
 }
 
-/// On which side all Gaussians are whose centres lie in a box and that reach at most so far from them, world units.
+/// On which side all Gaussians are whose centres lie in a box and that reach at most `support` from them, world units.
 pub(super) fn surface_box_side(
     surface: &Surface,
     middle: DVec3,
@@ -47,7 +47,7 @@ pub(in crate::reference) fn surface_half_space<T: Real>(
     }
 }
 
-/// Where the points `start + t step` of a line cross a surface: all such t, in any order. No shader asks this: the truth
+/// Where the points `start + t step` of a line cross a surface: all such t, in any order. No shader asks this; the truth
 /// does, which uses none of the renderer's formulas.
 pub(in crate::reference) fn surface_crossings(
     surface: &Surface,

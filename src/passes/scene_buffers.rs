@@ -85,8 +85,8 @@ const UPLOAD_CHUNK: usize = 1 << 16;
 const WRITE_CHUNK: usize = 1 << 10;
 
 impl SceneBuffers {
-    /// Uploads a scene, Gaussians or [layers](Scene) of them, its spherical harmonics stored as `format` says, in chunks, and
-    /// waits for it. Beside the scene it takes 32 MiB at most.
+    /// Uploads a scene, Gaussians or [layers](Scene) of them, its spherical harmonics stored as `format` says, in chunks,
+    /// and waits for it. Beside the scene it takes 32 MiB at most.
     pub fn upload<'a>(
         device: &Device,
         scene: impl Into<Scene<'a>>,

@@ -70,7 +70,7 @@ impl<T: Real> Outline<T> {
             let (right_at, left_at) = (nearest(tip), nearest(-tip));
             let mut left = cx + slope * left_at - half(left_at) - margin;
             let mut right = cx + slope * right_at + half(right_at) + margin;
-            // With max() and min() a number that is none would not leave the quad's sides.
+            // Comparisons, unlike max() and min(), leave the quad's sides where the ends are no numbers.
             left = if left > self.quad[0][0] {
                 left
             } else {

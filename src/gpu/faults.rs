@@ -1,7 +1,7 @@
-//! Devices that fail when a test says so, that are too old, and that remember what was made and named.
+//! Devices for tests, which fail when a test says so, pretend to be too old, and remember which objects were made and named.
 //!
 //! The seam is the one pointer through which ash asks for every function of a device, `vkGetDeviceProcAddr`, and the few
-//! through which it asks for a physical device's properties. What is tested is therefore the code that ships, the memory
+//! through which it asks for a physical device's properties. Tests therefore run the code that ships, the memory
 //! allocator's included, without a branch, a trait or a feature that only tests need.
 
 use std::cell::RefCell;
@@ -15,21 +15,21 @@ use super::instance::Instance;
 use super::{AdoptDesc, Device, DeviceDesc};
 use crate::Result;
 
-/// Which call fails, and with what.
+/// A fault: which call fails, and with which result.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Fault {
     /// How many fallible calls succeed before.
     pub(crate) after: usize,
-    /// What the one after them returns. A lost device stays lost: all later calls that can say so do.
+    /// The result of the one after them. A lost device stays lost: all later calls that can say so do.
     pub(crate) result: vk::Result,
 }
 
-/// What a physical device pretends to be.
+/// The kind of device that a physical device pretends to be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Pretence {
     Vulkan11,
     Vulkan12,
-    /// Without a single extension.
+    /// One without a single extension.
     Vulkan12Alone,
     Without(&'static str),
     WithoutGraphics,
@@ -63,7 +63,7 @@ struct State {
 type Function = unsafe extern "system" fn();
 
 thread_local! {
-    // A test is a thread, and its device is used by no other.
+    // Each test is a thread, and no other thread uses its device.
     static STATE: RefCell<State> = RefCell::default();
 }
 
@@ -107,7 +107,7 @@ pub(crate) fn device(pretence: Option<Pretence>) -> Result<Device> {
     Device::open(std::sync::Arc::new(instance), candidates, &desc, &[])
 }
 
-/// Slow drivers get fewer places: what is tested is not theirs.
+/// Whether fewer places are enough, as on slow drivers: the code under test is not theirs.
 pub(crate) fn is_slow() -> bool {
     let scale = std::env::var("RARA_TEST_SCALE").ok();
     scale.is_some_and(|scale| scale.parse().is_ok_and(|scale: f64| scale < 1.0))
@@ -132,7 +132,7 @@ pub(crate) fn lent(host: &Device) -> AdoptDesc {
     }
 }
 
-/// From now on one of these calls fails, or none.
+/// Sets which of these calls fails from now on, if any.
 pub(crate) fn set_among(among: &'static [&'static str], fault: Option<Fault>) {
     with(|state| {
         (state.fault, state.among) = (fault, among);
@@ -166,7 +166,7 @@ pub(crate) fn labels() -> (Vec<String>, Vec<&'static str>) {
     with(|state| (state.labels.clone(), state.unlabelled.clone()))
 }
 
-/// What `call` has to return instead of being called.
+/// The result that `call` has to return instead of being called.
 fn due(call: &'static str) -> Option<vk::Result> {
     with(|state| {
         *state.counts.entry(call).or_insert(0) += 1;
@@ -214,7 +214,7 @@ macro_rules! functions {
     ) => {
         $(unsafe extern "system" fn $fallible($($arg: $type),*) -> vk::Result {
             let due = due($name);
-            // A device that is lost is idle; here it is only once it has been waited for.
+            // A device that is lost is idle; this one is idle only after the wait.
             if due.is_some() && !["vkWaitForFences", "vkDeviceWaitIdle"].contains(&$name) {
                 return due.expect("just seen");
             }
@@ -240,7 +240,7 @@ macro_rules! functions {
         /// Every call here that may fail.
         pub(crate) static CALLS: [&str; [$($name),*].len()] = [$($name),*];
 
-        /// Ours in place of the driver's, with the name to keep the driver's under.
+        /// Our function in place of the driver's, with the name under which the driver's is kept.
         fn exchanged(name: &CStr) -> Option<(&'static str, *const c_void)> {
             match name.to_str().ok()? {
                 $($name => Some(($name, $fallible as *const c_void)),)*

@@ -1,4 +1,5 @@
-//! Passes into a host's command buffer: one name for label and timer, barriers derived from what the shaders declare.
+//! Records passes into a host's command buffer: each has one name for label and timer, and its barriers follow from what the
+//! shaders declare.
 
 use std::ffi::CStr;
 
@@ -12,7 +13,7 @@ use crate::limits::GROUP_COLUMNS;
 /// How many workgroups a dispatch has.
 #[derive(Debug, Clone, Copy)]
 pub enum Groups<'a> {
-    /// A number, laid out as [`group_grid`] says; none is no dispatch at all.
+    /// A number, laid out as [`group_grid`] says; with 0 nothing is dispatched.
     Count(u32),
     /// A `VkDispatchIndirectCommand` in the buffer at this offset, a multiple of 4.
     Indirect(&'a Buffer, u64),
@@ -34,7 +35,7 @@ pub struct DepthImage {
 }
 
 /// The grid for a linear number of workgroups: a row while `limit` allows, else rows of [`GROUP_COLUMNS`], the last of
-/// which may be too long. Shaders compute `y * gl_NumWorkGroups.x + x` and leave if that is past the end.
+/// which may be too long. Shaders compute `y * gl_NumWorkGroups.x + x` and return if that is past the end.
 pub fn group_grid(count: u32, limit: u32) -> [u32; 3] {
     if count <= limit {
         return [count, 1, 1];
@@ -111,7 +112,7 @@ impl<'a> Recorder<'a> {
         result
     }
 
-    /// Records `record` under a debug label, without timestamps: for what is no pass.
+    /// Records `record` under a debug label, without timestamps, where it is no pass.
     pub fn label<R>(&mut self, name: &str, record: impl FnOnce(&mut Self) -> R) -> R {
         begin_label(self.device, self.cmd, name);
         let result = record(self);
@@ -119,8 +120,8 @@ impl<'a> Recorder<'a> {
         result
     }
 
-    /// Dispatches a compute shader. `buffers[i]` is the buffer of binding `i`; what the shader declares of each decides
-    /// the barrier.
+    /// Dispatches a compute shader. `buffers[i]` is the buffer of binding `i`; the barrier follows from the shader's
+    /// declarations.
     pub fn dispatch(
         &mut self,
         pipeline: &ComputePipeline,
@@ -237,7 +238,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Copies the depths of a host's image that lie under a viewport of some size, row by row and without gaps, and says
-    /// which part of the viewport that is: what lies beside the image is left out.
+    /// which part of the viewport that is; pixels beside the image are left out.
     ///
     /// # Safety
     /// The image is as its description says, its depths are visible to `COPY` by `TRANSFER_READ`, and it outlives the
@@ -292,8 +293,8 @@ impl<'a> Recorder<'a> {
     ///
     /// # Safety
     ///
-    /// `source` must be this device's, hold `size` bytes there, be made to be copied from, and outlive the execution;
-    /// what writes it must be visible by then.
+    /// `source` must be this device's, hold `size` bytes there, be made to be copied from, and outlive the execution; its
+    /// bytes must be visible to the copy.
     pub unsafe fn copy_from(
         &mut self,
         source: vk::Buffer,
@@ -359,7 +360,7 @@ fn aligned(what: &str, buffer: &Buffer, offset: u64, size: u64) {
     buffer.check_range(offset, size);
 }
 
-/// Opens a debug label on a command buffer that is recording on `device`, as whoever calls made sure.
+/// Opens a debug label on a command buffer, which the caller has made sure is recording on `device`.
 pub(super) fn begin_label(device: &Device, cmd: vk::CommandBuffer, name: &str) {
     let Some(debug) = device.debug_utils() else {
         return;
@@ -367,7 +368,7 @@ pub(super) fn begin_label(device: &Device, cmd: vk::CommandBuffer, name: &str) {
     if device.validates() {
         validation::enter(name);
     }
-    // On the stack, as recording does not allocate; a longer name is cut.
+    // The text is on the stack, as recording does not allocate; a longer name is cut.
     let mut text = [0_u8; 64];
     let length = name.len().min(text.len() - 1);
     text[..length].copy_from_slice(&name.as_bytes()[..length]);

@@ -1,4 +1,4 @@
-//! What a recording has done to its buffers, and the barriers that follow from it.
+//! Tracks what a recording has done to its buffers, and derives the barriers that follow from it.
 
 use ash::vk;
 use smallvec::SmallVec;
@@ -27,7 +27,7 @@ impl Set {
         Access::all().filter(move |access| self.has(*access))
     }
 
-    /// Stages of all members, and what they write.
+    /// The stages of all members, and the memory that they write.
     fn as_source(self, mesh: bool) -> (Stages, Memory) {
         self.iter()
             .map(|a| a.row(mesh))
@@ -37,15 +37,15 @@ impl Set {
     }
 }
 
-/// What happened to one buffer since it was last written.
+/// A buffer's accesses since it was last written.
 #[derive(Debug, Clone, Copy)]
 struct History {
     buffer: vk::Buffer,
-    /// Who wrote it last (several only when one pass wrote it in several ways).
+    /// The accesses that wrote it last (several only when one pass wrote it in several ways).
     writers: Set,
     /// Accesses that already see that write.
     seen_by: Set,
-    /// Who read it since.
+    /// The accesses that read it since.
     readers: Set,
     /// Accesses that already wait for those reads.
     after_readers: Set,
@@ -74,7 +74,7 @@ pub struct Tracker {
 }
 
 impl Tracker {
-    /// For a device with or without mesh shaders.
+    /// A tracker for a device with or without mesh shaders.
     pub fn new(mesh_shader: bool) -> Self {
         Self {
             mesh: mesh_shader,
@@ -177,7 +177,7 @@ impl Tracker {
         }
     }
 
-    /// Where the buffer's history stands; a new one begins empty.
+    /// The place of the buffer's history; a new one begins empty.
     fn index(&mut self, buffer: vk::Buffer) -> usize {
         self.buffers
             .iter()

@@ -4,7 +4,7 @@
 
 use ash::vk;
 
-use super::recorder::{begin_label, end_label};
+use super::label::{begin_label, end_label};
 use super::{Buffer, Device, GraphicsPipeline, Timer};
 
 /// Records draws whose number stands in buffers.

@@ -5,8 +5,8 @@ use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 
 use super::failure::failed;
+use super::label::{begin_label, end_label};
 use super::memory::bytes;
-use super::recorder::{begin_label, end_label};
 use super::{Buffer, Device};
 use crate::{Error, Result};
 

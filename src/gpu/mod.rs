@@ -27,6 +27,7 @@ mod image;
 #[cfg(feature = "view")]
 mod in_flight;
 mod instance;
+mod label;
 mod layout;
 mod memory;
 mod open;

@@ -1,10 +1,10 @@
-//! Turns `glsl/` into what the crate needs: constants (`limits.glsl`), structs (`types.glsl`), and the SPIR-V and the
-//! interface of every shader.
+//! Turns `glsl/` into the crate's constants (`limits.glsl`), structs (`types.glsl`), and the SPIR-V and the interface of
+//! every shader.
 //!
-//! Every shader is compiled twice from one source: buffers behind device addresses, and bound buffers that the
+//! Every shader is compiled twice from one source: with buffers behind device addresses, and with bound buffers that the
 //! validation layer can watch. With the feature `shaderc` the GLSL is compiled here, warnings as errors. Without it
-//! the SPIR-V committed in `glsl/spirv/` is used, so that nobody waits for a C++ compiler to be compiled in order to
-//! see a picture; the manifest beside each module says of which GLSL it is, and a difference is an error.
+//! the SPIR-V committed in `glsl/spirv/` is used, so that nobody has to compile a C++ compiler to see a
+//! picture; the manifest beside each module says from which GLSL it was compiled, and a difference is an error.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -40,7 +40,7 @@ fn read(path: &str) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// The folder of the SPIR-V: what is committed, which has to be that of the GLSL.
+/// The folder of the committed SPIR-V, which has to be compiled from the current GLSL.
 #[cfg(not(feature = "shaderc"))]
 fn spirv_of(glsl: &Path, _: &Path) -> PathBuf {
     let folder = glsl.join("spirv");
@@ -53,10 +53,10 @@ fn spirv_of(glsl: &Path, _: &Path) -> PathBuf {
     folder
 }
 
-/// The folder of the SPIR-V: what is compiled here.
+/// Compiles the SPIR-V, and returns its folder.
 #[cfg(feature = "shaderc")]
 fn spirv_of(glsl: &Path, out: &Path) -> PathBuf {
-    // tools/shaders asks for it elsewhere, to commit it or to compare it with what is committed.
+    // tools/shaders names another folder, to commit the SPIR-V or to compare it with the committed one.
     println!("cargo::rerun-if-env-changed=RARA_SPIRV_DIR");
     let folder = env::var_os("RARA_SPIRV_DIR").map_or(out.join("spirv"), PathBuf::from);
     // Modules whose GLSL is gone must not be taken for current ones.

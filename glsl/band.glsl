@@ -6,19 +6,19 @@
 // Whether the exact form of a splat follows each pixel's true ray. `sigma` is its largest deviation, the layer's units.
 bool is_beam(Footprint f, float sigma) {
     return FRAME.weight.form == FORM_BEAM
-        || (FRAME.weight.form == FORM_AUTO && (f.clamped || LAYER.view.unit * sigma > FRAME.weight.beam_switch * f.view.z));
+        || (FRAME.weight.form == FORM_AUTO && (f.clamped || LAYER.view.unit * sigma > FRAME.weight.beam_switch * f.view_centre.z));
 }
 
-// How far the band of a splat reaches whose weight follows each pixel's true ray: a pixel at delta sees the point u with
-// B u = delta in the footprint, and on its ray u / (1 - e.u), with e = m3 / Z. Where the slope was clamped, the root of the
-// trace of one covariance by the other's inverse bounds how far apart the two footprints are. Around the eye that has no
-// bound, but all rays pass through the eye, and beyond it by BEYOND_EYE deviations nothing counts.
+// How far the band of a splat reaches whose weight follows each pixel's true ray. A pixel at delta sees the point u with
+// B u = delta in the footprint, and on its ray u / (1 - e.u), with the lean e = m3 / Z. Where the slope was clamped, the
+// root of the trace of one covariance by the other's inverse bounds how far apart the two footprints are. Around the eye that
+// has no bound, but all rays pass through the eye, and nothing counts that lies BEYOND_EYE deviations beyond it.
 float beam_band(Footprint f, float extent) {
     float stretch = 1.0;
     if (f.clamped) {
         vec3 b1;
         vec3 b2;
-        screen_gradients(f, f.view.xy / f.view.z, b1, b2);
+        screen_gradients(f, f.view_centre.xy / f.view_centre.z, b1, b2);
         b1 *= f.scale;
         b2 *= f.scale;
         vec3 across = cross(b1, b2);
@@ -35,17 +35,17 @@ float beam_band(Footprint f, float extent) {
         trace /= det;
         stretch = max(1.0, sqrt(trace));
     }
-    float rest = 1.0 - extent * stretch * length(f.m3) / f.view.z;
+    float rest = 1.0 - extent * stretch * length(f.m3) / f.view_centre.z;
     if (rest > WIDENING_REST) {
         return extent * stretch / rest;
     }
-    mat3 m = f.layer_factor;
+    mat3 m = f.axes;
     vec3 eye = f.relative * m / vec3(dot(m[0], m[0]), dot(m[1], m[1]), dot(m[2], m[2]));
-    // What is no number bounds nothing: every plane then cuts.
+    // A distance that is no number bounds nothing: every plane then cuts.
     return length(eye) + BEYOND_EYE;
 }
 
-// How far the band reaches, in standard deviations. rara also traces its own ellipsoid.
+// How far the band reaches, in standard deviations. Mode `rara` also traces its own ellipsoid.
 float band(float extent) {
     return FRAME.region.mode == MODE_RARA ? max(extent, FRAME.region.sigma) : extent;
 }

@@ -1,5 +1,5 @@
 // Which tiles a splat contributes to: for each row of tiles, the columns between the ends that the contour alpha = 1/255
-// reaches there. Exact but for a margin, where a bounding box would give a slanting needle its whole square.
+// reaches there. That is exact but for a margin; a bounding box would give a slanting needle its whole square.
 #ifndef RARA_BIN
 #define RARA_BIN
 #include "cut.glsl"
@@ -22,15 +22,15 @@ struct Outline {
 
 const vec3 NO_LINE = vec3(1.0, 0.0, 0.0);
 
-// Where a carried weight's z can exceed -TRIM_DEVIATIONS within a box around the splat's centre.
-vec3 cut_away_line(vec3 plane, vec3 curvature, vec2 box) {
+// The line behind which a carried weight's z is below -TRIM_DEVIATIONS, within a box around the splat's centre.
+vec3 cut_away_line(vec3 linear, vec3 curvature, vec2 box) {
     precise float rise = max(curvature.x, 0.0) * box.x * box.x + abs(curvature.y) * box.x * box.y
         + max(curvature.z, 0.0) * box.y * box.y;
-    precise vec3 line = vec3(plane.x + TRIM_DEVIATIONS + rise, plane.yz);
+    precise vec3 line = vec3(linear.x + TRIM_DEVIATIONS + rise, linear.yz);
     return line;
 }
 
-// The same of a record that is a curve (cut.glsl), whose coordinates are nowhere beyond the splat's extent.
+// The same for a record that is a curve (cut.glsl), whose coordinates are nowhere beyond the splat's extent.
 vec3 cut_away_line_of_curve(vec4 linear, vec4 bend, vec4 twist, vec4 wave, vec3 conic, float extent) {
     float square = extent * extent;
     precise float rise = square * (max(bend.x, 0.0) + abs(bend.y) + max(bend.z, 0.0)
@@ -56,7 +56,7 @@ Outline outline(Splat splat) {
     precise float width = extent / o.conic.x;
     o.slope = -o.conic.y * o.conic.z / k;
     o.tip = -o.conic.y / o.conic.z * width;
-    // Near the contour's ends its chord is a root of a difference, off by the root of single precision.
+    // Near the contour's ends its chord is a root of a difference, which is off by the root of single precision.
     o.margin = 0.01 + 4e-4 * width + 1e-6 * largest(vec3(o.centre, 0.0));
     o.half_height = extent * sqrt(k) / (o.conic.x * o.conic.z) + o.margin;
     vec2 middle = o.centre + splat.middle.xy;
@@ -65,9 +65,9 @@ Outline outline(Splat splat) {
     float top = max(middle.y - half_sides.y, o.centre.y - o.half_height);
     float bottom = min(middle.y + half_sides.y, o.centre.y + o.half_height);
     o.line = NO_LINE;
-    vec3 plane = vec3(splat.conic_cut.zw, splat.colour_cut.w);
-    if (abs(plane.x) < Z_RANGE) {
-        o.line = cut_away_line(plane, splat.curvature.xyz, vec2(width, o.half_height));
+    vec3 linear = vec3(splat.conic_cut.zw, splat.colour_cut.w);
+    if (abs(linear.x) < Z_RANGE) {
+        o.line = cut_away_line(linear, splat.curvature.xyz, vec2(width, o.half_height));
     }
     o.rows = tiles_between(top, bottom, FRAME.view.size.y, TILE_HEIGHT);
     return o;
@@ -85,7 +85,7 @@ uvec2 tiles_in_row(Outline o, uint row) {
     precise float top = float(row * TILE_HEIGHT) + 0.5 - o.centre.y;
     precise float bottom = min(top + float(TILE_HEIGHT - 1u), o.half_height);
     top = max(top, -o.half_height);
-    // To the bit, wherever it is computed: what one shader counts another writes.
+    // The bits must be the same wherever this is computed: what one shader counts another writes.
     precise float right_at = clamp(o.tip, top, bottom);
     precise float left_at = clamp(-o.tip, top, bottom);
     precise float left = o.centre.x + o.slope * left_at - half_chord(o, left_at) - o.margin;
@@ -93,7 +93,7 @@ uvec2 tiles_in_row(Outline o, uint row) {
     // The comparisons are false for what is no number: beyond single precision the quad's sides are all there is.
     left = left > o.sides.x ? left : o.sides.x;
     right = right < o.sides.y ? right : o.sides.y;
-    // What the line leaves at the height where it leaves most.
+    // The line is taken at the height where it leaves most.
     precise float least = o.line.x + max(o.line.z * top, o.line.z * bottom);
     precise float at = o.centre.x - least / o.line.y;
     left = o.line.y > 0.0 && at - o.margin > left ? at - o.margin : left;
@@ -104,11 +104,11 @@ uvec2 tiles_in_row(Outline o, uint row) {
     return tiles_between(left, right, FRAME.view.size.x, TILE_WIDTH);
 }
 
-// A splat's tiles as a mask of MASK_SIDE x MASK_SIDE bits, row by row, from a first tile on: what project.comp finds once,
-// in the order of memory, for the passes that follow the order of depth.
+// A splat's tiles as a mask of MASK_SIDE x MASK_SIDE bits, row by row, from a first tile on. project.comp finds it once, in
+// the order of memory, for the passes that follow the order of depth.
 const uint MASK_SIDE = 8u;
 
-// In place of a mask's first tile: the tiles are more than it holds. No tile has this number, its row would be 65535.
+// Stands for a mask's first tile where the mask cannot hold all tiles. No tile has this number: its row would be 65535.
 const uint NO_MASK = ~0u;
 
 // x: first column and, in the upper half, first row; y: 1 where the tiles are more than the mask holds; zw: the mask.
@@ -144,7 +144,7 @@ struct Span {
     uvec2 columns; // first and last (exclusive)
 };
 
-// The first span of a mask, which is taken out of it: the bits of a row are one next to the other.
+// Takes the first span out of a mask. The bits of a row are next to each other.
 Span next_span(uint origin, inout uvec2 mask) {
     bool below = mask.x == 0u;
     uint bits = below ? mask.y : mask.x;
@@ -156,7 +156,7 @@ Span next_span(uint origin, inout uvec2 mask) {
     return Span((origin >> 16) + row + (below ? 4u : 0u), uvec2(column, column + uint(bitCount(tiles))));
 }
 
-// Where span_counts has how many tiles a run's splats touch in all.
+// Where span_counts holds how many tiles a run's splats touch in all.
 uint pairs_place(uint run) {
     return FRAME.tiles.span_runs * tile_rows() + run;
 }

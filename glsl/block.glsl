@@ -1,6 +1,5 @@
-// What view and clip say about a whole block of Gaussians, from its bounds: conservative, so that a block is only settled
-// where each of its Gaussians alone would be. A block has the side that all of its Gaussians have; SIDE_CUTOFF says that
-// they may differ and have to be looked at.
+// What view and clip say about a whole block of Gaussians, from its bounds. The answers are conservative: a block has a
+// side only where each of its Gaussians has it. SIDE_CUTOFF says that they may differ, so that each has to be looked at.
 #ifndef RARA_BLOCK
 #define RARA_BLOCK
 #include "band.glsl"
@@ -35,9 +34,9 @@ vec2 range_over(vec3 relative, vec3 half_box, vec3 row, float a, float b) {
     return vec2(dot(gradient, relative), spread + slack);
 }
 
-// Along one axis of the picture: SIDE_CULLED where no splat reaches it, SIDE_VISIBLE where all centres are half a pixel
-// inside, else SIDE_CUTOFF. A splat at x, z spans f x/z + c +- K (f sigma/z sqrt(1 + s^2) + 0.55), with s the slope of
-// its Jacobian; times z all of this is linear.
+// The side along one axis of the picture: SIDE_CULLED where no splat reaches it, SIDE_VISIBLE where all centres are half a
+// pixel inside, else SIDE_CUTOFF. A splat at x, z spans f x/z + c +- K (f sigma/z sqrt(1 + s^2) + 0.55), with s the slope
+// of its Jacobian; times z all of this is linear.
 uint axis_side(vec3 relative, vec3 half_box, vec3 row, float focal, float centre, float size, vec2 slopes, float reach) {
     float steepest = max(abs(slopes.x), abs(slopes.y));
     float span = 1.001 * focal * reach * sqrt(1.0 + steepest * steepest);
@@ -85,7 +84,7 @@ float block_nearest(Block block) {
     return depth.x - depth.y;
 }
 
-// Whether the exact form of some splat may follow true rays, for its size or because its slope is clamped.
+// Whether the exact form of some splat may follow true rays, because the splat is large or its slope is clamped.
 bool may_be_beam(Block block) {
     if (FRAME.region.mode != MODE_EXACT || FRAME.weight.form == FORM_AFFINE) {
         return false;
@@ -101,8 +100,8 @@ bool may_be_beam(Block block) {
     return FRAME.weight.form == FORM_BEAM || clamped || LAYER.view.unit * abs(block.high_sigma.w) > FRAME.weight.beam_switch * max(block_nearest(block), 0.0);
 }
 
-// The clip's side of a block that is in view as a whole, so that no slope is clamped. Without large splats it does not
-// depend on the camera, and is `side`.
+// The clip's side of a block that is in view as a whole, so that no slope is clamped. Where no splat is large, it does not
+// depend on the camera and is `side`.
 uint block_side_in_view(Block block, uint side) {
     if (!may_be_beam(block)) {
         return side;

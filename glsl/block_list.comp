@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup: the blocks whose Gaussians differ, in order, and the indirect command over them.
+// One workgroup lists the blocks whose Gaussians differ, in order, and writes the indirect command over them.
 struct Params {
     uint stage; // which stage they are for: 0 clip, 1 classify
 };

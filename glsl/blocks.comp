@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a block: what view and clip together say about all of its Gaussians.
+// One invocation a block finds what view and clip together say about all of its Gaussians.
 #include "block.glsl"
 
 layout(local_size_x = BLOCK_GROUP_SIZE) in;

@@ -1,17 +1,17 @@
-// What a shader declares to its host, by name. Buffers: a shader says
+// What a shader declares to its host, by name. A buffer is declared as in
 //     BUFFER(readonly, 0, Gaussian, gaussians)
-// and uses gaussians.at[i]. By default the buffer is reached through its device address in the push constants: fast,
+// and used as gaussians.at[i]. By default the buffer is reached through its device address in the push constants: fast,
 // and not bound by the device's limit on binding sizes (128 MiB on lavapipe). With RARA_BOUND it is a bound storage
 // buffer, which the validation layer's synchronisation checks can watch. The access qualifier is the pass's only
 // declaration of what it does to the buffer: the recorder derives barriers from it.
 //
-// Parameters: before it includes anything, a shader that has some declares a struct and says which it is, as in
+// A shader that has parameters declares a struct before it includes anything, and names it, as in
 //     struct Params { uint pass; };
 //     #define PARAMS Params
-// and uses push.params.pass. Numbers that tell pipelines apart are specialisation constants with names.
+// and uses push.params.pass. Numbers in which pipelines differ are specialisation constants with names.
 //
-// build.rs reads all three from the SPIR-V and makes Rust structs of them (src/codegen), so that a pass that lacks one or
-// gives it another type does not compile.
+// build.rs reads all three from the SPIR-V and makes Rust structs of them (src/codegen), so that a pass that leaves
+// one out or gives it another type does not compile.
 #ifndef RARA_BUFFERS
 #define RARA_BUFFERS
 #include "limits.glsl"

@@ -1,4 +1,4 @@
-// What the rasteriser carries of a splat's weight: see cut.glsl. Included after the buffer `cuts` is declared.
+// What the rasteriser carries of a splat's weight: see cut.glsl. Included after the buffer `cut_records` is declared.
 #ifndef RARA_CARRIED
 #define RARA_CARRIED
 #include "bin.glsl"
@@ -12,24 +12,24 @@ Carried carried_weight(uint cut) {
     Carried weight = whole_weight();
     if (cut != NOT_CUT) {
         uint base = cut * FRAME.weight.cut_stride;
-        if (cuts.at[base].w == float(1u << CUT_COUNT_SHIFT)) {
-            weight.plane = cuts.at[base + CUT_HEADER].xyz;
-            weight.curvature = cuts.at[base + CUT_HEADER + 1u].xyz;
+        if (cut_records.at[base].w == float(1u << CUT_COUNT_SHIFT)) {
+            weight.linear = cut_records.at[base + CUT_HEADER].xyz;
+            weight.curvature = cut_records.at[base + CUT_HEADER + 1u].xyz;
         } else {
-            weight.plane = vec3(Z_RECORD, float(cut & 0xffffu), float(cut >> 16));
+            weight.linear = vec3(Z_RECORD, float(cut & 0xffffu), float(cut >> 16));
         }
     }
     return weight;
 }
 
-// The line beyond which a splat's curve cuts it away, where a record holds that; else the line that there is.
+// The line beyond which a splat is cut away: by its curve where a record holds one, else the given line.
 vec3 cut_away_line_of_record(vec3 line, uint cut, Carried weight, vec3 conic, float extent) {
     uint base = cut * FRAME.weight.cut_stride;
-    vec4 linear = cuts.at[base];
-    if (weight.plane.x >= -Z_RANGE || (to_uint(linear.w) & CUT_CURVE) == 0u) {
+    vec4 linear = cut_records.at[base];
+    if (weight.linear.x >= -Z_RANGE || (to_uint(linear.w) & CUT_CURVE) == 0u) {
         return line;
     }
-    return cut_away_line_of_curve(linear, cuts.at[base + 1u], cuts.at[base + 2u], cuts.at[base + CUT_HEADER], conic, 1.001 * extent);
+    return cut_away_line_of_curve(linear, cut_records.at[base + 1u], cut_records.at[base + 2u], cut_records.at[base + CUT_HEADER], conic, 1.001 * extent);
 }
 
 #endif

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup a block that neither view nor clip settles as a whole, one invocation a Gaussian: view culling by
-// footprint, opacity and size; of what is in view, the clip's class. Writes one bit a Gaussian (survives; is cut) and the
+// One workgroup a block that neither view nor clip settles as a whole, one invocation a Gaussian. It culls by footprint,
+// opacity and size, and finds the side of what is in view. It writes two bits a Gaussian (survives, is cut) and the
 // block's totals; compact turns them into ordered lists.
 #include "band.glsl"
 #include "masks.glsl"
@@ -31,7 +31,7 @@ bool covers_a_pixel(vec2 centre, vec2 half_sides) {
     return low.x <= high.x && low.y <= high.y;
 }
 
-// What the clip stage has found.
+// The side that stage clip has found.
 uint clip_stage_side(uint block, uint local) {
     uint side = clip_sides.at[block];
     if (side != SIDE_CUTOFF) {
@@ -45,17 +45,17 @@ uint classify(uint block, uint local) {
     uint index = block * BLOCK_SIZE + local;
     Gaussian gaussian = gaussians.at[index];
     float opacity = opacity_in_layer(gaussian);
-    // Depth first: it is cheap and drops what is behind the eye. Negated, so that a NaN is culled too.
+    // The depth comes first: it is cheap and culls what is behind the eye. The test is negated to cull a NaN too.
     float depth = dot(LAYER.view.rotation_z.xyz, eye_relative(gaussian.position_opacity.xyz));
     if (!(depth >= NEAR_Z) || opacity < ALPHA_MIN) {
         return SIDE_CULLED;
     }
     Footprint f = footprint(gaussian);
     float extent = opacity_extent(opacity);
-    // Finite, each for itself, since max() may drop a NaN: deviations beyond the range of single precision have no
-    // footprint.
-    bool drawable = all(lessThan(abs(cholesky(f)), vec3(3e38))) && all(lessThan(abs(f.centre), vec2(3e38)));
-    if (!drawable || !covers_a_pixel(f.centre, box_extent(f, extent))) {
+    // Deviations beyond the range of single precision have no footprint. Each number is tested by itself, since max()
+    // may drop a NaN.
+    bool drawable = all(lessThan(abs(conic_of(f)), vec3(3e38))) && all(lessThan(abs(f.screen_centre), vec2(3e38)));
+    if (!drawable || !covers_a_pixel(f.screen_centre, box_half_sides(f, extent))) {
         return SIDE_CULLED;
     }
     if (!CLIP) {
@@ -63,7 +63,7 @@ uint classify(uint block, uint local) {
     }
     float sigma = largest(gaussian.scale.xyz);
     if (FRAME.region.mode == MODE_EXACT && is_beam(f, sigma)) {
-        return gaussian_side(f.layer_factor, gaussian.position_opacity.xyz, band_in_view(f, sigma, extent));
+        return gaussian_side(f.axes, gaussian.position_opacity.xyz, band_in_view(f, sigma, extent));
     }
     return clip_stage_side(block, local);
 }
@@ -87,7 +87,7 @@ void main() {
     if (is_block && local < block_length(block)) {
         uint side = classify(block, local);
         uint bit = 1u << (local & 31u);
-        // Sums and unions do not depend on the order of atomics.
+        // Neither sums nor unions depend on the order of the atomics.
         if (side >= SIDE_VISIBLE) {
             atomicOr(survivor_mask[local >> 5], bit);
         }

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup a block that the clip may cut, one invocation a Gaussian: the paper's three classes (section 3.2), whatever
-// the camera sees of it. (What perspective adds to the band of large splats, classify does.) A block's masks are eight words of what is visible and eight of what is cut.
+// One workgroup a block that the clip may cut, one invocation a Gaussian, which finds its side, the paper's three classes
+// (section 3.2), whatever the camera sees of it. (Classify adds what perspective adds to the band of large splats.) A
+// block's masks are eight words of what is visible and eight of what is cut.
 #include "band.glsl"
 #include "masks.glsl"
 #include "region/gaussian_side.glsl"
@@ -27,10 +28,10 @@ void main() {
     enter_layer_of_block(block);
     if (is_block && local < block_length(block)) {
         Gaussian gaussian = gaussians.at[block * BLOCK_SIZE + local];
-        uint side = gaussian_side(layer_factor(gaussian), gaussian.position_opacity.xyz,
+        uint side = gaussian_side(half_axes(gaussian), gaussian.position_opacity.xyz,
                                   band(opacity_extent(opacity_in_layer(gaussian))));
         if (side >= SIDE_VISIBLE) {
-            // A union does not depend on the order of atomics.
+            // A union does not depend on the order of the atomics.
             atomicOr(masks[(side == SIDE_CUTOFF ? WORDS : 0u) + (local >> 5)], 1u << (local & 31u));
         }
     }

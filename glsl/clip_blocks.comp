@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a block: the side of the clip that it lies on. Depends on the clip alone, not on the camera. Nobody asks that
-// of a hidden layer, whose blocks are settled so that none of its Gaussians is looked at.
+// One invocation a block finds on which side of the clip it lies, which depends on the clip alone, not on the camera. The
+// blocks of a hidden layer count as invisible, so that none of their Gaussians is looked at.
 #include "block.glsl"
 
 layout(local_size_x = BLOCK_GROUP_SIZE) in;

@@ -25,7 +25,7 @@ vec3 product(vec3 a0, vec3 a1, vec3 b0, vec3 b1) {
     return vec3(dot(a0, b0), dot(a0, b1) + dot(a1, b0), dot(a1, b1));
 }
 
-// Phi where it matters: pixels without alpha have no say in whether all of the column is on one side.
+// Computes Phi only where the column is not all on one side; pixels without alpha have no say in that.
 void phi_or_side(float z[ROWS], float alpha[ROWS], out float share[ROWS]) {
     float low = 8.0;
     float high = -8.0;
@@ -44,10 +44,10 @@ void phi_or_side(float z[ROWS], float alpha[ROWS], out float share[ROWS]) {
     }
 }
 
-// Of a splat that carries its curve, a polynomial of degree two in the pixel.
-void carried_weights(vec3 plane, vec3 curvature, vec2 delta, float alpha[ROWS], out float weight[ROWS]) {
-    float at = plane.x + delta.x * (plane.y + curvature.x * delta.x);
-    float slope = plane.z + curvature.y * delta.x;
+// The weights of a splat that carries its curve, a polynomial of degree two in the pixel.
+void carried_weights(vec3 linear, vec3 curvature, vec2 delta, float alpha[ROWS], out float weight[ROWS]) {
+    float at = linear.x + delta.x * (linear.y + curvature.x * delta.x);
+    float slope = linear.z + curvature.y * delta.x;
     float z[ROWS];
     for (uint row = 0u; row < ROWS; row++) {
         float y = delta.y + float(row);
@@ -56,10 +56,10 @@ void carried_weights(vec3 plane, vec3 curvature, vec2 delta, float alpha[ROWS], 
     phi_or_side(z, alpha, weight);
 }
 
-// Whether nothing of a column is visible. Where the frame is not a reclipped one, the tiles' lists leave most of such out.
-bool is_carried_away(vec3 plane, vec3 curvature, vec2 delta) {
-    float at = plane.x + delta.x * (plane.y + curvature.x * delta.x);
-    float slope = plane.z + curvature.y * delta.x;
+// Whether nothing of a column is visible. Outside reclipped frames the tiles' lists leave most such splats out.
+bool is_carried_away(vec3 linear, vec3 curvature, vec2 delta) {
+    float at = linear.x + delta.x * (linear.y + curvature.x * delta.x);
+    float slope = linear.z + curvature.y * delta.x;
     float high = -8.0;
     for (uint row = 0u; row < ROWS; row++) {
         float y = delta.y + float(row);
@@ -68,13 +68,13 @@ bool is_carried_away(vec3 plane, vec3 curvature, vec2 delta) {
     return high < -PHI_ONE;
 }
 
-// Of a record that is a curve, a polynomial of degree four in the splat's own coordinates: u is that of the column, v
-// that of the first row, and v_step by how much v changes a row.
+// The weights of a record that is a curve, a polynomial of degree four in the splat's own coordinates: u is the column's,
+// v the first row's, and v changes by v_step a row.
 void curve_weights(uint base, float u, float v, float v_step, float alpha[ROWS], out float weight[ROWS]) {
-    vec4 linear = cuts.at[base];
-    vec4 bend = cuts.at[base + 1u];
-    vec4 twist = cuts.at[base + 2u];
-    vec4 wave = cuts.at[base + CUT_HEADER];
+    vec4 linear = cut_records.at[base];
+    vec4 bend = cut_records.at[base + 1u];
+    vec4 twist = cut_records.at[base + 2u];
+    vec4 wave = cut_records.at[base + CUT_HEADER];
     float at = linear.x + u * (linear.y + u * (bend.x + u * (twist.x + u * wave.x)));
     float slope = linear.z + u * (bend.y + u * (twist.y + u * wave.y));
     float second = bend.z + u * (twist.z + u * wave.z);
@@ -87,8 +87,8 @@ void curve_weights(uint base, float u, float v, float v_step, float alpha[ROWS],
     phi_or_side(z, alpha, weight);
 }
 
-// What all planes of a splat have in common in a column: the line of sight in its middle, by how much b2 and c change a
-// row, and the determinant, a polynomial in the row.
+// What all planes of a splat share in a column: the line of sight in its middle, by how much b2 and c change a row, and
+// the determinant, a polynomial in the row.
 struct ColumnSight {
     Sight s;
     vec3 b2_step;
@@ -97,12 +97,12 @@ struct ColumnSight {
     vec3 det;
 };
 
-// `delta` and `place` are the middle's.
-ColumnSight column_sight(uint base, vec2 delta, vec2 place) {
-    vec4 h1 = cuts.at[base + 1u];
-    vec4 h2 = cuts.at[base + 2u];
+// `delta` and `pixel_centre` are those of the column's middle.
+ColumnSight column_sight(uint base, vec2 delta, vec2 pixel_centre) {
+    vec4 h1 = cut_records.at[base + 1u];
+    vec4 h2 = cut_records.at[base + 2u];
     ColumnSight column;
-    Sight s = sight_through(cuts.at[base], h1, h2, place - principal_point(), delta);
+    Sight s = sight_through(cut_records.at[base], h1, h2, pixel_centre - principal_point(), delta);
     column.s = s;
     column.b2_step = -h2.xyz;
     column.c_step = cross(s.b1, column.b2_step);
@@ -114,10 +114,10 @@ ColumnSight column_sight(uint base, vec2 delta, vec2 place) {
 }
 
 // A plane's z in each row: beam_z of glsl/sight.glsl.
-void beam_zs(ColumnSight column, vec4 plane, out float z[ROWS]) {
+void beam_zs(ColumnSight column, vec4 half_space, out float z[ROWS]) {
     Sight s = column.s;
     vec3 c_step = column.c_step;
-    vec3 a = plane.xyz;
+    vec3 a = half_space.xyz;
     vec3 a1 = cross(a, s.b1);
     vec3 a2 = cross(a, s.b2);
     vec3 a2_step = cross(a, column.b2_step);
@@ -127,7 +127,7 @@ void beam_zs(ColumnSight column, vec4 plane, out float z[ROWS]) {
     vec3 kx = product(s.c, c_step, a2, a2_step);
     kx.x += s.low_pass * dot(a, s.b1);
     vec2 ky = s.low_pass * vec2(dot(a, s.b2), dot(a, column.b2_step)) - vec2(dot(s.c, a1), dot(c_step, a1));
-    vec3 mean = plane.w * column.det + s.delta.x * kx + product(column.delta_y, ky);
+    vec3 mean = half_space.w * column.det + s.delta.x * kx + product(column.delta_y, ky);
     for (uint row = 0u; row < ROWS; row++) {
         float y = row_place(row);
         float inverse = 1.0 / quadratic(column.det, y);
@@ -135,19 +135,20 @@ void beam_zs(ColumnSight column, vec4 plane, out float z[ROWS]) {
     }
 }
 
-// `exact` with the camera outside the splat: exact_weight of glsl/weight.glsl. `delta` and `place` are the first row's.
-void exact_weights(uint base, uint flags, vec2 delta, vec2 place, float alpha[ROWS], out float weight[ROWS]) {
+// `exact` with the camera outside the splat: exact_weight of glsl/weight.glsl. `delta` and `pixel_centre` are the first
+// row's.
+void exact_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS]) {
     vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
-    ColumnSight column = column_sight(base, delta + middle, place + middle);
+    ColumnSight column = column_sight(base, delta + middle, pixel_centre + middle);
     float z[ROWS];
     uint count = flags >> CUT_COUNT_SHIFT;
     if (!SEVERAL || count == 1u) {
-        beam_zs(column, cuts.at[base + CUT_HEADER], z);
+        beam_zs(column, cut_records.at[base + CUT_HEADER], z);
         phi_or_side(z, alpha, weight);
         return;
     }
-    if (count == 2u && cuts.at[base + CUT_HEADER].xyz == -cuts.at[base + CUT_HEADER + 1u].xyz) {
-        // A slab: both planes are thresholds in one variable.
+    if (count == 2u && cut_records.at[base + CUT_HEADER].xyz == -cut_records.at[base + CUT_HEADER + 1u].xyz) {
+        // The planes bound a slab: both are thresholds in one variable.
         float other[ROWS];
         beam_zs(column, plane_of(base, 0u), z);
         phi_or_side(z, alpha, weight);
@@ -178,22 +179,23 @@ void exact_weights(uint base, uint flags, vec2 delta, vec2 place, float alpha[RO
         weight[row] = combined(flags, weight[row]);
         edges |= opens[row] > 1u && least[row] > -PHI_ONE && alpha[row] > 0.0 ? 1u << row : 0u;
     }
-    // Not a loop over all rows: the body would be there once for each.
+    // A loop over all rows would be unrolled, with the body once for each.
     for (; edges != 0u; edges &= edges - 1u) {
         uint edge = uint(findLSB(edges));
         vec2 below = vec2(0.0, float(edge));
-        float share = exact_weight(base, flags, delta + below, place + below);
+        float share = exact_weight(base, flags, delta + below, pixel_centre + below);
         for (uint row = 0u; row < ROWS; row++) {
             weight[row] = row == edge ? share : weight[row];
         }
     }
 }
 
-// `rara` with the camera outside the splat: chord_weight of glsl/weight.glsl. `delta` and `place` are the first row's.
-void chord_weights(uint base, uint flags, vec2 delta, vec2 place, out float weight[ROWS]) {
+// `rara` with the camera outside the splat: chord_weight of glsl/weight.glsl. `delta` and `pixel_centre` are the first
+// row's.
+void chord_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, out float weight[ROWS]) {
     uint count = flags >> CUT_COUNT_SHIFT;
     vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
-    ColumnSight column = column_sight(base, delta + middle, place + middle);
+    ColumnSight column = column_sight(base, delta + middle, pixel_centre + middle);
     Sight s = column.s;
     vec3 c_step = column.c_step;
     // |offset|^2 / |c|^2 is the square of the line's distance from the centre, offset x c / |c|^2 its nearest point.
@@ -217,12 +219,12 @@ void chord_weights(uint base, uint flags, vec2 delta, vec2 place, out float weig
         whole[row] = 2.0 * high[row];
     }
     for (uint plane = 0u; plane < count; plane++) {
-        vec4 form = plane_of(base, plane);
-        vec2 along = vec2(dot(form.xyz, s.c), dot(form.xyz, c_step));
-        vec3 nearest = product(offset, offset_step, cross(s.c, form.xyz), cross(c_step, form.xyz));
+        vec4 half_space = plane_of(base, plane);
+        vec2 along = vec2(dot(half_space.xyz, s.c), dot(half_space.xyz, c_step));
+        vec3 nearest = product(offset, offset_step, cross(s.c, half_space.xyz), cross(c_step, half_space.xyz));
         for (uint row = 0u; row < ROWS; row++) {
             float y = row_place(row);
-            float value = form.w + quadratic(nearest, y) * inverse[row];
+            float value = half_space.w + quadratic(nearest, y) * inverse[row];
             float slope = (along.x + y * along.y) * sqrt(inverse[row]);
             if (!(whole[row] > 0.0) || slope == 0.0) {
                 bool is_inside = value > 0.0 || (value == 0.0 && (flags & CUT_UNION) == 0u);
@@ -242,21 +244,21 @@ void chord_weights(uint base, uint flags, vec2 delta, vec2 place, out float weig
     }
 }
 
-// The weight of each pixel of a column. `delta`, `uv` and `place` are the first row's, `v_step` is how much v changes a
-// row.
-void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 place, float alpha[ROWS], out float weight[ROWS]) {
+// The weight of each pixel of a column. `delta`, `uv` and `pixel_centre` are the first row's; v changes by `v_step` a row.
+void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 pixel_centre, float alpha[ROWS],
+                 out float weight[ROWS]) {
     uint base = cut * push.params.cut_stride;
-    uint flags = to_uint(cuts.at[base].w);
+    uint flags = to_uint(cut_records.at[base].w);
     if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         curve_weights(base, uv.x, uv.y, v_step, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) == 0u) {
-        exact_weights(base, flags, delta, place, alpha, weight);
+        exact_weights(base, flags, delta, pixel_centre, alpha, weight);
     } else if (CLIP_MODE == MODE_RARA && (flags & CUT_FRONT) == 0u) {
-        chord_weights(base, flags, delta, place, weight);
+        chord_weights(base, flags, delta, pixel_centre, weight);
     } else {
         for (uint row = 0u; row < ROWS; row++) {
             vec2 below = vec2(0.0, float(row));
-            weight[row] = cut_weight(cut, delta + below, uv + v_step * below, place + below);
+            weight[row] = cut_weight(cut, delta + below, uv + v_step * below, pixel_centre + below);
         }
     }
 }

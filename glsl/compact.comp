@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup a block with survivors, one invocation a Gaussian: ordered stream compaction. The place of a survivor is
+// One workgroup a block with survivors, one invocation a Gaussian, for an ordered stream compaction. A survivor's place is
 // its block's offset plus the set bits before its own, so the lists are in the order of the scene in every run.
 #include "layer.glsl"
 #include "masks.glsl"

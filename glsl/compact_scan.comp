@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup: turns the blocks' totals into each one's place in the lists, the frame's counts and the indirect
-// commands of everything after. Each invocation owns a run of blocks, so the order is that of the scene.
+// One workgroup turns the blocks' totals into each block's place in the lists, the frame's counts and the indirect
+// commands of all later stages. Each invocation owns a run of blocks, so the order is that of the scene.
 #include "layer.glsl"
 #include "region/sides.glsl"
 #include "groups.glsl"
@@ -58,11 +58,11 @@ void main() {
         counts.at[0].compact_groups = groups(place.w, 1u);
         counts.at[0].project_groups = groups(survivors, SURVIVOR_GROUP_SIZE);
         counts.at[0].cutoff_groups = groups(place.y, SURVIVOR_GROUP_SIZE);
-        // One survivor is sorted too: the passes carry it to the buffer that the draw reads.
+        // Even a single survivor is sorted: the passes carry it to the buffer that the draw reads.
         counts.at[0].sort_groups = uvec4(survivors == 0u ? 0u : FRAME.order.sort_runs / SORT_GROUP_SIZE, 1u, 1u, 0u);
         counts.at[0].draw = uvec4(4u, survivors, 0u, 0u);
         counts.at[0].mesh_groups = groups(survivors, MESH_GROUP_SIZE);
-        // Binning counts them, where tiles are wanted.
+        // Where tiles are wanted, binning counts them.
         counts.at[0].pairs = 0u;
         counts.at[0].tiled = 0u;
         counts.at[0].span_count_groups = uvec4(survivors == 0u ? 0u : FRAME.tiles.span_runs / SPAN_GROUP_SIZE, 1u, 1u, 0u);

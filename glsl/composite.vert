@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The tiles' picture, a quad for so many tiles in both directions: where they all hold nothing, nothing is blended.
+// Draws the tiles' picture, one quad for QUAD_TILES x QUAD_TILES tiles. A quad whose tiles all hold nothing blends nothing.
 #include "frame.glsl"
 
 BUFFER(readonly, 2, uint, tile_begins)
@@ -26,8 +26,8 @@ void main() {
         bits <<= bit % 32u;
         filled |= bit < 32u ? uvec2(bits, 0u) : uvec2(0u, bits);
     }
-    // Six vertices of the strip that all quads are: the first and the last corner twice, so that the triangles between two
-    // quads have no area. Nor have those of a quad that holds nothing.
+    // All quads are one strip, of which each has six vertices: its first and last corner come twice, so that the triangles
+    // between two quads have no area. A quad that holds nothing has no area either.
     uint corner = filled == uvec2(0u) ? 0u : uint(clamp(gl_VertexIndex % 6 - 1, 0, 3));
     vec2 pixel = vec2((first + QUAD_TILES * uvec2(corner & 1u, corner >> 1u)) * uvec2(TILE_WIDTH, TILE_HEIGHT));
     gl_Position = vec4(2.0 * pixel * FRAME.view.size.zw - 1.0, 0.0, 1.0);

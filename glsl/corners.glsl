@@ -8,7 +8,7 @@ BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, Splat, splats)
 BUFFER(readonly, 3, uint, order)
 
-// Back to front: the blend is the ordinary `over`, so that a host can draw splats onto what it has drawn already.
+// Splats are drawn back to front: the blend is the ordinary `over`, so that a host can draw them onto what it has drawn.
 uint number_at(uint number) {
     return order.at[counts.at[0].mesh_groups.w - 1u - number];
 }

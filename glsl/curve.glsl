@@ -1,13 +1,13 @@
-// The usual cut splat's weight without lines of sight: z as a polynomial in the splat's own coordinates, fitted to the
-// perspective-exact form and kept only where it is as good. Of degree two, the rasteriser carries it; of degree four, a
-// record holds it.
+// The usual cut splat's weight without lines of sight: z is a polynomial in the splat's own coordinates, fitted to the
+// perspective-exact form and kept only where it is as good. The rasteriser carries one of degree two; a record holds one of
+// degree four.
 #ifndef RARA_CURVE
 #define RARA_CURVE
 #include "quad.glsl"
 #include "sight.glsl"
 
-// A point d of a splat as u = k0 dx and v = k1 dx + k2 dy, with the Cholesky factor of its conic: alpha is
-// opacity exp(-(u^2 + v^2) / 2), so that no pixel that counts is far from 0, and no power of a coordinate large.
+// A point d of a splat has the coordinates u = k0 dx and v = k1 dx + k2 dy, with the conic's k0 k1 k2. Alpha is
+// opacity exp(-(u^2 + v^2) / 2), so that no pixel that counts is far from 0, and no power of a coordinate is large.
 // z = at + slope . (u, v) + bend . (u^2, u v, v^2) + twist . (u^3, u^2 v, u v^2, v^3)
 //     + wave . (u^4, u^3 v, u^2 v^2, u v^3) + ripple v^4.
 struct Curve {
@@ -25,7 +25,7 @@ const float CURVE_TOLERANCE = 1.5e-4;
 // Everything needed to evaluate the exact form at a point of the splat.
 struct CurveSource {
     vec4 h0, h1, h2; // header of the cutoff record
-    vec4 plane; // in the beam form
+    vec4 half_space; // in the beam form
     vec2 centre; // relative to the principal point, px
     vec3 conic; // Cholesky factor, 1/px
 };
@@ -35,18 +35,18 @@ float exact_z(CurveSource source, vec2 uv) {
     vec2 delta = vec2(dx, (uv.y - source.conic.y * dx) / source.conic.z);
     Sight sight = sight_through(source.h0, source.h1, source.h2, source.centre + delta, delta);
     bool far;
-    return beam_z(sight, determinant(sight), source.plane, far);
+    return beam_z(sight, determinant(sight), source.half_space, far);
 }
 
-// The samples: eight on each of five rings around the centre, every other ring turned by half a step. The first two are
-// fitted to, all of them are checked.
+// There are eight samples on each of five rings around the centre, every other ring turned by half a step. The fit uses
+// the first two rings; all of them are checked.
 const uint CURVE_STEPS = 8u;
 const uint CURVE_RINGS = 5u;
 const uint CURVE_SAMPLES = CURVE_RINGS * CURVE_STEPS;
 // The rings from the centre outwards.
 const uint CURVE_OUTWARDS[CURVE_RINGS] = uint[](0u, 3u, 1u, 4u, 2u);
 
-// Deviations from the centre; the last ring is the contour at which the splat ends.
+// A ring's radius in deviations; the last ring is the contour at which the splat ends.
 float curve_radius(uint ring, float extent) {
     float last = max(extent, 2.5);
     return ring == 0u ? 1.0 : ring == 1u ? 2.0 : ring == 2u ? last : ring == 3u ? 1.5 : 0.5 * (2.0 + last);
@@ -96,9 +96,9 @@ Harmonics harmonics(CurveSamples z, uint ring) {
     return h;
 }
 
-// Both fits in deviations along the axes, from the rings at 1 and 2. Each harmonic's lowest powers of the radius are
-// fitted; the factors balance what the next power leaves on the two rings, weighted by alpha there, 0.61 and 0.14. Where
-// the degree allows a harmonic two powers, they pass through both rings.
+// Makes both fits from the rings at 1 and 2 deviations. Each harmonic's lowest powers of the radius are fitted; the factors
+// balance what the next power leaves on the two rings, weighted by alpha there, 0.61 and 0.14. Where the degree allows a
+// harmonic two powers, they pass through both rings.
 void fitted(CurveSamples z, out Curve square, out Curve quartic) {
     Harmonics one = harmonics(z, 0u);
     Harmonics two = harmonics(z, 1u);
@@ -169,7 +169,7 @@ bool is_good(Curve curve, CurveSamples z, float opacity, float extent) {
             float fit = curve_z(curve, d);
             float change = max(length(curve_gradient(curve, d)), exact_change(z, outwards, step));
             if (!(min(abs(exact), abs(fit)) >= 5.0 + change && exact * fit >= 0.0)) {
-                // Not its opposite: what is no number is no good.
+                // The test is negated, so that a fit that is no number is no good.
                 if (!(0.4 * alpha * abs(fit - exact) <= CURVE_TOLERANCE)) {
                     return false;
                 }
@@ -179,11 +179,11 @@ bool is_good(Curve curve, CurveSamples z, float opacity, float extent) {
     return true;
 }
 
-// The plane and the curvature of a curve of degree two, per pixel: what the rasteriser carries.
-void in_pixels(Curve c, vec3 conic, out vec3 plane, out vec3 curvature) {
+// A curve of degree two as a function of the pixel, which is how the rasteriser carries it.
+void in_pixels(Curve c, vec3 conic, out vec3 linear, out vec3 curvature) {
     vec2 u = vec2(conic.x, 0.0);
     vec2 v = conic.yz;
-    plane = vec3(c.at, c.slope.x * u + c.slope.y * v);
+    linear = vec3(c.at, c.slope.x * u + c.slope.y * v);
     curvature = vec3(c.bend.x * u.x * u.x + c.bend.y * u.x * v.x + c.bend.z * v.x * v.x,
                      c.bend.y * u.x * v.y + 2.0 * c.bend.z * v.x * v.y, c.bend.z * v.y * v.y);
 }

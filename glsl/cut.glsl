@@ -3,10 +3,10 @@
 //   0      fx / Z m1, the screen gradient along x for a pixel on the principal axis, times scale; the sum of
 //          CUT_BEAM, CUT_FRONT, CUT_UNION and 256 times the number of planes
 //   1      fy / Z m2, the same along y, times scale; scale
-//   2      e = m3 / Z, how the gradients change with the pixel, times scale; low-pass times scale^2
+//   2      the lean m3 / Z, how the gradients change with the pixel, times scale; low-pass times scale^2
 //   3...   a plane each: normal in unit space, and the centre's distance, both divided by the normal's largest component
 //   last   with CUT_FRONT: the plane through the eye across the view axis, in the same form
-// Several planes in the affine form are such a record with the footprint's gradients and e = 0. Without CUT_BEAM there is
+// Several planes in the affine form are such a record with the footprint's gradients and no lean. Without CUT_BEAM there is
 // one plane, which the rasteriser carries: 3 holds z at the centre, dz/dx and dz/dy, 4 its curvature, the factors of dx^2,
 // dx dy and dy^2. With CUT_CURVE, in the coordinates of curve.glsl, 0 holds z at the centre and its slopes, 1 the factors
 // of u^2, u v, v^2 and v^4, 2 those of u^3, u^2 v, u v^2 and v^3, 3 those of u^4, u^3 v, u^2 v^2 and u v^3.
@@ -25,33 +25,33 @@ const uint CUT_CURVE = 4u;
 const uint CUT_UNION = 8u;
 const uint CUT_COUNT_SHIFT = 8u;
 
-// What the rasteriser carries for a splat: z at its centre, dz/dx, dz/dy and its curvature, so that the usual case, one
-// plane, needs no record in the fragment stage. Beyond Z_RANGE, z says that the splat is whole; below -Z_RANGE that
+// The rasteriser carries z at a splat's centre, dz/dx, dz/dy and the curvature, so that the usual case, one plane, needs
+// no record in the fragment stage. Beyond Z_RANGE, z says that the splat is whole; below -Z_RANGE that
 // the slopes hold the lower and upper 16 bits of its record's number, as numbers: the bits of a small integer are those
 // of a denormal float, which a rasteriser may flush.
 const float Z_RANGE = 1e30;
 const float Z_WHOLE = 2e30;
 const float Z_RECORD = -2e30;
-// In a reclipped frame, whose survivors are all in view, that the splat is clipped away.
+// In a reclipped frame the survivors are all that is in view; this z says that a splat is clipped away.
 const float Z_CUT_AWAY = 4e30;
 
 // Whether a plane keeps the far part of a line of sight: by its normal's component along the line. Where that is zero
-// (a Gaussian without thickness) any fixed rule would do, if it told opposed planes apart: the normal's first non-zero
+// (a Gaussian without thickness) any fixed rule would do, if it distinguished opposed planes: the normal's first non-zero
 // component does.
 bool keeps_far(float along, vec3 normal) {
     float first = along != 0.0 ? along : normal.x != 0.0 ? normal.x : normal.y != 0.0 ? normal.y : normal.z;
     return first >= 0.0;
 }
 
-// Of a number from 0 to below 2^31. CPU drivers convert to signed integers a vector at a time, to unsigned ones each by
-// itself.
+// Converts a number from 0 to below 2^31. CPU drivers convert to signed integers a vector at a time, to unsigned ones each
+// by itself.
 uint to_uint(float number) {
     return uint(int(number));
 }
 
-// Which record a splat's carried slopes name.
-uint record_number(vec3 plane) {
-    return to_uint(plane.y) | to_uint(plane.z) << 16;
+// The number of the record that a splat's carried slopes name.
+uint record_number(vec3 linear) {
+    return to_uint(linear.y) | to_uint(linear.z) << 16;
 }
 
 #endif

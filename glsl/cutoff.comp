@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a cutoff Gaussian: everything the fragment stage needs to weight it, into its cutoff record.
+// One invocation a cutoff Gaussian writes its cutoff record: everything that the fragment stage needs to weight it.
 #include "band.glsl"
 #include "region/gaussian_side.glsl"
 #include "cut.glsl"
@@ -11,20 +11,20 @@ layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 BUFFER(readonly, 2, Gaussian, gaussians)
 BUFFER(readonly, 3, uint, cutoffs)
 BUFFER(readonly, 4, FrameCounts, counts)
-BUFFER(writeonly, 5, vec4, cuts)
+BUFFER(writeonly, 5, vec4, cut_records)
 
-// A plane in the beam form. Dividing by the largest component keeps the squares of sigmas of 1e5 and 1e-7 in range.
+// A half-space in the beam form. Dividing by the largest component keeps the squares of sigmas of 1e5 and 1e-7 in range.
 vec4 beam_plane(vec4 half_space) {
     float size = largest(half_space.xyz);
     return size > 0.0 ? half_space / size : vec4(vec3(0.0), half_space.w >= 0.0 ? 1.0 : -1.0);
 }
 
-// One plane in the affine form. Given the pixel, the Gaussian seen through the low-pass has, along the plane's normal,
+// A half-space in the affine form. Given the pixel, the Gaussian seen through the low-pass has, along the normal a,
 // mean g + k.delta and variance s^2 (the update of a Kalman filter that has observed the pixel):
 //   k = S^-1 B a, s^2 = |a|^2 - (B a)^T S^-1 (B a), with S = B B^T + L the splat's 2D covariance,
-// so the share on the visible side is Phi((g + k.delta) / s). Both written as sums of squares over det S.
-vec4 affine_plane(Footprint f, vec4 plane) {
-    vec3 a = plane.xyz;
+// so the share on the visible side is Phi((g + k.delta) / s). Both are written as sums of squares over det S.
+vec4 affine_plane(Footprint f, vec4 half_space) {
+    vec3 a = half_space.xyz;
     vec3 c = cross(f.b1, f.b2);
     vec3 a1 = cross(a, f.b1);
     vec3 a2 = cross(a, f.b2);
@@ -32,11 +32,11 @@ vec4 affine_plane(Footprint f, vec4 plane) {
     float variance = ac * ac + f.low_pass * (dot(a1, a1) + dot(a2, a2)) + f.low_pass * f.low_pass * dot(a, a);
     vec2 slope = vec2(dot(c, a2) + f.low_pass * dot(a, f.b1), -dot(c, a1) + f.low_pass * dot(a, f.b2));
     if (!(variance > 0.0)) {
-        return vec4(plane.w >= 0.0 ? 40.0 : -40.0, 0.0, 0.0, 0.0);
+        return vec4(half_space.w >= 0.0 ? 40.0 : -40.0, 0.0, 0.0, 0.0);
     }
     float inverse = inversesqrt(variance / f.det);
-    // Within what the rasteriser carries: beyond 40 deviations all distances are one.
-    return vec4(clamp(plane.w * inverse, -1e20, 1e20), slope * (f.scale / f.det * inverse), 0.0);
+    // The rasteriser carries no more than that; beyond 40 deviations all distances are alike.
+    return vec4(clamp(half_space.w * inverse, -1e20, 1e20), slope * (f.scale / f.det * inverse), 0.0);
 }
 
 void main() {
@@ -54,88 +54,88 @@ void main() {
     float sigma = largest(gaussian.scale.xyz);
     float deviations = band_in_view(f, sigma, extent);
 
-    bool front = f.view.z < band(extent) * length(f.m3);
+    bool front = f.view_centre.z < band(extent) * length(f.m3);
     bool beam = FRAME.region.mode == MODE_RARA || is_beam(f, sigma) || (FRAME.weight.form == FORM_AUTO && front);
     front = front && beam;
 
     uint base = cut * FRAME.weight.cut_stride;
     uint at = base + CUT_HEADER;
     bool is_union = LAYER.region.op == OP_OR && LAYER.region.surface_count > 1u;
-    vec4 form;
+    vec4 half_space;
     for (uint i = 0u; i < LAYER.region.surface_count; i++) {
         uint surface = LAYER.region.first_surface + i;
-        // A surface that keeps the whole splat changes no intersection, one that drops it no union.
-        if (surface_gaussian_side(surface, f.layer_factor, position, deviations) != side_undecided()) {
-            form = beam_plane(surface_half_space(surface, f.layer_factor, position));
-            cuts.at[at++] = is_union ? -form : form;
+        // A surface that keeps the whole splat changes no intersection, and one that drops it changes no union.
+        if (surface_gaussian_side(surface, f.axes, position, deviations) != side_undecided()) {
+            half_space = beam_plane(surface_half_space(surface, f.axes, position));
+            cut_records.at[at++] = is_union ? -half_space : half_space;
         }
     }
     uint count = at - base - CUT_HEADER;
     uint flags = count << CUT_COUNT_SHIFT;
     if (is_union && count == 1u && !front && FRAME.region.mode == MODE_EXACT) {
-        cuts.at[at - 1u] = form; // written again as it is: without CUT_UNION it is read so
+        cut_records.at[at - 1u] = half_space; // not its complement: without CUT_UNION a record holds what is kept
     } else if (is_union) {
         flags |= CUT_UNION;
     }
     if (!beam && count == 1u) {
-        cuts.at[base] = vec4(vec3(0.0), float(flags));
-        cuts.at[at - 1u] = affine_plane(f, form);
-        cuts.at[at] = vec4(0.0);
+        cut_records.at[base] = vec4(vec3(0.0), float(flags));
+        cut_records.at[at - 1u] = affine_plane(f, half_space);
+        cut_records.at[at] = vec4(0.0);
         return;
     }
     if (!beam) {
-        // Several planes: the footprint's own gradients, the same in all pixels.
-        cuts.at[base] = vec4(f.b1, float(flags | CUT_BEAM));
-        cuts.at[base + 1u] = vec4(f.b2, f.scale);
-        cuts.at[base + 2u] = vec4(vec3(0.0), f.low_pass);
+        // Several planes take the footprint's own gradients, which are the same in all pixels.
+        cut_records.at[base] = vec4(f.b1, float(flags | CUT_BEAM));
+        cut_records.at[base + 1u] = vec4(f.b2, f.scale);
+        cut_records.at[base + 2u] = vec4(vec3(0.0), f.low_pass);
         return;
     }
 
-    // True rays. The gradients at a pixel are these less its place times e.
-    vec3 b1 = FRAME.view.focal.x / f.view.z * f.m1;
-    vec3 b2 = FRAME.view.focal.y / f.view.z * f.m2;
-    vec3 e = f.m3 / f.view.z;
-    // They grow with the distance from the principal point: scale for the farthest pixel.
+    // The weight follows true rays. The gradients at a pixel are these less the pixel's position times `lean`.
+    vec3 b1 = FRAME.view.focal.x / f.view_centre.z * f.m1;
+    vec3 b2 = FRAME.view.focal.y / f.view_centre.z * f.m2;
+    vec3 lean = f.m3 / f.view_centre.z;
+    // They grow with the distance from the principal point, so the scale is the farthest pixel's.
     vec2 far = max(abs(FRAME.view.focal.zw), abs(FRAME.view.size.xy - FRAME.view.focal.zw));
-    float size = max(largest(b1) + far.x * largest(e), largest(b2) + far.y * largest(e));
-    // Without the low-pass there is nothing to keep in proportion: rara also scales up what is tiny.
+    float size = max(largest(b1) + far.x * largest(lean), largest(b2) + far.y * largest(lean));
+    // Mode `rara` has no low-pass to keep in proportion, so it also scales up what is tiny.
     float scale = 1.0 / max(size, FRAME.region.mode == MODE_RARA ? 1e-30 : 1.0);
     CurveSource source;
     source.h0 = vec4(b1 * scale, 0.0);
     source.h1 = vec4(b2 * scale, scale);
-    source.h2 = vec4(e * scale, LOW_PASS * scale * scale);
+    source.h2 = vec4(lean * scale, LOW_PASS * scale * scale);
 
     // A switch of zero asks for the exact form itself.
     if (FRAME.region.mode == MODE_EXACT && FRAME.weight.form == FORM_AUTO && FRAME.weight.beam_switch > 0.0 && count == 1u && !front) {
-        source.plane = form;
-        source.centre = f.centre - FRAME.view.focal.zw;
-        source.conic = cholesky(f);
+        source.half_space = half_space;
+        source.centre = f.screen_centre - FRAME.view.focal.zw;
+        source.conic = conic_of(f);
         CurveSamples samples = sampled(source, extent);
         Curve square;
         Curve quartic;
         fitted(samples, square, quartic);
         if (is_good(square, samples, opacity, extent)) {
-            vec3 plane;
+            vec3 linear;
             vec3 curvature;
-            in_pixels(square, source.conic, plane, curvature);
-            cuts.at[base] = vec4(vec3(0.0), float(flags));
-            cuts.at[at - 1u] = vec4(plane, 0.0);
-            cuts.at[at] = vec4(curvature, 0.0);
+            in_pixels(square, source.conic, linear, curvature);
+            cut_records.at[base] = vec4(vec3(0.0), float(flags));
+            cut_records.at[at - 1u] = vec4(linear, 0.0);
+            cut_records.at[at] = vec4(curvature, 0.0);
             return;
         }
         if (is_good(quartic, samples, opacity, extent)) {
-            cuts.at[base] = vec4(quartic.at, quartic.slope, float(flags | CUT_CURVE));
-            cuts.at[base + 1u] = vec4(quartic.bend, quartic.ripple);
-            cuts.at[base + 2u] = quartic.twist;
-            cuts.at[base + CUT_HEADER] = quartic.wave;
+            cut_records.at[base] = vec4(quartic.at, quartic.slope, float(flags | CUT_CURVE));
+            cut_records.at[base + 1u] = vec4(quartic.bend, quartic.ripple);
+            cut_records.at[base + 2u] = quartic.twist;
+            cut_records.at[base + CUT_HEADER] = quartic.wave;
             return;
         }
     }
     if (front) {
         flags |= CUT_FRONT;
-        cuts.at[at] = beam_plane(vec4(f.m3, f.view.z));
+        cut_records.at[at] = beam_plane(vec4(f.m3, f.view_centre.z));
     }
-    cuts.at[base] = vec4(source.h0.xyz, float(flags | CUT_BEAM));
-    cuts.at[base + 1u] = source.h1;
-    cuts.at[base + 2u] = source.h2;
+    cut_records.at[base] = vec4(source.h0.xyz, float(flags | CUT_BEAM));
+    cut_records.at[base + 1u] = source.h1;
+    cut_records.at[base + 2u] = source.h2;
 }

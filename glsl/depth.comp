@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a survivor: how deep it is in each pixel, and what of that depends on the clip.
+// One invocation a survivor finds how deep it is in each pixel, and how the clip changes that.
 #include "band.glsl"
 #include "region/gaussian_side.glsl"
 #include "cut.glsl"
@@ -36,12 +36,12 @@ void main() {
     vec3 c = cross(f.b1, f.b2);
     SplatDepth depth;
     bool is_union = LAYER.region.op == OP_OR;
-    depth.mean = vec4(f.view.z, slope_of(f, c, f.m3), is_union ? 1.0 : 0.0);
+    depth.mean = vec4(f.view_centre.z, slope_of(f, c, f.m3), is_union ? 1.0 : 0.0);
     depth.far = vec4(8.0, 0.0, 0.0, 0.0);
     depth.near = depth.far;
     for (uint i = 0u; i < LAYER.region.surface_count && FRAME.region.mode >= MODE_RARA; i++) {
         vec3 position = gaussian.position_opacity.xyz;
-        vec4 half_space = surface_half_space(LAYER.region.first_surface + i, f.layer_factor, position);
+        vec4 half_space = surface_half_space(LAYER.region.first_surface + i, f.axes, position);
         half_space = is_union ? -half_space : half_space;
         float size = max(largest(half_space.xyz), 1e-30);
         vec3 a = half_space.xyz / size;
@@ -49,12 +49,12 @@ void main() {
         float variance = covariance(f, c, a, a);
         float inverse = inversesqrt(max(variance / f.det, 1e-30));
         float z = clamp(distance * inverse, -1e20, 1e20);
-        vec4 form = vec4(z, slope_of(f, c, a) * inverse, covariance(f, c, a, f.m3) / f.det * inverse);
+        vec4 bound = vec4(z, slope_of(f, c, a) * inverse, covariance(f, c, a, f.m3) / f.det * inverse);
         bool far = keeps_far(dot(a, c), a);
         if (far && z < depth.far.x) {
-            depth.far = form;
+            depth.far = bound;
         } else if (!far && z < depth.near.x) {
-            depth.near = form;
+            depth.near = bound;
         }
     }
     depths.at[survivor] = depth;

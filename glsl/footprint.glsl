@@ -1,4 +1,4 @@
-// A Gaussian on the screen: EWA projection as published with 3DGS (Kerbl et al. 2023), in forms without cancelling
+// A Gaussian on the screen, by EWA projection as published with 3DGS (Kerbl et al. 2023), in forms without cancelling
 // determinants. With the view-space factor M (rows m1 m2 m3, covariance M M^T) the screen gradient in the Gaussian's
 // own unit space is b1 = fx/Z (m1 - X/Z m3), b2 = fy/Z (m2 - Y/Z m3); the 2D covariance is
 // [b1.b1 + L, b1.b2; b1.b2, b2.b2 + L] with the low-pass L, and its determinant |b1 x b2|^2 + L(|b1|^2+|b2|^2) + L^2
@@ -10,16 +10,16 @@
 #include "two_float.glsl"
 
 struct Footprint {
-    vec3 view; // centre in the camera's frame, the scene's units
-    vec3 relative; // centre relative to the eye, the layer's axes and units
-    mat3 layer_factor; // columns: the Gaussian's axes in the layer, times their standard deviations
-    vec3 m1, m2, m3; // rows of the view-space factor
-    vec3 b1, b2; // screen gradients, times scale
+    vec3 view_centre; // the centre in the camera's frame, the scene's units
+    vec3 relative; // the centre relative to the eye, the layer's axes and units
+    mat3 axes; // the half axes in the layer, one standard deviation long: the columns of M
+    vec3 m1, m2, m3; // the rows of M in camera axes
+    vec3 b1, b2; // the gradients, times scale
     vec2 slope; // x/z and y/z at which they were evaluated
     float scale; // 1 / max(1, |b|): keeps every product below in range
     float low_pass; // LOW_PASS scale^2
     float xx, xy, yy, det; // 2D covariance and determinant, times scale^2 and scale^4
-    vec2 centre; // px
+    vec2 screen_centre; // px
     bool clamped; // whether the slope was clamped
 };
 
@@ -59,25 +59,25 @@ vec3 view_position(vec3 position, vec3 relative) {
 
 // Screen gradients at a slope, unscaled.
 void screen_gradients(Footprint f, vec2 slope, out vec3 b1, out vec3 b2) {
-    b1 = FRAME.view.focal.x / f.view.z * (f.m1 - slope.x * f.m3);
-    b2 = FRAME.view.focal.y / f.view.z * (f.m2 - slope.y * f.m3);
+    b1 = FRAME.view.focal.x / f.view_centre.z * (f.m1 - slope.x * f.m3);
+    b2 = FRAME.view.focal.y / f.view_centre.z * (f.m2 - slope.y * f.m3);
 }
 
-mat3 layer_factor(Gaussian gaussian) {
-    mat3 axes = rotation_matrix(gaussian.rotation);
-    return mat3(axes[0] * gaussian.scale.x, axes[1] * gaussian.scale.y, axes[2] * gaussian.scale.z);
+mat3 half_axes(Gaussian gaussian) {
+    mat3 turn = rotation_matrix(gaussian.rotation);
+    return mat3(turn[0] * gaussian.scale.x, turn[1] * gaussian.scale.y, turn[2] * gaussian.scale.z);
 }
 
 Footprint footprint(Gaussian gaussian) {
     Footprint f;
     f.relative = eye_relative(gaussian.position_opacity.xyz);
-    f.view = view_position(gaussian.position_opacity.xyz, f.relative);
-    f.layer_factor = layer_factor(gaussian);
-    f.m1 = LAYER.view.rotation_x.xyz * f.layer_factor;
-    f.m2 = LAYER.view.rotation_y.xyz * f.layer_factor;
-    f.m3 = LAYER.view.rotation_z.xyz * f.layer_factor;
-    vec2 slope = f.view.xy / f.view.z;
-    f.centre = FRAME.view.focal.xy * slope + FRAME.view.focal.zw;
+    f.view_centre = view_position(gaussian.position_opacity.xyz, f.relative);
+    f.axes = half_axes(gaussian);
+    f.m1 = LAYER.view.rotation_x.xyz * f.axes;
+    f.m2 = LAYER.view.rotation_y.xyz * f.axes;
+    f.m3 = LAYER.view.rotation_z.xyz * f.axes;
+    vec2 slope = f.view_centre.xy / f.view_centre.z;
+    f.screen_centre = FRAME.view.focal.xy * slope + FRAME.view.focal.zw;
     f.slope = clamp(slope, FRAME.view.slope_bounds.xz, FRAME.view.slope_bounds.yw);
     f.clamped = f.slope != slope;
     screen_gradients(f, f.slope, f.b1, f.b2);
@@ -95,15 +95,15 @@ Footprint footprint(Gaussian gaussian) {
     return f;
 }
 
-// Cholesky factor k0 k1 k2 of the inverse 2D covariance, 1/px: q = (k0 dx)^2 + (k1 dx + k2 dy)^2. A sum of squares, so
-// alpha never exceeds the opacity, where the three coefficients of the inverse would cancel for needles.
-vec3 cholesky(Footprint f) {
+// The Cholesky factor k0 k1 k2 of the inverse 2D covariance, 1/px: q = (k0 dx)^2 + (k1 dx + k2 dy)^2. This is a sum of
+// squares, so that alpha never exceeds the opacity; the three coefficients of the inverse would cancel for needles.
+vec3 conic_of(Footprint f) {
     float k2 = sqrt(f.xx / f.det);
     return vec3(inversesqrt(f.xx), -k2 * (f.xy / f.xx), k2) * f.scale;
 }
 
 // Half the sides of the bounding box of the splat's contour at q = extent^2, px.
-vec2 box_extent(Footprint f, float extent) {
+vec2 box_half_sides(Footprint f, float extent) {
     return extent * sqrt(vec2(f.xx, f.yy)) / f.scale;
 }
 

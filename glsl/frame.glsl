@@ -1,5 +1,5 @@
-// Buffer 0 of every shader: what is constant in the frame, and behind it the layers, as many as the scene has. Used in place
-// (FRAME.view.size), never copied: a copy would load all of it.
+// Buffer 0 of every shader holds what is constant in the frame, and behind it the scene's layers. It is used in place
+// (FRAME.view.size) and never copied, since a copy would load all of it.
 #ifndef RARA_FRAME
 #define RARA_FRAME
 #include "types.glsl"

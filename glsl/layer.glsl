@@ -1,5 +1,5 @@
 // The layer that an invocation works on. Layers fill whole blocks, one after the other, so that a block's number says which
-// layer it is of. A frame of one layer knows that without looking.
+// layer it belongs to. A frame of one layer needs no search.
 #ifndef RARA_LAYER
 #define RARA_LAYER
 #include "frame.glsl"

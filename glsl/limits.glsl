@@ -15,13 +15,13 @@ const float ALPHA_MAX = 0.99;
 const float ALPHA_MIN_INVERSE = 255.0;
 // A cut splat is weighted by the perspective-exact form where sigma_max / Z exceeds this, by the affine form below.
 const float BEAM_SWITCH = 0.005;
-// What perspective may leave of a splat's depth, as a share, before its band follows from where the eye is in it.
+// A splat's band follows from where the eye is in it when perspective leaves less than this share of the splat's depth.
 const float WIDENING_REST = 0.05;
-// Deviations beyond the eye at which a plane cuts nothing off that is in front of it: 2e-9 of that at most.
+// A plane this many deviations beyond the eye cuts off no more than 2e-9 of what is in front of the eye.
 const float BEYOND_EYE = 6.0;
-// Degree 3: the most coefficients a colour channel has.
+// The most coefficients that a colour channel has: those of degree 3.
 const uint MAX_SH_COEFFICIENTS = 16u;
-// Opacity below which a splat is invisible everywhere, and more of a cut splat is never computed: 1/255.
+// Opacity below which a splat is invisible everywhere, and alpha below which a cut splat's weight is not computed: 1/255.
 const float ALPHA_MIN = 1.0 / ALPHA_MIN_INVERSE;
 // Gaussians of a block, one workgroup of clip, classify and compact; eight words of its bit masks.
 const uint BLOCK_SIZE = 256u;
@@ -30,7 +30,7 @@ const uint BLOCK_GROUP_SIZE = 64u;
 // Words that a reclipped frame keeps of a block: see reclip.glsl.
 const uint RECLIP_WORDS = 32u;
 // Opacity from which a splat's bounding box spans a pixel whatever the projection: its contour of 1/255 is then at 0.92
-// deviations or more, and the low-pass alone makes them 0.55 px.
+// deviations or more, and the low-pass alone makes a deviation 0.55 px.
 const float OPACITY_SPANNING = 0.006;
 // Standard deviation on the screen up to which single precision surely finds a splat's conic, px.
 const float DRAWABLE_DEVIATION = 1e6;
@@ -43,7 +43,7 @@ const uint TILE_WIDTH = 8u;
 const uint TILE_HEIGHT = 8u;
 // Rows of tiles that are drawn together, column by column.
 const uint STRIP_ROWS = 8u;
-// Tiles along each side of what the composite draws as one quad; a bit each in two words, so 8.
+// Tiles along each side of what the composite draws as one quad. Each has a bit in two words, so there are 8.
 const uint QUAD_TILES = 8u;
 // Bits a pass of the radix sort looks at.
 const uint SORT_BITS = 8u;
@@ -51,9 +51,9 @@ const uint SORT_BITS = 8u;
 const uint SORT_GROUP_SIZE = 64u;
 // Workgroup size of the spans of tiles, of which one invocation owns a run of consecutive splats.
 const uint SPAN_GROUP_SIZE = 64u;
-// Workgroup size where an invocation owns a row of tiles or a part of its spans: small, since rows differ in what they hold.
+// Workgroup size where an invocation owns a row of tiles or a part of its spans: small, since rows hold unequal numbers.
 const uint ROW_GROUP_SIZE = 8u;
-// Columns of a grid of workgroups that does not fit in a row: more than 65535 would break devices with the least limit.
+// Columns of a grid of workgroups that does not fit in a row. More than 65535 would exceed the least limit of devices.
 const uint GROUP_COLUMNS = 32768u;
 // Focal length beyond which positions in the camera's frame are computed in two floats, px. Single precision is off by
 // about 2e-7 of the distance, which is this times the focal length in pixels: 4e-4 px at this one.

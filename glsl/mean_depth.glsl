@@ -18,11 +18,11 @@ float mean_depth(SplatDepth s, vec2 delta) {
     float high = clamp(s.near.x + dot(s.near.yz, delta), -8.0, 8.0);
     float moment = s.far.w * normal_density(low) + s.near.w * normal_density(high);
     if (s.mean.w != 0.0) {
-        // What a union leaves out is between the two.
+        // A union leaves out what is between the two.
         float share = low < high ? tail_phi(low) + tail_phi(-high) : 1.0;
         return whole - (low < high ? moment / max(share, LEAST_SHARE) : 0.0);
     }
-    // By the tails on the side where both are small.
+    // The difference is taken between the tails on the side where both are small.
     float share = low + high > 0.0 ? tail_phi(-low) - tail_phi(-high) : tail_phi(high) - tail_phi(low);
     return low < high ? whole + moment / max(share, LEAST_SHARE) : whole;
 }

@@ -1,15 +1,15 @@
-// The host's depth, copied, which hides what lies behind it from tiles. Included after the buffer `occluders` is declared
-// and the constant DEPTH_FORM.
+// A copy of the host's depth, which hides from tiles what lies behind it. Included after the buffer `occluders` and the
+// constant DEPTH_FORM are declared.
 #ifndef RARA_OCCLUDERS
 #define RARA_OCCLUDERS
 #include "host_depth.glsl"
 
-// Farther is more, on ordinary and on reversed depth.
+// A depth, turned so that farther is more on ordinary and on reversed depth.
 float farness(float depth) {
     return push.params.depth_scale > 0.0 ? -depth : depth;
 }
 
-// Beyond which farness a splat is hidden in a pixel. Whole numbers hide what rounds to more than they hold.
+// The farness beyond which a splat is hidden in a pixel. A depth in whole numbers hides what rounds to more than it.
 float occluder_farness(uvec2 pixel) {
     if (min(push.params.copy_size.x, push.params.copy_size.y) == 0u) {
         return 3.0e38; // the image is not under the picture: nothing is hidden

@@ -6,9 +6,9 @@
 #include "phi.glsl"
 #include "sight.glsl"
 
-// Beyond this Phi is taken for 0 or 1: off by less than 4e-6, a fifth of what the best approximation is.
+// Beyond this Phi is taken for 0 or 1, which is off by less than 4e-6, a fifth of the best approximation's error.
 const float PHI_ONE = 4.5;
-// Correlations up to which the integral starts at independence; beyond, at dependence. Either way four nodes leave 2e-5.
+// Up to this correlation the integral starts at independence; beyond it, at dependence. Either way four nodes leave 2e-5.
 const float RHO_NEAR = 0.8;
 // Gauss's nodes and weights on [0, 1].
 const uint NODES = 4u;
@@ -17,7 +17,7 @@ const vec4 NODE_WEIGHT = vec4(0.17392742, 0.32607258, 0.32607258, 0.17392742);
 const float INVERSE_TAU = 0.15915494;
 const float ROOT_TAU = 2.5066283;
 
-// A plane function's direction among what a line of sight leaves open of the Gaussian: a unit vector of ten components.
+// A half-space's direction among what a line of sight leaves open of the Gaussian: a unit vector of ten components.
 struct Direction {
     float along;
     vec3 across_1, across_2, rest;
@@ -39,7 +39,7 @@ Direction direction(Sight s, vec3 a) {
     return d;
 }
 
-// Correlation rho of two planes and 1 - rho^2, which a difference from one would lose.
+// The correlation rho of two planes, and 1 - rho^2, whose digits a difference from one would lose.
 vec2 correlation(Direction d, Direction e) {
     float rho = d.along * e.along + dot(d.across_1, e.across_1) + dot(d.across_2, e.across_2) + dot(d.rest, e.rest);
     float sign = rho < 0.0 ? -1.0 : 1.0;
@@ -51,8 +51,8 @@ vec2 correlation(Direction d, Direction e) {
     return vec2(sign * (1.0 - apart), apart * (2.0 - apart));
 }
 
-// The chance that two variables are positive, from Phi of them, p and q, and their correlation. |h| and |k| are at most
-// PHI_ONE.
+// The chance that two variables are positive, from their means h and k, p = Phi(h), q = Phi(k) and their correlation. |h|
+// and |k| are at most PHI_ONE.
 float both_positive(float h, float k, float p, float q, vec2 rho) {
     float low = max(0.0, p - (1.0 - q));
     float high = min(p, q);
@@ -85,7 +85,7 @@ float both_positive(float h, float k, float p, float q, vec2 rho) {
     return clamp(limit - sign * INVERSE_TAU * root * (smooth_part + sum), low, high);
 }
 
-// A plane on a line of sight.
+// A half-space on a line of sight.
 struct Threshold {
     float z;
     bool far; // whether the far side is kept
@@ -96,14 +96,14 @@ float both_positive(Threshold t, Threshold u) {
     return both_positive(t.z, u.z, phi(t.z), phi(u.z), correlation(t.direction, u.direction));
 }
 
-// Gauss's nodes on [0, 1], six, as the path from independence to the correlations takes them: 2 t - t^2, whose slope
-// 2 - 2 t evens out what grows like 1 / sqrt(1 - rho^2) at the end; the weights hold that slope.
+// Six of Gauss's nodes on [0, 1], moved to 2 t - t^2 along the path from independence to the correlations. The slope
+// 2 - 2 t, which the weights hold, evens out what grows like 1 / sqrt(1 - rho^2) at the end.
 const uint STEPS = 6u;
 const float STEP[STEPS] = float[](0.06639039, 0.31009584, 0.61645563, 0.85507481, 0.97130523, 0.99885991);
 const float STEP_WEIGHT[STEPS] = float[](0.16553968, 0.29965026, 0.28978359, 0.17813035, 0.06111132, 0.00578481);
 
-// What one of the first variable's two correlations adds along the path: the two's density, times the chance that the third
-// is positive. `r` is theirs, `s` and `q` those of the third with the first and with the other.
+// What one of the first variable's two correlations adds along the path: the density of the two variables, times the chance
+// that the third is positive. `r` is their correlation, `s` and `q` are the third's with the first and with the other.
 float path_density(float h, float k, float third, float r, float s, float q) {
     float rest = 1.0 - r * r;
     float open = max(rest - s * s - q * q + 2.0 * r * s * q, 1e-12);
@@ -112,8 +112,8 @@ float path_density(float h, float k, float third, float r, float s, float q) {
     return density * phi((third * rest - mean) * inversesqrt(rest * open));
 }
 
-// The chance that three variables are positive: from the first one independent of the others along its correlations. The
-// other two are those that depend most on each other.
+// The chance that three variables are positive. The path starts with the first one independent of the others, which are the
+// two that depend most on each other.
 float three_positive(Threshold t, Threshold u, Threshold v) {
     vec2 tu = correlation(t.direction, u.direction);
     vec2 tv = correlation(t.direction, v.direction);
@@ -124,7 +124,7 @@ float three_positive(Threshold t, Threshold u, Threshold v) {
     float with_u = both_positive(t.z, u.z, p, q, tu);
     float with_v = both_positive(t.z, v.z, p, r, tv);
     float others = both_positive(u.z, v.z, q, r, uv);
-    // Bounds from the pairs; where correlations are full they meet.
+    // The pairs bound the chance; where correlations are full the bounds meet.
     float high = min(with_u, min(with_v, others));
     float low = max(with_u + with_v - p, max(with_u + others - q, with_v + others - r));
     vec3 z = vec3(t.z, u.z, v.z);

@@ -1,10 +1,10 @@
-// The normal distribution. Included by what has declared the constant PHI_FORM.
+// The normal distribution. Included after the constant PHI_FORM is declared.
 #ifndef RARA_PHI
 #define RARA_PHI
 #include "types.glsl"
 
-// The normal distribution's Phi by a logistic of an odd quintic: absolute error 1.9e-5, and Phi(z) + Phi(-z) = 1 to
-// rounding. Beyond |z| = 8 the quintic would turn back.
+// Phi by a logistic of an odd quintic: its absolute error is 1.9e-5, and Phi(z) + Phi(-z) = 1 to rounding. Beyond |z| = 8
+// the quintic would turn back.
 float phi(float z) {
     float x = clamp(z, -8.0, 8.0);
     float s = x * x;

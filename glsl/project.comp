@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a survivor: conic, quad and colour for the rasteriser, and the key that orders it.
+// One invocation a survivor computes its conic, quad and colour for the rasteriser, and the key that orders it.
 #include "footprint.glsl"
 #include "quad.glsl"
 #include "spherical_harmonics.glsl"
@@ -8,7 +8,7 @@
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 layout(constant_id = 0) const bool CUT = false;
-// Whether tiles are wanted of it.
+// Whether tiles are wanted.
 layout(constant_id = 2) const bool TILES = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
@@ -19,7 +19,7 @@ BUFFER(writeonly, 5, Splat, splats)
 BUFFER(writeonly, 6, uint, keys)
 BUFFER(writeonly, 7, uint, same_keys)
 #include "sh_storage.glsl"
-BUFFER(readonly, 8, vec4, cuts)
+BUFFER(readonly, 8, vec4, cut_records)
 BUFFER(writeonly, 9, uvec4, tile_masks)
 
 #include "carried.glsl"
@@ -29,7 +29,7 @@ vec3 colour(uint index, vec3 direction) {
     sh_basis(direction, FRAME.view.sh_degree, basis);
     uint base = index * sh_words(FRAME.scene.sh_coefficients);
     vec3 sum = 0.5 + basis[0] * sh_constant(base);
-    // A loop a degree: the compiler unrolls what has a fixed length.
+    // Each degree has its own loop, since the compiler unrolls loops of a fixed length.
     if (FRAME.view.sh_degree > 0u) {
         mat3 units = sh_units(base);
         for (uint i = 1u; i < 4u; i++) {
@@ -46,7 +46,7 @@ vec3 colour(uint index, vec3 direction) {
             }
         }
     }
-    // Finite, so that a share of nothing stays nothing.
+    // The colour stays finite: infinity times an alpha of 0 would be no number.
     return clamp(sum, vec3(0.0), vec3(3e38));
 }
 
@@ -63,14 +63,14 @@ void main() {
     float extent = opacity_extent(opacity);
 
     Splat splat;
-    vec3 conic = cholesky(f);
+    vec3 conic = conic_of(f);
     Carried weight = CUT ? carried_weight(survivors.at[survivor].y) : whole_weight();
     Quad quad = quad_around(f, extent, weight);
-    splat.centre_conic = vec4(f.centre, conic.xy);
-    splat.conic_cut = vec4(conic.z, opacity, weight.plane.xy);
-    splat.colour_cut = vec4(colour(index, normalize(f.relative / largest(f.relative))), weight.plane.z);
+    splat.centre_conic = vec4(f.screen_centre, conic.xy);
+    splat.conic_cut = vec4(conic.z, opacity, weight.linear.xy);
+    splat.colour_cut = vec4(colour(index, normalize(f.relative / largest(f.relative))), weight.linear.z);
     splat.axes = vec4(quad.first, quad.second);
-    splat.middle = vec4(quad.middle, gaussian.scale.w, f.view.z);
+    splat.middle = vec4(quad.middle, gaussian.scale.w, f.view_centre.z);
     splat.curvature = vec4(weight.curvature, 0.0);
     splats.at[survivor] = splat;
     if (TILES) {
@@ -82,8 +82,8 @@ void main() {
         tile_masks.at[survivor] = tile_mask(o);
     }
     // Positive floats order like their bits. Counted from the nearest depth that the scene's bounds allow they need
-    // fewer of them, and fewer passes of the sort; dropping low bits never turns an order round.
-    uint depth = max(floatBitsToUint(f.view.z), FRAME.order.key_near) - FRAME.order.key_near;
+    // fewer bits, and the sort fewer passes; dropping low bits never reverses an order.
+    uint depth = max(floatBitsToUint(f.view_centre.z), FRAME.order.key_near) - FRAME.order.key_near;
     uint key = min(depth, FRAME.order.key_span) >> FRAME.order.key_shift;
     keys.at[survivor] = key;
     same_keys.at[survivor] = key; // for whichever pass of the sort is the first

@@ -1,4 +1,4 @@
-// The quad a splat is drawn with: a parallelogram that covers every pixel in which it contributes, and few others.
+// The quad that a splat is drawn with: a parallelogram that covers every pixel to which it contributes, and few others.
 #ifndef RARA_QUAD
 #define RARA_QUAD
 #include "footprint.glsl"
@@ -11,8 +11,8 @@ struct Quad {
     vec2 second;
 };
 
-// A little wider than exact: the fragment stage decides what is inside, the quad must only not be too small. Rasterisers
-// may move its corners by half of the least precision that Vulkan allows them, 1/32 px.
+// A little wider than exact: the fragment stage decides what is inside, and the quad must only not be too small.
+// Rasterisers may move its corners by half of the least precision that Vulkan allows them, 1/32 px.
 float widened(float half_side) {
     return 1.001 * half_side + 0.04;
 }
@@ -48,10 +48,10 @@ vec2 kept_interval(float slope, float offset) {
     return vec2(0.5 * (low + high), 0.5 * (high - low));
 }
 
-// What the rasteriser carries of a cut splat's weight: see cut.glsl.
+// The part of a cut splat's weight that the rasteriser carries: see cut.glsl.
 struct Carried {
-    vec3 plane;
-    vec3 curvature;
+    vec3 linear; // z at the centre, dz/dx, dz/dy
+    vec3 curvature; // the factors of dx^2, dx dy and dy^2
 };
 
 // By how much curvature can raise z anywhere in the quad.
@@ -64,12 +64,12 @@ float rise(Quad quad, vec3 curvature) {
     return max(ss, 0.0) + max(tt, 0.0) + abs(st);
 }
 
-// Cuts off what lies wholly behind the line plane.x + plane.yz . delta = 0.
-Quad trimmed(Quad quad, vec3 plane) {
-    float a = dot(plane.yz, quad.first);
-    float b = dot(plane.yz, quad.second);
-    vec2 s = kept_interval(a, plane.x + abs(b));
-    vec2 t = kept_interval(b, plane.x + abs(a));
+// Cuts off what lies wholly where line.x + line.yz . delta is negative.
+Quad trimmed(Quad quad, vec3 line) {
+    float a = dot(line.yz, quad.first);
+    float b = dot(line.yz, quad.second);
+    vec2 s = kept_interval(a, line.x + abs(b));
+    vec2 t = kept_interval(b, line.x + abs(a));
     return Quad(quad.middle + s.x * quad.first + t.x * quad.second, s.y * quad.first, t.y * quad.second);
 }
 
@@ -80,20 +80,20 @@ float area(Quad quad) {
 Quad quad_around(Footprint f, float extent, Carried weight) {
     Quad quad = along_axes(f, extent);
     if (max(largest(vec3(quad.first, 0.0)), largest(vec3(quad.second, 0.0))) > QUAD_MAX_EXTENT) {
-        vec2 box = box_extent(f, extent);
-        vec2 low = max(f.centre - vec2(widened(box.x), widened(box.y)), vec2(0.0));
-        vec2 high = min(f.centre + vec2(widened(box.x), widened(box.y)), FRAME.view.size.xy);
+        vec2 box = box_half_sides(f, extent);
+        vec2 low = max(f.screen_centre - vec2(widened(box.x), widened(box.y)), vec2(0.0));
+        vec2 high = min(f.screen_centre + vec2(widened(box.x), widened(box.y)), FRAME.view.size.xy);
         // A centre far outside the picture is known to a few units in its last place only, and the corners are sums
         // with it.
-        vec2 half_sides = 0.5 * (high - low) + 1.0 + 1e-6 * abs(f.centre);
-        return Quad(0.5 * (low + high) - f.centre, vec2(half_sides.x, 0.0), vec2(0.0, half_sides.y));
+        vec2 half_sides = 0.5 * (high - low) + 1.0 + 1e-6 * abs(f.screen_centre);
+        return Quad(0.5 * (low + high) - f.screen_centre, vec2(half_sides.x, 0.0), vec2(0.0, half_sides.y));
     }
-    float steepness = length(weight.plane.yz);
-    if (abs(weight.plane.x) < Z_RANGE && steepness > 0.0) {
-        vec3 line = vec3(weight.plane.x + TRIM_DEVIATIONS + rise(quad, weight.curvature), weight.plane.yz);
+    float steepness = length(weight.linear.yz);
+    if (abs(weight.linear.x) < Z_RANGE && steepness > 0.0) {
+        vec3 line = vec3(weight.linear.x + TRIM_DEVIATIONS + rise(quad, weight.curvature), weight.linear.yz);
         Quad straight = trimmed(quad, line);
-        // The contour is inside the first quad too, whose bound on the rise serves both.
-        Quad turned = trimmed(along_direction(f, extent, weight.plane.yz / steepness), line);
+        // The contour is inside the first quad too, so its bound on the rise serves both.
+        Quad turned = trimmed(along_direction(f, extent, weight.linear.yz / steepness), line);
         return area(turned) < area(straight) ? turned : straight;
     }
     return quad;

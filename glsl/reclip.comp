@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup a block between the clip's old and new surface, one invocation a Gaussian: its class now, and whether what
-// the rasteriser holds of it has to change.
+// One workgroup a block between the clip's old and new surface, one invocation a Gaussian, which finds its side now, and
+// whether what the rasteriser holds of it has to change.
 #include "band.glsl"
 #include "reclip.glsl"
 #include "region/gaussian_side.glsl"
@@ -38,7 +38,7 @@ uint gaussian_side_now(uint block, uint index) {
     Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
     float extent = opacity_extent(opacity_in_layer(gaussian));
-    return gaussian_side(f.layer_factor, gaussian.position_opacity.xyz, band_in_view(f, largest(gaussian.scale.xyz), extent));
+    return gaussian_side(f.axes, gaussian.position_opacity.xyz, band_in_view(f, largest(gaussian.scale.xyz), extent));
 }
 
 bool is_in_view(uint block, uint local) {
@@ -66,7 +66,7 @@ void main() {
         uint now = gaussian_side_now(block, index);
         uint word = local >> 5;
         uint bit = 1u << (local & 31u);
-        // Unions do not depend on the order of atomics.
+        // Unions do not depend on the order of the atomics.
         if (now == SIDE_VISIBLE) {
             atomicOr(visible_mask[word], bit);
         } else if (now == SIDE_CUTOFF) {

@@ -1,5 +1,5 @@
-// What a reclipped frame knows of each block, RECLIP_WORDS words: which of its Gaussians in view change, are visible or are
-// cut, their totals, their places in the lists, and its side. In a reclipped frame the camera stands still; the survivors
+// A reclipped frame keeps RECLIP_WORDS words of each block: which of its Gaussians in view change, are visible or are cut,
+// their totals, their places in the lists, and its side. In a reclipped frame the camera stands still; the survivors
 // are all Gaussians in view, clipped away or not.
 #ifndef RARA_RECLIP
 #define RARA_RECLIP
@@ -8,9 +8,9 @@
 const uint RECLIP_CHANGED = 0u;
 const uint RECLIP_VISIBLE = WORDS;
 const uint RECLIP_CUT = 2u * WORDS;
-// Visible, cut and invisible ones; changed ones, valid where the block is looked at.
+// How many are visible, cut, invisible and changed; the last is valid where the block is revisited.
 const uint RECLIP_TOTALS = 3u * WORDS;
-// The first changed and the first cut one's places.
+// The places of the first changed and of the first cut one.
 const uint RECLIP_PLACES = RECLIP_TOTALS + 4u;
 const uint RECLIP_SIDE = RECLIP_PLACES + 2u;
 

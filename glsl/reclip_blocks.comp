@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a block: its side of a clip that has moved while the camera stood still, and whether its Gaussians have to
-// be looked at.
+// One invocation a block finds its side of a clip that has moved while the camera stood still, and whether its Gaussians
+// have to be revisited.
 struct Params {
     uint fresh; // 1: the frame before knew no clip
 };

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup a block that was looked at, one invocation a Gaussian: the lists of the survivors that change and of the
+// One workgroup a revisited block, one invocation a Gaussian, writes the lists of the survivors that change and of the
 // Gaussians that are cut, in the order of the scene.
 #include "reclip.glsl"
 

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup: the frame's classes from the blocks' totals, each block's place in the lists of what changes and of what
-// is cut, and their indirect commands. What the survivors are, and their order, stays.
+// One workgroup sums the blocks' totals to the frame's counts, finds each block's place in the lists of what changes and of
+// what is cut, and writes their indirect commands. The survivors and their order stay.
 #include "reclip.glsl"
 #include "groups.glsl"
 

@@ -1,26 +1,26 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a survivor that a moved clip changes: what of it depends on the clip, and the tiles to draw again. Its
-// place, colour, depth and tiles stay.
+// One invocation a survivor that a moved clip changes computes what of it depends on the clip, and marks the tiles to draw
+// again. The survivor's centre, colour, depth and tiles stay.
 #include "footprint.glsl"
 #include "quad.glsl"
 #include "bin.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
-// Whether tiles are wanted of it.
+// Whether tiles are wanted.
 layout(constant_id = 0) const bool TILES = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uvec2, survivors)
 BUFFER(readonly, 3, FrameCounts, counts)
 BUFFER(readonly, 4, uvec2, recuts)
-BUFFER(readonly, 5, vec4, cuts)
+BUFFER(readonly, 5, vec4, cut_records)
 BUFFER(readonly, 6, uvec4, tile_masks)
 BUFFER(, 7, Splat, splats)
 BUFFER(writeonly, 8, uint, dirty)
 #include "carried.glsl"
 
-// All who find a tile changed write the same. The tiles are those of the whole splat, which is what the lists hold.
+// All that find a tile changed write the same value. The tiles are the whole splat's, as in the lists.
 void mark(uint survivor, Quad whole) {
     uvec4 tiles = tile_masks.at[survivor];
     for (uvec2 mask = tiles.zw; (mask.x | mask.y) != 0u;) {
@@ -66,12 +66,12 @@ void main() {
     }
     Quad quad = quad_around(f, extent, weight);
     if (cut == CUT_AWAY) {
-        // Nothing to rasterise; tiles look at z.
-        weight.plane.x = Z_CUT_AWAY;
+        // The quad holds nothing to rasterise; tiles look at z.
+        weight.linear.x = Z_CUT_AWAY;
         quad = Quad(vec2(0.0), vec2(0.0), vec2(0.0));
     }
-    splats.at[survivor].conic_cut.zw = weight.plane.xy;
-    splats.at[survivor].colour_cut.w = weight.plane.z;
+    splats.at[survivor].conic_cut.zw = weight.linear.xy;
+    splats.at[survivor].colour_cut.w = weight.linear.z;
     splats.at[survivor].axes = vec4(quad.first, quad.second);
     splats.at[survivor].middle.xy = quad.middle;
     splats.at[survivor].curvature = vec4(weight.curvature, 0.0);

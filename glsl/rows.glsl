@@ -1,10 +1,10 @@
-// The spans of a row of tiles, which are front to back, in parts: an invocation a part.
+// The spans of a row of tiles, which are front to back, are divided into parts, one for each invocation.
 #ifndef RARA_ROWS
 #define RARA_ROWS
 #include "frame.glsl"
 
 BUFFER(readonly, 1, uint, row_begins)
-// How many of a part's spans hold each column, or where its splats go; behind each part its pairs.
+// For each part, how many of its spans hold each column, or where its splats go, and then the number of its pairs.
 BUFFER(, 2, uint, column_counts)
 
 uint part_count() {
@@ -26,7 +26,7 @@ uvec2 part_bounds(uint part) {
     return uvec2(begin, min(begin + size, end));
 }
 
-// First and last column (exclusive) of a span; in the row, whatever it says.
+// First and last column (exclusive) of a span, limited to the row.
 uvec2 columns_of(uint span) {
     return min(uvec2(span & 0xffffu, span >> 16), FRAME.tiles.tile_columns);
 }

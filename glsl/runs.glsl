@@ -1,4 +1,4 @@
-// Runs of consecutive elements, one an invocation: whoever owns a run walks it in order, which keeps what is stable so.
+// Runs of consecutive elements, one for each invocation, which walks its run in order, so that a sort stays stable.
 #ifndef RARA_RUNS
 #define RARA_RUNS
 

@@ -1,4 +1,4 @@
-// How a Gaussian's spherical harmonics lie in the buffer `sh`: src/passes/sh_storage.rs writes them. Coefficients are
+// How a Gaussian's spherical harmonics lie in the buffer `sh`, which src/passes/sh_storage.rs writes. Coefficients are
 // r, g, b; number k is coefficient k / 3, channel k % 3. Included by project.comp only, after it has declared `sh`.
 //   SH_FLOAT   a word a number
 //   SH_HALF    two numbers to a word, the first in the low half
@@ -35,10 +35,10 @@ vec3 sh_constant(uint base) {
         : vec3(sh_half(base, 0u), sh_half(base, 1u), sh_half(base, 2u));
 }
 
-// What an integer counts in each channel, a column a degree from 1 on; nothing where numbers are floats.
+// The unit of an integer in each channel, a column for each degree from 1 on; unused where numbers are floats.
 mat3 sh_units(uint base) {
     if (SH_FORMAT == SH_PACKED) {
-        // Moved to where a float has its exponent.
+        // The exponents are moved to where a float has its own.
         uvec3 exponents = uvec3(sh.at[base + 1u]) >> uvec3(16u, 21u, 26u) & 31u;
         vec3 scales = uintBitsToFloat(exponents + SH_EXPONENT_BIAS << 23);
         vec3 unit = vec3(1.0 / 1023.0, 1.0 / 1023.0, 1.0 / 511.0);

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// First step of a pass: how often each run holds each digit. A run's counts lie together, one run after the other; behind
-// them all the least and the greatest key of each.
+// The first step of a pass counts how often each run holds each digit. A run's counts lie together, one run after the
+// other; behind them all are the least and the greatest key of each.
 struct Params {
     uint pass; // of the sort, from 0
 };

@@ -1,10 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Second step of a pass, one workgroup, a digit an invocation: the runs' counts become the places where each run's keys
-// of each digit begin. The first one decides which passes there are.
+// The second step of a pass, one workgroup with an invocation for each digit, turns the runs' counts into the places where
+// each run's keys of each digit begin. That of the first pass decides which passes are skipped.
 struct Params {
     uint pass; // of the sort, from 0
-    uint passes; // that there may be
+    uint passes; // of the sort, if none is skipped
 };
 #define PARAMS Params
 #include "sort.glsl"
@@ -25,7 +25,7 @@ void decide(uint d) {
     }
     barrier();
     for (uint run = d; run < FRAME.order.sort_runs; run += DIGITS) {
-        // The same whatever the order.
+        // The least and the greatest do not depend on the order of the atomics.
         atomicMin(least, histogram.at[range_place(run)]);
         atomicMax(greatest, histogram.at[range_place(run) + 1u]);
     }
@@ -35,7 +35,7 @@ void decide(uint d) {
     }
     uint passes = push.params.passes;
     uint base = least & ~(DIGITS - 1u);
-    // Keys that are all alike are carried to their buffer too.
+    // Even keys that are all alike take a pass, which carries them to their buffer.
     uint digits = uint(max(findMSB(greatest - base), 0)) / SORT_BITS + 1u;
     uint skipped = passes - min(digits, passes);
     counts.at[0].sort_base = base;
@@ -51,7 +51,7 @@ void main() {
     if (pass == 0u) {
         decide(d);
     } else if (pass <= counts.at[0].sort_skipped) {
-        return; // the first pass that there is has been counted
+        return; // this pass is skipped
     }
     uint total = 0u;
     for (uint run = 0u; run < FRAME.order.sort_runs; run++) {

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Third step of a pass: each run carries its keys, in order, to their places.
+// In the third step of a pass each run carries its keys, in order, to their places.
 struct Params {
     uint pass; // of the sort, from 0
 };

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// After the sort: splats of one depth, which are in the order of the blocks, into that of the file. Equal depths are rare
-// and few, so each invocation looks for them in a run of its own and orders them alone; where too many have one depth
-// its workgroup merges them together.
+// After the sort, splats of one depth are in the order of the blocks; this puts them into the order of the file. Equal
+// depths are rare and few, so each invocation looks for them in a run of its own and orders them alone; where too many have
+// one depth, its workgroup merges them together.
 #include "sort.glsl"
 
 layout(local_size_x = SORT_GROUP_SIZE) in;
@@ -40,7 +40,7 @@ uint at(bool second, uint i) {
     return second ? scratch.at[i] : order.at[i];
 }
 
-// How many of the ordered [begin, end) have a number below one's.
+// How many of the ordered [begin, end) have a number below the given one.
 uint rank_among(bool second, uint begin, uint end, uint its_number) {
     uint low = begin;
     uint high = end;
@@ -55,7 +55,7 @@ uint rank_among(bool second, uint begin, uint end, uint its_number) {
     return low - begin;
 }
 
-// By the whole workgroup: merges of ever longer pieces, to and fro between the two buffers.
+// The whole workgroup merges ever longer pieces, to and fro between the two buffers.
 void order_together(uint begin, uint end) {
     bool second = false;
     for (uint width = 1u; width < end - begin; width *= 2u) {
@@ -90,7 +90,7 @@ void main() {
     uint count = KEY_COUNT;
     uvec2 bounds = run_bounds(gl_GlobalInvocationID.x, FRAME.order.sort_runs, count);
     uint i = bounds.x;
-    // What begins in the run before is that one's.
+    // Ties that begin in the run before belong to that one.
     while (i < bounds.y && i > 0u && keys.at[i] == keys.at[i - 1u]) {
         i++;
     }
@@ -126,7 +126,7 @@ void main() {
                 }
             }
         }
-        // For all alike: the next round begins with setting the count.
+        // All read it before the next round sets the count.
         again = tie_count > 0u;
         barrier();
     } while (again);

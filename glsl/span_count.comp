@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// First step of binning: how many spans each run of the sorted splats has in each row of tiles. A span is the tiles of one
-// row that a splat touches. A run's counts lie together, one run after the other; behind them all how many tiles each run
-// touches.
+// The first step of binning counts how many spans each run of the sorted splats has in each row of tiles. A span is the
+// tiles of one row that a splat touches. A run's counts lie together, one run after the other; behind them all is how many
+// tiles each run touches.
 #include "bin.glsl"
 
 layout(local_size_x = SPAN_GROUP_SIZE) in;
@@ -12,7 +12,7 @@ BUFFER(readonly, 2, Splat, splats)
 BUFFER(readonly, 3, uint, order)
 BUFFER(, 4, uint, span_counts)
 BUFFER(readonly, 5, uvec4, tile_masks)
-// The masks once more, in the order of depth, for the third step: where the sort has done its work.
+// The masks once more, in the order of depth, for the third step, in a buffer that the sort no longer needs.
 BUFFER(writeonly, 6, uint, mask_origins)
 BUFFER(writeonly, 7, uint, masks_above)
 BUFFER(writeonly, 8, uint, masks_below)
@@ -25,7 +25,7 @@ void main() {
     }
     uvec2 bounds = run_bounds(run, FRAME.tiles.span_runs, counts.at[0].visible + counts.at[0].cutoff);
     uint found = 0u;
-    // More than there is room for need no counting: quads are drawn, and the next frame has more room.
+    // Pairs beyond the room need no counting: quads are drawn, and the next frame has more room.
     for (uint i = bounds.x; i < bounds.y && found <= FRAME.room.pair_capacity; i++) {
         uint splat = order.at[i];
         uvec4 tiles = tile_masks.at[splat];

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Second step of binning, one workgroup, a row of tiles an invocation: where each run's spans of each row begin, how many
-// pairs of tile and splat there are, and whether there is room for them. If not, the frame's quads are drawn instead.
+// The second step of binning, one workgroup with an invocation for each row of tiles, finds where each run's spans of each
+// row begin, how many pairs of tile and splat there are, and whether there is room for them. If not, the frame's quads are
+// drawn instead.
 #include "bin.glsl"
 #include "groups.glsl"
 

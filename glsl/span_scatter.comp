@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Third step of binning: each run writes its spans, front to back, to the places of their rows.
+// In the third step of binning each run writes its spans, front to back, to the places of their rows.
 #include "bin.glsl"
 
 layout(local_size_x = SPAN_GROUP_SIZE) in;

@@ -9,7 +9,7 @@
 // The debug view.
 layout(constant_id = 6) const bool SHOW_WEIGHT = false;
 
-BUFFER(readonly, 4, vec4, cuts)
+BUFFER(readonly, 4, vec4, cut_records)
 #include "weight.glsl"
 #include "splat_alpha.glsl"
 

@@ -1,5 +1,5 @@
-// Alpha of a splat in a pixel, by the Cholesky factor of the conic, then, for cut splats only, the clip's weight; 0 where
-// the splat does not count. `weight` is that weight, WEIGHT_WHOLE for a splat that is not cut. Included after weight.glsl.
+// Alpha of a splat in a pixel, from its conic and, for cut splats only, the clip's weight; 0 where the splat does not count.
+// `weight` is that weight, WEIGHT_WHOLE for a splat that is not cut. Included after weight.glsl.
 #ifndef RARA_SPLAT_ALPHA
 #define RARA_SPLAT_ALPHA
 #include "weight_colour.glsl"
@@ -15,13 +15,13 @@ float splat_alpha(vec4 centre_conic, vec4 conic_cut, float slope, vec3 curvature
         return 0.0;
     }
     if (CLIP_MODE >= MODE_RARA && conic_cut.z < Z_RANGE) {
-        vec3 plane = vec3(conic_cut.zw, slope);
-        if (CLIP_MODE == MODE_EXACT && plane.x > -Z_RANGE) {
-            float z = plane.x + delta.x * (plane.y + curvature.x * delta.x + curvature.y * delta.y)
-                + delta.y * (plane.z + curvature.z * delta.y);
+        vec3 linear = vec3(conic_cut.zw, slope);
+        if (CLIP_MODE == MODE_EXACT && linear.x > -Z_RANGE) {
+            float z = linear.x + delta.x * (linear.y + curvature.x * delta.x + curvature.y * delta.y)
+                + delta.y * (linear.z + curvature.z * delta.y);
             weight = phi(z);
         } else {
-            weight = cut_weight(record_number(plane), delta, vec2(u, v), gl_FragCoord.xy);
+            weight = cut_weight(record_number(linear), delta, vec2(u, v), gl_FragCoord.xy);
         }
         alpha = decayed(alpha, weight);
     }

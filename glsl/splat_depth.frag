@@ -6,7 +6,7 @@
 #include "buffers.glsl"
 
 
-BUFFER(readonly, 4, vec4, cuts)
+BUFFER(readonly, 4, vec4, cut_records)
 #include "weight.glsl"
 #include "splat_alpha.glsl"
 

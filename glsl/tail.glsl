@@ -1,4 +1,4 @@
-// Phi with a relative error of 2e-5 in its lower tail, for shares that are divided by.
+// Phi with a relative error of 2e-5 in its lower tail, for shares that something is divided by.
 #ifndef RARA_TAIL
 #define RARA_TAIL
 

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Fourth step of binning: how many spans of each part of a row hold each of its tiles. A span is noted where it begins and
-// where it has ended, whatever its length, and sums along the row make counts of it.
+// The fourth step of binning counts how many spans of each part of a row hold each of its tiles. A span is noted where it
+// begins and where it has ended, whatever its length; sums along the row make counts of that.
 #include "rows.glsl"
 
 layout(local_size_x = ROW_GROUP_SIZE) in;

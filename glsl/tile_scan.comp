@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Fifth step of binning, a row of tiles an invocation: where the splats of each tile begin, and those of each part in it.
+// The fifth step of binning, one invocation a row of tiles, finds where the splats of each tile begin, and those of each
+// part in it.
 #include "rows.glsl"
 
 layout(local_size_x = ROW_GROUP_SIZE) in;

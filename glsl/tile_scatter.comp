@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Last step of binning: each part of a row writes its splats, front to back, to the places of their tiles.
+// In the last step of binning each part of a row writes its splats, front to back, to the places of their tiles.
 #include "rows.glsl"
 
 layout(local_size_x = ROW_GROUP_SIZE) in;

@@ -1,6 +1,6 @@
-// The tile rasteriser. One workgroup a tile, an invocation a column of some of its pixels: the tile's splats front to
-// back, until every pixel is saturated. What one splat has in common for a column is computed once; on CPU drivers a
-// column is the whole tile's height, which makes a splat's fixed costs an eighth.
+// The tile rasteriser: one workgroup a tile, one invocation a column of some of its pixels. It draws the tile's splats
+// front to back, until every pixel is saturated. What a splat has in common for a column is computed once; on CPU drivers
+// a column is the whole tile's height, which makes a splat's fixed costs an eighth.
 #ifndef RARA_TILES
 #define RARA_TILES
 struct Params {
@@ -19,10 +19,10 @@ struct Params {
 // Pixels of an invocation, one above the other.
 layout(constant_id = 5) const uint ROWS = 8u;
 layout(local_size_x = TILE_WIDTH, local_size_y_id = 6) in;
-// Whether the camera stands still and only the clip moves: tiles that nothing has changed keep their pixels, and some of
-// the splats are clipped away.
+// Whether the frame is a reclipped one: tiles in which nothing has changed keep their pixels, and some of the splats are
+// clipped away.
 layout(constant_id = 7) const bool RECLIPPED = false;
-// How the host's depth is stored that hides splats, if there is one.
+// How the host's depth that hides splats is stored, if there is one.
 layout(constant_id = 8) const uint DEPTH_FORM = DEPTH_NONE;
 // The debug view.
 layout(constant_id = 9) const bool SHOW_WEIGHT = false;
@@ -30,7 +30,7 @@ layout(constant_id = 9) const bool SHOW_WEIGHT = false;
 BUFFER(readonly, 1, Splat, splats)
 BUFFER(readonly, 2, uint, tile_splats)
 BUFFER(readonly, 3, uint, tile_begins)
-BUFFER(readonly, 4, vec4, cuts)
+BUFFER(readonly, 4, vec4, cut_records)
 BUFFER(writeonly, 5, vec4, picture)
 BUFFER(readonly, 6, uint, dirty)
 BUFFER(readonly, 7, uint, occluders)
@@ -53,27 +53,27 @@ BUFFER(readonly, 7, uint, occluders)
 #endif
 
 // An invocation's pixels.
-vec2 place; // the first one's centre
+vec2 pixel_centre; // the first one's
 vec3 sum[ROWS];
 float transmittance[ROWS];
 float occluder[ROWS]; // the farness beyond which splats are hidden
 bool done; // no splat changes them any more
 
-// What the loop looks at of a splat.
+// The part of a splat that the loop reads.
 struct Seen {
     vec4 centre_conic;
     vec2 conic_opacity;
     vec3 colour;
-    vec3 plane;
+    vec3 linear;
     vec3 curvature;
 };
 
-// Multiplies a cut splat's alphas by its weights; `weight` are these.
+// Applies a cut splat's weights to its alphas, and returns them in `weight`.
 void weigh(Seen splat, vec2 delta, vec2 uv, inout float alpha[ROWS], out float weight[ROWS]) {
-    if (CLIP_MODE == MODE_EXACT && splat.plane.x > -Z_RANGE) {
-        carried_weights(splat.plane, splat.curvature, delta, alpha, weight);
+    if (CLIP_MODE == MODE_EXACT && splat.linear.x > -Z_RANGE) {
+        carried_weights(splat.linear, splat.curvature, delta, alpha, weight);
     } else {
-        cut_weights(record_number(splat.plane), delta, uv, splat.conic_opacity.x, place, alpha, weight);
+        cut_weights(record_number(splat.linear), delta, uv, splat.conic_opacity.x, pixel_centre, alpha, weight);
     }
     bool whole = true;
     for (uint row = 0u; row < ROWS; row++) {
@@ -86,7 +86,7 @@ void weigh(Seen splat, vec2 delta, vec2 uv, inout float alpha[ROWS], out float w
     }
 }
 
-// Takes out the pixels in which the splat is hidden; whether that is all of them.
+// Takes out the pixels in which the splat is hidden, and says whether that is all of them.
 bool hide(float far, inout float alpha[ROWS]) {
     bool behind = true;
     for (uint row = 0u; row < ROWS; row++) {
@@ -101,12 +101,12 @@ void blend(Seen splat, vec2 delta, float far) {
     float v = splat.centre_conic.w * delta.x;
     float alpha[ROWS];
     for (uint row = 0u; row < ROWS; row++) {
-        float y = place.y + float(row) - splat.centre_conic.y;
+        float y = pixel_centre.y + float(row) - splat.centre_conic.y;
         float w = v + splat.conic_opacity.x * y;
         float a = min(ALPHA_MAX, splat.conic_opacity.y * exp(-0.5 * (u * u + w * w)));
         alpha[row] = a >= ALPHA_MIN ? a : 0.0;
     }
-    // So is all that follows, where the sort has looked at whole depths.
+    // Where the sort has compared whole depths, all that follows is hidden too.
     done = DEPTH_FORM != DEPTH_NONE && hide(far, alpha) && FRAME.order.key_shift == 0u;
     if (!done) {
         float weight[ROWS];
@@ -115,7 +115,7 @@ void blend(Seen splat, vec2 delta, float far) {
                 weight[row] = WEIGHT_WHOLE;
             }
         }
-        if (CLIP_MODE >= MODE_RARA && splat.plane.x < Z_RANGE) {
+        if (CLIP_MODE >= MODE_RARA && splat.linear.x < Z_RANGE) {
             weigh(splat, delta, vec2(u, v + splat.conic_opacity.x * delta.y), alpha, weight);
         }
         float most = 0.0;
@@ -129,10 +129,10 @@ void blend(Seen splat, vec2 delta, float far) {
     }
 }
 
-// Of a reclipped frame's list, which holds what is clipped away.
+// Whether a splat is clipped away, which a reclipped frame's list still holds.
 bool is_away(Seen splat, vec2 delta) {
-    return splat.plane.x == Z_CUT_AWAY || (CLIP_MODE == MODE_EXACT && abs(splat.plane.x) < Z_RANGE
-        && is_carried_away(splat.plane, splat.curvature, delta));
+    return splat.linear.x == Z_CUT_AWAY || (CLIP_MODE == MODE_EXACT && abs(splat.linear.x) < Z_RANGE
+        && is_carried_away(splat.linear, splat.curvature, delta));
 }
 
 void main() {
@@ -146,12 +146,12 @@ void main() {
     uint begin = tile_begins.at[tile];
     uint end = tile_begins.at[tile + 1u];
     if (begin == end) {
-        return; // nobody looks at its pixels
+        return; // nothing reads its pixels
     }
     uvec2 size = uvec2(FRAME.view.size.xy);
     uvec2 pixel = tile_at * uvec2(TILE_WIDTH, TILE_HEIGHT) + gl_LocalInvocationID.xy * uvec2(1u, ROWS);
-    place = vec2(pixel) + 0.5;
-    // Pixels beyond the picture keep nobody waiting.
+    pixel_centre = vec2(pixel) + 0.5;
+    // Pixels beyond the picture are done from the start.
     done = pixel.x >= size.x || pixel.y >= size.y;
     for (uint row = 0u; row < ROWS; row++) {
         sum[row] = vec3(0.0);
@@ -170,21 +170,21 @@ void main() {
         float my_depth = DEPTH_FORM != DEPTH_NONE ? splats.at[mine].middle.w : 0.0;
         uint count = BATCH == 1u ? 1u : min(end - first, BATCH);
         for (uint i = 0u; i < count; i++) {
-            // All invocations come by here, whoever is done: there is no other way through the loop.
+            // All invocations run this, also those that are done: subgroup operations need every one.
             Seen splat;
             splat.centre_conic = OF(i, my_centre_conic);
             splat.conic_opacity = OF(i, my_conic_cut.xy);
             splat.colour = OF(i, my_colour_cut.rgb);
-            splat.plane = vec3(Z_WHOLE, 0.0, 0.0);
+            splat.linear = vec3(Z_WHOLE, 0.0, 0.0);
             splat.curvature = vec3(0.0);
             if (CLIP_MODE >= MODE_RARA || RECLIPPED) {
-                splat.plane = vec3(OF(i, my_conic_cut.zw), OF(i, my_colour_cut.w));
+                splat.linear = vec3(OF(i, my_conic_cut.zw), OF(i, my_colour_cut.w));
             }
             if (CLIP_MODE == MODE_EXACT) {
                 splat.curvature = OF(i, my_curvature);
             }
             float far = DEPTH_FORM != DEPTH_NONE ? farness(host_depth(OF(i, my_depth))) : 0.0;
-            vec2 delta = place - splat.centre_conic.xy;
+            vec2 delta = pixel_centre - splat.centre_conic.xy;
             if (!done && !(RECLIPPED && is_away(splat, delta))) {
                 blend(splat, delta, far);
             }

@@ -1,6 +1,6 @@
 // Two-float arithmetic: a value as the unevaluated sum of two floats, about 48 bits. `precise` forbids the compiler to
-// contract or reassociate, on which every line below rests. Knuth's two-sum, Dekker's product with Veltkamp's split:
-// no fma, whose single rounding Vulkan does not promise.
+// contract or reassociate, on which every line below rests. It uses Knuth's two-sum and Dekker's product with
+// Veltkamp's split, but no fma, whose single rounding Vulkan does not promise.
 #ifndef RARA_TWO_FLOAT
 #define RARA_TWO_FLOAT
 
@@ -45,7 +45,7 @@ vec2 two_float_dot(vec2 start, vec3 high, vec3 low, vec3 x) {
 
 // (high + low) . x + the fourth component, rounded once: a plane's signed distance, right at coordinates of 1e6,
 // where plain single precision is off by 0.3. Coordinates that Veltkamp's split would take beyond the range (no scene
-// has them, but a file can) are scaled down before and up again after; what is lost of the offset then is nothing.
+// has them, but a file can) are scaled down before and up again after, which loses nothing of the offset.
 float two_float_plane(vec4 high, vec4 low, vec3 x) {
     float unit = max(abs(x.x), max(abs(x.y), abs(x.z))) > 1e30 ? exp2(-40.0) : 1.0;
     vec2 sum = two_float_dot(unit * vec2(high.w, low.w), high.xyz, low.xyz, unit * x);

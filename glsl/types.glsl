@@ -16,7 +16,7 @@ struct SceneData {
     uint layer_count; // layers of the scene, at least one
 };
 
-// The camera's picture; where the camera stands, each layer has in its own space.
+// The camera's picture. Where the camera stands is in each layer's view, in the layer's own space.
 struct ViewData {
     vec4 focal; // fx, fy, cx, cy, px
     vec4 slope_bounds; // lowest and highest x/z, lowest and highest y/z at which the Jacobian is evaluated
@@ -44,7 +44,7 @@ struct TilesData {
     uint pad[3]; // unused
 };
 
-// How much there is room for, and what happens where that is too little: no pixel depends on it.
+// How much there is room for, and what happens where that is too little. No pixel depends on it.
 struct RoomData {
     uint pair_capacity; // pairs of tile and splat that there is room for
     uint redrawn; // 1: a frame whose pairs have no room is drawn once more, so that nothing is drawn of it
@@ -75,11 +75,11 @@ struct FrameData {
     TilesData tiles; // the tiles
     RoomData room; // the room that there is
     WeightData weight; // the weights of what is cut
-    RegionData region; // what is kept
+    RegionData region; // what the layers' regions have in common
 };
 
-// The camera as a layer sees it that is placed in the scene. The rows are the layer's rotation times its unit, so that all
-// that is computed in the camera's frame is in the scene's units, and all before it in the layer's own.
+// The camera as a layer sees it that is placed in the scene. The rows are the layer's rotation times its unit, so that what
+// is computed in the camera's frame is in the scene's units, and what is computed before that is in the layer's own.
 struct LayerView {
     vec4 rotation_x; // layer to camera, first row; w unused
     vec4 rotation_y; // second row
@@ -146,7 +146,7 @@ struct Splat {
     vec4 curvature; // of the weight's z: the factors of dx^2, dx dy and dy^2; w unused
 };
 
-// How deep a splat is in a pixel: the mean of what the clip leaves of it. Of planes only the strictest of each kind counts.
+// How deep a splat is in a pixel: the mean of what the clip leaves of it. Only the strictest plane of each kind counts.
 struct SplatDepth {
     vec4 mean; // of the whole splat at its centre, how much it changes a px across and down; w: 1 where a union is kept
     vec4 far; // the plane that keeps the far side: z at the centre, dz/dx, dz/dy; the shift of the mean by a density of one

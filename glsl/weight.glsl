@@ -1,5 +1,5 @@
-// The weight w of a cut splat in a pixel, and what it does to alpha. Included by what turns splats into pixels, after it
-// has declared the buffer `cuts`, the constants of weight_constants.glsl, and the parameters sigma, cut_stride and
+// The weight w of a cut splat in a pixel, and what it does to alpha. Included by stages that turn splats into pixels, after
+// they have declared the buffer `cut_records`, the constants of weight_constants.glsl, and the parameters sigma, cut_stride and
 // principal_point.
 #ifndef RARA_WEIGHT
 #define RARA_WEIGHT
@@ -10,9 +10,9 @@ vec2 principal_point() {
     return push.params.principal_point;
 }
 
-Sight line_of_sight(uint base, vec2 delta, vec2 place) {
-    vec2 pixel = place - principal_point();
-    return sight_through(cuts.at[base], cuts.at[base + 1u], cuts.at[base + 2u], pixel, delta);
+Sight line_of_sight(uint base, vec2 delta, vec2 pixel_centre) {
+    vec2 pixel = pixel_centre - principal_point();
+    return sight_through(cut_records.at[base], cut_records.at[base + 1u], cut_records.at[base + 2u], pixel, delta);
 }
 
 // Phi(z) / Phi(front), at most 1, with a relative error of 4e-5 however little of the normal distribution is left.
@@ -26,29 +26,29 @@ float tail_ratio(float z, float front) {
     return tail_phi(z) / tail_phi(front);
 }
 
-// `exact`, with the planes of a record.
-float exact_weight(uint base, uint flags, vec2 delta, vec2 place) {
+// The weight of mode `exact`, from the planes of a record.
+float exact_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
     uint count = flags >> CUT_COUNT_SHIFT;
-    Sight s = line_of_sight(base, delta, place);
+    Sight s = line_of_sight(base, delta, pixel_centre);
     float det = determinant(s);
     if (!SEVERAL || count == 1u) {
         bool far;
-        return phi(beam_z(s, det, cuts.at[base + CUT_HEADER], far));
+        return phi(beam_z(s, det, cut_records.at[base + CUT_HEADER], far));
     }
     return combined(flags, several_weight(s, det, base, count));
 }
 
 // The same with the camera inside the splat: only what is in front of the eye counts, as part and as whole. Such a splat
-// is so large that the low-pass is nothing: the planes are thresholds in one variable along the ray, those that keep the
-// far side bound it from below, as the eye does, the others from above.
-float front_weight(uint base, uint flags, vec2 delta, vec2 place) {
+// is so large that the low-pass is nothing. The planes are thresholds in one variable along the ray: those that keep the
+// far side bound it from below, as the eye does, and the others from above.
+float front_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
     uint count = flags >> CUT_COUNT_SHIFT;
-    Sight s = line_of_sight(base, delta, place);
+    Sight s = line_of_sight(base, delta, pixel_centre);
     float det = determinant(s);
     float far = 1.0;
     float gone = 0.0;
     bool keeps;
-    float front = beam_z(s, det, cuts.at[base + CUT_HEADER + count], keeps);
+    float front = beam_z(s, det, cut_records.at[base + CUT_HEADER + count], keeps);
     for (uint plane = 0u; plane < count; plane++) {
         float z = beam_z(s, det, plane_of(base, plane), keeps);
         if (keeps) {
@@ -60,12 +60,12 @@ float front_weight(uint base, uint flags, vec2 delta, vec2 place) {
     return combined(flags, max(0.0, far - gone));
 }
 
-// `rara`: the visible share of the chord that the ray cuts out of the ellipsoid (paper section 3.3 and eq. 11). The
-// line is p + t c/|c| with p its point nearest the centre; |p|^2 = |delta.x b2 - delta.y b1|^2 / |c|^2 needs no
+// The weight of mode `rara`: the visible share of the chord that the ray cuts out of the ellipsoid (paper section 3.3 and
+// eq. 11). The line is p + t c/|c| with p its point nearest the centre; |p|^2 = |delta.x b2 - delta.y b1|^2 / |c|^2 needs no
 // inverse of M and no B^2 - 4 A C.
-float chord_weight(uint base, uint flags, vec2 delta, vec2 place) {
+float chord_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
     uint count = flags >> CUT_COUNT_SHIFT;
-    Sight s = line_of_sight(base, delta, place);
+    Sight s = line_of_sight(base, delta, pixel_centre);
     float cc = dot(s.c, s.c);
     float sigma = push.params.sigma;
     bool degenerate = !(cc > 0.0);
@@ -77,7 +77,7 @@ float chord_weight(uint base, uint flags, vec2 delta, vec2 place) {
     float high = half_square > 0.0 ? sqrt(half_square) : 0.0;
     float low = -high;
     if ((flags & CUT_FRONT) != 0u) {
-        vec4 front = cuts.at[base + CUT_HEADER + count];
+        vec4 front = cut_records.at[base + CUT_HEADER + count];
         // The view direction's component along the line is never negative.
         low = max(low, -(front.w + dot(front.xyz, nearest)) / max(dot(front.xyz, direction), 1e-30));
     }
@@ -88,11 +88,11 @@ float chord_weight(uint base, uint flags, vec2 delta, vec2 place) {
     }
     bool inside = true;
     for (uint plane = 0u; plane < count; plane++) {
-        vec4 form = plane_of(base, plane);
-        float value = form.w + dot(form.xyz, nearest);
-        float slope = dot(form.xyz, direction);
+        vec4 half_space = plane_of(base, plane);
+        float value = half_space.w + dot(half_space.xyz, nearest);
+        float slope = dot(half_space.xyz, direction);
         if (miss || slope == 0.0) {
-            // The plane itself is visible, so it is no part of a complement.
+            // A plane's own points are visible, so that they are no part of a complement.
             inside = inside && (value > 0.0 || (value == 0.0 && (flags & CUT_UNION) == 0u));
         } else if (slope > 0.0) {
             low = max(low, -value / slope);
@@ -104,29 +104,29 @@ float chord_weight(uint base, uint flags, vec2 delta, vec2 place) {
     return combined(flags, share);
 }
 
-// Which of them by the frame's mode and the record's form. `place` is the pixel's, `delta` the same relative to the
-// splat's centre, `uv` that in the splat's own coordinates (curve.glsl).
-float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 place) {
+// The weight by the frame's mode and the record's form. `delta` is the pixel's centre relative to the splat's centre, `uv`
+// the same in the splat's own coordinates (curve.glsl).
+float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 pixel_centre) {
     uint base = cut * push.params.cut_stride;
-    uint flags = to_uint(cuts.at[base].w);
+    uint flags = to_uint(cut_records.at[base].w);
     if (CLIP_MODE == MODE_RARA) {
-        return chord_weight(base, flags, delta, place);
+        return chord_weight(base, flags, delta, pixel_centre);
     }
     if ((flags & CUT_FRONT) != 0u) {
-        return front_weight(base, flags, delta, place);
+        return front_weight(base, flags, delta, pixel_centre);
     }
     if ((flags & CUT_CURVE) != 0u) {
-        vec4 linear = cuts.at[base];
-        vec4 bend = cuts.at[base + 1u];
-        vec4 twist = cuts.at[base + 2u];
-        vec4 wave = cuts.at[base + CUT_HEADER];
+        vec4 linear = cut_records.at[base];
+        vec4 bend = cut_records.at[base + 1u];
+        vec4 twist = cut_records.at[base + 2u];
+        vec4 wave = cut_records.at[base + CUT_HEADER];
         float at = linear.x + uv.x * (linear.y + uv.x * (bend.x + uv.x * (twist.x + uv.x * wave.x)));
         float slope = linear.z + uv.x * (bend.y + uv.x * (twist.y + uv.x * wave.y));
         float second = bend.z + uv.x * (twist.z + uv.x * wave.z);
         float third = twist.w + uv.x * wave.w;
         return phi(at + uv.y * (slope + uv.y * (second + uv.y * (third + uv.y * bend.w))));
     }
-    return exact_weight(base, flags, delta, place);
+    return exact_weight(base, flags, delta, pixel_centre);
 }
 
 // The paper scales alpha (eq. 12). The default for `exact` scales optical depth, -ln(1 - alpha): then complementary

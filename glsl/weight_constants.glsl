@@ -1,4 +1,5 @@
-// What the weight of cut splats depends on is fixed in the pipeline: without a clip none of its code is there.
+// The settings that the weight of cut splats depends on are constants of the pipeline, so that it holds only the code that
+// its mode needs.
 #ifndef RARA_WEIGHT_CONSTANTS
 #define RARA_WEIGHT_CONSTANTS
 #include "types.glsl"

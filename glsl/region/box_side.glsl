@@ -1,5 +1,5 @@
-// On which side of the region all Gaussians are whose centres lie in a box: conservative, so that the box is only settled
-// where each of them alone would be. Twin: src/reference/region/box_side.rs.
+// On which side of the region all Gaussians are whose centres lie in a box. The answer is conservative: the box has a side
+// only where each of them has it. Twin: src/reference/region/box_side.rs.
 #ifndef RARA_REGION_BOX_SIDE
 #define RARA_REGION_BOX_SIDE
 #include "region/surface.glsl"

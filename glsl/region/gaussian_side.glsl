@@ -6,10 +6,10 @@
 #define RARA_REGION_GAUSSIAN_SIDE
 #include "region/surface.glsl"
 
-uint gaussian_side(mat3 layer_factor, vec3 position, float deviations) {
+uint gaussian_side(mat3 axes, vec3 position, float deviations) {
     uint side = side_undecided();
     for (uint i = 0u; i < LAYER.region.surface_count && side != side_that_decides(); i++) {
-        side = combined_side(side, surface_gaussian_side(LAYER.region.first_surface + i, layer_factor, position, deviations));
+        side = combined_side(side, surface_gaussian_side(LAYER.region.first_surface + i, axes, position, deviations));
     }
     return side;
 }

@@ -8,13 +8,13 @@ float plane_distance(uint surface, vec3 position) {
     return two_float_plane(surfaces.at[surface].high, surfaces.at[surface].low, position);
 }
 
-vec4 plane_half_space(uint surface, mat3 layer_factor, vec3 position) {
-    return vec4(surfaces.at[surface].high.xyz * layer_factor, plane_distance(surface, position));
+vec4 plane_half_space(uint surface, mat3 axes, vec3 position) {
+    return vec4(surfaces.at[surface].high.xyz * axes, plane_distance(surface, position));
 }
 
 // The length of the normal in the Gaussian's unit space is the standard deviation along the normal.
-uint plane_gaussian_side(uint surface, mat3 layer_factor, vec3 position, float deviations) {
-    vec4 half_space = plane_half_space(surface, layer_factor, position);
+uint plane_gaussian_side(uint surface, mat3 axes, vec3 position, float deviations) {
+    vec4 half_space = plane_half_space(surface, axes, position);
     float distance = half_space.w;
     float support = deviations * length(half_space.xyz);
     return distance >= support ? SIDE_VISIBLE : distance <= -support ? SIDE_INVISIBLE : SIDE_CUTOFF;

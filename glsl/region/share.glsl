@@ -1,34 +1,35 @@
-// What a pixel's share of a splat is: the chance that a point of the Gaussian on the pixel's line of sight is kept by all
-// surfaces of the splat's cutoff record, or of a union by any. Included after the buffer `cuts` is declared. Twin:
+// A pixel's share of a splat: the chance that a point of the Gaussian on the pixel's line of sight is kept by all surfaces
+// of the splat's cutoff record, or by any surface of a union. Included after the buffer `cut_records` is declared. Twin:
 // src/reference/region/share.rs.
 #ifndef RARA_REGION_SHARE
 #define RARA_REGION_SHARE
 #include "orthant.glsl"
 
-// What a record keeps, given what all of its surfaces keep together: a union is the rest of its complements' intersection,
-// which is what its record holds.
+// The share that a record keeps, from the share that all of its surfaces keep together. A union's record holds the
+// complements: the union keeps the rest of their intersection.
 float combined(uint flags, float share) {
     return (flags & CUT_UNION) != 0u ? 1.0 - share : share;
 }
 
 // A plane of a record.
 vec4 plane_of(uint base, uint plane) {
-    return cuts.at[base + CUT_HEADER + plane];
+    return cut_records.at[base + CUT_HEADER + plane];
 }
 
 Threshold threshold_of(Sight s, float det, uint base, uint plane) {
-    vec4 form = plane_of(base, plane);
+    vec4 half_space = plane_of(base, plane);
     Threshold t;
-    t.z = beam_z(s, det, form, t.far);
-    t.direction = direction(s, form.xyz);
+    t.z = beam_z(s, det, half_space, t.far);
+    t.direction = direction(s, half_space.xyz);
     return t;
 }
 
-// What four and more planes keep that one pixel sees the edges of: as if the pairs' dependences added up, within what the
-// pairs bound: the least of them, and what is left when each plane takes what the strictest one of its kind, and this what
-// the strictest of the other, has not taken. No arrays: they would cost every splat their room.
+// The share that four or more planes keep whose edges one pixel sees. It is taken as if the pairs' dependences added up,
+// between two bounds that follow from the pairs. The upper one is the least of the pairs' shares. The lower one is the share
+// of the two kinds' strictest planes, less what each other plane takes of what the strictest of its kind leaves. There are
+// no arrays: they would cost every splat their room.
 float many_weight(Sight s, float det, uint base, uint count) {
-    // Of those that keep the far side, and of the others.
+    // The first is of the planes that keep the far side, the second of the others.
     uvec2 strictest = uvec2(count);
     vec2 least = vec2(PHI_ONE);
     float share = 1.0;
@@ -68,7 +69,7 @@ float many_weight(Sight s, float det, uint base, uint count) {
     return min(max(share, max(low, 0.0)), high);
 }
 
-// What several planes of a record keep together. Few pixels of a splat see the edges of more than one of them.
+// The share that several planes of a record keep together. Few pixels of a splat see the edges of more than one of them.
 float several_weight(Sight s, float det, uint base, uint count) {
     uvec3 open = uvec3(0u);
     float z;

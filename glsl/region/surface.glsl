@@ -9,7 +9,7 @@ BUFFER(readonly, 1, Surface, surfaces)
 
 #include "region/plane.glsl"
 
-// How far a point is from a surface, the layer's units: positive where the surface keeps the point.
+// How far a point is from a surface, in the layer's units: positive where the surface keeps the point.
 float surface_distance(uint surface, vec3 position) {
     switch (surfaces.at[surface].kind) {
     default: // SURFACE_PLANE
@@ -17,8 +17,9 @@ float surface_distance(uint surface, vec3 position) {
     }
 }
 
-// On which side of a surface a Gaussian is whose band reaches so many standard deviations; of a hard clip, its centre.
-uint surface_gaussian_side(uint surface, mat3 layer_factor, vec3 position, float deviations) {
+// On which side of a surface a Gaussian is, whose band reaches the given number of standard deviations. A hard clip asks for
+// the centre alone.
+uint surface_gaussian_side(uint surface, mat3 axes, vec3 position, float deviations) {
     if (FRAME.region.mode == MODE_HARD) {
         return surface_distance(surface, position) >= 0.0 ? SIDE_VISIBLE : SIDE_INVISIBLE;
     }
@@ -27,11 +28,11 @@ uint surface_gaussian_side(uint surface, mat3 layer_factor, vec3 position, float
     }
     switch (surfaces.at[surface].kind) {
     default: // SURFACE_PLANE
-        return plane_gaussian_side(surface, layer_factor, position, deviations);
+        return plane_gaussian_side(surface, axes, position, deviations);
     }
 }
 
-// On which side all Gaussians are whose centres lie in a box and that reach at most so far from them, the layer's units.
+// On which side all Gaussians are whose centres lie in a box and that reach at most `support` from them, the layer's units.
 uint surface_box_side(uint surface, vec3 middle, vec3 half_size, float support) {
     switch (surfaces.at[surface].kind) {
     default: // SURFACE_PLANE
@@ -41,15 +42,15 @@ uint surface_box_side(uint surface, vec3 middle, vec3 half_size, float support) 
 
 // The half-space that a surface keeps of a Gaussian that it cuts: its normal in the Gaussian's unit space, and the centre's
 // distance, the layer's units.
-vec4 surface_half_space(uint surface, mat3 layer_factor, vec3 position) {
+vec4 surface_half_space(uint surface, mat3 axes, vec3 position) {
     switch (surfaces.at[surface].kind) {
     default: // SURFACE_PLANE
-        return plane_half_space(surface, layer_factor, position);
+        return plane_half_space(surface, axes, position);
     }
 }
 
-// The answer of one surface that is the region's, whatever the others say: what one drops no intersection holds, what one
-// keeps every union does.
+// The answer of one surface that is the region's, whatever the others say: no intersection holds what one drops, and every
+// union holds what one keeps.
 uint side_that_decides() {
     return LAYER.region.op == OP_AND ? SIDE_INVISIBLE : SIDE_VISIBLE;
 }
@@ -59,7 +60,7 @@ uint side_undecided() {
     return LAYER.region.op == OP_AND ? SIDE_VISIBLE : SIDE_INVISIBLE;
 }
 
-// The region's answer by what one more surface says, given what it was by those before.
+// The region's answer after one more surface, from the answer by those before.
 uint combined_side(uint side, uint one) {
     return side != side_that_decides() && (one == side_that_decides() || one == SIDE_CUTOFF) ? one : side;
 }

@@ -41,7 +41,7 @@ unsafe impl Send for Host {}
 // SAFETY: as above, several at once.
 unsafe impl Sync for Host {}
 
-/// Locked for reading while the host is told, so that rara_set_log returns only when nobody is in the old function.
+/// Locked for reading while the host receives a record, so that rara_set_log returns only when nobody is in the old function.
 static HOST: RwLock<Option<Host>> = RwLock::new(None);
 
 /// Whether this process's records come to us; asked for once.

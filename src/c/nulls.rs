@@ -191,7 +191,7 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
     called
 }
 
-/// Of functions without a result: they neither fail nor tell.
+/// Functions without a result ignore null: they cannot report it.
 fn assert_nothing_comes_of_null() {
     // SAFETY: null is what these ignore.
     unsafe {

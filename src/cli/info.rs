@@ -17,7 +17,7 @@ Example:
   rara info scene.ply
 
 Statistics are the least value, the 1st, 50th and 99th percentiles, and the greatest. What the loader repaired or
-dropped is told first.")]
+dropped is printed first.")]
 pub(super) struct Info {
     #[command(flatten)]
     scenes: SceneArgs,

@@ -69,7 +69,7 @@ impl Profile {
         }
     }
 
-    /// Writes the trace, also of work that has failed: it shows how far it came. What failed first is told.
+    /// Writes the trace, also of work that has failed: it shows how far it came. The first failure is reported.
     pub(super) fn end_after(self, done: Result<(), Failure>) -> Result<(), Failure> {
         let written = match (self.file, self.trace) {
             (Some(file), Some(trace)) => output::text(&file, &trace.json()),

@@ -212,7 +212,7 @@ pub(super) fn wrote(paths: &[PathBuf]) -> String {
     }
 }
 
-/// The most memory this process ever had resident; 0 where the system does not tell.
+/// The most memory this process ever had resident; 0 where the system does not say.
 fn peak_rss_bytes() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

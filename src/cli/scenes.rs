@@ -64,7 +64,7 @@ impl Loaded {
     }
 }
 
-/// Reads the files in order; tells people what had to be repaired.
+/// Reads the files in order; prints what had to be repaired.
 pub(super) fn load(paths: &[PathBuf]) -> Result<Loaded, Failure> {
     let mut all = Loaded {
         files: Vec::new(),

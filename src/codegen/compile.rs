@@ -24,7 +24,7 @@ pub(crate) fn compile(glsl: &Path, spirv: &Path) -> Result<(), String> {
         let source = fs::read_to_string(&path).map_err(|error| format!("{name}: {error}"))?;
         for (variant, define) in VARIANTS {
             let mut options = CompileOptions::new().expect("shaderc options");
-            // Not 1.3: glslang would write LocalSizeId, which needs maintenance4 and complicates reflection.
+            // For 1.3 glslang would write LocalSizeId, which needs maintenance4 and complicates reflection.
             options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_2 as u32);
             // The bound variant serves the validation layer and reflection: it keeps names and every declared buffer.
             let optimise = if define.is_some() {

@@ -1,7 +1,7 @@
-//! Makes the Rust interface of each program from what its shaders declare: a struct of its buffers, one of its parameters and
-//! one of its specialisation constants, all by name.
+//! Makes the Rust interface of each program from what its shaders declare: a struct of its buffers, one of its parameters
+//! and one of its specialisation constants, all by name.
 //!
-//! A program is what one name stands for in `glsl/`: `sort_scan.comp`, or `splat.vert`, `splat.mesh` and `splat.frag`. Its
+//! A program is all shaders of one name in `glsl/`: `sort_scan.comp`, or `splat.vert`, `splat.mesh` and `splat.frag`. Its
 //! shaders may each declare a part of the interface; where they declare the same thing, they agree on it.
 
 use std::fmt::Write;
@@ -13,7 +13,7 @@ pub(crate) struct Source {
     /// Its file, `splat.mesh`.
     pub(crate) file: String,
     pub(crate) declarations: Declarations,
-    /// The modules that reach their buffers by address, and as bound ones.
+    /// The modules that reach their buffers by address, and by binding.
     pub(crate) modules: [Vec<u32>; 2],
 }
 
@@ -74,7 +74,7 @@ fn module(shaders: &[Source]) -> String {
     out += &constants(&whole.constants);
     writeln!(
         out,
-        "/// What its shaders declare.\n#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]\npub(crate) struct Program;\n\
+        "/// The declarations of its shaders.\n#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]\npub(crate) struct Program;\n\
          impl super::Interface for Program {{\n\
          const NAME: &'static str = {name:?};\n\
          type Buffers<'a> = Buffers<'a>;\ntype Params = {};\ntype Constants = {};\n}}\n{}}}",
@@ -92,7 +92,7 @@ fn module(shaders: &[Source]) -> String {
     out
 }
 
-/// What the shaders of a program declare together.
+/// All that the shaders of a program declare.
 fn union(name: &str, shaders: &[Source]) -> Declarations {
     let mut whole = Declarations::default();
     for shader in shaders {
@@ -126,7 +126,7 @@ fn union(name: &str, shaders: &[Source]) -> Declarations {
     whole
 }
 
-/// Adds what is new; what has the same number or the same name has to be the same thing.
+/// Adds new items; items of the same number or the same name have to be the same.
 fn merge<T: Clone + PartialEq>(
     program: &str,
     all: &mut Vec<T>,
@@ -194,14 +194,14 @@ fn constants(constants: &[Constant]) -> String {
         return String::new();
     }
     let mut out = String::from(
-        "/// Its specialisation constants: they tell one of its pipelines from another.\n\
+        "/// Its specialisation constants: its pipelines differ in them.\n\
          #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]\npub(crate) struct Constants {\n",
     );
     let mut words = String::new();
     for Constant { id, name, scalar } in constants {
         assert!(
             *scalar != Scalar::Float,
-            "{name}: a float cannot tell pipelines apart"
+            "{name}: pipelines cannot differ in a float"
         );
         writeln!(out, "pub(crate) {name}: {},", scalar.rust()).unwrap();
         let word = match scalar {
@@ -245,7 +245,7 @@ mod tests {
     #[test]
     fn shaders_of_a_name_are_one_program() {
         let text = programs(&[
-            source("splat.frag", &[(1, "cuts")], &[(0, "mode")]),
+            source("splat.frag", &[(1, "cut_records")], &[(0, "mode")]),
             source("splat.vert", &[(0, "frame")], &[(5, "depth")]),
             source("tiles.subgroup.comp", &[(0, "frame")], &[]),
         ]);
@@ -253,7 +253,7 @@ mod tests {
             "pub(crate) mod splat {",
             "pub(crate) static FRAG:",
             "pub(crate) static VERT:",
-            "&[self.frame, self.cuts, ]",
+            "&[self.frame, self.cut_records, ]",
             "&[(0, self.mode), (5, self.depth), ]",
             "pub(crate) static SUBGROUP_COMP:",
             "type Constants = ();",

@@ -1,5 +1,5 @@
-//! Which GLSL each committed SPIR-V module was compiled from: a small file beside the two modules of a shader, so that
-//! changes to different shaders touch different files.
+//! A manifest says from which GLSL committed SPIR-V was compiled. It is a small file beside the two modules of a shader, so
+//! that changes to different shaders touch different files.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -40,7 +40,7 @@ fn sources(folder: &Path, shader: &Path) -> BTreeSet<PathBuf> {
     found
 }
 
-/// What stands in a shader's manifest: a hash of its sources, and one of each of its modules.
+/// The text of a shader's manifest: a hash of its sources, and one of each of its modules.
 pub(crate) fn manifest(folder: &Path, shader: &Path, spirv: &Path) -> String {
     let mut glsl = Hash::new();
     for path in sources(folder, shader) {
@@ -57,8 +57,8 @@ pub(crate) fn manifest(folder: &Path, shader: &Path, spirv: &Path) -> String {
     text
 }
 
-/// What is wrong with the SPIR-V of a folder: a sentence for each shader whose sources or modules are not those that its
-/// manifest was written for, and for each file that belongs to no shader.
+/// The faults of a folder's SPIR-V: a sentence for each shader whose sources or modules are not those that its manifest was
+/// written for, and for each file that belongs to no shader.
 #[cfg_attr(all(feature = "shaderc", not(test)), allow(dead_code))]
 pub(crate) fn stale(folder: &Path, spirv: &Path) -> Vec<String> {
     let mut stale = Vec::new();
@@ -113,7 +113,7 @@ fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// FNV-1a of 64 bits: it tells versions apart, and keeps nobody out.
+/// FNV-1a of 64 bits: it distinguishes versions, and is no protection.
 struct Hash(u64);
 
 impl Hash {
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn every_change_is_noticed_and_told_by_its_shader() {
+    fn every_change_is_noticed_and_named_by_its_shader() {
         let folder = std::env::temp_dir().join(format!("rara-manifest-{}", std::process::id()));
         let spirv = folder.join("spirv");
         fs::create_dir_all(&spirv).unwrap();

@@ -1,5 +1,5 @@
-//! What build.rs makes of `glsl/`: Rust constants, structs and the interface of every shader; and of pictures, for the
-//! documentation. It is compiled into the build script, and into the crate's tests.
+//! The code that build.rs generates: Rust constants, structs and the interface of every shader from `glsl/`, and links to
+//! pictures for the documentation. This module is compiled into the build script, and into the crate's tests.
 
 pub(crate) mod glsl;
 pub(crate) mod interface;

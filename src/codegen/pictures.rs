@@ -1,5 +1,5 @@
-//! The documentation's pictures. Among generated pages there is no file that a relative link could lead to, so there the
-//! picture is in the link itself.
+//! The documentation's pictures. Generated pages have no file that a relative link could lead to, so there the link holds
+//! the picture itself.
 
 /// The definition of the link `NAME picture`.
 pub(crate) fn definition(name: &str, png: &[u8]) -> String {
@@ -25,7 +25,7 @@ mod tests {
 
     #[test]
     fn pictures_are_in_their_links() {
-        // RFC 4648, section 10.
+        // The test vectors of RFC 4648, section 10.
         for (bytes, text) in [
             ("", ""),
             ("f", "Zg=="),

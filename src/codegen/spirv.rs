@@ -1,15 +1,14 @@
 //! Reads from SPIR-V what a shader declares: its storage buffers, the members of its push constants and its specialisation
-//! constants, by the names that the GLSL gives them. The module is one that was compiled without optimisation, which keeps
-//! all of them.
+//! constants, by the names that the GLSL gives them. The module is compiled without optimisation, which keeps all names.
 
-/// What a shader declares.
+/// The declarations of a shader.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Declarations {
-    /// By ascending binding.
+    /// The storage buffers, by ascending binding.
     pub(crate) buffers: Vec<Buffer>,
     /// The members of the push constants' `params`, in order.
     pub(crate) params: Vec<Param>,
-    /// By ascending id.
+    /// The specialisation constants, by ascending id.
     pub(crate) constants: Vec<Constant>,
 }
 
@@ -70,7 +69,7 @@ enum Type {
     Pointer(usize),
 }
 
-/// What is known of an id of the module.
+/// The facts known about an id of the module.
 #[derive(Debug, Clone, Default)]
 struct Known {
     name: String,
@@ -87,7 +86,7 @@ struct Known {
 /// Reads a module's declarations.
 ///
 /// # Panics
-/// With a sentence where the module is none, or declares what this does not translate.
+/// With a sentence where this is no module, or it declares something that is not translated here.
 pub(crate) fn declarations(words: &[u32]) -> Declarations {
     const STORAGE_BUFFER: u32 = 12;
     const PUSH_CONSTANT: u32 = 9;
@@ -134,7 +133,7 @@ pub(crate) fn declarations(words: &[u32]) -> Declarations {
             _ => {}
         }
     }
-    // The size of a workgroup has no name of its own in the GLSL: a constant decides one of its sides.
+    // The size of a workgroup has no name of its own in the GLSL; a constant decides one of its sides.
     for (composite, parts) in composites {
         if known[composite].is_workgroup_size {
             for (part, side) in parts.into_iter().zip(["x", "y", "z"]) {
@@ -254,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn a_compute_shader_tells_its_buffers_params_and_constants() {
+    fn a_compute_shader_declares_its_buffers_params_and_constants() {
         let found = declarations(&module("sort_scan.comp.bound.spv"));
         let buffers: Vec<_> = found
             .buffers

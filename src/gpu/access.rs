@@ -25,7 +25,7 @@ pub enum Access {
     HostRead,
 }
 
-/// The one table, in the order of the names: stages, what is read there, what is written.
+/// The one table, in the order of the names: stages, the memory that is read there, and the memory that is written.
 #[rustfmt::skip]
 const TABLE: [(Access, Stages, Memory, Memory); 9] = {
     use Access::*;
@@ -65,17 +65,17 @@ impl Access {
         (stages, reads | writes)
     }
 
-    /// Whether it writes.
+    /// Whether the access writes.
     pub fn writes(self) -> bool {
         !TABLE[self as usize].3.is_empty()
     }
 
-    /// Whether it reads.
+    /// Whether the access reads.
     pub fn reads(self) -> bool {
         !TABLE[self as usize].2.is_empty()
     }
 
-    /// Stages, what it reads and what it writes.
+    /// The stages, the memory that they read, and the memory that they write.
     pub(super) fn row(self, mesh_shader: bool) -> (Stages, Memory, Memory) {
         let (_, stages, reads, writes) = TABLE[self as usize];
         let absent = if mesh_shader {

@@ -1,4 +1,4 @@
-//! What graphics pipelines draw into: a host's attachments, in a dynamic rendering scope or a classic render pass.
+//! The attachments of a host that graphics pipelines draw into, in a dynamic rendering scope or a classic render pass.
 
 use ash::vk;
 
@@ -20,7 +20,7 @@ pub struct Attachments {
 pub struct DepthAttachment {
     /// Its format, with or without stencil.
     pub format: vk::Format,
-    /// Whether the same image is the scope's stencil attachment too; of a render pass unused.
+    /// Whether the same image is the scope's stencil attachment too; unused with a render pass.
     pub stencil: bool,
     /// Whether nearer is more.
     pub reversed: bool,
@@ -37,7 +37,7 @@ impl Target {
     /// A subpass of a classic render pass, or of any that is compatible with it.
     ///
     /// # Safety
-    /// The render pass is of the device that pipelines are made on, has such a subpass, and lives as long as pipelines are
+    /// The render pass is of the device that pipelines are made on, has this subpass, and lives as long as pipelines are
     /// made for it: for a renderer, until its last `configure`.
     pub const unsafe fn render_pass(render_pass: vk::RenderPass, subpass: u32) -> Self {
         Self(Some((render_pass, subpass)))

@@ -1,4 +1,4 @@
-//! The device's clock against the processor's.
+//! Sets the device's clock against the processor's.
 
 use std::time::{Duration, Instant};
 
@@ -12,7 +12,7 @@ pub(super) enum Clock {
     Ext(ext::calibrated_timestamps::Device),
 }
 
-/// What the device's clock showed at a moment.
+/// The device's clock at a moment.
 #[derive(Debug, Clone, Copy)]
 pub struct Calibration {
     /// Ticks, as timestamps count them.
@@ -39,8 +39,8 @@ impl Clock {
         })
     }
 
-    /// Of a few readings the one that took least. The processor's clock is read around the device's and not by the same
-    /// call: `Instant` cannot be made from what that would give, and the error is known all the same.
+    /// Returns the one of a few readings that took least. The processor's clock is read around the device's and not by the
+    /// same call: `Instant` cannot be made from what that would give, and the error is known all the same.
     pub(super) fn read(&self) -> Option<Calibration> {
         let info =
             [vk::CalibratedTimestampInfoKHR::default().time_domain(vk::TimeDomainKHR::DEVICE)];

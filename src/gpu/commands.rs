@@ -1,5 +1,5 @@
-//! What is recorded and submitted of Vulkan 1.3: by its names there, or on 1.2 by those of the two extensions that it
-//! comes from. The functions and their structs are the same.
+//! The commands that are recorded and submitted with Vulkan 1.3, or with the two extensions of 1.2 that they come from. Only
+//! the functions' names differ.
 
 use std::ffi::{CStr, CString, c_void};
 

@@ -44,7 +44,7 @@ pub(super) struct Inner {
     allocator: Option<Arc<Mutex<Allocator>>>,
     allocated: AtomicU64,
     allocated_at_most: AtomicU64,
-    /// The same by name, as a host's allocator has more in it than ours.
+    /// The same by name. They are counted here, as a host's allocator holds more than our memory.
     allocated_by_name: Mutex<BTreeMap<String, u64>>,
     /// Idle command buffers of [`Device::submit_and_wait`].
     pub(super) idle: Mutex<Vec<OneOff>>,
@@ -52,11 +52,11 @@ pub(super) struct Inner {
     owned: Option<Arc<Instance>>,
 }
 
-/// What a buffer or an image is for, and the device memory that it takes.
+/// A buffer's or an image's name, and the device memory that it takes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct NamedBytes {
-    /// Its name: what it is for.
+    /// Its name, which says what it is for.
     pub name: String,
     /// Its size.
     pub bytes: u64,
@@ -118,7 +118,7 @@ impl Device {
         self.inner.shape
     }
 
-    /// What it offers, less what the host did not enable.
+    /// The features that it offers, without those that the host did not enable.
     pub fn support(&self) -> &Support {
         &self.inner.support
     }
@@ -133,7 +133,7 @@ impl Device {
         &self.inner.instance
     }
 
-    /// What optimally tiled images of a format can do.
+    /// The uses of optimally tiled images of a format.
     pub fn format_features(&self, format: vk::Format) -> vk::FormatFeatureFlags {
         let (instance, physical) = (&self.inner.instance, self.inner.physical);
         // SAFETY: the instance is ours, or the host's and outlives this device.
@@ -197,8 +197,8 @@ impl Device {
         self.inner.allocated_at_most.load(Ordering::Relaxed)
     }
 
-    /// What live buffers and images take, by name, the largest first and with what alignment adds; those of one name are
-    /// added up.
+    /// The memory of live buffers and images by name, the largest first and with what alignment adds; those of one name
+    /// are added up.
     pub fn memory_by_name(&self) -> Vec<NamedBytes> {
         let by_name = self.inner.allocated_by_name.lock();
         let mut sums: Vec<NamedBytes> = by_name
@@ -209,11 +209,11 @@ impl Device {
                 bytes: *bytes,
             })
             .collect();
-        sums.sort_by_key(|sum| Reverse(sum.bytes)); // stable: by name among equals
+        sums.sort_by_key(|sum| Reverse(sum.bytes)); // a stable sort, so that equals stay in the order of their names
         sums
     }
 
-    /// What the device's clock shows now; `None` where that cannot be asked.
+    /// The device's clock now; `None` where it cannot be read.
     #[cfg_attr(not(feature = "lab"), doc(hidden))]
     pub fn calibrate(&self) -> Option<Calibration> {
         Clock::new(self, &self.inner.instance)?.read()
@@ -271,7 +271,7 @@ impl Device {
     /// Names an object of this device for debuggers and validation messages.
     pub(crate) fn set_name<H: vk::Handle + Copy>(&self, object: H, name: &str) {
         let Some(debug) = self.debug_utils().filter(|_| object.as_raw() != 0) else {
-            return; // a cache need not exist
+            return; // there is no object, as a cache need not exist
         };
         let name = CString::new(name.replace('\0', "")).expect("no NUL is left");
         let info = vk::DebugUtilsObjectNameInfoEXT::default()
@@ -353,7 +353,7 @@ impl Drop for Inner {
         {
             one_off.destroy(&self.raw);
         }
-        // Our own frees its blocks now, while there is a device.
+        // Our own allocator frees its blocks now, while there is a device.
         drop(self.allocator.take());
         if self.owned.is_some() {
             // SAFETY: everything made from the device holds an `Arc` of it or was destroyed above, and the cache is its

@@ -1,4 +1,4 @@
-//! What devices there are, and the choice among them.
+//! The list of devices, and the choice among them.
 
 use std::ffi::CStr;
 
@@ -22,7 +22,7 @@ pub struct DeviceInfo {
     pub api: (u32, u32, u32),
     /// Bytes of its largest device-local heap.
     pub memory: u64,
-    /// What it offers, or a sentence why it cannot be used.
+    /// The features that it offers, or a sentence why it cannot be used.
     pub support: std::result::Result<Support, String>,
 }
 
@@ -38,7 +38,7 @@ impl DeviceInfo {
         }
     }
 
-    /// Low is better.
+    /// The rank for the choice; a low one is better.
     fn rank(&self) -> u32 {
         match self.kind {
             vk::PhysicalDeviceType::DISCRETE_GPU => 0,
@@ -108,8 +108,8 @@ pub fn list_devices() -> Result<Vec<DeviceInfo>> {
         .collect())
 }
 
-/// The place in `devices` of the one that is meant: by number, by part of the name (the best of those that match), or
-/// the best of all.
+/// The place in `devices` of the one that the selector means: by number, by part of the name (the best of those that
+/// match), or the best of all.
 pub(crate) fn choose(devices: &[DeviceInfo], selector: Option<&str>) -> Result<usize> {
     if devices.is_empty() {
         return Err(no_device());

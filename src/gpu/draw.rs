@@ -1,10 +1,10 @@
-//! Draws inside a rendering scope that somebody else began. No barriers: [`Recorder::ready_to_draw`] set them.
+//! Draws inside a rendering scope that somebody else began. They need no barriers: [`Recorder::ready_to_draw`] set them.
 //!
 //! [`Recorder::ready_to_draw`]: super::Recorder::ready_to_draw
 
 use ash::vk;
 
-use super::recorder::{begin_label, end_label};
+use super::label::{begin_label, end_label};
 use super::{Buffer, Device, GraphicsPipeline, Timer};
 
 /// Records draws whose number stands in buffers.
@@ -21,8 +21,8 @@ impl<'a> Drawer<'a> {
     /// # Safety
     ///
     /// `cmd` must be recording on `device` inside a rendering scope with the pipelines' attachments, and stay so as long as
-    /// the drawer lives. All buffers and pipelines given to the drawer must be this device's and
-    /// outlive the execution, and the buffers were made ready to draw after their last write.
+    /// the drawer lives. All buffers and pipelines given to the drawer must be this device's and outlive the execution,
+    /// and the buffers must have been made ready to draw after their last write.
     pub unsafe fn new(
         device: &'a Device,
         cmd: vk::CommandBuffer,
@@ -155,7 +155,7 @@ impl<'a> Drawer<'a> {
     }
 }
 
-/// That a whole command lies at the offset; a sentence in the panic otherwise.
+/// Panics with a sentence unless a whole command lies at the offset.
 fn check_args<Command>(args: &Buffer, offset: u64) {
     assert!(
         offset.is_multiple_of(4),

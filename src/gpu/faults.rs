@@ -1,8 +1,10 @@
-//! Devices that fail when a test says so, that are too old, and that remember what was made and named.
+//! Devices for tests, which fail when a test says so, pretend to be too old, and remember which objects were made and named.
 //!
 //! The seam is the one pointer through which ash asks for every function of a device, `vkGetDeviceProcAddr`, and the few
-//! through which it asks for a physical device's properties. What is tested is therefore the code that ships, the memory
+//! through which it asks for a physical device's properties. Tests therefore run the code that ships, the memory
 //! allocator's included, without a branch, a trait or a feature that only tests need.
+
+mod pretence;
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
@@ -14,29 +16,15 @@ use ash::vk::Handle;
 use super::instance::Instance;
 use super::{AdoptDesc, Device, DeviceDesc};
 use crate::Result;
+pub(crate) use pretence::Pretence;
 
-/// Which call fails, and with what.
+/// A fault: which call fails, and with which result.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Fault {
     /// How many fallible calls succeed before.
     pub(crate) after: usize,
-    /// What the one after them returns. A lost device stays lost: all later calls that can say so do.
+    /// The result of the one after them. A lost device stays lost: all later calls that can say so do.
     pub(crate) result: vk::Result,
-}
-
-/// What a physical device pretends to be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Pretence {
-    Vulkan11,
-    Vulkan12,
-    /// Without a single extension.
-    Vulkan12Alone,
-    Without(&'static str),
-    WithoutGraphics,
-    WithoutExtensions,
-    WithoutSubgroups,
-    ExtensionsFail,
-    CreateFails(vk::Result),
 }
 
 #[derive(Default)]
@@ -63,7 +51,7 @@ struct State {
 type Function = unsafe extern "system" fn();
 
 thread_local! {
-    // A test is a thread, and its device is used by no other.
+    // Each test is a thread, and no other thread uses its device.
     static STATE: RefCell<State> = RefCell::default();
 }
 
@@ -71,19 +59,19 @@ fn with<R>(act: impl FnOnce(&mut State) -> R) -> R {
     STATE.with_borrow_mut(act)
 }
 
-/// An instance under validation whose devices are as `pretence` says and fail as told from then on.
+/// An instance under validation whose devices are as `pretence` says and fail as `set_among` asks from then on.
 pub(crate) fn instance(pretence: Option<Pretence>) -> Instance {
     let mut instance = Instance::new("rara", true, &[]).expect("the validation layer");
     let raw = instance.raw.clone();
     let mut v1_0 = raw.fp_v1_0().clone();
     let mut v1_1 = raw.fp_v1_1().clone();
     v1_0.get_device_proc_addr = get_device_proc_addr;
-    v1_0.get_physical_device_properties = properties;
-    v1_0.get_physical_device_queue_family_properties = queue_families;
-    v1_0.enumerate_device_extension_properties = extensions;
-    v1_0.create_device = create_device;
-    v1_1.get_physical_device_features2 = features;
-    v1_1.get_physical_device_properties2 = properties2;
+    v1_0.get_physical_device_properties = pretence::properties;
+    v1_0.get_physical_device_queue_family_properties = pretence::queue_families;
+    v1_0.enumerate_device_extension_properties = pretence::extensions;
+    v1_0.create_device = pretence::create_device;
+    v1_1.get_physical_device_features2 = pretence::features;
+    v1_1.get_physical_device_properties2 = pretence::properties2;
     instance.raw = ash::Instance::from_parts_1_3(raw.handle(), v1_0, v1_1, raw.fp_v1_3().clone());
     with(|state| {
         *state = State {
@@ -95,7 +83,7 @@ pub(crate) fn instance(pretence: Option<Pretence>) -> Instance {
     instance
 }
 
-/// A device under validation that fails as told.
+/// A device under validation that fails as `set_among` asks.
 pub(crate) fn device(pretence: Option<Pretence>) -> Result<Device> {
     let desc = DeviceDesc {
         selector: std::env::var("RARA_TEST_DEVICE").ok(),
@@ -107,7 +95,7 @@ pub(crate) fn device(pretence: Option<Pretence>) -> Result<Device> {
     Device::open(std::sync::Arc::new(instance), candidates, &desc, &[])
 }
 
-/// Slow drivers get fewer places: what is tested is not theirs.
+/// Whether fewer places are enough, as on slow drivers: the code under test is not theirs.
 pub(crate) fn is_slow() -> bool {
     let scale = std::env::var("RARA_TEST_SCALE").ok();
     scale.is_some_and(|scale| scale.parse().is_ok_and(|scale: f64| scale < 1.0))
@@ -132,7 +120,7 @@ pub(crate) fn lent(host: &Device) -> AdoptDesc {
     }
 }
 
-/// From now on one of these calls fails, or none.
+/// Sets which of these calls fails from now on, if any.
 pub(crate) fn set_among(among: &'static [&'static str], fault: Option<Fault>) {
     with(|state| {
         (state.fault, state.among) = (fault, among);
@@ -166,7 +154,7 @@ pub(crate) fn labels() -> (Vec<String>, Vec<&'static str>) {
     with(|state| (state.labels.clone(), state.unlabelled.clone()))
 }
 
-/// What `call` has to return instead of being called.
+/// The result that `call` has to return instead of being called.
 fn due(call: &'static str) -> Option<vk::Result> {
     with(|state| {
         *state.counts.entry(call).or_insert(0) += 1;
@@ -205,7 +193,7 @@ fn under_label(call: &'static str) {
     });
 }
 
-/// Functions that fail when they are due, or tell something; the others are the driver's.
+/// Functions that fail when they are due, or report something; the others are the driver's.
 macro_rules! functions {
     (
         fallible { $($fallible:ident = $name:literal: $pfn:ident($($arg:ident: $type:ty),*)
@@ -214,7 +202,7 @@ macro_rules! functions {
     ) => {
         $(unsafe extern "system" fn $fallible($($arg: $type),*) -> vk::Result {
             let due = due($name);
-            // A device that is lost is idle; here it is only once it has been waited for.
+            // A device that is lost is idle; this one is idle only after the wait.
             if due.is_some() && !["vkWaitForFences", "vkDeviceWaitIdle"].contains(&$name) {
                 return due.expect("just seen");
             }
@@ -240,7 +228,7 @@ macro_rules! functions {
         /// Every call here that may fail.
         pub(crate) static CALLS: [&str; [$($name),*].len()] = [$($name),*];
 
-        /// Ours in place of the driver's, with the name to keep the driver's under.
+        /// Our function in place of the driver's, with the name under which the driver's is kept.
         fn exchanged(name: &CStr) -> Option<(&'static str, *const c_void)> {
             match name.to_str().ok()? {
                 $($name => Some(($name, $fallible as *const c_void)),)*
@@ -361,144 +349,4 @@ unsafe extern "system" fn get_device_proc_addr(
 
 fn driver() -> ash::Instance {
     with(|state| state.instance.clone()).expect("made by `instance`")
-}
-
-fn pretence() -> Option<Pretence> {
-    with(|state| state.pretence)
-}
-
-/// The structs of a chain.
-///
-/// # Safety
-///
-/// `first` is null or begins a valid chain, which outlives the iterator.
-unsafe fn chain(first: *mut c_void) -> impl Iterator<Item = *mut vk::BaseOutStructure<'static>> {
-    let one = |next: *mut vk::BaseOutStructure<'static>| (!next.is_null()).then_some(next);
-    std::iter::successors(one(first.cast()), move |&next| {
-        // SAFETY: none of them is null, and each struct begins with its type and the next one.
-        one(unsafe { (*next).p_next })
-    })
-}
-
-unsafe extern "system" fn properties(
-    physical: vk::PhysicalDevice,
-    out: *mut vk::PhysicalDeviceProperties,
-) {
-    // SAFETY: the caller's arguments, passed on.
-    unsafe {
-        (driver().fp_v1_0().get_physical_device_properties)(physical, out);
-        match pretence() {
-            Some(Pretence::Vulkan11) => (*out).api_version = vk::API_VERSION_1_1,
-            Some(Pretence::Vulkan12 | Pretence::Vulkan12Alone) => {
-                (*out).api_version = vk::API_VERSION_1_2;
-            }
-            _ => {}
-        }
-    }
-}
-
-unsafe extern "system" fn properties2(
-    physical: vk::PhysicalDevice,
-    out: *mut vk::PhysicalDeviceProperties2<'_>,
-) {
-    // SAFETY: the caller's arguments, passed on; each struct of the chain begins with its type and the next one.
-    unsafe {
-        (driver().fp_v1_1().get_physical_device_properties2)(physical, out);
-        if pretence() == Some(Pretence::WithoutSubgroups) {
-            for next in chain((*out).p_next) {
-                if (*next).s_type == vk::StructureType::PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES {
-                    type All = vk::PhysicalDeviceVulkan11Properties<'static>;
-                    (*next.cast::<All>()).subgroup_supported_operations =
-                        vk::SubgroupFeatureFlags::BASIC;
-                }
-            }
-        }
-    }
-}
-
-unsafe extern "system" fn queue_families(
-    physical: vk::PhysicalDevice,
-    count: *mut u32,
-    out: *mut vk::QueueFamilyProperties,
-) {
-    let real = driver()
-        .fp_v1_0()
-        .get_physical_device_queue_family_properties;
-    // SAFETY: the caller's arguments, passed on; it has made room for `count`.
-    unsafe {
-        real(physical, count, out);
-        if pretence() == Some(Pretence::WithoutGraphics) && !out.is_null() {
-            for family in std::slice::from_raw_parts_mut(out, *count as usize) {
-                family.queue_flags &= !vk::QueueFlags::GRAPHICS;
-            }
-        }
-    }
-}
-
-unsafe extern "system" fn extensions(
-    physical: vk::PhysicalDevice,
-    layer: *const c_char,
-    count: *mut u32,
-    out: *mut vk::ExtensionProperties,
-) -> vk::Result {
-    let real = driver().fp_v1_0().enumerate_device_extension_properties;
-    match pretence() {
-        Some(Pretence::ExtensionsFail) => vk::Result::ERROR_OUT_OF_HOST_MEMORY,
-        Some(Pretence::WithoutExtensions | Pretence::Vulkan12Alone) => {
-            // SAFETY: the caller's pointer.
-            unsafe { *count = 0 };
-            vk::Result::SUCCESS
-        }
-        // SAFETY: the caller's arguments, passed on.
-        _ => unsafe { real(physical, layer, count, out) },
-    }
-}
-
-unsafe extern "system" fn features(
-    physical: vk::PhysicalDevice,
-    out: *mut vk::PhysicalDeviceFeatures2<'_>,
-) {
-    // SAFETY: the caller's arguments, passed on; each struct of the chain begins with its type and the next one.
-    unsafe {
-        (driver().fp_v1_1().get_physical_device_features2)(physical, out);
-        let Some(Pretence::Without(feature)) = pretence() else {
-            return;
-        };
-        for next in chain((*out).p_next) {
-            match (*next).s_type {
-                vk::StructureType::PHYSICAL_DEVICE_VULKAN_1_2_FEATURES => {
-                    let all = &mut *next.cast::<vk::PhysicalDeviceVulkan12Features<'static>>();
-                    if feature == "bufferDeviceAddress" {
-                        all.buffer_device_address = vk::FALSE;
-                    }
-                }
-                vk::StructureType::PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES
-                    if feature == "synchronization2" =>
-                {
-                    type One = vk::PhysicalDeviceSynchronization2Features<'static>;
-                    (*next.cast::<One>()).synchronization2 = vk::FALSE;
-                }
-                vk::StructureType::PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES
-                    if feature == "dynamicRendering" =>
-                {
-                    type One = vk::PhysicalDeviceDynamicRenderingFeatures<'static>;
-                    (*next.cast::<One>()).dynamic_rendering = vk::FALSE;
-                }
-                _ => {}
-            }
-        }
-    }
-}
-
-unsafe extern "system" fn create_device(
-    physical: vk::PhysicalDevice,
-    info: *const vk::DeviceCreateInfo<'_>,
-    allocator: *const vk::AllocationCallbacks<'_>,
-    out: *mut vk::Device,
-) -> vk::Result {
-    if let Some(Pretence::CreateFails(result)) = pretence() {
-        return result;
-    }
-    // SAFETY: the caller's arguments, passed on.
-    unsafe { (driver().fp_v1_0().create_device)(physical, info, allocator, out) }
 }

@@ -5,15 +5,15 @@ use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 
 use super::failure::failed;
+use super::label::{begin_label, end_label};
 use super::memory::bytes;
-use super::recorder::{begin_label, end_label};
 use super::{Buffer, Device};
 use crate::{Error, Result};
 
-/// What an image is created with.
+/// The description from which an image is created.
 #[derive(Debug, Clone, Copy)]
 pub struct ImageDesc<'a> {
-    /// For debuggers, validation messages and errors.
+    /// The name for debuggers, validation messages and errors.
     pub name: &'a str,
     /// Pixels across.
     pub width: u32,
@@ -162,7 +162,7 @@ impl Image {
             .dst_access_mask(
                 vk::AccessFlags2::COLOR_ATTACHMENT_READ | vk::AccessFlags2::COLOR_ATTACHMENT_WRITE,
             )
-            // Undefined forgets the old contents, which the clear would anyway.
+            // An undefined layout drops the old contents, which the clear would overwrite anyway.
             .old_layout(vk::ImageLayout::UNDEFINED)
             .new_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
         begin_label(&self.device, cmd, &self.name);
@@ -232,7 +232,7 @@ impl Image {
     }
 }
 
-/// Records a target's way from one layout and use to the next.
+/// Records the barrier that takes a target from one layout and use to the next.
 ///
 /// # Safety
 ///

@@ -67,7 +67,7 @@ impl InFlight {
         Ok(this)
     }
 
-    /// Waits for the oldest frame, so that the next one may take over what it has used.
+    /// Waits for the oldest frame, so that the next one may reuse its slot.
     pub(crate) fn wait(&mut self) -> Result<()> {
         self.wait_for(self.next)
     }
@@ -91,7 +91,7 @@ impl InFlight {
         unsafe { raw.reset_fences(&[slot.fence]) }.map_err(failed("vkResetFences"))
     }
 
-    /// What the next frame's image is acquired with, after [`wait`](Self::wait).
+    /// The semaphore with which the next frame's image is acquired, after [`wait`](Self::wait).
     pub(crate) fn acquired(&self) -> vk::Semaphore {
         self.slots[self.next].acquired
     }
@@ -99,8 +99,9 @@ impl InFlight {
     /// Records the next frame and submits it; `drawn` is signalled when its image is complete.
     ///
     /// # Safety
-    /// [`wait`](Self::wait) was called before, an image acquired with [`acquired`](Self::acquired), and what `record`
-    /// records lives until the frame has been waited for. It leaves `cmd` outside rendering. `drawn` is unsignalled.
+    /// [`wait`](Self::wait) was called before, an image was acquired with [`acquired`](Self::acquired), and everything that
+    /// `record` uses lives until the frame has been waited for. `record` leaves `cmd` outside rendering. `drawn` is
+    /// unsignalled.
     pub(crate) unsafe fn submit(
         &mut self,
         drawn: vk::Semaphore,
@@ -116,15 +117,15 @@ impl InFlight {
         // SAFETY: as above, the command buffer is initial.
         unsafe { raw.begin_command_buffer(slot.cmd, &begin) }
             .map_err(failed("vkBeginCommandBuffer"))?;
-        record(slot.cmd)?; // without a submission the next reset undoes what was recorded
+        record(slot.cmd)?; // after an error nothing is submitted, and the next reset undoes the recording
         // SAFETY: it is recording.
         unsafe { raw.end_command_buffer(slot.cmd) }.map_err(failed("vkEndCommandBuffer"))?;
         let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(slot.cmd)];
-        // What comes before the image is drawn into need not wait for it.
+        // Only the drawing waits for the image, and not what comes before.
         let waits = [vk::SemaphoreSubmitInfo::default()
             .semaphore(slot.acquired)
             .stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)];
-        // Everything: the image's way to the layout that is shown is in no other stage.
+        // The semaphore waits for all commands: the image's transition to the layout for showing is in no single stage.
         let signals = [vk::SemaphoreSubmitInfo::default()
             .semaphore(drawn)
             .stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)];

@@ -10,22 +10,22 @@ use super::failure::failed;
 use super::validation::{self, Messages, Validation};
 use crate::{Error, Result};
 
-/// What an instance of our own is created for; its devices may offer less.
+/// The version that an instance of our own is created for; its devices may offer less.
 pub(super) const API_VERSION: u32 = vk::API_VERSION_1_3;
 
-/// An instance of our own. Dropping it destroys messenger and instance; whatever was made from it goes first.
+/// An instance of our own. Dropping it destroys messenger and instance; everything made from it is destroyed first.
 pub(crate) struct Instance {
     pub(crate) raw: ash::Instance,
     pub(crate) validation: Option<Validation>,
-    /// Debug labels and names reach a layer, a capture tool or nobody.
+    /// Whether debug labels and names are recorded, for a layer or a capture tool if there is one.
     pub(crate) debug_utils: bool,
     /// Keeps the loader's library open.
     pub(super) entry: ash::Entry,
 }
 
 impl Instance {
-    /// Loads Vulkan and creates an instance, with the validation layer where asked for. `needed` are extensions without
-    /// which there is none: a window's.
+    /// Loads Vulkan and creates an instance, with the validation layer where asked for. `needed` are a window's
+    /// extensions, without which this is an error.
     pub(crate) fn new(
         application_name: &str,
         with_validation: bool,

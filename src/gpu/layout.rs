@@ -1,4 +1,4 @@
-//! What pipelines and commands agree on: push constants, and the descriptor set of bound buffers.
+//! The layout that pipelines and commands share: push constants, and the descriptor set of bound buffers.
 
 use ash::vk;
 
@@ -9,17 +9,17 @@ use crate::{Error, Result};
 /// How shaders reach their buffers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Bindings {
-    /// By device address: without a size limit, but the validation layer cannot watch.
+    /// They are reached by device address: there is no size limit, but the validation layer cannot watch.
     #[default]
     Address,
-    /// As storage buffers of descriptor set 0, pushed with each command. The validation layer sees every hazard; a
+    /// They are storage buffers of descriptor set 0, pushed with each command. The validation layer sees every hazard; a
     /// buffer may not exceed [`Support::max_storage_buffer_range`](super::Support::max_storage_buffer_range).
     Bound,
 }
 
 impl Bindings {
-    /// What is fastest on a device. CPU drivers load what all lanes share once where it is bound, and for each lane where
-    /// it has an address: a frame takes lavapipe 0.87 of the time. On GPUs addresses cost nothing.
+    /// The fastest way on a device. CPU drivers load what all lanes share once from a bound buffer, and for each lane from
+    /// an address: with bound buffers a frame takes lavapipe 0.87 of the time. On GPUs addresses cost nothing.
     pub fn suiting(device: &Device) -> Self {
         if device.shape() == DeviceShape::Cpu && device.support().push_descriptor {
             Self::Bound
@@ -41,7 +41,7 @@ struct PushConstants {
 const _: () = assert!(size_of::<PushConstants>() == 128);
 
 impl PushConstants {
-    /// Which of the block's bytes shaders declare: those that bind their buffers need no addresses.
+    /// The bytes of the block that shaders declare: those that bind their buffers need no addresses.
     fn bytes(bindings: Bindings) -> std::ops::Range<usize> {
         match bindings {
             Bindings::Address => 0..size_of::<Self>(),
@@ -152,7 +152,7 @@ impl Layout {
             .map_or(0, |buffer| buffer.binding as usize + 1)
     }
 
-    /// That a command has the right number of buffers and parameters; a sentence in the panic otherwise.
+    /// Panics with a sentence unless a command has the right number of buffers and parameters.
     pub(crate) fn check(&self, name: &str, buffers: &[&Buffer], params: &[u32]) {
         let wanted = self.buffer_count();
         assert!(

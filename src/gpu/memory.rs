@@ -1,4 +1,4 @@
-//! Buffers: storage that shaders reach by address or binding, mapped where the host writes or reads.
+//! Buffers are storage that shaders reach by address or binding, mapped where the host writes or reads.
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
@@ -8,8 +8,8 @@ use super::Device;
 use super::failure::failed;
 use crate::{Error, Result};
 
-/// Allocations from this size get memory of their own; smaller ones share blocks. Lower, and small buffers waste pages
-/// and the driver's limited number of allocations; higher, and freed buffers leave large holes in blocks.
+/// Allocations from this size on get memory of their own; smaller ones share blocks. With a lower limit small buffers would
+/// waste pages and the driver's limited number of allocations; with a higher one freed buffers would leave large holes.
 const DEDICATED_FROM: u64 = 16 << 20;
 
 /// Who reaches a buffer's memory.
@@ -23,10 +23,10 @@ pub enum Location {
     Readback,
 }
 
-/// What a buffer is created with.
+/// The description from which a buffer is created.
 #[derive(Debug, Clone, Copy)]
 pub struct BufferDesc<'a> {
-    /// For debuggers, validation messages and errors.
+    /// The name for debuggers, validation messages and errors.
     pub name: &'a str,
     /// Bytes; at least 16 are allocated and a multiple of 16.
     pub size: u64,
@@ -36,7 +36,7 @@ pub struct BufferDesc<'a> {
 
 /// A buffer with every usage that a pass can ask of it; dropping it frees it.
 ///
-/// The device must be done with it by then: whoever submits work waits for it first.
+/// The device must be done with it by then: who submits work waits for it first.
 pub struct Buffer {
     device: Device,
     handle: vk::Buffer,
@@ -145,7 +145,7 @@ impl Buffer {
         self.address
     }
 
-    /// Bytes it holds: what was asked for, rounded up to a multiple of 16.
+    /// Bytes it holds: the size asked for, rounded up to a multiple of 16.
     pub fn size(&self) -> u64 {
         self.size
     }
@@ -188,7 +188,7 @@ impl Buffer {
             .expect("host-visible memory is mapped while it lives")[..self.size as usize]
     }
 
-    /// That `size` bytes at `offset` lie inside; a sentence in the panic otherwise.
+    /// Panics with a sentence unless `size` bytes at `offset` lie inside.
     pub(crate) fn check_range(&self, offset: u64, size: u64) {
         let inside = offset.checked_add(size).is_some_and(|end| end <= self.size);
         assert!(

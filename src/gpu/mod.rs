@@ -1,8 +1,8 @@
 //! Vulkan without a single Gaussian: device, memory, accesses and barriers, recording, pipelines, timing.
 //!
-//! Everything here records into a command buffer that somebody else submits, except [`Device::headless`],
-//! [`Device::submit_and_wait`] and the uploads and downloads built on it, and what a window needs: surface, swapchain
-//! and frames in flight.
+//! Everything here records into a command buffer that somebody else submits. The exceptions are [`Device::headless`],
+//! [`Device::submit_and_wait`] with the uploads and downloads built on it, and a window's surface, swapchain and frames in
+//! flight.
 
 #![cfg_attr(
     not(feature = "lab"),
@@ -27,6 +27,7 @@ mod image;
 #[cfg(feature = "view")]
 mod in_flight;
 mod instance;
+mod label;
 mod layout;
 mod memory;
 mod open;
@@ -71,7 +72,7 @@ pub(crate) use {
     swapchain::Swapchain,
 };
 
-/// What frames are recorded with; public for tests and measurements only.
+/// The tools that frames are recorded with; public for tests and measurements only.
 mod inner {
     pub use super::access::Access;
     pub use super::attachments::{Attachments, DepthAttachment};

@@ -1,4 +1,4 @@
-//! Two ways to a device: headless use opens one of its own, a host lends one.
+//! There are two ways to a device: headless use opens one of its own, and a host lends one.
 
 use std::ffi::CStr;
 use std::sync::{Arc, Mutex};
@@ -13,7 +13,7 @@ use super::{Device, DeviceInfo, devices, requirements};
 use crate::setters::setters;
 use crate::{Error, Result};
 
-/// What [`Device::headless`] opens.
+/// The description of the device that [`Device::headless`] opens.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct DeviceDesc {
@@ -23,7 +23,7 @@ pub struct DeviceDesc {
     pub validation: bool,
     /// Enable pipeline statistics where the device has them.
     pub statistics: bool,
-    /// What drivers and capture tools are told.
+    /// The name that drivers and capture tools show.
     pub application_name: String,
 }
 
@@ -45,33 +45,34 @@ impl Default for DeviceDesc {
     }
 }
 
-/// A host's own device, for [`Device::adopt`]: [`AdoptDesc::new`], and what else the host has enabled.
+/// A host's own device, for [`Device::adopt`]: [`AdoptDesc::new`], and what the host has enabled besides.
 #[derive(Clone)]
 #[non_exhaustive]
 pub struct AdoptDesc {
     /// `VkApplicationInfo::apiVersion` of the instance: 1.2 or later.
     pub api_version: u32,
-    /// Created for this version.
+    /// The instance, created for this version.
     pub instance: ash::Instance,
-    /// The device below was made from it.
+    /// The physical device from which the device below was made.
     pub physical_device: vk::PhysicalDevice,
-    /// Created with [`Support::features`](super::Support::features), and as many of [`Support::extensions`](super::Support::extensions) as the flags below say.
+    /// The device, created with [`Support::features`](super::Support::features), and with those of
+    /// [`Support::extensions`](super::Support::extensions) that the flags below name.
     pub device: ash::Device,
-    /// Graphics and compute; everything that is recorded with this device goes to it.
+    /// A queue for graphics and compute, to which everything goes that is recorded with this device.
     pub queue: vk::Queue,
     /// The queue's family.
     pub queue_family: u32,
-    /// `VK_EXT_mesh_shader` and its features were enabled.
+    /// Whether `VK_EXT_mesh_shader` and its features were enabled.
     pub mesh_shader: bool,
-    /// `VK_KHR_push_descriptor` was enabled.
+    /// Whether `VK_KHR_push_descriptor` was enabled.
     pub push_descriptor: bool,
-    /// `VK_EXT_debug_utils` was enabled on the instance.
+    /// Whether `VK_EXT_debug_utils` was enabled on the instance.
     pub debug_utils: bool,
-    /// The feature `pipelineStatisticsQuery` was enabled.
+    /// Whether the feature `pipelineStatisticsQuery` was enabled.
     pub pipeline_statistics: bool,
     /// Where compiled pipelines are looked up and kept; null for nowhere.
     pub pipeline_cache: vk::PipelineCache,
-    /// Where all device memory comes from, made for this device and with `buffer_device_address`. `None`: an allocator of
+    /// The source of all device memory, made for this device and with `buffer_device_address`. `None` means an allocator of
     /// rara's own. It is locked while a buffer or an image is made or destroyed, never by
     /// [`Renderer::prepare`](crate::Renderer::prepare) or a draw.
     pub allocator: Option<Arc<Mutex<Allocator>>>,
@@ -87,7 +88,7 @@ setters!(AdoptDesc {
 });
 
 impl AdoptDesc {
-    /// A device with nothing enabled that is optional, no pipeline cache, and an allocator of rara's own.
+    /// A device with nothing optional enabled, no pipeline cache, and an allocator of rara's own.
     pub fn new(
         api_version: u32,
         instance: ash::Instance,
@@ -129,7 +130,8 @@ impl Device {
         Self::open(Arc::new(instance), candidates, desc, &[])
     }
 
-    /// Opens the one of the instance's devices that is meant, with extensions that all usable ones among them offer.
+    /// Opens the one of the instance's devices that the description means, with extensions that all usable ones among them
+    /// offer.
     pub(crate) fn open(
         owned: Arc<Instance>,
         candidates: Vec<(vk::PhysicalDevice, DeviceInfo)>,
@@ -234,7 +236,7 @@ impl Device {
         support.mesh_shader &= desc.mesh_shader;
         support.push_descriptor &= desc.push_descriptor;
         support.pipeline_statistics &= desc.pipeline_statistics;
-        // Nobody has said that it was enabled, and only what owns its device asks for it.
+        // The host does not say whether it was enabled, and only rara's own devices use it.
         support.calibrated_timestamps = None;
         // SAFETY: as above.
         let info =

@@ -13,10 +13,10 @@ use crate::{Error, Result};
 /// Entry point of every shader.
 const MAIN: &CStr = c"main";
 
-/// What a compute pipeline is created with.
+/// The description from which a compute pipeline is created.
 #[derive(Debug, Clone, Copy)]
 pub struct ComputeDesc<'a> {
-    /// For debuggers, validation messages and errors.
+    /// The name for debuggers, validation messages and errors.
     pub name: &'static str,
     /// The shader.
     pub shader: &'a Shader,
@@ -65,7 +65,7 @@ impl ComputePipeline {
         &self.0
     }
 
-    /// What the shader does with each of its bindings, as it declares.
+    /// The access to each of the shader's bindings, as the shader declares it.
     pub(crate) fn accesses(&self) -> impl Iterator<Item = (usize, Access)> {
         self.0.layout.uses.iter().map(|buffer| {
             let access = match buffer.access {
@@ -78,12 +78,13 @@ impl ComputePipeline {
     }
 }
 
-/// What a graphics pipeline is created with.
+/// The description from which a graphics pipeline is created.
 ///
-/// Pipelines have dynamic viewport and scissor, no vertex input, no culling and no stencil test; they write no depth. Their shaders only read buffers.
+/// Pipelines have dynamic viewport and scissor, no vertex input, no culling and no stencil test; they
+/// write no depth. Their shaders only read buffers.
 #[derive(Debug, Clone, Copy)]
 pub struct GraphicsDesc<'a> {
-    /// For debuggers, validation messages and errors.
+    /// The name for debuggers, validation messages and errors.
     pub name: &'static str,
     /// The vertex or mesh shader.
     pub front: &'a Shader,
@@ -91,13 +92,13 @@ pub struct GraphicsDesc<'a> {
     pub fragment: &'a Shader,
     /// Specialisation constants of both stages: id and value.
     pub constants: &'a [(u32, u32)],
-    /// What is drawn into.
+    /// The attachments that it draws into.
     pub attachments: Attachments,
-    /// Whether what lies behind the depth attachment, where there is one, is not drawn.
+    /// Whether fragments behind the depth attachment, where there is one, are left out.
     pub depth_test: bool,
     /// How fragments are blended; `None` overwrites.
     pub blend: Option<vk::PipelineColorBlendAttachmentState>,
-    /// What vertices make; unused with a mesh shader.
+    /// The primitives that vertices make; unused with a mesh shader.
     pub topology: vk::PrimitiveTopology,
     /// How the shaders reach their buffers.
     pub bindings: Bindings,
@@ -231,7 +232,7 @@ impl GraphicsPipeline {
     }
 }
 
-/// What both kinds have in common.
+/// The part that both kinds of pipelines share.
 pub(crate) struct Pipeline {
     pub(crate) name: &'static str,
     pub(crate) raw: vk::Pipeline,

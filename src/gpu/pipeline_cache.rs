@@ -1,5 +1,5 @@
-//! What a driver has compiled, as bytes to keep and to give back. Whoever keeps them in a file checks them first: drivers
-//! are promised to refuse what is not theirs, and some crash.
+//! A driver's compiled pipelines, as bytes to keep and to give back. Who keeps them in a file checks them first: drivers are
+//! supposed to refuse what is not theirs, but some crash.
 
 use ash::vk;
 
@@ -7,7 +7,7 @@ use super::Device;
 use super::failure::failed;
 use crate::Result;
 
-/// Which driver on which device has compiled something: nothing else can use it.
+/// The driver and the device that have compiled pipelines; no others can use them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PipelineCacheId {
     /// The device's vendor.
@@ -16,7 +16,7 @@ pub struct PipelineCacheId {
     pub device: u32,
     /// The driver's version, in the vendor's own way of writing it.
     pub driver: u32,
-    /// What the driver changes with the format of its caches.
+    /// An id that the driver changes with the format of its caches.
     pub uuid: [u8; vk::UUID_SIZE],
 }
 
@@ -36,7 +36,7 @@ impl PipelineCacheId {
 }
 
 impl Device {
-    /// Whose caches this device's driver can use.
+    /// The id of the caches that this device's driver can use.
     pub fn pipeline_cache_id(&self) -> PipelineCacheId {
         let properties = self.properties();
         PipelineCacheId {
@@ -47,7 +47,7 @@ impl Device {
         }
     }
 
-    /// Adds what an earlier run kept to the pipelines that need not be compiled again.
+    /// Adds the pipelines that an earlier run kept, so that they need not be compiled again.
     ///
     /// # Safety
     ///
@@ -61,8 +61,8 @@ impl Device {
         // SAFETY: the caller vouches for the data.
         let added = unsafe { self.raw().create_pipeline_cache(&info, None) }
             .map_err(failed("vkCreatePipelineCache"))?;
-        // SAFETY: both are this device's, two, and nobody else uses the first while its owner is borrowed or calls this
-        // before it compiles; the second is ours alone.
+        // SAFETY: both caches are this device's. Nobody else uses the first, whose owner is borrowed or calls this before
+        // it compiles; the second is ours alone.
         let merged = unsafe {
             self.raw()
                 .merge_pipeline_caches(self.pipeline_cache(), &[added])
@@ -72,8 +72,8 @@ impl Device {
         merged.map_err(failed("vkMergePipelineCaches"))
     }
 
-    /// What has been compiled so far, for a later run. Empty where nothing is kept: on a host's device that came without
-    /// a cache.
+    /// The pipelines compiled so far, for a later run. It is empty where nothing is kept: on a host's device that came
+    /// without a cache.
     pub fn pipeline_cache_data(&self) -> Result<Vec<u8>> {
         if self.pipeline_cache() == vk::PipelineCache::null() {
             return Ok(Vec::new());

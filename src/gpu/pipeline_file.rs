@@ -1,5 +1,5 @@
-//! Compiled pipelines in a file of the user's cache folder, from one run to the next. A file that cannot be used is as
-//! good as none, and one that cannot be written is no error.
+//! Keeps compiled pipelines in a file of the user's cache folder, from one run to the next. A file that cannot be used
+//! counts as none, and one that cannot be written is no error.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -12,13 +12,13 @@ use crate::{Error, Result};
 /// Where [`Headless`](crate::Headless) keeps compiled pipelines from one run to the next.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum PipelineCache {
-    /// In the user's cache folder: `RARA_CACHE`, else `rara` in `XDG_CACHE_HOME`, else `~/.cache/rara`. Nowhere if there
-    /// is no home, or if `RARA_CACHE` is set to nothing.
+    /// They are kept in the user's cache folder: `RARA_CACHE`, else `rara` in `XDG_CACHE_HOME`, else `~/.cache/rara`. They
+    /// are kept nowhere if there is no home, or if `RARA_CACHE` is set to nothing.
     #[default]
     User,
-    /// In this folder, made when there is something to keep.
+    /// They are kept in this folder, which is made when there is something to keep.
     Folder(PathBuf),
-    /// Nowhere: every run compiles everything.
+    /// They are not kept: every run compiles everything.
     Off,
 }
 
@@ -36,7 +36,7 @@ fn user_folder(variable: impl Fn(&str) -> Option<std::ffi::OsString>) -> Option<
     if let Some(own) = variable("RARA_CACHE") {
         return (!own.is_empty()).then(|| own.into());
     }
-    // A relative path means nothing here, says the standard.
+    // The standard says that a relative path means nothing here.
     let absolute = |name| {
         variable(name)
             .map(PathBuf::from)
@@ -50,13 +50,13 @@ fn user_folder(variable: impl Fn(&str) -> Option<std::ffi::OsString>) -> Option<
 #[derive(Debug)]
 pub(crate) struct PipelineFile {
     path: PathBuf,
-    /// What it is known to hold.
+    /// The seal of the data that it is known to hold.
     held: Option<Seal>,
 }
 
-/// Before the data: this, then its [`Seal`].
+/// The file begins with this; then follow the [`Seal`] and the data.
 const MAGIC: [u8; 8] = *b"rarapipe";
-/// More than drivers are known to keep for a few dozen pipelines: a larger file is none of ours.
+/// The most bytes of a file, more than drivers are known to keep for a few dozen pipelines: a larger one is none of ours.
 const MOST: u64 = 256 << 20;
 
 /// Length and hash of the data.
@@ -70,7 +70,7 @@ impl Seal {
     const BYTES: usize = 16;
 
     fn of(data: &[u8]) -> Self {
-        // FNV-1a: the enemy is a full disk or a broken one.
+        // FNV-1a is enough against a full disk or a broken one.
         let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
         Self {
             length: data.len() as u64,
@@ -87,14 +87,15 @@ impl Seal {
 }
 
 impl PipelineFile {
-    /// Takes what an earlier run kept for this device. `None` if nothing is to be kept.
+    /// Gives the device the pipelines that an earlier run kept for it. `None` if nothing is to be kept.
     pub(crate) fn open(cache: &PipelineCache, device: &Device) -> Option<Self> {
         let id = device.pipeline_cache_id();
         let path = cache.folder()?.join(name(&id));
         let mut this = Self { path, held: None };
         match read(&this.path, &id) {
             Ok(data) => {
-                // SAFETY: only `keep` writes what passes the checks of `read`: whole, unchanged, and by this driver.
+                // SAFETY: only data that `keep` has written passes the checks of `read`: it is whole, unchanged and this
+                // driver's.
                 let added = unsafe { device.add_pipeline_cache_data(&data) };
                 match added {
                     Ok(()) => this.held = Some(Seal::of(&data)),
@@ -112,7 +113,7 @@ impl PipelineFile {
         self.held.map_or(0, |seal| seal.length)
     }
 
-    /// Keeps what the device has compiled, unless the file holds that already.
+    /// Keeps the pipelines that the device has compiled, unless the file holds them already.
     pub(crate) fn keep(&mut self, device: &Device) {
         let kept = device
             .pipeline_cache_data()

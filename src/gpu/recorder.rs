@@ -1,18 +1,17 @@
-//! Passes into a host's command buffer: one name for label and timer, barriers derived from what the shaders declare.
-
-use std::ffi::CStr;
+//! Records passes into a host's command buffer: each has one name for label and timer, and its barriers follow from what the
+//! shaders declare.
 
 use ash::vk;
 use smallvec::SmallVec;
 
-use super::validation;
+use super::label::{begin_label, end_label};
 use super::{Access, Buffer, ComputePipeline, Device, MAX_BUFFERS, Timer, Tracker};
 use crate::limits::GROUP_COLUMNS;
 
 /// How many workgroups a dispatch has.
 #[derive(Debug, Clone, Copy)]
 pub enum Groups<'a> {
-    /// A number, laid out as [`group_grid`] says; none is no dispatch at all.
+    /// A number, laid out as [`group_grid`] says; with 0 nothing is dispatched.
     Count(u32),
     /// A `VkDispatchIndirectCommand` in the buffer at this offset, a multiple of 4.
     Indirect(&'a Buffer, u64),
@@ -34,7 +33,7 @@ pub struct DepthImage {
 }
 
 /// The grid for a linear number of workgroups: a row while `limit` allows, else rows of [`GROUP_COLUMNS`], the last of
-/// which may be too long. Shaders compute `y * gl_NumWorkGroups.x + x` and leave if that is past the end.
+/// which may be too long. Shaders compute `y * gl_NumWorkGroups.x + x` and return if that is past the end.
 pub fn group_grid(count: u32, limit: u32) -> [u32; 3] {
     if count <= limit {
         return [count, 1, 1];
@@ -111,7 +110,7 @@ impl<'a> Recorder<'a> {
         result
     }
 
-    /// Records `record` under a debug label, without timestamps: for what is no pass.
+    /// Records `record` under a debug label, without timestamps, where it is no pass.
     pub fn label<R>(&mut self, name: &str, record: impl FnOnce(&mut Self) -> R) -> R {
         begin_label(self.device, self.cmd, name);
         let result = record(self);
@@ -119,8 +118,8 @@ impl<'a> Recorder<'a> {
         result
     }
 
-    /// Dispatches a compute shader. `buffers[i]` is the buffer of binding `i`; what the shader declares of each decides
-    /// the barrier.
+    /// Dispatches a compute shader. `buffers[i]` is the buffer of binding `i`; the barrier follows from the shader's
+    /// declarations.
     pub fn dispatch(
         &mut self,
         pipeline: &ComputePipeline,
@@ -237,7 +236,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Copies the depths of a host's image that lie under a viewport of some size, row by row and without gaps, and says
-    /// which part of the viewport that is: what lies beside the image is left out.
+    /// which part of the viewport that is; pixels beside the image are left out.
     ///
     /// # Safety
     /// The image is as its description says, its depths are visible to `COPY` by `TRANSFER_READ`, and it outlives the
@@ -292,8 +291,8 @@ impl<'a> Recorder<'a> {
     ///
     /// # Safety
     ///
-    /// `source` must be this device's, hold `size` bytes there, be made to be copied from, and outlive the execution;
-    /// what writes it must be visible by then.
+    /// `source` must be this device's, hold `size` bytes there, be made to be copied from, and outlive the execution; its
+    /// bytes must be visible to the copy.
     pub unsafe fn copy_from(
         &mut self,
         source: vk::Buffer,
@@ -357,35 +356,6 @@ fn aligned(what: &str, buffer: &Buffer, offset: u64, size: u64) {
         buffer.name()
     );
     buffer.check_range(offset, size);
-}
-
-/// Opens a debug label on a command buffer that is recording on `device`, as whoever calls made sure.
-pub(super) fn begin_label(device: &Device, cmd: vk::CommandBuffer, name: &str) {
-    let Some(debug) = device.debug_utils() else {
-        return;
-    };
-    if device.validates() {
-        validation::enter(name);
-    }
-    // On the stack, as recording does not allocate; a longer name is cut.
-    let mut text = [0_u8; 64];
-    let length = name.len().min(text.len() - 1);
-    text[..length].copy_from_slice(&name.as_bytes()[..length]);
-    let label = vk::DebugUtilsLabelEXT::default()
-        .label_name(CStr::from_bytes_until_nul(&text).expect("the last byte is always NUL"));
-    // SAFETY: recorder and drawer are made from a command buffer that is recording; the label outlives the call.
-    unsafe { debug.cmd_begin_debug_utils_label(cmd, &label) };
-}
-
-/// Closes the label that [`begin_label`] opened.
-pub(super) fn end_label(device: &Device, cmd: vk::CommandBuffer) {
-    if let Some(debug) = device.debug_utils() {
-        // SAFETY: as in `begin_label`, which callers call first.
-        unsafe { debug.cmd_end_debug_utils_label(cmd) };
-        if device.validates() {
-            validation::leave();
-        }
-    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What a device must offer, askable before a device exists, and what a host enables when it creates its own.
+//! The requirements for a device, which can be checked before a device exists, and what a host enables when it creates one.
 
 use std::ffi::CStr;
 
@@ -9,11 +9,11 @@ use super::failure::failed;
 use crate::limits::BLOCK_SIZE;
 use crate::{Error, Result};
 
-/// What a physical device that meets the requirements offers beyond them.
+/// The optional features of a physical device that meets the requirements.
 ///
 /// Required are `bufferDeviceAddress`, `synchronization2` and `dynamicRendering`, which are Vulkan 1.3, or 1.2 with
 /// `VK_KHR_synchronization2` and `VK_KHR_dynamic_rendering`; compute workgroups of 256, where Vulkan promises 128; and a
-/// queue family for graphics and compute. Everything else is optional and stands here.
+/// queue family for graphics and compute. Everything else is optional and is noted here.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct Support {
@@ -26,7 +26,7 @@ pub struct Support {
     /// `VK_KHR_push_descriptor`, and as many storage buffers a stage as pipelines with
     /// [`Bindings::Bound`](super::Bindings::Bound) have.
     pub push_descriptor: bool,
-    /// Invocations of a subgroup where compute shaders can vote and shuffle, else 0. The tile rasteriser makes use of it on
+    /// Invocations of a subgroup where compute shaders can vote and shuffle, else 0. The tile rasteriser uses subgroups on
     /// CPU drivers; there is nothing to enable.
     pub subgroup_size: u32,
     /// Nanoseconds a timestamp tick; 0 where [`Support::queue_family`] has no timestamps.
@@ -41,10 +41,10 @@ pub struct Support {
     pub max_group_count: u32,
     /// Pixels along a side of a 2D image.
     pub max_image_size: u32,
-    /// The feature `pipelineStatisticsQuery`. Used where statistics are asked for.
+    /// The feature `pipelineStatisticsQuery`, which is used where statistics are asked for.
     pub pipeline_statistics: bool,
     /// The extension by which timestamps can be set against the processor's clock, `VK_KHR_calibrated_timestamps` or its
-    /// forerunner. Used where rara opens the device.
+    /// forerunner. It is used where rara opens the device.
     pub calibrated_timestamps: Option<&'static CStr>,
     /// `VK_KHR_portability_subset`, which must then be enabled.
     pub portability_subset: bool,

@@ -1,4 +1,4 @@
-//! What build.rs knows about each shader: its SPIR-V in both bindings and the buffers it declares.
+//! A shader as build.rs describes it: its SPIR-V in both bindings and the buffers it declares.
 
 use ash::vk;
 

@@ -1,11 +1,11 @@
-//! What kind of machine a device is, as far as it decides which kernels suit it.
+//! The kind of machine that a device is, which decides which kernels suit it.
 
 use ash::vk;
 
 use super::DeviceInfo;
 
-/// The kind of machine that runs the stages. It decides which kernels are used and how finely their work is cut; pictures
-/// do not depend on it but for the rounding of sums.
+/// The kind of machine that runs the stages. It decides which kernels are used and how finely their work is divided;
+/// pictures depend on it only by the rounding of sums.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum DeviceShape {
@@ -16,7 +16,7 @@ pub enum DeviceShape {
 }
 
 impl DeviceShape {
-    /// What a device is, unless `RARA_SHAPE` says otherwise: tests run the kernels of either kind on any device.
+    /// The kind of a device, unless `RARA_SHAPE` says otherwise: tests run the kernels of either kind on any device.
     pub(crate) fn of(info: &DeviceInfo) -> Self {
         let is = match info.kind {
             vk::PhysicalDeviceType::CPU => Self::Cpu,

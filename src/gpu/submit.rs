@@ -1,4 +1,4 @@
-//! Record, submit, wait: for headless frames, uploads and downloads.
+//! Records, submits and waits, for headless frames, uploads and downloads.
 
 use std::sync::PoisonError;
 
@@ -8,7 +8,7 @@ use super::Device;
 use super::failure::failed;
 use crate::Result;
 
-/// A command buffer for one submission at a time, with the fence that tells when it is done.
+/// A command buffer for one submission at a time, with the fence that says when it is done.
 pub(super) struct OneOff {
     pool: vk::CommandPool,
     cmd: vk::CommandBuffer,
@@ -75,7 +75,7 @@ impl OneOff {
         // SAFETY: the pool's last submission is over: a `OneOff` is taken from the idle ones.
         unsafe { raw.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty()) }
             .map_err(failed("vkResetCommandPool"))?;
-        // Here and not after the wait: whatever failed last time, it is unsignalled when it is submitted.
+        // The fence is reset here and not after the wait: then it is unsignalled whatever failed last time.
         // SAFETY: as above, nothing uses the fence.
         unsafe { raw.reset_fences(&[self.fence]) }.map_err(failed("vkResetFences"))?;
         // SAFETY: as above, the command buffer is initial.
@@ -102,7 +102,7 @@ impl OneOff {
         // SAFETY: the fence belongs to the submission above.
         let waited = unsafe { raw.wait_for_fences(&[self.fence], true, u64::MAX) };
         if waited.is_err() {
-            // The caller frees what the submission uses as soon as it hears of the failure.
+            // After the error the caller frees what the submission uses.
             // SAFETY: as above; whatever this returns, nothing more can be done.
             let _ = unsafe { raw.device_wait_idle() };
         }

@@ -11,7 +11,7 @@ use super::instance::Instance;
 use super::{Device, DeviceDesc, Support};
 use crate::{Error, Result};
 
-/// Whatever has a window and the display that it is on.
+/// An object that has a window and the display that the window is on.
 pub(crate) trait Window: HasWindowHandle + HasDisplayHandle {}
 
 impl<T: HasWindowHandle + HasDisplayHandle> Window for T {}
@@ -20,7 +20,7 @@ impl<T: HasWindowHandle + HasDisplayHandle> Window for T {}
 pub(crate) struct Surface {
     loader: khr::surface::Instance,
     handle: vk::SurfaceKHR,
-    // The surface goes before both.
+    // The surface is destroyed before both.
     instance: Arc<Instance>,
     _window: Arc<dyn Window>,
 }
@@ -35,7 +35,7 @@ const FORMATS: [vk::Format; 5] = [
 ];
 
 impl Surface {
-    /// Opens the device that is meant, among those that can show pictures in the window.
+    /// Opens the device that the description means, among those that can show pictures in the window.
     pub(crate) fn open(desc: &DeviceDesc, window: Arc<dyn Window>) -> Result<(Device, Self)> {
         let display = window.display_handle().map_err(no_window)?.as_raw();
         let needed = ash_window::enumerate_required_extensions(display)
@@ -122,7 +122,7 @@ impl Surface {
         )
     }
 
-    /// The format that pictures in the window get.
+    /// The format of the window's pictures.
     pub(super) fn format(&self, device: &Device) -> Result<vk::SurfaceFormatKHR> {
         // SAFETY: the surface is alive, and the device was opened for it.
         let offered = unsafe {
@@ -177,7 +177,7 @@ pub(super) fn lost(result: vk::Result) -> Error {
     }
 }
 
-/// The best of the formats that blend and show what is stored: an sRGB one would blend in linear light.
+/// The best of the formats that blend and show colours as stored: an sRGB one would blend in linear light.
 fn choose(
     offered: &[vk::SurfaceFormatKHR],
     blends: impl Fn(vk::Format) -> bool,

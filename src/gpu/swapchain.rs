@@ -1,4 +1,4 @@
-//! The images that a window shows in turn: made to fit it, acquired, drawn into, shown.
+//! The images that a window shows in turn. They are made to fit it, acquired, drawn into and shown.
 
 use std::sync::PoisonError;
 
@@ -19,17 +19,17 @@ pub(crate) struct Swapchain {
     device: Device,
 }
 
-/// What one `VkSwapchainKHR` has.
+/// One `VkSwapchainKHR`.
 struct Chain {
     handle: vk::SwapchainKHR,
     extent: vk::Extent2D,
     transform: vk::SurfaceTransformFlagsKHR,
-    /// The window's size for which it was made, as the window system told it.
+    /// The window's size for which it was made, as the window system reported it.
     window: (u32, u32),
     images: Vec<Presented>,
-    /// It must be made anew before the next frame.
+    /// Whether it must be made anew before the next frame.
     outdated: bool,
-    /// It works, but another might fit better.
+    /// Whether another might fit better, although it works.
     suboptimal: bool,
 }
 
@@ -37,7 +37,7 @@ struct Presented {
     image: vk::Image,
     view: vk::ImageView,
     /// Signalled when the image is drawn. One for each image and not for each frame in flight: only acquiring the image
-    /// again tells that showing it has waited.
+    /// again shows that its presentation has waited.
     drawn: vk::Semaphore,
 }
 
@@ -45,7 +45,7 @@ struct Presented {
 const PATIENCE_NS: u64 = 500_000_000;
 
 impl Swapchain {
-    /// For a surface and the device that was opened for it. Images come with [`fit`](Self::fit).
+    /// The swapchain of a surface and the device that was opened for it. [`fit`](Self::fit) makes its images.
     pub(crate) fn new(device: &Device, surface: Surface) -> Result<Self> {
         let format = surface.format(device)?;
         Ok(Self {
@@ -62,8 +62,8 @@ impl Swapchain {
         self.format.format
     }
 
-    /// Makes the images fit a window that has this size; the size that they have. `None` while the window has none:
-    /// minimised, it may have no pixels.
+    /// Makes the images fit a window that has this size, and returns the size that they have: `None` while the window has
+    /// no pixels, as it may when it is minimised.
     pub(crate) fn fit(&mut self, window: (u32, u32)) -> Result<Option<vk::Extent2D>> {
         if window.0 == 0 || window.1 == 0 {
             self.clear()?;
@@ -104,7 +104,7 @@ impl Swapchain {
         let alpha = if offered.supported_composite_alpha.contains(opaque) {
             opaque
         } else {
-            // Some other is always there; what is drawn has no transparent pixel anyway.
+            // There is always some other mode; the pictures have no transparent pixel anyway.
             let bits = offered.supported_composite_alpha.as_raw();
             vk::CompositeAlphaFlagsKHR::from_raw(1 << bits.trailing_zeros())
         };
@@ -114,7 +114,7 @@ impl Swapchain {
         };
         let info = vk::SwapchainCreateInfoKHR::default()
             .surface(self.surface.handle())
-            // One more than the window system holds on to, so that a frame can be drawn meanwhile.
+            // There is one more than the window system holds on to, so that a frame can be drawn meanwhile.
             .min_image_count((offered.min_image_count + 1).min(most))
             .image_format(self.format.format)
             .image_color_space(self.format.color_space)
@@ -124,7 +124,7 @@ impl Swapchain {
             .image_sharing_mode(vk::SharingMode::EXCLUSIVE)
             .pre_transform(offered.current_transform)
             .composite_alpha(alpha)
-            // The one mode that is always there; it neither tears nor draws more than is shown.
+            // This mode always exists; it neither tears nor draws more than is shown.
             .present_mode(vk::PresentModeKHR::FIFO)
             .clipped(true)
             .old_swapchain(old.as_ref().map_or(vk::SwapchainKHR::null(), |c| c.handle));
@@ -200,7 +200,7 @@ impl Swapchain {
         }
     }
 
-    /// What is signalled when an acquired image is drawn; [`present`](Self::present) waits for it.
+    /// The semaphore that is signalled when an acquired image is drawn; [`present`](Self::present) waits for it.
     pub(crate) fn drawn(&self, image: usize) -> vk::Semaphore {
         self.chain().images[image].drawn
     }
@@ -219,13 +219,13 @@ impl Swapchain {
         let chain = self.chain();
         let shown = &chain.images[image];
         let to_draw = vk::ImageMemoryBarrier2::default()
-            // Behind the wait for the image, which is in this stage.
+            // The barrier comes after the wait for the image, which is in this stage.
             .src_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)
             .dst_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)
             .dst_access_mask(
                 vk::AccessFlags2::COLOR_ATTACHMENT_READ | vk::AccessFlags2::COLOR_ATTACHMENT_WRITE,
             )
-            // What was shown is forgotten.
+            // The image's old contents are dropped.
             .old_layout(vk::ImageLayout::UNDEFINED)
             .new_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
         // SAFETY: the caller vouches for `cmd`; the view is the image's own and covers the render area.
@@ -244,7 +244,7 @@ impl Swapchain {
         let to_show = vk::ImageMemoryBarrier2::default()
             .src_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)
             .src_access_mask(vk::AccessFlags2::COLOR_ATTACHMENT_WRITE)
-            // Showing waits for a semaphore, which does the rest.
+            // Presentation waits for a semaphore, which does the rest.
             .dst_stage_mask(vk::PipelineStageFlags2::NONE)
             .old_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
             .new_layout(vk::ImageLayout::PRESENT_SRC_KHR);
@@ -312,7 +312,7 @@ impl Swapchain {
     /// Destroys a chain that was waited for.
     fn destroy(&self, chain: Chain) {
         let raw = self.device.raw();
-        // SAFETY: everybody who calls this has waited for the device, or lost it; null handles are ignored.
+        // SAFETY: all callers have waited for the device, or lost it; null handles are ignored.
         unsafe {
             for shown in &chain.images {
                 raw.destroy_image_view(shown.view, None);
@@ -329,7 +329,7 @@ impl Drop for Swapchain {
     }
 }
 
-/// The images' size: what the surface says, or the window's where the surface follows the images.
+/// The images' size: the surface's, or the window's where the surface follows the images.
 fn extent(offered: &vk::SurfaceCapabilitiesKHR, (width, height): (u32, u32)) -> vk::Extent2D {
     if offered.current_extent.width != u32::MAX {
         return offered.current_extent;

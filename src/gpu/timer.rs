@@ -1,4 +1,4 @@
-//! How long passes take on the device, by name.
+//! Measures how long passes take on the device, by name.
 
 use ash::vk;
 
@@ -26,7 +26,7 @@ pub struct Timer {
 /// Pipeline statistics of the passes: pass `i` has query `i`.
 struct Statistics {
     pool: vk::QueryPool,
-    /// The pass that counts; what nests in it is counted with it, as Vulkan has only one such query active at a time.
+    /// The pass that counts. Passes within it are counted with it, as Vulkan has only one such query active at a time.
     active: Option<u32>,
     /// The passes that have counted.
     passes: Vec<u32>,
@@ -37,14 +37,14 @@ struct Statistics {
 pub struct PassSpan {
     /// The pass.
     pub name: &'static str,
-    /// All earlier work was done.
+    /// When all earlier work was done.
     pub begin: u64,
-    /// Its own work was done too.
+    /// When its own work was done too.
     pub end: u64,
 }
 
 impl Timer {
-    /// Room for `capacity` passes.
+    /// A timer with room for `capacity` passes.
     pub fn new(device: &Device, capacity: u32) -> Result<Self> {
         let mut pool = vk::QueryPool::null();
         if device.support().timestamp_period > 0.0 {
@@ -67,7 +67,7 @@ impl Timer {
         })
     }
 
-    /// Counts what the passes do, too, where the device was opened for it.
+    /// Makes it count also what the passes do, where the device was opened for it.
     pub fn with_statistics(mut self) -> Result<Self> {
         if self.device.support().pipeline_statistics {
             let info = vk::QueryPoolCreateInfo::default()
@@ -116,8 +116,8 @@ impl Timer {
         }
     }
 
-    /// Records the beginning of a pass; returns what [`Timer::end`] wants, or `None` where there is no room for one more: it
-    /// has no times then.
+    /// Records the beginning of a pass, and returns its number for [`Timer::end`]. `None` where there is no room for one
+    /// more, which then has no times.
     ///
     /// # Safety
     ///
@@ -206,7 +206,8 @@ impl Timer {
         Some(pairs.map(span).collect())
     }
 
-    /// What each pass did; passes of one name are added up. Empty without statistics, else as for [`read`](Self::read).
+    /// What each pass did; passes of one name are added up. It is empty without statistics, else as for
+    /// [`read`](Self::read).
     pub fn statistics(&self) -> Vec<PassStatistics> {
         let mut sums: Vec<PassStatistics> = Vec::new();
         let Some(statistics) = &self.statistics else {
@@ -258,7 +259,7 @@ impl Timer {
     }
 }
 
-/// In the order of their bits, which is that of the results.
+/// The statistics in the order of their bits, which is that of the results.
 const COUNTED: vk::QueryPipelineStatisticFlags = vk::QueryPipelineStatisticFlags::from_raw(
     vk::QueryPipelineStatisticFlags::VERTEX_SHADER_INVOCATIONS.as_raw()
         | vk::QueryPipelineStatisticFlags::CLIPPING_PRIMITIVES.as_raw()

@@ -1,11 +1,12 @@
-//! Bytes to device memory and back through a bounded staging buffer, for headless use and for loading scenes.
+//! Moves bytes to device memory and back through a bounded staging buffer, for headless use and for loading scenes.
 
 use ash::vk;
 
 use super::{Buffer, BufferDesc, Device, Location, Recorder};
 use crate::Result;
 
-/// Most bytes staged at once. Larger gains nothing once a chunk takes milliseconds; smaller, and submissions show.
+/// The most bytes staged at once. More would gain nothing, since a chunk takes milliseconds; with fewer, submissions would
+/// cost noticeable time.
 const STAGING: u64 = 32 << 20;
 
 impl Device {

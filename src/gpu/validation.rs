@@ -34,8 +34,8 @@ impl Messages {
     }
 }
 
-/// What both the instance's creation and the messenger are given. It points into `messages`, which must live as long
-/// as whatever is created with it.
+/// The description that both the instance's creation and the messenger are given. It points into `messages`, which must
+/// live as long as everything that is created with it.
 pub(crate) fn messenger_info(
     messages: &Arc<Messages>,
 ) -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
@@ -111,8 +111,8 @@ pub(crate) fn find(entry: &ash::Entry) -> Result<bool> {
         .any(|e| e.extension_name_as_c_str() == Ok(ext::validation_features::NAME)))
 }
 
-/// The messenger's callback. General messages are the loader's talk about drivers and layers of the machine, no
-/// verdict on our calls: they go to the log. All others count.
+/// The messenger's callback. General messages are the loader's, about drivers and layers of the machine and not about our
+/// calls: they go to the log. All others count.
 unsafe extern "system" fn collect(
     severity: vk::DebugUtilsMessageSeverityFlagsEXT,
     kind: vk::DebugUtilsMessageTypeFlagsEXT,
@@ -137,12 +137,12 @@ thread_local! {
     static PASSES: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
 }
 
-/// A label was opened on this thread, under validation.
+/// Notes that a label was opened on this thread, under validation.
 pub(super) fn enter(pass: &str) {
     PASSES.with_borrow_mut(|passes| passes.push(pass.to_owned()));
 }
 
-/// The last one was closed.
+/// Notes that the last label was closed.
 pub(super) fn leave() {
     PASSES.with_borrow_mut(|passes| passes.pop());
 }

@@ -1,6 +1,6 @@
 //! The order of the Gaussians on the device: along a space-filling curve, so that neighbours share a block, and the
-//! bounds of those blocks. Large ones and those too faint to be sure of a pixel have blocks of their own: a single one
-//! would widen, or leave undecided, the block of its neighbours.
+//! bounds of those blocks. Large Gaussians and those too faint to be sure of a pixel have blocks of their own: a single
+//! one would widen, or leave undecided, the block of its neighbours.
 
 use glam::Vec3;
 
@@ -8,9 +8,9 @@ use crate::limits;
 use crate::scene::Gaussians;
 use crate::types::Block;
 
-/// Places a curve distinguishes along each axis, as bits: three of them and the class are a key of 32.
+/// Bits of the places that a curve distinguishes along each axis: those of three axes and the kind are a key of 32.
 const BITS: u32 = 10;
-/// Classes of Gaussians, from the lowest key up; each has its own curve.
+/// Kinds of Gaussians, from the lowest key up; each has its own curve.
 const SMALL: u32 = 0;
 const MIDDLE: u32 = 1;
 const LARGE: u32 = 2;
@@ -42,7 +42,7 @@ pub(super) fn order(scene: &Gaussians) -> Vec<u32> {
         } else {
             LARGE
         };
-        // Outliers go to the ends, and what is no number to the beginning.
+        // Outliers go to the ends, and a share that is no number to the beginning.
         let share = ((scene.positions()[index] - low) / size).clamp(Vec3::ZERO, Vec3::ONE);
         let cell = share * ((1 << BITS) - 1) as f32;
         class << (3 * BITS) | morton(cell.x as u32, cell.y as u32, cell.z as u32)
@@ -71,7 +71,7 @@ fn block(scene: &Gaussians, numbers: &[u32]) -> Block {
         let position = scene.positions()[index];
         let reach = reach(scene, index);
         if !(position.is_finite() && reach.is_finite()) {
-            // Looked at, wherever the others are.
+            // It must be looked at, wherever the others are.
             farthest = f32::INFINITY;
             spanning = false;
             continue;
@@ -95,7 +95,7 @@ fn block(scene: &Gaussians, numbers: &[u32]) -> Block {
 /// How far from its centre a splat's contour of 1/255 can lie, world units.
 fn reach(scene: &Gaussians, index: usize) -> f32 {
     let times = scene.opacities()[index] * limits::ALPHA_MIN_INVERSE;
-    // A little more than single precision finds on the device.
+    // This is a little more than single precision finds on the device.
     let extent = 1.0001 * (2.0 * times.max(1.0).ln()).sqrt();
     extent * scene.scales()[index].max_element()
 }
@@ -186,7 +186,7 @@ mod tests {
             }
             volume += f64::from((high - low).max(Vec3::ZERO).element_product());
         }
-        // Each class covers the cube once; a curve that were none would make every block as large as the cube.
+        // Each kind covers the cube once; without a curve every block would be as large as the cube.
         assert!(volume < 20.0, "{volume} times the scene's volume");
     }
 

@@ -1,5 +1,5 @@
-//! Stage `blocks`, a block of Gaussians an invocation: what view and clip say about all of them at once, and which blocks
-//! are left to look at.
+//! Stage `blocks`, one invocation a block of Gaussians, finds what view and clip say about all of them at once, and which
+//! blocks are left to look at.
 
 use crate::gpu::{Groups, Recorder};
 use crate::limits;

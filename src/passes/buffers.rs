@@ -1,5 +1,5 @@
-//! The frame's working memory: one buffer per array that a stage writes, sized for the worst the scene can need, but for
-//! the tiles' lists, whose worst nobody could afford.
+//! The frame's working memory: one buffer per array that a stage writes. Each has room for the worst that the scene can
+//! need, except the tiles' lists, whose worst nobody could afford.
 
 use crate::error::Result;
 use crate::gpu::{Buffer, BufferDesc, Device, Location};
@@ -25,7 +25,7 @@ pub(crate) struct Buffers {
     pub(crate) counts: Buffer,
     pub(crate) survivors: Buffer,
     pub(crate) cutoffs: Buffer,
-    pub(crate) cuts: Buffer,
+    pub(crate) cut_records: Buffer,
     pub(crate) splats: Buffer,
     pub(crate) keys: [Buffer; 2],
     pub(crate) order: [Buffer; 2],
@@ -41,7 +41,7 @@ pub(crate) struct Buffers {
     sized_for: Sizes,
 }
 
-/// The tile rasteriser's part.
+/// The tile rasteriser's buffers.
 #[derive(Debug)]
 pub(crate) struct TileBuffers {
     pub(crate) span_counts: Buffer,
@@ -56,7 +56,7 @@ pub(crate) struct TileBuffers {
     pub(crate) occluders: Buffer,
 }
 
-/// What expected depths need besides.
+/// The further buffers of expected depths.
 #[derive(Debug)]
 pub(crate) struct DepthBuffers {
     pub(crate) depths: Buffer,
@@ -64,7 +64,7 @@ pub(crate) struct DepthBuffers {
     pub(crate) draw: Buffer,
 }
 
-/// What a reclipped frame needs besides.
+/// The further buffers of a reclipped frame.
 #[derive(Debug)]
 pub(crate) struct ReclipBuffers {
     pub(crate) revisits: Buffer,
@@ -73,7 +73,7 @@ pub(crate) struct ReclipBuffers {
     pub(crate) dirty: Buffer,
 }
 
-/// What the sizes depend on.
+/// The numbers that the sizes depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Sizes {
     gaussians: u64,
@@ -160,7 +160,7 @@ impl Buffers {
         let mask_bytes = u64::from(limits::BLOCK_SIZE) / 4; // two bits a Gaussian
         let frame_bytes =
             size_of::<FrameData>() as u64 + sizes.layers * size_of::<LayerData>() as u64;
-        // Of a run: its keys of each digit, the least and the greatest.
+        // The numbers of a run: its keys of each digit, and its least and greatest key.
         let digits = (1_u64 << limits::SORT_BITS) + 2;
         Ok(Self {
             frame: gpu("frame", frame_bytes)?,
@@ -175,7 +175,7 @@ impl Buffers {
             counts: gpu("counts", size_of::<FrameCounts>() as u64)?,
             survivors: gpu("survivors", n * 8)?,
             cutoffs: gpu("cutoffs", n * 4)?,
-            cuts: gpu("cuts", sizes.cut_bytes)?,
+            cut_records: gpu("cut_records", sizes.cut_bytes)?,
             splats: gpu("splats", n * size_of::<Splat>() as u64)?,
             keys: [gpu("keys", n * 4)?, gpu("sorted_keys", n * 4)?],
             order: [gpu("order", n * 4)?, gpu("sorted_order", n * 4)?],
@@ -183,7 +183,7 @@ impl Buffers {
             tile_masks: gpu("tile_masks", sizes.masks * 16)?,
             tiles: if plan.is_tiled() {
                 Some(TileBuffers {
-                    // Of a run: its spans in each row of tiles, and its pairs.
+                    // A run has the number of its spans in each row of tiles, and of its pairs.
                     span_counts: gpu("span_counts", (sizes.rows + 1) * sizes.span_runs * 4)?,
                     row_begins: gpu("row_begins", (sizes.rows + 1) * 4)?,
                     span_splats: gpu("span_splats", sizes.pairs * 4)?,
@@ -210,7 +210,7 @@ impl Buffers {
         })
     }
 
-    /// Allocates what a reclipped frame needs besides.
+    /// Allocates the further buffers of a reclipped frame.
     pub(crate) fn ensure_reclip(&mut self, device: &Device) -> Result<()> {
         if self.reclip.is_some() {
             return Ok(());

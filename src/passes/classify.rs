@@ -1,5 +1,5 @@
-//! Stage `classify`, a Gaussian an invocation, of the blocks that are not settled as a whole: view culling by footprint,
-//! opacity and size, and the clip's class.
+//! Stage `classify`, one invocation a Gaussian of the blocks that are not settled as a whole, culls by footprint, opacity
+//! and size, and finds the side of what is in view.
 
 use crate::gpu::Recorder;
 use crate::passes::buffers::indirect;

@@ -1,5 +1,5 @@
-//! Stage `clip`, only where the clip has changed: the side of each block of Gaussians, and the paper's three classes
-//! (section 3.2) of each Gaussian in the blocks that are cut. The camera has no part in it.
+//! Stage `clip`, only where the clip has changed, finds the side of each block of Gaussians, and of each Gaussian in the
+//! blocks that are cut: the paper's three classes (section 3.2). The camera has no part in it.
 
 use crate::gpu::Recorder;
 use crate::passes::block_list::{self, ListFor};

@@ -1,5 +1,5 @@
-//! Stage `compact`: the survivors' and the cutoff Gaussians' numbers in the order of the scene, the counts, and the indirect
-//! commands of everything after. No place in a list depends on the order of atomics.
+//! Stage `compact` lists the survivors and the cutoff Gaussians in the order of the scene, and writes the counts and the
+//! indirect commands of all later stages. No place in a list depends on the order of atomics.
 
 use crate::gpu::{Groups, Recorder};
 use crate::passes::buffers::indirect;

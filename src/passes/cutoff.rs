@@ -1,4 +1,4 @@
-//! Stage `cutoff`, a cutoff Gaussian an invocation: what the fragment stage needs to weight it, into the cutoff buffer.
+//! Stage `cutoff`, one invocation a cutoff Gaussian, writes the cutoff record, from which the fragment stage weights it.
 
 use crate::gpu::Recorder;
 use crate::passes::buffers::indirect;
@@ -6,7 +6,7 @@ use crate::passes::shaders::cutoff;
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
 
-/// In a frame that finds its view anew.
+/// The stage in a frame that finds its view anew.
 pub(crate) const STAGE: Stage = Stage {
     name: "cutoff",
     needed: |plan| plan.finds_view() && plan.view_is_cut(),
@@ -15,7 +15,7 @@ pub(crate) const STAGE: Stage = Stage {
     record,
 };
 
-/// The same behind the classes that a moved clip has changed.
+/// The same in a reclipped frame, after stage `reclip`.
 pub(crate) const STAGE_OF_RECLIP: Stage = Stage {
     needed: |plan| plan.reclips() && plan.cuts(),
     missed: |plan| plan.reclips(),
@@ -30,7 +30,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         gaussians: &frame.scene.gaussians,
         cutoffs: &b.cutoffs,
         counts: &b.counts,
-        cuts: &b.cuts,
+        cut_records: &b.cut_records,
     };
     let groups = indirect!(b.counts, FrameCounts, cutoff_groups);
     frame.dispatch(recorder, buffers, (), groups);

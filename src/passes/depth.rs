@@ -1,5 +1,5 @@
-//! Stage `depth`, only where a host asks for it: how deep each splat is in a pixel, on average of what the clip leaves of it;
-//! and the draw that blends those depths.
+//! Stage `depth`, only where a host asks for it, finds how deep each splat is in a pixel, on average of what the clip leaves
+//! of it. A draw blends those depths.
 
 use std::mem::offset_of;
 
@@ -35,7 +35,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     };
     let groups = indirect!(b.counts, FrameCounts, project_groups);
     frame.dispatch(recorder, buffers, (), groups);
-    // A quad a survivor, also where tiles draw their colours.
+    // Each survivor is drawn as a quad, also where tiles draw the colours.
     let quad = [4_u32, 0, 0, 0];
     recorder.update(&d.draw, 0, bytemuck::bytes_of(&quad));
     let survivors = offset_of!(FrameCounts, mesh_groups) + 3 * size_of::<u32>();
@@ -63,8 +63,8 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat_depth::P
     Draw::new(shaders, constants, attachments, depth)
 }
 
-/// Draws inside the host's rendering scope; `origin` is where its viewport begins, px, `map` what its depth buffer
-/// holds for a depth, `unit` what depths are multiplied by.
+/// Draws inside the host's rendering scope. `origin` is where its viewport begins, px, `map` says what its depth buffer
+/// holds for a depth, and depths are multiplied by `unit`.
 pub(crate) fn record_draw(
     drawer: &mut Drawer<'_>,
     pipelines: &Pipelines,
@@ -78,7 +78,7 @@ pub(crate) fn record_draw(
         counts: &b.counts,
         splats: &b.splats,
         order: &b.order[plan.sorted()],
-        cuts: &b.cuts,
+        cut_records: &b.cut_records,
         depths: &d.depths,
     };
     let [_, _, cx, cy] = plan.data.view.focal;

@@ -1,4 +1,4 @@
-//! What the sort compares: the bits of a view depth, counted from the nearest one that the scene's bounds allow.
+//! The sort compares keys: the bits of a view depth, counted from the nearest one that the scene's bounds allow.
 
 use glam::Vec3;
 
@@ -15,8 +15,8 @@ pub(super) struct DepthKeys {
 }
 
 impl DepthKeys {
-    /// Keys of at most `bits` bits for centres within boxes: of each the camera in its space, its corners, and the scene's
-    /// units in one of its own.
+    /// Keys of at most `bits` bits for centres within boxes. Each box comes with the camera in its space, its corners,
+    /// and the scene's units in one of its own.
     pub(super) fn new(
         boxes: impl Iterator<Item = (Camera, [Vec3; 2], f64)>,
         bits: u32,
@@ -51,8 +51,8 @@ fn width(value: u32) -> u32 {
     u32::BITS - value.leading_zeros()
 }
 
-/// Least and greatest depth of what is not culled, the scene's units, a little wider than the box for single precision's
-/// sake. `None` without centres.
+/// The least and the greatest depth that is not culled, the scene's units, a little wider than the box to allow for single
+/// precision. `None` without centres.
 fn depths(bounds: [Vec3; 2], camera: &Camera, unit: f64) -> Option<[f32; 2]> {
     if !bounds[0].cmple(bounds[1]).all() {
         return None;
@@ -63,7 +63,7 @@ fn depths(bounds: [Vec3; 2], camera: &Camera, unit: f64) -> Option<[f32; 2]> {
     let slack = unit * 1e-5 * low.abs().max(high.abs()).element_sum();
     let near = (a.min(b).element_sum() - slack).max(f64::from(limits::NEAR_Z));
     let far = (a.max(b).element_sum() + slack).max(near);
-    // A 32-bit float beyond the range is infinite; the clamp to the largest keeps the difference of the bits right.
+    // A depth beyond a 32-bit float's range becomes infinite; the clamp keeps the difference of the bits right.
     Some([near as f32, far as f32].map(|depth| depth.min(f32::MAX)))
 }
 
@@ -98,7 +98,7 @@ mod tests {
         assert_eq!((keys.shift, keys.passes()), (0, 3));
         let two = keys_of([Vec3::NEG_ONE, Vec3::ONE], 16).unwrap();
         assert_eq!(two.passes(), 2);
-        // Three to five units deep: 2^24 values or fewer in 16 bits, one part in 2^15 told apart.
+        // Three to five units deep: 2^24 values or fewer in 16 bits, which distinguish one part in 2^15.
         assert!(key(two, 4.0) < key(two, 4.0 * (1.0 + 1.0 / 16384.0)));
     }
 
@@ -129,7 +129,7 @@ mod tests {
         let ends = |keys: DepthKeys| (keys.near, keys.near + keys.span);
         let (first, last) = (keys_of(near, 32).unwrap(), keys_of(far, 32).unwrap());
         assert_eq!(ends(all), (ends(first).0, ends(last).1));
-        // A box of twice the size whose units count half is the same one.
+        // A box of twice the size in units of half the length is the same box.
         let doubled = far.map(|corner| 2.0 * corner);
         let eye = DVec3::new(0.0, 0.0, -8.0);
         let twice = Camera { eye, ..camera };

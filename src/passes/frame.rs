@@ -10,33 +10,33 @@ use crate::passes::{
 };
 
 /// All stages in the order in which a frame has them. Nothing waits or is read back in between; each stage's work follows
-/// from what the ones before it left on the device.
+/// from what the earlier ones left on the device.
 pub(crate) const STAGES: [&Stage; 13] = [
-    // On which side of the clip each block of Gaussians lies, and each Gaussian of those that it cuts.
+    // Finds on which side of the clip each block of Gaussians lies, and each Gaussian of the blocks that it cuts.
     &clip::STAGE,
-    // Which blocks are in view.
+    // Finds which blocks are in view.
     &blocks::STAGE,
-    // Which Gaussians of those that are so in part.
+    // Finds which Gaussians are in view, in the blocks that are so in part.
     &classify::STAGE,
-    // Their numbers, in order, and the sizes of all that follows.
+    // Lists them in order, and writes the sizes of all that follows.
     &compact::STAGE,
-    // What the fragment stage needs of the cut ones.
+    // Writes the records from which the fragment stage weights the cut ones.
     &cutoff::STAGE,
-    // Conic, quad, colour and depth key of the survivors.
+    // Computes conic, quad, colour and depth key of the survivors.
     &project::STAGE,
-    // Their order.
+    // Orders them by depth.
     &sort::STAGE,
-    // Which of them each tile of pixels holds.
+    // Finds which of them each tile of pixels holds.
     &bin::STAGE,
-    // The camera stands still and the clip has moved: which Gaussians in view change their class,
+    // Where the camera stands still and the clip has moved, finds which Gaussians in view change their side,
     &reclip::RECLIP,
-    // what the fragment stage needs of those that are cut now,
+    // writes the records of those that are cut now,
     &cutoff::STAGE_OF_RECLIP,
-    // and what the rasteriser holds of all that change.
+    // and changes what the rasteriser holds of all that change.
     &reclip::RECUT,
-    // The pixels, front to back.
+    // Draws the pixels, front to back.
     &tiles::STAGE,
-    // How deep the splats are, for who asks.
+    // Finds how deep the splats are, for hosts that ask.
     &depth::STAGE,
 ];
 
@@ -70,7 +70,7 @@ pub(crate) fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>, readback: &
         r.ready_for_host(&[readback]);
     });
     let order = &b.order[plan.sorted()];
-    recorder.ready_to_draw(&[&b.frame, &b.counts, &b.splats, order, &b.cuts]);
+    recorder.ready_to_draw(&[&b.frame, &b.counts, &b.splats, order, &b.cut_records]);
 }
 
 impl Plan {

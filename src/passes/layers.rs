@@ -1,4 +1,4 @@
-//! The layers of a frame, as the shaders have them: where each has the camera, what of it shows, and what is kept of it.
+//! The layers of a frame as the shaders read them: where each has the camera, how much of it shows, and what is kept of it.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::passes::view::layer_view;
 use crate::passes::{region, shaders, work};
 use crate::types::{self, LayerContent, LayerData, LayerRegion, RegionData, Surface};
 
-/// Programs to which it matters alone whether there are several layers.
+/// Programs whose only constant is whether there are several layers.
 macro_rules! layered {
     ($($program:ident),+ $(,)?) => {
         $(impl OfPlan for shaders::$program::Constants {
@@ -45,7 +45,7 @@ pub(crate) struct Layers {
 }
 
 impl Layers {
-    /// Those of a scene; camera and clip are in its space, and `region` is what the clip makes of the settings.
+    /// The layers of a scene. Camera and clip are in its space; `region` follows from the clip and the settings.
     pub(super) fn new(
         scene: &[SceneLayer],
         camera: &Camera,
@@ -133,8 +133,8 @@ impl Layers {
     }
 }
 
-/// What the depth keys need to know of a layer: the camera in its space, the box around its centres, and the scene's units in
-/// one of its own.
+/// The numbers that the depth keys take from each layer: the camera in its space, the box around its centres, and the
+/// scene's units in one of its own.
 pub(super) fn boxes<'a>(
     scene: &'a [SceneLayer],
     camera: &'a Camera,

@@ -1,4 +1,4 @@
-//! What the host has drawn already, for tiles: its depth, copied to where a compute shader can read it.
+//! The depth that the host has drawn already, copied to where the tiles' compute shader can read it.
 
 use ash::vk;
 
@@ -10,14 +10,14 @@ use crate::types;
 pub(crate) struct Occluders {
     /// `DEPTH_*`: how a copied depth is stored.
     pub(crate) form: u32,
-    /// What it means.
+    /// What the stored numbers mean.
     pub(crate) map: DepthMap,
     /// The picture's size, px.
     pub(crate) size: vk::Extent2D,
 }
 
 impl Occluders {
-    /// Those of a host whose depth has such a format and meaning, in a picture of no size yet.
+    /// The occluders of a host whose depth has this format and meaning, in a picture of no size yet.
     pub(crate) fn new(format: vk::Format, map: DepthMap) -> Self {
         let form = match format {
             vk::Format::D16_UNORM | vk::Format::D16_UNORM_S8_UINT => types::DEPTH_16,

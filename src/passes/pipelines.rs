@@ -1,5 +1,5 @@
-//! The pipelines of all stages, in one cache: each is made when a frame first needs it, and is found again by what it is
-//! made of.
+//! The pipelines of all stages, in one cache: each is made when a frame first needs it, and is found again by its
+//! [`PipelineKey`].
 
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
@@ -15,14 +15,14 @@ use crate::gpu::{
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{BufferSet, Compute, ConstantList, ConstantSet, Interface};
 
-/// What tells a pipeline from all others: its shaders, their constants, and what it draws into.
+/// A pipeline's identity: its shaders, their constants, and what it draws into.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct PipelineKey {
     /// For debuggers, validation messages and errors.
     name: &'static str,
     shader: Identity,
     constants: ConstantList,
-    /// Of a draw: its fragment shader, the attachments, and whether it tests the host's depth.
+    /// A draw also has a fragment shader, attachments, and whether it tests the host's depth.
     draw: Option<(Identity, Attachments, bool)>,
 }
 
@@ -46,7 +46,7 @@ impl Hash for Identity {
 
 /// Constants that follow from a plan.
 pub(crate) trait OfPlan {
-    /// Those of the plan.
+    /// The constants of a plan.
     fn of(plan: &Plan) -> Self;
 }
 
@@ -75,7 +75,7 @@ impl<P: Interface> Kernel<P> {
         }
     }
 
-    /// What a plan makes of a program.
+    /// The pipeline that a plan makes of a program.
     pub(crate) fn of(plan: &Plan) -> Self
     where
         P: Compute,
@@ -84,7 +84,7 @@ impl<P: Interface> Kernel<P> {
         Self::new(P::SHADER, P::Constants::of(plan))
     }
 
-    /// What it is made of.
+    /// Its identity.
     pub(crate) fn key(self) -> PipelineKey {
         self.key
     }
@@ -129,7 +129,7 @@ impl<P: Interface> Draw<P> {
         }
     }
 
-    /// What it is made of.
+    /// Its identity.
     pub(crate) fn key(self) -> PipelineKey {
         self.key
     }
@@ -156,7 +156,7 @@ impl<P: Interface> Draw<P> {
 /// A program's parameters as they go into the push constants.
 fn words<P: bytemuck::Pod>(params: &P) -> &[u32] {
     match size_of::<P>() {
-        0 => &[], // a struct of nothing may lie anywhere, words may not
+        0 => &[], // an empty struct may lie at any address, words may not
         _ => bytemuck::cast_slice(bytemuck::bytes_of(params)),
     }
 }

@@ -1,4 +1,4 @@
-//! What a frame needs, decided on the CPU before anything is recorded: which stages run, and the frame's constants.
+//! A frame's plan, made on the CPU before anything is recorded: which stages run, and the frame's constants.
 
 use crate::camera::Camera;
 use crate::clip::Clip;
@@ -23,22 +23,22 @@ use ash::vk;
 /// A frame, decided but not recorded.
 #[derive(Debug, Clone)]
 pub(crate) struct Plan {
-    /// What of the frame has to be computed.
+    /// The part of the frame that has to be computed.
     pub(crate) work: Work,
-    /// By which stages and variants of them it goes.
+    /// The stages and their variants that it takes.
     pub(crate) way: Way,
-    /// What the weights of cut splats do, besides what the constants say.
+    /// How cut splats are weighted, besides what the constants say.
     pub(crate) laws: Laws,
     pub(crate) tile_work: TileWork,
-    /// What hides splats of tiles.
+    /// The depth that hides splats of tiles.
     pub(crate) occluders: Option<Occluders>,
     /// The frame's constants.
     pub(crate) data: FrameData,
-    /// And those of its layers.
+    /// The constants of its layers.
     pub(crate) layers: Layers,
 }
 
-/// By which stages and variants of them a frame goes: what kinds of things it leaves in which buffers.
+/// The stages and their variants that a frame takes. They decide what kinds of things it leaves in which buffers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Way {
     /// How splats become pixels; never `Auto`.
@@ -57,7 +57,7 @@ pub(crate) struct Way {
     pub(crate) show: Show,
 }
 
-/// What a plan is made from besides camera, clip and settings.
+/// The arguments of a plan besides camera, clip and settings.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SceneFacts<'a> {
     /// At least one.
@@ -68,17 +68,17 @@ pub(crate) struct SceneFacts<'a> {
     pub(crate) sh_format: ShFormat,
     /// For what kind of device kernels are chosen.
     pub(crate) shape: DeviceShape,
-    /// Invocations of the sort, and of what finds the splats' spans of tiles.
+    /// Invocations of the sort, and of the steps that find the splats' spans of tiles.
     pub(crate) sort_runs: u32,
     pub(crate) span_runs: u32,
     /// How splats become pixels; never `Auto`.
     pub(crate) raster: Raster,
     pub(crate) tile_work: TileWork,
-    /// Pairs of tile and splat that there is to be room for.
+    /// The number of pairs of tile and splat that have room.
     pub(crate) pair_capacity: u32,
     /// Whether a frame without room for its pairs is drawn once more, instead of as quads.
     pub(crate) redrawn: bool,
-    /// What hides splats of tiles, if they are wanted.
+    /// The depth that hides splats of tiles, if they are wanted.
     pub(crate) occluders: Option<Occluders>,
     /// Whether the splats' depths are wanted.
     pub(crate) expects_depth: bool,
@@ -173,12 +173,12 @@ impl Plan {
         self.way.raster == Raster::Tiles
     }
 
-    /// Whether the clip's classes have to be found, for blocks and Gaussians whether in view or not.
+    /// Whether the clip's sides have to be found, of blocks and Gaussians whether in view or not.
     pub(crate) fn finds_clip(&self) -> bool {
         self.work == Work::Whole { clip: true }
     }
 
-    /// Whether it has to be found what is in view.
+    /// Whether the Gaussians in view have to be found.
     pub(crate) fn finds_view(&self) -> bool {
         matches!(
             self.work,
@@ -191,23 +191,23 @@ impl Plan {
         matches!(self.work, Work::Reclip { .. })
     }
 
-    /// Whether what is in view is found without what the clip removes.
+    /// Whether the Gaussians that the clip removes are left out when those in view are found.
     pub(crate) fn view_is_clipped(&self) -> bool {
         self.mode() != types::MODE_NONE && !self.reclips()
     }
 
-    /// Whether what is in view is found with the cutoff records of what the clip cuts.
+    /// Whether cutoff records are written when the Gaussians in view are found.
     pub(crate) fn view_is_cut(&self) -> bool {
         self.cuts() && !self.reclips()
     }
 }
 
-/// Whether Gaussians can be cutoff in a mode.
+/// Whether a mode can have cutoff Gaussians.
 fn cuts(mode: u32) -> bool {
     mode == types::MODE_RARA || mode == types::MODE_EXACT
 }
 
-/// How what the region cuts is weighted.
+/// How cut splats are weighted.
 fn weight_data(
     scene: &SceneFacts<'_>,
     region: &types::RegionData,
@@ -226,7 +226,7 @@ fn weight_data(
             "a beam switch of {switch} is not a size; give zero or more"
         )));
     }
-    // A header of three, the surfaces, and the eye's own plane where the camera may be inside a splat.
+    // A record is a header of three, the surfaces, and the eye's own plane where the camera may be inside a splat.
     let cut_stride = if cuts(region.mode) {
         3 + most_surfaces + 1
     } else {
@@ -264,8 +264,8 @@ fn tiles_data(size: vk::Extent2D, span_runs: u32, settings: &Settings) -> Result
     Ok(TilesData {
         tile_columns: columns,
         tile_count: columns * rows,
-        // As many invocations as the spans have; whole workgroups a row, whose invocations then have as much to do as each
-        // other.
+        // There are as many invocations as the spans have. Each row has whole workgroups, whose invocations then have
+        // equally much to do.
         span_runs,
         row_parts: span_runs
             .div_ceil(rows)

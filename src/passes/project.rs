@@ -1,4 +1,4 @@
-//! Stage `project`, a survivor an invocation: conic, quad, colour and depth key.
+//! Stage `project`, one invocation a survivor, computes conic, quad, colour and depth key.
 
 use crate::gpu::Recorder;
 use crate::passes::buffers::indirect;
@@ -16,7 +16,7 @@ pub(crate) const STAGE: Stage = Stage {
     record,
 };
 
-/// For spherical harmonics stored in one way; without cut splats the shader knows no cutoff records.
+/// The shader reads spherical harmonics in one format; without cut splats it reads no cutoff records.
 impl OfPlan for project::Constants {
     fn of(plan: &Plan) -> Self {
         Self {
@@ -40,7 +40,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         splats: &b.splats,
         keys,
         same_keys,
-        cuts: &b.cuts,
+        cut_records: &b.cut_records,
         tile_masks: &b.tile_masks,
     };
     let groups = indirect!(b.counts, FrameCounts, project_groups);

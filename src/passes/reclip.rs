@@ -1,6 +1,6 @@
-//! Stages `reclip` and `recut`, where the camera stands still and the clip moves: the Gaussians between its old and its new
-//! surface, and what of them the rasteriser holds. The survivors, which are all in view, their places, colours, order and
-//! tiles stay.
+//! Stages `reclip` and `recut`, where the camera stands still and the clip moves, find the Gaussians between its old and its
+//! new surface and change what the rasteriser holds of them. The survivors, which are all in view, and their centres,
+//! colours, order and tiles stay.
 
 use crate::gpu::{Groups, Recorder};
 use crate::passes::block_list::{self, ListFor};
@@ -13,7 +13,7 @@ use crate::passes::stage::{Frame, Stage, key};
 use crate::passes::work::Work;
 use crate::types::FrameCounts;
 
-/// The classes that change.
+/// The stage that finds which sides change.
 pub(crate) const RECLIP: Stage = Stage {
     name: "reclip",
     needed: |plan| plan.reclips(),
@@ -28,7 +28,7 @@ pub(crate) const RECLIP: Stage = Stage {
     record: record_reclip,
 };
 
-/// What the rasteriser holds of the survivors that change.
+/// The stage that changes what the rasteriser holds of those survivors.
 pub(crate) const RECUT: Stage = Stage {
     name: "recut",
     needed: |plan| plan.reclips(),
@@ -57,7 +57,7 @@ fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         revisits: &s.revisits,
         reclips: &s.reclips,
     };
-    // The survivors may have no clip yet.
+    // No clip may have changed the survivors yet.
     let fresh = matches!(frame.plan.work, Work::Reclip { fresh: true, .. });
     let params = reclip_blocks::Params {
         fresh: fresh.into(),
@@ -101,7 +101,7 @@ fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
 
 fn record_recut(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (scene, b, s) = (frame.scene, frame.buffers, frame.reclip());
-    // The tiles to draw again: all, where no frame has drawn what is in view.
+    // All tiles are drawn again where no frame has drawn what is in view.
     let all = frame.plan.finds_view();
     recorder.fill(&s.dirty, 0, s.dirty.size(), all.into());
     let buffers = recut::Buffers {
@@ -110,7 +110,7 @@ fn record_recut(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         survivors: &b.survivors,
         counts: &b.counts,
         recuts: &s.recuts,
-        cuts: &b.cuts,
+        cut_records: &b.cut_records,
         tile_masks: &b.tile_masks,
         splats: &b.splats,
         dirty: &s.dirty,

@@ -1,4 +1,5 @@
-//! What the clip keeps, as the shaders have it: what all layers' regions have in common, and the surfaces of one.
+//! The regions that the clip keeps, as the shaders read them: what all layers' regions have in common, and the surfaces of
+//! one.
 
 use std::cmp::Ordering;
 
@@ -7,12 +8,12 @@ use crate::error::{Error, Result};
 use crate::settings::{Mode, Settings};
 use crate::types::{self, RegionData};
 
-/// Largest distance of a surface that is told from infinity, world units, and beyond every splat: a power of two below the
-/// end of single precision's range.
+/// The largest distance of a surface that is not taken for infinity, world units. It lies beyond every splat: a power of two
+/// below the end of single precision's range.
 const FARTHEST: f64 = (1_u128 << 126) as f64;
 
-/// What all regions have in common that a clip in the mode of the settings makes. Without anything to clip with that is what
-/// mode `none` has.
+/// What all regions have in common that these clips make in the mode of the settings. Without anything to clip with, that is
+/// the same as in mode `none`.
 pub(super) fn region_data<'a>(
     clips: impl Iterator<Item = &'a Clip>,
     settings: &Settings,
@@ -49,8 +50,9 @@ pub(super) fn op(clip: &Clip) -> u32 {
     }
 }
 
-/// The surfaces of a clip, which is given in the space of the layer that it cuts: without repetitions, since cutting twice is
-/// cutting once, and in an order of their own, since to the bit no picture depends on the order in which they are given.
+/// The surfaces of a clip, which is given in the space of the layer that it cuts. There are no repetitions, since cutting
+/// twice is cutting once, and the order is their own, so that no bit of a picture depends on the order in which they are
+/// given.
 pub(super) fn surfaces(clip: &Clip) -> impl Iterator<Item = types::Surface> {
     let mut surfaces: Vec<_> = clip.surfaces.iter().map(Numbers::of).collect();
     surfaces.sort_by(Numbers::order);
@@ -58,7 +60,7 @@ pub(super) fn surfaces(clip: &Clip) -> impl Iterator<Item = types::Surface> {
     surfaces.into_iter().map(Numbers::packed)
 }
 
-/// What tells one surface from another.
+/// The numbers of a surface, in which it differs from others.
 #[derive(Clone, Copy, PartialEq)]
 struct Numbers {
     /// `SURFACE_*`.
@@ -84,7 +86,7 @@ impl Numbers {
         })
     }
 
-    /// As two floats each.
+    /// Stores each number as two floats.
     fn packed(self) -> types::Surface {
         let values = self.values.map(|v| v.clamp(-FARTHEST, FARTHEST));
         let high = values.map(|v| v as f32);

@@ -86,12 +86,12 @@ static NEXT_ID: AtomicU64 = AtomicU64::new(0);
 
 /// Gaussians converted at a time while uploading, so that the scene is never in memory a third time.
 const UPLOAD_CHUNK: usize = 1 << 16;
-/// And while writing into a host's memory, where a chunk is no submission: what stays in the processor's cache.
+/// The same while writing into a host's memory, where a chunk is no submission: few enough to stay in the processor's cache.
 const WRITE_CHUNK: usize = 1 << 10;
 
 impl SceneBuffers {
-    /// Uploads a scene, Gaussians or [layers](Scene) of them, its spherical harmonics stored as `format` says, in chunks, and
-    /// waits for it. Beside the scene it takes 32 MiB at most.
+    /// Uploads a scene, Gaussians or [layers](Scene) of them, its spherical harmonics stored as `format` says, in chunks,
+    /// and waits for it. Beside the scene it takes 32 MiB at most.
     pub fn upload<'a>(
         device: &Device,
         scene: impl Into<Scene<'a>>,
@@ -169,7 +169,7 @@ impl SceneBuffers {
         let needed = sizes.iter().sum::<u64>();
         if (staging.bytes.len() as u64) < needed {
             return Err(Error::Invalid(format!(
-                "this scene needs {needed} bytes of staging memory and {} were lent; SceneBuffers::staging_bytes tells",
+                "this scene needs {needed} bytes of staging memory and {} were lent; SceneBuffers::staging_bytes says",
                 staging.bytes.len()
             )));
         }
@@ -180,7 +180,7 @@ impl SceneBuffers {
         let third = &mut rest[..blocks];
         for layer in &packed {
             let [gaussians, sh, blocks] = layer.offsets().map(|offset| offset as usize);
-            // What is between the layers is no Gaussian's, and nobody reads it.
+            // The places between the layers hold no Gaussian, and nothing reads them.
             write_in_chunks(&mut first[gaussians..], &layer.order, |i, out| {
                 out.push(layer.gaussian(i));
             });
@@ -207,13 +207,13 @@ impl SceneBuffers {
         Ok(buffers)
     }
 
-    /// The buffers, still empty, and what goes into them of each layer.
+    /// Allocates the buffers, and packs what goes into them from each layer.
     fn allocate<'a>(
         device: &Device,
         scene: &Scene<'a>,
         format: ShFormat,
     ) -> Result<(Self, Vec<PackedLayer<'a>>)> {
-        // Places, of which each layer's last block may have some that hold nothing.
+        // A layer's last block may have places that hold nothing.
         let places = scene.layers().len() * limits::BLOCK_SIZE as usize + scene.gaussians();
         if u32::try_from(places).is_err() {
             return Err(Error::Invalid(format!(
@@ -284,7 +284,7 @@ impl SceneBuffers {
         self.gaussians.size() + self.sh.size() + self.blocks.size()
     }
 
-    /// Bounds that settle nothing: each Gaussian is looked at for itself.
+    /// Replaces the bounds by ones that settle nothing, so that each Gaussian is looked at for itself.
     #[cfg(test)]
     pub(crate) fn undecide(&self, device: &Device) -> Result<()> {
         const FAR: f32 = 1e30;

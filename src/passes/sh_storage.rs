@@ -28,7 +28,7 @@ pub(crate) fn pack(format: ShFormat, numbers: &[f32], out: &mut Vec<u32>) {
         ShFormat::Packed => pack_words(numbers, out),
         ShFormat::Byte => {
             let (constant, rest) = numbers.split_at(3);
-            // What the shader will multiply by is the rounded scale.
+            // The shader will multiply by the rounded scale.
             let scale = nearest_half(largest(rest)).to_f32();
             out.push(pair(constant[0], constant[1]));
             out.push(pair(constant[2], scale));
@@ -42,7 +42,7 @@ pub(crate) fn pack(format: ShFormat, numbers: &[f32], out: &mut Vec<u32>) {
     }
 }
 
-/// The nearest 16-bit float, ties to even; what is beyond the largest, or no number, becomes the largest.
+/// The nearest 16-bit float, ties to even; a value beyond the largest, or no number, becomes the largest.
 fn nearest_half(value: f32) -> f16 {
     f16::from_f32(value.abs().min(f16::MAX.to_f32_const()).copysign(value))
 }
@@ -71,17 +71,17 @@ fn pack_words(numbers: &[f32], out: &mut Vec<u32>) {
     }
 }
 
-/// The least power of two that is not below `value`, as its five bits of exponent and itself. Beyond the largest,
-/// 2^16, coefficients become that.
+/// The least power of two that is not below `value`, as its five bits of exponent and itself. It is 2^16 at most, so that
+/// larger coefficients become that.
 fn scale(value: f32) -> (u32, f32) {
-    // Carries into the exponent unless `value` is a power of two.
+    // The sum carries into the exponent unless `value` is a power of two.
     let up = (value.to_bits() + 0x007f_ffff) >> 23;
     let exponent = up.saturating_sub(types::SH_EXPONENT_BIAS).min(31);
     let scale = f32::from_bits((exponent + types::SH_EXPONENT_BIAS) << 23);
     (exponent, scale)
 }
 
-/// `value` as a share of `scale`, a signed integer of so many bits whose largest is the scale.
+/// `value` as a share of `scale`: a signed integer of `bits` bits whose largest value stands for the scale.
 fn share(value: f32, scale: f32, bits: u32) -> u32 {
     let most = (1 << (bits - 1)) - 1;
     // A scale is 0, or 2^-24 at least: this is finite.
@@ -90,7 +90,8 @@ fn share(value: f32, scale: f32, bits: u32) -> u32 {
     } else {
         0.0
     };
-    // Clamped: a scale may be below the largest; `as` stays in range by itself. `round` would be a call for each number.
+    // The scale may be below the largest, so the share is clamped; `as` stays in range by itself. `round` would be a call
+    // for each number.
     let share = value * unit;
     let count = (share + 0.5_f32.copysign(share)) as i32;
     count.clamp(-most, most) as u32 & ((1 << bits) - 1)
@@ -111,7 +112,7 @@ mod tests {
         ShFormat::Byte,
     ];
 
-    /// What the shader reads.
+    /// The number that the shader reads.
     fn component(format: ShFormat, packed: &[u32], k: usize) -> f32 {
         let half = |k: usize| f16::from_bits((packed[k / 2] >> (16 * (k % 2))) as u16).to_f32();
         let signed = |word: u32, low: u32, bits: u32| {
@@ -147,21 +148,21 @@ mod tests {
 
     /// How far number `k` may be off, where nothing is beyond the range of 16 bits.
     fn bound(format: ShFormat, numbers: &[f32], k: usize) -> f32 {
-        let half = (numbers[k].abs() / 2048.0).max(3e-8); // half a step; of subnormal ones 2^-25
+        let half = (numbers[k].abs() / 2048.0).max(3e-8); // half a step, which is 2^-25 for subnormal numbers
         let same = (0..numbers.len()).filter(|j| degree(*j) == degree(k));
         let of_degree = same.fold(0.0_f32, |most, j| most.max(numbers[j].abs()));
         match format {
             ShFormat::Float => 0.0,
             ShFormat::Half => half,
             ShFormat::Packed if k < 3 => half,
-            // Half a step of a scale that is below twice the largest, or the least there is; and what computing it in
-            // single precision loses.
+            // This is half a step of a scale that is below twice the largest, or the least scale, and what computing it
+            // in single precision loses.
             ShFormat::Packed => {
                 let most = if k % 3 == 2 { 511.0 } else { 1023.0 };
                 of_degree.max(2.0_f32.powi(-16)) / most * 1.001
             }
             ShFormat::Byte if k < 3 => half,
-            // Half a step, and what rounding the scale moves.
+            // This is half a step, and what rounding the scale moves.
             ShFormat::Byte => largest(&numbers[3..]) * (1.0 / 254.0 + 1.0 / 2048.0) + 3e-8,
         }
     }
@@ -195,7 +196,7 @@ mod tests {
                 for _ in 0..20 {
                     check(&(0..count).map(|_| size * next()).collect::<Vec<_>>());
                 }
-                // One that is large, and the others nothing beside it.
+                // One number is large, and the others are nothing beside it.
                 let mut one: Vec<f32> = (0..count).map(|_| 1e-6 * size * next()).collect();
                 one[count - 1] = size;
                 check(&one);
@@ -257,7 +258,7 @@ mod tests {
         pack(ShFormat::Packed, &numbers, &mut packed);
         let read = |k| component(ShFormat::Packed, &packed, k);
         assert_eq!((read(0), read(1)), (65504.0, -65504.0));
-        // Where single precision rounds the last bit of the product is not the point.
+        // The test allows for the last bit of the product.
         for (k, most) in [(3, 65536.0), (12, 65536.0), (13, -65536.0), (29, 65536.0)] {
             assert!((read(k) / most - 1.0).abs() < 1e-6, "{k}: {}", read(k));
         }

@@ -1,5 +1,5 @@
-//! The draw of the splats: quads by a mesh shader or by instancing, back to front, blended `over`; the fragment stage
-//! consults the cutoff buffer for cut splats only.
+//! Draws the splats as quads, by a mesh shader or by instancing, back to front and blended `over`. The fragment stage reads
+//! the cutoff records for cut splats only.
 
 use std::mem::offset_of;
 
@@ -33,7 +33,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program
     Draw::new([front, &splat::FRAG], constants, attachments, depth)
 }
 
-/// Draws inside the host's rendering scope; `origin` is where its viewport begins, px. `map` is what the host's depth
+/// Draws inside the host's rendering scope. `origin` is where its viewport begins, px; `map` says what the host's depth
 /// buffer holds for a depth, if it is tested.
 pub(crate) fn record(
     drawer: &mut Drawer<'_>,
@@ -48,7 +48,7 @@ pub(crate) fn record(
         counts: &b.counts,
         splats: &b.splats,
         order: &b.order[plan.sorted()],
-        cuts: &b.cuts,
+        cut_records: &b.cut_records,
     };
     let [_, _, cx, cy] = plan.data.view.focal;
     let [depth_offset, depth_scale] = map.map_or([0.0; 2], |map| map.factors());

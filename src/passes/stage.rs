@@ -1,4 +1,4 @@
-//! What a stage of the frame is, and what it records with.
+//! A stage of the frame, and the context that it records with.
 
 use ash::vk;
 
@@ -12,28 +12,28 @@ use crate::passes::shaders::{BufferSet, Compute};
 /// A step of the frame that is computed before the draw.
 #[derive(Debug)]
 pub(crate) struct Stage {
-    /// Of its file, debug label, timer and statistics.
+    /// The name of its file, debug label, timer and statistics.
     pub(crate) name: &'static str,
     /// Whether a frame needs it.
     pub(crate) needed: fn(&Plan) -> bool,
-    /// Whether it is said of a frame that it does without.
+    /// Whether a frame without it reports that it was skipped.
     pub(crate) missed: fn(&Plan) -> bool,
-    /// What it dispatches in a frame that needs it.
+    /// The pipelines that it dispatches in a frame that needs it.
     pub(crate) pipelines: fn(&Plan, &mut dyn FnMut(PipelineKey)),
     /// Records it in a frame that needs it.
     pub(crate) record: fn(&Frame<'_>, &mut Recorder<'_>),
 }
 
-/// One way to do what a stage is there for, where there may be several.
+/// One way to do a stage's work, where there may be several.
 #[derive(Debug)]
 pub(crate) struct KernelSet {
-    /// As of a [`Stage`].
+    /// As in a [`Stage`].
     pub(crate) pipelines: fn(&Plan, &mut dyn FnMut(PipelineKey)),
-    /// As of a [`Stage`].
+    /// As in a [`Stage`].
     pub(crate) record: fn(&Frame<'_>, &mut Recorder<'_>),
 }
 
-/// What a stage records with.
+/// The context that a stage records with.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Frame<'a> {
     pub(crate) plan: &'a Plan,
@@ -44,7 +44,7 @@ pub(crate) struct Frame<'a> {
     pub(crate) copied: vk::Rect2D,
 }
 
-/// What a frame draws into.
+/// The attachments that a frame draws into.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Targets {
     pub(crate) colour: Attachments,

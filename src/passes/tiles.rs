@@ -1,5 +1,5 @@
-//! Stage `tiles`, the tile rasteriser: a compute shader that blends the splats of each tile of pixels, front to back, until
-//! the tile is saturated; and the draw of its picture. What does not fit is drawn as quads in the same frame.
+//! Stage `tiles`, the tile rasteriser: a compute shader blends the splats of each tile of pixels, front to back, until the
+//! tile is saturated, and a draw blends its picture. A frame whose pairs have no room is drawn as quads instead.
 
 use std::mem::offset_of;
 
@@ -33,15 +33,15 @@ pub(crate) struct TileWork {
 }
 
 impl TileWork {
-    /// What suits a device whose subgroups can shuffle if their size is not 0.
+    /// The sharing that suits a device. Its subgroups can shuffle if their size is not 0.
     pub(crate) fn suiting(shape: DeviceShape, subgroup_size: u32) -> Self {
         let is_cpu = shape == DeviceShape::Cpu;
         let rows = if is_cpu { limits::TILE_HEIGHT } else { 1 };
         let invocations = limits::TILE_WIDTH * (limits::TILE_HEIGHT / rows);
         Self {
             rows,
-            // The shader counts on subgroups without gaps, which come together again after each branch. That is how CPU
-            // drivers run them, as vectors under a mask; Vulkan promises it to none who has not asked for it. GPUs, whose
+            // The shader counts on subgroups without gaps, which come together again after each branch. CPU drivers run
+            // them like that, as vectors under a mask; Vulkan does not promise it unless it is asked for. GPUs, whose
             // loads serve all invocations at once, would not gain as much either.
             subgroups: is_cpu && subgroup_size > 0 && invocations.is_multiple_of(subgroup_size),
         }
@@ -78,9 +78,9 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         splats: &b.splats,
         tile_splats: &t.splats,
         tile_begins: &t.begins,
-        cuts: &b.cuts,
+        cut_records: &b.cut_records,
         picture: &t.picture,
-        // Only a reclipped frame looks at what is dirty.
+        // Only a reclipped frame reads which tiles are dirty.
         dirty: b.reclip.as_ref().map_or(&b.counts, |reclip| &reclip.dirty),
         occluders: plan.occluders.map_or(&b.counts, |_| &t.occluders),
     };
@@ -105,7 +105,7 @@ pub(crate) fn composite(attachments: Attachments) -> Draw<composite::Program> {
     Draw::new([&composite::VERT, &composite::FRAG], (), attachments, false)
 }
 
-/// Blends the tiles' picture onto what the host has drawn, inside the host's rendering scope; `origin` is where its viewport
+/// Blends the tiles' picture onto what the host has drawn, inside the host's rendering scope. `origin` is where its viewport
 /// begins, px.
 pub(crate) fn record_composite(
     drawer: &mut Drawer<'_>,

@@ -1,4 +1,4 @@
-//! The view's part of a frame's constants: the camera's picture, and where each layer has the camera.
+//! The view in a frame's constants: the camera's picture, and where each layer has the camera.
 
 use glam::DVec3;
 
@@ -6,7 +6,7 @@ use crate::camera::Camera;
 use crate::limits;
 use crate::types::{LayerView, ViewData};
 
-/// The picture of a camera that looks at colours up to a degree of spherical harmonics.
+/// The picture of a camera, and the degree up to which colours are evaluated.
 pub(super) fn view_data(camera: &Camera, sh_degree: u32) -> ViewData {
     let (width, height) = (f64::from(camera.width), f64::from(camera.height));
     let margin = f64::from(limits::CLAMP_MARGIN);
@@ -28,7 +28,7 @@ pub(super) fn view_data(camera: &Camera, sh_degree: u32) -> ViewData {
     }
 }
 
-/// Where a layer has the camera, which is given in the layer's space; `unit` is the scene's units in one of the layer's.
+/// Where a layer has the camera, which is given in the layer's space. `unit` is the scene's units in one of the layer's.
 pub(super) fn layer_view(camera: &Camera, unit: f64) -> LayerView {
     let rows = camera.rotation.transpose();
     let row = |v: DVec3| {

@@ -1,11 +1,11 @@
-//! What of a frame the weight of cut splats depends on, fixed in the pipelines that compute it: what a mode does not ask for
-//! does not tell pipelines apart.
+//! The settings that the weight of cut splats depends on, as constants of the pipelines that compute it. Settings that a
+//! mode does not use are left at one value, so that no two pipelines differ in them alone.
 
 use crate::passes::plan::Plan;
 use crate::settings::{Decay, Miss, Settings};
 use crate::types;
 
-/// What the weights of cut splats do and where they come from, in any mode.
+/// The settings of a cut splat's weight, whatever the mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Laws {
     /// `DECAY_*`.
@@ -17,7 +17,7 @@ pub(crate) struct Laws {
 }
 
 impl Laws {
-    /// Those of the settings.
+    /// Takes them from the settings.
     pub(crate) fn of(settings: &Settings) -> Self {
         Self {
             decay: match settings.decay_law() {
@@ -50,7 +50,7 @@ pub(crate) struct Weight {
 }
 
 impl Weight {
-    /// What a plan needs: after a hard clip nothing is left for the fragment stage to do.
+    /// The constants of a plan. After a hard clip nothing is left for the fragment stage to do.
     pub(crate) fn of(plan: &Plan) -> Self {
         let when = |needed: bool, value: u32| if needed { value } else { 0 };
         let (cuts, mode, laws) = (plan.cuts(), plan.mode(), plan.laws);

@@ -1,4 +1,4 @@
-//! What of a frame has to be computed, given what the frame before has left in the buffers.
+//! The part of a frame that has to be computed, given what the frame before has left in the buffers.
 
 use bytemuck::bytes_of;
 
@@ -7,40 +7,40 @@ use crate::passes::plan::Plan;
 use crate::passes::weight::Weight;
 use crate::types::{self, RegionData};
 
-/// What of a frame has to be computed.
+/// The part of a frame that has to be computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Work {
-    /// Everything, the clip's classes included unless they are those that are there.
+    /// Everything, but for the clip's sides where those in the buffers hold.
     Whole {
-        /// Whether they have to be found.
+        /// Whether the clip's sides have to be found.
         clip: bool,
     },
-    /// The camera stands still and the clip has moved: the classes that change, and what follows from them.
+    /// The camera stands still and the clip has moved: the sides that change, and what follows from them.
     Reclip {
-        /// Whether what is in view, clipped away or not, has to be found first.
+        /// Whether the Gaussians in view, clipped away or not, have to be found first.
         base: bool,
-        /// Whether no clip has changed it yet.
+        /// Whether no clip has changed them yet.
         fresh: bool,
     },
     /// Nothing has changed: the draw alone.
     Draw,
 }
 
-/// What the buffers hold after a frame.
+/// The contents of the buffers after a frame.
 #[derive(Debug)]
 pub(crate) struct Kept {
     scene: u64,
     plan: Plan,
-    /// The buffers are still those that the frame wrote.
+    /// Whether the buffers are still those that the frame wrote.
     pub(crate) holds: bool,
     /// The survivors are all in view, clipped away or not; `Some(true)` if no clip has changed them yet.
     base: Option<bool>,
-    /// What the classes of the clip stage are of.
+    /// The regions and layers from which stage clip has found the sides.
     region: Option<(RegionData, Layers)>,
 }
 
 impl Kept {
-    /// What is left to do for a plan, after a frame that left `kept`.
+    /// The work that is left for a plan, after a frame that left `kept`.
     pub(crate) fn work(kept: Option<&Self>, scene: u64, plan: &Plan) -> Work {
         let clip = plan.mode() != types::MODE_NONE;
         let Some(kept) = kept.filter(|kept| kept.scene == scene) else {
@@ -69,7 +69,7 @@ impl Kept {
         }
     }
 
-    /// What the buffers hold once a plan has been recorded after a frame that left `before`.
+    /// The contents of the buffers once a plan has been recorded after a frame that left `before`.
     pub(crate) fn after(before: Option<Self>, scene: u64, plan: &Plan) -> Self {
         let before = before.filter(|kept| kept.holds && kept.scene == scene);
         let had = before.and_then(|kept| kept.region);
@@ -99,7 +99,7 @@ impl Plan {
             && Weight::of(self) == Weight::of(other)
     }
 
-    /// Whether the clip stage would find the classes that it has found of such regions and layers.
+    /// Whether stage clip would find the sides that it has found from these regions and layers.
     fn has_classes_of(&self, (region, layers): &(RegionData, Layers)) -> bool {
         same(region, &self.data.region)
             && self.layers.contain_like(layers)
@@ -119,7 +119,7 @@ impl Plan {
     }
 }
 
-/// By their bytes: what is no number is itself.
+/// Compares bytes, by which a number that is none equals itself.
 pub(super) fn same<T: bytemuck::NoUninit>(a: &T, b: &T) -> bool {
     bytes_of(a) == bytes_of(b)
 }

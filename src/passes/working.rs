@@ -1,4 +1,4 @@
-//! The working memory by its names, for tests that hold what a stage has written to the stage's twin.
+//! The working memory by its debug names, for tests that compare what a stage has written with the stage's twin.
 
 use crate::gpu::Buffer;
 use crate::passes::buffers::Buffers;
@@ -24,7 +24,7 @@ impl Buffers {
             &self.counts,
             &self.survivors,
             &self.cutoffs,
-            &self.cuts,
+            &self.cut_records,
             &self.splats,
             &self.histogram,
             &self.tile_masks,

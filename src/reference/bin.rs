@@ -1,25 +1,25 @@
-//! Stage `bin`: which tiles of pixels a splat reaches, row by row of tiles, and the splats of each tile.
+//! Stage `bin` finds which tiles of pixels a splat reaches, row by row of tiles, and the splats of each tile.
 //!
 //! The contour on which alpha falls to 1/255 is the ellipse `(k0 dx)^2 + (k1 dx + k2 dy)^2 = K^2`. At a height dy its
 //! chord has the middle `-k1 k2 dy / k` and the half length `sqrt(k K^2 - (k0 k2 dy)^2) / k`, with `k = k0^2 + k1^2`. Its
-//! right end is farthest to the right at the height where `k1 dx + k2 dy` is zero, its left end opposite of that; so a
-//! row of tiles reaches as far as the chord at whichever of its heights is nearest to that one.
+//! right end is farthest to the right at the height where `k1 dx + k2 dy` is zero, and its left end opposite of that. So the
+//! ends of a row of tiles are the chord's at whichever of the row's heights is nearest to those.
 
 use super::real::Real;
 use crate::limits::{ALPHA_MIN_INVERSE, TILE_HEIGHT, TILE_WIDTH};
 
-/// What the rasteriser knows of a splat's place.
+/// A splat's outline, as the rasteriser knows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outline<T> {
     /// The centre, pixels.
     pub centre: [T; 2],
-    /// Cholesky factors k0, k1, k2 of the footprint's inverse covariance, 1/pixels.
-    pub factors: [T; 3],
+    /// The Cholesky factor k0, k1, k2 of the footprint's inverse covariance, 1/pixels.
+    pub conic: [T; 3],
     /// Opacity at the centre, 0 to 1.
     pub opacity: T,
     /// First and last x, and first and last y, of the quad that it is drawn with, pixels.
     pub quad: [[T; 2]; 2],
-    /// Where a cut splat is hidden: where `line[0] + line[1] dx + line[2] dy` is negative.
+    /// A cut splat is cut away where `line[0] + line[1] dx + line[2] dy` is negative.
     pub line: Option<[T; 3]>,
 }
 
@@ -37,7 +37,7 @@ impl<T: Real> Outline<T> {
     /// difference, which is off by the root of single precision.
     pub fn margin(&self) -> T {
         let [x, y] = self.centre.map(|c| c.abs());
-        T::of(0.01) + T::of(4e-4) * self.extent() / self.factors[0] + T::of(1e-6) * x.max(y)
+        T::of(0.01) + T::of(4e-4) * self.extent() / self.conic[0] + T::of(1e-6) * x.max(y)
     }
 
     fn extent(&self) -> T {
@@ -47,7 +47,7 @@ impl<T: Real> Outline<T> {
 
     /// The tiles of a picture of `size` pixels that the splat reaches, with a margin in pixels.
     pub fn spans(&self, size: [u32; 2], margin: T) -> Vec<Span> {
-        let ([k0, k1, k2], extent) = (self.factors, self.extent());
+        let ([k0, k1, k2], extent) = (self.conic, self.extent());
         let k = k0 * k0 + k1 * k1;
         let tip = -k1 / k2 * (extent / k0);
         let slope = -k1 * k2 / k;
@@ -70,7 +70,7 @@ impl<T: Real> Outline<T> {
             let (right_at, left_at) = (nearest(tip), nearest(-tip));
             let mut left = cx + slope * left_at - half(left_at) - margin;
             let mut right = cx + slope * right_at + half(right_at) + margin;
-            // Not max() and min(): what is no number leaves the quad's sides.
+            // Comparisons, unlike max() and min(), leave the quad's sides where the ends are no numbers.
             left = if left > self.quad[0][0] {
                 left
             } else {

@@ -19,13 +19,13 @@ pub struct Chord<T> {
     pub rows: [Vec3<T>; 3],
     /// Depth Z of the centre, world units.
     pub depth: T,
-    /// What the surfaces that cut the splat keep of it.
+    /// The half-spaces that the surfaces keep of the splat that they cut.
     pub half_spaces: Vec<HalfSpace<T>>,
     /// How they combine.
     pub op: ClipOp,
     /// Radius of the traced ellipsoid, standard deviations.
     pub sigma: T,
-    /// What a pixel keeps whose ray misses it.
+    /// How much a pixel keeps whose ray misses it.
     pub miss: Miss,
 }
 
@@ -79,14 +79,14 @@ impl<T: Real> Chord<T> {
         let part = |(start, end): (T, T)| ((end - start) / whole).max(T::zero());
         match self.op {
             ClipOp::And => part(on_rays.fold((start, end), |part, one| one.visible(part))),
-            // What a union leaves out is what every one of them leaves out.
+            // A union leaves out what all of them leave out.
             ClipOp::Or => {
                 T::one() - part(on_rays.fold((start, end), |part, one| one.invisible(part)))
             }
         }
     }
 
-    /// What a pixel keeps whose ray has no chord in front of the eye.
+    /// The share of a pixel whose ray has no chord in front of the eye.
     fn missed(&self, peak: Vec3<T>) -> T {
         let kept = self
             .half_spaces

@@ -1,4 +1,4 @@
-//! Stage `classify`: what the clip does to each Gaussian (the paper, section 3.2).
+//! Stage `classify` finds the side of each Gaussian (the paper, section 3.2).
 //!
 //! The paper's band is 3 max(sigma) on either side of the plane. Here it is K |M^T n|: the Gaussian's own extent along
 //! the normal, out to the contour on which its alpha falls to 1/255. Outside of it no pixel would change by more
@@ -16,7 +16,7 @@ use super::view::View;
 use crate::limits::{ALPHA_MIN_INVERSE, BEYOND_EYE, WIDENING_REST};
 use crate::{Clip, Gaussians, Mode, Settings, Surface};
 
-/// The class of every Gaussian of the scene.
+/// The side of every Gaussian of the scene.
 pub fn classify<T: Real>(
     scene: &Gaussians,
     view: &View<T>,
@@ -31,7 +31,7 @@ pub fn classify<T: Real>(
         .collect()
 }
 
-/// The class of one Gaussian in view.
+/// The side of one Gaussian in view.
 pub fn side<T: Real>(
     scene: &Gaussians,
     index: usize,
@@ -43,7 +43,7 @@ pub fn side<T: Real>(
     gaussian_side(scene, index, &footprint.axes, deviations, clip, settings)
 }
 
-/// What the surfaces keep of a Gaussian of class [`Side::Cutoff`] that cut it, in the clip's order.
+/// The half-spaces that surfaces keep of a Gaussian that they cut, whose side is [`Side::Cutoff`], in the clip's order.
 pub fn cutting<T: Real>(
     scene: &Gaussians,
     index: usize,
@@ -77,11 +77,11 @@ fn band<T: Real>(
 
 /// Half width of the band of a splat whose weight follows each pixel's true ray. The footprint is linear: a pixel at
 /// `delta` sees the point u with `B u = delta`. The ray of the same pixel holds the points with
-/// `B u = delta (1 + e . u)`, e the depth's derivatives by u over the depth, among them `u / (1 - e . u)` of that same u.
+/// `B u = delta (1 + e . u)`, with the lean e, among them `u / (1 - e . u)` of that same u.
 /// So no ray within K deviations passes farther than `K / (1 - K |e|)`. Where the splat reaches around the eye that has
 /// no bound, but all rays pass through the eye; [`BEYOND_EYE`] deviations beyond it nothing counts.
 fn beam_band<T: Real>(footprint: &Footprint<T>) -> T {
-    let depth_share = footprint.rows[2].length() / footprint.centre.z;
+    let depth_share = footprint.rows[2].length() / footprint.view_centre.z;
     let rest = T::one() - footprint.extent * footprint.stretch * depth_share;
     if rest > T::of(f64::from(WIDENING_REST)) {
         return footprint.extent * footprint.stretch / rest;
@@ -101,14 +101,14 @@ fn beam_band<T: Real>(footprint: &Footprint<T>) -> T {
 /// How many of a scene's Gaussians a plane through its middle cuts, by either band.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Bands {
-    /// Share within K deviations along the normal, with K where alpha falls to 1/255: what is called cut here.
+    /// The share that is called cut here: within K deviations along the normal, with K where alpha falls to 1/255.
     pub ours: f64,
-    /// Share within three times the largest deviation: what the paper calls cut.
+    /// The share that the paper calls cut: within three times the largest deviation.
     pub paper: f64,
 }
 
-/// The mean over the 13 axes of the cube (faces, edges and corners), each plane through the median centre along its
-/// normal. Gaussians out of sight do not count, where there is no camera yet: those fainter than 1/255.
+/// The mean over planes through the median centre, whose normals are the 13 axes of the cube (through faces, edges and
+/// corners). Gaussians fainter than 1/255 do not count; there is no camera that could leave others out of sight.
 pub fn bands(scene: &Gaussians) -> Bands {
     let steps = [-1.0, 0.0, 1.0];
     let all = steps

@@ -1,6 +1,6 @@
-//! Stage `clip`: what the clip does to each Gaussian, whatever the camera sees of it (the paper, section 3.2).
+//! Stage `clip` finds the side of each Gaussian, whatever the camera sees of it (the paper, section 3.2).
 //!
-//! What perspective adds to the band of splats that follow each pixel's true ray depends on the camera: stage
+//! Perspective widens the band of splats that follow each pixel's true ray, by how much depends on the camera. Stage
 //! [`classify`](super::classify) asks the same question again for those.
 
 use super::footprint::half_axes;
@@ -9,7 +9,7 @@ use super::region::{Side, gaussian_side};
 use crate::limits::ALPHA_MIN_INVERSE;
 use crate::{Clip, Gaussians, Mode, Settings};
 
-/// The class of every Gaussian of the scene; none is [`Side::Culled`].
+/// The side of every Gaussian of the scene; none is [`Side::Culled`].
 pub fn clip<T: Real>(scene: &Gaussians, clip: &Clip, settings: &Settings) -> Vec<Side> {
     let side = |index: usize| {
         let axes = half_axes(scene.scales()[index], scene.rotations()[index]);

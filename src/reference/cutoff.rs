@@ -55,7 +55,7 @@ pub fn cutoff<T: Real>(
         Mode::Rara => Cut::Chord(Chord {
             gradients: footprint.true_gradients(view),
             rows: footprint.rows,
-            depth: footprint.centre.z,
+            depth: footprint.view_centre.z,
             half_spaces,
             op: clip.op,
             sigma: T::of(f64::from(settings.sigma)),
@@ -87,8 +87,8 @@ pub(super) fn is_beam<T: Real>(
         ExactForm::Affine => false,
         ExactForm::Auto => {
             let sigma_max = footprint.unit * T::of(f64::from(scene.scales()[index].max_element()));
-            let large =
-                sigma_max / footprint.centre.z > T::of(f64::from(settings.precision.beam_switch));
+            let large = sigma_max / footprint.view_centre.z
+                > T::of(f64::from(settings.precision.beam_switch));
             large || footprint.clamped
         }
     }

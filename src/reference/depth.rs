@@ -1,19 +1,19 @@
-//! Stage `depth`: how deep a splat is in a pixel, on average of what the clip leaves of it, and the depth that a pixel is
-//! to be expected at.
+//! Stage `depth` finds how deep a splat is in a pixel, on average of what the clip leaves of it, and a pixel's expected
+//! depth.
 //!
 //! As in [`exact`](super::exact), u ~ N(0, I) is the Gaussian's unit space, a pixel an observation of two linear functions
 //! of u, and `C = I - B^T S^-1 B` (with `S = B B^T + L`) the covariance that it leaves. The depth is one more linear
 //! function, `Z + m3 . u`: given the pixel it is normal with a mean that is affine in delta, `Z + (S^-1 B m3) . delta`. The
-//! function `g + a . u` of a half-space that a surface keeps is normal too, with mean over deviation z and deviation s, and their covariance is
-//! `m3^T C a`. Of a normal pair (d, p) the mean of d where p is positive follows from regressing d on p,
+//! function `g + a . u` of a half-space that a surface keeps is normal too, with mean over deviation z and deviation s, and
+//! their covariance is `m3^T C a`. Of a normal pair (d, p) the mean of d where p is positive follows from regressing d on p,
 //! `d = mean + cov / s (p - mean p) / s + rest`, with a rest that does not depend on p, and from the mean of a truncated
 //! normal variable: `E[d | p > 0] = mean + cov / s phi(z) / Phi(z)`, the shift `cov / s` times the inverse of Mills's ratio.
 //!
 //! Several half-spaces are thresholds on the line of sight: the strictest that keeps the far side bounds it from below, the
 //! strictest that keeps the near side from above, each with its own shift:
 //! `E = mean + (shift_far phi(low) + shift_near phi(high)) / (Phi(high) - Phi(low))`. That is exact for one, and for
-//! two where both are thresholds in one variable, as on a ray without low-pass. A union leaves out such an interval of its
-//! complements, and what that takes of the whole's mean is left to the rest.
+//! two where both are thresholds in one variable, as on a ray without low-pass. A union leaves out what its complements
+//! keep in common, such an interval; it keeps the rest of the whole's mean.
 
 use super::footprint::{Footprint, determinant, scaled};
 use super::real::{Real, Vec3};
@@ -32,14 +32,14 @@ struct Bound<T> {
 /// How deep a splat is.
 #[derive(Debug, Clone, Copy)]
 pub struct SplatDepth<T> {
-    /// Of the whole splat: at its centre, and how it changes a pixel across and down.
+    /// The whole splat's mean depth at its centre, and how that changes a pixel across and down.
     mean: [T; 3],
     far: Bound<T>,
     near: Bound<T>,
     op: ClipOp,
 }
 
-/// What a footprint leaves open of u.
+/// The distribution of u given a pixel.
 struct Given<T> {
     gradients: [Vec3<T>; 2],
     across: Vec3<T>,
@@ -77,13 +77,13 @@ impl<T: Real> Given<T> {
     }
 }
 
-/// Beyond so many deviations a surface is as good as not there.
+/// Beyond this many deviations a surface is as good as not there.
 const FARTHEST: f64 = 8.0;
 /// Shares below which a pixel shows nothing of a splat.
 const LEAST_SHARE: f64 = 1e-9;
 
 impl<T: Real> SplatDepth<T> {
-    /// For a splat and a clip.
+    /// The depth of a splat under a clip.
     pub fn new(
         scene: &Gaussians,
         index: usize,
@@ -99,7 +99,7 @@ impl<T: Real> SplatDepth<T> {
             shift: T::zero(),
         };
         let mut depth = Self {
-            mean: [footprint.centre.z, x, y],
+            mean: [footprint.view_centre.z, x, y],
             far: open,
             near: open,
             op: clip.op,
@@ -193,8 +193,9 @@ pub fn expected<'a, T: Real>(
         };
         for y in top..=bottom {
             for x in left..=right {
-                let offset =
-                    |at: u32, axis: usize| T::of(f64::from(at) + 0.5) - footprint.pixel[axis];
+                let offset = |at: u32, axis: usize| {
+                    T::of(f64::from(at) + 0.5) - footprint.screen_centre[axis]
+                };
                 let (dx, dy) = (offset(x, 0), offset(y, 1));
                 if let Some(alpha) = splat::alpha(splat, dx, dy, settings.decay_law()) {
                     let [sum, coverage] = &mut pixels[(y * width + x) as usize];

@@ -62,7 +62,7 @@ fn condition<T: Real>(gradients: [Vec3<T>; 2], half_space: &HalfSpace<T>) -> Con
     }
 }
 
-/// Whether a half-space holds the farther side of a ray, from `along = a . c`.
+/// Whether a half-space keeps the farther side of a ray, from `along = a . c`.
 ///
 /// c points away from the eye: the depth changes along it by `m3 . c = fx fy / Z^2 det(M)`, which is not negative for
 /// a rotation and scales that are not negative. Flat Gaussians have `a . c = 0` for every half-space: any rule
@@ -75,14 +75,14 @@ fn keeps_far<T: Real>(along: T, a: Vec3<T>) -> bool {
         .is_none_or(|&v| v > T::zero())
 }
 
-/// A half-space that is kept of a cut splat, in the affine form: `w = Phi(z[0] + z[1] dx + z[2] dy)`.
+/// A half-space that a surface keeps of a cut splat, in the affine form: `w = Phi(z[0] + z[1] dx + z[2] dy)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AffinePlane<T> {
     /// Coefficients of the argument; dx and dy in pixels from the splat's centre.
     pub z: [T; 3],
     /// Whether the visible side is the farther one.
     pub far: bool,
-    /// What correlates it with others.
+    /// The direction that correlates it with others.
     pub direction: Direction<T>,
 }
 
@@ -95,7 +95,7 @@ impl<T: Real> AffinePlane<T> {
             far,
             direction,
         } = condition(gradients, half_space);
-        // No deviation: the Gaussian is a point, wholly on one side (the boundary itself is visible).
+        // Without a deviation the Gaussian is a point, wholly on one side (the boundary itself is visible).
         let z = if deviation > T::zero() {
             mean.map(|m| m / deviation)
         } else if mean[0] >= T::zero() {
@@ -129,23 +129,23 @@ pub struct Beam<T> {
     pub gradients: [Vec3<T>; 2],
     /// `e = m3 / Z`.
     pub lean: Vec3<T>,
-    /// What the surfaces that cut the splat keep of it.
+    /// The half-spaces that the surfaces keep of the splat that they cut.
     pub half_spaces: Vec<HalfSpace<T>>,
     /// How they combine.
     pub op: ClipOp,
-    /// If the eye is within the splat: what is in front of the eye.
+    /// The half-space in front of the eye, if the eye is within the splat.
     pub front: Option<HalfSpace<T>>,
 }
 
 impl<T: Real> Beam<T> {
-    /// The form for a splat and what the surfaces that cut it keep of it.
+    /// The form for a splat and the half-spaces that surfaces keep of it.
     pub fn new(
         footprint: &Footprint<T>,
         view: &View<T>,
         half_spaces: Vec<HalfSpace<T>>,
         op: ClipOp,
     ) -> Self {
-        let (m3, depth) = (footprint.rows[2], footprint.centre.z);
+        let (m3, depth) = (footprint.rows[2], footprint.view_centre.z);
         Self {
             gradients: footprint.true_gradients(view),
             lean: m3 * (T::one() / depth),
@@ -172,16 +172,17 @@ impl<T: Real> Beam<T> {
     }
 }
 
-/// Whether the eye's plane reaches into the splat: the part behind it must not count.
+/// Whether the eye's plane reaches into the splat, whose part behind it must not count.
 pub fn holds_the_eye<T: Real>(footprint: &Footprint<T>) -> bool {
-    footprint.centre.z < footprint.extent * footprint.rows[2].length()
+    footprint.view_centre.z < footprint.extent * footprint.rows[2].length()
 }
 
-/// What [`share`] says where the eye is within the splat: of what is before it, the part beyond `front` on the ray.
+/// The [`share`] where the eye is within the splat: of the part in front of the eye, beyond `front` on the ray, how much
+/// is kept.
 ///
 /// Such a splat is so large that the low-pass is nothing. On one ray every plane is a threshold in the same normal
-/// variable: "far" planes keep what lies beyond theirs, "near" ones what lies before. Of each kind only the strictest
-/// matters, and the eye is one more far threshold.
+/// variable: far planes keep what lies beyond theirs, near ones what lies before. Only the strictest of each kind matters,
+/// and the eye is one more far threshold.
 fn in_front<T: Real>(op: ClipOp, planes: impl Iterator<Item = Threshold<T>>, front: T) -> T {
     let (zero, one) = (T::zero(), T::one());
     let of = |planes: &mut dyn Iterator<Item = Threshold<T>>| {

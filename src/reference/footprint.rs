@@ -12,7 +12,7 @@ use super::view::View;
 use crate::Gaussians;
 use crate::limits::{ALPHA_MIN_INVERSE, LOW_PASS, NEAR_Z};
 
-/// A Gaussian in view: what every later stage is computed from.
+/// A Gaussian in view, from which every later stage computes.
 #[derive(Debug, Clone, Copy)]
 pub struct Footprint<T> {
     /// Columns of M: the Gaussian's half axes in its layer, one standard deviation long.
@@ -22,7 +22,7 @@ pub struct Footprint<T> {
     /// The centre relative to the eye, the layer's axes and units.
     pub relative: Vec3<T>,
     /// The centre in camera axes (X, Y, Z), scene units.
-    pub centre: Vec3<T>,
+    pub view_centre: Vec3<T>,
     /// Units of the scene in one of the layer's.
     pub unit: T,
     /// Image derivatives b1, b2 of the footprint, evaluated at the clamped direction, pixels.
@@ -32,27 +32,27 @@ pub struct Footprint<T> {
     /// How much farther from the centre, in deviations, a pixel can be by the true direction than by the clamped one: at
     /// least 1, and 1 where nothing was clamped.
     pub stretch: T,
-    /// The centre's pixel position (not clamped).
-    pub pixel: [T; 2],
-    /// Cholesky factors k0, k1, k2 of the footprint's inverse covariance: see [`power`](Self::power).
-    pub factors: [T; 3],
+    /// The centre on the screen (not clamped), pixels.
+    pub screen_centre: [T; 2],
+    /// The Cholesky factor k0, k1, k2 of the footprint's inverse covariance, 1/pixels: see [`power`](Self::power).
+    pub conic: [T; 3],
     /// Opacity at the centre, 0 to 1.
     pub opacity: T,
     /// K: the standard deviations out to which the splat counts, `opacity exp(-K^2 / 2) = 1/255`.
     pub extent: T,
-    /// Half extents of the footprint's box, pixels.
-    pub half: [T; 2],
+    /// Half the sides of the footprint's box, pixels.
+    pub half_sides: [T; 2],
 }
 
 impl<T: Real> Footprint<T> {
-    /// The footprint of one Gaussian, or nothing if it is culled: nearer than [`NEAR_Z`] or behind the eye, fainter
-    /// than 1/255 even at its centre, or its box holds no pixel centre of the picture.
+    /// The footprint of one Gaussian, or nothing if it is culled: it is nearer than [`NEAR_Z`] or behind the eye, or
+    /// fainter than 1/255 even at its centre, or its box holds no pixel centre of the picture.
     pub fn new(scene: &Gaussians, index: usize, view: &View<T>) -> Option<Self> {
         let relative = view.relative(scene.positions()[index]);
-        let centre = view.turn(relative);
+        let view_centre = view.turn(relative);
         let opacity = T::of(f64::from(scene.opacities()[index]));
         let brightness = opacity * T::of(f64::from(ALPHA_MIN_INVERSE));
-        if !(centre.z >= T::of(f64::from(NEAR_Z)) && brightness >= T::one()) {
+        if !(view_centre.z >= T::of(f64::from(NEAR_Z)) && brightness >= T::one()) {
             return None;
         }
 
@@ -60,53 +60,57 @@ impl<T: Real> Footprint<T> {
         let rows = view
             .rows
             .map(|row| vec3(row.dot(axes[0]), row.dot(axes[1]), row.dot(axes[2])));
-        let slopes = [centre.x / centre.z, centre.y / centre.z];
+        let slopes = [view_centre.x / view_centre.z, view_centre.y / view_centre.z];
         let clamp = |axis: usize| {
             slopes[axis]
                 .max(view.slope_min[axis])
                 .min(view.slope_max[axis])
         };
         let clamped = [clamp(0), clamp(1)];
-        let gradients = image_gradients(&rows, view.focal, clamped, centre.z);
-        let (factors, deviations) = factorise(gradients);
+        let gradients = image_gradients(&rows, view.focal, clamped, view_centre.z);
+        let (conic, deviations) = factorise(gradients);
 
         let extent = (T::of(2.0) * brightness.ln()).sqrt();
         let footprint = Self {
             axes,
             rows,
             relative,
-            centre,
+            view_centre,
             unit: view.unit,
             gradients,
             clamped: clamped != slopes,
             stretch: if clamped == slopes {
                 T::one()
             } else {
-                let unclamped = image_gradients(&rows, view.focal, slopes, centre.z);
+                let unclamped = image_gradients(&rows, view.focal, slopes, view_centre.z);
                 stretch(gradients, unclamped)
             },
-            pixel: [0, 1].map(|axis| view.focal[axis] * slopes[axis] + view.principal[axis]),
-            factors,
+            screen_centre: [0, 1]
+                .map(|axis| view.focal[axis] * slopes[axis] + view.principal[axis]),
+            conic,
             opacity,
             extent,
-            half: deviations.map(|deviation| extent * deviation),
+            half_sides: deviations.map(|deviation| extent * deviation),
         };
         let holds_a_pixel =
             (0..2).all(|axis| footprint.span(axis, view.size[axis], T::zero()).is_some());
-        let drawable = factors.iter().all(|k| k.is_finite()); // f32 only: deviations beyond its range
+        let drawable = conic.iter().all(|k| k.is_finite()); // f32 only: deviations beyond its range
         (holds_a_pixel && drawable).then_some(footprint)
     }
 
-    /// Image derivatives at the centre's true direction, for what is computed along true rays.
+    /// Image derivatives at the centre's true direction, for computations along true rays.
     pub fn true_gradients(&self, view: &View<T>) -> [Vec3<T>; 2] {
-        let slopes = [self.centre.x / self.centre.z, self.centre.y / self.centre.z];
-        image_gradients(&self.rows, view.focal, slopes, self.centre.z)
+        let slopes = [
+            self.view_centre.x / self.view_centre.z,
+            self.view_centre.y / self.view_centre.z,
+        ];
+        image_gradients(&self.rows, view.focal, slopes, self.view_centre.z)
     }
 
-    /// The exponent q of the footprint `exp(-q / 2)` at an offset from its centre, pixels. A sum of two squares: the
-    /// three coefficients of the inverse covariance would cancel for needles.
+    /// The exponent q of the footprint `exp(-q / 2)` at an offset from its centre, pixels. It is a sum of two squares:
+    /// the three coefficients of the inverse covariance would cancel for needles.
     pub fn power(&self, dx: T, dy: T) -> T {
-        let [k0, k1, k2] = self.factors;
+        let [k0, k1, k2] = self.conic;
         let (u, v) = (k0 * dx, k1 * dx + k2 * dy);
         u * u + v * v
     }
@@ -114,7 +118,10 @@ impl<T: Real> Footprint<T> {
     /// First and last pixel whose centres the box covers along an axis, widened by `padding` pixels.
     pub fn span(&self, axis: usize, size: u32, padding: T) -> Option<(u32, u32)> {
         let half = T::of(0.5);
-        let (centre, half) = (self.pixel[axis] - half, self.half[axis] + padding);
+        let (centre, half) = (
+            self.screen_centre[axis] - half,
+            self.half_sides[axis] + padding,
+        );
         if !centre.is_finite() || half.is_nan() {
             return None;
         }
@@ -188,7 +195,7 @@ pub(super) fn determinant<T: Real>([b1, b2]: [Vec3<T>; 2], c: Vec3<T>, low_pass:
     c.squared() + low_pass * (b1.squared() + b2.squared()) + low_pass * low_pass
 }
 
-/// The factors of `q = (k0 dx)^2 + (k1 dx + k2 dy)^2` and the standard deviations along x and y, pixels.
+/// The conic, the factors of `q = (k0 dx)^2 + (k1 dx + k2 dy)^2`, and the standard deviations along x and y, pixels.
 fn factorise<T: Real>(gradients: [Vec3<T>; 2]) -> ([T; 3], [T; 2]) {
     let ([b1, b2], factor, low_pass) = scaled(gradients);
     let (xx, yy) = (b1.squared() + low_pass, b2.squared() + low_pass);
@@ -196,9 +203,6 @@ fn factorise<T: Real>(gradients: [Vec3<T>; 2]) -> ([T; 3], [T; 2]) {
     let sx = xx.sqrt();
     // q = dx^2 / xx + (dy - xy/xx dx)^2 xx/det: the marginal of x, then y given x.
     let k2 = sx / deviation;
-    let factors = [T::one() / sx, -(b1.dot(b2) / xx) * k2, k2];
-    (
-        factors.map(|k| k * factor),
-        [sx / factor, yy.sqrt() / factor],
-    )
+    let conic = [T::one() / sx, -(b1.dot(b2) / xx) * k2, k2];
+    (conic.map(|k| k * factor), [sx / factor, yy.sqrt() / factor])
 }

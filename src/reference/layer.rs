@@ -1,4 +1,4 @@
-//! The layers of a scene, as the stages see them: each by itself, with the camera and the clip in its own space.
+//! The layers of a scene as the stages see them: each by itself, with the camera and the clip in its own space.
 
 use std::borrow::Cow;
 

@@ -1,6 +1,6 @@
 //! The renderer on the CPU, written for reading: one file per stage, under the stages' names on the GPU.
 //!
-//! In f64 it is the truth that errors are measured against, in f32 the twin of the shaders: integers agree exactly and
+//! In f64 it is the truth that errors are measured against. In f32 it is the twin of the shaders: integers agree exactly and
 //! floats to a few units in the last place. Nothing in here knows about Vulkan.
 
 #![forbid(unsafe_code)]
@@ -52,10 +52,10 @@ pub fn render<'a, T: Real>(
     settings: &Settings,
 ) -> Frame {
     let layers = layer::layers(&scene.into(), camera, clip);
-    // What the clip does to each Gaussian.
+    // Find each Gaussian's side.
     let sides: Vec<_> = layers.iter().map(|layer| sides(layer, settings)).collect();
     let splats = in_order::<T>(&layers, &sides, settings);
-    // Blended.
+    // Blend them.
     let picture = splat::splat(&splats, &View::new(camera), settings);
     Frame {
         picture,
@@ -63,7 +63,7 @@ pub fn render<'a, T: Real>(
     }
 }
 
-/// The classes of a layer's Gaussians.
+/// The sides of a layer's Gaussians.
 fn sides<T: Real>(layer: &SeenLayer<'_, T>, settings: &Settings) -> Vec<Side> {
     match layer.visible {
         true => classify::classify(&layer.gaussians, &layer.view, &layer.clip, settings),
@@ -86,7 +86,7 @@ fn in_order<T: Real>(
             first,
             ..
         } = layer;
-        // Their footprints and colours, and how the cut ones vary over their pixels.
+        // Find their footprints and colours, and how the cut ones vary over their pixels.
         splats.extend(compact::compact(sides).into_iter().filter_map(|number| {
             let index = number as usize;
             let mut splat = project::project(scene, index, view, settings)?;
@@ -99,7 +99,7 @@ fn in_order<T: Real>(
     splats
 }
 
-/// How many Gaussians are of which class.
+/// How many Gaussians are on which side.
 pub fn counts(sides: &[Side]) -> Counts {
     let mut counts = Counts::default();
     for side in sides {

@@ -1,21 +1,21 @@
 //! The share of a cut splat that is on the visible side of several planes at once.
 //!
-//! Given a pixel, the planes' distances are normal variables (see [`exact`](super::exact)), and what is left of the
-//! Gaussian once the pixel is known correlates them: along a ray without low-pass fully, so that every plane is a
-//! threshold in one variable; under a low-pass wider than the splat as much as their normals agree. The share is the
-//! chance that all of them are positive.
+//! Given a pixel, the planes' distances are normal variables (see [`exact`](super::exact)). What is left open of the
+//! Gaussian correlates them: fully along a ray without low-pass, so that every plane is a threshold in one variable; under
+//! a low-pass wider than the splat, as much as their normals agree. The share is the chance that all of them are positive.
 //!
-//! Two variables: from independence, `Phi(h) Phi(k)`, or from dependence, `min(Phi(h), Phi(k))` or
-//! `Phi(h) + Phi(k) - 1`, Plackett's identity (1954) integrates the bivariate density over the correlation up to the one
-//! that there is. Near dependence its edge `exp(-(h - k)^2 / 2 c^2)` at `c = sqrt(1 - rho^2)` is integrated in closed
-//! form, and by nodes only what smoothly changes beside it, as Drezner and Wesolowsky do (1990).
+//! For two variables, Plackett's identity (1954) integrates the bivariate density over the correlation up to the actual
+//! one. It starts from independence, `Phi(h) Phi(k)`, or from dependence, `min(Phi(h), Phi(k))` or
+//! `Phi(h) + Phi(k) - 1`. Near dependence the density's edge `exp(-(h - k)^2 / 2 c^2)` at `c = sqrt(1 - rho^2)` is
+//! integrated in closed form, and the nodes integrate only what changes smoothly beside it, as Drezner and Wesolowsky do
+//! (1990).
 //!
-//! Three: the same identity along a path from the first variable independent of the other two, which are those that
-//! depend most on each other, to the correlations that there are; each of the two that grow adds its bivariate density times
-//! the chance that the third is positive (Genz, 2004).
+//! For three variables the same identity holds along a path. It starts with the first variable independent of the other
+//! two, which are those that depend most on each other, and ends at the actual correlations; each of the two that grow adds
+//! its bivariate density times the chance that the third is positive (Genz, 2004).
 //!
-//! Four and more, on one pixel of one splat, are met at the ends of small boxes only: the pairs' dependences are taken to
-//! add up (Kirkwood's superposition), between bounds that the pairs give (from below Hunter's tree, 1976), which meet in
+//! Four and more planes meet in one pixel of one splat only at the ends of small boxes. The pairs' dependences are taken
+//! to add up (Kirkwood's superposition), between bounds that the pairs give (from below Hunter's tree, 1976), which meet in
 //! the share where correlations are full.
 
 use super::real::{Real, Vec3};
@@ -27,8 +27,7 @@ pub struct Threshold<T> {
     pub z: T,
     /// Whether the visible side is the farther one along the ray.
     pub far: bool,
-    /// The plane function's direction among what is unknown of the Gaussian given the pixel: ten components, a unit
-    /// vector.
+    /// The half-space's direction among what the pixel leaves open of the Gaussian: a unit vector of ten components.
     pub direction: Direction<T>,
 }
 
@@ -90,7 +89,7 @@ impl<T: Real> Threshold<T> {
 #[derive(Debug, Clone, Copy)]
 struct Correlation<T> {
     rho: T,
-    /// `1 - rho^2`, which a difference from one would lose.
+    /// `1 - rho^2`, whose digits a difference from one would lose.
     rest: T,
 }
 
@@ -118,7 +117,7 @@ pub fn orthant<T: Real>(thresholds: impl Iterator<Item = Threshold<T>>) -> T {
             open.push(threshold);
         }
     }
-    // The strictest first: the order given does not matter.
+    // The strictest comes first, so that the given order does not matter.
     open.sort_by(|a, b| {
         let by_z = a.z.partial_cmp(&b.z).unwrap_or(std::cmp::Ordering::Equal);
         by_z.then(b.far.cmp(&a.far))
@@ -132,9 +131,9 @@ pub fn orthant<T: Real>(thresholds: impl Iterator<Item = Threshold<T>>) -> T {
     }
 }
 
-/// Correlations up to which the integral starts at independence.
+/// The correlation up to which the integral starts at independence.
 const NEAR: f64 = 0.85;
-/// Gauss's nodes and weights on [0, 1]: they leave less than 1e-6.
+/// Gauss's nodes and weights on [0, 1], which leave an error of less than 1e-6.
 const NODES: [(f64, f64); 8] = [
     (0.019_855_071_751_231_88, 0.050_614_268_145_188_13),
     (0.101_666_761_293_186_6, 0.111_190_517_226_687_24),
@@ -199,7 +198,7 @@ fn three_positive<T: Real>(open: [&Threshold<T>; 3]) -> T {
     let joint = |i: usize, j: usize| Correlation::of(open[i], open[j]);
     let both = |i: usize, j: usize| both_positive(open[i].z, open[j].z, joint(i, j));
     let share = |i: usize| open[i].z.phi();
-    // The first is the one whose two others depend most on each other.
+    // The first variable is the one whose two others depend most on each other.
     let orders = [[0, 1, 2], [1, 0, 2], [2, 0, 1]];
     let dependence = |order: &[usize; 3]| joint(order[1], order[2]).rho.abs();
     let mut best = orders[0];
@@ -210,8 +209,8 @@ fn three_positive<T: Real>(open: [&Threshold<T>; 3]) -> T {
     }
     let [z0, z1, z2] = best.map(|i| open[i].z);
     let rho = [(0, 1), (0, 2), (1, 2)].map(|(i, j)| joint(best[i], best[j]).rho);
-    // What one of the first variable's correlations, r, adds: the density of the two, times the chance that the third,
-    // of correlations s and q with them, is positive.
+    // One of the first variable's correlations, r, adds the density of the two, times the chance that the third, of
+    // correlations s and q with them, is positive.
     let density = |h: T, k: T, third: T, [r, s, q]: [T; 3]| {
         let rest = one - r * r;
         let open = (rest - s * s - q * q + T::of(2.0) * r * s * q).max(T::of(1e-12));
@@ -221,7 +220,7 @@ fn three_positive<T: Real>(open: [&Threshold<T>; 3]) -> T {
     };
     let mut sum = zero;
     for (node, weight) in NODES {
-        // Both halves of the path 2 t - t^2, whose slope evens out what grows like 1 / sqrt(1 - rho^2) at its end.
+        // Take both halves of the path 2 t - t^2, whose slope evens out what grows like 1 / sqrt(1 - rho^2) at its end.
         for t in [0.5 * node, 0.5 + 0.5 * node] {
             let (step, slope) = (T::of(2.0 * t - t * t), T::of(weight * (1.0 - t)));
             let (a, b) = (rho[0] * step, rho[1] * step);
@@ -240,7 +239,7 @@ fn three_positive<T: Real>(open: [&Threshold<T>; 3]) -> T {
     estimate.max(low).max(zero).min(high)
 }
 
-/// The chance that four and more variables are positive; the strictest first.
+/// The chance that four or more variables are positive, of which the strictest comes first.
 fn many_positive<T: Real>(open: &[Threshold<T>]) -> T {
     let tiny = T::of(1e-6);
     let both = |i: usize, j: usize| {
@@ -258,7 +257,7 @@ fn many_positive<T: Real>(open: &[Threshold<T>]) -> T {
             high = high.min(pair);
             share = share * pair / (p * before.z.phi().max(tiny));
         }
-        // A tree: each one hangs on the strictest of its kind, and that of one kind on that of the other.
+        // In the tree each one hangs on the strictest of its kind, and the strictest of one kind on that of the other.
         let first = if t.far == open[0].far { Some(0) } else { other };
         if let Some(first) = first.filter(|&first| first != j) {
             low = low + both(first, j) - open[first].z.phi();
@@ -305,7 +304,7 @@ mod tests {
             let found = pair(0.0, 0.0, rho);
             assert!((found - known).abs() < 1e-6, "{rho}: {found}, {known}");
         }
-        // By summing up h's density times the chance that k follows, in a million steps.
+        // The expected chance sums up h's density times the chance that k follows, in a million steps.
         for (h, k) in [
             (0.5, -0.3),
             (1.0, 1.02),

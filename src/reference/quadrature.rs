@@ -1,8 +1,8 @@
 //! The visible share of a cut splat in a pixel by brute numerical integration: a second opinion on the weights that
 //! uses none of the renderer's formulas.
 //!
-//! What is integrated is the density of the Gaussian at points of the world, from its inverse transform (the paper,
-//! section 3.3: `|M^-1 (x - mu)|^2`), along rays that start at the eye and only in front of it. 3DGS's low-pass means
+//! It integrates the density of the Gaussian at points of the world, from its inverse transform (the paper, section 3.3:
+//! `|M^-1 (x - mu)|^2`), along rays that start at the eye and only in front of it. 3DGS's low-pass means
 //! that a pixel sees a bundle of rays, weighted by a Gaussian of [`LOW_PASS`] px^2. There are two readings of that
 //! bundle, see [`Bundle`]; they differ by what the low-pass does at depths other than the splat's own.
 
@@ -20,17 +20,17 @@ pub enum Bundle {
     /// given that the two planes through the eye that meet in the pixel's ray are observed with noise.
     Parallel,
     /// Rays through the eye and a point of the screen near the pixel: the picture of the truncated Gaussian, blurred
-    /// on the screen. Wider than the other bundle behind the splat's centre, narrower before it.
+    /// on the screen. It is wider than the other bundle behind the splat's centre and narrower before it.
     Diverging,
 }
 
-/// Standard deviations after which densities are taken for nothing.
+/// Standard deviations beyond which densities are taken for nothing.
 const EXTENT: f64 = 6.5;
 /// Gauss-Legendre nodes on each stretch of a ray.
 const NODES: usize = 32;
 
 /// The share of Gaussian `index` that the clip leaves visible in the pixel at `position` (pixels from the picture's
-/// corner), by `steps` times `steps` rays. Not a number if the Gaussian is flat or wholly behind the eye.
+/// corner), by `steps` times `steps` rays. It is not a number if the Gaussian is flat or wholly behind the eye.
 pub fn share(
     scene: &Gaussians,
     index: usize,
@@ -44,8 +44,8 @@ pub fn share(
     visible / whole
 }
 
-/// The mean depth along the view axis of what the clip leaves visible of Gaussian `index` in that pixel, world units. Not a
-/// number if that is nothing.
+/// The mean depth along the view axis of what the clip leaves visible of Gaussian `index` in that pixel, world units. It is
+/// not a number if that is nothing.
 pub fn mean_depth(
     scene: &Gaussians,
     index: usize,
@@ -72,13 +72,13 @@ fn sums(
 ) -> [f64; 3] {
     let pixel = Pixel::new(scene, index, camera, position, bundle);
     let (middle, spread) = pixel.densest();
-    // Relative to the Gaussian's centre, as the rays are: near it nothing cancels, however far it is from the origin.
+    // The clip is relative to the Gaussian's centre, as the rays are: there nothing cancels, however far the origin is.
     let centred = Placement::new(pixel.centre, DQuat::IDENTITY, 1.0);
     let clip = clip.in_scene(&centred.expect("centres are finite"));
     let nodes = legendre();
     let peak = pixel.exponent(middle);
 
-    // A grid over the offsets that matter, turned so that no straight edge lies along its lines.
+    // The grid covers the offsets that matter, turned so that no straight edge lies along its lines.
     let step = 2.0 * EXTENT / f64::from(steps);
     let turn = DVec2::from_angle(0.5);
     let mut total = [0.0; 3];
@@ -188,13 +188,13 @@ impl Pixel {
         0.5 * self.residual(offset).iter().map(|r| r * r).sum::<f64>()
     }
 
-    /// The offset about which the bundle's rays carry most weight, and two offsets from there that make the weight a
-    /// standard normal one (nearly so if the bundle diverges): where the grid of rays belongs.
+    /// Where the grid of rays belongs: the offset about which the bundle's rays carry most weight, and two offsets from
+    /// there that make the weight a standard normal one (nearly so if the bundle diverges).
     fn densest(&self) -> (DVec2, [DVec2; 2]) {
         let mut middle = DVec2::ZERO;
         let mut spread = [DVec2::X, DVec2::Y];
         for _ in 0..4 {
-            // One step of Gauss and Newton, with derivatives by central differences.
+            // This is one step of Gauss and Newton, with derivatives by central differences.
             let step = 1e-3;
             let slopes = [DVec2::X, DVec2::Y].map(|axis| {
                 let (up, down) = (
@@ -235,7 +235,7 @@ impl Pixel {
     ) -> [f64; 3] {
         let ray = self.ray(offset);
         let (middle, half) = (ray.densest(), EXTENT / ray.unit_step.length());
-        // Only what is in front of the eye.
+        // Only the part in front of the eye counts.
         let (start, end) = ((middle - half).max(-self.depth), middle + half);
         if start >= end {
             return [0.0; 3];

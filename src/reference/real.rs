@@ -13,7 +13,7 @@ pub trait Real: Float + Debug + Send + Sync + 'static {
     /// This number in double precision, exactly.
     fn wide(self) -> f64;
 
-    /// The standard normal distribution function: the share of N(0, 1) below this number. Accurate to the last
+    /// The standard normal distribution function: the share of N(0, 1) below this number. It is accurate to the last
     /// digit or so on both sides, so that `phi(z) + phi(-z)` is 1 and far tails keep their leading digits.
     fn phi(self) -> Self {
         Self::of(0.5 * libm::erfc(-self.wide() * std::f64::consts::FRAC_1_SQRT_2))

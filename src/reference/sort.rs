@@ -1,4 +1,4 @@
-//! Stage `sort`: front to back.
+//! Stage `sort` orders the splats front to back.
 
 use std::cmp::Ordering;
 
@@ -8,7 +8,7 @@ use super::real::Real;
 /// Orders splats by the depth of their centres, nearest first; equal depths keep the scene's order.
 pub fn sort<T: Real>(splats: &mut [Splat<T>]) {
     splats.sort_by(|a, b| {
-        let depths = [a, b].map(|splat| splat.footprint.centre.z);
+        let depths = [a, b].map(|splat| splat.footprint.view_centre.z);
         nearest_first(depths, [a.index, b.index])
     });
 }

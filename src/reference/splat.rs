@@ -1,4 +1,4 @@
-//! Stage `splat`: blends the splats over their pixels, front to back.
+//! Stage `splat` blends the splats over their pixels, front to back.
 
 use std::sync::Mutex;
 
@@ -17,7 +17,7 @@ pub fn splat<T: Real>(splats: &[Splat<T>], view: &View<T>, settings: &Settings) 
     let [width, height] = view.size;
     let mut members = vec![Vec::new(); height.div_ceil(BAND) as usize];
     for splat in splats {
-        // A pixel of padding: what counts is each pixel's alpha, not how the box was rounded.
+        // There is a pixel of padding, since each pixel's alpha counts, and not how the box was rounded.
         if let Some((first, last)) = splat.footprint.span(1, height, T::one()) {
             for band in first / BAND..=last / BAND {
                 members[band as usize].push(splat);
@@ -30,7 +30,7 @@ pub fn splat<T: Real>(splats: &[Splat<T>], view: &View<T>, settings: &Settings) 
     let bands = (0..).step_by(BAND as usize).zip(&members).zip(pixels);
     let queue = Mutex::new(bands);
     let work = || {
-        // Bands do not share pixels, so the picture does not depend on who draws which.
+        // Bands do not share pixels, so the picture does not depend on which thread draws which.
         loop {
             let band = queue
                 .lock()
@@ -62,12 +62,12 @@ fn draw_band<T: Real>(
     let mut blended = vec![[T::zero(); 4]; pixels.len()];
     for splat in splats {
         for (y, row) in (top..).zip(blended.chunks_mut(width as usize)) {
-            let dy = T::of(f64::from(y) + 0.5) - splat.footprint.pixel[1];
+            let dy = T::of(f64::from(y) + 0.5) - splat.footprint.screen_centre[1];
             let Some((first, last)) = row_span(&splat.footprint, dy, width) else {
                 continue;
             };
             for (x, pixel) in (first..=last).zip(&mut row[first as usize..]) {
-                let dx = T::of(f64::from(x) + 0.5) - splat.footprint.pixel[0];
+                let dx = T::of(f64::from(x) + 0.5) - splat.footprint.screen_centre[0];
                 if let Some(alpha) = alpha(splat, dx, dy, law) {
                     let colour = match settings.show {
                         Show::Colour => splat.colour,
@@ -101,7 +101,8 @@ pub fn alpha<T: Real>(splat: &Splat<T>, dx: T, dy: T, law: Decay) -> Option<T> {
     }
 }
 
-/// The debug view: blue for a splat that is not cut; for one that is, from red, nothing is kept, to yellow, all is.
+/// The debug view: blue for a splat that is not cut; for one that is, from red, where nothing is kept, to yellow, where all
+/// is.
 fn weight_colour<T: Real>(splat: &Splat<T>, dx: T, dy: T) -> [T; 3] {
     match &splat.cut {
         None => [0.25, 0.45, 0.9].map(T::of),
@@ -112,10 +113,10 @@ fn weight_colour<T: Real>(splat: &Splat<T>, dx: T, dy: T) -> [T; 3] {
     }
 }
 
-/// What is left of an alpha whose share `weight` is visible (the paper's `alpha w`, or the Beer-Lambert law).
+/// The alpha that is left where the share `weight` is visible (the paper's `alpha w`, or the Beer-Lambert law).
 pub fn decayed<T: Real>(alpha: T, weight: T, law: Decay) -> Option<T> {
     if weight >= T::one() {
-        Some(alpha) // to the bit: a clip that removes nothing changes nothing
+        Some(alpha) // unchanged to the bit: a clip that removes nothing changes nothing
     } else if weight > T::zero() {
         Some(match law {
             Decay::Linear => alpha * weight,
@@ -136,14 +137,14 @@ fn blend<T: Real>(pixel: &mut [T; 4], alpha: T, colour: [T; 3]) {
     pixel[3] = pixel[3] + through;
 }
 
-/// The pixels of one row that a footprint can reach, a pixel more on either side. In double precision for either type:
-/// it must only never be too short.
+/// The pixels of one row that a footprint can reach, and a pixel more on either side. It is computed in double precision for
+/// either type, since it must never be too short.
 fn row_span<T: Real>(footprint: &Footprint<T>, dy: T, width: u32) -> Option<(u32, u32)> {
-    let [k0, k1, k2] = footprint.factors.map(T::wide);
+    let [k0, k1, k2] = footprint.conic.map(T::wide);
     let (dy, reach, centre) = (
         dy.wide(),
         footprint.extent.wide(),
-        footprint.pixel[0].wide(),
+        footprint.screen_centre[0].wide(),
     );
     // q = (k0 dx)^2 + (k1 dx + k2 dy)^2 is at its least in this row at `middle`, and at most K^2 within `half` of it.
     let squares = k0 * k0 + k1 * k1;

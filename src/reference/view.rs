@@ -1,10 +1,10 @@
-//! The camera as the stages use it: its numbers in the reference's own type.
+//! The camera as the stages use it, in the reference's own number type.
 
 use super::real::{Real, Vec3};
 use crate::limits::CLAMP_MARGIN;
 use crate::{Camera, Placement};
 
-/// What the stages need to know about the camera. In f32 these are the numbers that the GPU is given.
+/// The camera's numbers that the stages need. In f32 they are those that the GPU is given.
 #[derive(Debug, Clone, Copy)]
 pub struct View<T> {
     /// Picture width and height, pixels.
@@ -17,24 +17,24 @@ pub struct View<T> {
     pub slope_min: [T; 2],
     /// Largest x/z and y/z at which the projection's Jacobian is evaluated.
     pub slope_max: [T; 2],
-    /// Rows of the layer to camera rotation, right, down and forward, times the layer's unit: what is turned by them is in
+    /// Rows of the layer to camera rotation, right, down and forward, times the layer's unit: vectors that they turn are in
     /// the scene's units.
     pub rows: [Vec3<T>; 3],
     /// The eye in the layer, rounded to `T`.
     pub eye_high: Vec3<T>,
-    /// What that rounding lost: zero in f64.
+    /// The part that the rounding lost: zero in f64.
     pub eye_low: Vec3<T>,
     /// Units of the scene in one of the layer's.
     pub unit: T,
 }
 
 impl<T: Real> View<T> {
-    /// The view of a camera that a layer has which is the scene as it is.
+    /// The view that a scene's camera gives a layer that is not placed otherwise.
     pub fn new(camera: &Camera) -> Self {
         Self::in_layer(camera, &Placement::IDENTITY)
     }
 
-    /// The view of a scene's camera that a layer has which is placed in the scene.
+    /// The view that a scene's camera gives a layer that is placed in the scene.
     pub fn in_layer(camera: &Camera, placement: &Placement) -> Self {
         let (camera, unit) = (&camera.in_scene(placement), placement.scale());
         let margin = f64::from(CLAMP_MARGIN);
@@ -58,8 +58,8 @@ impl<T: Real> View<T> {
         }
     }
 
-    /// A point of the layer relative to the eye, along the layer's axes. Subtracting the eye in two steps keeps the digits that a
-    /// single-precision eye far from the origin would lose.
+    /// A point of the layer relative to the eye, along the layer's axes. Subtracting the eye in two steps keeps the digits
+    /// that a single-precision eye far from the origin would lose.
     pub fn relative(&self, point: glam::Vec3) -> Vec3<T> {
         (Vec3::of(point.as_dvec3()) - self.eye_high) - self.eye_low
     }

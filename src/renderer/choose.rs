@@ -1,11 +1,11 @@
-//! What suits a device: how splats become pixels on it, and how its sort is divided.
+//! Choices that suit a device: how splats become pixels on it, and how its sort is divided.
 
 use crate::error::{Error, Result};
 use crate::gpu::{DeviceShape, Support};
 use crate::limits;
 use crate::settings::Raster;
 
-/// How splats become pixels on a device, and why in that way. `hidden` is what tiles cannot see: the host's depth.
+/// How splats become pixels on a device, and why in that way. `hidden` says that tiles cannot see the host's depth.
 pub(super) fn raster(
     wanted: Raster,
     support: &Support,
@@ -38,12 +38,13 @@ pub(super) fn raster(
     })
 }
 
-/// What a tile's pixels take, and the most that a picture of them may: what every device can allocate at once.
+/// The bytes of a tile's pixels, and the most that a picture of them may take: what every device can allocate at once.
 const TILE_BYTES: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64 * 16;
 const MOST_PICTURE: u64 = 1 << 30;
 
-/// Runs of the sort, and of what finds the splats' spans of tiles: each costs a histogram, so few where there is little to sort and on CPU drivers; but at least the
-/// lanes of all cores there, and on GPUs enough invocations to hide the latency of their scattered writes.
+/// Runs of the sort, and of the steps that find the splats' spans of tiles. Each costs a histogram, so there are few where
+/// there is little to sort and on CPU drivers. But there are at least as many as all cores have lanes there, and on GPUs
+/// enough to hide the latency of their scattered writes.
 pub(super) fn runs(shape: DeviceShape, gaussians: u32) -> u32 {
     match (shape, gaussians) {
         (DeviceShape::Cpu, ..32_768) => 128,

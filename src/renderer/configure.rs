@@ -1,4 +1,4 @@
-//! What a frame needs, decided, allocated and compiled before anything is recorded.
+//! Decides, allocates and compiles what a frame needs, before anything is recorded.
 
 use super::Renderer;
 use super::choose;
@@ -12,7 +12,7 @@ use crate::limits;
 use crate::passes::{Kept, Occluders, Plan, SceneBuffers, SceneFacts, Targets, TileWork, Work};
 use crate::settings::{Raster, Settings};
 
-/// What a frame is to show, and how it is submitted.
+/// The picture that a frame is to show, and how the frame is submitted.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FrameRequest<'a> {
     pub(crate) scene: &'a SceneBuffers,
@@ -23,7 +23,7 @@ pub(crate) struct FrameRequest<'a> {
 }
 
 impl Renderer {
-    /// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the
+    /// Decides what the next frame needs, and allocates and compiles the missing parts. The camera's picture is the
     /// viewport of [`draw`](Self::draw). [`Settings::background`] is the host's business and ignored here.
     ///
     /// Where a frame needs more memory than the one before, old and new exist side by side while frames are in flight;
@@ -55,7 +55,7 @@ impl Renderer {
         })
     }
 
-    /// The request's camera and clip are in the scene's units here.
+    /// Configures a frame whose camera and clip are in the scene's units already.
     fn configure_in_scene(&mut self, request: &FrameRequest<'_>) -> Result<()> {
         self.configured = None;
         let scene = request.scene;
@@ -134,7 +134,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// The same frame as quads, on a device that has no memory for so many tiles and their lists.
+    /// Configures the same frame as quads, on a device that has no memory for so many tiles and their lists.
     fn configure_without_tiles(&mut self, request: &FrameRequest<'_>) -> Result<()> {
         self.memory.pairs.refuse();
         let quads = Settings {
@@ -151,15 +151,15 @@ impl Renderer {
         Ok(())
     }
 
-    /// Sees to it that there is room for as many pairs of tile and splat as the frame before has shown that there are.
-    /// Whether nothing is to be drawn of the next frame where that is not enough.
+    /// Makes room for as many pairs of tile and splat as the frame before has shown to be needed. Returns whether nothing
+    /// is to be drawn of the next frame where that is not enough.
     fn make_room(&mut self, request: &FrameRequest<'_>, tiles: u32) -> bool {
         let undrawn = |frame: &RecordedFrame| {
             let redrawn = frame.configured.as_ref().is_some_and(|had| had.redrawn);
             redrawn && frame.fell_back()
         };
         if self.frames.newest().is_some_and(undrawn) {
-            self.kept = None; // nothing was drawn of it
+            self.kept = None; // the frame before was not drawn
         }
         let before = self.frames.awaited(request.submission);
         let fell_back = before.is_some_and(RecordedFrame::fell_back);
@@ -167,13 +167,13 @@ impl Renderer {
         let pairs = &mut self.memory.pairs;
         let had = pairs.room();
         pairs.make(request.scene.count, tiles, needed);
-        // Where there is no more room to be had, quads are drawn at once.
+        // Where no more room can be made, quads are drawn at once.
         request.submission == Submission::Awaited && (!fell_back || pairs.room() > had)
     }
 
-    /// What of a plan has to be computed after the frame before it.
+    /// The part of a plan that has to be computed after the frame before it.
     fn work(&mut self, scene: u64, plan: &Plan) -> Result<Work> {
-        // The host's depth may be another in each frame.
+        // The host's depth may change with each frame.
         let kept = self.kept.as_ref().filter(|_| plan.occluders.is_none());
         let work = Kept::work(kept, scene, plan);
         if !matches!(work, Work::Reclip { .. }) {
@@ -181,7 +181,7 @@ impl Renderer {
         }
         match self.memory.ensure_reclip(&self.device) {
             Ok(()) => Ok(work),
-            // A frame of its own needs less.
+            // A whole frame needs less memory than a reclipped one.
             Err(Error::Memory(_)) => {
                 self.kept = None;
                 Ok(Kept::work(None, scene, plan))
@@ -190,9 +190,9 @@ impl Renderer {
         }
     }
 
-    /// How buffers are reached: as wanted, where the device can bind so large ones.
+    /// How buffers are reached: as wanted, unless the device cannot bind buffers as large as these.
     fn bindings(&self, scene: &SceneBuffers) -> Bindings {
-        // Of what there is, which an earlier frame may have made larger than this one needs.
+        // An earlier frame may have made the buffers larger than this one needs.
         let largest = self.memory.buffers().largest().max(scene.largest());
         let support = self.device.support();
         let binds = support.push_descriptor && largest <= support.max_storage_buffer_range;

@@ -1,4 +1,4 @@
-//! What a renderer is created with, and what of it a device has to support.
+//! The description from which a renderer is created, and how a device has to support it.
 
 use ash::vk;
 
@@ -7,7 +7,8 @@ use crate::error::{Error, Result};
 use crate::gpu::{Attachments, Bindings, DepthAttachment, Device, Target};
 use crate::setters::setters;
 
-/// What a renderer is created with: [`RendererDesc::new`] for the usual, and what a host wants otherwise.
+/// The description from which a renderer is created: [`RendererDesc::new`] is the usual one, and a host sets what it wants
+/// otherwise.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct RendererDesc {
@@ -24,13 +25,14 @@ pub struct RendererDesc {
     /// Dynamic rendering, or a classic render pass.
     pub target: Target,
     /// Whether buffers are reached by address or bound, where the validation layer can watch them; [`Bindings::suiting`]
-    /// says which is faster on a device. With [`Bindings::Bound`] a frame whose buffers exceed the device's binding size still uses addresses.
+    /// says which is faster on a device. With [`Bindings::Bound`] a frame whose buffers exceed the device's binding size
+    /// still uses addresses.
     pub bindings: Bindings,
     /// Whether to take timestamps around the stages.
     pub timing: bool,
-    /// Whether to count what the stages do, too, where the device was opened for it; only with `timing`.
+    /// Whether to count also what the stages do, where the device was opened for it; only with `timing`.
     pub statistics: bool,
-    /// Whether a frame takes over what the one before has computed and this one would compute again, to the same bytes.
+    /// Whether a frame takes over results of the one before that it would compute again to the same bytes.
     /// The host then submits every frame that it prepares, in order, or calls
     /// [`Renderer::forget`](super::Renderer::forget).
     pub reuse: bool,
@@ -52,8 +54,8 @@ setters!(RendererDesc {
     frames_in_flight: u32,
 });
 
-/// The host's depth attachment. Splats behind what it holds are hidden, none is written into it. A splat is at one depth,
-/// that of its centre, in all of its pixels: the depth by which splats are ordered. Opaque things go first, then splats.
+/// The host's depth attachment. Splats behind its depths are hidden, and none is written into it. A splat has one depth in
+/// all of its pixels: that of its centre, by which splats are ordered. Opaque things are drawn first, then splats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct DepthDesc {
@@ -88,7 +90,7 @@ pub struct ExpectedDepthDesc {
 setters!(ExpectedDepthDesc { target: Target });
 
 impl ExpectedDepthDesc {
-    /// In dynamic rendering.
+    /// A target in dynamic rendering.
     pub const fn new(format: vk::Format) -> Self {
         Self {
             format,
@@ -98,7 +100,7 @@ impl ExpectedDepthDesc {
 }
 
 impl DepthDesc {
-    /// Without stencil, and not readable.
+    /// An attachment without stencil, and not readable.
     pub const fn new(format: vk::Format, map: DepthMap) -> Self {
         Self {
             format,
@@ -130,7 +132,7 @@ impl RendererDesc {
         }
     }
 
-    /// What pipelines draw into.
+    /// The attachments that pipelines draw into.
     pub(super) fn attachments(&self) -> Attachments {
         Attachments {
             color: self.color_format,
@@ -144,7 +146,7 @@ impl RendererDesc {
         }
     }
 
-    /// What the pipeline of expected depths draws into.
+    /// The attachments that the pipeline of expected depths draws into.
     pub(super) fn expected_depth_attachments(&self) -> Option<Attachments> {
         self.expected_depth.map(|expected| Attachments {
             color: expected.format,

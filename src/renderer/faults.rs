@@ -1,5 +1,5 @@
-//! Every call that can fail does, at its first places, in what a host does with a renderer: adopts a device, uploads by
-//! staging memory of its own, has two frames in flight. Each ends in an error and leaves nothing behind.
+//! A host adopts a device, uploads by staging memory of its own and has two frames in flight, and every call that can fail
+//! does so at its first places. Each failure ends in an error and leaves nothing behind.
 
 use super::*;
 use crate::camera::Camera;
@@ -15,7 +15,7 @@ use glam::DVec3;
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// `host` is the engine's device here, and what it makes of it the engine's memory.
+/// Runs a host's work, with `host` as the engine's device and the engine's memory allocated from it.
 fn life(host: &Device) -> Result<()> {
     // SAFETY: the handles are of one device, which outlives what is made here.
     let device = unsafe { Device::adopt(faults::lent(host)) }?;
@@ -41,7 +41,7 @@ fn life(host: &Device) -> Result<()> {
     };
     let mut renderer = Renderer::new(&device, desc)?;
     let mut buffers = None;
-    // A frame from nothing, one in which only the clip has moved, and one that outgrows the memory of both.
+    // The frames are one from nothing, one in which only the clip has moved, and one that outgrows the memory of both.
     for (frame, planes) in [1, 1, 3].into_iter().enumerate() {
         let plane = |i| {
             let normal = DVec3::new(1.0, f64::from(i), 0.0);
@@ -108,7 +108,7 @@ fn memory_may_run_out_where_a_host_draws() {
             places += 1;
             match lived {
                 Err(Error::Memory(_)) => {}
-                // Times are left out, tiles become quads and a reclipped frame a whole one.
+                // Without an error, times are left out, tiles have become quads and a reclipped frame a whole one.
                 Ok(()) => assert!(
                     [
                         "vkGetQueryPoolResults",
@@ -129,7 +129,8 @@ fn memory_may_run_out_where_a_host_draws() {
     assert_eq!(host.close(), Vec::<String>::new());
 }
 
-/// The host hears of it from its own calls; what it asks rara for afterwards fails or not, but nothing panics or stays.
+/// The host learns of a lost device from its own calls. Its later calls to rara may fail or not, but nothing panics or
+/// stays behind.
 #[test]
 fn a_hosts_device_may_be_lost() {
     let step = if faults::is_slow() { 5 } else { 1 };

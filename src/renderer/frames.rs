@@ -1,4 +1,4 @@
-//! The frames that may be unfinished at once, and what is known of each when it was waited for.
+//! The frames that may be unfinished at once, and what is known of each once it was waited for.
 
 use super::outcome::Submission;
 use crate::depth::DepthMap;
@@ -17,15 +17,15 @@ pub(super) struct Configured {
     pub(super) reason: &'static str,
     pub(super) bindings: Bindings,
     pub(super) targets: Targets,
-    /// What the host's depth buffer holds for a depth in the scene's units.
+    /// The map from a depth in the scene's units to the host's depth buffer.
     pub(super) depth_map: Option<DepthMap>,
     /// World units in one of the scene's.
     pub(super) unit: f64,
     /// How it is submitted.
     pub(super) submission: Submission,
-    /// Without room for its pairs of tile and splat nothing is drawn of it.
+    /// Whether nothing is drawn of it without room for its pairs of tile and splat.
     pub(super) redrawn: bool,
-    /// It has been prepared.
+    /// Whether it has been prepared.
     pub(super) prepared: bool,
 }
 
@@ -36,13 +36,13 @@ impl Configured {
     }
 }
 
-/// A frame that was recorded, until its slot's next one is.
+/// A recorded frame, until its slot's next one is recorded.
 #[derive(Debug)]
 pub(crate) struct RecordedFrame {
     pub(super) timer: Option<Timer>,
     /// Where the host reads the frame's [`FrameCounts`].
     pub(super) counts: Buffer,
-    /// What was recorded; `None` before the first frame, and of one that was never submitted.
+    /// The recorded frame; `None` before the first one, and for one that was never submitted.
     pub(super) configured: Option<Configured>,
 }
 
@@ -53,12 +53,12 @@ impl RecordedFrame {
             size: size_of::<FrameCounts>() as u64,
             location: Location::Readback,
         })?;
-        // The stages of a frame, with room for several draws; what comes beyond has no times.
+        // There is room for a frame's stages and several draws; further draws have no times.
         let timer = || match (Timer::new(device, 16), statistics) {
             (Ok(timer), true) => timer.with_statistics(),
             (timer, _) => timer,
         };
-        counts.mapped_mut().fill(0); // what is read of a frame that is never submitted
+        counts.mapped_mut().fill(0); // these are read for a frame that is never submitted
         Ok(Self {
             timer: timing.then(timer).transpose()?,
             counts,
@@ -105,13 +105,13 @@ impl FramesInFlight {
         Some(&mut self.slots[at])
     }
 
-    /// The frame before which the host waits next: the next one takes its slot. `None` where no frame is that old.
+    /// The frame that the host waits for next: the next one takes its slot. `None` where no frame is that old.
     pub(super) fn oldest(&self) -> Option<&RecordedFrame> {
         let count = self.slots.len() as u64;
         (self.prepared >= count).then(|| &self.slots[self.slot(self.prepared)])
     }
 
-    /// The last frame that was waited for before one that is submitted so.
+    /// The last frame that was waited for before one of this submission.
     pub(super) fn awaited(&self, submission: Submission) -> Option<&RecordedFrame> {
         match submission {
             Submission::Awaited => self.newest(),
@@ -124,7 +124,7 @@ impl FramesInFlight {
         self.prepared
     }
 
-    /// How many of these, the first ones, are finished before one that is submitted so.
+    /// How many of these, counted from the first, are finished before one of this submission.
     pub(super) fn finished(&self, submission: Submission) -> u64 {
         match submission {
             Submission::Awaited => self.prepared,

@@ -1,4 +1,4 @@
-//! What frames compute in, and what they have outgrown.
+//! The memory that frames compute in, and the memory that they have outgrown.
 
 use super::frames::FramesInFlight;
 use super::outcome::Submission;
@@ -11,21 +11,21 @@ use crate::passes::{Buffers, Plan};
 #[derive(Debug, Default)]
 pub(super) struct WorkingMemory {
     buffers: Option<Buffers>,
-    /// What frames in flight may still use, with the number of frames prepared when it was replaced.
+    /// Buffers that frames in flight may still use, with the number of frames prepared when they were replaced.
     retired: Vec<(u64, Buffers)>,
-    /// The pairs of tile and splat that there is to be room for.
+    /// The room for pairs of tile and splat.
     pub(super) pairs: PairRoom,
 }
 
 impl WorkingMemory {
-    /// Whether a plan fits into the buffers that there are.
+    /// Whether a plan fits into the present buffers.
     pub(super) fn fits(&self, plan: &Plan) -> bool {
         self.buffers
             .as_ref()
             .is_some_and(|buffers| buffers.fit(plan))
     }
 
-    /// Puts buffers that a plan fits into in place of those that there are; after an error there are none.
+    /// Replaces the buffers by ones that a plan fits into; after an error there are none.
     pub(super) fn replace(
         &mut self,
         device: &Device,
@@ -43,12 +43,12 @@ impl WorkingMemory {
         Ok(())
     }
 
-    /// Frees what only the first `finished` frames have used.
+    /// Frees buffers that only the first `finished` frames have used.
     pub(super) fn free_finished(&mut self, finished: u64) {
         self.retired.retain(|(prepared, _)| *prepared > finished);
     }
 
-    /// Adds what a reclipped frame needs besides.
+    /// Adds the further buffers of a reclipped frame.
     pub(super) fn ensure_reclip(&mut self, device: &Device) -> Result<()> {
         let buffers = self.buffers.as_mut().expect("replace() allocates them");
         buffers.ensure_reclip(device)

@@ -47,22 +47,22 @@ use shared::SharedPipelines;
 /// reads. Memory that a frame outgrows is freed `frames_in_flight` frames later. Before dropping the renderer, the host
 /// waits for all of its frames.
 ///
-/// **Synchronisation.** What `prepare` records begins with a global barrier, from all draws, dispatches and copies that
-/// are earlier in the queue to its own, and ends with one that makes what it wrote visible to the shaders and indirect
-/// arguments of `draw` and, of the counts, to the host: the host needs none between the two, nor for the buffers of the
-/// renderer and the scene at all. `draw` reads those in the vertex or mesh and the fragment stage; it reads and writes the
-/// colour attachment (`COLOR_ATTACHMENT_OUTPUT`) and reads the depth attachment (`EARLY_FRAGMENT_TESTS`,
-/// `LATE_FRAGMENT_TESTS`), whose layout may be read-only. For these the host waits as for any draw of its own. Of
-/// [`prepare_behind`](Self::prepare_behind) see there.
+/// **Synchronisation.** The commands of `prepare` begin with a global barrier, from all draws, dispatches and copies that
+/// are earlier in the queue to its own. They end with one that makes what they wrote visible to the shaders and indirect
+/// arguments of `draw`, and the counts to the host. The host needs no barrier between the two, and none at all for the
+/// buffers of the renderer and the scene. `draw` reads those in the vertex or mesh and the fragment stage; it reads and
+/// writes the colour attachment (`COLOR_ATTACHMENT_OUTPUT`) and reads the depth attachment (`EARLY_FRAGMENT_TESTS`,
+/// `LATE_FRAGMENT_TESTS`), whose layout may be read-only. For these the host waits as for any draw of its own.
+/// [`prepare_behind`](Self::prepare_behind) says what it needs.
 ///
 /// **What recording leaves behind.** `prepare` binds a compute pipeline, `draw` a graphics pipeline; both write push
-/// constants. The host binds its own pipelines again, pushes its own constants, and sets again what its pipelines have
-/// of dynamic state, all but viewport and scissor: a pipeline of rara's has the rest of it fixed, which is what binding it
-/// leaves behind. With [`Bindings::Bound`](crate::gpu::Bindings::Bound) both push descriptor set 0 too, by a layout of their own, so that the host
-/// binds all of its sets again. No image, no layout, no query and no vertex buffer is touched. Of dynamic state `draw`
+/// constants. The host binds its own pipelines again, pushes its own constants, and sets the dynamic state of its pipelines
+/// again, all but viewport and scissor: binding a pipeline of rara's, in which the rest is fixed, undoes it. With
+/// [`Bindings::Bound`](crate::gpu::Bindings::Bound) both push descriptor set 0 too, by a layout of their own, so that the
+/// host binds all of its sets again. No image, no layout, no query and no vertex buffer is touched. Of dynamic state `draw`
 /// needs viewport and scissor: the viewport of positive height, its depths from 0 to 1.
 ///
-/// **What lives how long.** The scene's buffers, and the image of `prepare_behind`, until the frame has executed; a
+/// **What lives how long.** The scene's buffers, and the image of `prepare_behind`, live until the frame has executed; a
 /// render pass of [`RendererDesc::target`] until no renderer that shares pipelines with this one is left; a host's device
 /// and instance longer than all.
 ///
@@ -75,23 +75,22 @@ use shared::SharedPipelines;
 /// [`sharing`](Self::sharing) makes one that compiles nothing twice. Scenes are shared in any case.
 ///
 /// **Several scenes.** Each is prepared and drawn for itself, where [`set_placement`](Self::set_placement) puts it, by a
-/// renderer of its own: one that goes from scene to scene gets its working memory anew where their sizes differ. They are
-/// composited in the order in which they are drawn, the farthest first: where scenes reach into each other the last one
-/// drawn is before all of the others. What has to be right there is one scene of
-/// several [layers](crate::Scene).
+/// renderer of its own: one that goes from scene to scene allocates its working memory anew where their sizes differ. They
+/// are composited in the order in which they are drawn, the farthest first: where scenes reach into each other the last one
+/// drawn is before all of the others. Where that has to be right, draw one scene of several [layers](crate::Scene).
 #[derive(Debug)]
 pub struct Renderer {
     device: Device,
-    /// What it was created with, changed as the next frame is to have it.
+    /// The description that it was created from, with the changes for the next frame.
     desc: RendererDesc,
     /// Where the next frame's scene stands in the world of camera, clip and depths.
     placement: Placement,
     pipelines: SharedPipelines,
     memory: WorkingMemory,
     frames: FramesInFlight,
-    /// What is recorded next, replaced as a whole.
+    /// The frame that is recorded next, replaced as a whole.
     configured: Option<Configured>,
-    /// What the last prepared frame has left in the memory.
+    /// The results that the last prepared frame has left in the memory.
     kept: Option<Kept>,
 }
 
@@ -100,7 +99,7 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Device`] where the device cannot draw into such attachments, and
-    /// [`Error::Invalid`] where there can be none such.
+    /// [`Error::Invalid`] where such attachments cannot exist.
     pub fn new(device: &Device, desc: RendererDesc) -> Result<Self> {
         Self::with(device, desc, SharedPipelines::default())
     }
@@ -109,7 +108,7 @@ impl Renderer {
     /// same scope. Working memory is its own.
     ///
     /// # Errors
-    /// As of [`new`](Self::new).
+    /// As for [`new`](Self::new).
     pub fn sharing(&self, desc: RendererDesc) -> Result<Self> {
         Self::with(&self.device, desc, self.pipelines.sharing())
     }
@@ -130,14 +129,14 @@ impl Renderer {
         })
     }
 
-    /// Where the scene stands in the world, from the next [`configure`](Self::configure) on: camera, clip, the depth map
-    /// and expected depths are the world's. Without it, where it was made.
+    /// Places the scene in the world, from the next [`configure`](Self::configure) on: camera, clip, the depth map and
+    /// expected depths are the world's. Without a call, the scene's space is the world.
     pub fn set_placement(&mut self, placement: Placement) {
         self.placement = placement;
     }
 
-    /// Changes what the host's depth buffer holds for a depth, from the next [`configure`](Self::configure) on: where its
-    /// near and far planes move.
+    /// Changes what the host's depth buffer holds for a depth, from the next [`configure`](Self::configure) on, for hosts
+    /// whose near and far planes move.
     ///
     /// # Errors
     /// [`Error::Invalid`] without [`RendererDesc::depth`].
@@ -160,11 +159,11 @@ impl Renderer {
     /// after it.
     pub fn forget(&mut self) {
         self.kept = None;
-        // What is configured may count on it.
+        // The configured frame may count on them.
         self.configured = None;
     }
 
-    /// The configured frame has not been submitted, prepared or not: forgets it and what it would have computed.
+    /// Forgets the configured frame, which has not been submitted, prepared or not, and what it would have computed.
     pub(crate) fn abandon(&mut self) {
         if self.configured.as_ref().is_some_and(|frame| frame.prepared)
             && let Some(newest) = self.frames.newest_mut()
@@ -180,13 +179,13 @@ impl Renderer {
         configured.is_some_and(Configured::changes_nothing)
     }
 
-    /// As on a device with room for so few pairs of tile and splat.
+    /// Leaves room for only so many pairs of tile and splat, as on a small device.
     #[cfg(test)]
     pub(crate) fn limit_pairs(&mut self, most: u32) {
         self.memory.pairs = pair_room::PairRoom::limited(most);
     }
 
-    /// What view and clip have said of each block.
+    /// The sides that view and clip have found for each block.
     #[cfg(test)]
     pub(crate) fn block_sides(&self) -> Vec<u32> {
         let sides = &self.memory.buffers().block_sides;

@@ -1,22 +1,22 @@
-//! What whoever submits a frame says of it before, and reads of it afterwards.
+//! How a frame is submitted, and its outcome: who submits it states the one before and reads the other afterwards.
 
 /// How a frame is submitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Submission {
-    /// While earlier ones are unfinished. One whose tiles' lists have no room is drawn as quads: the same picture, but
-    /// slower.
+    /// It is submitted while earlier ones are unfinished. If its tiles' lists have no room, it is drawn as quads: the same
+    /// picture, but slower.
     InFlight,
-    /// When all earlier ones are finished, and it is waited for itself. Nothing is drawn of one whose tiles' lists have no
-    /// room: it is submitted once more, with more room or as quads.
+    /// It is submitted when all earlier ones are finished, and waited for itself. If its tiles' lists have no room, nothing
+    /// is drawn, and it is submitted once more, with more room or as quads.
     Awaited,
 }
 
-/// What has become of a frame that was waited for.
+/// The outcome of a frame that was waited for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// Its picture is there.
     Drawn,
-    /// The tiles' lists had no room. Configured once more it has the room, or needs none.
+    /// The tiles' lists had no room. Configured once more, the frame has the room, or needs none.
     NeedsRoom,
     /// Its picture is that of the frame before, and nothing was computed for it.
     Unchanged,

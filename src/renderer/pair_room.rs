@@ -1,13 +1,14 @@
-//! How many pairs of tile and splat a frame has room for: what earlier frames needed, for nobody reads a count within one.
+//! How many pairs of tile and splat a frame has room for. It follows from earlier frames, since nothing is read back within
+//! one.
 
-/// Pairs that there is room for before any frame has shown how many there are: so many a Gaussian, where most are small,
-/// and so many a tile, where they are few and large.
+/// The room before any frame has shown how many pairs there are: this many a Gaussian, where most are small, and this many
+/// a tile, where they are few and large.
 const USUAL_PER_GAUSSIAN: u32 = 2;
 const USUAL_PER_TILE: u32 = 64;
-/// The most, 1.5 GiB of lists: frames with more are drawn as quads.
+/// The most pairs, 1.5 GiB of lists: frames with more are drawn as quads.
 const MOST: u32 = 1 << 27;
 
-/// Grows with what frames need, and stays.
+/// The room for pairs. It grows with the frames' needs, and does not shrink.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PairRoom {
     room: u32,
@@ -37,18 +38,18 @@ impl PairRoom {
         self.room = self.room.max(usual.min(self.most));
     }
 
-    /// Whether there is no room for so many pairs, but can be. What would not fit anyway is no reason to take memory.
+    /// Whether there is no room for so many pairs, but can be. Pairs that would not fit anyway are no reason to take memory.
     pub(super) fn can_grow_to(&self, needed: u32) -> bool {
         needed > self.room && with_margin(needed) <= self.most
     }
 
-    /// The device has no memory for so many.
+    /// Notes that the device has no memory for so many pairs.
     pub(super) fn refuse(&mut self) {
         self.most = self.room / 2;
         self.room = 0;
     }
 
-    /// As on a device with less memory.
+    /// Allows fewer pairs, as on a device with less memory.
     #[cfg(test)]
     pub(super) fn limited(most: u32) -> Self {
         Self { room: 0, most }
@@ -60,7 +61,7 @@ impl PairRoom {
     }
 }
 
-/// A frame that needs a little more than the one before is no reason to allocate again.
+/// Adds a margin, so that a frame that needs a little more than the one before does not allocate again.
 fn with_margin(needed: u32) -> u32 {
     needed.saturating_add(needed / 4)
 }

@@ -1,4 +1,4 @@
-//! A configured frame, recorded into the host's command buffer: the stages, and the draws.
+//! Records a configured frame into the host's command buffer: the stages, and the draws.
 
 use ash::vk;
 
@@ -16,8 +16,8 @@ impl Renderer {
     /// and lives until the commands have executed. The host has waited for the frames that [`Renderer`] says.
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) without a successful [`configure`](Self::configure) before it, with another scene, and where
-    /// [`DepthDesc::readable`](crate::DepthDesc::readable) promises the host's depth. Nothing is recorded then.
+    /// [`Error::Invalid`](crate::Error::Invalid) without a successful [`configure`](Self::configure) before it, with another
+    /// scene, and where [`DepthDesc::readable`](crate::DepthDesc::readable) promises the host's depth. Nothing is recorded then.
     pub unsafe fn prepare(&mut self, cmd: vk::CommandBuffer, scene: &SceneBuffers) -> Result<()> {
         if self.desc.depth.is_some_and(|depth| depth.readable) {
             return out_of_order("prepare was promised the host's depth: prepare_behind takes it");
@@ -26,19 +26,20 @@ impl Renderer {
         unsafe { self.prepare_with(cmd, scene, None) }
     }
 
-    /// As [`prepare`](Self::prepare), for a renderer whose [`DepthDesc::readable`](crate::DepthDesc::readable) says so: with what the host has drawn
-    /// already, so that tiles leave out the splats behind it. The same picture as that of quads, which test each sample
-    /// against the attachment itself. Tiles of such a frame are computed anew even where [`RendererDesc::reuse`](crate::RendererDesc::reuse) is set.
+    /// As [`prepare`](Self::prepare), but with the depth that the host has drawn already, so that tiles leave out the splats
+    /// behind it. The renderer's [`DepthDesc::readable`](crate::DepthDesc::readable) asks for it. The picture is the same
+    /// as that of quads, which test each sample against the attachment itself. Tiles of such a frame are computed anew even
+    /// where [`RendererDesc::reuse`](crate::RendererDesc::reuse) is set.
     ///
-    /// The part of the image under the viewport is copied, at `COPY` by `TRANSFER_READ`: the host's barrier before makes
-    /// its depths visible to that, its barrier after waits for it before the image changes layout or contents.
+    /// The part of the image under the viewport is copied, at `COPY` by `TRANSFER_READ`. The host's barrier before makes its
+    /// depths visible to the copy, and its barrier after waits for the copy before the image changes layout or contents.
     ///
     /// # Safety
     /// As for [`prepare`](Self::prepare); and `depth` is as its description says, visible to the copy, and lives until
     /// the commands have executed.
     ///
     /// # Errors
-    /// As of [`prepare`](Self::prepare), and where [`DepthDesc::readable`](crate::DepthDesc::readable) is not set.
+    /// As for [`prepare`](Self::prepare), and where [`DepthDesc::readable`](crate::DepthDesc::readable) is not set.
     pub unsafe fn prepare_behind(
         &mut self,
         cmd: vk::CommandBuffer,
@@ -100,12 +101,14 @@ impl Renderer {
     }
 
     /// Records the splats, or the picture that the tiles have made of them, inside the host's rendering scope, blended
-    /// `over` what is there: premultiplied colours, the same for all samples of a pixel. `origin` is the viewport's upper left corner in the
-    /// attachment, whole px; the viewport has the camera's size. May be recorded more than once for a prepared frame.
+    /// `over` what is there: premultiplied colours, the same for all samples of a pixel. `origin` is the viewport's upper
+    /// left corner in the attachment, whole px; the viewport has the camera's size. This may be recorded more than once for
+    /// a prepared frame.
     ///
     /// # Safety
-    /// `cmd` is inside a rendering scope with the attachments of the [`RendererDesc`](crate::RendererDesc) and no others, one layer and no view
-    /// mask; viewport and scissor are set; [`prepare`](Self::prepare) was recorded for the same frame before it.
+    /// `cmd` is inside a rendering scope with the attachments of the [`RendererDesc`](crate::RendererDesc) and no others,
+    /// one layer and no view mask; viewport and scissor are set; [`prepare`](Self::prepare) was recorded for the same frame
+    /// before it.
     ///
     /// # Errors
     /// [`Error::Invalid`](crate::Error::Invalid) without a prepared frame; nothing is recorded then.
@@ -137,19 +140,20 @@ impl Renderer {
     }
 
     /// Records the splats' depths inside a rendering scope of their own, with the attachments of
-    /// [`RendererDesc::expected_depth`](crate::RendererDesc::expected_depth) and, if there is one, the same depth attachment: blended `over` what is there,
-    /// red is the sum of the depths, each times what its splat adds to the pixel's alpha, green that alpha. Where the host
-    /// has cleared both to 0, red / green is the pixel's expected depth along the view axis, world units; further
-    /// scenes over it keep that meaning. A splat's depth in a pixel is the mean of what the clip leaves of the Gaussian on
+    /// [`RendererDesc::expected_depth`](crate::RendererDesc::expected_depth) and, if there is one, the same depth
+    /// attachment, blended `over` what is there. Red is the sum of the depths, each times what its splat adds to the pixel's alpha, and
+    /// green is that alpha. Where the host has cleared both to 0, red / green is the pixel's expected depth along the view
+    /// axis, world units; further scenes over it keep that meaning. A splat's depth in a pixel is the mean of what the clip leaves of the Gaussian on
     /// the pixel's line of sight, to first order of perspective; of several planes the strictest that keeps the far side
-    /// counts, and the strictest that keeps the near one. Drawn as quads however the colours are. `origin` as of
-    /// [`draw`](Self::draw).
+    /// counts, and the strictest that keeps the near one. The depths are drawn as quads, however the colours are. `origin`
+    /// is as in [`draw`](Self::draw).
     ///
     /// # Safety
-    /// As of [`draw`](Self::draw), in such a scope.
+    /// As for [`draw`](Self::draw), in such a scope.
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) without a prepared frame, and without [`RendererDesc::expected_depth`](crate::RendererDesc::expected_depth).
+    /// [`Error::Invalid`](crate::Error::Invalid) without a prepared frame, and without
+    /// [`RendererDesc::expected_depth`](crate::RendererDesc::expected_depth).
     pub unsafe fn draw_depth(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) -> Result<()> {
         if self.desc.expected_depth.is_none() {
             return out_of_order("draw_depth needs RendererDesc::expected_depth");

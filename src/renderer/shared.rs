@@ -6,16 +6,16 @@ use crate::error::Result;
 use crate::gpu::{Bindings, Device};
 use crate::passes::{Pipelines, Plan, Targets};
 
-/// For addresses and for bound buffers.
+/// The pipelines for addresses and for bound buffers.
 type ByBindings = [Option<Arc<Pipelines>>; 2];
 
-/// A renderer's view of what is compiled.
+/// A renderer's view of the compiled pipelines.
 #[derive(Debug, Default)]
 pub(super) struct SharedPipelines {
-    /// Only [`ensure`](Self::ensure) locks it, and only where something is missing; it puts more pipelines in and takes none
-    /// out, so that frames in flight keep theirs.
+    /// The pipelines of all renderers. Only [`ensure`](Self::ensure) locks them, and only where one is missing; it puts
+    /// more in and takes none out, so that frames in flight keep theirs.
     pub(super) all: Arc<Mutex<ByBindings>>,
-    /// What of it this renderer has seen.
+    /// The pipelines that this renderer has seen.
     seen: ByBindings,
 }
 
@@ -28,7 +28,7 @@ impl SharedPipelines {
         }
     }
 
-    /// Compiles what a plan needs and nobody has compiled yet.
+    /// Compiles the pipelines that a plan needs and no renderer has compiled yet.
     pub(super) fn ensure(
         &mut self,
         device: &Device,
@@ -48,7 +48,7 @@ impl SharedPipelines {
         let mut all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
         let shared = all[at].get_or_insert_with(|| Arc::new(Pipelines::new(bindings)));
         if !has_all(shared) {
-            // A copy for all who come, while others record with what they have.
+            // This replaces the shared pipelines by a copy, while other renderers record with the ones that they have.
             let pipelines = Arc::make_mut(shared);
             let mut made = Ok(());
             plan.pipelines(targets, &mut |key| {

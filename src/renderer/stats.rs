@@ -16,8 +16,8 @@ impl Renderer {
         configured.map(Configured::skipped).unwrap_or_default()
     }
 
-    /// How splats become pixels in the configured frame, or became in the one that [`counts`](Self::counts) is about where
-    /// its tiles had no room; and why in that way.
+    /// How splats become pixels in the configured frame, or became pixels in the one that [`counts`](Self::counts) is about
+    /// where its tiles had no room; and why in that way.
     pub fn raster(&self) -> RasterChoice {
         let configured = self.configured.as_ref();
         let choice = configured.map(|configured| configured.raster(self.fell_back()));
@@ -32,7 +32,7 @@ impl Renderer {
     }
 
     /// How many Gaussians ended where in the oldest frame that is kept: the last one, with one frame in flight. Ask
-    /// after waiting for it, before the next [`prepare`](Self::prepare). All zero where no frame is that old.
+    /// after waiting for it, before the next [`prepare`](Self::prepare). The counts are zero where no frame is that old.
     pub fn counts(&self) -> Counts {
         self.oldest().map(RecordedFrame::counts).unwrap_or_default()
     }
@@ -57,7 +57,7 @@ impl Renderer {
             .unwrap_or_default()
     }
 
-    /// The frame that was prepared last. Only one that was waited for says anything but what was configured.
+    /// The frame that was prepared last. Before it is waited for, it knows no more than what was configured.
     pub(crate) fn newest(&self) -> Option<&RecordedFrame> {
         self.frames.newest()
     }
@@ -67,7 +67,7 @@ impl Renderer {
         self.frames.oldest()
     }
 
-    /// What has become of a frame that was waited for.
+    /// The outcome of a frame that was waited for.
     pub(crate) fn outcome(&self, frame: &RecordedFrame) -> Outcome {
         let configured = frame.configured.as_ref();
         if configured.is_none_or(Configured::changes_nothing) {
@@ -128,7 +128,7 @@ impl RecordedFrame {
         configured.is_some_and(|configured| configured.submission == Submission::InFlight)
     }
 
-    /// All that is known of it but the time until it was ready, which is whoever's who waited.
+    /// All that is known of it but the time until it was ready, which only the one who waited knows.
     pub(crate) fn stats(&self) -> FrameStats {
         let passes = self.pass_times();
         let configured = self.configured.as_ref();
@@ -204,7 +204,7 @@ impl RecordedFrame {
         self.timer.as_ref().filter(|_| !self.recorded_nothing())
     }
 
-    /// Then nothing was counted.
+    /// Whether nothing was recorded, so that nothing was counted.
     fn recorded_nothing(&self) -> bool {
         let configured = self.configured.as_ref();
         configured.is_none_or(|configured| configured.plan.gaussians() == 0)

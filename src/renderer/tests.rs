@@ -1,4 +1,4 @@
-//! What only the inside of a renderer shows.
+//! Tests that look inside a renderer.
 
 use super::*;
 use crate::camera::Camera;
@@ -12,8 +12,9 @@ use glam::DVec3;
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// Recording goes on while another renderer compiles what both share: whoever compiles holds the lock, as this test does,
-/// which would not end if recording waited for it. Nor does a frame that needs nothing new.
+/// Recording goes on while another renderer compiles into the pipelines that both share. Who compiles holds the lock, as
+/// this test does, which would not end if recording waited for it. Configuring a frame that needs nothing new does not wait
+/// either.
 #[test]
 fn recording_waits_for_no_compiler() {
     let device = Device::headless(&DeviceDesc {

@@ -1,10 +1,10 @@
-//! What a stage has written, for tests of the stages.
+//! The contents that stages have written, for tests of the stages.
 
 use super::Renderer;
 
 impl Renderer {
-    /// The bytes of the working buffer of a debug name, once the frames that were submitted have written it; nothing
-    /// where there is no such buffer. For tests: names and contents are no interface, and change with any version.
+    /// The bytes of the working buffer of a debug name, once the submitted frames have written it; nothing where there is
+    /// no such buffer. This is for tests: names and contents are no interface, and change with any version.
     #[doc(hidden)]
     pub fn working_buffer(&self, name: &str) -> Option<Vec<u8>> {
         let buffer = self.memory.allocated()?.named(name)?;

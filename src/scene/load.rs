@@ -85,7 +85,7 @@ pub fn load_from<R: Read + Seek>(
     Ok(loaded)
 }
 
-/// The caller's progress callback, which formats call with the bytes that remain.
+/// The caller's progress callback; formats call it with the bytes that remain.
 pub(super) struct Progress<'a> {
     total: u64,
     call: &'a mut dyn FnMut(u64, u64),

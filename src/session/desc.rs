@@ -1,23 +1,24 @@
-//! What a session is opened with.
+//! The description from which a session is opened.
 
 use crate::gpu::{Bindings, Device, PipelineCache};
 use crate::setters::setters;
 use crate::trace::Trace;
 
-/// What a headless renderer is created with.
+/// The description from which a headless renderer is created.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct HeadlessDesc {
     /// Device number or part of its name; `None` is the best device.
     pub device: Option<String>,
-    /// Load the Khronos validation layer with synchronisation checks; any message becomes [`Error::Validation`](crate::Error::Validation).
+    /// Load the Khronos validation layer with synchronisation checks; any message becomes
+    /// [`Error::Validation`](crate::Error::Validation).
     pub validation: bool,
-    /// How buffers are reached; `None` is [what suits the device](Bindings::suiting), and bound under validation, whose
+    /// How buffers are reached. `None` is [what suits the device](Bindings::suiting), but bound under validation, whose
     /// synchronisation checks cannot watch an address.
     pub bindings: Option<Bindings>,
     /// Where compiled pipelines are kept from one run to the next.
     pub pipeline_cache: PipelineCache,
-    /// Where to note what takes how long on the processor and on the device.
+    /// Where to note how long each step takes on the processor and on the device.
     pub trace: Option<Trace>,
     /// Count what the stages do, where the device can.
     pub statistics: bool,

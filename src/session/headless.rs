@@ -1,4 +1,4 @@
-//! Scenes in, pictures out, no window.
+//! Turns scenes into pictures without a window.
 
 use super::target::Target;
 use super::{HeadlessDesc, Session};
@@ -41,7 +41,7 @@ impl Headless {
         Self::on(trace::span(desc.trace.as_ref(), "open", open)?, desc)
     }
 
-    /// On a device that is open.
+    /// Makes it on a device that is open.
     fn on(device: Device, desc: &HeadlessDesc) -> Result<Self> {
         let renderer = RendererDesc {
             statistics: desc.statistics,
@@ -81,13 +81,14 @@ impl Headless {
         self.session.scene.as_ref().map_or(0, SceneBuffers::bytes)
     }
 
-    /// Bytes of compiled pipelines that an earlier run had kept; 0 if none had, or what it had could not be used.
+    /// Bytes of compiled pipelines that an earlier run had kept; 0 if none had, or they could not be used.
     pub fn kept_pipeline_bytes(&self) -> u64 {
         self.kept_pipeline_bytes
     }
 
-    /// Uploads a scene, Gaussians or [layers](Scene) of them, in place of the one before, its spherical harmonics as they are: 192 bytes a Gaussian at degree
-    /// 3. [`load_as`](Self::load_as) with [`Precision::sh`](crate::Precision::sh) of a preset takes 68.
+    /// Uploads a scene, Gaussians or [layers](Scene) of them, in place of the one before. Its spherical harmonics stay as
+    /// they are: 192 bytes a Gaussian at degree 3. [`load_as`](Self::load_as) with
+    /// [`Precision::sh`](crate::Precision::sh) of a preset takes 68.
     pub fn load<'a>(&mut self, scene: impl Into<Scene<'a>>) -> Result<()> {
         self.load_as(scene, ShFormat::Float)
     }
@@ -108,9 +109,8 @@ impl Headless {
         self.session.layers_mut()
     }
 
-    /// Forgets what earlier frames have computed: the next one computes everything. Without it a frame takes over what
-    /// the one before has found out and this one would find out again, to the same bytes; where nothing has changed it
-    /// does nothing at all.
+    /// Forgets what earlier frames have computed: the next one computes everything. Without it a frame takes over results of
+    /// the one before that it would compute again to the same bytes; where nothing has changed it does nothing at all.
     pub fn forget(&mut self) {
         self.session.renderer.forget();
         self.target.forget();
@@ -141,7 +141,7 @@ impl Headless {
         read.map_err(|error| self.session.explain(error))
     }
 
-    /// Frees everything. The error is what the validation layer says of it, as of things left alive.
+    /// Frees everything. The error holds the validation layer's messages, as about things left alive.
     pub fn close(self) -> Result<()> {
         let device = self.device().clone();
         drop(self);

@@ -1,5 +1,5 @@
-//! Whoever has no loop of their own draws with a session: a device, a renderer and a scene, and the one loop that submits
-//! a frame and reads what has become of it. [`Headless`] keeps the picture, [`Windowed`] shows it.
+//! Programs without a loop of their own draw with a session: a device, a renderer and a scene, and the one loop that submits
+//! a frame and reads its outcome. [`Headless`] keeps the picture, [`Windowed`] shows it.
 
 use std::time::Instant;
 
@@ -44,7 +44,7 @@ struct Session {
 }
 
 impl Session {
-    /// On a device that is open.
+    /// Makes it on a device that is open.
     fn new(device: Device, desc: &HeadlessDesc, renderer: RendererDesc) -> Result<Self> {
         let pipelines = PipelineFile::open(&desc.pipeline_cache, &device);
         let renderer = Renderer::new(
@@ -131,18 +131,18 @@ impl Session {
         Ok(FrameStats { wall_ms, ..stats })
     }
 
-    /// That the validation layer has said nothing so far.
+    /// Returns an error if the validation layer has said anything so far.
     fn check_validation(&self) -> Result<()> {
         Error::validated(self.device.validation_messages())
     }
 
-    /// An error behind what the validation layer has said before it.
+    /// Puts the validation layer's earlier messages before an error.
     fn explain(&self, error: Error) -> Error {
         error.after(self.device.validation_messages())
     }
 }
 
-/// What was compiled is kept for the next run.
+/// Keeps the compiled pipelines for the next run.
 impl Drop for Session {
     fn drop(&mut self) {
         if let Some(pipelines) = &mut self.pipelines {
@@ -186,12 +186,12 @@ fn submit(
         spans::add(trace, device, renderer.newest(), recorded);
     }
     if submitted.is_err() {
-        renderer.abandon(); // what it would have computed is not there
+        renderer.abandon(); // its results are missing
     }
     submitted
 }
 
-/// The scene, which somebody wants to `render` or to `show`.
+/// The scene, which is wanted in order to `render` or to `show` it.
 fn loaded<'a>(scene: &'a Option<SceneBuffers>, wanted: &str) -> Result<&'a SceneBuffers> {
     scene
         .as_ref()

@@ -56,7 +56,7 @@ pub(super) fn add(
     }
 }
 
-/// From one timestamp of so many bits to another, which may lie before it.
+/// Ticks from one timestamp of `bits` bits to another, which may lie before it.
 fn signed(to: u64, from: u64, bits: u32) -> i64 {
     let unused = 64 - bits.clamp(1, 64);
     (to.wrapping_sub(from) << unused).cast_signed() >> unused

@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, BufferDesc, Device, Image, ImageDesc, Location};
 use crate::picture::Picture;
 use crate::precision::TargetFormat;
 
-/// An image for frames, replaced where one needs another size or format.
+/// An image for frames, replaced where a frame needs another size or format.
 #[derive(Debug, Default)]
 pub(super) struct Target {
     format: TargetFormat,
@@ -19,7 +19,7 @@ pub(super) struct Target {
 }
 
 impl Target {
-    /// What the next frame's pixels are stored as.
+    /// Sets the format of the next frame's pixels.
     pub(super) fn set_format(&mut self, device: &Device, format: TargetFormat) -> Result<()> {
         if self.image.is_some() && self.format == format {
             return Ok(());
@@ -52,28 +52,28 @@ impl Target {
         Ok(())
     }
 
-    /// The image, of which it is not known any more what it shows.
+    /// The image to be drawn into; what it shows is not known any more.
     pub(super) fn drawn_into(&mut self) -> &Image {
         self.held = None;
         self.image.as_ref().expect("set_size() makes it")
     }
 
-    /// The image shows the renderer's last frame on this background.
+    /// Notes that the image shows the renderer's last frame on this background.
     pub(super) fn set_held(&mut self, background: Option<[f32; 3]>) {
         self.held = Some(bits(background));
     }
 
-    /// Whether it does.
+    /// Whether the image shows the renderer's last frame on this background.
     pub(super) fn holds(&self, background: Option<[f32; 3]>) -> bool {
         self.held == Some(bits(background))
     }
 
-    /// The renderer's next frame is another one.
+    /// Notes that the renderer's next frame is another one.
     pub(super) fn forget(&mut self) {
         self.held = None;
     }
 
-    /// Reads back what was drawn.
+    /// Reads the image back.
     pub(super) fn read_back(&mut self, device: &Device) -> Result<Picture> {
         let Some(image) = &self.image else {
             return Err(Error::Invalid("nothing has been rendered yet".into()));

@@ -1,4 +1,4 @@
-//! The loop itself, where neither a window nor one frame after the other hides what it does.
+//! Tests of the loop itself, without a window and with several frames in flight.
 
 use super::*;
 use crate::gpu::{DeviceDesc, PipelineCache};
@@ -28,7 +28,7 @@ fn session() -> Session {
     Session::new(device, &desc, renderer).expect("a renderer")
 }
 
-/// The validation layer has nothing to say of it.
+/// Closes a session of which the validation layer has nothing to say.
 fn closes(session: Session) {
     let device = session.device.clone();
     drop(session);
@@ -45,7 +45,7 @@ fn crowded() -> (Gaussians, Camera) {
     (scene, camera.expect("a view"))
 }
 
-/// Submits a frame of quads or tiles and waits for it, as one of several in flight: it is drawn whatever room it has.
+/// Submits a frame of quads or tiles as one of several in flight, which is drawn whatever room it has, and waits for it.
 fn show(session: &mut Session, camera: &Camera, settings: &Settings) -> Outcome {
     let renderer = &mut session.renderer;
     let request = FrameRequest {
@@ -90,7 +90,7 @@ fn a_picture_after_frames_in_flight_has_the_room_it_needs() {
         let stats = drawn.expect("draws");
         assert_eq!(stats.raster.path, "tiles", "after {frames_before} frames");
         pictures.push(target.read_back(&session.device).expect("reads back"));
-        // Once more there is nothing to do, for this target; another one gets the draw alone.
+        // Once more, there is nothing to do for this target; another target gets the draw alone.
         let again = session.draw(&mut target, &camera, &Clip::default(), &settings);
         assert!(again.expect("draws").skipped.contains(&"splat"));
         let mut other = Target::default();
@@ -104,7 +104,7 @@ fn a_picture_after_frames_in_flight_has_the_room_it_needs() {
     assert!(pictures[0].pixels.iter().any(|pixel| pixel[3] > 0.5));
 }
 
-/// What the device counted of a frame that was never submitted is another's.
+/// A frame that was never submitted has no counts: those on the device are another frame's.
 #[test]
 fn a_frame_that_was_not_submitted_has_no_statistics() {
     let mut session = session();

@@ -1,4 +1,4 @@
-//! Scenes in, pictures in a window out. Whose window it is does not matter: any crate's that speaks `raw-window-handle`.
+//! Shows scenes in a window, which may be any crate's that speaks `raw-window-handle`.
 
 use std::sync::Arc;
 
@@ -19,19 +19,19 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
 
-/// A renderer that owns its device and draws into somebody's window, two frames in flight. Colours are blended as they
+/// A renderer that owns its device and draws into a host's window, with two frames in flight. Colours are blended as they
 /// are stored, on black where the settings name no background.
 ///
-/// The window is the host's: its events, its size. Nothing is drawn unless asked for. A frame takes over from the one
-/// before what stays the same, so that one in which nothing has changed costs next to nothing.
+/// The window's events and its size are the host's business. Nothing is drawn unless asked for. A frame takes over what
+/// stays the same from the one before, so that one in which nothing has changed costs next to nothing.
 pub struct Windowed {
     // Dropped in this order, after waiting for the frames.
     frames: InFlight,
     swapchain: Swapchain,
     session: Session,
-    /// Of the last frame that was waited for and has computed anything.
+    /// The statistics of the last frame that was waited for and has computed anything.
     stats: Option<FrameStats>,
-    /// A frame has failed between its image and the window.
+    /// Whether a frame has failed between its image and the window.
     broken: bool,
 }
 
@@ -102,8 +102,8 @@ impl Windowed {
         self.session.layers_mut()
     }
 
-    /// Makes the window's images fit a window of this many pixels. The size that the next frame's camera needs, which
-    /// may be another one while the window changes; `None` if there is nothing to draw into, as when it is minimised.
+    /// Makes the window's images fit a window of this many pixels. Returns the size that the next frame's camera needs,
+    /// which may be another one while the window changes; `None` if there is nothing to draw into, as when it is minimised.
     pub fn fit(&mut self, window: (u32, u32)) -> Result<Option<(u32, u32)>> {
         let extent = self.swapchain.fit(window)?;
         Ok(extent.map(|extent| (extent.width, extent.height)))
@@ -146,14 +146,14 @@ impl Windowed {
             });
             submitted.and_then(|()| swapchain.present(image))
         };
-        // The image stays acquired, and a semaphore signalled that nobody waits for.
+        // After an error the image stays acquired, and nothing waits for its semaphore.
         self.broken = shown.is_err();
         shown.map_err(|error| self.session.explain(error))?;
         self.session.check_validation()?;
         if !changes_nothing {
             return Ok(Redraw::WhenIdle);
         }
-        // There is time to hear of the frame before.
+        // A frame that changes nothing leaves time to wait for the one before.
         Ok(match self.wait()? {
             Some(Outcome::NeedsRoom) => Redraw::WhenIdle,
             Some(Outcome::Drawn | Outcome::Unchanged) | None => Redraw::NotNeeded,
@@ -187,7 +187,7 @@ impl Windowed {
         self.stats.as_ref()
     }
 
-    /// Frees everything, the window too if nobody else has it. The error is what the validation layer says of it.
+    /// Frees everything, the window too if nobody else has it. The error holds the validation layer's messages.
     pub fn close(self) -> Result<()> {
         let device = self.device().clone();
         drop(self);
@@ -202,7 +202,7 @@ impl Windowed {
         Ok(())
     }
 
-    /// Waits for the oldest frame in flight and reads what has become of it; `None` before there are so many.
+    /// Waits for the oldest frame in flight and reads its outcome; `None` before there are so many.
     fn wait(&mut self) -> Result<Option<Outcome>> {
         self.frames.wait()?;
         let renderer = &self.session.renderer;

@@ -62,7 +62,7 @@ fn layers(count: usize, spacing: f64) -> Case {
     }
 }
 
-/// Sheets of one depth that cover the whole picture, so that every pixel tells their order and nothing else. Two
+/// Sheets of one depth that cover the whole picture, so that every pixel shows their order and nothing else. Two
 /// neighbours that change places change it by 0.0025 of what is left of the light and of their colours' difference.
 fn ties() -> Case {
     let mut random = Random::new(46);

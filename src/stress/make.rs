@@ -145,7 +145,7 @@ pub(super) fn on_plane(
         push(&mut scene, position, scales, rotation, opacity);
         set_colour(&mut scene, random);
         let taken = Footprint::new(&scene, scene.len() - 1, &view).map(|f| {
-            let at = |i: usize, sign: f64| f.pixel[i] + sign * (f.half[i] + 1.0);
+            let at = |i: usize, sign: f64| f.screen_centre[i] + sign * (f.half_sides[i] + 1.0);
             [at(0, -1.0), at(1, -1.0), at(0, 1.0), at(1, 1.0)]
         });
         let apart_from =

@@ -35,7 +35,7 @@ pub struct Case {
     pub camera: Camera,
     /// What cuts them.
     pub clip: Clip,
-    /// The footprints do not touch: a pixel's alpha is that of one splat, and so tells its weight.
+    /// The footprints do not touch: a pixel's alpha is that of one splat, and so shows its weight.
     pub apart: bool,
 }
 

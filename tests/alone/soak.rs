@@ -84,7 +84,7 @@ fn soak(frames: usize) {
     );
 }
 
-/// Memory of this process that is in memory; 0 where the system does not tell.
+/// Memory of this process that is in memory; 0 where the system does not say.
 fn resident_bytes() -> i64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));

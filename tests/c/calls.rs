@@ -206,8 +206,8 @@ fn what_is_wrong_is_said() {
         let configured = rara_renderer_configure(renderer, scene, &camera, null(), null());
         assert_ok(configured);
         let mut stats: RaraFrameStats = std::mem::zeroed();
-        let told = rara_renderer_stats(renderer, &mut stats, size_of_val(&stats));
-        assert_ok(told);
+        let result = rara_renderer_stats(renderer, &mut stats, size_of_val(&stats));
+        assert_ok(result);
         let reason = CStr::from_ptr(stats.raster_reason.as_ptr());
         assert!(!reason.is_empty() && stats.drawn == 0 && stats.skipped_count > 0);
         let first = CStr::from_ptr(stats.skipped[0].as_ptr());
@@ -268,8 +268,8 @@ unsafe fn what_is_wrong_with_layers_is_said(
         assert_eq!(rara_scene_buffers_layer_count(scene), 1);
         let mut info: RaraLayerInfo = std::mem::zeroed();
         let info_size = size_of_val(&info);
-        let told = rara_scene_buffers_layer_info(scene, 0, &mut info, info_size);
-        assert_ok(told);
+        let result = rara_scene_buffers_layer_info(scene, 0, &mut info, info_size);
+        assert_ok(result);
         assert_eq!((CStr::from_ptr(info.name), info.count), (c"scene", 1));
         let beyond = "index is 1, and rara_scene_buffers_layer_count is 1: give less than that";
         let failed = rara_scene_buffers_layer_info(scene, 1, &mut info, info_size);

@@ -22,7 +22,7 @@ pub(crate) fn root() -> PathBuf {
 /// Has a command succeed; `says` is what to do if it does not.
 pub(crate) fn run(command: &mut Command, says: &str) {
     let output = command.output().expect("the compiler starts");
-    let said = String::from_utf8_lossy(&output.stderr);
-    let told = String::from_utf8_lossy(&output.stdout); // where glslang complains
-    assert!(output.status.success(), "{says}: {said}{told}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    let stdout = String::from_utf8_lossy(&output.stdout); // where glslang complains
+    assert!(output.status.success(), "{says}: {stderr}{stdout}");
 }

@@ -62,10 +62,10 @@ fn draw(host: &Path, device: &str, scene: &Path, what: &str) -> Vec<u8> {
         .expect("the host starts");
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && said.is_empty(), "{what}: {said}");
-    let told = String::from_utf8_lossy(&output.stdout);
+    let stdout = String::from_utf8_lossy(&output.stdout);
     assert!(
-        told.contains(" visible, ") && told.contains(" cutoff "),
-        "{told}"
+        stdout.contains(" visible, ") && stdout.contains(" cutoff "),
+        "{stdout}"
     );
     let bytes = std::fs::read(&picture).expect("a picture");
     let header = format!("P6 {} {} 255\n", SIZE.0, SIZE.1);

@@ -476,8 +476,8 @@ fn layers_are_the_same_bytes() {
             for (index, count) in counts.into_iter().enumerate() {
                 let mut info: RaraLayerInfo = std::mem::zeroed();
                 let size = size_of_val(&info);
-                let told = rara_scene_buffers_layer_info(uploaded, index, &mut info, size);
-                assert_ok(told);
+                let result = rara_scene_buffers_layer_info(uploaded, index, &mut info, size);
+                assert_ok(result);
                 assert_eq!((info.struct_size, info.count), (size, count as u64));
                 assert_eq!(CStr::from_ptr(info.name), NAMES[index]);
             }
@@ -509,8 +509,8 @@ fn layers_are_the_same_bytes() {
                     assert_ok(rara_scene_buffers_set_layer_state(uploaded, index, given));
                     let mut state: RaraLayerState = std::mem::zeroed();
                     let size = size_of_val(&state);
-                    let told = rara_scene_buffers_layer_state(uploaded, index, &mut state, size);
-                    assert_ok(told);
+                    let result = rara_scene_buffers_layer_state(uploaded, index, &mut state, size);
+                    assert_ok(result);
                     assert_eq!(state, *given, "{what}");
                 }
                 let drawn = world.drawn_in_c(ours.device, &canvas, |_| uploaded);

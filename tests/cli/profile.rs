@@ -150,26 +150,26 @@ fn statistics_are_there_when_asked_for() {
             assert!(counted, "{pass}");
         }
     }
-    let told = done(line(
+    let output = done(line(
         &here,
         "render @/scene.ply -o @/a.png --size 64x48 --statistics",
     ));
-    let told = stderr(&told);
+    let messages = stderr(&output);
     assert!(
-        told.contains("invocations") || told.contains("counts nothing"),
-        "{told}"
+        messages.contains("invocations") || messages.contains("counts nothing"),
+        "{messages}"
     );
 }
 
 #[test]
-fn memory_is_told_by_what_it_is_for() {
+fn memory_is_listed_by_what_it_is_for() {
     let here = folder("purposes");
     scene(&here);
     let report = document(line(&here, "render @/scene.ply --size 64x48 --json"));
     let memory = &report["memory"];
     let purposes = memory["purposes"].as_array().expect("purposes");
     let sum: u64 = purposes.iter().filter_map(|p| p["bytes"].as_u64()).sum();
-    // What alignment adds is told here only.
+    // What alignment adds is printed here only.
     let taken = memory["device_bytes"].as_u64().expect("bytes");
     assert!((taken..taken + 65_536).contains(&sum), "{sum} of {taken}");
     for name in ["gaussians", "sh", "splats", "target"] {
@@ -181,7 +181,7 @@ fn memory_is_told_by_what_it_is_for() {
 }
 
 #[test]
-fn a_machine_without_a_driver_is_told_what_to_install() {
+fn a_machine_without_a_driver_prints_what_to_install() {
     let here = folder("no_driver");
     scene(&here);
     let output = Command::new(env!("CARGO_BIN_EXE_rara"))

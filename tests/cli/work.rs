@@ -22,11 +22,11 @@ fn generated_scenes_can_be_looked_into() {
             "{kind}"
         );
         assert!(info["opacity"]["max"].as_f64().unwrap() <= 1.0, "{kind}");
-        let told = done(line(&here, &format!("info @/{kind}.ply")));
+        let output = done(line(&here, &format!("info @/{kind}.ply")));
         assert!(
-            told.stdout.is_empty() && stderr(&told).contains("1 000"),
+            output.stdout.is_empty() && stderr(&output).contains("1 000"),
             "{}",
-            stderr(&told)
+            stderr(&output)
         );
     }
     let merged = document(line(&here, "info @/general.ply @/layers.ply --json"));
@@ -78,12 +78,12 @@ fn a_picture_and_its_statistics() {
     assert!(report["skipped"].is_array());
     assert_eq!(report["frames"], serde_json::json!([]));
 
-    // The same frame again is the same picture, and people are told on stderr only.
-    let told = done(line(
+    // The same frame again is the same picture, and messages for people are on stderr only.
+    let output = done(line(
         &here,
         "render @/scene.ply -o @/b.png --size 96x64 --clip plane:1,0,0,0",
     ));
-    assert!(told.stdout.is_empty() && stderr(&told).contains("b.png"));
+    assert!(output.stdout.is_empty() && stderr(&output).contains("b.png"));
     let difference = document(line(&here, "compare @/a.png @/b.png --json"));
     assert_eq!(
         (&difference["max"], &difference["psnr"]),
@@ -255,8 +255,10 @@ fn the_devices_are_listed() {
         devices.iter().any(|device| device["supported"] == true),
         "{list}"
     );
-    let told = done(rara(["devices"]));
-    assert!(told.stdout.is_empty() && stderr(&told).contains(devices[0]["name"].as_str().unwrap()));
+    let output = done(rara(["devices"]));
+    assert!(
+        output.stdout.is_empty() && stderr(&output).contains(devices[0]["name"].as_str().unwrap())
+    );
 }
 
 #[test]
@@ -288,11 +290,11 @@ fn a_plane_at_infinity_changes_nothing_unless_all_is_traced() {
 fn the_demo_leaves_five_pictures() {
     let here = folder("demo");
     scene(&here);
-    let told = done(line(&here, "demo @/scene.ply -o @/out --size 64x48"));
+    let output = done(line(&here, "demo @/scene.ply -o @/out --size 64x48"));
     for name in ["none", "hard", "rara", "exact", "sheet"] {
         assert!(here.join(format!("out/{name}.png")).is_file(), "{name}");
     }
-    assert!(told.stdout.is_empty() && stderr(&told).contains("exact"));
+    assert!(output.stdout.is_empty() && stderr(&output).contains("exact"));
 }
 
 #[test]

@@ -45,7 +45,7 @@ fn ratios_are_of_pairs() {
 }
 
 #[test]
-fn costs_are_told_apart_and_counted_once() {
+fn costs_are_kept_apart_and_counted_once() {
     let text = "\
 version: 1
 positions: line

@@ -516,7 +516,7 @@ fn a_frame_without_room_for_its_tiles_is_drawn_as_quads() {
         if let Some(pixels) = host.wait().expect("waits") {
             assert!(
                 renderer.fell_back(),
-                "frame {frame} tells of one that had no room"
+                "frame {frame} reports one that had no room"
             );
             assert_shows(&format!("frame {frame}"), FLOATS, &pixels, &expected);
         }

@@ -1,5 +1,5 @@
 //! The Vulkan layer on the device at hand. Every test ends with zero messages of the validation layer, or with the
-//! ones that it provokes: lavapipe draws the right picture with barriers missing, only the layer tells.
+//! ones that it provokes: lavapipe draws the right picture with barriers missing, only the layer reports it.
 
 use ash::vk;
 use rara::Error;
@@ -450,16 +450,16 @@ fn messages_name_the_pass_and_the_objects() {
 }
 
 #[test]
-fn memory_is_told_by_name() {
+fn memory_is_listed_by_name() {
     clean(|device| {
         let _one = buffer(device, "pairs", 1 << 20, Location::GpuOnly);
         let _other = buffer(device, "pairs", 17 << 20, Location::GpuOnly);
         let _small = buffer(device, "counts", 64, Location::Readback);
-        let told = device.memory_by_name();
-        let names: Vec<_> = told.iter().map(|of| of.name.as_str()).collect();
+        let memory = device.memory_by_name();
+        let names: Vec<_> = memory.iter().map(|of| of.name.as_str()).collect();
         assert_eq!(names, ["pairs", "counts"]);
-        assert!(told[0].bytes >= 18 << 20, "{told:?}");
-        let sum: u64 = told.iter().map(|of| of.bytes).sum();
+        assert!(memory[0].bytes >= 18 << 20, "{memory:?}");
+        let sum: u64 = memory.iter().map(|of| of.bytes).sum();
         assert_eq!(sum, device.device_bytes());
     });
 }

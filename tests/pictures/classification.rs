@@ -73,7 +73,7 @@ proptest! {
         let Some(footprint) = Footprint::new(&scene, 0, &view) else { return Ok(()) };
         let mut reach = (2.0 * (255.0 * f64::from(opacity)).ln()).sqrt();
         if form == ExactForm::Beam {
-            let rest = 1.0 - reach * footprint.stretch * footprint.rows[2].length() / footprint.centre.z;
+            let rest = 1.0 - reach * footprint.stretch * footprint.rows[2].length() / footprint.view_centre.z;
             prop_assume!((rest - 0.05).abs() > 1e-6);
             reach = if rest > 0.05 {
                 reach * footprint.stretch / rest
@@ -95,7 +95,7 @@ proptest! {
 .trace_all(true);
         let mut drawn = reference::project::project(&scene, 0, &view, &settings).expect("it is in view");
         for (x, y) in aim {
-            let (dx, dy) = (x * footprint.half[0], y * footprint.half[1]);
+            let (dx, dy) = (x * footprint.half_sides[0], y * footprint.half_sides[1]);
             drawn.cut = None;
             let whole = splat::alpha(&drawn, dx, dy, Decay::Linear).unwrap_or(0.0);
             drawn.cut = cutoff::cutoff(&scene, 0, &footprint, &view, &clip, &traced);

@@ -43,7 +43,7 @@ impl Pair {
         })
     }
 
-    /// Draws a frame with both and compares all they tell; returns what the one skipped.
+    /// Draws a frame with both and compares all that they report; returns what the one skipped.
     fn draw(&mut self, camera: &Camera, clip: &Clip, settings: &Settings) -> Vec<&'static str> {
         self.forgets.forget();
         let picture = |headless: &mut Headless| {
@@ -197,7 +197,7 @@ impl Frame {
             13 => settings.precision.beam_switch = [0.0, 0.005, 0.05][pick(3)],
             14 => settings.precision.transmittance_min = [0.0, 4e-6, 0.3][pick(3)],
             15 => settings.sh_degree = [None, Some(0), Some(2)][pick(3)],
-            // Less than single precision tells apart: the planes' low words alone.
+            // A distance that single precision loses: the planes' low words alone.
             16 => self.nudge = [0.0, 1e-9, -1e-9][pick(3)],
             _ => self.share = [0.2, 0.4, 0.5, 0.55, 0.8][pick(5)],
         }

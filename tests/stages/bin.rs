@@ -26,7 +26,7 @@ fn outline<T: Real>(splat: &Splat) -> Outline<T> {
     };
     Outline {
         centre: [of(cx), of(cy)],
-        factors: [of(k0), of(k1), of(k2)],
+        conic: [of(k0), of(k1), of(k2)],
         opacity: of(opacity),
         quad: [side(cx, mx, ax, bx), side(cy, my, ay, by)],
         line: (z.abs() < 1e30).then(|| {
@@ -184,7 +184,7 @@ fn tiles_reach_pixel_centres_on_the_contour() {
         let f = base.expect("in view").footprint;
         // The contour's ends to the left and to the right, above and below, each put onto a centre of a pixel that is the
         // first or the last of its tile.
-        let [k0, k1, k2] = f.factors;
+        let [k0, k1, k2] = f.conic;
         let right = [f.extent / k0, -k1 / k2 * f.extent / k0];
         let k = (k0 * k0 + k1 * k1).sqrt();
         let below = [-k1 / k * f.extent / k0, f.extent * k / (k0 * k2)];

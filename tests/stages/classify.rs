@@ -8,8 +8,8 @@ use rara::{Camera, Clip, ClipOp, Mode, Raster, Settings};
 use crate::frame::{self, SIZES, Stages};
 use crate::ties;
 
-/// What the stages say of each Gaussian, in the device's order; nothing of one that is culled or invisible, which of a
-/// block's Gaussians only their number tells apart.
+/// What the stages say of each Gaussian, in the device's order; nothing of one that is culled or invisible: of a block,
+/// the stages say only how many of its Gaussians are which.
 pub fn sides(stages: &mut Stages) -> Vec<Option<Side>> {
     let of_blocks: Vec<u32> = stages.read("block_sides");
     let masks: Vec<[[u32; 8]; 2]> = stages.read("masks");
@@ -77,7 +77,7 @@ fn check(stages: &mut Stages, camera: &Camera, planes: &Clip, settings: &Setting
         }
     }
     assert!(ties <= 1 + stages.scene.len() / 5_000, "{ties} ties");
-    // How many are of which class, by block and in all, so that culled and invisible are told apart.
+    // How many are of which class, by block and in all, so that culled and invisible are counted apart.
     let of_blocks: Vec<u32> = stages.read("block_sides");
     let totals: Vec<[u32; 4]> = stages.read("block_counts");
     let mut apart = 0;

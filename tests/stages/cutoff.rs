@@ -80,12 +80,12 @@ fn compare(
     settings: &Settings,
     worst: &mut Apart,
 ) {
-    let cuts: Vec<[f32; 4]> = stages.read("cuts");
+    let records: Vec<[f32; 4]> = stages.read("cut_records");
     let stride = 4 + clip.surfaces.len();
     let cut = stages.counts().cutoff as usize;
     let cutoffs: Vec<u32> = stages.read("cutoffs");
     let (single, double) = (View::<f32>::new(camera), View::<f64>::new(camera));
-    for (record, index) in cuts.chunks(stride).zip(&cutoffs[..cut]) {
+    for (record, index) in records.chunks(stride).zip(&cutoffs[..cut]) {
         let index = *index as usize;
         let Some(footprint) = Footprint::new(&stages.scene, index, &single) else {
             continue; // a tie of stage classify
@@ -93,7 +93,7 @@ fn compare(
         let twin = cutoff::cutoff(&stages.scene, index, &footprint, &single, clip, settings);
         let Some(twin) = twin else { continue };
         // Along true rays a record's gradients are those of a pixel on the principal axis.
-        let aside = [0, 1].map(|axis| footprint.pixel[axis] - single.principal[axis]);
+        let aside = [0, 1].map(|axis| footprint.screen_centre[axis] - single.principal[axis]);
         let flags = record[0][3] as u32;
         let count = (flags >> 8) as usize;
         let is_alone = count == 1 && settings.mode == Mode::Exact && flags & FRONT == 0;
@@ -145,7 +145,7 @@ fn compare(
 
 /// Offsets within the contour of 1/255, pixels, and where they are in deviations.
 fn within<T: Real>(f: &Footprint<T>) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
-    let [k0, k1, k2] = f.factors.map(T::wide);
+    let [k0, k1, k2] = f.conic.map(T::wide);
     let reach = f.extent.wide();
     (0..25).map(move |step| {
         let turn = f64::from(step) * 2.399_963;

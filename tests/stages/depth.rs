@@ -152,7 +152,7 @@ fn mean_depths_are_the_twins() {
                     &settings(),
                 );
                 let deviation = f64::from(footprint.rows[2].length());
-                let [k0, k1, k2] = footprint.factors.map(f64::from);
+                let [k0, k1, k2] = footprint.conic.map(f64::from);
                 for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.5), (-1.2, -1.2)] {
                     let (dx, dy) = (u / k0, (v - k1 * u / k0) / k2);
                     let [ours, share] = mean(&ours, [dx, dy]);

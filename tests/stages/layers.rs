@@ -19,13 +19,13 @@ pub fn placements() -> [Placement; 3] {
 
 /// What a frame's survivors are: number in the scene, splat, and the whole cutoff record of a cut one.
 fn survivors(stages: &mut Stages, stride: usize) -> Vec<(u32, Splat, Vec<[f32; 4]>)> {
-    let cuts: Vec<[f32; 4]> = stages.read("cuts");
+    let records: Vec<[f32; 4]> = stages.read("cut_records");
     let survivors = stages.survivors();
     let splats = stages.splats();
     let both = survivors.iter().zip(splats);
     both.map(|([_, cut], splat)| {
         let record = match *cut as usize {
-            cut if cut < cuts.len() => cuts[cut * stride..][..stride].to_vec(),
+            cut if cut < records.len() => records[cut * stride..][..stride].to_vec(),
             _ => Vec::new(),
         };
         (splat.middle[2].to_bits(), splat, record)

@@ -57,15 +57,17 @@ fn compare(stages: &mut Stages, camera: &Camera, worst: &mut Apart) {
         assert!(z > 1e30, "nothing is cut");
         let f = &twin.footprint;
         let distance = f.relative.largest();
-        worst.depth = worst.depth.max(ulps(splat.middle[3], f.centre.z, distance));
+        worst.depth = worst
+            .depth
+            .max(ulps(splat.middle[3], f.view_centre.z, distance));
         // A pixel's place follows from a slope, which is off by the centre's error over the depth.
         for (ours, axis) in [(cx, 0), (cy, 1)] {
-            let slope = (f.pixel[axis] - view.principal[axis]) / view.focal[axis];
-            let size = view.focal[axis] * distance / f.centre.z * (1.0 + slope.abs());
-            worst.centre = worst.centre.max(ulps(ours, f.pixel[axis], size));
+            let slope = (f.screen_centre[axis] - view.principal[axis]) / view.focal[axis];
+            let size = view.focal[axis] * distance / f.view_centre.z * (1.0 + slope.abs());
+            worst.centre = worst.centre.max(ulps(ours, f.screen_centre[axis], size));
         }
         // The factors' rounding, against what the twin in double precision says of their cancellation.
-        let [t0, t1, t2] = f.factors;
+        let [t0, t1, t2] = f.conic;
         let size = t1.hypot(t2);
         let condition = condition(f.gradients.map(|b| Vec3::new(b.x, b.y, b.z)));
         let of = |ours, theirs, size| ulps(ours, theirs, size) / condition;

@@ -85,7 +85,7 @@ fn equal_depths_are_in_the_files_order() {
 
 /// With fewer bits neighbours may change places, and nothing else.
 #[test]
-fn fewer_bits_keep_the_order_of_what_they_tell_apart() {
+fn fewer_bits_keep_the_order_of_what_they_distinguish() {
     let mut stages = Stages::new();
     let scene = frame::scene(50_000);
     stages.load(&scene);

@@ -18,7 +18,7 @@ pub(super) struct Owned(pub(super) Child);
 
 impl Owned {
     /// All that it says on stderr, until it ends.
-    pub(super) fn told(&mut self) -> String {
+    pub(super) fn messages(&mut self) -> String {
         let mut text = String::new();
         let mut stderr = self.0.stderr.take().expect("it is piped");
         let read = stderr.read_to_string(&mut text);
@@ -81,11 +81,11 @@ impl Display {
         fs::write(folder.join("quit.txt"), "quit").expect("a script");
         let mut command = rara(folder, "view @/scene.ply --script @/quit.txt");
         let output = command.env("DISPLAY", &self.name).output();
-        let told = stderr(&output.expect("the rara binary runs"));
-        let lacks =
-            told.contains("cannot draw into windows") || told.contains("cannot be used here");
+        let messages = stderr(&output.expect("the rara binary runs"));
+        let lacks = messages.contains("cannot draw into windows")
+            || messages.contains("cannot be used here");
         if lacks {
-            eprintln!("SKIPPED: {}", told.trim_end());
+            eprintln!("SKIPPED: {}", messages.trim_end());
         }
         !lacks
     }

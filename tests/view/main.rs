@@ -63,7 +63,7 @@ impl<'a> Viewer<'a> {
         // The camera is written last.
         while !path.with_extension("json").exists() {
             if let Some(status) = self.child.0.try_wait().expect("it can be asked") {
-                panic!("{status}: {}", self.told());
+                panic!("{status}: {}", self.messages());
             }
             assert!(Instant::now() < until, "no screenshot in a minute");
             sleep(Duration::from_millis(20));
@@ -91,18 +91,18 @@ impl<'a> Viewer<'a> {
         }
     }
 
-    fn told(&mut self) -> String {
-        self.child.told()
+    fn messages(&mut self) -> String {
+        self.child.messages()
     }
 
-    /// Quits; what it has told. No message of the validation layer, no failure.
+    /// Quits; what it has printed. No message of the validation layer, no failure.
     fn quit(mut self) -> String {
         self.say("quit");
-        let told = self.told();
+        let messages = self.messages();
         let status = self.child.0.wait().expect("it ends");
-        assert!(status.success(), "{status}: {told}");
-        assert!(!told.contains("validation"), "{told}");
-        told
+        assert!(status.success(), "{status}: {messages}");
+        assert!(!messages.contains("validation"), "{messages}");
+        messages
     }
 
     /// Processor time so far, hundredths of a second.
@@ -179,15 +179,15 @@ fn background() -> String {
     format!("--background {r},{g},{b}")
 }
 
-/// Draws a screenshot again with what the viewer told of it and nothing else, as a person would in a shell: the same file,
-/// to the byte.
-fn draws_again(folder: &Path, name: &str, told: &str) {
+/// Draws a screenshot again from what the viewer printed about it and nothing else, as a person would in a shell: the same
+/// file, to the byte.
+fn draws_again(folder: &Path, name: &str, messages: &str) {
     let wrote = format!(
         "wrote {}",
         folder.join(name).with_extension("png").display()
     );
-    let line = told.lines().find(|line| line.starts_with(&wrote));
-    let line = line.unwrap_or_else(|| panic!("{name} is not in {told}"));
+    let line = messages.lines().find(|line| line.starts_with(&wrote));
+    let line = line.unwrap_or_else(|| panic!("{name} is not in {messages}"));
     let (_, flags) = line.split_once("rara render ").expect("the flags");
     let again = folder.join(format!("{name} again.png"));
     let mut shell = Command::new("sh");
@@ -236,14 +236,14 @@ fn a_plane_is_moved_and_what_is_seen_is_what_render_draws() {
     viewer.say("plane off\ntimings");
     let whole = viewer.screenshot("whole");
     viewer.shows("nothing cut", &whole);
-    let told = viewer.quit();
+    let messages = viewer.quit();
     assert!(
-        told.contains("tiles") && told.contains("on the device"),
-        "{told}"
+        messages.contains("tiles") && messages.contains("on the device"),
+        "{messages}"
     );
 
     for name in ["first", "moved", "hard", "turned", "flown", "whole"] {
-        draws_again(&folder, name, &told);
+        draws_again(&folder, name, &messages);
     }
 }
 
@@ -263,15 +263,15 @@ fn every_setting_and_any_name_draws_a_screenshot_again() {
         "repeat 5 move 1e308,0,0\nshift -1e308,0\nturn 20,0\nmode exact\nplane next\nplane +0.2",
     );
     viewer.screenshot("two; more");
-    let told = viewer.quit();
-    draws_again(&folder, "it's $one", &told);
-    draws_again(&folder, "two; more", &told);
+    let messages = viewer.quit();
+    draws_again(&folder, "it's $one", &messages);
+    draws_again(&folder, "two; more", &messages);
 
     let words = "--size 160x120 --clip plane:0,0,1,0 --preset exact --key-bits 16 --target-format 8 --trace-all";
     let mut viewer = Viewer::start(&display, &folder, words);
     viewer.screenshot("three");
-    let told = viewer.quit();
-    draws_again(&folder, "three", &told);
+    let messages = viewer.quit();
+    draws_again(&folder, "three", &messages);
 }
 
 #[test]
@@ -306,8 +306,8 @@ fn a_window_may_change_its_size_and_vanish_for_a_while() {
     client.unmap(window);
     client.map(window);
     viewer.shows("what it is after that", &hidden);
-    let told = viewer.quit();
-    draws_again(&folder, "hidden", &told);
+    let messages = viewer.quit();
+    draws_again(&folder, "hidden", &messages);
 }
 
 #[test]
@@ -333,10 +333,10 @@ fn a_window_outlives_a_screenshot_that_cannot_be_written() {
     fs::rename(&shots, folder.join("gone")).expect("it is there");
     client.press(window, c);
     client.press(window, escape);
-    let told = viewer.told();
+    let messages = viewer.messages();
     assert!(
-        told.contains("rara: ") && told.contains("does not exist"),
-        "{told}"
+        messages.contains("rara: ") && messages.contains("does not exist"),
+        "{messages}"
     );
     assert_eq!(viewer.child.0.wait().expect("it ends").code(), Some(0));
 }
@@ -360,17 +360,20 @@ fn a_display_that_goes_away_is_a_failure_and_no_panic() {
             let window = client.window();
             client.kill(window);
         }
-        let told = child.told();
+        let messages = child.messages();
         let status = child.0.wait().expect("it ends");
-        assert_eq!(status.code(), Some(1), "{told}");
-        assert!(!told.contains("panicked"), "{told}");
+        assert_eq!(status.code(), Some(1), "{messages}");
+        assert!(!messages.contains("panicked"), "{messages}");
         // Xlib may be the first to notice; its line is the one or the other by what the socket says.
         let says = [
             "rara: the window was lost",
             "X connection to",
             "XIO:  fatal IO error",
         ];
-        assert!(says.iter().any(|says| told.contains(says)), "{told}");
+        assert!(
+            says.iter().any(|says| messages.contains(says)),
+            "{messages}"
+        );
     }
 }
 
@@ -385,17 +388,20 @@ fn a_screenshot_replaces_nothing_and_a_script_that_fails_ends_the_viewer() {
     viewer.screenshot("own");
     assert!(folder.join("shot_001.png").is_file() && folder.join("shot_002.json").is_file());
     viewer.say("screenshot @/own.png");
-    let told = viewer.told();
+    let messages = viewer.messages();
     assert!(
-        told.contains("own.png") && told.contains("replaces nothing"),
-        "{told}"
+        messages.contains("own.png") && messages.contains("replaces nothing"),
+        "{messages}"
     );
     assert_eq!(viewer.child.0.wait().expect("it ends").code(), Some(1));
 
     let mut viewer = Viewer::start(&display, &folder, "--size 64x64");
     viewer.say("# a comment\nleap");
-    let told = viewer.told();
-    assert!(told.contains("line 2: \"leap\" is no action"), "{told}");
+    let messages = viewer.messages();
+    assert!(
+        messages.contains("line 2: \"leap\" is no action"),
+        "{messages}"
+    );
     assert_eq!(viewer.child.0.wait().expect("it ends").code(), Some(2));
 }
 

@@ -163,8 +163,8 @@ fn count_if<R>(counts: bool, work: impl FnOnce() -> R) -> R {
     }
 }
 
-/// What callgrind counts: it is told this name. In the thread that calls it only, so that a CPU driver's threads do not
-/// count.
+/// What callgrind counts: it is given this name. It counts in the calling thread only, so that a CPU driver's threads do
+/// not.
 #[inline(never)]
 fn counted_by_callgrind<R>(work: impl FnOnce() -> R) -> R {
     black_box(work())

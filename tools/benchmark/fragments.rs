@@ -58,7 +58,7 @@ fn in_band(
     let mut light = vec![1.0_f32; (width * (rows.end - rows.start)) as usize];
     let mut count = 0;
     for splat in splats {
-        let (footprint, [x, y]) = (&splat.footprint, splat.footprint.pixel);
+        let (footprint, [x, y]) = (&splat.footprint, splat.footprint.screen_centre);
         let spans = (
             footprint.span(0, width, 0.0),
             footprint.span(1, rows.end, 0.0),

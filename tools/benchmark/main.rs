@@ -1,4 +1,4 @@
-//! What rara's frames take: the program behind `tools/bench`. A file a section; each measures and tells.
+//! What rara's frames take: the program behind `tools/bench`. A file a section; each measures and prints.
 
 mod args;
 mod bound;

@@ -139,7 +139,7 @@ int main(int count, char **arguments) {
     VK(vkQueueSubmit(queue, 1, &submit, nullptr));
     VK(vkQueueWaitIdle(queue));
 
-    // The picture, and what the frame tells about itself.
+    // The picture, and what the frame reports of itself.
     save(arguments[2], readback);
     RaraFrameStats stats;
     RARA(rara_renderer_stats(renderer, &stats, sizeof stats));

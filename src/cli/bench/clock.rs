@@ -15,12 +15,12 @@ pub(super) struct Times {
     pub(super) ms_min: f64,
     /// From recording to the picture, the median frame.
     pub(super) wall_ms: f64,
-    /// Of this process on all cores, the median frame; 0 where the system does not tell.
+    /// Of this process on all cores, the median frame; 0 where the system does not say.
     pub(super) cpu_ms: f64,
     /// The same, the least frame.
     pub(super) cpu_ms_min: f64,
     /// What a choice costs: on the device `ms_min`. Where the device is this machine's processor, and the system
-    /// tells, `cpu_ms_min`, which other work on the machine hardly disturbs.
+    /// says, `cpu_ms_min`, which other work on the machine hardly disturbs.
     pub(super) cost: f64,
     /// Each stage's median and minimum.
     pub(super) passes: Vec<Pass>,
@@ -142,13 +142,13 @@ mod tests {
             (times.cpu_ms, times.cpu_ms_min, times.cost),
             (0.0, 0.0, 1.0)
         );
-        let told = Samples {
+        let with_cpu_time = Samples {
             cpu: vec![9.0, 8.0],
             ..samples
         };
-        assert_eq!(told.times(true).cost, 8.0);
+        assert_eq!(with_cpu_time.times(true).cost, 8.0);
         assert_eq!(
-            told.times(false).cost,
+            with_cpu_time.times(false).cost,
             1.0,
             "a processor's time is not a GPU's"
         );

@@ -1,4 +1,4 @@
-//! What a viewer can be told to do, by keys, by the mouse or by a script.
+//! What a viewer can be asked to do, by keys, by the mouse or by a script.
 
 use std::path::PathBuf;
 use std::str::FromStr;

@@ -154,7 +154,7 @@ impl App {
         Ok(())
     }
 
-    /// Keeps a failure and ends; the first one is told.
+    /// Keeps a failure and ends; the first one is reported.
     fn end(&mut self, events: &ActiveEventLoop, outcome: Result<(), Failure>) {
         if let Err(failure) = outcome {
             self.failure.get_or_insert(failure);

@@ -1,4 +1,4 @@
-//! Keys and mouse to actions; `KEYS` tells people.
+//! Keys and mouse to actions; `KEYS` is their list for people.
 
 use std::collections::HashSet;
 

@@ -43,7 +43,7 @@ pub(super) struct Viewer {
     viewpoint: Viewpoint,
     /// Share of the scene's radius that a second of flying goes.
     speed: f64,
-    /// The window's pixels, as its events tell them: winit panics when it is asked for them and the window is gone.
+    /// The window's pixels, as its events report them: winit panics when it is asked for them and the window is gone.
     size: (u32, u32),
     minimised: bool,
     /// Nothing of it is visible.

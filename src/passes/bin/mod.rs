@@ -1,8 +1,8 @@
 //! Stage `bin`: the splats of each tile, by depth.
 //!
 //! It is given the survivors' outlines, as masks or as splats, and their [order](super::sort::sorted); it leaves the tiles'
-//! lists and where they begin, and how many pairs of tile and splat there are. Which kernels do it, the plan says: each set
-//! has a file here, shaders and scratch of its own, and may use what the sort has left over.
+//! lists and where they begin, and how many pairs of tile and splat there are. The plan says which kernels do it: each set
+//! has a file here, shaders and scratch of its own, and may use the buffers that the sort has left over.
 
 mod spans;
 

@@ -1,5 +1,5 @@
-//! First the spans of each row of tiles, by runs of consecutive splats, then their splats in each of the row's tiles. Its
-//! scratch are the counts and the spans of [`TileBuffers`](crate::passes::buffers::TileBuffers).
+//! Finds the spans of each row of tiles, by runs of consecutive splats, then their splats in each of the row's tiles. Its
+//! scratch is the counts and the spans of [`TileBuffers`](crate::passes::buffers::TileBuffers).
 
 use crate::gpu::{Groups, Recorder};
 use crate::passes::buffers::indirect;
@@ -24,7 +24,7 @@ pub(super) const KERNELS: KernelSet = KernelSet {
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (b, t) = (frame.buffers, frame.tiles());
-    // What the sort has left over has room for the masks in the order of depth.
+    // The buffers that the sort has left over have room for the masks in the order of depth.
     let sort::Sorted {
         order,
         spare: [mask_origins, masks_above, masks_below],

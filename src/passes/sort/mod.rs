@@ -1,9 +1,9 @@
 //! Stage `sort`: a stable sort of the survivors by linear view depth, ties by their number in the scene.
 //!
-//! It is given as many keys as there are survivors, in both `keys`; `order` holds nothing yet, and the first pass takes a
-//! key's place for its survivor. It leaves the sorted keys and their survivors in the pair of buffers that [`result`] says,
-//! on which all later stages rely, and the rest to whoever comes next ([`Sorted::spare`]). Which kernels do it, the plan
-//! says: each set has a file here, shaders and scratch of its own.
+//! It is given as many keys as there are survivors, in both `keys`. `order` holds nothing yet: the survivors are numbered
+//! like their keys, from 0. It leaves the sorted keys and their survivors in the pair of buffers that [`result`] names, on
+//! which all later stages rely, and the others to the stages that follow ([`Sorted::spare`]). The plan says which kernels do
+//! it: each set has a file here, shaders and scratch of its own.
 
 mod runs;
 
@@ -33,16 +33,16 @@ pub(super) fn result(plan: &Plan) -> usize {
     }
 }
 
-/// What the sort leaves.
+/// The buffers that the sort leaves.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sorted<'a> {
     /// The survivors, front to back.
     pub(super) order: &'a Buffer,
-    /// What nobody needs any more once the order is known: a word a Gaussian each.
+    /// Buffers of a word a Gaussian that nobody needs any more once the order is known, for the stages that follow.
     pub(super) spare: [&'a Buffer; 3],
 }
 
-/// What the sort of a frame leaves.
+/// The buffers that the sort of a frame leaves.
 pub(super) fn sorted<'a>(frame: &Frame<'a>) -> Sorted<'a> {
     let (b, at) = (frame.buffers, frame.plan.sorted());
     Sorted {

@@ -1,4 +1,4 @@
-//! A radix sort by runs of consecutive keys, each owned by one invocation: of few and long ones, as processors like them.
+//! A radix sort by runs of consecutive keys, each owned by one invocation. The runs are few and long, as suits processors.
 //! Its scratch is `histogram`.
 
 use std::mem::offset_of;
@@ -11,7 +11,7 @@ use crate::passes::shaders::{sort_count, sort_scan, sort_scatter, sort_ties};
 use crate::passes::stage::{Frame, KernelSet, key};
 use crate::types::FrameCounts;
 
-// So many passes have indirect commands of their own in FrameCounts.
+// FrameCounts has indirect commands for four passes.
 const _: () = assert!(u32::BITS.div_ceil(limits::SORT_BITS) <= 4);
 
 pub(super) const KERNELS: KernelSet = KernelSet {
@@ -29,8 +29,8 @@ pub(super) fn result(plan: &Plan) -> usize {
     (plan.way.sort_passes % 2) as usize
 }
 
-/// Sorts the survivors by their depths, and those of one depth by their number in the scene. Of the passes that the scene's bounds ask for the device leaves
-/// out the first ones, as many as there are leading digits in which the keys agree (sort.glsl).
+/// Sorts the survivors by their depths, and those of one depth by their number in the scene. Of the passes that the scene's
+/// bounds ask for, the device skips the first ones, as many as there are leading digits in which the keys agree (sort.glsl).
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
     let passes = frame.plan.way.sort_passes;
@@ -50,7 +50,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
             keys,
             histogram: &b.histogram,
         };
-        // The first count is needed before anybody knows which pass is the first one.
+        // The first count always runs: it decides which passes are skipped.
         let groups = if pass == 0 { runs } else { of_pass(pass - 1) };
         let params = sort_count::Params { pass };
         frame.dispatch(recorder, buffers, params, groups);

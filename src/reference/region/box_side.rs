@@ -20,8 +20,8 @@ pub struct Bounds {
     pub sigma: f64,
 }
 
-/// The side that all of them have; [`Side::Cutoff`] where they may differ. Conservative: a box has a side only where each
-/// Gaussian alone has it.
+/// The side that all of them have; [`Side::Cutoff`] where they may differ. It is conservative: a box has a side only where
+/// each Gaussian alone has it.
 pub fn box_side(bounds: &Bounds, clip: &Clip, settings: &Settings) -> Side {
     if clip.surfaces.is_empty() || settings.mode == Mode::None {
         return Side::Visible;

@@ -6,7 +6,7 @@ use super::surface::surface_gaussian_side;
 use crate::reference::real::{Real, Vec3};
 use crate::{Clip, Gaussians, Mode, Settings};
 
-/// The side of Gaussian `index`, whose half axes these are and whose band reaches so many standard deviations. None is
+/// The side of Gaussian `index`, which has the half axes `axes` and a band of `deviations` standard deviations. It is never
 /// [`Side::Culled`].
 pub fn gaussian_side<T: Real>(
     scene: &Gaussians,

@@ -1,4 +1,4 @@
-//! What a surface keeps of a Gaussian that it cuts.
+//! The half-space that a surface keeps of a Gaussian that it cuts.
 
 use crate::reference::real::{Real, Vec3};
 

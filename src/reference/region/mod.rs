@@ -1,5 +1,5 @@
-//! The region that a clip keeps: its shape, and the questions that the stages ask of it, a file each, beside the files of the
-//! same names in `glsl/region/`.
+//! The region that a clip keeps: its surfaces, and the questions that the stages ask of it. Each has a file here, beside the
+//! file of the same name in `glsl/region/`.
 
 mod box_side;
 mod gaussian_side;
@@ -16,7 +16,7 @@ pub use share::share;
 pub(super) use sides::keeps;
 pub(super) use surface::{surface_crossings, surface_gaussian_side, surface_half_space};
 
-/// The paper's three classes, and what is not seen anyway.
+/// The side of a Gaussian: the paper's three classes, and culled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     /// Outside the view or too faint, whatever the clip says.

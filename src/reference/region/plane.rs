@@ -49,7 +49,7 @@ pub(super) fn box_side(plane: &Plane, middle: DVec3, half: DVec3, support: f64) 
     }
 }
 
-/// One, or none where the line runs along the plane.
+/// There is one crossing, or none where the line runs along the plane.
 pub(super) fn crossings(plane: &Plane, start: DVec3, step: DVec3) -> Vec<f64> {
     let at = -plane.distance(start) / plane.normal().dot(step);
     if at.is_finite() { vec![at] } else { Vec::new() }

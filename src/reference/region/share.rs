@@ -1,4 +1,4 @@
-//! What a pixel's share of a splat is that several surfaces cut.
+//! A pixel's share of a splat that several surfaces cut.
 
 use crate::ClipOp;
 use crate::reference::orthant::{Threshold, orthant};

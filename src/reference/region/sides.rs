@@ -1,10 +1,10 @@
-//! How the surfaces' answers make the region's.
+//! The region's answers, made from those of its surfaces.
 
 use super::Side;
 use crate::ClipOp;
 
-/// The region's side of something, from what each of its surfaces says of it. What one drops no intersection holds and
-/// what one keeps every union does, whatever the others say; else it is cut where one of them cuts it.
+/// The region's side of something, from its surfaces' sides. No intersection holds what one surface drops, and every union
+/// holds what one keeps, whatever the others say; else it is cut where one of them cuts it.
 pub(super) fn combined(op: ClipOp, sides: impl Iterator<Item = Side>) -> Side {
     let (decides, undecided) = match op {
         ClipOp::And => (Side::Invisible, Side::Visible),

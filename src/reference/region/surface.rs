@@ -1,4 +1,4 @@
-//! What the stages ask of a surface. A shape answers in a file of its own.
+//! The questions that the stages ask of a surface. Each kind answers in a file of its own.
 
 use glam::DVec3;
 
@@ -6,8 +6,8 @@ use super::{HalfSpace, Side, plane};
 use crate::reference::real::{Real, Vec3};
 use crate::{Gaussians, Mode, Settings, Surface};
 
-/// On which side of a surface Gaussian `index` is, whose half axes these are and whose band reaches so many standard
-/// deviations; of a hard clip, its centre.
+/// On which side of a surface Gaussian `index` is, which has the half axes `axes` and a band of `deviations` standard
+/// deviations. A hard clip asks for the centre alone.
 pub(in crate::reference) fn surface_gaussian_side<T: Real>(
     surface: &Surface,
     scene: &Gaussians,
@@ -30,7 +30,7 @@ pub(in crate::reference) fn surface_gaussian_side<T: Real>(
     }
 }
 
-/// On which side all Gaussians are whose centres lie in a box and that reach at most so far from them, world units.
+/// On which side all Gaussians are whose centres lie in a box and that reach at most `support` from them, world units.
 pub(super) fn surface_box_side(
     surface: &Surface,
     middle: DVec3,
@@ -54,7 +54,7 @@ pub(in crate::reference) fn surface_half_space<T: Real>(
     }
 }
 
-/// Where the points `start + t step` of a line cross a surface: all such t, in any order. No shader asks this: the truth
+/// Where the points `start + t step` of a line cross a surface: all such t, in any order. No shader asks this; the truth
 /// does, which uses none of the renderer's formulas.
 pub(in crate::reference) fn surface_crossings(
     surface: &Surface,

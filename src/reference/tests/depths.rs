@@ -36,7 +36,7 @@ fn errors(sigma: f64, op: ClipOp, planes: usize, slab: bool) -> (f64, f64) {
         let footprint = Footprint::<f64>::new(&scene, 0, &View::new(&view)).expect("in view");
         let depth = SplatDepth::new(&scene, 0, &footprint, &clip, &settings);
         let whole = SplatDepth::new(&scene, 0, &footprint, &NO_CLIP, &settings);
-        let [k0, k1, k2] = footprint.factors;
+        let [k0, k1, k2] = footprint.conic;
         // A point within two deviations of the footprint.
         let (u, v) = (dice.between(-1.4, 1.4), dice.between(-1.4, 1.4));
         let dx = u / k0;
@@ -45,7 +45,10 @@ fn errors(sigma: f64, op: ClipOp, planes: usize, slab: bool) -> (f64, f64) {
         if weight.expect("traced").weight(dx, dy) < 1e-3 {
             continue;
         }
-        let at = DVec2::new(footprint.pixel[0] + dx, footprint.pixel[1] + dy);
+        let at = DVec2::new(
+            footprint.screen_centre[0] + dx,
+            footprint.screen_centre[1] + dy,
+        );
         let truth = mean_depth(&scene, 0, &view, &clip, at, Bundle::Parallel, 200);
         let deviation = footprint.rows[2].length();
         worst = worst.max((depth.mean(dx, dy) - truth).abs() / deviation);

@@ -231,7 +231,7 @@ fn a_picture_twice_as_large_is_another_picture_of_small_splats() {
         let size = (64.0 * factor) as u32;
         let view = View::<f64>::new(&camera(size, size, 100.0 * factor));
         let footprint = Footprint::new(&scene(&[one]), 0, &view).unwrap();
-        (footprint.half[0] / footprint.extent).powi(2)
+        (footprint.half_sides[0] / footprint.extent).powi(2)
     };
     let low_pass = f64::from(crate::limits::LOW_PASS);
     let [small, large] = [1.0, 2.0].map(variance);

@@ -257,8 +257,8 @@ fn the_footprint_is_the_published_ewa_projection_with_matrices() {
             reach * xx.sqrt(),
             reach * yy.sqrt(),
         ];
-        let [x, y] = footprint.pixel;
-        for (value, expected) in [x, y, footprint.half[0], footprint.half[1]]
+        let [x, y] = footprint.screen_centre;
+        for (value, expected) in [x, y, footprint.half_sides[0], footprint.half_sides[1]]
             .into_iter()
             .zip(expected)
         {

@@ -126,7 +126,7 @@ impl Case {
 
     /// The pixel's offset from the centre in pixels.
     pub(super) fn pixel<T: Real>(&self, footprint: &Footprint<T>) -> (T, T) {
-        let [k0, k1, k2] = footprint.factors;
+        let [k0, k1, k2] = footprint.conic;
         let dx = T::of(self.offset[0]) / k0;
         (dx, (T::of(self.offset[1]) - k1 * dx) / k2)
     }

@@ -133,13 +133,16 @@ fn loss(regime: &Regime, settings: &Settings, count: usize) -> (f64, f64) {
         let cut = cutoff::cutoff(&scene, 0, &footprint, &wide, &clip, settings).unwrap();
         let twin_cut = cutoff::cutoff(&scene, 0, &twin, &single, &clip, settings).unwrap();
         // The picture's pixel centre nearest to a point of the footprint.
-        let [k0, k1, k2] = footprint.factors;
+        let [k0, k1, k2] = footprint.conic;
         let dx = dice.normal() / k0;
         let dy = (dice.normal() - k1 * dx) / k2;
-        let near = [footprint.pixel[0] + dx, footprint.pixel[1] + dy];
+        let near = [
+            footprint.screen_centre[0] + dx,
+            footprint.screen_centre[1] + dy,
+        ];
         let pixel = [0, 1].map(|axis| near[axis].floor().clamp(0.0, [639.0, 479.0][axis]) + 0.5);
-        let [dx, dy] = [0, 1].map(|axis| pixel[axis] - footprint.pixel[axis]);
-        let [sx, sy] = [0, 1].map(|axis| pixel[axis] as f32 - twin.pixel[axis]);
+        let [dx, dy] = [0, 1].map(|axis| pixel[axis] - footprint.screen_centre[axis]);
+        let [sx, sy] = [0, 1].map(|axis| pixel[axis] as f32 - twin.screen_centre[axis]);
         let alpha = f64::from(one.opacity) * (-0.5 * footprint.power(dx, dy)).exp();
         let error = alpha * (cut.weight(dx, dy) - f64::from(twin_cut.weight(sx, sy))).abs();
         max = max.max(error);

@@ -90,10 +90,13 @@ impl Study {
             };
             let record = cutoff::cutoff(&scene, 0, &footprint, &view, &clip, &settings).unwrap();
             // A pixel of the footprint, by its density.
-            let [k0, k1, k2] = footprint.factors;
+            let [k0, k1, k2] = footprint.conic;
             let dx = dice.normal() / k0;
             let dy = (dice.normal() - k1 * dx) / k2;
-            let position = DVec2::new(footprint.pixel[0] + dx, footprint.pixel[1] + dy);
+            let position = DVec2::new(
+                footprint.screen_centre[0] + dx,
+                footprint.screen_centre[1] + dy,
+            );
             let truth =
                 quadrature::share(&scene, 0, &camera, &clip, position, self.bundle, self.steps);
             if truth.is_nan() {
@@ -317,8 +320,8 @@ fn the_last_of_a_splat_in_front_of_the_eye_is_cut_like_the_rest() {
     for x in (10..480).step_by(5) {
         let position = DVec2::new(f64::from(x) + 0.5, 264.5);
         let [dx, dy] = [
-            position.x - footprint.pixel[0],
-            position.y - footprint.pixel[1],
+            position.x - footprint.screen_centre[0],
+            position.y - footprint.screen_centre[1],
         ];
         let weight = cut.weight(dx, dy);
         let truth = quadrature::share(&scene, 0, &camera, &clip, position, Bundle::Parallel, 64);

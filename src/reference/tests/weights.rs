@@ -70,7 +70,10 @@ fn the_chord_is_the_papers_quadratic() {
             continue;
         };
         let pixel = [dice.between(0.0, 64.0), dice.between(0.0, 64.0)];
-        let (dx, dy) = (pixel[0] - footprint.pixel[0], pixel[1] - footprint.pixel[1]);
+        let (dx, dy) = (
+            pixel[0] - footprint.screen_centre[0],
+            pixel[1] - footprint.screen_centre[1],
+        );
         let cut = |miss| {
             cut(
                 &scene,

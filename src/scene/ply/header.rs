@@ -75,7 +75,7 @@ fn cut(bytes: &[u8]) -> Result<(Vec<String>, usize, u8), String> {
             "this is not a PLY file, which begins with the line \"ply\"{guess}; convert it to a 3DGS .ply"
         ));
     }
-    // Old files end lines with a carriage return alone. The first line tells; a payload byte can't confuse it.
+    // Old files end lines with a carriage return alone. The first line shows it; a payload byte can't confuse it.
     let first_end = bytes.iter().position(|b| matches!(b, b'\n' | b'\r'));
     let line_end = match first_end.map(|i| (bytes[i], bytes.get(i + 1))) {
         Some((b'\r', next)) if next != Some(&b'\n') => b'\r',

@@ -1,5 +1,5 @@
-//! Every call that can fail does, once, at every place of a headless life: each ends in an error that says what to do, and
-//! leaves nothing behind, neither memory nor an object nor a word of the validation layer.
+//! Every call that can fail does so once, at every place of a headless life. Each failure ends in an error that says what to
+//! do, and leaves nothing behind: no memory, no object, and no message of the validation layer.
 
 use super::*;
 use crate::clip::{ClipOp, Plane};
@@ -33,7 +33,7 @@ fn life(headless: &mut Headless, raster: Raster) -> Result<[Picture; 2]> {
 
 fn on(device: &Device) -> Result<Headless> {
     let desc = HeadlessDesc {
-        bindings: Some(Bindings::Bound), // what the layer can watch, where the driver can
+        bindings: Some(Bindings::Bound), // the layer can watch these, where the driver has them
         pipeline_cache: PipelineCache::Off,
         ..HeadlessDesc::default()
     };
@@ -87,7 +87,8 @@ fn run_out(next: impl Fn(usize) -> usize) {
     assert_eq!(device.close(), Vec::<String>::new());
 }
 
-/// That memory runs out in a call the time after so many is an error without a trace; false where there is no such time.
+/// Checks that a call whose memory runs out, after `after` that succeed, ends in an error and leaves no trace. Returns false
+/// where there are not so many calls.
 fn fails(device: &Device, call: &'static &'static str, after: usize) -> bool {
     let result = [
         Code::ERROR_OUT_OF_DEVICE_MEMORY,
@@ -109,7 +110,7 @@ fn fails(device: &Device, call: &'static &'static str, after: usize) -> bool {
             let says = text.contains("memory") || text.contains("allocated");
             assert!(says, "{text}");
         }
-        // Times are left out, tiles become quads and a reclipped frame a whole one.
+        // Without an error, times are left out, tiles have become quads and a reclipped frame a whole one.
         None => {
             let tolerated = [
                 "vkGetQueryPoolResults",
@@ -124,7 +125,7 @@ fn fails(device: &Device, call: &'static &'static str, after: usize) -> bool {
         }
         Some(other) => panic!("{call}, {result:?}: {other}"),
     }
-    // What failed can be tried again, by the same renderer.
+    // The same renderer can try again what failed.
     if let (Ok(headless), 0) = (&mut opened, after) {
         let [first, last] = life(headless, Raster::Tiles).expect("there is memory again");
         assert!(first != last && first.pixels.iter().any(|pixel| pixel[3] > 0.1));
@@ -158,7 +159,7 @@ fn a_device_may_be_lost_anywhere() {
             Ok(_) => panic!("{call} was lost and nobody noticed"),
             Err(other) => panic!("{call}: {other}"),
         }
-        // And stays so.
+        // It stays lost.
         let again = opened
             .picture()
             .and(life(&mut opened, Raster::Tiles).map(drop));
@@ -259,7 +260,7 @@ fn without_any_extension_a_frame_is_drawn_all_the_same() {
     assert_eq!(device.close(), Vec::<String>::new());
 }
 
-/// What RenderDoc, Nsight and the validation layer show.
+/// Everything has a name, which RenderDoc, Nsight and the validation layer show.
 #[test]
 fn every_object_has_a_name_and_every_command_a_label() {
     let device = faults::device(None).expect("a device");

@@ -1,4 +1,4 @@
-//! What needs a look inside: seams that only these tests have.
+//! Tests that look inside, through seams that only they have.
 
 use super::*;
 use crate::clip::{ClipOp, Plane};
@@ -91,7 +91,7 @@ fn scenes_of_blocks() -> [Gaussians; 4] {
     [general, small, odd, tight]
 }
 
-/// From outside, from within and with a long lens, aside and askew.
+/// Views from outside, from within and with a long lens, aside and askew.
 fn views_of_blocks(bounds: &Bounds) -> Vec<Camera> {
     let centre = bounds.centre();
     let beside = |way: DVec3, size| {
@@ -118,7 +118,7 @@ fn views_of_blocks(bounds: &Bounds) -> Vec<Camera> {
     ]
 }
 
-/// The same view with a point so many pixels right of the picture's left edge, where blocks come into view.
+/// The same view with a point this many pixels right of the picture's left edge, where blocks come into view.
 fn at_the_edge(camera: Camera, point: Vec3, pixels: f64) -> Camera {
     let seen = camera.rotation * (point.as_dvec3() - camera.eye);
     Camera {
@@ -127,7 +127,7 @@ fn at_the_edge(camera: Camera, point: Vec3, pixels: f64) -> Camera {
     }
 }
 
-/// What is settled for a block at once is what its Gaussians would each be found to be: the same counts, the same bytes.
+/// Blocks that are settled as a whole give the same counts and the same bytes as their Gaussians looked at one by one.
 #[test]
 fn blocks_change_nothing() {
     let mut state = 5_u64;
@@ -228,7 +228,7 @@ fn an_empty_scene_after_another_shows_nothing() {
 }
 
 #[test]
-fn what_is_left_alive_is_told_at_the_end() {
+fn what_is_left_alive_is_reported_at_the_end() {
     let headless = headless();
     // SAFETY: the device is alive; that the fence is never destroyed is what is tested.
     let fence = unsafe {

@@ -73,8 +73,8 @@ fn check<T: Real>(scene: &Gaussians, camera: &Camera, clip: &Clip, settings: &Se
     };
     splat.cut = cutoff::cutoff(scene, 0, &splat.footprint, &view, clip, settings);
     let footprint: &Footprint<T> = &splat.footprint;
-    assert!(footprint.factors.iter().all(|k| k.is_finite()));
-    let [x, y] = footprint.pixel.map(T::wide);
+    assert!(footprint.conic.iter().all(|k| k.is_finite()));
+    let [x, y] = footprint.screen_centre.map(T::wide);
     // The pixel nearest to the centre, and one some way off.
     let nearest = [
         x.clamp(0.0, 63.0).floor() + 0.5,
@@ -82,8 +82,8 @@ fn check<T: Real>(scene: &Gaussians, camera: &Camera, clip: &Clip, settings: &Se
     ];
     for pixel in [nearest, [0.5, 0.5], [40.5, 30.5]] {
         let (dx, dy) = (
-            T::of(pixel[0]) - footprint.pixel[0],
-            T::of(pixel[1]) - footprint.pixel[1],
+            T::of(pixel[0]) - footprint.screen_centre[0],
+            T::of(pixel[1]) - footprint.screen_centre[1],
         );
         let falloff = footprint.power(dx, dy).wide();
         let Some(alpha) = splat::alpha(&splat, dx, dy, settings.decay_law()) else {

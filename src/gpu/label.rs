@@ -1,0 +1,36 @@
+//! Debug labels around what a command buffer records.
+
+use std::ffi::CStr;
+
+use ash::vk;
+
+use super::{Device, validation};
+
+/// Opens a debug label on a command buffer, which the caller has made sure is recording on `device`.
+pub(super) fn begin_label(device: &Device, cmd: vk::CommandBuffer, name: &str) {
+    let Some(debug) = device.debug_utils() else {
+        return;
+    };
+    if device.validates() {
+        validation::enter(name);
+    }
+    // The text is on the stack, as recording does not allocate; a longer name is cut.
+    let mut text = [0_u8; 64];
+    let length = name.len().min(text.len() - 1);
+    text[..length].copy_from_slice(&name.as_bytes()[..length]);
+    let label = vk::DebugUtilsLabelEXT::default()
+        .label_name(CStr::from_bytes_until_nul(&text).expect("the last byte is always NUL"));
+    // SAFETY: recorder and drawer are made from a command buffer that is recording; the label outlives the call.
+    unsafe { debug.cmd_begin_debug_utils_label(cmd, &label) };
+}
+
+/// Closes the label that [`begin_label`] opened.
+pub(super) fn end_label(device: &Device, cmd: vk::CommandBuffer) {
+    if let Some(debug) = device.debug_utils() {
+        // SAFETY: as in `begin_label`, which callers call first.
+        unsafe { debug.cmd_end_debug_utils_label(cmd) };
+        if device.validates() {
+            validation::leave();
+        }
+    }
+}

@@ -39,7 +39,7 @@ pub struct Loaded {
 /// [`Error::Io`] if the file can't be read, [`Error::Format`] if it is not a scene or is cut off, [`Error::Memory`] if
 /// it doesn't fit. Single bad elements are no error: see [`LoadReport`].
 pub fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<Loaded> {
-    // Before opening it, which would wait for a pipe's writer.
+    // This is checked before the file is opened, since opening a pipe would wait for its writer.
     let metadata = std::fs::metadata(path).map_err(Error::io(path))?;
     if !metadata.is_file() {
         return Err(Error::format(
@@ -113,7 +113,7 @@ pub fn load_from<R: Read + Seek>(
     Ok(Loaded { gaussians, report })
 }
 
-/// The caller's progress callback, told in bytes that remain.
+/// The caller's progress callback, for readers that know how many bytes are left.
 struct Progress<'a> {
     total: u64,
     call: &'a mut dyn FnMut(u64, u64),

@@ -17,7 +17,7 @@ pub type PFN_vkGetInstanceProcAddr = Option<vk::PFN_vkGetInstanceProcAddr>;
 /// Room for the names of extensions in RaraSupport.
 pub const RARA_MAX_EXTENSIONS: usize = 8;
 
-/// What a physical device that will do offers beyond what must be there. What must is Vulkan 1.3, or 1.2 with
+/// What a physical device that will do offers beyond the requirements. Required are Vulkan 1.3, or 1.2 with
 /// VK_KHR_synchronization2 and VK_KHR_dynamic_rendering, the features bufferDeviceAddress, synchronization2 and
 /// dynamicRendering, and a queue family with graphics and compute.
 #[repr(C)]
@@ -27,22 +27,22 @@ pub struct RaraSupport {
     pub struct_size: usize,
     /// The first queue family with graphics and compute. Any other with both will do too.
     pub queue_family: u32,
-    /// VK_EXT_mesh_shader with meshShader and taskShader. Optional: splats can be drawn without.
+    /// VK_EXT_mesh_shader with meshShader and taskShader. Optional: splats can be drawn without them.
     pub mesh_shader: vk::Bool32,
     /// VK_KHR_push_descriptor. Optional: RARA_BINDINGS_BOUND needs it.
     pub push_descriptor: vk::Bool32,
-    /// VK_KHR_portability_subset. A host must enable it where it is there.
+    /// VK_KHR_portability_subset. A host must enable it where the device has it.
     pub portability_subset: vk::Bool32,
-    /// Nanoseconds a tick of a timestamp, 0 where the queue family has none: then frames have no times.
+    /// Nanoseconds of one tick of a timestamp; 0 where the queue family has no timestamps, and frames then have no times.
     pub timestamp_period: f32,
     /// Number of extensions.
     pub extension_count: u32,
-    /// Those from above that are there and those that 1.2 needs, to be added to ppEnabledExtensionNames; the strings
-    /// live as long as the library.
+    /// The extensions named above that the device has, and those that Vulkan 1.2 needs, to be added to
+    /// ppEnabledExtensionNames. The strings live as long as the library.
     pub extensions: [*const c_char; RARA_MAX_EXTENSIONS],
-    /// Bytes of the largest buffer: what a scene's spherical harmonics may take.
+    /// Bytes of the largest buffer, which limits a scene's spherical harmonics.
     pub max_buffer_size: u64,
-    /// Pixels along a side of an image.
+    /// Most pixels along a side of an image.
     pub max_image_size: u32,
     /// The Vulkan version that rara uses: VK_API_VERSION_1_2 or VK_API_VERSION_1_3.
     pub api_version: u32,
@@ -76,8 +76,8 @@ impl RaraSupport {
     }
 }
 
-/// Whether a physical device will do, asked before there is a device. RARA_ERROR_DEVICE if not: the message names what is
-/// missing.
+/// Checks whether a physical device will do, before there is a device. If it will not, the result is RARA_ERROR_DEVICE
+/// and the message names what is missing.
 ///
 /// `api_version` is the VkApplicationInfo::apiVersion that the instance was created with, 1.2 or later; `support_size` is
 /// sizeof *support.
@@ -104,12 +104,12 @@ pub unsafe extern "C" fn rara_check(
     })
 }
 
-/// Sets the features that rara needs in the host's own structs: those that are in the pNext chain of its
-/// VkDeviceCreateInfo, whichever struct of Vulkan's they are in. No other field is touched. RARA_ERROR_INVALID names a
-/// feature for which the chain has no struct; meshShader and taskShader may be missing, for a host that does without.
+/// Sets the features that rara needs in the host's own structs: those in the pNext chain of its VkDeviceCreateInfo,
+/// whichever of Vulkan's structs they are in. No other field is touched. RARA_ERROR_INVALID names a feature for which the
+/// chain has no struct; meshShader and taskShader may be missing, since a host can do without.
 ///
 /// # Safety
-/// `support` is what rara_check has filled; `p_next` is null, or a chain of structs that may be changed.
+/// `support` was filled by rara_check; `p_next` is null, or a chain of structs that may be changed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_support_features(
     support: *const RaraSupport,
@@ -129,7 +129,7 @@ unsafe fn set_features(next: *mut c_void, mesh_shader: bool) -> Result<()> {
     use vk::StructureType as Type;
     let (mut address, mut synchronization, mut rendering) = (false, false, false);
     let mut next = next.cast::<vk::BaseOutStructure<'_>>();
-    // SAFETY: each struct of a chain begins with its type, which says what it is, and with the next one.
+    // SAFETY: each struct of a chain begins with its type, which says what it is, and with a pointer to the next one.
     unsafe {
         while let Some(base) = next.as_mut() {
             match base.s_type {
@@ -193,7 +193,7 @@ unsafe fn set_features(next: *mut c_void, mesh_shader: bool) -> Result<()> {
     Ok(())
 }
 
-/// A host's device as rara uses it. May be used by several threads at once.
+/// A host's device as rara uses it. Several threads may use it at once.
 pub struct RaraDevice(pub(crate) Device);
 
 /// A host's own Vulkan, for rara_device_adopt. All of it stays the host's.
@@ -206,21 +206,22 @@ pub struct RaraAdoptDesc {
     pub get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
     /// Created for `api_version` below.
     pub instance: vk::Instance,
-    /// The device below was made from it.
+    /// The physical device that the device below was made from.
     pub physical_device: vk::PhysicalDevice,
     /// Created with what rara_support_features sets.
     pub device: vk::Device,
-    /// With graphics and compute; everything that rara records goes to it.
+    /// A queue with graphics and compute; everything that rara records goes to it.
     pub queue: vk::Queue,
     /// The queue's family.
     pub queue_family: u32,
-    /// VK_EXT_mesh_shader, meshShader and taskShader were enabled. Default: no.
+    /// Whether VK_EXT_mesh_shader, meshShader and taskShader were enabled. Default: no.
     pub mesh_shader: vk::Bool32,
-    /// VK_KHR_push_descriptor was enabled. Default: no.
+    /// Whether VK_KHR_push_descriptor was enabled. Default: no.
     pub push_descriptor: vk::Bool32,
-    /// VK_EXT_debug_utils was enabled on the instance: rara names its objects and labels its stages. Default: no.
+    /// Whether VK_EXT_debug_utils was enabled on the instance: rara then names its objects and labels its stages.
+    /// Default: no.
     pub debug_utils: vk::Bool32,
-    /// Where compiled pipelines are looked up and kept. Default: null, nowhere.
+    /// Where compiled pipelines are looked up and kept. Default: null, and none are kept.
     pub pipeline_cache: vk::PipelineCache,
     /// VkApplicationInfo::apiVersion of the instance, 1.2 or later. Default: VK_API_VERSION_1_3.
     pub api_version: u32,
@@ -250,7 +251,7 @@ impl RaraAdoptDesc {
     }
 }
 
-/// Nothing optional, and null handles that the host replaces. `desc_size` is sizeof *desc.
+/// Enables nothing optional and sets all handles to null; the host replaces them. `desc_size` is sizeof *desc.
 ///
 /// # Safety
 /// `desc` has room for `desc_size` bytes.
@@ -263,8 +264,8 @@ pub unsafe extern "C" fn rara_adopt_desc_default(
     guard(|| unsafe { write(desc, desc_size, &RaraAdoptDesc::new(), "desc") })
 }
 
-/// Works with the host's device. Of what is in `desc` nothing is ever destroyed, and nothing is submitted to the queue but
-/// by rara_scene_buffers_upload and rara_scene_buffers_upload_layers.
+/// Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload and
+/// rara_scene_buffers_upload_layers submit to the queue.
 ///
 /// # Safety
 /// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice.
@@ -295,7 +296,7 @@ pub unsafe extern "C" fn rara_device_adopt(
     })
 }
 
-/// Bytes of device memory that rara has allocated on it, 0 for null.
+/// Bytes of device memory that rara has allocated on the device, 0 for null.
 ///
 /// # Safety
 /// `device` is null or alive.
@@ -310,8 +311,8 @@ pub unsafe extern "C" fn rara_device_bytes(device: *const RaraDevice) -> u64 {
     bytes
 }
 
-/// Gives the device back; the VkDevice lives on. What was made from it may be destroyed later, but before the VkDevice.
-/// Null is ignored.
+/// Gives the device back; the VkDevice lives on. What was made from the RaraDevice may be destroyed later, but before the
+/// VkDevice. Null is ignored.
 ///
 /// # Safety
 /// `device` is null, or alive and not used any more.
@@ -321,7 +322,7 @@ pub unsafe extern "C" fn rara_device_destroy(device: *mut RaraDevice) {
     unsafe { destroy(device) };
 }
 
-/// The instance's functions. Those of 1.1 must be there: ash would abort where one is missing.
+/// The instance's functions. Those of Vulkan 1.1 must be there: ash would abort where one is missing.
 ///
 /// # Safety
 /// The handles are null, or belong together and are alive.
@@ -359,7 +360,7 @@ unsafe fn load_instance(
     Ok(unsafe { ash::Instance::load(&functions, instance) })
 }
 
-/// The device's functions, those of extensions too that the host says it has enabled.
+/// The device's functions, with those of the extensions that the host says it has enabled.
 ///
 /// # Safety
 /// The handles of the description are null, or belong together and are alive.

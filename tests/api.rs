@@ -1,7 +1,8 @@
-//! What users of the library can name, read from its source, against `tests/api.txt`: no change of it goes unseen.
+//! What users of the library can name, read from its source and compared with `tests/api.txt`, so that no change goes
+//! unseen.
 //!
-//! After a change that is meant, `RARA_RENEW_API=1 cargo test --test api` writes the list anew; its difference is what the
-//! change's description owes its readers. The features are those of docs.rs.
+//! After an intended change, `RARA_RENEW_API=1 cargo test --test api` writes the list anew; the change's description
+//! explains the difference. The features are those of docs.rs.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fs;
@@ -89,7 +90,7 @@ impl Library {
         self.modules.insert(path.to_owned(), kept);
     }
 
-    /// Where what `path` says, seen from a module, is defined; `None` outside of the library.
+    /// Where the definition is that a module means by `path`; `None` if it is outside of the library.
     fn place(&self, module: &str, path: &[String]) -> Option<Place> {
         let (first, rest) = path.split_first()?;
         let inner = |name: &str| format!("{module}::{name}");
@@ -145,13 +146,13 @@ impl Library {
         self.impls = found;
     }
 
-    /// All that can be named, a paragraph each.
+    /// Everything that can be named, a paragraph each.
     fn public(&self) -> String {
         let mut paragraphs = BTreeMap::new();
         self.list("rara", "rara", &mut paragraphs);
         let mut seen: HashMap<Place, String> = HashMap::new();
         let mut text = String::new();
-        // The shortest path first: what else leads there only says so.
+        // The shortest path gets the definition; the others only refer to it.
         let mut names: Vec<_> = paragraphs.into_iter().collect();
         names.sort_by_key(|(name, _)| (name.matches("::").count(), name.clone()));
         for (name, place) in names {
@@ -170,7 +171,7 @@ impl Library {
         text
     }
 
-    /// Adds what a module shows under a path.
+    /// Adds what a module makes public under a path.
     fn list(&self, path: &str, module: &str, to: &mut BTreeMap<String, Option<Place>>) {
         for item in &self.modules[module] {
             if !is_public(item) || is_hidden(attributes(item)) {
@@ -290,7 +291,7 @@ fn is_public(item: &Item) -> bool {
 
 type List = Punctuated<Meta, Token![,]>;
 
-/// Whether a `cfg` holds where the documentation is made.
+/// Whether a `cfg` holds where docs.rs builds the documentation.
 fn holds(meta: &Meta) -> bool {
     let inner = || match meta {
         Meta::List(list) => list.parse_args_with(List::parse_terminated).expect("cfg"),
@@ -472,7 +473,7 @@ fn squeezed(tokens: &str) -> String {
     for (from, to) in pairs {
         text = text.replace(from, to);
     }
-    // A bracket follows its name at once, and what is no name after a blank.
+    // A bracket follows a name without a blank, and anything else after one.
     let mut joined = String::new();
     for (at, letter) in text.char_indices() {
         let name = joined

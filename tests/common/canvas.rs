@@ -1,12 +1,12 @@
-//! What a host draws into, for the tests of depth, formats and views: attachments of any format, in dynamic rendering or a
-//! classic render pass, with rectangles in the depth buffer for opaque meshes.
+//! A canvas that a host draws into, for the tests of depth, formats and views: attachments of any format, in dynamic
+//! rendering or a classic render pass, with rectangles in the depth buffer for opaque meshes.
 #![allow(dead_code, unreachable_pub, reason = "each test binary uses a part")]
 
 use crate::host::{Host, HostDesc};
 use rara::ash::{self, vk};
 use rara::gpu::{AdoptDesc, DepthImage, Device};
 
-/// A host and its device, under validation; with or without what is optional of a device.
+/// Runs a test with a host and its device, under validation; `optional` enables the device's optional features.
 pub fn with_host(optional: bool, test: impl FnOnce(&Host, &Device)) {
     let device = std::env::var("RARA_TEST_DEVICE").ok();
     let host = Host::new(&HostDesc {
@@ -37,11 +37,11 @@ pub struct CanvasDesc {
     pub depth: vk::Format,
     pub samples: vk::SampleCountFlags,
     pub render_pass: bool,
-    /// What is there before anything is drawn.
+    /// The colour before anything is drawn.
     pub clear: [f32; 4],
     /// What the depth buffer holds where there is no mesh.
     pub far: f32,
-    /// Meshes that face the camera: where, and what the depth buffer holds of them.
+    /// Meshes that face the camera: their places, and what the depth buffer holds there.
     pub meshes: Vec<(vk::Rect2D, f32)>,
 }
 
@@ -68,7 +68,7 @@ pub struct Canvas {
     raw: ash::Device,
     device: Device,
     color: Image,
-    /// Of several samples.
+    /// For canvases of several samples.
     resolved: Option<Image>,
     second: Option<Image>,
     depth: Option<Image>,
@@ -76,7 +76,7 @@ pub struct Canvas {
     framebuffer: vk::Framebuffer,
 }
 
-/// What is recorded before a scope and inside it.
+/// A function that records before a scope, and one that records inside it.
 pub type Scope<'a> = (
     &'a mut dyn FnMut(vk::CommandBuffer),
     &'a mut dyn FnMut(vk::CommandBuffer),
@@ -95,7 +95,7 @@ const COPIED: vk::ImageLayout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
 const UNDEFINED: vk::Format = vk::Format::UNDEFINED;
 
 impl Canvas {
-    /// On a host's device, which outlives it.
+    /// A canvas on a host's device, which must outlive it.
     pub fn new(lent: &AdoptDesc, device: &Device, desc: CanvasDesc) -> Self {
         let mut canvas = Self {
             instance: lent.instance.clone(),
@@ -128,12 +128,12 @@ impl Canvas {
         canvas
     }
 
-    /// The canvas's render pass; null without.
+    /// The canvas's render pass, or null if it has none.
     pub fn render_pass(&self) -> vk::RenderPass {
         self.render_pass
     }
 
-    /// The depth buffer, as `prepare_behind` wants it, for a viewport that begins at `origin`.
+    /// The depth buffer as `prepare_behind` takes it, for a viewport that begins at (x, y).
     pub fn depth_image(&self, x: i32, y: i32) -> DepthImage {
         DepthImage {
             image: self.depth.as_ref().expect("a depth buffer").raw,
@@ -168,8 +168,8 @@ impl Canvas {
         }
     }
 
-    /// A frame: the meshes' depths, what `before` records outside a scope, and what `inside` records in it; waits. The
-    /// pictures of the colour attachments.
+    /// Draws a frame and waits: the meshes' depths, what `before` records outside a scope, and what `inside` records in
+    /// it. Returns the pictures of the colour attachments.
     pub fn draw(
         &self,
         mut before: impl FnMut(vk::CommandBuffer),
@@ -178,7 +178,7 @@ impl Canvas {
         self.draw_scopes(&mut [(&mut before, &mut inside)])
     }
 
-    /// The same with several scopes, one after the other, in one command buffer.
+    /// Draws several scopes, one after the other, in one command buffer.
     pub fn draw_scopes(&self, scopes: &mut [Scope<'_>]) -> [Vec<[f32; 4]>; 2] {
         let pixels = u64::from(self.desc.extent.width) * u64::from(self.desc.extent.height);
         let colors = [
@@ -468,7 +468,7 @@ impl Canvas {
         }
     }
 
-    /// Moves an image from one layout to another, behind and before everything.
+    /// Moves an image from one layout to another, after and before all other commands.
     ///
     /// # Safety
     /// `cmd` is recording outside a scope.

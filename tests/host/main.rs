@@ -1,4 +1,4 @@
-//! What a host meets: the Vulkan layer, devices that are lent, targets, depth and viewports, frames in flight.
+//! rara in a host: the Vulkan layer, devices that are lent, targets, depth and viewports, frames in flight.
 
 #[path = "../common/canvas.rs"]
 mod canvas;

@@ -1,4 +1,4 @@
-//! As much of the X protocol as it takes to do to a window what a window manager or a person does.
+//! As much of the X protocol as the tests need to treat a window as a window manager or a person does.
 
 use std::io::{Read, Write};
 use std::os::unix::net::UnixStream;
@@ -10,7 +10,7 @@ pub(super) struct Client {
 }
 
 impl Client {
-    /// Of the server on this machine that has this display number.
+    /// Connects to the server on this machine that has this display number.
     pub(super) fn connect(number: &str) -> Self {
         let path = format!("/tmp/.X11-unix/X{number}");
         let mut stream = UnixStream::connect(path).expect("the server listens");
@@ -50,29 +50,29 @@ impl Client {
 
     /// Takes the window from the screen, as a window manager does when it is minimised.
     pub(super) fn unmap(&mut self, window: u32) {
-        self.tell(10, 0, &[window]);
+        self.send(10, 0, &[window]);
     }
 
-    /// Puts it there again.
+    /// Puts it on the screen again.
     pub(super) fn map(&mut self, window: u32) {
-        self.tell(8, 0, &[window]);
+        self.send(8, 0, &[window]);
     }
 
     /// Ends the connection of the program whose window it is.
     pub(super) fn kill(&mut self, window: u32) {
-        self.tell(113, 0, &[window]);
+        self.send(113, 0, &[window]);
     }
 
     /// Gives the window the keyboard, and presses a key and lets it go.
     pub(super) fn press(&mut self, window: u32, key: u8) {
-        self.tell(42, 1, &[window, 0]); // SetInputFocus
+        self.send(42, 1, &[window, 0]); // SetInputFocus
         let name = u32::from_le_bytes(*b"XTES");
         self.request(98, 0, &[5, name, u32::from(b'T')]); // QueryExtension
         let reply = self.reply();
         assert_eq!(reply[8], 1, "the server has XTEST");
         for event in [2_u32, 3] {
             let what = event | u32::from(key) << 8;
-            self.tell(reply[9], 2, &[what, 0, 0, 0, 0, 0, 0, 0]); // FakeInput
+            self.send(reply[9], 2, &[what, 0, 0, 0, 0, 0, 0, 0]); // FakeInput
         }
     }
 
@@ -84,8 +84,9 @@ impl Client {
         self.stream.write_all(&request).expect("the server listens");
     }
 
-    /// A request without a reply; waits until it is done, as the server forgets what a client asks that has left.
-    fn tell(&mut self, opcode: u8, detail: u8, words: &[u32]) {
+    /// Sends a request without a reply and waits until it is done, as the server forgets the requests of a client that
+    /// has left.
+    fn send(&mut self, opcode: u8, detail: u8, words: &[u32]) {
         self.request(opcode, detail, words);
         self.request(43, 0, &[]); // GetInputFocus
         self.reply();

@@ -17,6 +17,7 @@ use crate::renderer::*;
 use crate::scene::*;
 use crate::settings::*;
 use crate::stats::*;
+use crate::support::*;
 use crate::tests::{assert_fails, message};
 
 thread_local! {

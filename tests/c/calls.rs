@@ -16,6 +16,7 @@ use rara_c::layer::*;
 use rara_c::renderer::*;
 use rara_c::scene::*;
 use rara_c::stats::*;
+use rara_c::support::*;
 
 #[track_caller]
 fn assert_fails(result: RaraResult, code: RaraResult, part: &str) {

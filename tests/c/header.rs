@@ -20,6 +20,7 @@ fn the_header_is_current() {
         "camera_files",
         "clip",
         "depth",
+        "support",
         "device",
         "placement",
         "renderer",

@@ -1,4 +1,4 @@
-//! What a host's depth buffer holds: how far something is, as the host's projection has it.
+//! Depth maps: which number a host's depth buffer holds for a depth, by the host's projection.
 
 #![forbid(unsafe_code)]
 
@@ -46,7 +46,7 @@ impl DepthMap {
         })
     }
 
-    /// That of a projection matrix for clip depths from 0 to w, column vectors, whose view looks along +z or -z.
+    /// The map of a projection matrix for column vectors and clip depths from 0 to w, whose view looks along +z or -z.
     ///
     /// # Errors
     /// [`Error::Invalid`] if it is no perspective projection: then depths are not of this form.
@@ -70,7 +70,7 @@ impl DepthMap {
         })
     }
 
-    /// The same buffer, for a scene that stands in the world so: depths are then in the scene's units, like those of
+    /// The same buffer as a scene with this placement sees it: its depths are then in the scene's units, like those of
     /// [`Camera::in_scene`](crate::Camera::in_scene).
     #[must_use]
     pub fn in_scene(self, placement: &Placement) -> Self {

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 /// Everything that can go wrong for reasons the caller could not foresee.
 ///
 /// The text of each error is one or two plain sentences that name the place (file, byte, line or element) and the
-/// remedy. Misuse of the library is a panic with a sentence instead; repairable data is repaired, counted and
-/// reported by the loader.
+/// remedy. Misuse of the library panics with a sentence instead; repairable data is repaired, counted and reported by the
+/// loader.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -39,7 +39,7 @@ pub enum Error {
          nothing on this device can be used any more"
     )]
     DeviceLost {
-        /// The call that said so.
+        /// The call that reported it.
         call: &'static str,
     },
     /// A Vulkan call failed.
@@ -59,7 +59,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// This error behind what the validation layer has said before it, which is likely why it came.
+    /// This error after the messages of the validation layer, which are likely its cause.
     pub(crate) fn after(self, mut messages: Vec<String>) -> Self {
         if messages.is_empty() {
             return self;
@@ -68,7 +68,7 @@ impl Error {
         Self::Validation(messages)
     }
 
-    /// That the validation layer has said nothing.
+    /// Fails if the validation layer has reported anything.
     pub(crate) fn validated(messages: Vec<String>) -> Result<()> {
         if messages.is_empty() {
             Ok(())

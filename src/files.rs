@@ -9,8 +9,8 @@ use std::path::Path;
 
 use crate::{Error, Result};
 
-/// Writes a file beside `path` and renames it into place; if anything fails, `path` is as it was before. Where it is a link,
-/// what it leads to is written; where it is no file, as a pipe or a terminal, it is written into.
+/// Writes a file beside `path` and renames it into place; if anything fails, `path` is as it was before. A link stays a
+/// link, and the file that it leads to is replaced; a pipe or a terminal is written into.
 pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
@@ -45,12 +45,13 @@ fn write_beside(
     let written = File::create(&beside).and_then(|file| {
         let mut writer = BufWriter::new(file);
         write(&mut writer)?;
-        // On the disk before it has its name: after a crash the name stands for the old file or the new, never for half.
+        // The content is on the disk before the file gets its name, so that after a crash the name stands for the old
+        // file or the new one, never for half of one.
         writer.into_inner()?.sync_all()?;
         fs::rename(&beside, path)
     });
     if written.is_err() {
-        let _ = fs::remove_file(&beside); // whatever went wrong first is what the caller should hear about
+        let _ = fs::remove_file(&beside); // the caller should see the first failure
     }
     written.map_err(Error::io(path))
 }
@@ -72,7 +73,7 @@ mod tests {
         let null = Path::new("/dev/null");
         write_atomically(null, |out| out.write_all(b"new")).expect("writes");
         assert!(!fs::metadata(null).expect("there").is_file());
-        // What fails leaves the old one.
+        // A write that fails leaves the old file.
         let failed = write_atomically(&link, |out| {
             out.write_all(b"half")?;
             Err(std::io::Error::other("full"))

@@ -41,7 +41,7 @@ impl Camera {
             elevation.cos() * (azimuth.cos() * front + azimuth.sin() * side) + elevation.sin() * up;
 
         let centre = bounds.centre();
-        // Turned right first, moved into place when the distance is known.
+        // The camera is turned first, and moved into place once the distance is known.
         let camera = Self::look_at(towards_eye, DVec3::ZERO, up, fov_y, size)?;
         let (tan_x, tan_y) = (camera.cx / camera.fx * FILL, camera.cy / camera.fy * FILL);
         let distance = bounds.corners().iter().fold(0.0_f64, |distance, corner| {

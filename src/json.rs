@@ -8,10 +8,10 @@ use std::path::Path;
 
 use crate::error::{Error, Result};
 
-/// More than any file of cameras or planes; keeps a wrong path (a video, a scene) from filling the memory.
+/// More than any file of cameras or planes has; it keeps a wrong path (a video, a scene) from filling the memory.
 const MAX_BYTES: u64 = 256 << 20;
 
-/// A JSON file's bytes; `what` it should hold, for the message of one that is too large.
+/// Reads a JSON file's bytes. `what` names its content in the message about a file that is too large.
 pub(crate) fn read(path: &Path, what: &str) -> Result<Vec<u8>> {
     let file = File::open(path).map_err(Error::io(path))?;
     let mut bytes = Vec::new();
@@ -32,7 +32,7 @@ pub(crate) fn bare(json: &[u8]) -> &[u8] {
         .trim_ascii_start()
 }
 
-/// A JSON error in our words: the line is what helps.
+/// A JSON error in our words; the line is what helps.
 pub(crate) fn explain(error: &serde_json::Error) -> String {
     format!(
         "line {} column {}: this is not the JSON expected here ({error})",

@@ -1,4 +1,5 @@
-// The README's links and pictures lead elsewhere among generated pages: of a name's definitions the first counts.
+// The README's links and pictures lead elsewhere in the generated pages. Markdown takes the first definition of a name,
+// so these come first.
 #![doc = include_str!("guide/links.md")]
 #![cfg_attr(doc, doc = include_str!(concat!(env!("OUT_DIR"), "/layers.md")))]
 #![doc = include_str!("../README.md")]
@@ -28,7 +29,8 @@ mod settings;
 mod stats;
 mod trace;
 
-// What measures and tests rara itself: no interface that a version keeps, and public only with the feature `lab`.
+// The modules that measure and test rara itself. They are public only with the feature `lab`, and any version may change
+// them.
 #[cfg(feature = "lab")]
 pub mod files;
 #[cfg(not(feature = "lab"))]

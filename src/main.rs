@@ -1,4 +1,4 @@
-//! The `rara` command: what was typed, what it means, done; one line when it could not be.
+//! The `rara` command: it parses the command line, does the work, and prints one line if that fails.
 #![forbid(unsafe_code)]
 
 mod cli;

@@ -11,10 +11,9 @@ use crate::error::{Error, Result};
 /// Where a scene stands in a world: its points are scaled, then turned, then moved.
 ///
 /// A placed scene is drawn by taking the world's camera and clip into the scene
-/// ([`Camera::in_scene`], [`Clip::in_scene`], [`DepthMap::in_scene`](crate::DepthMap::in_scene)): exact, in double
-/// precision, and without touching a Gaussian. The picture is that of the placed Gaussians; spherical harmonics turn with
-/// the scene. Lengths are then the scene's own, also the one that 3DGS culls by: centres nearer than 0.2 of the scene's
-/// units before the eye.
+/// ([`Camera::in_scene`], [`Clip::in_scene`], [`DepthMap::in_scene`](crate::DepthMap::in_scene)). This is exact, in
+/// double precision, and touches no Gaussian. The picture is that of the placed Gaussians; spherical harmonics turn with
+/// the scene. All lengths are then in the scene's units, also the depth of 0.2 below which 3DGS culls centres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
     position: DVec3,
@@ -30,8 +29,8 @@ impl Placement {
         scale: 1.0,
     };
 
-    /// `position` is where the scene's origin goes, `scale` how large one of its units is, both in world units. The
-    /// quaternion is made a unit one.
+    /// `position` is where the scene's origin goes, and `scale` is how large one of the scene's units is, both in world
+    /// units. The quaternion is normalised.
     ///
     /// # Errors
     /// [`Error::Invalid`] for numbers that are not finite, a scale that is not above zero and a rotation of zero.
@@ -60,7 +59,7 @@ impl Placement {
         self.rotation
     }
 
-    /// World units of a unit of the scene.
+    /// How many world units one unit of the scene is.
     pub fn scale(&self) -> f64 {
         self.scale
     }
@@ -77,7 +76,7 @@ impl Placement {
 }
 
 impl Camera {
-    /// The same view, as a scene sees it that is placed so.
+    /// The same view as a scene with this placement sees it.
     #[must_use]
     pub fn in_scene(&self, placement: &Placement) -> Self {
         if *placement == Placement::IDENTITY {
@@ -92,7 +91,7 @@ impl Camera {
 }
 
 impl Plane {
-    /// The same plane, as a scene sees it that is placed so.
+    /// The same plane as a scene with this placement sees it.
     #[must_use]
     pub fn in_scene(&self, placement: &Placement) -> Self {
         if *placement == Placement::IDENTITY {
@@ -105,7 +104,7 @@ impl Plane {
 }
 
 impl Surface {
-    /// The same surface, as a scene sees it that is placed so.
+    /// The same surface as a scene with this placement sees it.
     #[must_use]
     pub fn in_scene(&self, placement: &Placement) -> Self {
         match self {
@@ -115,7 +114,7 @@ impl Surface {
 }
 
 impl Clip {
-    /// The same region, as a scene sees it that is placed so.
+    /// The same region as a scene with this placement sees it.
     #[must_use]
     pub fn in_scene(&self, placement: &Placement) -> Self {
         let surfaces = self.surfaces.iter();

@@ -127,11 +127,11 @@ pub struct Precision {
     pub sh: ShFormat,
     /// Phi of the exact mode.
     pub phi: PhiForm,
-    /// Most bits of the depths that the sort looks at, 8 to 32; eight are a pass. They count from the nearest depth
-    /// that the scene's bounds allow, so 24 lose nothing unless the farthest is more than four times as far.
+    /// How many bits of the depths the sort compares at most, 8 to 32; each pass takes eight. They count from the nearest
+    /// depth that the scene's bounds allow, so 24 lose nothing unless the farthest is more than four times as far.
     pub key_bits: u32,
     /// Exact mode: a cut splat gets the perspective-exact form where sigma_max / Z exceeds this, else the affine one.
-    /// Zero is the exact form for all.
+    /// Zero gives all of them the exact form.
     pub beam_switch: f32,
     /// Tiles only: a pixel with less transmittance than this is saturated. What lies behind would change it by less
     /// than this times its colour. Zero blends everything.
@@ -148,8 +148,8 @@ setters!(Precision {
 });
 
 impl Precision {
-    /// What a picture of this precision is held to against its twin in f64, decibels: the least of what the single
-    /// choices are. Below it something else is wrong.
+    /// Least peak signal to noise ratio, decibels, of a picture of this precision against its twin in f64: the smallest
+    /// that one of the choices has by itself. Below it something else is wrong.
     pub fn least_psnr(&self) -> f64 {
         let target: f64 = match self.target {
             TargetFormat::Unorm8 => 20.0,

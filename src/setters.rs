@@ -2,7 +2,7 @@
 
 #![forbid(unsafe_code)]
 
-/// For each field that is named a method of the same name, which sets it.
+/// For each named field, defines a method of the same name that sets it.
 macro_rules! setters {
     ($of:ident { $($field:ident: $value:ty),+ $(,)? }) => {
         impl $of {

@@ -68,8 +68,8 @@ pub enum Show {
     /// The splats' colours.
     #[default]
     Colour,
-    /// What the clip does to them: blue where it leaves them whole; where it cuts, from red, nothing is kept in this pixel,
-    /// to yellow, all is. Blended like colours.
+    /// What the clip does to them: a splat that it leaves whole is blue; one that it cuts goes from red, where the pixel
+    /// keeps nothing, to yellow, where it keeps all. Blended like colours.
     Weight,
 }
 
@@ -86,7 +86,7 @@ pub enum ExactForm {
     Affine,
 }
 
-/// The options of a frame: the default ones, and what is to be otherwise.
+/// The options of a frame: start from the defaults and set what differs.
 ///
 /// ```
 /// use rara::{Mode, Settings};

@@ -1,6 +1,6 @@
 //! The statistics of a frame; the `--json` statistics are made of it.
 
-/// How many Gaussians ended where. `visible + cutoff + invisible + culled` is the scene's count.
+/// How many Gaussians are of which class. `visible + cutoff + invisible + culled` is the scene's count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Counts {
@@ -26,7 +26,7 @@ pub struct PassTime {
     pub ms: f64,
 }
 
-/// What one stage did, as the device has counted it.
+/// What one stage did, as the device counts it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -37,7 +37,7 @@ pub struct PassStatistics {
     pub compute_invocations: u64,
     /// Vertex shader invocations; mesh shaders have none.
     pub vertex_invocations: u64,
-    /// Primitives that clipping has left.
+    /// Primitives that are left after clipping.
     pub primitives: u64,
     /// Fragment shader invocations.
     pub fragment_invocations: u64,
@@ -59,7 +59,7 @@ pub struct RasterChoice {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct FrameStats {
-    /// How many Gaussians ended where.
+    /// How many Gaussians are of which class.
     pub counts: Counts,
     /// GPU time of each stage, in order.
     pub passes: Vec<PassTime>,

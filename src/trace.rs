@@ -1,4 +1,5 @@
-//! Where the time goes, on the processor and on the device, as the trace events that Perfetto and Chrome's tracing show.
+//! Traces: where the time goes on the processor and on the device, as events that Perfetto and Chrome's tracing page
+//! show.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -18,7 +19,7 @@ pub struct Trace {
 #[derive(Debug, Default)]
 struct Events {
     spans: Vec<TraceSpan>,
-    /// How the device's clock was set against the processor's, and about the device.
+    /// Facts about the device, and how its clock was related to the processor's.
     notes: Vec<(&'static str, Note)>,
 }
 
@@ -125,7 +126,7 @@ impl Trace {
     }
 }
 
-/// [`Trace::span`] where there is a trace; without one only `act`.
+/// Runs `act`, in a [`Trace::span`] if there is a trace.
 pub(crate) fn span<R>(trace: Option<&Trace>, name: &'static str, act: impl FnOnce() -> R) -> R {
     match trace {
         Some(trace) => trace.span(name, act),

@@ -1,4 +1,4 @@
-//! The boundary itself: codes and messages, panics, null pointers, structs of other versions.
+//! What crosses the boundary: codes and messages, panics, null pointers, structs of other versions.
 
 use std::any::Any;
 use std::cell::RefCell;
@@ -10,11 +10,11 @@ use std::path::PathBuf;
 use rara::ash::vk;
 use rara::{Error, Result};
 
-/// What every function that can fail returns. Of anything but RARA_OK rara_last_error_message says more.
+/// What every function that can fail returns. After anything but RARA_OK rara_last_error_message says more.
 pub type RaraResult = i32;
 /// Done.
 pub const RARA_OK: RaraResult = 0;
-/// An argument is not possible: null, a plane without a normal, a picture of no size. The message names it.
+/// An argument is not possible: a null pointer, a plane without a normal, a picture of no size. The message names it.
 pub const RARA_ERROR_INVALID: RaraResult = 1;
 /// A file could not be opened or read.
 pub const RARA_ERROR_IO: RaraResult = 2;
@@ -26,18 +26,18 @@ pub const RARA_ERROR_DEVICE: RaraResult = 4;
 pub const RARA_ERROR_MEMORY: RaraResult = 5;
 /// A Vulkan call failed for another reason.
 pub const RARA_ERROR_VULKAN: RaraResult = 6;
-/// A panic was stopped: rara has a bug, and the message says which. Of the handles that
-/// the call was given, only destroying is sure to work.
+/// A panic was stopped: rara has a bug, and the message says which. With the handles that the call was given, only the
+/// destroy functions are sure to work.
 pub const RARA_ERROR_PANIC: RaraResult = 7;
-/// VK_ERROR_DEVICE_LOST. Nothing on the device can be used any more: the host destroys what was made from the
-/// RaraDevice, then that, then its own, and goes on with another one.
+/// VK_ERROR_DEVICE_LOST. Nothing on the device can be used any more: the host destroys what was made from the RaraDevice,
+/// then the RaraDevice, then its own device, and goes on with another one.
 pub const RARA_ERROR_DEVICE_LOST: RaraResult = 8;
 
 /// The version of this header. It changes when a host must be compiled anew; structs that grow at their end and functions
 /// that are added do not change it.
 pub const RARA_ABI_VERSION: u32 = 2;
 
-/// The version of the library that is linked: RARA_ABI_VERSION of its header.
+/// The version of the library that is linked: the RARA_ABI_VERSION of its header.
 #[unsafe(no_mangle)]
 pub extern "C" fn rara_abi_version() -> u32 {
     RARA_ABI_VERSION
@@ -47,22 +47,23 @@ thread_local! {
     static MESSAGE: RefCell<CString> = RefCell::default();
 }
 
-/// What the last call of this thread that failed has to say: one or two sentences in UTF-8, "" if none has failed.
-/// Valid until this thread's next call that fails.
+/// The message of this thread's last call that failed: one or two sentences in UTF-8, "" if none has failed. It is valid
+/// until this thread's next call that fails.
 #[unsafe(no_mangle)]
 pub extern "C" fn rara_last_error_message() -> *const c_char {
     let message = MESSAGE.try_with(|message| message.borrow().as_ptr());
     message.unwrap_or(c"".as_ptr()) // the thread is ending
 }
 
-/// Runs what a function does: whatever happens in it becomes a code, and a message to ask for.
+/// Runs a function's body: a failure or a panic in it becomes a code and a message.
 pub(crate) fn guard(run: impl FnOnce() -> Result<()>) -> RaraResult {
     let run = || {
         #[cfg(test)]
         crate::nulls::panic_if_asked();
         run()
     };
-    // Handles are not unwind safe in Rust's sense; RARA_ERROR_PANIC says what is left of them.
+    // Handles are not unwind safe in Rust's sense; the documentation of RARA_ERROR_PANIC says what they are still good
+    // for.
     match catch_unwind(AssertUnwindSafe(run)) {
         Ok(Ok(())) => RARA_OK,
         Ok(Err(error)) => fail(code(&error), &error.to_string()),
@@ -72,17 +73,17 @@ pub(crate) fn guard(run: impl FnOnce() -> Result<()>) -> RaraResult {
 
 fn fail(code: RaraResult, message: &str) -> RaraResult {
     let message = c_string(message);
-    // Without effect while the thread is ending.
+    // This has no effect while the thread is ending.
     let _ = MESSAGE.try_with(|last| last.replace(message));
     code
 }
 
-/// A text with a NUL at its end and nowhere else.
+/// A text with a NUL at its end and no other NUL.
 pub(crate) fn c_string(text: &str) -> CString {
     CString::new(text.replace('\0', "\u{fffd}")).unwrap_or_default()
 }
 
-/// As much of a text as there is room for, in whole characters, and a NUL.
+/// As much of a text as fits, in whole characters, and a NUL.
 pub(crate) fn fixed<const N: usize>(from: &str) -> [c_char; N] {
     let mut to = [0; N];
     let most = from.len().min(N - 1);
@@ -101,7 +102,7 @@ fn code(error: &Error) -> RaraResult {
         Error::Device(_) => RARA_ERROR_DEVICE,
         Error::DeviceLost { .. } => RARA_ERROR_DEVICE_LOST,
         Error::Memory(_) => RARA_ERROR_MEMORY,
-        // And what a later version may add to these two.
+        // The wildcard stands for what a later version may add to these two.
         Error::Vulkan { .. } | Error::Validation(_) | _ => RARA_ERROR_VULKAN,
     }
 }
@@ -118,7 +119,7 @@ pub(crate) fn invalid<T>(message: impl Into<String>) -> Result<T> {
     Err(Error::Invalid(message.into()))
 }
 
-/// What an argument points to.
+/// What an argument points to, to be read.
 ///
 /// # Safety
 /// `pointer` is null, or points to a `T` that nobody changes for `'a`.
@@ -142,10 +143,10 @@ pub(crate) unsafe fn exclusive<'a, T>(pointer: *mut T, name: &str) -> Result<&'a
     }
 }
 
-/// Several things one after the other; no pointer is needed to none.
+/// Several values one after the other; with a count of 0 the pointer may be null.
 ///
 /// # Safety
-/// `first` is null, or points to `count` of them that nobody changes for `'a`.
+/// `first` is null, or points to `count` values that nobody changes for `'a`.
 pub(crate) unsafe fn list<'a, T>(first: *const T, count: usize, name: &str) -> Result<&'a [T]> {
     if count == 0 {
         return Ok(&[]);
@@ -157,7 +158,7 @@ pub(crate) unsafe fn list<'a, T>(first: *const T, count: usize, name: &str) -> R
     Ok(unsafe { std::slice::from_raw_parts(first, count) })
 }
 
-/// Memory to be written; no pointer is needed to none.
+/// Memory to be written; with a size of 0 the pointer may be null.
 ///
 /// # Safety
 /// `first` is null, or points to `size` bytes that nobody else uses for `'a`.
@@ -185,7 +186,7 @@ fn check_count<T>(count: usize, name: &str) -> Result<()> {
     Ok(())
 }
 
-/// A command buffer, if it is one.
+/// Refuses a command buffer that is null.
 pub(crate) fn recording(cmd: vk::CommandBuffer) -> Result<vk::CommandBuffer> {
     if cmd == vk::CommandBuffer::null() {
         return invalid("cmd is null");
@@ -204,10 +205,10 @@ pub(crate) unsafe fn string<'a>(text: *const c_char, name: &str) -> Result<&'a C
     Ok(unsafe { CStr::from_ptr(text) })
 }
 
-/// A file's name: UTF-8, on Unix any bytes.
+/// A file's name: UTF-8, or on Unix any bytes.
 ///
 /// # Safety
-/// As of [`string`].
+/// As for [`string`].
 pub(crate) unsafe fn path(text: *const c_char, name: &str) -> Result<PathBuf> {
     // SAFETY: the caller's promise.
     path_of(unsafe { string(text, name) }?)
@@ -243,7 +244,7 @@ pub(crate) unsafe fn create<T>(
     Ok(())
 }
 
-/// Ends a handle; null is none.
+/// Ends a handle; null is ignored.
 ///
 /// # Safety
 /// `handle` is null, or came from [`create`], and is not used any more.
@@ -266,16 +267,16 @@ pub(crate) unsafe trait Versioned: Copy {
     const NAME: &'static str;
 }
 
-/// Whether some version of a struct, older or newer than this one, can have so many bytes: in C a struct's size is a
-/// multiple of its alignment, and its first field says it.
+/// Whether a struct of some version, older or newer than this one, can have this size: in C the size is a multiple of the
+/// alignment, and the struct's first field holds the size.
 fn is_a_version<T: Versioned>(size: usize) -> bool {
     size >= size_of::<usize>() && size.is_multiple_of(align_of::<T>())
 }
 
-/// A host's struct; what its version does not have yet is as in `default`.
+/// Reads a host's struct; fields that its version does not have yet are as in `default`.
 ///
 /// # Safety
-/// `pointer` is null, or points to a size and as many bytes as that says, the size included.
+/// `pointer` is null, or points to a size and to as many bytes as it says, the size included.
 pub(crate) unsafe fn read<T: Versioned>(pointer: *const T, default: T, name: &str) -> Result<T> {
     // SAFETY: the caller's promise.
     let size = *unsafe { shared(pointer.cast::<usize>(), name) }?;
@@ -284,11 +285,11 @@ pub(crate) unsafe fn read<T: Versioned>(pointer: *const T, default: T, name: &st
     Ok(unsafe { copied(pointer, size, default) })
 }
 
-/// A host's structs one after the other, all of the size that the first says; what their version does not have yet is as in
-/// `default`. No pointer is needed to none.
+/// Reads a host's structs one after the other, all of the size that the first says; fields that their version does not
+/// have yet are as in `default`. With a count of 0 the pointer may be null.
 ///
 /// # Safety
-/// `first` is null, or points to `count` structs of one size that each begins with.
+/// `first` is null, or points to `count` structs of one size, and each begins with that size.
 pub(crate) unsafe fn read_list<T: Versioned>(
     first: *const T,
     count: usize,
@@ -303,7 +304,7 @@ pub(crate) unsafe fn read_list<T: Versioned>(
     let size = *unsafe { shared(first.cast::<usize>(), name) }?;
     check_size::<T>(size, format_args!("{name}[0].struct_size"))?;
     let read = |index| {
-        // SAFETY: the caller's promise; the size is no larger than a `T`'s, of which memory holds so many.
+        // SAFETY: the caller's promise; the size is no larger than a `T`'s, and memory holds as many.
         let (pointer, own) = unsafe {
             let pointer = first.byte_add(index * size);
             (pointer, *pointer.cast::<usize>())
@@ -320,7 +321,8 @@ pub(crate) unsafe fn read_list<T: Versioned>(
     (0..count).map(read).collect()
 }
 
-/// That a host's struct is of this version or an older one; `field` is where it says its size.
+/// Checks that a host's struct is of this version or an older one; `field` names the field with its size, for the
+/// message.
 fn check_size<T: Versioned>(size: usize, field: fmt::Arguments<'_>) -> Result<()> {
     if is_a_version::<T>(size) && size <= size_of::<T>() {
         return Ok(());
@@ -334,7 +336,7 @@ fn check_size<T: Versioned>(size: usize, field: fmt::Arguments<'_>) -> Result<()
     ))
 }
 
-/// A struct of which so many bytes are a host's.
+/// A struct whose first `size` bytes are a host's; the rest is as in `default`.
 ///
 /// # Safety
 /// `pointer` points to `size` bytes, no more than a `T` has.
@@ -351,7 +353,7 @@ unsafe fn copied<T: Versioned>(pointer: *const T, size: usize, default: T) -> T 
     value
 }
 
-/// As much of a struct as the host's has room for.
+/// Writes as much of a struct as the host's has room for.
 ///
 /// # Safety
 /// `pointer` is null, or points to `size` bytes that may be overwritten, aligned as a `T`.

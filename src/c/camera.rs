@@ -46,20 +46,20 @@ impl From<Camera> for RaraCamera {
 }
 
 impl RaraCamera {
-    /// The camera, checked: a host may have written anything into it.
+    /// The camera, checked, since a host may have written anything into it.
     pub(crate) fn camera(&self) -> Result<Camera> {
         let size = (self.width, self.height);
         let lens = (self.fx, self.fy, self.cx, self.cy);
         let rotation = DMat3::from_cols_array(&self.rotation).transpose();
         let eye = DVec3::from(self.eye);
         let turned = Camera::from_world_to_camera(DMat4::from_mat3(rotation), lens, size)?;
-        // To the bit what the host has written, once all of it is found possible.
+        // Exactly the host's numbers, once all of them have been found possible.
         turned.rotation(rotation).eye(eye).resized(size)
     }
 }
 
-/// A camera at `eye` that looks at `target`, each three numbers in world units. `up` points up in the picture; in the
-/// usual world, where y is down, that is 0, -1, 0. `fov_y` is the full vertical field of view in degrees.
+/// A camera at `eye` that looks at `target`; each is three numbers in world units. `up` points up in the picture; in the
+/// usual world, where y is down, it is 0, -1, 0. `fov_y` is the full vertical field of view in degrees.
 ///
 /// # Safety
 /// `eye`, `target` and `up` point to three numbers each; `camera` may be overwritten.
@@ -112,8 +112,8 @@ pub unsafe extern "C" fn rara_camera_from_world_to_camera(
     })
 }
 
-/// A camera that shows a scene from the front, the right and above, as near as fills the picture. `up` and `fov_y` as for
-/// rara_camera_look_at.
+/// A camera that shows a scene from the front, the right and above, near enough to fill the picture. `up` and `fov_y` are
+/// as for rara_camera_look_at.
 ///
 /// # Safety
 /// `gaussians` is alive; `up` points to three numbers; `camera` may be overwritten.

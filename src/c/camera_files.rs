@@ -14,7 +14,7 @@ pub const RARA_MAX_CAMERA_NAME: usize = 256;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraNamedCamera {
-    /// The picture's name in the file, or the camera's number there: UTF-8, as much as there is room for.
+    /// The picture's name in the file, or the camera's number there: UTF-8, cut off where it does not fit.
     pub name: [c_char; RARA_MAX_CAMERA_NAME],
     /// The camera.
     pub camera: RaraCamera,
@@ -24,11 +24,11 @@ pub struct RaraNamedCamera {
 /// JSON with width, height, fx, fy, cx, cy and world_to_camera. JSON files keep their order, COLMAP's cameras are
 /// sorted by name. Cameras with lens distortion are RARA_ERROR_FORMAT.
 ///
-/// `*count` is how many there is room for at `cameras`, and becomes how many the file has; no more than there is room
-/// for are written. With `cameras` null it is only asked for. `path` as of rara_gaussians_load.
+/// On entry `*count` is how many cameras there is room for at `cameras`; it becomes how many the file has. No more are
+/// written than there is room for; with `cameras` null the call only counts. `path` is as for rara_gaussians_load.
 ///
 /// # Safety
-/// `path` ends in NUL; `count` points to a number; `cameras` is null, or has room for as many cameras as that says.
+/// `path` ends in NUL; `count` points to a number; `cameras` is null, or has room for `*count` cameras.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_cameras_load(
     path: *const c_char,

@@ -5,8 +5,8 @@ use rara::{Clip, ClipOp, Error, Plane, Result};
 
 use crate::boundary::{invalid, list};
 
-/// A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but
-/// some length.
+/// A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but must
+/// not be zero.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraPlane {
@@ -27,9 +27,9 @@ pub const RARA_CLIP_OP_OR: RaraClipOp = 1;
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraClip {
-    /// The half-spaces; read by the call alone.
+    /// The half-spaces; only the call itself reads them.
     pub planes: *const RaraPlane,
-    /// How many of them, at most 32. None means that everything is visible.
+    /// How many planes there are, at most 32. With 0 everything is visible.
     pub plane_count: usize,
     /// How they combine.
     pub op: RaraClipOp,

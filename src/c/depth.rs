@@ -1,4 +1,4 @@
-//! The host's depth: what its buffer holds, the attachment, and the image that is shown before the scope.
+//! The host's depth: what its buffer holds, the attachment, and the image that the host shows before the scope.
 
 use rara::ash::vk;
 use rara::gpu::DepthImage;
@@ -6,7 +6,7 @@ use rara::{DepthDesc, DepthMap, Result};
 
 use crate::boundary::{RaraResult, Versioned, guard, invalid, read, shared, write};
 
-/// What a depth buffer holds: of every perspective projection into depths from 0 to 1.
+/// What a depth buffer holds, for any perspective projection into depths from 0 to 1.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraDepthMap {
@@ -14,7 +14,7 @@ pub struct RaraDepthMap {
     pub z_near: f64,
     /// Depth along the view axis that becomes 1, or 0 if reversed; beyond z_near, INFINITY too.
     pub z_far: f64,
-    /// Nearer is more.
+    /// Whether nearer is more.
     pub reversed: vk::Bool32,
 }
 
@@ -27,8 +27,8 @@ impl RaraDepthMap {
     }
 }
 
-/// The host's depth attachment. Splats behind what it holds are hidden, none is written into it. A splat is at one depth,
-/// that of its centre, in all of its pixels. Opaque things go first, then splats.
+/// The host's depth attachment. Splats behind what it holds are hidden, and splats write nothing into it. In all of its
+/// pixels a splat has one depth, that of its centre. The host draws opaque things first, then splats.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraDepthDesc {
@@ -38,10 +38,10 @@ pub struct RaraDepthDesc {
     pub format: vk::Format,
     /// Whether a dynamic rendering scope has the same image as stencil attachment too. Default: no.
     pub stencil: vk::Bool32,
-    /// Whether the host shows each frame's depth to rara_renderer_prepare_behind. Tiles need that; without it they are
-    /// replaced by quads. Default: no.
+    /// Whether the host shows each frame's depth to rara_renderer_prepare_behind. Tiles need that; without it quads
+    /// replace them. Default: no.
     pub readable: vk::Bool32,
-    /// What it holds for a depth; rara_renderer_set_depth_map changes it from frame to frame.
+    /// What the buffer holds for a depth; rara_renderer_set_depth_map changes it from frame to frame.
     pub map: RaraDepthMap,
 }
 
@@ -103,17 +103,17 @@ pub unsafe extern "C" fn rara_depth_desc_default(
 pub struct RaraDepthImage {
     /// The image, whose level 0 is read.
     pub image: vk::Image,
-    /// Its layout at that time: TRANSFER_SRC_OPTIMAL or GENERAL.
+    /// Its layout when the copy runs: TRANSFER_SRC_OPTIMAL or GENERAL.
     pub layout: vk::ImageLayout,
     /// Its width, pixels.
     pub width: u32,
     /// Its height, pixels.
     pub height: u32,
-    /// The layer to read.
+    /// The array layer that is read.
     pub layer: u32,
-    /// The viewport's left edge in it, pixels.
+    /// The viewport's left edge in the image, pixels.
     pub x: i32,
-    /// The viewport's top edge in it, pixels.
+    /// The viewport's top edge in the image, pixels.
     pub y: i32,
 }
 

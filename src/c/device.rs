@@ -1,9 +1,9 @@
-//! Requirements before there is a device, and the host's own device lent to rara.
+//! The host's own device, lent to rara.
 
-use std::ffi::{CStr, c_char, c_void};
+use std::ffi::CStr;
 
 use rara::ash::{self, vk};
-use rara::gpu::{self, AdoptDesc, Device, Support};
+use rara::gpu::{AdoptDesc, Device};
 use rara::{Error, Result};
 
 use crate::boundary::{
@@ -14,186 +14,7 @@ use crate::boundary::{
 #[allow(non_camel_case_types)] // Vulkan's name
 pub type PFN_vkGetInstanceProcAddr = Option<vk::PFN_vkGetInstanceProcAddr>;
 
-/// Room for the names of extensions in RaraSupport.
-pub const RARA_MAX_EXTENSIONS: usize = 8;
-
-/// What a physical device that will do offers beyond what must be there. What must is Vulkan 1.3, or 1.2 with
-/// VK_KHR_synchronization2 and VK_KHR_dynamic_rendering, the features bufferDeviceAddress, synchronization2 and
-/// dynamicRendering, and a queue family with graphics and compute.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct RaraSupport {
-    /// Set by rara_check.
-    pub struct_size: usize,
-    /// The first queue family with graphics and compute. Any other with both will do too.
-    pub queue_family: u32,
-    /// VK_EXT_mesh_shader with meshShader and taskShader. Optional: splats can be drawn without.
-    pub mesh_shader: vk::Bool32,
-    /// VK_KHR_push_descriptor. Optional: RARA_BINDINGS_BOUND needs it.
-    pub push_descriptor: vk::Bool32,
-    /// VK_KHR_portability_subset. A host must enable it where it is there.
-    pub portability_subset: vk::Bool32,
-    /// Nanoseconds a tick of a timestamp, 0 where the queue family has none: then frames have no times.
-    pub timestamp_period: f32,
-    /// Number of extensions.
-    pub extension_count: u32,
-    /// Those from above that are there and those that 1.2 needs, to be added to ppEnabledExtensionNames; the strings
-    /// live as long as the library.
-    pub extensions: [*const c_char; RARA_MAX_EXTENSIONS],
-    /// Bytes of the largest buffer: what a scene's spherical harmonics may take.
-    pub max_buffer_size: u64,
-    /// Pixels along a side of an image.
-    pub max_image_size: u32,
-    /// The Vulkan version that rara uses: VK_API_VERSION_1_2 or VK_API_VERSION_1_3.
-    pub api_version: u32,
-}
-
-// SAFETY: repr(C), plain numbers and pointers that are not followed, the size first.
-unsafe impl Versioned for RaraSupport {
-    const NAME: &'static str = "RaraSupport";
-}
-
-impl RaraSupport {
-    fn of(support: &Support) -> Self {
-        let mut extensions = [std::ptr::null(); RARA_MAX_EXTENSIONS];
-        let names = support.extensions();
-        for (to, name) in extensions.iter_mut().zip(&names) {
-            *to = name.as_ptr();
-        }
-        Self {
-            struct_size: size_of::<Self>(),
-            queue_family: support.queue_family,
-            mesh_shader: support.mesh_shader.into(),
-            push_descriptor: support.push_descriptor.into(),
-            portability_subset: support.portability_subset.into(),
-            timestamp_period: support.timestamp_period,
-            extension_count: names.len().min(RARA_MAX_EXTENSIONS) as u32,
-            extensions,
-            max_buffer_size: support.max_buffer_size,
-            max_image_size: support.max_image_size,
-            api_version: support.api_version,
-        }
-    }
-}
-
-/// Whether a physical device will do, asked before there is a device. RARA_ERROR_DEVICE if not: the message names what is
-/// missing.
-///
-/// `api_version` is the VkApplicationInfo::apiVersion that the instance was created with, 1.2 or later; `support_size` is
-/// sizeof *support.
-///
-/// # Safety
-/// `instance` is alive and was created for `api_version`, `physical_device` is one of its own, and
-/// `get_instance_proc_addr` is the loader's. `support` has room for `support_size` bytes.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_check(
-    get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
-    instance: vk::Instance,
-    physical_device: vk::PhysicalDevice,
-    api_version: u32,
-    support: *mut RaraSupport,
-    support_size: usize,
-) -> RaraResult {
-    guard(|| {
-        // SAFETY: the caller's promises.
-        unsafe {
-            let instance = load_instance(get_instance_proc_addr, instance, physical_device)?;
-            let found = RaraSupport::of(&gpu::check(&instance, physical_device, api_version)?);
-            write(support, support_size, &found, "support")
-        }
-    })
-}
-
-/// Sets the features that rara needs in the host's own structs: those that are in the pNext chain of its
-/// VkDeviceCreateInfo, whichever struct of Vulkan's they are in. No other field is touched. RARA_ERROR_INVALID names a
-/// feature for which the chain has no struct; meshShader and taskShader may be missing, for a host that does without.
-///
-/// # Safety
-/// `support` is what rara_check has filled; `p_next` is null, or a chain of structs that may be changed.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_support_features(
-    support: *const RaraSupport,
-    p_next: *mut c_void,
-) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        let default = RaraSupport::of(&Support::default());
-        let support = read(support, default, "support")?;
-        set_features(p_next, support.mesh_shader != 0)
-    })
-}
-
-/// # Safety
-/// `next` is null, or a chain of Vulkan's structs that nobody else uses.
-unsafe fn set_features(next: *mut c_void, mesh_shader: bool) -> Result<()> {
-    use vk::StructureType as Type;
-    let (mut address, mut synchronization, mut rendering) = (false, false, false);
-    let mut next = next.cast::<vk::BaseOutStructure<'_>>();
-    // SAFETY: each struct of a chain begins with its type, which says what it is, and with the next one.
-    unsafe {
-        while let Some(base) = next.as_mut() {
-            match base.s_type {
-                Type::PHYSICAL_DEVICE_VULKAN_1_2_FEATURES => {
-                    let all = &mut *next.cast::<vk::PhysicalDeviceVulkan12Features<'_>>();
-                    all.buffer_device_address = vk::TRUE;
-                    address = true;
-                }
-                Type::PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES => {
-                    let one = next.cast::<vk::PhysicalDeviceBufferDeviceAddressFeatures<'_>>();
-                    (*one).buffer_device_address = vk::TRUE;
-                    address = true;
-                }
-                Type::PHYSICAL_DEVICE_VULKAN_1_3_FEATURES => {
-                    let all = &mut *next.cast::<vk::PhysicalDeviceVulkan13Features<'_>>();
-                    (all.synchronization2, all.dynamic_rendering) = (vk::TRUE, vk::TRUE);
-                    (synchronization, rendering) = (true, true);
-                }
-                Type::PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES => {
-                    let one = next.cast::<vk::PhysicalDeviceSynchronization2Features<'_>>();
-                    (*one).synchronization2 = vk::TRUE;
-                    synchronization = true;
-                }
-                Type::PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES => {
-                    let one = next.cast::<vk::PhysicalDeviceDynamicRenderingFeatures<'_>>();
-                    (*one).dynamic_rendering = vk::TRUE;
-                    rendering = true;
-                }
-                Type::PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT if mesh_shader => {
-                    let all = &mut *next.cast::<vk::PhysicalDeviceMeshShaderFeaturesEXT<'_>>();
-                    (all.mesh_shader, all.task_shader) = (vk::TRUE, vk::TRUE);
-                }
-                _ => {}
-            }
-            next = base.p_next;
-        }
-    }
-    for (found, feature, holder) in [
-        (
-            address,
-            "bufferDeviceAddress",
-            "VkPhysicalDeviceVulkan12Features",
-        ),
-        (
-            synchronization,
-            "synchronization2",
-            "VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceSynchronization2Features",
-        ),
-        (
-            rendering,
-            "dynamicRendering",
-            "VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceDynamicRenderingFeatures",
-        ),
-    ] {
-        if !found {
-            return invalid(format!(
-                "no struct of p_next has the feature {feature}: chain a {holder}"
-            ));
-        }
-    }
-    Ok(())
-}
-
-/// A host's device as rara uses it. May be used by several threads at once.
+/// A host's device as rara uses it. Several threads may use it at once.
 pub struct RaraDevice(pub(crate) Device);
 
 /// A host's own Vulkan, for rara_device_adopt. All of it stays the host's.
@@ -206,21 +27,22 @@ pub struct RaraAdoptDesc {
     pub get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
     /// Created for `api_version` below.
     pub instance: vk::Instance,
-    /// The device below was made from it.
+    /// The physical device that the device below was made from.
     pub physical_device: vk::PhysicalDevice,
     /// Created with what rara_support_features sets.
     pub device: vk::Device,
-    /// With graphics and compute; everything that rara records goes to it.
+    /// A queue with graphics and compute; everything that rara records goes to it.
     pub queue: vk::Queue,
     /// The queue's family.
     pub queue_family: u32,
-    /// VK_EXT_mesh_shader, meshShader and taskShader were enabled. Default: no.
+    /// Whether VK_EXT_mesh_shader, meshShader and taskShader were enabled. Default: no.
     pub mesh_shader: vk::Bool32,
-    /// VK_KHR_push_descriptor was enabled. Default: no.
+    /// Whether VK_KHR_push_descriptor was enabled. Default: no.
     pub push_descriptor: vk::Bool32,
-    /// VK_EXT_debug_utils was enabled on the instance: rara names its objects and labels its stages. Default: no.
+    /// Whether VK_EXT_debug_utils was enabled on the instance: rara then names its objects and labels its stages.
+    /// Default: no.
     pub debug_utils: vk::Bool32,
-    /// Where compiled pipelines are looked up and kept. Default: null, nowhere.
+    /// Where compiled pipelines are looked up and kept. Default: null, and none are kept.
     pub pipeline_cache: vk::PipelineCache,
     /// VkApplicationInfo::apiVersion of the instance, 1.2 or later. Default: VK_API_VERSION_1_3.
     pub api_version: u32,
@@ -250,7 +72,7 @@ impl RaraAdoptDesc {
     }
 }
 
-/// Nothing optional, and null handles that the host replaces. `desc_size` is sizeof *desc.
+/// Enables nothing optional and sets all handles to null; the host replaces them. `desc_size` is sizeof *desc.
 ///
 /// # Safety
 /// `desc` has room for `desc_size` bytes.
@@ -263,8 +85,8 @@ pub unsafe extern "C" fn rara_adopt_desc_default(
     guard(|| unsafe { write(desc, desc_size, &RaraAdoptDesc::new(), "desc") })
 }
 
-/// Works with the host's device. Of what is in `desc` nothing is ever destroyed, and nothing is submitted to the queue but
-/// by rara_scene_buffers_upload and rara_scene_buffers_upload_layers.
+/// Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload and
+/// rara_scene_buffers_upload_layers submit to the queue.
 ///
 /// # Safety
 /// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice.
@@ -295,7 +117,7 @@ pub unsafe extern "C" fn rara_device_adopt(
     })
 }
 
-/// Bytes of device memory that rara has allocated on it, 0 for null.
+/// Bytes of device memory that rara has allocated on the device, 0 for null.
 ///
 /// # Safety
 /// `device` is null or alive.
@@ -310,8 +132,8 @@ pub unsafe extern "C" fn rara_device_bytes(device: *const RaraDevice) -> u64 {
     bytes
 }
 
-/// Gives the device back; the VkDevice lives on. What was made from it may be destroyed later, but before the VkDevice.
-/// Null is ignored.
+/// Gives the device back; the VkDevice lives on. What was made from the RaraDevice may be destroyed later, but before the
+/// VkDevice. Null is ignored.
 ///
 /// # Safety
 /// `device` is null, or alive and not used any more.
@@ -321,11 +143,11 @@ pub unsafe extern "C" fn rara_device_destroy(device: *mut RaraDevice) {
     unsafe { destroy(device) };
 }
 
-/// The instance's functions. Those of 1.1 must be there: ash would abort where one is missing.
+/// The instance's functions. Those of Vulkan 1.1 must be there: ash would abort where one is missing.
 ///
 /// # Safety
 /// The handles are null, or belong together and are alive.
-unsafe fn load_instance(
+pub(crate) unsafe fn load_instance(
     get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
     instance: vk::Instance,
     physical_device: vk::PhysicalDevice,
@@ -359,7 +181,7 @@ unsafe fn load_instance(
     Ok(unsafe { ash::Instance::load(&functions, instance) })
 }
 
-/// The device's functions, those of extensions too that the host says it has enabled.
+/// The device's functions, with those of the extensions that the host says it has enabled.
 ///
 /// # Safety
 /// The handles of the description are null, or belong together and are alive.

@@ -14,13 +14,14 @@ use crate::device::RaraDevice;
 use crate::placement::RaraPlacement;
 use crate::scene::{RaraGaussians, RaraSceneBuffers, RaraShFormat, RaraStaging, sh_format};
 
-/// What of a layer may change from frame to frame.
+/// The state of a layer, which may change from frame to frame.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraLayerState {
     /// Set by rara_layer_state_default and rara_scene_buffers_layer_state.
     pub struct_size: usize,
-    /// Where the layer stands in its scene, which rara_renderer_set_placement places as a whole. Default: where it was made.
+    /// Where the layer stands in its scene, which rara_renderer_set_placement places as a whole. Default: where it was
+    /// made.
     pub placement: RaraPlacement,
     /// What the opacities of its Gaussians are multiplied by, 0 to 1. Default: 1.
     pub opacity: f32,
@@ -44,7 +45,7 @@ impl From<LayerState> for RaraLayerState {
     }
 }
 
-/// What a host says of a state; `layer` is the name of the one that it is for.
+/// Reads the state that a host gives; `layer` is the name of the layer that it is for.
 ///
 /// # Safety
 /// `state` is null, or points to one.
@@ -62,8 +63,8 @@ unsafe fn state(state: *const RaraLayerState, name: &str, layer: &str) -> Result
     made.map_err(|error| Error::Invalid(format!("{name}: {error}")))
 }
 
-/// A layer of a scene that is to be uploaded. All of it is read by the call alone: the name is copied, and the Gaussians
-/// may be destroyed when it returns.
+/// A layer of a scene that is to be uploaded. Only the call itself reads it: the name is copied, and the Gaussians may be
+/// destroyed when the call returns.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraLayer {
@@ -73,7 +74,7 @@ pub struct RaraLayer {
     pub name: *const c_char,
     /// Its Gaussians. Several layers may have the same.
     pub gaussians: *const RaraGaussians,
-    /// How it is shown at first; null, the default, is as rara_layer_state_default says.
+    /// The state in which it is uploaded; null, the default, stands for that of rara_layer_state_default.
     pub state: *const RaraLayerState,
 }
 
@@ -92,10 +93,10 @@ impl RaraLayer {
         }
     }
 
-    /// `place` is what messages call it.
+    /// Reads the layer; `place` names it in messages.
     ///
     /// # Safety
-    /// Its pointers are null, or to what they say, which nobody changes for `'a`.
+    /// Its pointers are null, or point to what their fields say, which nobody changes for `'a`.
     unsafe fn layer<'a>(&self, place: &str) -> Result<Layer<'a>> {
         // SAFETY: the caller's promise.
         let name = unsafe { string(self.name, &format!("{place}.name")) }?;
@@ -115,7 +116,7 @@ impl RaraLayer {
 }
 
 /// # Safety
-/// `layers` is null, or points to `layer_count` of them, which are as they say and nobody changes for `'a`.
+/// `layers` is null, or points to `layer_count` layers, which are as their fields say and nobody changes for `'a`.
 unsafe fn scene<'a>(layers: *const RaraLayer, layer_count: usize) -> Result<Scene<'a>> {
     if layer_count == 0 {
         return invalid("layer_count is 0, and a scene has at least one layer: give one or more");
@@ -135,7 +136,8 @@ unsafe fn scene<'a>(layers: *const RaraLayer, layer_count: usize) -> Result<Scen
     made.collect()
 }
 
-/// A layer where it was made, visible, with the opacities of its Gaussians. `state_size` is sizeof *state.
+/// The state of a layer that stands where it was made, visible and with the opacities of its Gaussians. `state_size` is
+/// sizeof *state.
 ///
 /// # Safety
 /// `state` has room for `state_size` bytes.
@@ -149,7 +151,7 @@ pub unsafe extern "C" fn rara_layer_state_default(
     guard(|| unsafe { write(state, state_size, &default, "state") })
 }
 
-/// Gaussians with a name, as they are; both pointers are kept in `layer` as they come. `layer_size` is sizeof *layer.
+/// A layer of Gaussians in the default state; `layer` keeps both pointers as they are. `layer_size` is sizeof *layer.
 ///
 /// # Safety
 /// `layer` has room for `layer_size` bytes.
@@ -165,12 +167,13 @@ pub unsafe extern "C" fn rara_layer_default(
     guard(|| unsafe { write(layer, layer_size, &default, "layer") })
 }
 
-/// As rara_scene_buffers_upload, a scene of several layers, which are sorted and blended together, wherever they reach
-/// into each other. Where two Gaussians are equally deep, the earlier layer's is in front.
+/// Uploads a scene of several layers as rara_scene_buffers_upload does one of a single layer. The layers are sorted and
+/// blended together, wherever they reach into each other. Where two Gaussians are equally deep, the earlier layer's is in
+/// front.
 ///
 /// # Safety
-/// `device` is alive; `layers` points to `layer_count` of them, which are as they say and of one struct_size; nobody else
-/// uses the queue meanwhile; `scene` may be overwritten.
+/// `device` is alive; `layers` points to `layer_count` layers, which are as their fields say and all of one struct_size;
+/// nobody else uses the queue meanwhile; `scene` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_upload_layers(
     device: *const RaraDevice,
@@ -193,7 +196,8 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_layers(
 /// Bytes of staging memory that rara_scene_buffers_upload_layers_with needs for a scene.
 ///
 /// # Safety
-/// `layers` points to `layer_count` of them, which are as they say and of one struct_size; `bytes` may be overwritten.
+/// `layers` points to `layer_count` layers, which are as their fields say and all of one struct_size; `bytes` may be
+/// overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_staging_bytes_of_layers(
     layers: *const RaraLayer,
@@ -210,11 +214,11 @@ pub unsafe extern "C" fn rara_scene_buffers_staging_bytes_of_layers(
     })
 }
 
-/// As rara_scene_buffers_upload_with, a scene of several layers. `layers` and what they point to may be gone when it
-/// returns.
+/// Uploads a scene of several layers as rara_scene_buffers_upload_with does one of a single layer. `layers` and what they
+/// point to may be freed when it returns.
 ///
 /// # Safety
-/// As of rara_scene_buffers_upload_with and, for the layers, of rara_scene_buffers_upload_layers.
+/// As for rara_scene_buffers_upload_with and, for the layers, as for rara_scene_buffers_upload_layers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_upload_layers_with(
     device: *const RaraDevice,
@@ -239,16 +243,16 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_layers_with(
     })
 }
 
-/// What a layer of a scene in device memory is.
+/// A layer of a scene in device memory.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraLayerInfo {
     /// Set by rara_scene_buffers_layer_info.
     pub struct_size: usize,
-    /// Its name: UTF-8, ends in NUL, lives as long as the RaraSceneBuffers. The one layer of rara_scene_buffers_upload and
-    /// rara_scene_buffers_upload_with is named "scene".
+    /// Its name: UTF-8, ends in NUL, lives as long as the RaraSceneBuffers. A scene of rara_scene_buffers_upload or
+    /// rara_scene_buffers_upload_with has one layer, named "scene".
     pub name: *const c_char,
-    /// Gaussians in it.
+    /// Gaussians in the layer.
     pub count: u64,
 }
 
@@ -272,7 +276,7 @@ pub unsafe extern "C" fn rara_scene_buffers_layer_count(scene: *const RaraSceneB
     count
 }
 
-/// That a scene has a layer of this number.
+/// Checks that a scene has a layer of this number.
 fn check_index(scene: &RaraSceneBuffers, index: usize) -> Result<()> {
     let count = scene.names.len();
     if index < count {
@@ -283,7 +287,7 @@ fn check_index(scene: &RaraSceneBuffers, index: usize) -> Result<()> {
     ))
 }
 
-/// What a layer is. Layers are numbered from 0, in the order in which they were given. `info_size` is sizeof *info.
+/// Describes a layer. Layers are numbered from 0, in the order in which they were given. `info_size` is sizeof *info.
 ///
 /// # Safety
 /// `scene` is alive; `info` has room for `info_size` bytes.
@@ -308,7 +312,7 @@ pub unsafe extern "C" fn rara_scene_buffers_layer_info(
     })
 }
 
-/// The state of a layer, as it was uploaded or set last; its rotation has length one. `state_size` is sizeof *state.
+/// The state of a layer, as it was uploaded or last set; its rotation has length one. `state_size` is sizeof *state.
 ///
 /// # Safety
 /// `scene` is alive, and no other thread sets a state meanwhile; `state` has room for `state_size` bytes.
@@ -329,9 +333,9 @@ pub unsafe extern "C" fn rara_scene_buffers_layer_state(
     })
 }
 
-/// Sets the state of a layer: the next rara_renderer_configure of every renderer takes it, and frames that are configured
-/// already keep theirs, so that nothing has to be waited for. RARA_ERROR_INVALID for an opacity that is not 0 to 1 and
-/// for what is no placement; the state before then stays.
+/// Sets the state of a layer: the next rara_renderer_configure of every renderer takes it, and frames that are already
+/// configured keep theirs, so that nothing has to be waited for. RARA_ERROR_INVALID for an opacity that is not 0 to 1 and
+/// for an impossible placement; the state then stays as it was.
 ///
 /// # Safety
 /// `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;

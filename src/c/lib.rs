@@ -22,5 +22,6 @@ pub mod renderer;
 pub mod scene;
 pub mod settings;
 pub mod stats;
+pub mod support;
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-//! The log: records of the `log` crate, to a function of the host's.
+//! The log: passes records of the `log` crate to a function of the host's.
 
 use std::cell::Cell;
 use std::ffi::{c_char, c_void};
@@ -22,11 +22,11 @@ pub const RARA_LOG_LEVEL_DEBUG: RaraLogLevel = 4;
 /// Every step.
 pub const RARA_LOG_LEVEL_TRACE: RaraLogLevel = 5;
 
-/// Takes a line of the log, of rara and of what it is built on: `text` is UTF-8, ends in NUL and is gone after the
-/// call.
+/// Takes a line of the log of rara and of the crates that it is built on: `text` is UTF-8, ends in NUL and is gone after
+/// the call.
 ///
-/// Any thread may call it that is inside a function of rara's, and several at once. Locks may be held meanwhile: it
-/// calls nothing of rara's, and throws nothing.
+/// Any thread that is inside a function of rara's may call it, several at once. Locks may be held meanwhile, so it must
+/// call nothing of rara's and throw nothing.
 pub type RaraLog =
     Option<unsafe extern "C" fn(level: RaraLogLevel, text: *const c_char, user: *mut c_void)>;
 
@@ -41,14 +41,15 @@ unsafe impl Send for Host {}
 // SAFETY: as above, several at once.
 unsafe impl Sync for Host {}
 
-/// Locked for reading while the host receives a record, so that rara_set_log returns only when nobody is in the old function.
+/// Locked for reading while the host's function runs, so that rara_set_log returns only when nobody is in the old
+/// function.
 static HOST: RwLock<Option<Host>> = RwLock::new(None);
 
-/// Whether this process's records come to us; asked for once.
+/// Whether this process's records come to us; decided once.
 static OURS: OnceLock<bool> = OnceLock::new();
 
 thread_local! {
-    /// This thread is in the host's function and has locked HOST.
+    /// Whether this thread is in the host's function and has locked HOST.
     static TELLING: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -56,11 +57,11 @@ struct Sink;
 
 impl Log for Sink {
     fn enabled(&self, _: &Metadata<'_>) -> bool {
-        true // the level is the host's to look at
+        true // the host's function filters by level
     }
 
     fn log(&self, record: &Record<'_>) {
-        // A record that cannot be written is lost, and what wrote it goes on. Dropping a payload may panic once more.
+        // A record that cannot be written is lost, and its writer goes on. Dropping a payload may panic once more.
         if let Err(payload) = catch_unwind(AssertUnwindSafe(|| forward(record))) {
             std::mem::forget(payload);
         }
@@ -71,7 +72,7 @@ impl Log for Sink {
 
 fn forward(record: &Record<'_>) {
     if TELLING.get() {
-        return; // the host's function does what it must not
+        return; // the host's function has called rara, which it must not
     }
     let text = c_string(&record.args().to_string());
     let host = HOST.read().unwrap_or_else(PoisonError::into_inner);
@@ -83,16 +84,16 @@ fn forward(record: &Record<'_>) {
     }
 }
 
-/// Sends the log to a function of the host's, of every level and the whole process; null, as it is in the beginning, to
-/// nobody. `user` is what the function is given.
+/// Sends the log of the whole process, of every level, to a function of the host's; with null, as in the beginning,
+/// nobody gets it. `user` is what the function is given.
 ///
-/// May be called at any time and by any thread. The function before is then not called any more, and no thread is
-/// inside it when this returns: what its `user` points to may be freed. The caller holds no lock that the function
-/// waits for. RARA_ERROR_INVALID if it is called by the function itself, and where rara is linked into a Rust program
-/// that has a logger already, which then has these records.
+/// May be called at any time and by any thread, as long as it holds no lock that the function waits for. The previous
+/// function is then not called any more, and no thread is inside it when this returns: what its `user` points to may be
+/// freed. RARA_ERROR_INVALID if the function itself calls this, and where rara is linked into a Rust program that already
+/// has a logger, which then gets these records.
 ///
 /// # Safety
-/// `log` is null, or as RaraLog says, and with `user` to be called by any thread, until it is replaced.
+/// `log` is null, or is as RaraLog says and may be called with `user` by any thread until it is replaced.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_set_log(log: RaraLog, user: *mut c_void) -> RaraResult {
     guard(|| {

@@ -1,4 +1,4 @@
-//! Every function with null for every pointer, and with a panic inside: both become a code.
+//! Calls every function with null for every pointer, and with a panic inside: both become a code.
 
 use std::cell::Cell;
 use std::ptr::{null, null_mut};
@@ -17,23 +17,24 @@ use crate::renderer::*;
 use crate::scene::*;
 use crate::settings::*;
 use crate::stats::*;
+use crate::support::*;
 use crate::tests::{assert_fails, message};
 
 thread_local! {
     static PANIC: Cell<bool> = const { Cell::new(false) };
 }
 
-/// What a test puts into every function.
+/// What a test makes every function do.
 pub(crate) fn panic_if_asked() {
     assert!(!PANIC.get(), "injected");
 }
 
-/// Each function with null for every pointer and handle, and what it says then.
+/// Calls each function with null for every pointer and handle: its result, its name, and what its message says.
 fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
     let mut called = Vec::new();
     macro_rules! call {
         ($function:ident($($argument:expr),*), $says:literal) => {
-            // SAFETY: null is what every function must stand.
+            // SAFETY: every function must stand null.
             called.push((unsafe { $function($($argument),*) }, stringify!($function), $says));
             assert!(called.last().is_none_or(|(_, name, _)| PANIC.get() || {
                 let says = message();
@@ -187,13 +188,13 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
         rara_renderer_stats(null(), null_mut(), 0),
         "renderer is null"
     );
-    call!(rara_set_log(None, null_mut()), ""); // null is nobody
+    call!(rara_set_log(None, null_mut()), ""); // null stands for nobody
     called
 }
 
-/// Functions without a result ignore null: they cannot report it.
+/// Functions without a result neither fail nor report anything.
 fn assert_nothing_comes_of_null() {
-    // SAFETY: null is what these ignore.
+    // SAFETY: these functions ignore null.
     unsafe {
         rara_gaussians_destroy(null_mut());
         rara_scene_buffers_destroy(null_mut());

@@ -6,8 +6,8 @@ use rara::{Placement, Result};
 use crate::boundary::{RaraResult, exclusive, guard, shared};
 use crate::renderer::RaraRenderer;
 
-/// Where a scene stands in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1} is
-/// where it was made.
+/// Where a scene stands in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1} leaves
+/// it where it was made.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraPlacement {
@@ -15,7 +15,7 @@ pub struct RaraPlacement {
     pub position: [f64; 3],
     /// How it is turned: a quaternion x, y, z, w, of any length but zero.
     pub rotation: [f64; 4],
-    /// World units of a unit of the scene, above zero.
+    /// How many world units one unit of the scene is, above zero.
     pub scale: f64,
 }
 
@@ -36,14 +36,13 @@ impl RaraPlacement {
     }
 }
 
-/// Where the scene stands, from the next rara_renderer_configure on: camera, clip, the depth map and expected depths
-/// are the world's. Without it, where it was made. RARA_ERROR_INVALID for numbers that are not finite, a scale that is
-/// not above zero and a rotation of zero; the placement before then stays.
+/// Sets where the scene stands, from the next rara_renderer_configure on; camera, clip, depth map and expected depths are
+/// the world's. Until this is called the scene stands where it was made. RARA_ERROR_INVALID for numbers that are not
+/// finite, a scale that is not above zero and a rotation of zero; the placement then stays as it was.
 ///
 /// The picture is that of the placed Gaussians, spherical harmonics turn with the scene, and no Gaussian is touched: a
-/// scene can be moved in every frame, and one RaraSceneBuffers can be drawn in several places, by a renderer each.
-/// Lengths are the scene's own then, also the one that 3DGS culls by: centres nearer than 0.2 of the scene's units
-/// before the eye.
+/// scene can be moved in every frame, and one RaraSceneBuffers can be drawn in several places, by a renderer each. All
+/// lengths are then in the scene's units, also the depth of 0.2 below which 3DGS culls centres.
 ///
 /// # Safety
 /// `renderer` is alive, and no other thread uses it; `placement` points to one.

@@ -34,43 +34,43 @@
 // Room for the stages of a frame.
 #define RARA_MAX_PASSES 32
 
-// A host's device as rara uses it. May be used by several threads at once.
+// A host's device as rara uses it. Several threads may use it at once.
 typedef struct RaraDevice RaraDevice;
 
-// A scene in the host's memory. It may be destroyed when it is on the device. May be read by several threads at once.
+// A scene in the host's memory. It may be destroyed once it is on the device. Several threads may read it at once.
 typedef struct RaraGaussians RaraGaussians;
 
-// Draws scenes into the host's rendering scopes. Used by one thread at a time.
+// Draws scenes into the host's rendering scopes. One thread at a time uses it.
 //
 // A frame is three calls: rara_renderer_configure allocates and compiles what is new; rara_renderer_prepare records
-// compute stages, outside any rendering scope; rara_renderer_draw records the splats inside one. The host submits both in
-// this order, to the queue that it lent.
+// compute stages, outside any rendering scope; rara_renderer_draw records the splats inside one. The host submits both
+// in this order, to the queue that it lent.
 //
-// Frames in flight: before it configures frame n the host has waited for frame n - frames_in_flight, and before it
-// destroys the renderer for all of its frames.
+// Frames in flight: before the host configures frame n it has waited for frame n - frames_in_flight, and before it
+// destroys the renderer it has waited for all of its frames.
 //
-// Synchronisation: none is needed between the two calls, nor for the buffers of renderer and scene; the attachments are
-// the host's to synchronise, as for any draw of its own.
+// Synchronisation: none is needed between the two recorded calls, nor for the buffers of renderer and scene. The
+// attachments are the host's to synchronise, as for any draw of its own.
 //
 // The calls bind pipelines, push constants and, with RARA_BINDINGS_BOUND, push descriptor set 0: the host binds its own
 // again. No other state, no image and no layout is touched.
 typedef struct RaraRenderer RaraRenderer;
 
-// A scene in device memory: one layer or several. May be used by several threads and renderers at once, but by nobody
-// else while rara_scene_buffers_set_layer_state runs.
+// A scene in device memory: one layer or several. Several threads and renderers may use it at once, but nobody else
+// while rara_scene_buffers_set_layer_state runs.
 typedef struct RaraSceneBuffers RaraSceneBuffers;
 
-// What every function that can fail returns. Of anything but RARA_OK rara_last_error_message says more.
+// What every function that can fail returns. After anything but RARA_OK rara_last_error_message says more.
 typedef int32_t RaraResult;
 
 // How much a line of the log matters.
 typedef uint32_t RaraLogLevel;
 
-// Takes a line of the log, of rara and of what it is built on: `text` is UTF-8, ends in NUL and is gone after the
-// call.
+// Takes a line of the log of rara and of the crates that it is built on: `text` is UTF-8, ends in NUL and is gone after
+// the call.
 //
-// Any thread may call it that is inside a function of rara's, and several at once. Locks may be held meanwhile: it
-// calls nothing of rara's, and throws nothing.
+// Any thread that is inside a function of rara's may call it, several at once. Locks may be held meanwhile, so it must
+// call nothing of rara's and throw nothing.
 typedef void (*RaraLog)(RaraLogLevel level, const char *text, void *user);
 
 // A pinhole camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers.
@@ -95,24 +95,24 @@ typedef struct RaraCamera {
 
 // A camera and what its file calls it.
 typedef struct RaraNamedCamera {
-    // The picture's name in the file, or the camera's number there: UTF-8, as much as there is room for.
+    // The picture's name in the file, or the camera's number there: UTF-8, cut off where it does not fit.
     char name[RARA_MAX_CAMERA_NAME];
     // The camera.
     struct RaraCamera camera;
 } RaraNamedCamera;
 
-// What a depth buffer holds: of every perspective projection into depths from 0 to 1.
+// What a depth buffer holds, for any perspective projection into depths from 0 to 1.
 typedef struct RaraDepthMap {
     // Depth along the view axis that becomes 0, or 1 if reversed, world units above 0.
     double z_near;
     // Depth along the view axis that becomes 1, or 0 if reversed; beyond z_near, INFINITY too.
     double z_far;
-    // Nearer is more.
+    // Whether nearer is more.
     VkBool32 reversed;
 } RaraDepthMap;
 
-// The host's depth attachment. Splats behind what it holds are hidden, none is written into it. A splat is at one depth,
-// that of its centre, in all of its pixels. Opaque things go first, then splats.
+// The host's depth attachment. Splats behind what it holds are hidden, and splats write nothing into it. In all of its
+// pixels a splat has one depth, that of its centre. The host draws opaque things first, then splats.
 typedef struct RaraDepthDesc {
     // Set by rara_depth_desc_default.
     size_t struct_size;
@@ -120,14 +120,14 @@ typedef struct RaraDepthDesc {
     VkFormat format;
     // Whether a dynamic rendering scope has the same image as stencil attachment too. Default: no.
     VkBool32 stencil;
-    // Whether the host shows each frame's depth to rara_renderer_prepare_behind. Tiles need that; without it they are
-    // replaced by quads. Default: no.
+    // Whether the host shows each frame's depth to rara_renderer_prepare_behind. Tiles need that; without it quads
+    // replace them. Default: no.
     VkBool32 readable;
-    // What it holds for a depth; rara_renderer_set_depth_map changes it from frame to frame.
+    // What the buffer holds for a depth; rara_renderer_set_depth_map changes it from frame to frame.
     struct RaraDepthMap map;
 } RaraDepthDesc;
 
-// What a physical device that will do offers beyond what must be there. What must is Vulkan 1.3, or 1.2 with
+// What a physical device that will do offers beyond the requirements. Required are Vulkan 1.3, or 1.2 with
 // VK_KHR_synchronization2 and VK_KHR_dynamic_rendering, the features bufferDeviceAddress, synchronization2 and
 // dynamicRendering, and a queue family with graphics and compute.
 typedef struct RaraSupport {
@@ -135,22 +135,22 @@ typedef struct RaraSupport {
     size_t struct_size;
     // The first queue family with graphics and compute. Any other with both will do too.
     uint32_t queue_family;
-    // VK_EXT_mesh_shader with meshShader and taskShader. Optional: splats can be drawn without.
+    // VK_EXT_mesh_shader with meshShader and taskShader. Optional: splats can be drawn without them.
     VkBool32 mesh_shader;
     // VK_KHR_push_descriptor. Optional: RARA_BINDINGS_BOUND needs it.
     VkBool32 push_descriptor;
-    // VK_KHR_portability_subset. A host must enable it where it is there.
+    // VK_KHR_portability_subset. A host must enable it where the device has it.
     VkBool32 portability_subset;
-    // Nanoseconds a tick of a timestamp, 0 where the queue family has none: then frames have no times.
+    // Nanoseconds of one tick of a timestamp; 0 where the queue family has no timestamps, and frames then have no times.
     float timestamp_period;
     // Number of extensions.
     uint32_t extension_count;
-    // Those from above that are there and those that 1.2 needs, to be added to ppEnabledExtensionNames; the strings
-    // live as long as the library.
+    // The extensions named above that the device has, and those that Vulkan 1.2 needs, to be added to
+    // ppEnabledExtensionNames. The strings live as long as the library.
     const char *extensions[RARA_MAX_EXTENSIONS];
-    // Bytes of the largest buffer: what a scene's spherical harmonics may take.
+    // Bytes of the largest buffer, which limits a scene's spherical harmonics.
     uint64_t max_buffer_size;
-    // Pixels along a side of an image.
+    // Most pixels along a side of an image.
     uint32_t max_image_size;
     // The Vulkan version that rara uses: VK_API_VERSION_1_2 or VK_API_VERSION_1_3.
     uint32_t api_version;
@@ -164,34 +164,35 @@ typedef struct RaraAdoptDesc {
     PFN_vkGetInstanceProcAddr get_instance_proc_addr;
     // Created for `api_version` below.
     VkInstance instance;
-    // The device below was made from it.
+    // The physical device that the device below was made from.
     VkPhysicalDevice physical_device;
     // Created with what rara_support_features sets.
     VkDevice device;
-    // With graphics and compute; everything that rara records goes to it.
+    // A queue with graphics and compute; everything that rara records goes to it.
     VkQueue queue;
     // The queue's family.
     uint32_t queue_family;
-    // VK_EXT_mesh_shader, meshShader and taskShader were enabled. Default: no.
+    // Whether VK_EXT_mesh_shader, meshShader and taskShader were enabled. Default: no.
     VkBool32 mesh_shader;
-    // VK_KHR_push_descriptor was enabled. Default: no.
+    // Whether VK_KHR_push_descriptor was enabled. Default: no.
     VkBool32 push_descriptor;
-    // VK_EXT_debug_utils was enabled on the instance: rara names its objects and labels its stages. Default: no.
+    // Whether VK_EXT_debug_utils was enabled on the instance: rara then names its objects and labels its stages.
+    // Default: no.
     VkBool32 debug_utils;
-    // Where compiled pipelines are looked up and kept. Default: null, nowhere.
+    // Where compiled pipelines are looked up and kept. Default: null, and none are kept.
     VkPipelineCache pipeline_cache;
     // VkApplicationInfo::apiVersion of the instance, 1.2 or later. Default: VK_API_VERSION_1_3.
     uint32_t api_version;
 } RaraAdoptDesc;
 
-// Where a scene stands in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1} is
-// where it was made.
+// Where a scene stands in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1} leaves
+// it where it was made.
 typedef struct RaraPlacement {
     // Where the scene's origin goes, world units.
     double position[3];
     // How it is turned: a quaternion x, y, z, w, of any length but zero.
     double rotation[4];
-    // World units of a unit of the scene, above zero.
+    // How many world units one unit of the scene is, above zero.
     double scale;
 } RaraPlacement;
 
@@ -206,11 +207,11 @@ typedef struct RaraRendererDesc {
     VkFormat color_format;
     // Samples a pixel of the attachments. Default: 1.
     VkSampleCountFlagBits samples;
-    // The depth attachment that splats are tested against; null, the default, if the scope has none. Read by the call
-    // alone.
+    // The depth attachment that splats are tested against; null, the default, if the scope has none. Only the call
+    // itself reads it.
     const struct RaraDepthDesc *depth;
     // A classic render pass, or one compatible with it, that lives until the last rara_renderer_configure; null, the
-    // default, is dynamic rendering.
+    // default, stands for dynamic rendering.
     VkRenderPass render_pass;
     // The subpass of render_pass to draw in.
     uint32_t subpass;
@@ -218,22 +219,22 @@ typedef struct RaraRendererDesc {
     RaraBindings bindings;
     // Whether to take timestamps, for the times in RaraFrameStats. Default: no.
     VkBool32 timing;
-    // Whether a frame takes over what the one before has computed and it would compute again. The host then submits every
-    // frame that it prepares, in order, or calls rara_renderer_forget. Default: no.
+    // Whether a frame takes over what the one before has computed and it would compute again. The host must then submit
+    // every frame that it prepares, in order, or call rara_renderer_forget. Default: no.
     VkBool32 reuse;
     // How many recorded frames may be unfinished at once, 1 or more. Default: 1.
     uint32_t frames_in_flight;
-    // Format of the target of rara_renderer_draw_depth, two channels or more; VK_FORMAT_UNDEFINED, the default, where that
-    // is not called.
+    // Format of the target of rara_renderer_draw_depth, two channels or more; VK_FORMAT_UNDEFINED, the default, if that
+    // function is not called.
     VkFormat expected_depth_format;
-    // As render_pass, for that target.
+    // Like render_pass, for that target.
     VkRenderPass expected_depth_render_pass;
     // The subpass of expected_depth_render_pass to draw in.
     uint32_t expected_depth_subpass;
 } RaraRendererDesc;
 
-// A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but
-// some length.
+// A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but must
+// not be zero.
 typedef struct RaraPlane {
     // Points to the visible side.
     double normal[3];
@@ -246,9 +247,9 @@ typedef uint32_t RaraClipOp;
 
 // The region that stays visible. Where a function takes one, null means everything.
 typedef struct RaraClip {
-    // The half-spaces; read by the call alone.
+    // The half-spaces; only the call itself reads them.
     const struct RaraPlane *planes;
-    // How many of them, at most 32. None means that everything is visible.
+    // How many planes there are, at most 32. With 0 everything is visible.
     size_t plane_count;
     // How they combine.
     RaraClipOp op;
@@ -297,12 +298,12 @@ typedef struct RaraSettings {
     RaraRaster raster;
     // Colours, or a debug view.
     RaraShow show;
-    // RARA_MODE_EXACT: how Phi is approximated. From the preset, like all below.
+    // RARA_MODE_EXACT: how Phi is approximated. The preset sets this and all fields below.
     RaraPhiForm phi;
-    // Most bits of the depths that the sort looks at, 8 to 32.
+    // How many bits of the depths the sort compares at most, 8 to 32.
     uint32_t key_bits;
-    // RARA_MODE_EXACT: a cut splat is perspective-exact where its largest deviation over its depth exceeds this. Zero is
-    // the exact form for all.
+    // RARA_MODE_EXACT: a cut splat is perspective-exact where its largest deviation over its depth exceeds this. Zero
+    // makes all of them exact.
     float beam_switch;
     // Tiles only: a pixel with less transmittance than this is saturated. Zero blends everything.
     float transmittance_min;
@@ -312,21 +313,21 @@ typedef struct RaraSettings {
 typedef struct RaraDepthImage {
     // The image, whose level 0 is read.
     VkImage image;
-    // Its layout at that time: TRANSFER_SRC_OPTIMAL or GENERAL.
+    // Its layout when the copy runs: TRANSFER_SRC_OPTIMAL or GENERAL.
     VkImageLayout layout;
     // Its width, pixels.
     uint32_t width;
     // Its height, pixels.
     uint32_t height;
-    // The layer to read.
+    // The array layer that is read.
     uint32_t layer;
-    // The viewport's left edge in it, pixels.
+    // The viewport's left edge in the image, pixels.
     int32_t x;
-    // The viewport's top edge in it, pixels.
+    // The viewport's top edge in the image, pixels.
     int32_t y;
 } RaraDepthImage;
 
-// What a scene is, and what of its file could not be used.
+// Describes a scene, and what of its file could not be used.
 typedef struct RaraGaussiansInfo {
     // Set by rara_gaussians_info.
     size_t struct_size;
@@ -345,14 +346,14 @@ typedef struct RaraGaussiansInfo {
     double bounds_max[3];
 } RaraGaussiansInfo;
 
-// How spherical harmonics lie in device memory; bytes are of a Gaussian of degree 3.
+// How spherical harmonics lie in device memory; the sizes are of one Gaussian of degree 3.
 typedef uint32_t RaraShFormat;
 
 // A part of the host's memory that the device can copy from.
 typedef struct RaraStaging {
-    // Created with VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
+    // A buffer created with VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
     VkBuffer buffer;
-    // Where the part begins in it, bytes.
+    // Where the part begins in the buffer, bytes.
     uint64_t offset;
     // The part, mapped for writing.
     void *mapped;
@@ -360,11 +361,12 @@ typedef struct RaraStaging {
     size_t size;
 } RaraStaging;
 
-// What of a layer may change from frame to frame.
+// The state of a layer, which may change from frame to frame.
 typedef struct RaraLayerState {
     // Set by rara_layer_state_default and rara_scene_buffers_layer_state.
     size_t struct_size;
-    // Where the layer stands in its scene, which rara_renderer_set_placement places as a whole. Default: where it was made.
+    // Where the layer stands in its scene, which rara_renderer_set_placement places as a whole. Default: where it was
+    // made.
     struct RaraPlacement placement;
     // What the opacities of its Gaussians are multiplied by, 0 to 1. Default: 1.
     float opacity;
@@ -372,8 +374,8 @@ typedef struct RaraLayerState {
     VkBool32 visible;
 } RaraLayerState;
 
-// A layer of a scene that is to be uploaded. All of it is read by the call alone: the name is copied, and the Gaussians
-// may be destroyed when it returns.
+// A layer of a scene that is to be uploaded. Only the call itself reads it: the name is copied, and the Gaussians may be
+// destroyed when the call returns.
 typedef struct RaraLayer {
     // Set by rara_layer_default.
     size_t struct_size;
@@ -381,22 +383,22 @@ typedef struct RaraLayer {
     const char *name;
     // Its Gaussians. Several layers may have the same.
     const struct RaraGaussians *gaussians;
-    // How it is shown at first; null, the default, is as rara_layer_state_default says.
+    // The state in which it is uploaded; null, the default, stands for that of rara_layer_state_default.
     const struct RaraLayerState *state;
 } RaraLayer;
 
-// What a layer of a scene in device memory is.
+// A layer of a scene in device memory.
 typedef struct RaraLayerInfo {
     // Set by rara_scene_buffers_layer_info.
     size_t struct_size;
-    // Its name: UTF-8, ends in NUL, lives as long as the RaraSceneBuffers. The one layer of rara_scene_buffers_upload and
-    // rara_scene_buffers_upload_with is named "scene".
+    // Its name: UTF-8, ends in NUL, lives as long as the RaraSceneBuffers. A scene of rara_scene_buffers_upload or
+    // rara_scene_buffers_upload_with has one layer, named "scene".
     const char *name;
-    // Gaussians in it.
+    // Gaussians in the layer.
     uint64_t count;
 } RaraLayerInfo;
 
-// A choice of all that is given up for time: phi, key_bits, beam_switch and transmittance_min.
+// A choice of all settings that give up exactness for time: phi, key_bits, beam_switch and transmittance_min.
 typedef uint32_t RaraPreset;
 
 // GPU time of one stage.
@@ -407,8 +409,8 @@ typedef struct RaraPassTime {
     double ms;
 } RaraPassTime;
 
-// The statistics of a frame. Counts and times are of the oldest frame in flight, the last one where there is one; raster
-// and skipped are of the one that is configured.
+// The statistics of a frame. Counts and times are of the oldest frame in flight, which is the last one where there is
+// only one; raster and skipped are of the frame that is configured.
 typedef struct RaraFrameStats {
     // Set by rara_renderer_stats.
     size_t struct_size;
@@ -424,10 +426,10 @@ typedef struct RaraFrameStats {
     uint32_t drawn;
     // How splats become pixels; RARA_RASTER_AUTO before the first frame.
     RaraRaster raster;
-    // Why in that way.
+    // Why splats become pixels in that way.
     char raster_reason[RARA_REASON_SIZE];
-    // Whether tiles had no room for their lists, so that the frame was drawn as quads: the same picture, but slower. The
-    // next rara_renderer_configure makes the room.
+    // Whether tiles had no room for their lists, so that the frame was drawn as quads, which is slower and gives the
+    // same picture. The next rara_renderer_configure makes the room.
     VkBool32 fell_back;
     // Number of passes; 0 without RaraRendererDesc's timing.
     uint32_t pass_count;
@@ -444,7 +446,7 @@ typedef struct RaraFrameStats {
 // Done.
 #define RARA_OK 0
 
-// An argument is not possible: null, a plane without a normal, a picture of no size. The message names it.
+// An argument is not possible: a null pointer, a plane without a normal, a picture of no size. The message names it.
 #define RARA_ERROR_INVALID 1
 
 // A file could not be opened or read.
@@ -462,12 +464,12 @@ typedef struct RaraFrameStats {
 // A Vulkan call failed for another reason.
 #define RARA_ERROR_VULKAN 6
 
-// A panic was stopped: rara has a bug, and the message says which. Of the handles that
-// the call was given, only destroying is sure to work.
+// A panic was stopped: rara has a bug, and the message says which. With the handles that the call was given, only the
+// destroy functions are sure to work.
 #define RARA_ERROR_PANIC 7
 
-// VK_ERROR_DEVICE_LOST. Nothing on the device can be used any more: the host destroys what was made from the
-// RaraDevice, then that, then its own, and goes on with another one.
+// VK_ERROR_DEVICE_LOST. Nothing on the device can be used any more: the host destroys what was made from the RaraDevice,
+// then the RaraDevice, then its own device, and goes on with another one.
 #define RARA_ERROR_DEVICE_LOST 8
 
 // Something is wrong that no function could return.
@@ -491,16 +493,17 @@ typedef struct RaraFrameStats {
 // Visible where any plane keeps it.
 #define RARA_CLIP_OP_OR 1
 
-// By address: fast. The default.
+// By address, which is fast. The default.
 #define RARA_BINDINGS_ADDRESS 0
 
-// Bound, so that the validation layer can watch them; needs VK_KHR_push_descriptor, and is by address without.
+// Bound, so that the validation layer can watch them. Needs VK_KHR_push_descriptor; without it buffers are reached by
+// address.
 #define RARA_BINDINGS_BOUND 1
 
 // 8 bits a coefficient: 56 bytes.
 #define RARA_SH_FORMAT_BYTE 0
 
-// 10 to 11 bits a coefficient: 68 bytes. What the preset balanced uses.
+// 10 to 11 bits a coefficient: 68 bytes. The preset balanced uses it.
 #define RARA_SH_FORMAT_PACKED 1
 
 // 16-bit floats: 96 bytes.
@@ -548,7 +551,7 @@ typedef struct RaraFrameStats {
 // Affine for every cut splat.
 #define RARA_EXACT_FORM_AFFINE 2
 
-// The faster one on the device at hand. The default.
+// The faster way on the device at hand. The default.
 #define RARA_RASTER_AUTO 0
 
 // VK_EXT_mesh_shader.
@@ -563,8 +566,8 @@ typedef struct RaraFrameStats {
 // Their colours. The default.
 #define RARA_SHOW_COLOUR 0
 
-// What the clip does to them: blue where it leaves them whole; where it cuts, from red (nothing is kept in this pixel) to
-// yellow (all is).
+// What the clip does to them: a splat that it leaves whole is blue; one that it cuts goes from red, where the pixel
+// keeps nothing, to yellow, where it keeps all.
 #define RARA_SHOW_WEIGHT 1
 
 // 1.9e-5.
@@ -576,40 +579,41 @@ typedef struct RaraFrameStats {
 // 9.5e-3, two levels of 255.
 #define RARA_PHI_FORM_LOGISTIC 2
 
-// Nothing is given up. Scenes go with RARA_SH_FORMAT_FLOAT.
+// Nothing is given up. It goes with scenes in RARA_SH_FORMAT_FLOAT.
 #define RARA_PRESET_EXACT 0
 
-// What no picture shows is given up: the usual choice. Scenes go with RARA_SH_FORMAT_PACKED.
+// What no picture shows is given up: the usual choice. It goes with scenes in RARA_SH_FORMAT_PACKED.
 #define RARA_PRESET_BALANCED 1
 
-// What pictures hardly show is given up. Scenes go with RARA_SH_FORMAT_PACKED.
+// What pictures hardly show is given up. It goes with scenes in RARA_SH_FORMAT_PACKED.
 #define RARA_PRESET_FAST 2
 
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
 
-// The version of the library that is linked: RARA_ABI_VERSION of its header.
+// The version of the library that is linked: the RARA_ABI_VERSION of its header.
 uint32_t rara_abi_version(void);
 
-// What the last call of this thread that failed has to say: one or two sentences in UTF-8, "" if none has failed.
-// Valid until this thread's next call that fails.
+// The message of this thread's last call that failed: one or two sentences in UTF-8, "" if none has failed. It is valid
+// until this thread's next call that fails.
 const char *rara_last_error_message(void);
 
-// Sends the log to a function of the host's, of every level and the whole process; null, as it is in the beginning, to
-// nobody. `user` is what the function is given.
+// Sends the log of the whole process, of every level, to a function of the host's; with null, as in the beginning,
+// nobody gets it. `user` is what the function is given.
 //
-// May be called at any time and by any thread. The function before is then not called any more, and no thread is
-// inside it when this returns: what its `user` points to may be freed. The caller holds no lock that the function
-// waits for. RARA_ERROR_INVALID if it is called by the function itself, and where rara is linked into a Rust program
-// that has a logger already, which then has these records.
+// May be called at any time and by any thread, as long as it holds no lock that the function waits for. The previous
+// function is then not called any more, and no thread is inside it when this returns: what its `user` points to may be
+// freed. RARA_ERROR_INVALID if the function itself calls this, and where rara is linked into a Rust program that already
+// has a logger, which then gets these records.
 //
 // # Safety
-// `log` is null, or as RaraLog says, and with `user` to be called by any thread, until it is replaced.
-RaraResult rara_set_log(RaraLog log, void *user);
+// `log` is null, or is as RaraLog says and may be called with `user` by any thread until it is replaced.
+RaraResult rara_set_log(RaraLog log,
+                        void *user);
 
-// A camera at `eye` that looks at `target`, each three numbers in world units. `up` points up in the picture; in the
-// usual world, where y is down, that is 0, -1, 0. `fov_y` is the full vertical field of view in degrees.
+// A camera at `eye` that looks at `target`; each is three numbers in world units. `up` points up in the picture; in the
+// usual world, where y is down, it is 0, -1, 0. `fov_y` is the full vertical field of view in degrees.
 //
 // # Safety
 // `eye`, `target` and `up` point to three numbers each; `camera` may be overwritten.
@@ -635,8 +639,8 @@ RaraResult rara_camera_from_world_to_camera(const double *matrix,
                                             uint32_t height,
                                             struct RaraCamera *camera);
 
-// A camera that shows a scene from the front, the right and above, as near as fills the picture. `up` and `fov_y` as for
-// rara_camera_look_at.
+// A camera that shows a scene from the front, the right and above, near enough to fill the picture. `up` and `fov_y` are
+// as for rara_camera_look_at.
 //
 // # Safety
 // `gaussians` is alive; `up` points to three numbers; `camera` may be overwritten.
@@ -651,11 +655,11 @@ RaraResult rara_camera_frame(const struct RaraGaussians *gaussians,
 // JSON with width, height, fx, fy, cx, cy and world_to_camera. JSON files keep their order, COLMAP's cameras are
 // sorted by name. Cameras with lens distortion are RARA_ERROR_FORMAT.
 //
-// `*count` is how many there is room for at `cameras`, and becomes how many the file has; no more than there is room
-// for are written. With `cameras` null it is only asked for. `path` as of rara_gaussians_load.
+// On entry `*count` is how many cameras there is room for at `cameras`; it becomes how many the file has. No more are
+// written than there is room for; with `cameras` null the call only counts. `path` is as for rara_gaussians_load.
 //
 // # Safety
-// `path` ends in NUL; `count` points to a number; `cameras` is null, or has room for as many cameras as that says.
+// `path` ends in NUL; `count` points to a number; `cameras` is null, or has room for `*count` cameras.
 RaraResult rara_cameras_load(const char *path, struct RaraNamedCamera *cameras, size_t *count);
 
 // A depth attachment without stencil, not readable. `desc_size` is sizeof *desc.
@@ -667,8 +671,8 @@ RaraResult rara_depth_desc_default(struct RaraDepthDesc *desc,
                                    VkFormat format,
                                    struct RaraDepthMap map);
 
-// Whether a physical device will do, asked before there is a device. RARA_ERROR_DEVICE if not: the message names what is
-// missing.
+// Checks whether a physical device will do, before there is a device. If it will not, the result is RARA_ERROR_DEVICE
+// and the message names what is missing.
 //
 // `api_version` is the VkApplicationInfo::apiVersion that the instance was created with, 1.2 or later; `support_size` is
 // sizeof *support.
@@ -683,75 +687,77 @@ RaraResult rara_check(PFN_vkGetInstanceProcAddr get_instance_proc_addr,
                       struct RaraSupport *support,
                       size_t support_size);
 
-// Sets the features that rara needs in the host's own structs: those that are in the pNext chain of its
-// VkDeviceCreateInfo, whichever struct of Vulkan's they are in. No other field is touched. RARA_ERROR_INVALID names a
-// feature for which the chain has no struct; meshShader and taskShader may be missing, for a host that does without.
+// Sets the features that rara needs in the host's own structs: those in the pNext chain of its VkDeviceCreateInfo,
+// whichever of Vulkan's structs they are in. No other field is touched. RARA_ERROR_INVALID names a feature for which the
+// chain has no struct; meshShader and taskShader may be missing, since a host can do without.
 //
 // # Safety
-// `support` is what rara_check has filled; `p_next` is null, or a chain of structs that may be changed.
-RaraResult rara_support_features(const struct RaraSupport *support, void *p_next);
+// `support` was filled by rara_check; `p_next` is null, or a chain of structs that may be changed.
+RaraResult rara_support_features(const struct RaraSupport *support,
+                                 void *p_next);
 
-// Nothing optional, and null handles that the host replaces. `desc_size` is sizeof *desc.
+// Enables nothing optional and sets all handles to null; the host replaces them. `desc_size` is sizeof *desc.
 //
 // # Safety
 // `desc` has room for `desc_size` bytes.
 RaraResult rara_adopt_desc_default(struct RaraAdoptDesc *desc, size_t desc_size);
 
-// Works with the host's device. Of what is in `desc` nothing is ever destroyed, and nothing is submitted to the queue but
-// by rara_scene_buffers_upload and rara_scene_buffers_upload_layers.
+// Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload and
+// rara_scene_buffers_upload_layers submit to the queue.
 //
 // # Safety
 // The handles belong together, are as the description says, and outlive all that is made from the RaraDevice.
-RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc,
-                             struct RaraDevice **device);
+RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc, struct RaraDevice **device);
 
-// Bytes of device memory that rara has allocated on it, 0 for null.
+// Bytes of device memory that rara has allocated on the device, 0 for null.
 //
 // # Safety
 // `device` is null or alive.
 uint64_t rara_device_bytes(const struct RaraDevice *device);
 
-// Gives the device back; the VkDevice lives on. What was made from it may be destroyed later, but before the VkDevice.
-// Null is ignored.
+// Gives the device back; the VkDevice lives on. What was made from the RaraDevice may be destroyed later, but before the
+// VkDevice. Null is ignored.
 //
 // # Safety
 // `device` is null, or alive and not used any more.
 void rara_device_destroy(struct RaraDevice *device);
 
-// Where the scene stands, from the next rara_renderer_configure on: camera, clip, the depth map and expected depths
-// are the world's. Without it, where it was made. RARA_ERROR_INVALID for numbers that are not finite, a scale that is
-// not above zero and a rotation of zero; the placement before then stays.
+// Sets where the scene stands, from the next rara_renderer_configure on; camera, clip, depth map and expected depths are
+// the world's. Until this is called the scene stands where it was made. RARA_ERROR_INVALID for numbers that are not
+// finite, a scale that is not above zero and a rotation of zero; the placement then stays as it was.
 //
 // The picture is that of the placed Gaussians, spherical harmonics turn with the scene, and no Gaussian is touched: a
-// scene can be moved in every frame, and one RaraSceneBuffers can be drawn in several places, by a renderer each.
-// Lengths are the scene's own then, also the one that 3DGS culls by: centres nearer than 0.2 of the scene's units
-// before the eye.
+// scene can be moved in every frame, and one RaraSceneBuffers can be drawn in several places, by a renderer each. All
+// lengths are then in the scene's units, also the depth of 0.2 below which 3DGS culls centres.
 //
 // # Safety
 // `renderer` is alive, and no other thread uses it; `placement` points to one.
-RaraResult rara_renderer_set_placement(struct RaraRenderer *renderer, const struct RaraPlacement *placement);
+RaraResult rara_renderer_set_placement(struct RaraRenderer *renderer,
+                                       const struct RaraPlacement *placement);
 
-// One colour attachment of one sample in dynamic rendering, no timestamps, nothing reused, one frame in flight.
-// `desc_size` is sizeof *desc.
+// One colour attachment of one sample in dynamic rendering, no timestamps, no reuse, one frame in flight. `desc_size` is
+// sizeof *desc.
 //
 // # Safety
 // `desc` has room for `desc_size` bytes.
-RaraResult rara_renderer_desc_default(struct RaraRendererDesc *desc, size_t desc_size, VkFormat color_format);
+RaraResult rara_renderer_desc_default(struct RaraRendererDesc *desc,
+                                      size_t desc_size,
+                                      VkFormat color_format);
 
-// A renderer. Pipelines and buffers come with the first frame that needs them. RARA_ERROR_DEVICE where the device cannot
-// draw into such attachments.
+// Creates a renderer. The first frame that needs a pipeline or buffer creates it. RARA_ERROR_DEVICE where the device
+// cannot draw into such attachments.
 //
 // # Safety
-// `device` is alive, `desc` is as it says, and `renderer` may be overwritten.
+// `device` is alive, `desc` is as its fields say, and `renderer` may be overwritten.
 RaraResult rara_renderer_create(const struct RaraDevice *device,
                                 const struct RaraRendererDesc *desc,
                                 struct RaraRenderer **renderer);
 
-// Another renderer on the same device that shares the compiled pipelines of `other`: one for each view that is drawn in
-// the same scope. Working memory is its own.
+// Creates another renderer on the same device that shares the compiled pipelines of `other`: one for each view that is
+// drawn in the same scope. Its working memory is its own.
 //
 // # Safety
-// `other` is alive, `desc` is as it says, and `renderer` may be overwritten.
+// `other` is alive, `desc` is as its fields say, and `renderer` may be overwritten.
 RaraResult rara_renderer_create_sharing(const struct RaraRenderer *other,
                                         const struct RaraRendererDesc *desc,
                                         struct RaraRenderer **renderer);
@@ -763,12 +769,12 @@ RaraResult rara_renderer_create_sharing(const struct RaraRenderer *other,
 RaraResult rara_renderer_set_depth_map(struct RaraRenderer *renderer, const struct RaraDepthMap *map);
 
 // Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the viewport of
-// rara_renderer_draw. `clip` may be null for none, `settings` for the defaults. After an error nothing can be recorded
-// until a call succeeds.
+// rara_renderer_draw. A null `clip` clips nothing, null `settings` are the defaults. After an error nothing can be
+// recorded until a call succeeds.
 //
 // # Safety
-// `renderer` and `scene` are alive and of one device; no other thread uses `renderer`; the others are null or as they
-// say. The host has waited for the frames that RaraRenderer says.
+// `renderer` and `scene` are alive and of one device; no other thread uses `renderer`; the other pointers are null or
+// point to what they say. The host has waited for the frames that RaraRenderer says.
 RaraResult rara_renderer_configure(struct RaraRenderer *renderer,
                                    const struct RaraSceneBuffers *scene,
                                    const struct RaraCamera *camera,
@@ -778,46 +784,48 @@ RaraResult rara_renderer_configure(struct RaraRenderer *renderer,
 // Records the stages up to the draw, outside any rendering scope.
 //
 // # Safety
-// `cmd` is recording outside a rendering scope, and will be submitted to the device's queue, or never. `scene` is the one
-// given to rara_renderer_configure, and lives until the commands have executed.
+// `cmd` is recording outside a rendering scope, and will be submitted to the device's queue, or never. `scene` is the
+// one given to rara_renderer_configure, and lives until the commands have executed.
 RaraResult rara_renderer_prepare(struct RaraRenderer *renderer,
                                  VkCommandBuffer cmd,
                                  const struct RaraSceneBuffers *scene);
 
-// As rara_renderer_prepare, for a renderer whose RaraDepthDesc is readable: with what the host has drawn already, so that
-// tiles leave out the splats behind it.
+// Like rara_renderer_prepare, for a renderer whose RaraDepthDesc is readable. It also takes the depths of what the host
+// has already drawn, so that tiles leave out the splats behind it.
 //
 // The part of the image under the viewport is copied, at VK_PIPELINE_STAGE_2_COPY_BIT by VK_ACCESS_2_TRANSFER_READ_BIT:
-// the host's barrier before makes its depths visible to that, its barrier after waits for it.
+// the host's barrier before the call makes its depths visible to that, its barrier after the call waits for it.
 //
 // # Safety
-// As for rara_renderer_prepare; and `depth` is as it says, visible to the copy, and lives until the commands have executed.
+// As for rara_renderer_prepare; and `depth` is as its fields say, visible to the copy, and lives until the commands have
+// executed.
 RaraResult rara_renderer_prepare_behind(struct RaraRenderer *renderer,
                                         VkCommandBuffer cmd,
                                         const struct RaraSceneBuffers *scene,
                                         const struct RaraDepthImage *depth);
 
 // Records the splats inside the host's rendering scope, premultiplied and over what is there. `x` and `y` are the
-// viewport's upper left corner in the attachment, whole pixels; the viewport has the camera's size, and depths from 0
-// to 1. May be recorded more than once for a prepared frame.
+// viewport's upper left corner in the attachment, whole pixels; the viewport has the camera's size, and depths from 0 to
+// 1. The call may be recorded more than once for a prepared frame.
 //
 // # Safety
 // `cmd` is inside a rendering scope with the attachments of RaraRendererDesc and no others, one layer and no view mask;
 // viewport and scissor are set; rara_renderer_prepare was recorded for the same frame before it.
-RaraResult rara_renderer_draw(struct RaraRenderer *renderer, VkCommandBuffer cmd, float x, float y);
+RaraResult rara_renderer_draw(struct RaraRenderer *renderer,
+                              VkCommandBuffer cmd,
+                              float x,
+                              float y);
 
-// Records the splats' depths inside a rendering scope of their own, with a colour attachment of expected_depth_format and,
-// if there is one, the same depth attachment. Where the host has cleared both to 0, red / green is the pixel's expected
-// depth along the view axis, world units, and green its alpha. `x` and `y` as for rara_renderer_draw.
+// Records the splats' depths inside a rendering scope of their own, with a colour attachment of expected_depth_format
+// and, if there is one, the same depth attachment. Where the host has cleared both channels to 0, red / green is the
+// pixel's expected depth along the view axis, world units, and green its alpha. `x` and `y` are as for
+// rara_renderer_draw.
 //
 // # Safety
-// As of rara_renderer_draw, in such a scope.
-RaraResult rara_renderer_draw_depth(struct RaraRenderer *renderer,
-                                    VkCommandBuffer cmd,
-                                    float x,
-                                    float y);
+// As for rara_renderer_draw, in such a scope.
+RaraResult rara_renderer_draw_depth(struct RaraRenderer *renderer, VkCommandBuffer cmd, float x, float y);
 
-// Forgets what earlier frames have computed, as after a frame that was prepared and not submitted.
+// Forgets what earlier frames have computed, as is needed after a frame that was prepared and not submitted.
 // rara_renderer_configure comes after it.
 //
 // # Safety
@@ -827,12 +835,12 @@ RaraResult rara_renderer_forget(struct RaraRenderer *renderer);
 // Frees a renderer's memory and pipelines; null is ignored. The host has waited for all of its frames.
 //
 // # Safety
-// `renderer` is null, or alive and not used any more, by the device neither.
+// `renderer` is null, or alive and not used any more, not even by the device.
 void rara_renderer_destroy(struct RaraRenderer *renderer);
 
 // Loads a 3DGS .ply file: ascii or binary, spherical harmonics of degree 0 to 3.
 //
-// `path` is UTF-8, on Unix whatever the file system takes.
+// `path` is UTF-8, or on Unix whatever the file system takes.
 //
 // # Safety
 // `path` ends in NUL; `gaussians` may be overwritten.
@@ -847,13 +855,13 @@ RaraResult rara_gaussians_load_from(const uint8_t *data,
                                     const char *name,
                                     struct RaraGaussians **gaussians);
 
-// Adds another scene to one, so that both are sorted and composited as one.
+// Appends another scene to one, so that both are sorted and composited as one.
 //
 // # Safety
 // Both are alive and not the same; nobody else uses `gaussians` meanwhile.
 RaraResult rara_gaussians_append(struct RaraGaussians *gaussians, const struct RaraGaussians *other);
 
-// What a scene is. `info_size` is sizeof *info.
+// Describes a scene. `info_size` is sizeof *info.
 //
 // # Safety
 // `gaussians` is alive; `info` has room for `info_size` bytes.
@@ -865,8 +873,8 @@ RaraResult rara_gaussians_info(const struct RaraGaussians *gaussians, struct Rar
 // `gaussians` is null, or alive and not used any more.
 void rara_gaussians_destroy(struct RaraGaussians *gaussians);
 
-// Uploads a scene of one layer. This and rara_scene_buffers_upload_layers are the functions that submit to the host's
-// queue, and wait.
+// Uploads a scene of one layer. Only this function and rara_scene_buffers_upload_layers submit to the host's queue and
+// wait.
 //
 // # Safety
 // `device` and `gaussians` are alive; nobody else uses the queue meanwhile; `scene` may be overwritten.
@@ -884,22 +892,22 @@ RaraResult rara_scene_buffers_staging_bytes(const struct RaraGaussians *gaussian
                                             uint64_t *bytes);
 
 // Uploads a scene of one layer by the host's own means: allocates its buffers, writes it into the host's staging memory
-// and records the copies. Nothing is submitted and nothing waited for, so that a scene can come or be replaced while
-// frames are in flight. The calling thread converts the scene meanwhile; it may be another one than the one that draws.
+// and records the copies. Nothing is submitted and nothing waits, so that a scene can come or be replaced while frames
+// are in flight. The calling thread converts the scene meanwhile; it need not be the one that draws.
 //
-// Synchronisation: the copies are ordered behind everything earlier in the queue, and nothing is needed after them:
-// rara_renderer_prepare begins with a barrier that waits for transfers. It may be recorded later into the same command
-// buffer, or into one that is submitted later to the same queue. What is written to the staging memory reaches the
-// device with the submission where the memory is host-coherent; else the host flushes the range before it submits.
+// Synchronisation: the copies are ordered behind everything earlier in the queue, and nothing is needed after them,
+// since rara_renderer_prepare begins with a barrier that waits for transfers. It may be recorded later into the same
+// command buffer, or into one that is submitted later to the same queue. What is written to the staging memory reaches
+// the device with the submission where the memory is host-coherent; else the host flushes the range before it submits.
 //
-// Lifetimes: the host leaves the staging range alone, and `*scene` alive, until `cmd` has executed. The scene that is
+// Lifetimes: the host leaves the staging range alone and keeps `*scene` alive until `cmd` has executed. A scene that is
 // replaced lives until the last frame that was prepared with it has executed; `gaussians` may be destroyed at once. If
 // `cmd` is never submitted, `*scene` must not be drawn. After an error nothing has been recorded.
 //
 // # Safety
 // `device` and `gaussians` are alive. `cmd` is recording outside a rendering scope, and will be submitted to the
-// device's queue, or never; no other thread uses its pool. `staging` is as it says, and neither the device nor anybody
-// else uses its range. `scene` may be overwritten.
+// device's queue, or never; no other thread uses its pool. `staging` is as its fields say, and neither the device nor
+// anybody else uses its range. `scene` may be overwritten.
 RaraResult rara_scene_buffers_upload_with(const struct RaraDevice *device,
                                           VkCommandBuffer cmd,
                                           const struct RaraStaging *staging,
@@ -916,16 +924,17 @@ uint64_t rara_scene_buffers_bytes(const struct RaraSceneBuffers *scene);
 // Frees a scene's device memory; null is ignored. The host has waited for the frames that use it.
 //
 // # Safety
-// `scene` is null, or alive and not used any more, by the device neither.
+// `scene` is null, or alive and not used any more, not even by the device.
 void rara_scene_buffers_destroy(struct RaraSceneBuffers *scene);
 
-// A layer where it was made, visible, with the opacities of its Gaussians. `state_size` is sizeof *state.
+// The state of a layer that stands where it was made, visible and with the opacities of its Gaussians. `state_size` is
+// sizeof *state.
 //
 // # Safety
 // `state` has room for `state_size` bytes.
 RaraResult rara_layer_state_default(struct RaraLayerState *state, size_t state_size);
 
-// Gaussians with a name, as they are; both pointers are kept in `layer` as they come. `layer_size` is sizeof *layer.
+// A layer of Gaussians in the default state; `layer` keeps both pointers as they are. `layer_size` is sizeof *layer.
 //
 // # Safety
 // `layer` has room for `layer_size` bytes.
@@ -934,12 +943,13 @@ RaraResult rara_layer_default(struct RaraLayer *layer,
                               const char *name,
                               const struct RaraGaussians *gaussians);
 
-// As rara_scene_buffers_upload, a scene of several layers, which are sorted and blended together, wherever they reach
-// into each other. Where two Gaussians are equally deep, the earlier layer's is in front.
+// Uploads a scene of several layers as rara_scene_buffers_upload does one of a single layer. The layers are sorted and
+// blended together, wherever they reach into each other. Where two Gaussians are equally deep, the earlier layer's is in
+// front.
 //
 // # Safety
-// `device` is alive; `layers` points to `layer_count` of them, which are as they say and of one struct_size; nobody else
-// uses the queue meanwhile; `scene` may be overwritten.
+// `device` is alive; `layers` points to `layer_count` layers, which are as their fields say and all of one struct_size;
+// nobody else uses the queue meanwhile; `scene` may be overwritten.
 RaraResult rara_scene_buffers_upload_layers(const struct RaraDevice *device,
                                             const struct RaraLayer *layers,
                                             size_t layer_count,
@@ -949,17 +959,18 @@ RaraResult rara_scene_buffers_upload_layers(const struct RaraDevice *device,
 // Bytes of staging memory that rara_scene_buffers_upload_layers_with needs for a scene.
 //
 // # Safety
-// `layers` points to `layer_count` of them, which are as they say and of one struct_size; `bytes` may be overwritten.
+// `layers` points to `layer_count` layers, which are as their fields say and all of one struct_size; `bytes` may be
+// overwritten.
 RaraResult rara_scene_buffers_staging_bytes_of_layers(const struct RaraLayer *layers,
                                                       size_t layer_count,
                                                       RaraShFormat sh_format,
                                                       uint64_t *bytes);
 
-// As rara_scene_buffers_upload_with, a scene of several layers. `layers` and what they point to may be gone when it
-// returns.
+// Uploads a scene of several layers as rara_scene_buffers_upload_with does one of a single layer. `layers` and what they
+// point to may be freed when it returns.
 //
 // # Safety
-// As of rara_scene_buffers_upload_with and, for the layers, of rara_scene_buffers_upload_layers.
+// As for rara_scene_buffers_upload_with and, for the layers, as for rara_scene_buffers_upload_layers.
 RaraResult rara_scene_buffers_upload_layers_with(const struct RaraDevice *device,
                                                  VkCommandBuffer cmd,
                                                  const struct RaraStaging *staging,
@@ -974,7 +985,7 @@ RaraResult rara_scene_buffers_upload_layers_with(const struct RaraDevice *device
 // `scene` is null or alive.
 size_t rara_scene_buffers_layer_count(const struct RaraSceneBuffers *scene);
 
-// What a layer is. Layers are numbered from 0, in the order in which they were given. `info_size` is sizeof *info.
+// Describes a layer. Layers are numbered from 0, in the order in which they were given. `info_size` is sizeof *info.
 //
 // # Safety
 // `scene` is alive; `info` has room for `info_size` bytes.
@@ -983,7 +994,7 @@ RaraResult rara_scene_buffers_layer_info(const struct RaraSceneBuffers *scene,
                                          struct RaraLayerInfo *info,
                                          size_t info_size);
 
-// The state of a layer, as it was uploaded or set last; its rotation has length one. `state_size` is sizeof *state.
+// The state of a layer, as it was uploaded or last set; its rotation has length one. `state_size` is sizeof *state.
 //
 // # Safety
 // `scene` is alive, and no other thread sets a state meanwhile; `state` has room for `state_size` bytes.
@@ -992,9 +1003,9 @@ RaraResult rara_scene_buffers_layer_state(const struct RaraSceneBuffers *scene,
                                           struct RaraLayerState *state,
                                           size_t state_size);
 
-// Sets the state of a layer: the next rara_renderer_configure of every renderer takes it, and frames that are configured
-// already keep theirs, so that nothing has to be waited for. RARA_ERROR_INVALID for an opacity that is not 0 to 1 and
-// for what is no placement; the state before then stays.
+// Sets the state of a layer: the next rara_renderer_configure of every renderer takes it, and frames that are already
+// configured keep theirs, so that nothing has to be waited for. RARA_ERROR_INVALID for an opacity that is not 0 to 1 and
+// for an impossible placement; the state then stays as it was.
 //
 // # Safety
 // `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;
@@ -1003,14 +1014,14 @@ RaraResult rara_scene_buffers_set_layer_state(struct RaraSceneBuffers *scene,
                                               size_t index,
                                               const struct RaraLayerState *state);
 
-// The usual settings, as exact as a preset has it. `settings_size` is sizeof *settings.
+// The default settings with a preset's precision. `settings_size` is sizeof *settings.
 //
 // # Safety
 // `settings` has room for `settings_size` bytes.
 RaraResult rara_settings_default(struct RaraSettings *settings, size_t settings_size, RaraPreset preset);
 
-// The statistics of a frame; ask after waiting for it, before the next rara_renderer_prepare. `stats_size` is
-// sizeof *stats.
+// The statistics of a frame, to be asked for after waiting for it and before the next rara_renderer_prepare.
+// `stats_size` is sizeof *stats.
 //
 // # Safety
 // `renderer` is alive, and no other thread changes it; `stats` has room for `stats_size` bytes.

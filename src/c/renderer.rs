@@ -15,17 +15,17 @@ use crate::device::RaraDevice;
 use crate::scene::RaraSceneBuffers;
 use crate::settings::{self, RaraSettings};
 
-/// Draws scenes into the host's rendering scopes. Used by one thread at a time.
+/// Draws scenes into the host's rendering scopes. One thread at a time uses it.
 ///
 /// A frame is three calls: rara_renderer_configure allocates and compiles what is new; rara_renderer_prepare records
-/// compute stages, outside any rendering scope; rara_renderer_draw records the splats inside one. The host submits both in
-/// this order, to the queue that it lent.
+/// compute stages, outside any rendering scope; rara_renderer_draw records the splats inside one. The host submits both
+/// in this order, to the queue that it lent.
 ///
-/// Frames in flight: before it configures frame n the host has waited for frame n - frames_in_flight, and before it
-/// destroys the renderer for all of its frames.
+/// Frames in flight: before the host configures frame n it has waited for frame n - frames_in_flight, and before it
+/// destroys the renderer it has waited for all of its frames.
 ///
-/// Synchronisation: none is needed between the two calls, nor for the buffers of renderer and scene; the attachments are
-/// the host's to synchronise, as for any draw of its own.
+/// Synchronisation: none is needed between the two recorded calls, nor for the buffers of renderer and scene. The
+/// attachments are the host's to synchronise, as for any draw of its own.
 ///
 /// The calls bind pipelines, push constants and, with RARA_BINDINGS_BOUND, push descriptor set 0: the host binds its own
 /// again. No other state, no image and no layout is touched.
@@ -33,9 +33,10 @@ pub struct RaraRenderer(pub(crate) Renderer);
 
 /// How shaders reach buffers.
 pub type RaraBindings = u32;
-/// By address: fast. The default.
+/// By address, which is fast. The default.
 pub const RARA_BINDINGS_ADDRESS: RaraBindings = 0;
-/// Bound, so that the validation layer can watch them; needs VK_KHR_push_descriptor, and is by address without.
+/// Bound, so that the validation layer can watch them. Needs VK_KHR_push_descriptor; without it buffers are reached by
+/// address.
 pub const RARA_BINDINGS_BOUND: RaraBindings = 1;
 
 /// What a renderer is created with.
@@ -48,11 +49,11 @@ pub struct RaraRendererDesc {
     pub color_format: vk::Format,
     /// Samples a pixel of the attachments. Default: 1.
     pub samples: vk::SampleCountFlags,
-    /// The depth attachment that splats are tested against; null, the default, if the scope has none. Read by the call
-    /// alone.
+    /// The depth attachment that splats are tested against; null, the default, if the scope has none. Only the call
+    /// itself reads it.
     pub depth: *const RaraDepthDesc,
     /// A classic render pass, or one compatible with it, that lives until the last rara_renderer_configure; null, the
-    /// default, is dynamic rendering.
+    /// default, stands for dynamic rendering.
     pub render_pass: vk::RenderPass,
     /// The subpass of render_pass to draw in.
     pub subpass: u32,
@@ -60,15 +61,15 @@ pub struct RaraRendererDesc {
     pub bindings: RaraBindings,
     /// Whether to take timestamps, for the times in RaraFrameStats. Default: no.
     pub timing: vk::Bool32,
-    /// Whether a frame takes over what the one before has computed and it would compute again. The host then submits every
-    /// frame that it prepares, in order, or calls rara_renderer_forget. Default: no.
+    /// Whether a frame takes over what the one before has computed and it would compute again. The host must then submit
+    /// every frame that it prepares, in order, or call rara_renderer_forget. Default: no.
     pub reuse: vk::Bool32,
     /// How many recorded frames may be unfinished at once, 1 or more. Default: 1.
     pub frames_in_flight: u32,
-    /// Format of the target of rara_renderer_draw_depth, two channels or more; VK_FORMAT_UNDEFINED, the default, where that
-    /// is not called.
+    /// Format of the target of rara_renderer_draw_depth, two channels or more; VK_FORMAT_UNDEFINED, the default, if that
+    /// function is not called.
     pub expected_depth_format: vk::Format,
-    /// As render_pass, for that target.
+    /// Like render_pass, for that target.
     pub expected_depth_render_pass: vk::RenderPass,
     /// The subpass of expected_depth_render_pass to draw in.
     pub expected_depth_subpass: u32,
@@ -100,7 +101,7 @@ impl RaraRendererDesc {
 }
 
 /// # Safety
-/// As of [`Target::render_pass`], unless it is null.
+/// As for [`Target::render_pass`], unless it is null.
 unsafe fn target(render_pass: vk::RenderPass, subpass: u32) -> Target {
     if render_pass == vk::RenderPass::null() {
         return Target::DYNAMIC;
@@ -110,7 +111,7 @@ unsafe fn target(render_pass: vk::RenderPass, subpass: u32) -> Target {
 }
 
 /// # Safety
-/// `desc` is null or points to one, whose depth is null or points to one, and whose render pass is as it says.
+/// `desc` is null or points to one, whose depth is null or points to one, and whose render pass is as its field says.
 unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<RendererDesc> {
     let default = RaraRendererDesc::new(vk::Format::UNDEFINED);
     // SAFETY: the caller's promise.
@@ -141,7 +142,7 @@ unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<RendererDesc> {
     };
     // SAFETY: the caller's promise.
     let target = unsafe { target(desc.render_pass, desc.subpass) };
-    // No statistics, which need a device that rara has opened itself.
+    // Statistics stay off: they need a device that rara has opened itself.
     Ok(RendererDesc::new(desc.color_format)
         .depth(depth)
         .samples(desc.samples)
@@ -153,8 +154,8 @@ unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<RendererDesc> {
         .frames_in_flight(desc.frames_in_flight))
 }
 
-/// One colour attachment of one sample in dynamic rendering, no timestamps, nothing reused, one frame in flight.
-/// `desc_size` is sizeof *desc.
+/// One colour attachment of one sample in dynamic rendering, no timestamps, no reuse, one frame in flight. `desc_size` is
+/// sizeof *desc.
 ///
 /// # Safety
 /// `desc` has room for `desc_size` bytes.
@@ -169,11 +170,11 @@ pub unsafe extern "C" fn rara_renderer_desc_default(
     guard(|| unsafe { write(desc, desc_size, &default, "desc") })
 }
 
-/// A renderer. Pipelines and buffers come with the first frame that needs them. RARA_ERROR_DEVICE where the device cannot
-/// draw into such attachments.
+/// Creates a renderer. The first frame that needs a pipeline or buffer creates it. RARA_ERROR_DEVICE where the device
+/// cannot draw into such attachments.
 ///
 /// # Safety
-/// `device` is alive, `desc` is as it says, and `renderer` may be overwritten.
+/// `device` is alive, `desc` is as its fields say, and `renderer` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_create(
     device: *const RaraDevice,
@@ -189,11 +190,11 @@ pub unsafe extern "C" fn rara_renderer_create(
     })
 }
 
-/// Another renderer on the same device that shares the compiled pipelines of `other`: one for each view that is drawn in
-/// the same scope. Working memory is its own.
+/// Creates another renderer on the same device that shares the compiled pipelines of `other`: one for each view that is
+/// drawn in the same scope. Its working memory is its own.
 ///
 /// # Safety
-/// `other` is alive, `desc` is as it says, and `renderer` may be overwritten.
+/// `other` is alive, `desc` is as its fields say, and `renderer` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_create_sharing(
     other: *const RaraRenderer,
@@ -226,12 +227,12 @@ pub unsafe extern "C" fn rara_renderer_set_depth_map(
 }
 
 /// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the viewport of
-/// rara_renderer_draw. `clip` may be null for none, `settings` for the defaults. After an error nothing can be recorded
-/// until a call succeeds.
+/// rara_renderer_draw. A null `clip` clips nothing, null `settings` are the defaults. After an error nothing can be
+/// recorded until a call succeeds.
 ///
 /// # Safety
-/// `renderer` and `scene` are alive and of one device; no other thread uses `renderer`; the others are null or as they
-/// say. The host has waited for the frames that RaraRenderer says.
+/// `renderer` and `scene` are alive and of one device; no other thread uses `renderer`; the other pointers are null or
+/// point to what they say. The host has waited for the frames that RaraRenderer says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_configure(
     renderer: *mut RaraRenderer,
@@ -255,8 +256,8 @@ pub unsafe extern "C" fn rara_renderer_configure(
 /// Records the stages up to the draw, outside any rendering scope.
 ///
 /// # Safety
-/// `cmd` is recording outside a rendering scope, and will be submitted to the device's queue, or never. `scene` is the one
-/// given to rara_renderer_configure, and lives until the commands have executed.
+/// `cmd` is recording outside a rendering scope, and will be submitted to the device's queue, or never. `scene` is the
+/// one given to rara_renderer_configure, and lives until the commands have executed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_prepare(
     renderer: *mut RaraRenderer,
@@ -271,14 +272,15 @@ pub unsafe extern "C" fn rara_renderer_prepare(
     })
 }
 
-/// As rara_renderer_prepare, for a renderer whose RaraDepthDesc is readable: with what the host has drawn already, so that
-/// tiles leave out the splats behind it.
+/// Like rara_renderer_prepare, for a renderer whose RaraDepthDesc is readable. It also takes the depths of what the host
+/// has already drawn, so that tiles leave out the splats behind it.
 ///
 /// The part of the image under the viewport is copied, at VK_PIPELINE_STAGE_2_COPY_BIT by VK_ACCESS_2_TRANSFER_READ_BIT:
-/// the host's barrier before makes its depths visible to that, its barrier after waits for it.
+/// the host's barrier before the call makes its depths visible to that, its barrier after the call waits for it.
 ///
 /// # Safety
-/// As for rara_renderer_prepare; and `depth` is as it says, visible to the copy, and lives until the commands have executed.
+/// As for rara_renderer_prepare; and `depth` is as its fields say, visible to the copy, and lives until the commands have
+/// executed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_prepare_behind(
     renderer: *mut RaraRenderer,
@@ -298,8 +300,8 @@ pub unsafe extern "C" fn rara_renderer_prepare_behind(
 }
 
 /// Records the splats inside the host's rendering scope, premultiplied and over what is there. `x` and `y` are the
-/// viewport's upper left corner in the attachment, whole pixels; the viewport has the camera's size, and depths from 0
-/// to 1. May be recorded more than once for a prepared frame.
+/// viewport's upper left corner in the attachment, whole pixels; the viewport has the camera's size, and depths from 0 to
+/// 1. The call may be recorded more than once for a prepared frame.
 ///
 /// # Safety
 /// `cmd` is inside a rendering scope with the attachments of RaraRendererDesc and no others, one layer and no view mask;
@@ -318,12 +320,13 @@ pub unsafe extern "C" fn rara_renderer_draw(
     })
 }
 
-/// Records the splats' depths inside a rendering scope of their own, with a colour attachment of expected_depth_format and,
-/// if there is one, the same depth attachment. Where the host has cleared both to 0, red / green is the pixel's expected
-/// depth along the view axis, world units, and green its alpha. `x` and `y` as for rara_renderer_draw.
+/// Records the splats' depths inside a rendering scope of their own, with a colour attachment of expected_depth_format
+/// and, if there is one, the same depth attachment. Where the host has cleared both channels to 0, red / green is the
+/// pixel's expected depth along the view axis, world units, and green its alpha. `x` and `y` are as for
+/// rara_renderer_draw.
 ///
 /// # Safety
-/// As of rara_renderer_draw, in such a scope.
+/// As for rara_renderer_draw, in such a scope.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_draw_depth(
     renderer: *mut RaraRenderer,
@@ -338,7 +341,7 @@ pub unsafe extern "C" fn rara_renderer_draw_depth(
     })
 }
 
-/// Forgets what earlier frames have computed, as after a frame that was prepared and not submitted.
+/// Forgets what earlier frames have computed, as is needed after a frame that was prepared and not submitted.
 /// rara_renderer_configure comes after it.
 ///
 /// # Safety
@@ -355,7 +358,7 @@ pub unsafe extern "C" fn rara_renderer_forget(renderer: *mut RaraRenderer) -> Ra
 /// Frees a renderer's memory and pipelines; null is ignored. The host has waited for all of its frames.
 ///
 /// # Safety
-/// `renderer` is null, or alive and not used any more, by the device neither.
+/// `renderer` is null, or alive and not used any more, not even by the device.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_destroy(renderer: *mut RaraRenderer) {
     // SAFETY: the caller's promise.

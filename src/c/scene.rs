@@ -13,11 +13,11 @@ use crate::boundary::{
 };
 use crate::device::RaraDevice;
 
-/// A scene in the host's memory. It may be destroyed when it is on the device. May be read by several threads at once.
+/// A scene in the host's memory. It may be destroyed once it is on the device. Several threads may read it at once.
 pub struct RaraGaussians(pub(crate) Loaded);
 
-/// A scene in device memory: one layer or several. May be used by several threads and renderers at once, but by nobody
-/// else while rara_scene_buffers_set_layer_state runs.
+/// A scene in device memory: one layer or several. Several threads and renderers may use it at once, but nobody else
+/// while rara_scene_buffers_set_layer_state runs.
 pub struct RaraSceneBuffers {
     pub(crate) buffers: SceneBuffers,
     /// The layers' names.
@@ -34,7 +34,7 @@ impl RaraSceneBuffers {
     }
 }
 
-/// What a scene is, and what of its file could not be used.
+/// Describes a scene, and what of its file could not be used.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraGaussiansInfo {
@@ -60,11 +60,11 @@ unsafe impl Versioned for RaraGaussiansInfo {
     const NAME: &'static str = "RaraGaussiansInfo";
 }
 
-/// How spherical harmonics lie in device memory; bytes are of a Gaussian of degree 3.
+/// How spherical harmonics lie in device memory; the sizes are of one Gaussian of degree 3.
 pub type RaraShFormat = u32;
 /// 8 bits a coefficient: 56 bytes.
 pub const RARA_SH_FORMAT_BYTE: RaraShFormat = 0;
-/// 10 to 11 bits a coefficient: 68 bytes. What the preset balanced uses.
+/// 10 to 11 bits a coefficient: 68 bytes. The preset balanced uses it.
 pub const RARA_SH_FORMAT_PACKED: RaraShFormat = 1;
 /// 16-bit floats: 96 bytes.
 pub const RARA_SH_FORMAT_HALF: RaraShFormat = 2;
@@ -83,7 +83,7 @@ pub(crate) fn sh_format(value: RaraShFormat) -> Result<ShFormat> {
 
 /// Loads a 3DGS .ply file: ascii or binary, spherical harmonics of degree 0 to 3.
 ///
-/// `path` is UTF-8, on Unix whatever the file system takes.
+/// `path` is UTF-8, or on Unix whatever the file system takes.
 ///
 /// # Safety
 /// `path` ends in NUL; `gaussians` may be overwritten.
@@ -122,7 +122,7 @@ pub unsafe extern "C" fn rara_gaussians_load_from(
     })
 }
 
-/// Adds another scene to one, so that both are sorted and composited as one.
+/// Appends another scene to one, so that both are sorted and composited as one.
 ///
 /// # Safety
 /// Both are alive and not the same; nobody else uses `gaussians` meanwhile.
@@ -135,7 +135,7 @@ pub unsafe extern "C" fn rara_gaussians_append(
         if std::ptr::eq(gaussians, other) && !other.is_null() {
             return invalid("gaussians and other are the same scene");
         }
-        // SAFETY: the caller's promises, and they are two.
+        // SAFETY: the caller's promises, and the pointers differ.
         let (to, from) = unsafe { (exclusive(gaussians, "gaussians")?, shared(other, "other")?) };
         to.0.gaussians.append(&from.0.gaussians);
         to.0.report.dropped += from.0.report.dropped;
@@ -144,7 +144,7 @@ pub unsafe extern "C" fn rara_gaussians_append(
     })
 }
 
-/// What a scene is. `info_size` is sizeof *info.
+/// Describes a scene. `info_size` is sizeof *info.
 ///
 /// # Safety
 /// `gaussians` is alive; `info` has room for `info_size` bytes.
@@ -182,8 +182,8 @@ pub unsafe extern "C" fn rara_gaussians_destroy(gaussians: *mut RaraGaussians) {
     unsafe { destroy(gaussians) };
 }
 
-/// Uploads a scene of one layer. This and rara_scene_buffers_upload_layers are the functions that submit to the host's
-/// queue, and wait.
+/// Uploads a scene of one layer. Only this function and rara_scene_buffers_upload_layers submit to the host's queue and
+/// wait.
 ///
 /// # Safety
 /// `device` and `gaussians` are alive; nobody else uses the queue meanwhile; `scene` may be overwritten.
@@ -209,9 +209,9 @@ pub unsafe extern "C" fn rara_scene_buffers_upload(
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraStaging {
-    /// Created with VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
+    /// A buffer created with VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
     pub buffer: vk::Buffer,
-    /// Where the part begins in it, bytes.
+    /// Where the part begins in the buffer, bytes.
     pub offset: u64,
     /// The part, mapped for writing.
     pub mapped: *mut c_void,
@@ -239,22 +239,22 @@ pub unsafe extern "C" fn rara_scene_buffers_staging_bytes(
 }
 
 /// Uploads a scene of one layer by the host's own means: allocates its buffers, writes it into the host's staging memory
-/// and records the copies. Nothing is submitted and nothing waited for, so that a scene can come or be replaced while
-/// frames are in flight. The calling thread converts the scene meanwhile; it may be another one than the one that draws.
+/// and records the copies. Nothing is submitted and nothing waits, so that a scene can come or be replaced while frames
+/// are in flight. The calling thread converts the scene meanwhile; it need not be the one that draws.
 ///
-/// Synchronisation: the copies are ordered behind everything earlier in the queue, and nothing is needed after them:
-/// rara_renderer_prepare begins with a barrier that waits for transfers. It may be recorded later into the same command
-/// buffer, or into one that is submitted later to the same queue. What is written to the staging memory reaches the
-/// device with the submission where the memory is host-coherent; else the host flushes the range before it submits.
+/// Synchronisation: the copies are ordered behind everything earlier in the queue, and nothing is needed after them,
+/// since rara_renderer_prepare begins with a barrier that waits for transfers. It may be recorded later into the same
+/// command buffer, or into one that is submitted later to the same queue. What is written to the staging memory reaches
+/// the device with the submission where the memory is host-coherent; else the host flushes the range before it submits.
 ///
-/// Lifetimes: the host leaves the staging range alone, and `*scene` alive, until `cmd` has executed. The scene that is
+/// Lifetimes: the host leaves the staging range alone and keeps `*scene` alive until `cmd` has executed. A scene that is
 /// replaced lives until the last frame that was prepared with it has executed; `gaussians` may be destroyed at once. If
 /// `cmd` is never submitted, `*scene` must not be drawn. After an error nothing has been recorded.
 ///
 /// # Safety
 /// `device` and `gaussians` are alive. `cmd` is recording outside a rendering scope, and will be submitted to the
-/// device's queue, or never; no other thread uses its pool. `staging` is as it says, and neither the device nor anybody
-/// else uses its range. `scene` may be overwritten.
+/// device's queue, or never; no other thread uses its pool. `staging` is as its fields say, and neither the device nor
+/// anybody else uses its range. `scene` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_upload_with(
     device: *const RaraDevice,
@@ -280,7 +280,7 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_with(
 
 impl RaraStaging {
     /// # Safety
-    /// It is as it says, and nobody else uses its range for `'a`.
+    /// It is as its fields say, and nobody else uses its range for `'a`.
     pub(crate) unsafe fn staging<'a>(&self) -> Result<Staging<'a>> {
         if self.buffer == vk::Buffer::null() {
             return invalid("staging->buffer is null");
@@ -315,7 +315,7 @@ pub unsafe extern "C" fn rara_scene_buffers_bytes(scene: *const RaraSceneBuffers
 /// Frees a scene's device memory; null is ignored. The host has waited for the frames that use it.
 ///
 /// # Safety
-/// `scene` is null, or alive and not used any more, by the device neither.
+/// `scene` is null, or alive and not used any more, not even by the device.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_destroy(scene: *mut RaraSceneBuffers) {
     // SAFETY: the caller's promise.

@@ -47,7 +47,7 @@ pub const RARA_EXACT_FORM_AFFINE: RaraExactForm = 2;
 
 /// How splats become pixels. All give the same picture.
 pub type RaraRaster = u32;
-/// The faster one on the device at hand. The default.
+/// The faster way on the device at hand. The default.
 pub const RARA_RASTER_AUTO: RaraRaster = 0;
 /// VK_EXT_mesh_shader.
 pub const RARA_RASTER_MESH: RaraRaster = 1;
@@ -60,8 +60,8 @@ pub const RARA_RASTER_TILES: RaraRaster = 3;
 pub type RaraShow = u32;
 /// Their colours. The default.
 pub const RARA_SHOW_COLOUR: RaraShow = 0;
-/// What the clip does to them: blue where it leaves them whole; where it cuts, from red (nothing is kept in this pixel) to
-/// yellow (all is).
+/// What the clip does to them: a splat that it leaves whole is blue; one that it cuts goes from red, where the pixel
+/// keeps nothing, to yellow, where it keeps all.
 pub const RARA_SHOW_WEIGHT: RaraShow = 1;
 
 /// RARA_MODE_EXACT only: how the normal distribution's Phi is approximated, and the largest error.
@@ -73,13 +73,13 @@ pub const RARA_PHI_FORM_CUBIC: RaraPhiForm = 1;
 /// 9.5e-3, two levels of 255.
 pub const RARA_PHI_FORM_LOGISTIC: RaraPhiForm = 2;
 
-/// A choice of all that is given up for time: phi, key_bits, beam_switch and transmittance_min.
+/// A choice of all settings that give up exactness for time: phi, key_bits, beam_switch and transmittance_min.
 pub type RaraPreset = u32;
-/// Nothing is given up. Scenes go with RARA_SH_FORMAT_FLOAT.
+/// Nothing is given up. It goes with scenes in RARA_SH_FORMAT_FLOAT.
 pub const RARA_PRESET_EXACT: RaraPreset = 0;
-/// What no picture shows is given up: the usual choice. Scenes go with RARA_SH_FORMAT_PACKED.
+/// What no picture shows is given up: the usual choice. It goes with scenes in RARA_SH_FORMAT_PACKED.
 pub const RARA_PRESET_BALANCED: RaraPreset = 1;
-/// What pictures hardly show is given up. Scenes go with RARA_SH_FORMAT_PACKED.
+/// What pictures hardly show is given up. It goes with scenes in RARA_SH_FORMAT_PACKED.
 pub const RARA_PRESET_FAST: RaraPreset = 2;
 
 /// The options of a frame, apart from scene, camera and clip.
@@ -106,12 +106,12 @@ pub struct RaraSettings {
     pub raster: RaraRaster,
     /// Colours, or a debug view.
     pub show: RaraShow,
-    /// RARA_MODE_EXACT: how Phi is approximated. From the preset, like all below.
+    /// RARA_MODE_EXACT: how Phi is approximated. The preset sets this and all fields below.
     pub phi: RaraPhiForm,
-    /// Most bits of the depths that the sort looks at, 8 to 32.
+    /// How many bits of the depths the sort compares at most, 8 to 32.
     pub key_bits: u32,
-    /// RARA_MODE_EXACT: a cut splat is perspective-exact where its largest deviation over its depth exceeds this. Zero is
-    /// the exact form for all.
+    /// RARA_MODE_EXACT: a cut splat is perspective-exact where its largest deviation over its depth exceeds this. Zero
+    /// makes all of them exact.
     pub beam_switch: f32,
     /// Tiles only: a pixel with less transmittance than this is saturated. Zero blends everything.
     pub transmittance_min: f32,
@@ -196,7 +196,7 @@ impl RaraSettings {
             })
             .precision(
                 Precision::default()
-                    // Of the scene and the target, which are not a frame's: the default.
+                    // These belong to the scene and the target, not to a frame, and keep their defaults.
                     .phi(match self.phi {
                         RARA_PHI_FORM_QUINTIC => PhiForm::Quintic,
                         RARA_PHI_FORM_CUBIC => PhiForm::Cubic,
@@ -211,7 +211,7 @@ impl RaraSettings {
 }
 
 /// # Safety
-/// `settings` is null, for the defaults, or points to them.
+/// `settings` is null, for the defaults, or points to one.
 pub(crate) unsafe fn settings(settings: *const RaraSettings) -> Result<Settings> {
     let default = RaraSettings::new(Preset::default());
     if settings.is_null() {
@@ -221,7 +221,7 @@ pub(crate) unsafe fn settings(settings: *const RaraSettings) -> Result<Settings>
     unsafe { read(settings, default, "settings") }?.settings()
 }
 
-/// The usual settings, as exact as a preset has it. `settings_size` is sizeof *settings.
+/// The default settings with a preset's precision. `settings_size` is sizeof *settings.
 ///
 /// # Safety
 /// `settings` has room for `settings_size` bytes.

@@ -27,8 +27,8 @@ pub struct RaraPassTime {
     pub ms: f64,
 }
 
-/// The statistics of a frame. Counts and times are of the oldest frame in flight, the last one where there is one; raster
-/// and skipped are of the one that is configured.
+/// The statistics of a frame. Counts and times are of the oldest frame in flight, which is the last one where there is
+/// only one; raster and skipped are of the frame that is configured.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraFrameStats {
@@ -46,10 +46,10 @@ pub struct RaraFrameStats {
     pub drawn: u32,
     /// How splats become pixels; RARA_RASTER_AUTO before the first frame.
     pub raster: RaraRaster,
-    /// Why in that way.
+    /// Why splats become pixels in that way.
     pub raster_reason: [c_char; RARA_REASON_SIZE],
-    /// Whether tiles had no room for their lists, so that the frame was drawn as quads: the same picture, but slower. The
-    /// next rara_renderer_configure makes the room.
+    /// Whether tiles had no room for their lists, so that the frame was drawn as quads, which is slower and gives the
+    /// same picture. The next rara_renderer_configure makes the room.
     pub fell_back: vk::Bool32,
     /// Number of passes; 0 without RaraRendererDesc's timing.
     pub pass_count: u32,
@@ -68,8 +68,8 @@ unsafe impl Versioned for RaraFrameStats {
     const NAME: &'static str = "RaraFrameStats";
 }
 
-/// The statistics of a frame; ask after waiting for it, before the next rara_renderer_prepare. `stats_size` is
-/// sizeof *stats.
+/// The statistics of a frame, to be asked for after waiting for it and before the next rara_renderer_prepare.
+/// `stats_size` is sizeof *stats.
 ///
 /// # Safety
 /// `renderer` is alive, and no other thread changes it; `stats` has room for `stats_size` bytes.

@@ -1,4 +1,4 @@
-//! What a host can do wrong without a device: impossible arguments, structs of other versions.
+//! What a host can do wrong without a device: impossible arguments, and structs of other versions.
 
 use std::ffi::{CStr, CString};
 use std::ptr::{null, null_mut};
@@ -13,7 +13,7 @@ use crate::scene::*;
 use crate::settings::*;
 
 pub(crate) fn message() -> String {
-    // SAFETY: a string of this thread, copied before its next call.
+    // SAFETY: a string of this thread, which is copied before its next call.
     let text = unsafe { CStr::from_ptr(rara_last_error_message()) };
     text.to_str().expect("UTF-8").to_owned()
 }
@@ -55,7 +55,7 @@ fn errors_have_codes_of_their_own() {
 #[test]
 fn structs_of_other_versions() {
     let preset = RARA_PRESET_FAST;
-    // SAFETY: the struct has the room that is said; it may hold any bytes.
+    // SAFETY: the struct has the room that the call is given; it may hold any bytes.
     unsafe {
         let mut settings: RaraSettings = std::mem::zeroed();
         // An older host, whose struct ended after `miss`.
@@ -169,7 +169,7 @@ fn planes() {
     assert!(clip(&given).expect_err("too many").contains("at most 32"));
     (given.plane_count, given.planes) = (1, null());
     assert_eq!(clip(&given).expect_err("no planes"), "clip->planes is null");
-    // SAFETY: null is no clip.
+    // SAFETY: null stands for no clip.
     let none = unsafe { super::clip::clip(null()) };
     assert!(none.expect("everything").surfaces.is_empty());
 }
@@ -277,10 +277,10 @@ fn scenes() {
     }
 }
 
-/// Bytes of staging memory that layers need: what reads them, without a device.
+/// Bytes of staging memory that layers need: a call that reads them without a device.
 ///
 /// # Safety
-/// `layers` is null, or points to `count` of them that are as they say.
+/// `layers` is null, or points to `count` layers that are as their fields say.
 unsafe fn staging(layers: *const RaraLayer, count: usize, bytes: &mut u64) -> RaraResult {
     let format = RARA_SH_FORMAT_HALF;
     // SAFETY: the caller's promise.
@@ -297,7 +297,8 @@ fn layers() {
     };
     let (first, second) = (gaussians(300), gaussians(20));
     let mut bytes = 0;
-    // SAFETY: strings that end in NUL, handles that are alive, as many structs as are said; the structs may hold any bytes.
+    // SAFETY: strings that end in NUL, handles that are alive, and as many structs as the counts say; they may hold any
+    // bytes.
     unsafe {
         assert_fails(
             staging(null(), 0, &mut bytes),
@@ -371,7 +372,7 @@ fn lists_of_structs_of_other_versions() {
     // An older host, whose struct ended before `state`.
     let older = std::mem::offset_of!(RaraLayer, state);
     let mut bytes = 0;
-    // SAFETY: the bytes are aligned as the struct and as many as are said; the struct may hold any bytes.
+    // SAFETY: the bytes are aligned as the struct and as many as its size says; the struct may hold any bytes.
     unsafe {
         let mut room: [RaraLayer; 3] = std::mem::zeroed();
         let at = |room: &mut [RaraLayer; 3], index: usize, size: usize| {
@@ -382,7 +383,7 @@ fn lists_of_structs_of_other_versions() {
             assert_eq!(rara_layer_default(layer, older, name, &gaussians), RARA_OK);
         }
         assert_eq!(staging(room.as_ptr(), 3, &mut bytes), RARA_OK);
-        // Of one array, and of two versions.
+        // Layers of one array, but of two versions.
         (*at(&mut room, 2, older)).struct_size = ours;
         let result = staging(room.as_ptr(), 3, &mut bytes);
         let says =

@@ -157,7 +157,7 @@ impl<'a, R: Read + Seek> Records<'a, R> {
 
     fn skip(&mut self, bytes: u64) -> Result<()> {
         self.take(bytes)?;
-        // Below the file's size, which fits.
+        // `take` has checked it against the file's size, which fits.
         self.reader
             .seek_relative(bytes as i64)
             .map_err(Error::io(self.path))

@@ -9,7 +9,7 @@ use glam::{DQuat, DVec3};
 use super::colmap::{ColmapImage, Lens, MODELS};
 use crate::error::{Error, Result};
 
-/// A picture's line of points has some 30 bytes each, and never this many points.
+/// The line of a picture's points has some 30 bytes for each, and no picture has so many.
 const MAX_LINE: u64 = 64 << 20;
 
 struct Lines<'a, R> {

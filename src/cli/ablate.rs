@@ -1,5 +1,5 @@
-//! `rara ablate`: the paper's second table. The plane stands so far away that nothing is cut, so every mode should
-//! draw what no clipping draws; only tracing Gaussians that are not cut can make a difference.
+//! `rara ablate`: the paper's second table. The plane stands so far away that it cuts nothing, so every mode should draw
+//! the picture that mode `none` draws; only tracing Gaussians that are not cut can make a difference.
 
 use clap::Args;
 use glam::DVec3;

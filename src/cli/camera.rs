@@ -53,7 +53,7 @@ pub(super) struct CameraArgs {
     size: Option<(u32, u32)>,
 }
 
-/// Picture size where nothing says otherwise.
+/// Picture size where neither a flag nor a file gives one.
 const DEFAULT_SIZE: (u32, u32) = (1024, 1024);
 
 /// A camera and what its file calls it.
@@ -65,12 +65,12 @@ pub(super) struct View {
     pub(super) camera: Camera,
 }
 
-/// The cameras that were meant.
+/// The cameras that the flags mean.
 #[derive(Debug)]
 pub(super) enum Views {
-    /// Known before the scene is.
+    /// Cameras that are known before the scene is loaded.
     Given(Vec<View>),
-    /// One that the scene's bounds will place.
+    /// A camera that the scene's bounds will place.
     Framed {
         up: DVec3,
         fov_y: f64,
@@ -79,7 +79,7 @@ pub(super) enum Views {
 }
 
 impl Views {
-    /// Their numbers in their file.
+    /// The numbers of the cameras in their file.
     pub(super) fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
         let (given, framed) = match self {
             Self::Given(views) => (views.as_slice(), None),
@@ -95,7 +95,7 @@ impl CameraArgs {
         self.view == "all"
     }
 
-    /// That one camera was meant, as `what` needs it.
+    /// Refuses several cameras, where `what` needs one.
     pub(super) fn single(&self, what: &str) -> Result<(), Failure> {
         match self.all() {
             false => Ok(()),
@@ -105,7 +105,7 @@ impl CameraArgs {
         }
     }
 
-    /// The same flags for a command with another default size than the usual.
+    /// The same flags for a command whose default size is another.
     #[cfg(feature = "view")]
     pub(super) fn sized_by_default(self, size: (u32, u32)) -> Self {
         let from_file = self.camera.is_some() || self.cameras.is_some();
@@ -115,14 +115,14 @@ impl CameraArgs {
         }
     }
 
-    /// The world's up direction, where it is not a file that places the camera.
+    /// The world's up direction, unless a file places the camera.
     #[cfg(feature = "view")]
     pub(super) fn up(&self) -> Option<DVec3> {
         let from_file = self.camera.is_some() || self.cameras.is_some();
         (!from_file).then_some(self.up)
     }
 
-    /// The cameras that were meant; reads their files.
+    /// The cameras that the flags mean; reads their files.
     pub(super) fn meant(&self) -> Result<Views, Failure> {
         let size = self.size.unwrap_or(DEFAULT_SIZE);
         if let (Some(eye), Some(target)) = (self.eye, self.target) {
@@ -144,7 +144,7 @@ impl CameraArgs {
         }
         let Some(path) = &self.cameras else {
             let (up, fov_y) = (self.up, self.fov_y);
-            // What the scene cannot change is checked before it is read.
+            // Errors that do not depend on the scene are found before it is read.
             Camera::frame(&Bounds::of(&Gaussians::default()), up, fov_y, size)
                 .map_err(Failure::usage)?;
             return Ok(Views::Framed { up, fov_y, size });
@@ -174,7 +174,7 @@ impl CameraArgs {
 }
 
 impl Views {
-    /// The cameras, now that the scene is known.
+    /// The cameras, once the scene is known.
     pub(super) fn of(self, scene: &Scene<'_>) -> Result<Vec<View>, Failure> {
         match self {
             Self::Given(views) => Ok(views),
@@ -190,7 +190,7 @@ impl Views {
     }
 }
 
-/// The view that `wanted` numbers or names; a name may leave out its ending.
+/// The view with the number or name `wanted`; a name may leave out its ending.
 fn pick(views: Vec<View>, wanted: &str, path: &Path) -> Result<View, Failure> {
     let count = views.len();
     let stem = |name: &str| Path::new(name).file_stem().map(|s| s.to_owned());

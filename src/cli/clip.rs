@@ -1,4 +1,4 @@
-//! `--clip`, `--clip-file` and `--clip-op`: what was typed to half-spaces.
+//! `--clip`, `--clip-file` and `--clip-op`: from their text to surfaces.
 
 use std::path::Path;
 
@@ -26,12 +26,13 @@ pub(super) struct ClipArgs {
 }
 
 impl ClipArgs {
-    /// The clip that was meant; reads its files. All shapes have to fit one list of half-spaces with one operation.
+    /// The clip that the flags mean; reads its files. All shapes have to fit one list of surfaces that one operation
+    /// joins.
     pub(super) fn meant(&self) -> Result<Clip, Failure> {
         Clip::of_shapes(&self.shapes()?, self.op()).map_err(Failure::usage)
     }
 
-    /// The shapes that were meant; reads their files.
+    /// The shapes that the flags mean; reads their files.
     pub(super) fn shapes(&self) -> Result<Vec<Shape>, Failure> {
         let mut shapes = self.clip.clone();
         for text in &self.clip_file {
@@ -50,7 +51,7 @@ fn shape(text: &str) -> Result<Shape, String> {
     text.parse().map_err(|error: rara::Error| error.to_string())
 }
 
-/// The planes of `FILE` or `FILE:NAME`. Names and paths may hold colons: a file that is there goes before a name.
+/// The planes of `FILE` or `FILE:NAME`. Names and paths may hold colons: a file that exists goes before a name.
 fn from_file(text: &str) -> Result<Vec<Shape>, Failure> {
     let is_file = |at: usize| Path::new(&text[..at]).is_file();
     let named = if is_file(text.len()) {

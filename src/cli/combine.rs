@@ -23,7 +23,7 @@ impl Combine {
     }
 }
 
-/// The counts of the frame that draws a middling number of splats: medians of each count by itself would not add up to
+/// The counts of the frame that draws a middling number of splats. Medians of each count by itself would not add up to
 /// the scene.
 fn middle(frames: &[FrameStats]) -> Counts {
     let mut counts: Vec<Counts> = frames.iter().map(|frame| frame.counts).collect();
@@ -31,7 +31,7 @@ fn middle(frames: &[FrameStats]) -> Counts {
     counts.get(frames.len() / 2).copied().unwrap_or_default()
 }
 
-/// Each value's median or mean over the frames. A stage that a frame did not run took it 0 ms there, and counts as
+/// Each value's median or mean over the frames. A stage that a frame did not run counts as 0 ms there, and is listed as
 /// skipped when most frames skipped it.
 pub(super) fn combine(frames: &[FrameStats], how: Combine) -> FrameStats {
     let value = |get: &dyn Fn(&FrameStats) -> f64| how.of(frames.iter().map(get).collect());
@@ -70,7 +70,7 @@ pub(super) fn combine(frames: &[FrameStats], how: Combine) -> FrameStats {
     combined.skipped = skipped;
     if let Some(last) = frames.last() {
         combined.raster = last.raster;
-        // The last one's: they are for looking into a frame, and no measure of many.
+        // The last frame's statistics: they show what is in one frame, and are no measure of many.
         combined.statistics = last.statistics.clone();
     }
     combined

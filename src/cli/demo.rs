@@ -45,7 +45,7 @@ pub(super) struct Demo {
     device: DeviceArgs,
 }
 
-/// What one mode made.
+/// The result of one mode.
 struct Shot {
     mode: Mode,
     settings: Settings,
@@ -103,20 +103,20 @@ impl Demo {
     }
 }
 
-/// The scene that is there without a file.
+/// The scene that is drawn if no file is given.
 fn made_up() -> Loaded {
     let gaussians = scene::generate(scene::Kind::General, 60_000, 1);
     Loaded::made_up("demo", gaussians)
 }
 
-/// A plane that shows the camera the cut: what is near and to the left goes, and that is half of the Gaussians.
+/// A plane that shows the camera the cut: it takes away what is near and to the left, which is half of the Gaussians.
 pub(super) fn middle(scene: &Scene<'_>, camera: &Camera) -> rara::Result<Plane> {
     let normal = camera.rotation.row(0) * 0.8 + camera.rotation.row(2) * 0.6;
     let layers = scene.layers().iter();
     let centres = layers.flat_map(|layer| layer.gaussians().positions());
     let mut along: Vec<f64> = centres.map(|p| normal.dot(p.as_dvec3())).collect();
     along.sort_unstable_by(f64::total_cmp);
-    // Between two centres: through one, rounding would decide whether a hard clip keeps it.
+    // The plane goes between two centres: through one, rounding would decide whether a hard clip keeps it.
     let upper = along.get(along.len() / 2).unwrap_or(&0.0);
     let lower = along
         .get((along.len() / 2).saturating_sub(1))
@@ -147,7 +147,7 @@ fn print_frames(shots: &[Shot]) {
     }
 }
 
-/// Each picture against its own mode in f64, and the cuts against the exact cut.
+/// Prints the errors: each picture against its own mode in f64, and the cuts against the exact cut.
 fn print_errors(
     shots: &[Shot],
     scene: &Scene<'_>,

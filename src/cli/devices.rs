@@ -27,7 +27,7 @@ struct Line {
     driver: String,
     kind: &'static str,
     supported: bool,
-    /// What it lacks.
+    /// What the device lacks.
     problem: Option<String>,
 }
 

@@ -15,12 +15,12 @@ pub(super) enum Failure {
 }
 
 impl Failure {
-    /// For library errors that what was typed has caused.
+    /// A failure for library errors that the command line has caused.
     pub(super) fn usage(error: impl fmt::Display) -> Self {
         Self::Usage(error.to_string())
     }
 
-    /// What is said before the failure itself, a line each: every message of the validation layer.
+    /// The lines before the failure itself: every message of the validation layer.
     pub(super) fn details(&self) -> impl Iterator<Item = String> {
         let messages = match self {
             Self::Work(rara::Error::Validation(messages)) => messages.as_slice(),

@@ -1,4 +1,4 @@
-//! `rara info`: what stands in a scene.
+//! `rara info`: what is in a scene.
 
 use clap::Args;
 use glam::DVec3;
@@ -10,14 +10,14 @@ use super::scenes::SceneArgs;
 use rara::reference::classify::{Bands, bands};
 use rara::scene::Bounds;
 
-/// Tell what stands in a scene
+/// Show what is in a scene
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   rara info scene.ply
 
 Statistics are the least value, the 1st, 50th and 99th percentiles, and the greatest. What the loader repaired or
-dropped is printed first.")]
+dropped comes first.")]
 pub(super) struct Info {
     #[command(flatten)]
     scenes: SceneArgs,
@@ -35,7 +35,7 @@ struct Document {
     notes: Vec<String>,
     /// Box around all centres.
     centres: Extent,
-    /// Box without the stray ones; cameras and sweeps go by it.
+    /// Box without the stray centres, which cameras and sweeps use.
     robust_bounds: Extent,
     opacity: Spread,
     /// Of each Gaussian's longest axis, world units.

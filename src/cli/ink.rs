@@ -25,7 +25,7 @@ fn mix(picture: &mut Picture, x: i64, y: i64, colour: [u8; 3], share: f64) {
     pixel[3] += share * (1.0 - pixel[3]);
 }
 
-/// Paints every pixel near a shape by how much nearer its centre is than `radius`, over one pixel.
+/// Paints every pixel near a shape, with a share that falls from one to zero over one pixel around the distance `radius`.
 fn paint(
     picture: &mut Picture,
     [low, high]: [[f64; 2]; 2],
@@ -145,7 +145,7 @@ mod tests {
         let below_the_line = &picture.pixels[15 * 40..];
         let red: f32 = below_the_line.iter().map(|pixel| 1.0 - pixel[1]).sum();
         assert!((f64::from(red) - std::f64::consts::PI * 16.0).abs() < 1.0);
-        // Partly or wholly outside is no harm.
+        // Text that is partly or wholly outside does no harm.
         dot(&mut picture, [-50.0, 1e9], 4.0, [0; 3]);
         line(&mut picture, [-1e7, 20.0], [30.0, 20.0], [0; 3]);
         text(&mut picture, [35.0, 36.0], "edge", 3, [0; 3]);

@@ -1,7 +1,7 @@
 //! The command line: one file a command, and the pieces they share.
 //!
-//! Each command goes from what was typed (clap's structs) to what it means (the library's types, checked once) to
-//! done. Only [`output::json`] writes to stdout; everything for people goes to stderr.
+//! Each command goes from the text of the flags (clap's structs) to what they mean (the library's types, checked once) to
+//! the work. Only [`output::json`] writes to stdout; everything for people goes to stderr.
 
 mod ablate;
 mod bench;
@@ -93,7 +93,7 @@ impl Command {
     }
 }
 
-/// Parses, runs, and turns a failure into its sentence and exit status.
+/// Parses the command line, runs the command, and turns a failure into its sentence and exit status.
 pub(crate) fn main() -> ExitCode {
     let outcome = match Cli::try_parse() {
         Ok(cli) => cli.command.run(),

@@ -10,12 +10,12 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rara::{Error, Result};
 use serde::Serialize;
 
-/// A line for people. Where nobody listens (stderr closed), nothing is lost by going on.
+/// Prints a line for people. Where nobody listens (stderr closed), nothing is lost by going on.
 pub(super) fn say(line: impl Display) {
     let _ = writeln!(io::stderr(), "{line}");
 }
 
-/// The document that `--json` promises. A reader that stops reading is no failure.
+/// Prints the document that `--json` promises. A reader that stops reading is no failure.
 pub(super) fn json(document: &impl Serialize) -> Result<()> {
     let mut text =
         serde_json::to_string_pretty(document).expect("the documents have string keys only");
@@ -75,7 +75,7 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    /// Nothing shows for the first half second, so that quick work leaves no flicker.
+    /// The bar stays hidden for the first half second, so that quick work leaves no flicker.
     const MOMENT: Duration = Duration::from_millis(500);
 
     pub(super) fn new(what: impl Into<String>) -> Self {

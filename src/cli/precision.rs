@@ -19,7 +19,7 @@ pub(super) struct PrecisionArgs {
     /// Approximation of the normal distribution in mode exact: off by at most 2e-5, 1.4e-4 or 1e-2
     #[arg(long, value_name = "FORM")]
     phi: Option<PhiForm>,
-    /// Most bits of the depths that the sort looks at; each 8 are a pass
+    /// How many bits of the depths the sort compares at most; each pass takes 8
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(8..=32))]
     key_bits: Option<u32>,
     /// Mode exact: sigma/depth above which a cut splat gets the form that is exact in perspective; 0 is all of them
@@ -31,7 +31,7 @@ pub(super) struct PrecisionArgs {
 }
 
 impl PrecisionArgs {
-    /// The precision that was meant.
+    /// The precision that the flags mean.
     pub(super) fn meant(&self) -> Precision {
         let preset = self.preset.precision();
         preset

@@ -1,4 +1,4 @@
-//! The flags that look into frames: a trace, and what the stages have done.
+//! The flags that show what is in a frame: a trace, and what the stages have done.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::output;
 use super::session::Session;
 
-/// What to note beside the pictures.
+/// What to record beside the pictures.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Profiling")]
 pub(super) struct ProfileArgs {
@@ -49,12 +49,12 @@ impl ProfileArgs {
 }
 
 impl Profile {
-    /// What to open, with what the profile wants of it.
+    /// The description of the device, with what the profile needs.
     pub(super) fn of(&self, desc: HeadlessDesc) -> HeadlessDesc {
         desc.trace(self.trace.clone()).statistics(self.statistics)
     }
 
-    /// Notes how long `act` takes.
+    /// Records how long `act` takes.
     pub(super) fn span<R>(&self, name: &'static str, act: impl FnOnce() -> R) -> R {
         match &self.trace {
             Some(trace) => trace.span(name, act),
@@ -62,14 +62,14 @@ impl Profile {
         }
     }
 
-    /// Says it where the device has no statistics.
+    /// Prints a note if the device has no statistics.
     pub(super) fn check(&self, session: &Session) {
         if self.statistics && !session.has_statistics() {
             output::say("note: this device counts nothing (no pipelineStatisticsQuery)");
         }
     }
 
-    /// Writes the trace, also of work that has failed: it shows how far it came. The first failure is reported.
+    /// Writes the trace, also after a failure, since it shows how far the work came. The first failure is returned.
     pub(super) fn end_after(self, done: Result<(), Failure>) -> Result<(), Failure> {
         let written = match (self.file, self.trace) {
             (Some(file), Some(trace)) => output::text(&file, &trace.json()),

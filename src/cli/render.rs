@@ -121,7 +121,7 @@ impl Render {
         Some(numbered(self.output.as_ref()?, number))
     }
 
-    /// Says what is wrong with `-o` before any work is done.
+    /// Checks `-o` before any work is done.
     fn check_output(&self, views: &Views) -> Result<(), Failure> {
         let Some(pattern) = &self.output else {
             return Ok(());

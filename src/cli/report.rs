@@ -34,7 +34,7 @@ struct SceneReport {
     sh_degree: u32,
     repaired: u64,
     dropped: u64,
-    /// One of each file, in order.
+    /// One for each file, in order.
     layers: Vec<LayerReport>,
 }
 
@@ -47,12 +47,12 @@ struct LayerReport {
 #[derive(Debug, Serialize)]
 struct Memory {
     device_bytes: u64,
-    /// Of those, the scene's.
+    /// The part of `device_bytes` that the scene takes.
     scene_bytes: u64,
-    /// The scene's, a Gaussian.
+    /// `scene_bytes` for each Gaussian.
     scene_bytes_per_gaussian: f64,
     peak_rss_bytes: u64,
-    /// The device's, by what it is for, the largest first.
+    /// The parts of `device_bytes` by purpose, the largest first.
     purposes: Vec<NamedBytes>,
 }
 
@@ -212,7 +212,7 @@ pub(super) fn wrote(paths: &[PathBuf]) -> String {
     }
 }
 
-/// The most memory this process ever had resident; 0 where the system does not say.
+/// The most memory this process ever had resident; 0 where the system does not report it.
 fn peak_rss_bytes() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

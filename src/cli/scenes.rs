@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::output::{Progress, say};
 use rara::scene;
 
-/// Which scene.
+/// The flags that name the scene.
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
     /// Scene files (3DGS .ply); several are the layers of one scene
@@ -26,13 +26,13 @@ impl SceneArgs {
 
 /// One or more scene files.
 pub(super) struct Loaded {
-    /// The Gaussians of each file, and what people call it: its name without what says that it is a scene.
+    /// The Gaussians of each file, and the file's name without its ending.
     pub(super) files: Vec<(String, Gaussians)>,
     /// Gaussians that had a field put right.
     pub(super) repaired: u64,
     /// Gaussians that could not be used.
     pub(super) dropped: u64,
-    /// What the loader had to say, a line each.
+    /// What the loader reports, a line each.
     pub(super) notes: Vec<String>,
 }
 
@@ -64,7 +64,7 @@ impl Loaded {
     }
 }
 
-/// Reads the files in order; prints what had to be repaired.
+/// Reads the files in order, and prints what had to be repaired.
 pub(super) fn load(paths: &[PathBuf]) -> Result<Loaded, Failure> {
     let mut all = Loaded {
         files: Vec::new(),

@@ -1,4 +1,4 @@
-//! A device with a scene on it.
+//! A device and the scene on it.
 
 use rara::{
     Camera, Clip, FrameStats, Headless, HeadlessDesc, Picture, Result, Scene, Settings, ShFormat,
@@ -67,7 +67,7 @@ impl Session {
         self.headless.picture()
     }
 
-    /// Frees everything; the validation layer may have something to say of it.
+    /// Frees everything; an error is what the validation layer has reported about it.
     pub(super) fn close(self) -> Result<()> {
         self.headless.close()
     }

@@ -60,20 +60,20 @@ pub(super) struct DeviceArgs {
     /// Load the Khronos validation layer with synchronisation checks; any message is an error
     #[arg(long)]
     validation: bool,
-    /// Compile everything anew, and keep nothing for the next run. By itself it is kept in RARA_CACHE (set to nothing:
-    /// nowhere), else in the user's cache folder
+    /// Compile everything anew, and keep nothing for the next run. Without this flag it is kept in the folder RARA_CACHE
+    /// (if that is empty, nowhere), else in the user's cache folder
     #[arg(long)]
     no_pipeline_cache: bool,
 }
 
-/// What is typed for a value, and what the statistics call it.
+/// The name of a value on the command line and in the statistics.
 pub(super) fn name(value: impl ValueEnum) -> String {
     let value = value.to_possible_value();
     value.map_or_else(String::new, |value| value.get_name().into())
 }
 
 impl SettingsArgs {
-    /// The settings that were meant.
+    /// The settings that the flags mean.
     pub(super) fn meant(&self) -> Result<Settings, Failure> {
         if self.mode != Mode::Rara && (self.sigma.is_some() || self.miss.is_some()) {
             output::say("note: --sigma and --miss change nothing without --mode rara");
@@ -101,7 +101,7 @@ impl LookArgs {
 }
 
 impl DeviceArgs {
-    /// What to open.
+    /// The description of the device to open.
     pub(super) fn meant(&self) -> HeadlessDesc {
         HeadlessDesc::default()
             .device(self.device.clone())

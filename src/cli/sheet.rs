@@ -38,7 +38,7 @@ pub(super) fn sheet(pictures: &[(String, Picture)], corner: (u32, u32)) -> Pictu
     sheet
 }
 
-/// The top left of the piece, as large as a sheet magnifies, in which two pictures of one size differ most.
+/// The top left of the piece in which two pictures of one size differ most; the piece is as large as a sheet magnifies.
 pub(super) fn where_they_differ(a: &Picture, b: &Picture) -> (u32, u32) {
     let (width, height) = (a.width.div_ceil(ZOOM), a.height.div_ceil(ZOOM));
     let difference = |x: u32, y: u32| -> f32 {

@@ -41,7 +41,7 @@ pub(super) struct Sweep {
     /// Folder for the pictures; made unless it is there
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Render each frame from nothing; without it a frame takes over what stays the same, to the same bytes
+    /// Render each frame from nothing; without this flag a frame takes over what stays the same, to the same bytes
     #[arg(long)]
     independent: bool,
     /// Render each frame N times, nothing carried over between them, and take the medians
@@ -81,7 +81,7 @@ impl Sweep {
         profile.end_after(done)
     }
 
-    /// `shapes` are those that stand still, and in the end the one that moves.
+    /// `shapes` are those that stand still, and last the one that moves.
     fn draw(
         &self,
         profile: &Profile,

@@ -1,4 +1,4 @@
-//! The first shape: a half-space.
+//! A plane, which keeps a half-space.
 
 use glam::DVec3;
 
@@ -14,7 +14,7 @@ pub struct Plane {
 impl Plane {
     /// A plane from any non-zero normal; both are divided by the normal's length, in f64.
     pub fn new(normal: DVec3, offset: f64) -> Result<Self> {
-        // Scale by the largest component first, so that normals of 1e-300 or 1e300 do not under- or overflow.
+        // The largest component is divided out first, so that normals of 1e-300 or 1e300 do not under- or overflow.
         let largest = normal.abs().max_element();
         if !(largest > 0.0 && normal.is_finite() && offset.is_finite()) {
             return Err(Error::Invalid(format!(

@@ -8,7 +8,7 @@ use glam::{DQuat, DVec3};
 use super::{Clip, ClipOp, Plane, Surface};
 use crate::error::{Error, Result, shortened};
 
-/// A shape as the surfaces that bound what it keeps. Parses from text; a leading `!` keeps the outside.
+/// A shape, held as the surfaces that bound what it keeps. It parses from text; a leading `!` keeps the outside.
 ///
 /// ```
 /// use rara::{Clip, ClipOp, clip::Shape};
@@ -21,7 +21,7 @@ use crate::error::{Error, Result, shortened};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shape {
     surfaces: Vec<Surface>,
-    /// How the shape's own surfaces combine; a single one fits either way, and has `And`.
+    /// How the shape's own surfaces combine; a single surface fits either way and has `And`.
     op: ClipOp,
 }
 
@@ -39,7 +39,7 @@ impl Shape {
         if largest == 0.0 {
             return Err(Error::Invalid("a box's quaternion cannot be zero".into()));
         }
-        // By the largest component first, so that tiny and huge ones keep their squares.
+        // The largest component is divided out first, which keeps the squares of tiny and huge ones in range.
         let turn = DQuat::from_array(rotation.to_array().map(|v| v / largest)).normalize();
         let side = |index: usize| {
             let inward = if index < 3 { -1.0 } else { 1.0 };
@@ -57,7 +57,7 @@ impl Shape {
         &self.surfaces
     }
 
-    /// How they combine: the inside of a box is where all of them keep a point, its outside is where any does.
+    /// How they combine: the inside of a box is kept where all of them keep a point, its outside where any does.
     pub fn op(&self) -> ClipOp {
         self.op
     }
@@ -169,8 +169,8 @@ pub fn numbers(text: &str) -> Result<Vec<f64>> {
 }
 
 impl Clip {
-    /// The clip that shapes make together: visible in all of them, or in any. One shape alone has nothing to combine
-    /// with, so its own operation holds.
+    /// The clip that shapes make together: visible in all of them, or in any. A single shape has nothing to combine with,
+    /// so its own operation holds.
     ///
     /// # Errors
     /// [`Error::Invalid`] if they do not fit one list of surfaces that one operation joins, or make more than

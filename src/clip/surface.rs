@@ -1,4 +1,4 @@
-//! What a clip is made of.
+//! Surfaces: what a clip is made of.
 
 use glam::DVec3;
 
@@ -21,15 +21,15 @@ impl Surface {
         }
     }
 
-    /// A measure of how far a point is from the surface, world units: positive where the surface keeps the point. Of a plane
-    /// it is the signed distance.
+    /// A measure of how far a point is from the surface, world units: positive where the surface keeps the point. For a
+    /// plane it is the signed distance.
     pub fn distance(&self, point: DVec3) -> f64 {
         match self {
             Self::Plane(plane) => plane.distance(point),
         }
     }
 
-    /// The plane, if the surface is one: for what handles nothing else.
+    /// The plane, if the surface is one; for callers that handle nothing else.
     pub fn as_plane(&self) -> Option<Plane> {
         match *self {
             Self::Plane(plane) => Some(plane),

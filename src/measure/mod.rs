@@ -34,10 +34,11 @@ pub struct Comparison {
     pub ssim: f64,
     /// Share of the pixels of which any channel differs by more than 2/255.
     pub share_over_2: f64,
-    /// Mean excess of the first picture over all channels, in units of 1/255: against a truth, light that it hides.
+    /// Mean excess of the first picture over all channels, in units of 1/255: against a truth, light that the truth
+    /// hides.
     pub leak: f64,
-    /// Mean lack of the first picture over all channels, in units of 1/255: light that a truth shows. `leak + loss` is
-    /// `l1`, `leak - loss` the signed mean.
+    /// Mean lack of the first picture over all channels, in units of 1/255: against a truth, light that the truth shows.
+    /// `leak + loss` is `l1`, and `leak - loss` is the signed mean.
     pub loss: f64,
 }
 
@@ -49,7 +50,7 @@ pub fn compare(a: &Picture, b: &Picture) -> Result<Comparison> {
     compare_within(a, b, None).map(|(comparison, _)| comparison)
 }
 
-/// Compares two pictures as [`compare`] does, and gives the mean SSIM over the pixels of a region besides; none where
+/// Compares two pictures as [`compare`] does, and also returns the mean SSIM over the pixels of a region, `None` where
 /// the region has no pixel.
 pub fn compare_within(
     a: &Picture,
@@ -126,7 +127,7 @@ impl Differences {
     }
 }
 
-/// Peak signal to noise ratio of two pictures, as [`compare`] has it: all of it that needs no SSIM.
+/// Peak signal to noise ratio of two pictures, as [`compare`] computes it, without the rest.
 pub fn psnr(a: &Picture, b: &Picture) -> Result<f64> {
     comparable(a, b)?;
     Ok(Differences::of(a, b).psnr())

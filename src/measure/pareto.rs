@@ -1,7 +1,8 @@
-//! Which of several choices no other is better than.
+//! Finds the choices that no other choice beats.
 
-/// The numbers of the points `[cost, error]` than which no other is at most as costly and at most as wrong, and one of
-/// both less; by rising cost. Points that are not numbers are left out. Of equal points all stay.
+/// The indices, by rising cost, of the points `[cost, error]` that no other point beats. A point beats another if neither
+/// its cost nor its error is larger and one of them is smaller. Points that are not numbers are left out; equal points
+/// all stay.
 pub fn undominated(points: &[[f64; 2]]) -> Vec<usize> {
     let dominates = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
     let mut best: Vec<usize> = (0..points.len())

@@ -3,7 +3,7 @@
 use super::same_size;
 use crate::{Picture, Result};
 
-/// What a sequence of pictures does from step to step, in units of 1/255, each the mean over the steps. A pixel's
+/// How much a sequence of pictures changes from step to step, in units of 1/255, each the mean over the steps. A pixel's
 /// change is that of the channel that changes most.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 pub struct Popping {

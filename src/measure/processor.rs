@@ -1,7 +1,7 @@
-//! What the processor has spent: steadier than time on a machine that does other things too.
+//! Time that the processor has spent, which is steadier than elapsed time on a machine that does other things too.
 
-/// Time that all threads of this process have spent on a processor so far, ms: what Linux's scheduler has counted. 0 where
-/// it says nothing.
+/// Time that all threads of this process have spent on a processor so far, ms, as Linux's scheduler counts it; 0 where
+/// there is no such count.
 pub fn processor_ms() -> f64 {
     let Ok(threads) = std::fs::read_dir("/proc/self/task") else {
         return 0.0;

@@ -23,7 +23,8 @@ impl Region {
         })
     }
 
-    /// Wider by `radius` pixels in each direction: every pixel within a square of that half side about one inside.
+    /// The region widened by `radius` pixels in each direction: every pixel within a square of that half side about one
+    /// inside.
     pub fn dilated(&self, radius: usize) -> Self {
         let (width, height) = (self.width, self.inside.len() / self.width);
         let near = |line: &dyn Fn(usize) -> bool, length: usize, at: usize| {
@@ -45,7 +46,7 @@ impl Region {
         inside as f64 / self.inside.len() as f64
     }
 
-    /// Mean of a value a pixel over the pixels inside; none where there are none.
+    /// Mean of one value per pixel over the pixels inside; `None` if there are none.
     pub(super) fn mean(&self, values: &[f64]) -> Option<f64> {
         let inside = values
             .iter()

@@ -1,8 +1,8 @@
-//! What the measures must say in closed form.
+//! The measures against values in closed form.
 
 use super::*;
 
-/// Noise that repeats for ever: enough to make structure of.
+/// Noise that is the same in every run, so that pictures have structure.
 fn noise(width: u32, height: u32, seed: u32) -> Picture {
     let mut state = seed;
     let mut next = || {

@@ -11,7 +11,7 @@ use super::{Picture, premultiplied, to_bytes};
 use crate::files::write_atomically;
 use crate::{Camera, Error, Result};
 
-/// The kinds of picture file there are.
+/// The kinds of picture file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     /// 8-bit RGBA, un-premultiplied.
@@ -74,7 +74,7 @@ impl Picture {
     }
 
     /// Reads a picture that [`save`](Self::save) (or anyone else) wrote. PNG pixels are premultiplied; a file without
-    /// alpha is opaque. What counts is the file's content, not its name.
+    /// alpha is opaque. The file's content decides its kind, not its name.
     pub fn load(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let file = BufReader::new(File::open(path).map_err(Error::io(path))?);

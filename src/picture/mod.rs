@@ -44,7 +44,8 @@ impl Picture {
     }
 }
 
-/// A premultiplied pixel as PNG has it: colours divided by alpha, `round(255 c)`, clamped. No alpha, no colour.
+/// A premultiplied pixel as PNG has it: colours divided by alpha, `round(255 c)`, clamped. Without alpha there is no
+/// colour.
 fn to_bytes([r, g, b, a]: [f32; 4]) -> [u8; 4] {
     let colour = |c: f32| if a > 0.0 { c / a } else { 0.0 };
     // `as` clamps, and makes 0 of what is not a number.

@@ -21,7 +21,7 @@ impl Bounds {
     /// Bounds that hold all but the outermost percent of the centres at each end of each axis, wider by the median
     /// Gaussian's largest standard deviation. They are never empty: an empty scene has the unit box about the origin.
     ///
-    /// Of a scene's layers those count that are visible, where they are placed.
+    /// Of a scene's layers only the visible ones count, where they are placed.
     pub fn of<'a>(scene: impl Into<Scene<'a>>) -> Self {
         let scene = scene.into();
         let axis = |axis: DVec3| extent_along(scene.clone(), axis);

@@ -47,7 +47,7 @@ impl Gaussians {
         Ok(Self(arrays))
     }
 
-    /// None yet, of degree `sh_degree`, with room for exactly `count`; `None` if the memory can't be had.
+    /// An empty set of degree `sh_degree` with room for exactly `count`; `None` if there is not enough memory.
     pub(super) fn with_room(count: usize, sh_degree: u32) -> Option<Self> {
         let numbers = count.checked_mul(3 * sh_coefficients(sh_degree))?;
         let mut arrays = GaussianArrays {
@@ -107,8 +107,8 @@ impl Gaussians {
         &self.0.sh
     }
 
-    /// Centres, to be moved. What these and the following are set to is not checked: a number that [`new`](Self::new)
-    /// would refuse makes its Gaussian, and no other, look like anything or nothing.
+    /// Centres, to be moved. Nothing checks what is written here and through the methods below: a number that
+    /// [`new`](Self::new) would refuse makes its Gaussian, and no other, look like anything or nothing.
     pub fn positions_mut(&mut self) -> &mut [Vec3] {
         &mut self.0.positions
     }
@@ -144,7 +144,7 @@ impl Gaussians {
         &self.0.sh[index * stride..][..stride]
     }
 
-    /// Appends one, whose numbers are not checked, as with [`positions_mut`](Self::positions_mut). `sh` is
+    /// Appends a Gaussian, whose numbers are not checked, as with [`positions_mut`](Self::positions_mut). `sh` is
     /// `[coefficient][r, g, b]`.
     ///
     /// # Panics

@@ -6,7 +6,7 @@ use crate::placement::Placement;
 use crate::scene::Gaussians;
 use crate::setters::setters;
 
-/// What of a layer may change from frame to frame.
+/// The state of a layer, which may change from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct LayerState {
@@ -35,8 +35,8 @@ impl Default for LayerState {
 }
 
 impl LayerState {
-    /// Checks it as the upload and [`Renderer::configure`](crate::Renderer::configure) do, so that a wrong one is known of
-    /// before; `name` is the layer's, for the message.
+    /// Checks the state as the upload and [`Renderer::configure`](crate::Renderer::configure) do, so that a mistake is
+    /// found earlier; `name` is the layer's, for the message.
     ///
     /// # Errors
     /// [`Error::Invalid`] for an opacity that is not 0 to 1.
@@ -61,7 +61,7 @@ pub struct Layer<'a> {
 }
 
 impl<'a> Layer<'a> {
-    /// Gaussians with a name, as they are.
+    /// A layer of these Gaussians in the default state.
     pub fn new(name: impl Into<String>, gaussians: &'a Gaussians) -> Self {
         Self {
             name: name.into(),
@@ -101,7 +101,7 @@ impl<'a> Layer<'a> {
         self.gaussians
     }
 
-    /// How it is shown at first.
+    /// The state in which it is uploaded.
     pub fn state(&self) -> LayerState {
         self.state
     }

@@ -1,4 +1,4 @@
-//! What a loader had to leave out or put right, for people and for statistics.
+//! The report on what a loader had to leave out or put right, for people and for statistics.
 
 use std::fmt;
 

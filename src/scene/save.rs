@@ -50,7 +50,8 @@ fn write_header(out: &mut dyn Write, gaussians: &Gaussians) -> io::Result<()> {
 }
 
 fn write_row(out: &mut dyn Write, gaussians: &Gaussians, index: usize) -> io::Result<()> {
-    // At most degree 3: 3 + 3 + 48 + 1 + 3 + 4 numbers. Collected first, since `out` is a virtual call a time.
+    // At most degree 3: 3 + 3 + 48 + 1 + 3 + 4 numbers. They are collected first, since each write to `out` is a virtual
+    // call.
     let mut row = [0.0_f32; 62];
     let sh = gaussians.sh_of(index);
     let coefficients = sh.len() / 3;

@@ -1,4 +1,4 @@
-//! Files that hold what no trainer should write: through the loader, as a user's scene would come.
+//! Files with numbers that no trainer should write, read by the loader like a user's scene.
 
 use std::path::Path;
 
@@ -75,7 +75,7 @@ fn from_file(rows: &[Row]) -> Case {
     let name = format!("rara-stress-{}-{}.ply", std::process::id(), rows.len());
     let path = std::env::temp_dir().join(name);
     let scene = written(&path, rows);
-    // Nothing depends on whether the file could be removed.
+    // It does not matter whether the file could be removed.
     let _ = std::fs::remove_file(&path);
     let mut random = Random::new(52);
     let camera = PLAIN.camera(&mut random);

@@ -42,7 +42,7 @@ fn oblique(offset: f64) -> Clip {
     )
 }
 
-/// Sheets across the view, `spacing` apart, all over each other; shuffled, so that the order is the sort's.
+/// Sheets across the view, `spacing` apart, which cover each other. They are shuffled, so that only the sort orders them.
 fn layers(count: usize, spacing: f64) -> Case {
     let mut random = Random::new(40);
     let mut scene = Gaussians::default();
@@ -63,7 +63,8 @@ fn layers(count: usize, spacing: f64) -> Case {
 }
 
 /// Sheets of one depth that cover the whole picture, so that every pixel shows their order and nothing else. Two
-/// neighbours that change places change it by 0.0025 of what is left of the light and of their colours' difference.
+/// neighbours that change places change it by 0.0025 of the light that is left there, times the difference of their
+/// colours.
 fn ties() -> Case {
     let mut random = Random::new(46);
     let mut scene = Gaussians::default();

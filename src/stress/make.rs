@@ -38,7 +38,7 @@ impl Setup {
             .expect("two random directions are not parallel")
     }
 
-    /// Radius of the picture at the stage's distance, world units.
+    /// Radius of the picture at that distance, world units.
     pub(super) fn radius(&self) -> f64 {
         0.6 * f64::from(self.size.0.max(self.size.1)) * self.distance / self.focal
     }
@@ -51,7 +51,7 @@ pub(super) fn axes(camera: &Camera) -> DMat3 {
 
 /// Standard deviations of a splat, given the world size of a pixel where it stands.
 pub(super) type Deviations<'a> = &'a dyn Fn(&mut Random, f64) -> DVec3;
-/// The normal of the plane through the stage's centre.
+/// The normal of the plane through the centre of the setup.
 pub(super) type Normal<'a> = &'a dyn Fn(&mut Random, &Camera) -> DVec3;
 
 /// A normal that has nothing to do with the view.
@@ -86,8 +86,8 @@ pub(super) fn cases(
     cases
 }
 
-/// Up to `count` splats on one plane through the stage's centre. Fewer where they do not fit beside each other or the
-/// plane is hardly in view.
+/// Up to `count` splats on one plane through the centre of the setup. There are fewer where they do not fit beside each
+/// other or the plane is hardly in view.
 pub(super) fn strewn(
     random: &mut Random,
     stage: Setup,
@@ -133,9 +133,9 @@ pub(super) fn on_plane(
         let pixel = (camera.rotation * (on_plane - camera.eye)).z.max(1e-3) / camera.fx;
         let rotation = orientation(random);
         let scales = shape(random, pixel);
-        // Standard deviation along the normal: the plane passes within two of the centre.
+        // The standard deviation along the normal: the plane passes within two of them from the centre.
         let deviation = (rotation.as_dquat().inverse() * normal * scales).length();
-        // A point is not cut, but kept or dropped; it stands within two pixels then.
+        // A point is not cut, but kept or dropped; it then stands within two pixels of the plane.
         let near = if deviation > 0.0 { deviation } else { pixel };
         let position = (on_plane + normal * near * random.range(-2.0, 2.0)).as_vec3();
         if plane.distance(position.as_dvec3()).abs() > 2.5 * near {

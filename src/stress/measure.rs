@@ -18,7 +18,7 @@ const FORMS: [(&str, Mode, ExactForm); 4] = [
 ];
 /// Pixels whose uncut alpha is this near to 1/255, relatively, may count on one side and not on the other.
 const THRESHOLD_BAND: f64 = 2e-3;
-/// What pictures are held to: in decibels, and the share of pixels more than 2/255 off.
+/// What pictures are held to: decibels, and the share of pixels that are more than 2/255 off.
 const PICTURE_PSNR: f64 = 60.0;
 const PICTURE_SHARE: f64 = 1e-3;
 
@@ -27,7 +27,7 @@ const PICTURE_SHARE: f64 = 1e-3;
 pub struct FormRow {
     /// `affine`, `beam`, `auto` or `rara`.
     pub form: &'static str,
-    /// Largest `|alpha w - alpha w|` of a pixel, GPU against the same form in f64, single splats only.
+    /// Largest difference of alpha times weight in a pixel, GPU against the same form in f64, single splats only.
     pub weight: f64,
     /// Worst picture of crowds and single splats: mean difference, units of 1/255.
     pub l1: f64,
@@ -37,8 +37,8 @@ pub struct FormRow {
     pub max: f64,
     /// Largest share of a picture's pixels that are more than 2/255 off.
     pub share_over_2: f64,
-    /// For information: how far the form itself is from the perspective-exact one, both in f64: the sum of
-    /// `|alpha w - alpha w|` over the sum of alpha.
+    /// For information: how far the form itself is from the perspective-exact one, both in f64: the sum of the
+    /// differences of alpha times weight over the sum of alpha.
     pub model: f64,
 }
 
@@ -79,8 +79,7 @@ impl Row {
     }
 }
 
-/// Draws a regime's cases in every form, or each second of them or so, and measures. Any message of the validation layer is
-/// an error.
+/// Draws every `every`-th case of a regime in every form, and measures. Any message of the validation layer is an error.
 pub fn run(headless: &mut Headless, regime: &Regime, every: usize) -> Result<Row> {
     let limit = regime.limit;
     let mut row = Row {

@@ -35,11 +35,11 @@ pub struct Case {
     pub camera: Camera,
     /// What cuts them.
     pub clip: Clip,
-    /// The footprints do not touch: a pixel's alpha is that of one splat, and so shows its weight.
+    /// Whether the footprints are apart: a pixel's alpha is then that of one splat, and shows its weight.
     pub apart: bool,
 }
 
-/// Where single precision ends: what a regime is allowed instead of the target, and why.
+/// A limit where single precision ends: what a regime is allowed instead of the target, and why.
 #[derive(Debug, Clone, Copy)]
 pub struct Limit {
     /// Largest error of alpha times weight.
@@ -57,8 +57,8 @@ pub struct Regime {
     pub name: &'static str,
     /// Where the target cannot be met.
     pub limit: Option<Limit>,
-    /// Largest error of a colour in any pixel, where that must be smaller than two levels of 255 in a thousandth of
-    /// the pixels: an order of splats is wrong or right.
+    /// Largest error of a colour in any pixel, for regimes in which the usual two levels of 255 in a thousandth of the
+    /// pixels are too many: an order of splats is wrong or right.
     pub exact: Option<f64>,
     /// Whether there is nothing to draw.
     pub empty: bool,

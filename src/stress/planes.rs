@@ -47,13 +47,15 @@ pub fn regimes() -> Vec<Regime> {
     ]
 }
 
-/// One plane three times, a rounding apart: what is the same to the bit is taken for one before anything is drawn.
+/// One plane three times, a rounding apart, since planes that are the same to the bit count as one before anything is
+/// drawn.
 fn again(p: Plane) -> Vec<Plane> {
     let beside = |by: f64| plane(p.normal(), p.offset() + by);
     vec![p, beside(1e-13), beside(-1e-13)]
 }
 
-/// A plane that holds the middle of the picture almost (or wholly) along the line of sight: through the eye at 0.
+/// Planes through the middle of the picture that stand almost along the line of sight; at a tilt of 0 they go through the
+/// eye.
 fn grazing(tilt: f64) -> Vec<Case> {
     let normal = move |random: &mut Random, camera: &Camera| {
         let axes = axes(camera);
@@ -64,7 +66,7 @@ fn grazing(tilt: f64) -> Vec<Case> {
     cases(20, PLAIN, &normal, &mix)
 }
 
-/// Parallel to the view direction, but beside the eye.
+/// Planes parallel to the view direction, but beside the eye.
 fn parallel() -> Vec<Case> {
     let mut cases = grazing(0.0);
     for case in &mut cases {
@@ -93,8 +95,8 @@ fn together(op: ClipOp, planes: fn(Plane) -> Vec<Plane>) -> Vec<Case> {
     (0..4).map(&mut one).collect()
 }
 
-/// Small splats along the line in which all planes meet, so that all planes cut all of them: the splats of which the
-/// low-pass leaves most.
+/// Small splats along the line in which all planes meet, so that all planes cut all of them. These are the splats that
+/// the low-pass widens most.
 fn edge(op: ClipOp, count: usize) -> Vec<Case> {
     let small = |random: &mut Random, px: f64| mix(random, px) * 0.05;
     let mut cases = cases(24, PLAIN, &any_normal, &small);

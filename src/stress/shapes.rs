@@ -47,7 +47,7 @@ pub fn regimes() -> Vec<Regime> {
     ]
 }
 
-/// Up to a picture long, three deviations on either side.
+/// Needles up to a picture long, three deviations on either side.
 fn needles(aspect: f64) -> Vec<Case> {
     cases(2, PLAIN, &any_normal, &|r, px| {
         let long = px * between(r, 0.5, 60.0);
@@ -62,7 +62,7 @@ fn pancakes(aspect: f64) -> Vec<Case> {
     })
 }
 
-/// Hundreds of pixels long, and thinner than one.
+/// Splats that are hundreds of pixels long, and thinner than one.
 fn large(aspect: f64, flat: bool) -> Vec<Case> {
     let stage = Setup {
         focal: 1200.0,
@@ -81,7 +81,7 @@ fn large(aspect: f64, flat: bool) -> Vec<Case> {
     })
 }
 
-/// World sizes, whatever that is in pixels.
+/// Splats of a size in the world, whatever that is in pixels.
 fn sigma(size: f64) -> Vec<Case> {
     cases(4, PLAIN, &any_normal, &|r, _| spread(r, size))
 }

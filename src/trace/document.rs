@@ -16,7 +16,7 @@ impl Trace {
         let mut list: Vec<Value> = named(Lane::Cpu, "CPU").into();
         list.extend(named(Lane::Gpu, "GPU"));
         let mut spans: Vec<&TraceSpan> = events.spans.iter().collect();
-        // In the order of time, what holds others before them.
+        // In the order of time; a span stands before those that it holds.
         spans.sort_by(|a, b| a.begin.total_cmp(&b.begin).then(b.end.total_cmp(&a.end)));
         list.extend(spans.iter().map(|span| {
             json!({

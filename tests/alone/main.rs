@@ -1,4 +1,4 @@
-//! What is measured of the whole process, so that nothing else may run in it: its memory, and who allocates.
+//! Measures of the whole process, in which nothing else may run: its memory, and who allocates.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

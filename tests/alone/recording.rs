@@ -9,7 +9,7 @@ use rara::gpu::{Drawer, ImageDesc};
 use rara::scene::{Kind, generate};
 use rara::{ClipOp, Raster, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat};
 
-/// The system's, which counts what this thread asks of it.
+/// The system's allocator, which counts what this thread asks of it.
 struct Counting;
 
 thread_local! {
@@ -42,7 +42,7 @@ fn recording_allocates_nothing() {
     let scene = generate(Kind::General, 2_000, 5);
     let camera = common::views(&scene, 1, SIZE)[0];
     for bindings in common::bindings(common::headless().device()) {
-        // Without the layer, which puts functions of its own between.
+        // No validation layer, since it puts functions of its own between.
         let headless = common::headless_unchecked(bindings);
         let device = headless.device();
         let buffers = SceneBuffers::upload(device, &scene, ShFormat::Packed).expect("uploads");

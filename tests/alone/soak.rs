@@ -4,7 +4,7 @@ use crate::common;
 use rara::scene::{Kind, generate};
 use rara::{Camera, ClipOp, Gaussians, Headless, HeadlessDesc, PipelineCache, Settings};
 
-/// Frames before a scene gives way to the next.
+/// Frames before the next scene replaces a scene.
 const STAY: usize = 20;
 
 #[test]
@@ -36,7 +36,8 @@ fn soak(frames: usize) {
     .map(|(kind, count)| generate(kind, count, 1))
     .into();
     let begun = std::time::Instant::now();
-    // What each scene took with so many planes when it was there before, and the process after all were there twice.
+    // The memory that each scene took with so many planes the last time, and that of the process after all were there
+    // twice.
     let cycle = 2 * scenes.len();
     let mut taken = vec![0; cycle];
     let mut resident = 0;
@@ -77,14 +78,14 @@ fn soak(frames: usize) {
         resident as f64 / f64::from(1 << 20),
         grown as f64 / f64::from(1 << 20)
     );
-    // Allocators and drivers keep some of what they were given back.
+    // Allocators and drivers keep some of the memory that they are given back.
     assert!(
         grown < 16 << 20,
         "resident memory has grown by {grown} bytes"
     );
 }
 
-/// Memory of this process that is in memory; 0 where the system does not say.
+/// Resident memory of this process; 0 where the system does not report it.
 fn resident_bytes() -> i64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));

@@ -1,6 +1,6 @@
-//! `rara.h` and what stands behind it: that it is current, what a host does wrong and right, and a host in C++.
+//! `rara.h` and the library behind it: that the header is current, what a host does wrong and right, and a host in C++.
 
-#[path = "../common/canvas.rs"]
+#[path = "../common/canvas/mod.rs"]
 mod canvas;
 mod compiler;
 #[path = "../common/folder.rs"]

@@ -1,5 +1,5 @@
-//! The functions of `rara.h` on a device: what a host can do wrong there has a message, and so has a device that
-//! is lost. What a host does right is drawn by `tests/c/cpp_host.rs` and `tests/c/frames.rs`.
+//! The functions of `rara.h` on a device: whatever a host does wrong there has a message, and so has a lost device.
+//! `tests/c/cpp_host.rs` and `tests/c/frames.rs` draw what a host does right.
 
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr::{null, null_mut};
@@ -16,10 +16,11 @@ use rara_c::layer::*;
 use rara_c::renderer::*;
 use rara_c::scene::*;
 use rara_c::stats::*;
+use rara_c::support::*;
 
 #[track_caller]
 fn assert_fails(result: RaraResult, code: RaraResult, part: &str) {
-    // SAFETY: a string of this thread, used before its next call.
+    // SAFETY: a string of this thread, which is used before its next call.
     let message = unsafe { CStr::from_ptr(rara_last_error_message()) };
     let message = message.to_str().expect("UTF-8");
     assert!(
@@ -116,7 +117,7 @@ fn what_is_wrong_is_said() {
             assert_fails(failed, RARA_ERROR_INVALID, "without VK_EXT_mesh_shader");
             desc.mesh_shader = vk::FALSE;
         }
-        desc.api_version = vk::API_VERSION_1_2; // then it needs extensions that this host has not enabled
+        desc.api_version = vk::API_VERSION_1_2; // this version needs extensions that this host has not enabled
         let failed = rara_device_adopt(&desc, &mut device);
         assert_fails(failed, RARA_ERROR_INVALID, "VK_KHR_synchronization2");
         desc.api_version = version;
@@ -184,7 +185,7 @@ fn what_is_wrong_is_said() {
         let cmd = vk::CommandBuffer::null();
         let failed = rara_renderer_prepare(renderer, cmd, scene);
         assert_fails(failed, RARA_ERROR_INVALID, "cmd is null");
-        // Never recorded into: the renderer sees before that nothing is configured.
+        // Nothing is recorded into it: the renderer sees first that nothing is configured.
         let cmd = <vk::CommandBuffer as vk::Handle>::from_raw(8);
         let failed = rara_renderer_prepare(renderer, cmd, scene);
         assert_fails(failed, RARA_ERROR_INVALID, "configure()");
@@ -298,18 +299,18 @@ unsafe fn what_is_wrong_with_layers_is_said(
         state.struct_size = 3;
         let failed = set(0, &state);
         assert_fails(failed, RARA_ERROR_INVALID, "state->struct_size is 3");
-        // The state is still the one before.
+        // The state is the one from before.
         assert_ok(rara_scene_buffers_layer_state(scene, 0, &mut state, size));
         assert_eq!(state, rara::LayerState::default().into());
     }
 }
 
-/// The system's functions, below those that lose the device.
+/// The system's functions, which those that lose the device call.
 static REAL: OnceLock<(vk::PFN_vkGetInstanceProcAddr, vk::PFN_vkGetDeviceProcAddr)> =
     OnceLock::new();
 
 /// # Safety
-/// As of vkGetInstanceProcAddr.
+/// As for vkGetInstanceProcAddr.
 unsafe extern "system" fn instance_function(
     instance: vk::Instance,
     name: *const c_char,
@@ -328,7 +329,7 @@ unsafe extern "system" fn instance_function(
 }
 
 /// # Safety
-/// As of vkGetDeviceProcAddr.
+/// As for vkGetDeviceProcAddr.
 unsafe extern "system" fn device_function(
     device: vk::Device,
     name: *const c_char,

@@ -4,7 +4,7 @@ use std::env;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// Its name; `None`, loudly, where there is none.
+/// Its name; `None`, with a message, if there is no compiler.
 pub(crate) fn compiler(what: &str) -> Option<String> {
     let compiler = env::var("CXX").unwrap_or_else(|_| "c++".into());
     if Command::new(&compiler).arg("--version").output().is_err() {
@@ -19,10 +19,10 @@ pub(crate) fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Has a command succeed; `says` is what to do if it does not.
+/// Runs a command, which must succeed; `says` is the message if it does not.
 pub(crate) fn run(command: &mut Command, says: &str) {
     let output = command.output().expect("the compiler starts");
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    let stdout = String::from_utf8_lossy(&output.stdout); // where glslang complains
-    assert!(output.status.success(), "{says}: {stderr}{stdout}");
+    let said = String::from_utf8_lossy(&output.stderr);
+    let printed = String::from_utf8_lossy(&output.stdout); // glslang complains here
+    assert!(output.status.success(), "{says}: {said}{printed}");
 }

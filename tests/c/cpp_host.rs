@@ -17,7 +17,7 @@ use rara::{
 
 const SIZE: (u32, u32) = (480, 360);
 
-/// Where cargo has put the libraries: beside this test.
+/// The folder beside this test, where cargo puts the libraries.
 fn libraries() -> PathBuf {
     let test = env::current_exe().expect("a path");
     test.parent().expect("a folder").to_owned()
@@ -46,7 +46,7 @@ fn compile(compiler: &str, out: PathBuf, library: &[&str]) -> PathBuf {
     out
 }
 
-/// What the host draws; it must not have anything to complain about.
+/// What the host draws; it must report no problem.
 fn draw(host: &Path, device: &str, scene: &Path, what: &str) -> Vec<u8> {
     let picture = host.with_extension(format!("{what}.ppm"));
     let output = Command::new(host)
@@ -62,10 +62,10 @@ fn draw(host: &Path, device: &str, scene: &Path, what: &str) -> Vec<u8> {
         .expect("the host starts");
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && said.is_empty(), "{what}: {said}");
-    let stdout = String::from_utf8_lossy(&output.stdout);
+    let printed = String::from_utf8_lossy(&output.stdout);
     assert!(
-        stdout.contains(" visible, ") && stdout.contains(" cutoff "),
-        "{stdout}"
+        printed.contains(" visible, ") && printed.contains(" cutoff "),
+        "{printed}"
     );
     let bytes = std::fs::read(&picture).expect("a picture");
     let header = format!("P6 {} {} 255\n", SIZE.0, SIZE.1);
@@ -94,7 +94,7 @@ fn truth(scene: &Gaussians) -> (Vec<u8>, String) {
     );
     let settings = Settings::default()
         .background(Some([0.0; 3]))
-        .raster(Raster::Quad); // tiles want to be shown the host's depth
+        .raster(Raster::Quad); // tiles would need the host's depth
     headless.load_as(scene, ShFormat::Packed).expect("uploads");
     headless.render(&camera, &clip, &settings).expect("renders");
     let picture = headless.picture().expect("reads back");
@@ -115,7 +115,7 @@ fn a_host_in_cpp_draws_splats_and_a_mesh() {
     let own = Folder::new("c-host");
     let path = own.join("scene.ply");
     save_ply(&path, &scene).expect("a temporary file");
-    // As loaded: a file has opacities and scales in another form.
+    // The scene as loaded, since a file has opacities and scales in another form.
     let scene = rara::scene::load(&path, &mut |_, _| ())
         .expect("loads")
         .gaussians;

@@ -61,13 +61,13 @@ fn assert_fails(result: RaraResult, part: &str) {
 struct World<'a> {
     /// What the camera looks at.
     scene: &'a Gaussians,
-    /// What is drawn: that and no more, unless a test has more.
+    /// What is drawn: the scene alone, unless a test adds more.
     layers: Scene<'a>,
     camera: Camera,
     plane: Plane,
     raster: Raster,
     placement: Placement,
-    /// Expected depths, not colours.
+    /// Whether expected depths are drawn, not colours.
     depths: bool,
 }
 
@@ -86,7 +86,7 @@ impl<'a> World<'a> {
         }
     }
 
-    /// With a mesh amid the splats, in the middle of the picture.
+    /// A canvas with a mesh amid the splats, in the middle of the picture.
     fn canvas(&self, lent: &AdoptDesc, device: &Device) -> Canvas {
         let mut desc = CanvasDesc::new(VIEW, if self.depths { DEPTHS } else { FLOATS });
         (desc.depth, desc.far) = (DEPTH, 0.0);
@@ -103,7 +103,7 @@ impl<'a> World<'a> {
         Canvas::new(lent, device, desc)
     }
 
-    /// By the Rust interface.
+    /// Draws by the Rust interface.
     fn drawn(&self, device: &Device, canvas: &Canvas) -> Pixels {
         let desc = RendererDesc::new(FLOATS)
             .depth(Some(DepthDesc::new(DEPTH, map()).readable(true)))
@@ -140,7 +140,7 @@ impl<'a> World<'a> {
         pixels
     }
 
-    /// By rara.h: the scene that `scene` gives, which may upload it in the frame's own commands.
+    /// Draws by rara.h the scene that `scene` returns, which may upload it in the frame's own commands.
     ///
     /// # Safety
     /// The device and the scene are alive.
@@ -170,7 +170,7 @@ impl<'a> World<'a> {
                 ..placement
             };
             let refused = rara_renderer_set_placement(renderer, &nowhere);
-            assert_eq!(refused, RARA_ERROR_INVALID); // and the placement is the one before
+            assert_eq!(refused, RARA_ERROR_INVALID); // the placement stays as it was
 
             let mut settings: RaraSettings = std::mem::zeroed();
             let size = size_of_val(&settings);
@@ -225,7 +225,7 @@ fn map() -> DepthMap {
     DepthMap::reversed(MAP.z_near, MAP.z_far).expect("0 < near < far")
 }
 
-/// What stays while frames are drawn in C.
+/// What stays the same while frames are drawn in C.
 struct Ours {
     device: *mut RaraDevice,
     gaussians: *mut RaraGaussians,
@@ -255,7 +255,7 @@ impl Ours {
         Self { device, gaussians }
     }
 
-    /// Its Gaussians on its device.
+    /// Uploads its Gaussians to its device.
     fn uploaded(&self) -> *mut RaraSceneBuffers {
         let (mut scene, format) = (null_mut(), RARA_SH_FORMAT_PACKED);
         // SAFETY: both are alive, and the pointer may be overwritten.
@@ -266,7 +266,7 @@ impl Ours {
     }
 }
 
-/// So many made-up Gaussians in a file, and as they are loaded from it: a file has opacities and scales in another form.
+/// Writes so many made-up Gaussians to a file, and loads them from it: a file has opacities and scales in another form.
 fn saved(folder: &Folder, kind: Kind, count: usize) -> (PathBuf, Gaussians) {
     let path = folder.join("scene.ply");
     save_ply(&path, &generate(kind, count, 5)).expect("a temporary file");
@@ -283,7 +283,7 @@ fn loaded_in_c(path: &Path) -> *mut RaraGaussians {
 }
 
 /// # Safety
-/// As of `rara_scene_buffers_upload_with`.
+/// As for `rara_scene_buffers_upload_with`.
 unsafe fn upload_with(
     ours: &Ours,
     cmd: vk::CommandBuffer,
@@ -411,7 +411,7 @@ fn a_scene_by_the_hosts_own_staging_memory_is_the_same_bytes() {
     });
 }
 
-/// Memory of the host's for so many bytes, behind some that are not lent.
+/// So many bytes of the host's memory, behind some that are not lent.
 fn staging(device: &Device, bytes: u64) -> (Buffer, RaraStaging) {
     let offset = 64;
     let mut memory = device
@@ -438,7 +438,7 @@ fn layers_in_c(
     states: [*const RaraLayerState; 2],
 ) -> [RaraLayer; 2] {
     [0, 1].map(|index| {
-        // SAFETY: the struct may hold any bytes, and has the room that is said.
+        // SAFETY: the struct may hold any bytes, and has the room that the call is given.
         unsafe {
             let mut layer: RaraLayer = std::mem::zeroed();
             let (size, name) = (size_of_val(&layer), NAMES[index].as_ptr());
@@ -501,7 +501,7 @@ fn layers_are_the_same_bytes() {
             let truth = world.drawn(device, &canvas);
             let what = format!("{raster:?}, {states:?}");
 
-            // Of a scene that has been drawn in another state.
+            // The state is set in a scene that has been drawn in another state.
             let given = states.map(RaraLayerState::from);
             // SAFETY: the scene is alive, and nobody else uses it.
             unsafe {
@@ -517,7 +517,7 @@ fn layers_are_the_same_bytes() {
                 assert!(drawn == truth, "{what}");
             }
 
-            // Of one that is uploaded in that state, by the host's staging memory.
+            // The scene is uploaded in that state, by the host's staging memory.
             let layers = layers_in_c(gaussians, given.each_ref().map(std::ptr::from_ref));
             let (list, count) = (layers.as_ptr(), layers.len());
             let (mut bytes, staged) = (0, Cell::new(null_mut()));

@@ -1,5 +1,5 @@
-//! Headers are what they are made of: `rara.h` what cbindgen makes of `src/c` (`RARA_WRITE_HEADER=1` writes it anew), and
-//! `mesh.h` of the C++ host what glslang makes of its shaders. C and the guide's C++ compile with the former.
+//! Generated headers are current: `rara.h` is what cbindgen makes of `src/c` (`RARA_WRITE_HEADER=1` writes it anew), and
+//! `mesh.h` of the C++ host is what glslang makes of its shaders. C and the guide's C++ compile with `rara.h`.
 
 use std::path::Path;
 use std::process::Command;
@@ -20,6 +20,7 @@ fn the_header_is_current() {
         "camera_files",
         "clip",
         "depth",
+        "support",
         "device",
         "placement",
         "renderer",
@@ -46,7 +47,7 @@ fn the_header_is_current() {
     );
 }
 
-/// Warnings count; the compiler makes nothing.
+/// Asserts that code compiles without a warning; the compiler writes no file.
 fn assert_compiles(compiler: &str, flags: &[&str], name: &str, code: &str) {
     let own = Folder::new("c-header");
     let path = own.join(name);
@@ -77,7 +78,7 @@ fn the_header_is_c_and_the_guides_snippet_is_cpp() {
     let [snippet] = snippets[..] else {
         panic!("{} snippets of C++ in the guide", snippets.len());
     };
-    // A template is only looked at as a whole where it is used.
+    // A compiler checks all of a template only where it is used.
     let used = "void use(Splats &s, VkCommandBuffer cmd) { frame(s, cmd, [] {}); }";
     let code = format!("{snippet}\n{used}\n");
     assert_compiles(&compiler, &["-std=c++17"], "guide.cpp", &code);
@@ -106,7 +107,7 @@ fn the_cpp_hosts_mesh_is_what_its_shaders_compile_to() {
     let committed = std::fs::read_to_string(folder.join("mesh.h")).expect("a header");
     let version = |header: &str| header.lines().next().map(str::to_owned);
     if version(&made) != version(&committed) {
-        // Each version of the compiler writes what it likes.
+        // Each version of the compiler writes a comment of its own.
         eprintln!(
             "SKIPPED: ANOTHER {glslang}, {:?}: tools/examples/mesh.h, of {:?}, was not compared with its shaders",
             version(&made),

@@ -12,7 +12,7 @@ use rara_c::logging::*;
 type Lines = Mutex<Vec<(RaraLogLevel, String)>>;
 
 /// # Safety
-/// `user` is `Lines`.
+/// `user` points to `Lines`.
 unsafe extern "C" fn keep(level: RaraLogLevel, text: *const c_char, user: *mut c_void) {
     // SAFETY: the caller's promise, and the text ends in NUL.
     let (lines, text) = unsafe { (&*user.cast::<Lines>(), CStr::from_ptr(text)) };
@@ -23,8 +23,8 @@ unsafe extern "C" fn keep(level: RaraLogLevel, text: *const c_char, user: *mut c
 unsafe extern "C" fn misbehave(_: RaraLogLevel, _: *const c_char, user: *mut c_void) {
     // SAFETY: what the test gave.
     let refused = unsafe { &*user.cast::<AtomicU32>() };
-    log::error!("a line about a line"); // is dropped
-    // SAFETY: null is nobody.
+    log::error!("a line about a line"); // this line is dropped
+    // SAFETY: null stands for nobody.
     let result = unsafe { rara_set_log(None, null_mut()) };
     refused.fetch_add((result == RARA_ERROR_INVALID) as u32, Ordering::Relaxed);
 }
@@ -37,7 +37,7 @@ impl std::fmt::Display for Unwritable {
     }
 }
 
-/// A process has one log, and `cargo test` runs tests side by side.
+/// A process has one log, and `cargo test` runs tests side by side, so these take turns.
 static ALONE: Mutex<()> = Mutex::new(());
 
 #[test]
@@ -65,7 +65,7 @@ fn records_reach_the_host() {
         ];
         assert_eq!(taken(&first), expected);
 
-        // Replaced.
+        // The function has been replaced.
         assert_eq!(rara_set_log(Some(keep), address(&mut second)), RARA_OK);
         log::info!("three");
         log::debug!("four");
@@ -99,7 +99,7 @@ unsafe extern "C" fn linger(_: RaraLogLevel, _: *const c_char, user: *mut c_void
     }
 }
 
-/// Threads log while the function is set and unset: what it was given is not used afterwards.
+/// Threads log while the function is set and unset: the `user` that it was given is not used afterwards.
 #[test]
 fn what_the_function_is_given_may_be_freed_once_it_is_replaced() {
     let _alone = ALONE.lock();
@@ -118,7 +118,7 @@ fn what_the_function_is_given_may_be_freed_once_it_is_replaced() {
             // SAFETY: it lives until the log is unset.
             unsafe { assert_eq!(rara_set_log(Some(linger), user), RARA_OK) };
             thread::yield_now();
-            // SAFETY: null is nobody.
+            // SAFETY: null stands for nobody.
             unsafe { assert_eq!(rara_set_log(None, null_mut()), RARA_OK) };
             alive.store(false, Ordering::Relaxed);
             if round >= 200 && INSIDE.load(Ordering::Relaxed) > 200 {

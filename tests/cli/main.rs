@@ -1,4 +1,4 @@
-//! The `rara` command as people and scripts meet it: texts, exit statuses, documents. Nothing here is timed.
+//! The `rara` command as people and scripts use it: texts, exit statuses, documents. Nothing here is timed.
 
 #[path = "../common/folder.rs"]
 mod folder;
@@ -27,13 +27,14 @@ fn rara_with<A: AsRef<std::ffi::OsStr>>(
     command
         .args(arguments)
         .envs(variable)
-        // The user's own cache is not the tests' business.
+        // The tests must not use the user's own cache.
         .env("RARA_CACHE", "")
         .output()
         .expect("the rara binary runs")
 }
 
-/// Runs `rara` with a line's words, `@` standing for `folder`; what draws, draws on `RARA_TEST_DEVICE` if that is set.
+/// Runs `rara` with a line's words; `@` stands for `folder`. Commands that draw do so on `RARA_TEST_DEVICE` if that is
+/// set.
 fn line(folder: &Path, words: &str) -> Output {
     line_with(folder, words, None)
 }
@@ -67,7 +68,7 @@ fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).expect("documents are UTF-8")
 }
 
-/// Asserts success, with what went wrong if not.
+/// Asserts success; the message has the command's stderr.
 fn done(output: Output) -> Output {
     assert!(
         output.status.success(),

@@ -32,7 +32,7 @@ fn load(file: &Path) -> Value {
 /// What a sum of two times may be off, us.
 const ROUNDING: f64 = 1e-3;
 
-/// In order, and each within or behind the ones before.
+/// Asserts that spans are in order, and each within or after the ones before.
 fn assert_nested(spans: &[(String, f64, f64)]) {
     let mut open: Vec<f64> = Vec::new();
     let mut last = 0.0;
@@ -93,7 +93,7 @@ fn a_trace_has_every_stage_of_every_frame() {
             assert!(found.count() >= frames, "{pass}");
         }
         if frames == 1 {
-            // The last submission's stages are those of the statistics.
+            // The stages of the last submission are those of the statistics.
             let last = &gpu[gpu.len() - passes.len()..];
             for (pass, (_, begin, end)) in passes.iter().zip(last) {
                 let ms = pass["ms"].as_f64().expect("a time");
@@ -150,14 +150,14 @@ fn statistics_are_there_when_asked_for() {
             assert!(counted, "{pass}");
         }
     }
-    let output = done(line(
+    let printed = done(line(
         &here,
         "render @/scene.ply -o @/a.png --size 64x48 --statistics",
     ));
-    let messages = stderr(&output);
+    let printed = stderr(&printed);
     assert!(
-        messages.contains("invocations") || messages.contains("counts nothing"),
-        "{messages}"
+        printed.contains("invocations") || printed.contains("counts nothing"),
+        "{printed}"
     );
 }
 
@@ -169,7 +169,7 @@ fn memory_is_listed_by_what_it_is_for() {
     let memory = &report["memory"];
     let purposes = memory["purposes"].as_array().expect("purposes");
     let sum: u64 = purposes.iter().filter_map(|p| p["bytes"].as_u64()).sum();
-    // What alignment adds is printed here only.
+    // Only this sum includes what alignment adds.
     let taken = memory["device_bytes"].as_u64().expect("bytes");
     assert!((taken..taken + 65_536).contains(&sum), "{sum} of {taken}");
     for name in ["gaussians", "sh", "splats", "target"] {

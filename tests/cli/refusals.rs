@@ -174,7 +174,7 @@ fn a_wrong_command_line_is_status_2_and_one_line() {
 
 #[test]
 fn negative_numbers_are_values() {
-    // The scene is missing, which is only found out once the command line has been understood.
+    // The scene is missing, which the command finds out only once it has understood the command line.
     let output = rara([
         "render",
         "none.ply",
@@ -201,7 +201,7 @@ fn places_that_cannot_be_written_are_found_before_the_work() {
     let here = folder("places");
     fs::write(here.join("file"), "").unwrap();
     fs::create_dir(here.join("folder.png")).unwrap();
-    // None of the scenes exists either; that the message is about the place shows that it was looked at first.
+    // None of the scenes exists either; a message about the place shows that it was checked first.
     refused(
         &line(&here, "render none.ply -o @/no/such/a.png"),
         1,

@@ -22,11 +22,11 @@ fn generated_scenes_can_be_looked_into() {
             "{kind}"
         );
         assert!(info["opacity"]["max"].as_f64().unwrap() <= 1.0, "{kind}");
-        let output = done(line(&here, &format!("info @/{kind}.ply")));
+        let printed = done(line(&here, &format!("info @/{kind}.ply")));
         assert!(
-            output.stdout.is_empty() && stderr(&output).contains("1 000"),
+            printed.stdout.is_empty() && stderr(&printed).contains("1 000"),
             "{}",
-            stderr(&output)
+            stderr(&printed)
         );
     }
     let merged = document(line(&here, "info @/general.ply @/layers.ply --json"));
@@ -78,12 +78,12 @@ fn a_picture_and_its_statistics() {
     assert!(report["skipped"].is_array());
     assert_eq!(report["frames"], serde_json::json!([]));
 
-    // The same frame again is the same picture, and messages for people are on stderr only.
-    let output = done(line(
+    // The same frame again is the same picture, and only stderr reports it to people.
+    let printed = done(line(
         &here,
         "render @/scene.ply -o @/b.png --size 96x64 --clip plane:1,0,0,0",
     ));
-    assert!(output.stdout.is_empty() && stderr(&output).contains("b.png"));
+    assert!(printed.stdout.is_empty() && stderr(&printed).contains("b.png"));
     let difference = document(line(&here, "compare @/a.png @/b.png --json"));
     assert_eq!(
         (&difference["max"], &difference["psnr"]),
@@ -163,7 +163,7 @@ fn clip_files_are_the_same_planes() {
         2,
         "cannot be combined",
     );
-    // A plane that stands still takes its part of what the moving one leaves.
+    // A plane that stands still takes away its part of what the moving one leaves.
     let sweep = |flags: &str| {
         let words =
             format!("sweep @/scene.ply --clip-normal 1,0,0 --frames 2 --size 32x32 --json {flags}");
@@ -227,7 +227,7 @@ fn repeats_and_views_make_frames() {
     assert_eq!(sweep["frames"].as_array().unwrap().len(), 4);
     assert!(sweep["mean"]["gpu_ms"].is_number());
     assert!((0..4).all(|index| here.join(format!("sweep/frame_{index:03}.png")).is_file()));
-    // The plane enters where nearly all is kept and leaves where nearly nothing is.
+    // The plane enters where nearly all is kept, and leaves where nearly nothing is.
     let kept = |frame: usize| {
         sweep["frames"][frame]["counts"]["visible"]
             .as_u64()
@@ -255,9 +255,10 @@ fn the_devices_are_listed() {
         devices.iter().any(|device| device["supported"] == true),
         "{list}"
     );
-    let output = done(rara(["devices"]));
+    let printed = done(rara(["devices"]));
     assert!(
-        output.stdout.is_empty() && stderr(&output).contains(devices[0]["name"].as_str().unwrap())
+        printed.stdout.is_empty()
+            && stderr(&printed).contains(devices[0]["name"].as_str().unwrap())
     );
 }
 
@@ -280,7 +281,7 @@ fn a_plane_at_infinity_changes_nothing_unless_all_is_traced() {
     let rows = document(line(&here, "ablate @/scene.ply --size 64x64 --json"));
     for row in rows.as_array().unwrap() {
         let what = row["what"].as_str().unwrap();
-        // Only dropping what a ray misses takes from what is not cut.
+        // Only the reading that drops a missing ray takes anything from splats that are not cut.
         let same = row["l1"].as_f64().unwrap() < 0.01;
         assert_eq!(same, !what.contains("drop"), "{row}");
     }
@@ -290,11 +291,11 @@ fn a_plane_at_infinity_changes_nothing_unless_all_is_traced() {
 fn the_demo_leaves_five_pictures() {
     let here = folder("demo");
     scene(&here);
-    let output = done(line(&here, "demo @/scene.ply -o @/out --size 64x48"));
+    let printed = done(line(&here, "demo @/scene.ply -o @/out --size 64x48"));
     for name in ["none", "hard", "rara", "exact", "sheet"] {
         assert!(here.join(format!("out/{name}.png")).is_file(), "{name}");
     }
-    assert!(output.stdout.is_empty() && stderr(&output).contains("exact"));
+    assert!(printed.stdout.is_empty() && stderr(&printed).contains("exact"));
 }
 
 #[test]

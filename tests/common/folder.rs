@@ -5,15 +5,15 @@ use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::{fs, process};
 
-/// An empty folder that nothing else writes to, not even a second run of the same test. It goes with the value, unless
-/// the test fails: then what is in it shows why.
+/// An empty folder that nothing else writes to, not even a second run of the same test. It is removed with the value,
+/// unless the test fails: then its content shows why.
 pub struct Folder(PathBuf);
 
 impl Folder {
     pub fn new(test: &str) -> Self {
         let name = format!("{test}-{}", process::id());
         let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        let _ = fs::remove_dir_all(&path); // of a process that had this number before
+        let _ = fs::remove_dir_all(&path); // left by a process that had this number before
         fs::create_dir_all(&path).expect("the target folder is writable");
         Self(path)
     }

@@ -14,8 +14,8 @@ use rara::{
     Plane, Settings, reference,
 };
 
-/// How large generated scenes and pictures are, against the usual: `RARA_TEST_SCALE`, for slow drivers. The bounds of the
-/// tests are the same at every scale.
+/// The scale of generated scenes and pictures against the usual size, `RARA_TEST_SCALE`, for slow drivers. The tests'
+/// bounds are the same at every scale.
 pub fn scale() -> f64 {
     let text = std::env::var("RARA_TEST_SCALE").unwrap_or("1".into());
     let scale: f64 = text.parse().expect("RARA_TEST_SCALE is a number");
@@ -29,7 +29,7 @@ pub fn scaled((width, height): (u32, u32)) -> (u32, u32) {
     (scaled(width), scaled(height))
 }
 
-/// The ways to buffers that differ on a device.
+/// The ways to reach buffers that differ on a device.
 pub fn bindings(device: &Device) -> Vec<Bindings> {
     let mut all = vec![Bindings::Address];
     if device.support().push_descriptor {
@@ -38,7 +38,7 @@ pub fn bindings(device: &Device) -> Vec<Bindings> {
     all
 }
 
-/// A renderer whose every validation message is an error, its buffers bound where the driver can, so that the
+/// A renderer whose every validation message is an error. Its buffers are bound where the driver can, so that the
 /// synchronisation checks see them.
 pub fn headless() -> Headless {
     headless_by(Bindings::Bound)
@@ -71,7 +71,7 @@ fn decoded_scenes() -> Option<PathBuf> {
         .filter(|folder| folder.is_dir())
 }
 
-/// The trained scenes, each under its name; says so loudly where they are absent. `RARA_TEST_SCENES` names those to
+/// The trained scenes, each under its name; prints a message where they are absent. `RARA_TEST_SCENES` names those to
 /// take, for slow drivers.
 pub fn trained_scenes() -> Vec<(String, Gaussians)> {
     let Some(folder) = decoded_scenes() else {
@@ -161,7 +161,7 @@ pub fn clip(scene: &Gaussians, count: usize, op: ClipOp) -> Clip {
         DVec3::new(0.5, 0.5, 0.6),
     ];
     let plane = |(index, normal): (usize, &DVec3)| {
-        // The first through the centre, the others away from it, so that the intersection is not empty.
+        // The first plane goes through the centre, the others away from it, so that the intersection is not empty.
         let shift = if index == 0 {
             0.0
         } else {
@@ -176,7 +176,7 @@ pub fn clip(scene: &Gaussians, count: usize, op: ClipOp) -> Clip {
     Clip::of(normals.iter().take(count).enumerate().map(plane), op)
 }
 
-/// A clip whose first plane keeps so much more.
+/// The clip with its first plane moved so that it keeps that much more.
 pub fn moved(mut clip: Clip, by: f64) -> Clip {
     let plane = clip.surfaces[0].as_plane().expect("a plane");
     let moved = Plane::new(plane.normal(), plane.offset() + by);
@@ -184,8 +184,8 @@ pub fn moved(mut clip: Clip, by: f64) -> Clip {
     clip
 }
 
-/// The bounds of the project's promise: 60 dB into a 32-bit target, 48 dB through 8 bits, and at most one pixel in a
-/// thousand further off than 2/255 (a splat that f32 puts on the other side of alpha = 1/255 or of a neighbour).
+/// Asserts the project's bounds: 60 dB into a 32-bit target, 48 dB through 8 bits, and at most one pixel in a thousand
+/// further off than 2/255 (a splat that f32 puts on the other side of alpha = 1/255 or of a neighbour).
 pub fn assert_agrees(what: &str, ours: &Picture, truth: &Picture) {
     let float = compare(ours, truth).expect("the same size");
     assert!(
@@ -206,7 +206,7 @@ pub fn assert_agrees(what: &str, ours: &Picture, truth: &Picture) {
     );
 }
 
-/// What 8 bits could show of a picture without rounding: colours beyond white are white.
+/// What 8 bits could show of a picture without rounding: colours beyond white become white.
 fn displayable(picture: &Picture) -> Picture {
     let pixels = picture
         .pixels
@@ -218,7 +218,8 @@ fn displayable(picture: &Picture) -> Picture {
     }
 }
 
-/// That a frame is the reference's: the picture within the bounds above, the counts but for a few; its statistics.
+/// Asserts that a frame is the reference's: the picture within the bounds above, the counts except for a few. Returns its
+/// statistics.
 pub fn check(
     headless: &mut Headless,
     name: &str,

@@ -1,4 +1,4 @@
-//! Reading camera files: each format gives the same camera, bad files give a sentence, nothing panics.
+//! Reading camera files: each format gives the same camera, bad files give a sentence, and nothing panics.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};

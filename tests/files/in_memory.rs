@@ -1,4 +1,4 @@
-//! Scenes and cameras from memory are those from files.
+//! Scenes and cameras that are read from memory are those that are read from files.
 
 use std::io::Cursor;
 use std::path::Path;

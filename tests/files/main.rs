@@ -1,4 +1,4 @@
-//! What needs no device: files of scenes and cameras, and the benchmark's arithmetic.
+//! Tests that need no device: files of scenes and cameras, and the benchmark's arithmetic.
 
 mod benchmark;
 mod cameras;

@@ -1,10 +1,10 @@
-//! Defects that were found once, each by the smallest input that shows it.
+//! Defects that were found once, each with the smallest input that shows it.
 
 use std::path::Path;
 
 use rara::camera_files::{ColmapFormat, camera_from_json, cameras_from_colmap, cameras_from_json};
 
-/// An error is one line whatever the file calls things.
+/// Asserts that an error is one line, whatever names the file contains.
 fn assert_one_line<T: std::fmt::Debug>(result: rara::Result<T>) {
     let text = result.expect_err("nothing usable in it").to_string();
     assert!(!text.chars().any(char::is_control), "{text:?}");
@@ -41,7 +41,7 @@ fn names_with_control_characters_in_errors() {
 
 #[test]
 fn a_camera_whose_position_overflows_is_refused() {
-    // Each number is finite, but what a rotation makes of them is not.
+    // Each number is finite, but the product with the rotation is not.
     let json = r#"{"width": 9, "height": 9, "fx": 9, "fy": 9, "world_to_camera":
         [0.6, 0.8, 0, 1.7e308,  -0.8, 0.6, 0, 1.7e308,  0, 0, 1, 1.7e308,  0, 0, 0, 1]}"#;
     let error = camera_from_json(json.as_bytes(), Path::new("file")).unwrap_err();

@@ -1,6 +1,6 @@
-//! An engine in raw calls of an older age: classic render passes, barriers and submissions of 1.0, and all memory from one
-//! `gpu-allocator`, which it lends. Its pictures are the headless ones, byte for byte, in Vulkan 1.3 and in 1.2, where
-//! the layer watches that nothing newer is called.
+//! An engine in raw calls of an older age: classic render passes, barriers and submissions of 1.0, and all memory from
+//! one `gpu-allocator`, which it lends. Its pictures are the headless ones, byte for byte, in Vulkan 1.3 and in 1.2,
+//! where the layer checks that no newer function is called.
 
 use std::cell::RefCell;
 use std::mem::ManuallyDrop;
@@ -46,7 +46,7 @@ struct Host {
     readback: (vk::Buffer, Allocation),
     render_pass: vk::RenderPass,
     framebuffer: vk::Framebuffer,
-    /// Keeps the loader's library open, after a panic too: a layer's threads may still be in it.
+    /// Keeps the loader's library open, also after a panic: a layer's threads may still be in it.
     _entry: ManuallyDrop<Entry>,
 }
 
@@ -225,7 +225,7 @@ impl Host {
     }
 
     /// # Safety
-    /// Nothing made from the device is alive any more but what `new` has made.
+    /// Of all that was made from the device only what `new` has made is still alive.
     unsafe fn close(self) -> Vec<String> {
         let device = &self.device;
         // SAFETY: frames are waited for, and each handle is destroyed once, before what it was made from.
@@ -382,10 +382,11 @@ fn check(version: u32) {
     assert!(ours.iter().all(|part| !part.name.starts_with("host's")));
 
     for bindings in common::bindings(&device) {
-        // Compiled from other modules: a path's own pictures agree to the bit, two paths' to 2e-5 of 255.
+        // The two paths are compiled from other modules: pictures of one path agree to the bit, those of two to 2e-5 of
+        // 255.
         let mut headless = common::headless_by(bindings);
         headless.load(&scene).expect("uploads");
-        // Slow drivers, which compile for seconds, get the last.
+        // Slow drivers, which compile for seconds, get only the last.
         let few = if common::scale() < 1.0 { 2 } else { 0 };
         let clips = |raster: &Raster| {
             [0, 1, 3]
@@ -408,7 +409,7 @@ fn check(version: u32) {
             let configured = renderer.configure(&buffers, &camera, &clip, &settings);
             configured.expect("configures");
             let renderer = RefCell::new(renderer);
-            // SAFETY: the frame is waited for before renderer and scene are dropped; `cmd` is where it has to be.
+            // SAFETY: the frame is waited for before renderer and scene are dropped; `cmd` is where each call needs it.
             let picture = unsafe {
                 host.frame(
                     |cmd| {
@@ -431,6 +432,6 @@ fn check(version: u32) {
         }
     }
     drop((buffers, device));
-    // SAFETY: rara's are dropped.
+    // SAFETY: everything of rara's is dropped.
     assert_eq!(unsafe { host.close() }, Vec::<String>::new());
 }

@@ -1,4 +1,4 @@
-//! Splats against a host's depth buffer: what lies behind an opaque mesh is not there, on ordinary and reversed depth, in
+//! Splats against a host's depth buffer: what lies behind an opaque mesh is hidden, on ordinary and reversed depth, in
 //! every way of drawing, dynamic rendering and classic render passes, with one sample and several.
 
 use crate::canvas::{Canvas, CanvasDesc, with_host};
@@ -12,17 +12,17 @@ use rara::{
 };
 
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
-/// The camera's picture, and where it begins in the target: over its left and lower edges, at an odd column.
+/// The size of the camera's picture, and where it begins in the target: over its left and lower edges, at an odd column.
 const VIEW: (u32, u32) = (189, 131);
 const ORIGIN: (i32, i32) = (-7, 40);
 const TARGET: (u32, u32) = (211, 160);
 
-/// A scene with a clip through it, and two meshes that face the camera, amid it.
+/// A scene with a clip through it, and amid it two meshes that face the camera.
 struct World {
     scene: Gaussians,
     camera: Camera,
     clip: Clip,
-    /// In pixels of the picture, and at a depth.
+    /// Their places in pixels of the picture, and their depths.
     meshes: [(vk::Rect2D, f64); 2],
 }
 
@@ -52,7 +52,7 @@ impl World {
         }
     }
 
-    /// The picture by headless means: where there is a mesh, of the Gaussians before it alone.
+    /// The picture as a headless renderer draws it: where there is a mesh, of the Gaussians before it alone.
     fn truth(&self) -> Picture {
         let mut headless = common::headless();
         let mut draw = |scene: &Gaussians| {
@@ -121,7 +121,7 @@ fn depth_desc(canvas: &CanvasDesc, map: DepthMap, readable: bool) -> DepthDesc {
     DepthDesc::new(canvas.depth, map).readable(readable)
 }
 
-/// One frame of the world on a canvas; the part under the camera's picture, and how it was drawn.
+/// Draws one frame of the world on a canvas; returns the part under the camera's picture, and how it was drawn.
 fn draw(
     device: &Device,
     canvas: &Canvas,
@@ -160,7 +160,7 @@ fn draw(
     (part(&pixels), path)
 }
 
-/// What of a target lies under the camera's picture; transparent where the picture is beside the target.
+/// The part of a target that lies under the camera's picture; transparent where the picture is beside the target.
 fn part(pixels: &[[f32; 4]]) -> Picture {
     let mut picture = Picture::filled(VIEW.0, VIEW.1, [0.0; 4]);
     for (i, pixel) in picture.pixels.iter_mut().enumerate() {
@@ -175,7 +175,7 @@ fn part(pixels: &[[f32; 4]]) -> Picture {
     picture
 }
 
-/// Largest difference, of 255, inside the target, but for a share of pixels.
+/// Largest difference, of 255, inside the target, leaving out a share of the pixels.
 fn apart(a: &Picture, b: &Picture, share: f64) -> f32 {
     let mut differences = Vec::new();
     for (i, (a, b)) in a.pixels.iter().zip(&b.pixels).enumerate() {
@@ -243,7 +243,8 @@ fn meshes_hide_the_splats_behind_them_on_ordinary_and_reversed_depth() {
     });
 }
 
-/// Depths that a buffer rounds: a splat may lie on a mesh's own step, and then counts as before it, in all ways of drawing.
+/// Depths that a buffer rounds: a splat may lie on a mesh's own step, and then counts as before it in every way of
+/// drawing.
 #[test]
 fn depths_in_few_bits_hide_the_same_splats_in_every_way_of_drawing() {
     let world = World::new();
@@ -376,7 +377,7 @@ fn a_classic_render_pass_shows_the_same_picture() {
     });
 }
 
-/// Of several samples a splat's outline, where its alpha is 1/255, is the only difference.
+/// With several samples only a splat's outline, where its alpha is 1/255, differs.
 #[test]
 fn targets_of_several_samples_resolve_to_the_same_picture() {
     let world = World::new();
@@ -448,7 +449,7 @@ fn a_promised_depth_that_is_not_given_is_refused() {
     assert!(text.contains("prepare_behind takes it"), "{text}");
 }
 
-/// A frame of expected depths on a canvas of two channels: the reference's, in every way of drawing the colours.
+/// A frame of expected depths on a canvas of two channels is the reference's, in every way of drawing the colours.
 #[test]
 fn expected_depths_are_the_references() {
     let world = World::new();
@@ -521,7 +522,7 @@ fn expected_depths_are_the_references() {
     }
 }
 
-/// What is left of a big splat lies farther than its centre, and a host's mesh hides depths like colours.
+/// What is left of a big cut splat lies farther away than its centre, and a host's mesh hides depths like colours.
 #[test]
 fn expected_depths_are_behind_the_cut_and_before_the_mesh() {
     let world = World::new();

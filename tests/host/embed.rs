@@ -14,7 +14,7 @@ use rara::{
 const BYTES: vk::Format = vk::Format::R8G8B8A8_UNORM;
 const HALVES: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
-/// The camera's picture: no multiple of anything, so that nothing is right by chance.
+/// The size of the camera's picture: no multiple of anything, so that nothing is right by chance.
 const VIEW: vk::Extent2D = vk::Extent2D {
     width: 189,
     height: 131,
@@ -48,7 +48,7 @@ fn scene() -> Gaussians {
     generate(Kind::General, 3_000, 5)
 }
 
-/// Frames that need ever more, and less again: cameras, clips of zero to six planes, settings.
+/// Frames that need more and more room, and less again: cameras, clips of zero to six planes, settings.
 fn frames(scene: &Gaussians) -> Vec<(Camera, Clip, Settings)> {
     let planes = [0, 1, 6, 2, 0, 3];
     let cameras = common::views(scene, planes.len(), (VIEW.width, VIEW.height));
@@ -57,7 +57,7 @@ fn frames(scene: &Gaussians) -> Vec<(Camera, Clip, Settings)> {
     cameras.into_iter().zip(planes).map(frame).collect()
 }
 
-/// One frame, as a host records it. The splats go to `at`.
+/// Records one frame as a host does. The splats go to `at`.
 fn record(host: &mut Host, renderer: &mut Renderer, scene: &SceneBuffers, at: vk::Offset2D) {
     let cmd = host.begin().expect("begins");
     // SAFETY: `cmd` is recording outside rendering, and every test waits before it drops the scene.
@@ -75,7 +75,7 @@ fn record(host: &mut Host, renderer: &mut Renderer, scene: &SceneBuffers, at: vk
     host.submit().expect("submits");
 }
 
-/// The headless picture over the host's stripes, from column `left` of them.
+/// The headless picture over the host's stripes, of which column `left` is the first.
 fn expected(host: &Host, picture: &Picture, left: u32) -> Vec<[f32; 4]> {
     let over = |(i, pixel): (usize, &[f32; 4])| {
         let below = host.backdrop(left + i as u32 % picture.width);
@@ -84,7 +84,7 @@ fn expected(host: &Host, picture: &Picture, left: u32) -> Vec<[f32; 4]> {
     picture.pixels.iter().enumerate().map(over).collect()
 }
 
-/// Largest and mean difference in units of 1/255. What a float target holds beyond white is white.
+/// Largest and mean difference in units of 1/255. Values of a float target beyond white count as white.
 fn apart(a: &[[f32; 4]], b: &[[f32; 4]]) -> (f32, f32) {
     assert_eq!(a.len(), b.len());
     let pairs = a.iter().flatten().zip(b.iter().flatten());
@@ -93,10 +93,10 @@ fn apart(a: &[[f32; 4]], b: &[[f32; 4]]) -> (f32, f32) {
     (worst, sum / (4 * a.len()) as f32)
 }
 
-/// That a target shows what it should, as well as its format can. Every blend rounds to the format, and dozens of
-/// splats lie over each other: in 32 bits nothing of that shows, except where the last bit of a splat's centre in the
-/// target decides whether its alpha is below 1/255. Halves are right to 1/8 of 1/255, and lavapipe truncates to them.
-/// 8-bit blends are off by 1/2 each, on lavapipe by 1, and what is beyond white is cut off in each of them.
+/// Asserts that a target shows what it should, as well as its format can. Every blend rounds to the format, and dozens of
+/// splats lie over each other. In 32 bits that shows nowhere, except where the last bit of a splat's centre in the target
+/// decides whether its alpha is below 1/255. Halves are right to 1/8 of 1/255, and lavapipe truncates to them. 8-bit
+/// blends are off by 1/2 each, on lavapipe by 1, and each of them cuts off what is beyond white.
 fn assert_shows(what: &str, format: vk::Format, pixels: &[[f32; 4]], expected: &[[f32; 4]]) {
     let (worst, mean) = apart(pixels, expected);
     let (most, average) = match format {
@@ -292,7 +292,7 @@ fn a_viewport_anywhere_in_the_target_leaves_the_rest_alone() {
                     } else {
                         let backdrop = host.backdrop(column);
                         let worst = apart(&[*pixel], &[backdrop]).0;
-                        // As near as truncated halves come, see `assert_shows`.
+                        // As exact as truncated halves are, see `assert_shows`.
                         assert!(worst < 0.125, "{column},{row} is the host's: {pixel:?}");
                     }
                 }
@@ -316,7 +316,7 @@ fn memory_that_a_frame_outgrows_is_freed_when_no_frame_can_use_it() {
     let desc = in_flight(BYTES, Bindings::Address);
     let mut renderer = Renderer::new(&device, desc).expect("a renderer");
     let mut used = Vec::new();
-    // The first needs no room for cut splats, all after it do.
+    // The first frame needs no room for cut splats, all after it do.
     for index in [0, 1, 1, 1] {
         let (camera, clip, settings) = &frames[index];
         host.wait().expect("waits");
@@ -412,7 +412,7 @@ fn what_there_cannot_be_is_refused_with_a_reason() {
     assert_eq!(host.close(), Vec::<String>::new());
 }
 
-/// Without recording anything, so that no command buffer is needed.
+/// Calls that are refused before anything is recorded, so that no command buffer is needed.
 #[test]
 fn calls_in_an_order_that_makes_no_sense_are_refused() {
     let headless = common::headless();
@@ -425,7 +425,7 @@ fn calls_in_an_order_that_makes_no_sense_are_refused() {
     let (camera, clip, settings) = frames(&scene()).swap_remove(1);
     let upload =
         |scene| SceneBuffers::upload(device, &scene, rara::ShFormat::default()).expect("uploads");
-    // As large as the other, but not it.
+    // A scene as large as the other, but not the same.
     let (one, other) = (upload(scene()), upload(generate(Kind::General, 3_000, 6)));
     let mut renderer = Renderer::new(device, RendererDesc::new(BYTES)).expect("a renderer");
     // SAFETY: all of them are refused before anything is recorded.
@@ -444,14 +444,14 @@ fn calls_in_an_order_that_makes_no_sense_are_refused() {
     }
     let map = rara::DepthMap::ordinary(0.1, 10.0).expect("a map");
     refused(renderer.set_depth_map(map), "depth attachment");
-    // A device of its own.
+    // A scene on a device of its own.
     let elsewhere = common::headless();
     let scene = SceneBuffers::upload(elsewhere.device(), &scene(), rara::ShFormat::default());
     let configured = renderer.configure(&scene.expect("uploads"), &camera, &clip, &settings);
     refused(configured, "another device");
 }
 
-/// What is set between a frame's preparation and its draw is for the next frame.
+/// What is set between a frame's preparation and its draw takes effect in the next frame.
 #[test]
 fn settings_of_the_next_frame_leave_the_prepared_one_alone() {
     let scene = scene();
@@ -476,7 +476,7 @@ fn settings_of_the_next_frame_leave_the_prepared_one_alone() {
             renderer.set_color_format(BYTES);
         }
         host.begin_rendering(VIEW.into());
-        // More draws than the timer has room for: the picture of the last is blended over the others.
+        // There are more draws than the timer has room for; the picture of the last is blended over the others.
         for _ in 0..20 {
             // SAFETY: `cmd` is inside rendering to a target of the renderer's format, viewport and scissor are set.
             unsafe { renderer.draw(cmd, [0.0; 2]).expect("draws") };
@@ -491,8 +491,8 @@ fn settings_of_the_next_frame_leave_the_prepared_one_alone() {
     assert_eq!(host.close(), Vec::<String>::new());
 }
 
-/// More pairs of tile and splat than a first frame has room for: it is drawn as quads, the same picture, and the frame
-/// after the host has waited for it has the room.
+/// A first frame has no room for all of its pairs of tile and splat: it is drawn as quads, with the same picture, and the
+/// next frame after the host has waited for it has the room.
 #[test]
 fn a_frame_without_room_for_its_tiles_is_drawn_as_quads() {
     let mut scene = generate(Kind::General, 1_000, 5);

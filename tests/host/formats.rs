@@ -1,4 +1,4 @@
-//! Splats in a host's format: 8 bits, sRGB, halves and floats hold the same picture, each as well as it can.
+//! Splats in a host's format: 8 bits, sRGB, halves and floats show the same picture, each as well as it can.
 
 use crate::canvas::{Canvas, CanvasDesc, with_host};
 use crate::common;
@@ -11,9 +11,9 @@ const SIZE: (u32, u32) = (189, 131);
 /// What the host has painted before.
 const BACKDROP: [f32; 4] = [0.2, 0.6, 0.4, 1.0];
 
-/// By what a format may be off, of 255, in the worst pixel and on average: tiles blend once, and leave half a step, quads
-/// dozens of times, each off by half a step (on lavapipe, which truncates, by a whole one). Numbers are compared, so that a
-/// step of sRGB is up to 2.3 of 255 near white.
+/// By how much a format may be off, of 255, in the worst pixel and on average. Tiles blend once, which costs half a step;
+/// quads blend dozens of times, and each blend is off by half a step (on lavapipe, which truncates, by a whole one). The
+/// stored numbers are compared, so that a step of sRGB is up to 2.3 of 255 near white.
 const BOUNDS: [(vk::Format, [f32; 2], [f32; 2]); 4] = [
     (vk::Format::R32G32B32A32_SFLOAT, [0.01, 1e-4], [1.0, 1e-3]),
     (vk::Format::R16G16B16A16_SFLOAT, [0.25, 0.05], [6.0, 0.1]),

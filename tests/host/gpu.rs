@@ -1,5 +1,5 @@
-//! The Vulkan layer on the device at hand. Every test ends with zero messages of the validation layer, or with the
-//! ones that it provokes: lavapipe draws the right picture with barriers missing, only the layer reports it.
+//! The Vulkan layer on the device at hand. Every test ends without messages of the validation layer, or with those that
+//! it provokes: lavapipe draws the right picture with barriers missing, and only the layer notices.
 
 use ash::vk;
 use rara::Error;
@@ -83,13 +83,13 @@ fn all_bindings(device: &Device) -> &'static [Bindings] {
     }
 }
 
-/// The device under test: the best one, or what `RARA_TEST_DEVICE` says.
+/// The device under test: the best one, or the one that `RARA_TEST_DEVICE` names.
 fn open() -> Device {
     let selector = std::env::var("RARA_TEST_DEVICE").ok();
     Device::headless(&DeviceDesc::default().selector(selector).validation(true)).unwrap()
 }
 
-/// Runs a test on a device with validation and asserts that the layer has nothing to say, destruction included.
+/// Runs a test on a device with validation and asserts that the layer reports nothing, up to the destruction.
 fn clean(test: impl FnOnce(&Device)) {
     let device = open();
     test(&device);
@@ -121,7 +121,7 @@ fn read(device: &Device, buffer: &Buffer, count: usize) -> Vec<u32> {
         .collect()
 }
 
-/// Records, submits, waits.
+/// Records, submits and waits.
 fn record(device: &Device, timer: Option<&mut Timer>, passes: impl FnOnce(&mut Recorder<'_>)) {
     let done = device.submit_and_wait(|cmd| {
         // SAFETY: `cmd` is recording on `device`, and the passes use only what outlives this call, which waits.
@@ -336,7 +336,7 @@ fn indirect_dispatches_read_what_was_written_before() {
                     &[256, 1],
                     Groups::Indirect(&args, 4),
                 );
-                // Nothing to do is nothing recorded.
+                // Without work nothing is recorded.
                 recorder.dispatch(&pipeline, &[&target, &source], &[256, 1], Groups::Count(0));
                 recorder.fill(&args, 0, 16, 0);
             });
@@ -422,7 +422,7 @@ fn messages_name_the_pass_and_the_objects() {
     assert!(hazard.starts_with("in pass sort > digit: "), "{hazard}");
     assert!(hazard.contains("splats"), "{hazard}");
 
-    // What a layer sends comes as it was sent.
+    // Messages of a layer arrive as they were sent.
     // SAFETY: loader and library stay loaded, the instance is this test's, and what is pointed to outlives the calls.
     unsafe {
         let entry = ash::Entry::load().unwrap();
@@ -455,11 +455,11 @@ fn memory_is_listed_by_name() {
         let _one = buffer(device, "pairs", 1 << 20, Location::GpuOnly);
         let _other = buffer(device, "pairs", 17 << 20, Location::GpuOnly);
         let _small = buffer(device, "counts", 64, Location::Readback);
-        let memory = device.memory_by_name();
-        let names: Vec<_> = memory.iter().map(|of| of.name.as_str()).collect();
+        let parts = device.memory_by_name();
+        let names: Vec<_> = parts.iter().map(|of| of.name.as_str()).collect();
         assert_eq!(names, ["pairs", "counts"]);
-        assert!(memory[0].bytes >= 18 << 20, "{memory:?}");
-        let sum: u64 = memory.iter().map(|of| of.bytes).sum();
+        assert!(parts[0].bytes >= 18 << 20, "{parts:?}");
+        let sum: u64 = parts.iter().map(|of| of.bytes).sum();
         assert_eq!(sum, device.device_bytes());
     });
 }
@@ -733,7 +733,7 @@ fn a_hosts_device_is_adopted_and_left_alone() {
         drop((pipeline, source, target));
         assert_eq!(adopted.close(), Vec::<String>::new());
 
-        // Still the host's to use and to destroy.
+        // The host can still use and destroy its device.
         raw.device_wait_idle().unwrap();
         raw.destroy_device(None);
         instance.destroy_instance(None);

@@ -1,6 +1,6 @@
-//! What a host meets: the Vulkan layer, devices that are lent, targets, depth and viewports, frames in flight.
+//! rara in a host: the Vulkan layer, devices that are lent, targets, depth and viewports, frames in flight.
 
-#[path = "../common/canvas.rs"]
+#[path = "../common/canvas/mod.rs"]
 mod canvas;
 #[path = "../common/mod.rs"]
 mod common;

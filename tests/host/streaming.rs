@@ -1,5 +1,5 @@
-//! Scenes replaced and clips edited while frames are in flight: the host's own staging, no submission and no wait of ours,
-//! under the host's validation with synchronisation checks; the pictures are the headless ones.
+//! Scenes are replaced and clips edited while frames are in flight, with the host's own staging and without a submission
+//! or wait of ours, under the host's validation with synchronisation checks. The pictures are the headless ones.
 
 use crate::common;
 use crate::host::{FRAMES, Host, HostDesc};
@@ -18,7 +18,7 @@ const VIEW: vk::Extent2D = vk::Extent2D {
 };
 const STAY: usize = 4;
 
-/// A host, and its device adopted.
+/// A host, and its device adopted by rara.
 fn open(validation: bool) -> (Host, Device) {
     let host = Host::new(&HostDesc {
         device: std::env::var("RARA_TEST_DEVICE").ok().as_deref(),
@@ -33,7 +33,7 @@ fn open(validation: bool) -> (Host, Device) {
     (host, device)
 }
 
-/// The rest of a frame that is configured.
+/// Records the rest of a frame that is configured.
 fn record(host: &mut Host, renderer: &mut Renderer, cmd: vk::CommandBuffer, scene: &SceneBuffers) {
     // SAFETY: `cmd` is recording outside rendering, and every test keeps scenes until their frames are done.
     unsafe { renderer.prepare(cmd, scene).expect("prepares") };
@@ -43,7 +43,7 @@ fn record(host: &mut Host, renderer: &mut Renderer, cmd: vk::CommandBuffer, scen
     host.submit().expect("submits");
 }
 
-/// Allocates, and records the copies into a frame's own commands.
+/// Allocates a scene, and records its copies into a frame's own commands.
 fn upload(device: &Device, cmd: vk::CommandBuffer, scene: &Gaussians) -> (SceneBuffers, Buffer) {
     let desc = BufferDesc {
         name: "host's staging",
@@ -62,7 +62,7 @@ fn upload(device: &Device, cmd: vk::CommandBuffer, scene: &Gaussians) -> (SceneB
     (uploaded.expect("uploads"), memory)
 }
 
-/// A clip that moves with each frame and has other planes in each stay.
+/// A clip that moves with each frame and has another number of planes in each stay.
 fn clip(scene: &Gaussians, frame: usize) -> Clip {
     let clip = common::clip(scene, 1 + frame / STAY, ClipOp::And);
     common::moved(clip, 0.05 * (frame % STAY) as f64)
@@ -111,7 +111,7 @@ fn scenes_and_clips_change_while_frames_are_in_flight() {
         truth.push(headless.picture().expect("reads back"));
     }
 
-    // A new scene's copies in the commands of the frame that first shows it, or in those of the frame before.
+    // A new scene's copies are in the commands of the frame that first shows it, or in those of the frame before.
     let ways = [
         (Raster::Tiles, Bindings::Bound, true, 0),
         (Raster::Tiles, Bindings::Address, false, 1),
@@ -125,7 +125,7 @@ fn scenes_and_clips_change_while_frames_are_in_flight() {
             .reuse(reuse)
             .frames_in_flight(FRAMES as u32);
         let mut renderer = Renderer::new(&device, desc).expect("a renderer");
-        // The one that is shown, the one that comes, and what frames in flight may still use.
+        // The scene that is shown, the next one, and those that frames in flight may still use.
         let mut current: Option<(SceneBuffers, Buffer)> = None;
         let mut coming = None;
         let mut retired: Vec<(usize, (SceneBuffers, Buffer))> = Vec::new();
@@ -162,7 +162,7 @@ fn scenes_and_clips_change_while_frames_are_in_flight() {
     }
 }
 
-/// Nothing leaks where the device is a host's, two frames are in flight and scenes come by its own staging memory.
+/// Nothing leaks where the device is a host's, two frames are in flight and scenes come through its own staging memory.
 #[test]
 fn memory_stays_flat_over_a_thousand_frames_of_a_host() {
     let scenes = [
@@ -170,7 +170,7 @@ fn memory_stays_flat_over_a_thousand_frames_of_a_host() {
         generate(Kind::Strands, 700, 1),
         generate(Kind::Layers, 500, 1),
     ];
-    // Without the layer, whose books grow.
+    // No validation layer, since its records grow.
     let (mut host, device) = open(false);
     let desc = RendererDesc::new(FORMAT)
         .reuse(true)
@@ -192,7 +192,7 @@ fn memory_stays_flat_over_a_thousand_frames_of_a_host() {
         }
         let (scene, _) = current.as_ref().expect("uploaded");
         let camera = common::views(&scenes[at], 1, (VIEW.width, VIEW.height))[0];
-        // Planes of one number, so that stays can be compared.
+        // The clips have one number of planes, so that stays can be compared.
         let cut = common::clip(&scenes[at], 2, ClipOp::And);
         let cut = common::moved(cut, 0.05 * (frame % STAY) as f64);
         let configured = renderer.configure(scene, &camera, &cut, &Settings::default());

@@ -40,7 +40,7 @@ fn headless(scene: &Gaussians, camera: &Camera, clip: &Clip) -> Picture {
     headless.picture().expect("reads back")
 }
 
-/// Largest difference of two pictures, of 255, but for a share of the pixels.
+/// Largest difference of two pictures, of 255, leaving out a share of the pixels.
 fn apart(a: &[[f32; 4]], b: &[[f32; 4]], share: f64) -> f32 {
     assert_eq!(a.len(), b.len());
     let worst = |(a, b): (&[f32; 4], &[f32; 4])| {
@@ -52,14 +52,14 @@ fn apart(a: &[[f32; 4]], b: &[[f32; 4]], share: f64) -> f32 {
     all[((1.0 - share) * (all.len() - 1) as f64) as usize]
 }
 
-/// The part of a wide target that a view at column `left` has.
+/// The part of a wide target that belongs to the view at column `left`.
 fn part(pixels: &[[f32; 4]], left: u32) -> Vec<[f32; 4]> {
     let rows = pixels.chunks_exact(2 * SIZE.0 as usize);
     let part = |row: &[[f32; 4]]| row[left as usize..][..SIZE.0 as usize].to_vec();
     rows.flat_map(part).collect()
 }
 
-/// Compiled pipelines that a renderer knows.
+/// How many compiled pipelines a renderer knows.
 fn pipelines(renderer: &Renderer) -> usize {
     format!("{renderer:?}").matches("Pipeline {").count()
 }
@@ -195,11 +195,11 @@ fn placed(scene: &Gaussians, placement: &Placement) -> Gaussians {
 
 const BASIS: usize = 16;
 
-/// The matrix that turns coefficients of spherical harmonics: a turned function looked at from `d` is the function looked
-/// at from `d` turned back, whatever the basis. By least squares over many directions.
+/// The matrix that turns coefficients of spherical harmonics: a turned function in the direction `d` is the function in
+/// the direction of `d` turned back, whatever the basis. It is found by least squares over many directions.
 fn harmonics_turned(rotation: DQuat) -> [[f64; BASIS]; BASIS] {
     let basis = |d: DVec3| reference::harmonics::basis(reference::vec3(d.x, d.y, d.z));
-    // Columns: the normal equations' matrix, then their right sides.
+    // Columns: the matrix of the normal equations, then their right sides.
     let mut rows = [[0.0; 2 * BASIS]; BASIS];
     for i in 0..400 {
         let z = 1.0 - (f64::from(i) + 0.5) / 200.0;
@@ -255,7 +255,7 @@ fn world_clip() -> Clip {
     )
 }
 
-/// Degree 0, where nothing but places turn, and degree 3, where colours do with them.
+/// Degree 0, where only places turn, and degree 3, where colours turn with them.
 #[test]
 fn a_placed_scene_is_the_picture_of_its_gaussians_placed() {
     let (camera, clip) = (world_camera(), world_clip());
@@ -287,7 +287,7 @@ fn a_placed_scene_is_the_picture_of_its_gaussians_placed() {
     }
 }
 
-/// The farther scene first, each tested against the same mesh on reversed depth.
+/// The farther scene is drawn first; both are tested against the same mesh on reversed depth.
 #[test]
 fn two_placed_scenes_stand_in_one_picture_with_a_mesh() {
     let scenes = [
@@ -296,7 +296,7 @@ fn two_placed_scenes_stand_in_one_picture_with_a_mesh() {
     ];
     let (camera, clip, placements) = (world_camera(), world_clip(), placements());
     let map = DepthMap::reversed(0.3, f64::INFINITY).expect("0 < near < far");
-    // Before the farther scene's middle, behind most of the nearer one.
+    // The mesh is before the middle of the farther scene and behind most of the nearer one.
     let mesh_depth = (camera.rotation * (placements[0].position() - camera.eye)).z - 0.05;
     let rect = vk::Rect2D {
         offset: vk::Offset2D { x: 30, y: 20 },
@@ -371,7 +371,7 @@ fn two_placed_scenes_stand_in_one_picture_with_a_mesh() {
     });
 }
 
-/// A scene's Gaussians in the world; with a limit, those that are nearer than it.
+/// A scene's Gaussians in the world, or, with a limit, those that are nearer than it.
 fn placed_before(
     scene: &Gaussians,
     placement: &Placement,

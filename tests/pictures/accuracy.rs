@@ -1,4 +1,4 @@
-//! How near each way of cutting comes to the truth, on trained scenes and generated ones.
+//! How near each way of cutting comes to the truth, on trained and generated scenes.
 
 use crate::common;
 use glam::DVec3;
@@ -12,7 +12,7 @@ use rara::{
 const L1_ANYWHERE: f64 = 0.1;
 const L1_HAIR_AND_ANATOMY: f64 = 0.03;
 const SSIM: f64 = 0.999;
-/// How many times nearer `exact` is than any other way.
+/// How many times nearer to the truth `exact` is than any other way.
 const NEARER: f64 = 10.0;
 
 /// The scene as it is framed, cut through its middle by a plane along the view.
@@ -34,7 +34,7 @@ fn exact_is_ten_times_nearer_to_the_truth_than_any_other_way() {
     scenes.extend(common::generated_scenes(20_000));
     for (name, scene) in scenes {
         let (camera, clip) = view(&scene);
-        // Every splat is cut along true rays: bands and fits are errors too.
+        // The truth cuts every splat along true rays, so that what bands and fits leave out counts as error.
         let truth = Settings::default()
             .form(ExactForm::Beam)
             .decay(Some(Decay::Depth))

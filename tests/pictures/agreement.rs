@@ -71,7 +71,7 @@ fn every_mode_on_generated_scenes() {
     }
 }
 
-/// Tiles are what a CPU driver gets unasked, and draws are what a GPU gets.
+/// A CPU driver gets tiles by default, and a GPU gets draws.
 #[test]
 fn every_mode_by_quads() {
     let mut headless = common::headless();
@@ -95,7 +95,7 @@ fn every_mode_by_quads() {
     }
 }
 
-/// How buffers are reached where nobody validates: the other tests bind them, for the synchronisation checks to see.
+/// Users have buffers reached by address; the other tests bind them, so that the synchronisation checks see them.
 #[test]
 fn every_mode_by_addresses() {
     if common::bindings(common::headless().device()).len() == 1 {

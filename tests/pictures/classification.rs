@@ -1,4 +1,4 @@
-//! The band in which a plane cuts: wide enough that nothing outside of it shows, and hardly wider than the splats.
+//! The band in which a plane cuts: it is so wide that nothing outside of it shows, and hardly wider than the splats.
 
 use crate::common;
 use glam::{DQuat, DVec3, Quat, Vec3};
@@ -55,8 +55,8 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// The theorem behind the band: outside of it alpha times weight is within half a level of all or nothing, in every
-    /// pixel that counts. In the affine form, whose evidence is the footprint itself, and along true rays, where the band
-    /// is wider.
+    /// pixel that counts. It is checked in the affine form, for which the footprint itself is the evidence, and along
+    /// true rays, where the band is wider.
     #[test]
     fn outside_the_band_no_pixel_changes_by_half_a_level(
         form in prop::sample::select(vec![ExactForm::Affine, ExactForm::Beam]), distance in 0.5..4.0_f64,
@@ -65,7 +65,7 @@ proptest! {
         beyond in 1.0..1.3_f64, kept in prop::bool::ANY, aim in prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64), 40),
     ) {
         let scene = one(scales, rotation, opacity);
-        // Off the axis too, and beyond the picture's edge.
+        // Splats off the axis too, and beyond the picture's edge.
         let from = view_from(distance);
         let camera = from
 .eye(from.eye + distance / 4.0 * DVec3::new(away.0, away.1, 0.0));
@@ -78,7 +78,7 @@ proptest! {
             reach = if rest > 0.05 {
                 reach * footprint.stretch / rest
             } else {
-                // Around the eye: by where the eye is in the splat.
+                // Splats around the eye: by where the eye is in the splat.
                 let turned = scene.rotations()[0].as_dquat().inverse() * camera.eye;
                 (turned / scene.scales()[0].as_dvec3()).length() + 6.0
             };
@@ -116,7 +116,8 @@ fn needles(count: usize) -> (Gaussians, Camera, Plane) {
     (scene, view_from(12.0), plane)
 }
 
-/// Whether the plane separates points of the splat's contour at alpha = 1/255: by points of it, no formula.
+/// Whether the plane separates points of the splat's contour at alpha = 1/255, found from points of it, without a
+/// formula.
 fn truly_cut(scene: &Gaussians, index: usize, plane: &Plane, sphere: &[DVec3]) -> bool {
     let reach = (2.0 * (255.0 * f64::from(scene.opacities()[index])).max(1.0).ln()).sqrt();
     let (rotation, scales) = (
@@ -221,7 +222,7 @@ fn on_the_device_nothing_shows_of_a_splat_outside_the_band() {
             for normal in [DVec3::X, DVec3::new(0.3, 0.5, -0.8).normalize()] {
                 let reach = (2.0 * (255.0 * f64::from(opacity)).ln()).sqrt();
                 let edge = 1.001 * reach * deviation(&scene, 0, normal);
-                // Along true rays the band is wider by what perspective adds at most, a share of the depth of 4.
+                // Along true rays the band is wider by at most what perspective adds, a share of the depth of 4.
                 let wider = edge / (1.0 - 1.001 * reach * f64::from(scales.max_element()) / 4.0);
                 for (form, offset, side) in [
                     (ExactForm::Affine, edge, 1.0),

@@ -1,13 +1,13 @@
-//! Cut splats whose weight is a fitted curve (glsl/curve.glsl), which has no twin on the CPU: large ones, long ones and flat
-//! ones at random, in pictures large enough for single precision to matter, against the perspective-exact form in f64.
+//! Cut splats whose weight is a fitted curve (glsl/curve.glsl), which has no twin on the CPU: random large, long and flat
+//! ones, in pictures large enough for single precision to matter, against the perspective-exact form in f64.
 
 use crate::common;
 use glam::{DQuat, DVec3, Quat};
 use rara::reference;
 use rara::{Camera, Clip, ClipOp, ExactForm, Gaussians, Mode, Plane, Raster, Settings};
 
-/// What a pixel may be off by: the fit's tolerance, Phi's error, and what a pixel's place in single precision moves alpha by
-/// in splats of hundreds of pixels.
+/// How much a pixel may be off: the fit's tolerance, Phi's error, and what the rounding of a pixel's place to single
+/// precision changes in alpha in splats of hundreds of pixels.
 const TOLERANCE: f64 = 1.5e-4 + 2e-5 + 1.3e-4;
 
 const CASES: usize = 90;
@@ -92,14 +92,15 @@ fn fitted_weights_are_the_exact_ones() {
         let truth = settings.form(ExactForm::Beam).trace_all(true);
         let truth = reference::render::<f64>(&scene, &camera, &clip, &truth).picture;
         let picture = headless.picture().expect("reads back");
-        // Alpha alone, which no colour scales. On the splat's contour rounding decides whether a pixel has any.
+        // Alpha alone is compared, since no colour scales it. On the splat's contour rounding decides whether a pixel has
+        // any.
         let pairs = picture.pixels.iter().zip(&truth.pixels);
         let pairs = pairs.map(|(a, b)| (f64::from(a[3]), f64::from(b[3])));
         let on_contour = |a: f64, b: f64| a.min(b) == 0.0 && a.max(b) < 1.001 / 255.0;
         let off = pairs
             .filter(|&(a, b)| !on_contour(a, b))
             .map(|(a, b)| (a - b).abs());
-        // What is not called cut may change by half a level.
+        // A splat that is not called cut may change by half a level.
         let allowed = if stats.counts.cutoff == 0 {
             0.5 / 255.0
         } else {

@@ -30,7 +30,7 @@ fn classes_and_weights_are_shown_as_the_reference_does() {
     }
 }
 
-/// The view changes between frames of a camera and a clip that stand still: nothing of the other is taken over.
+/// The view changes between frames while camera and clip stand still: one view takes over nothing from the other.
 #[test]
 fn colours_and_weights_take_turns() {
     let mut headless = common::headless();

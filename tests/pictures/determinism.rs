@@ -56,7 +56,7 @@ fn quads_meshes_and_tiles_give_one_picture() {
     }
 }
 
-/// How a scene was rasterised that was to be so in one way, and its picture.
+/// The way in which a scene was rasterised when one way was asked for, and its picture.
 fn drawn(
     headless: &mut Headless,
     (camera, clip, raster): (&Camera, &Clip, Raster),
@@ -66,12 +66,13 @@ fn drawn(
     (stats.raster.path, headless.picture().expect("reads back"))
 }
 
-/// More rows of tiles than one scan takes at once, and a picture beyond what can be bound; then a small one in the same
-/// buffers.
+/// A picture with more rows of tiles than one scan takes at once and larger than what can be bound; then a small one in
+/// the same buffers.
 #[test]
 fn a_wide_picture_of_many_tiles_is_that_of_quads() {
     let scene = generate(Kind::General, 2_000, 9);
-    // In full more tiles than a row of workgroups has; on slow drivers as many rows of them, but shorter ones.
+    // At full scale there are more tiles than a row of workgroups has; on slow drivers there are as many rows, but
+    // shorter ones.
     let width = (4101.0 * common::scale()) as u32;
     let camera = common::views(&scene, 1, (width, 2057))[0];
     let clip = common::clip(&scene, 1, ClipOp::And);
@@ -88,11 +89,11 @@ fn a_wide_picture_of_many_tiles_is_that_of_quads() {
     let [after, alone] = [&mut headless, &mut fresh]
         .map(|headless| drawn(headless, (&camera, &clip, Raster::Tiles)).1);
     let worst = apart(&after, &alone);
-    // The old ones are reached by address, which is compiled by itself, and rounds by itself.
+    // The old buffers are large and reached by address, in shaders that are compiled separately and round differently.
     assert!(worst <= 1e-3, "{worst}/255 from a picture in new buffers");
 }
 
-/// A pixel, a row, a column, and less than a tile.
+/// Pictures of a pixel, a row, a column, and less than a tile.
 #[test]
 fn pictures_of_a_row_or_a_column_of_tiles_are_those_of_quads() {
     let scene = generate(Kind::General, 2_000, 9);
@@ -108,7 +109,8 @@ fn pictures_of_a_row_or_a_column_of_tiles_are_those_of_quads() {
     }
 }
 
-/// A frame must not see what an earlier one left: not even the order of its splats when only one is left to sort.
+/// A frame must not depend on what an earlier one left, not even on the order of its splats when only one is left to
+/// sort.
 #[test]
 fn a_lone_survivor_after_many_is_itself() {
     let mut scene = generate(Kind::Layers, 8, 3);
@@ -205,7 +207,7 @@ fn splats_of_one_depth_keep_the_order_of_the_file() {
     }
 }
 
-/// The sort leaves out passes in which all keys agree; how many there would be follows from the box around all centres.
+/// The sort leaves out passes in which all keys agree; the box around all centres says how many passes there are at most.
 #[test]
 fn a_scene_with_a_wider_box_is_sorted_alike() {
     let mut headless = common::headless();
@@ -224,7 +226,7 @@ fn a_scene_with_a_wider_box_is_sorted_alike() {
         for position in thin.positions_mut() {
             position.z = position.z * thickness + shift;
         }
-        // One that nobody sees, beside the others, behind them and a long way behind.
+        // One Gaussian that nobody sees: beside the others, behind them, and a long way behind.
         for raster in [Raster::Tiles, Raster::Quad] {
             let settings = Settings::default().raster(raster);
             let pictures = [0.0, 0.05, 5.0, 1e6].map(|behind| {

@@ -8,7 +8,8 @@ use rara::scene::{Bounds, Kind, generate};
 use rara::types::{Gaussian, Splat};
 use rara::{Clip, ClipOp, FrameStats, Gaussians, Headless, Plane, Settings};
 
-/// For the reference, which evaluates every splat's pixels in double precision: hundreds of splats meet in each.
+/// A picture for the reference, which evaluates every splat's pixels in double precision: hundreds of splats meet in
+/// each.
 const SMALL: (u32, u32) = (253, 190);
 
 fn load(scene: &Gaussians) -> Headless {
@@ -95,8 +96,9 @@ fn five_million_gaussians_exceed_bindings_and_rows_and_agree() {
     );
     report("five million and the reference", &headless, &stats, begin);
 
-    // What this test is for is really exceeded: the least that a device can bind, as lavapipe does, in every large
-    // buffer, and the least that a row can hold, in every indirect dispatch. A record has a header, a plane and the eye.
+    // The scene really exceeds the limits that this test is for: in every large buffer the least that a device can bind,
+    // as lavapipe does, and in every indirect dispatch the least that a row can hold. A record has a header, a plane and
+    // the eye.
     let (bound, row) = (128 << 20, 65_535);
     let cutoff = stats.counts.cutoff as usize;
     for size in [

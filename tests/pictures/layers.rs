@@ -1,4 +1,4 @@
-//! Scenes of several layers: sorted and blended as one scene, each where it stands, as faded as it is, or not at all.
+//! Scenes of several layers: they are sorted and blended as one scene, each in its place, with its opacity, or hidden.
 
 use glam::{DQuat, DVec3, Quat};
 use rara::reference;
@@ -40,7 +40,7 @@ fn named<'a>(parts: impl IntoIterator<Item = (&'a Gaussians, LayerState)>) -> Sc
         .collect()
 }
 
-/// Turned, moved, and not as large as it was.
+/// A placement that turns, moves and scales.
 fn elsewhere(scale: f64) -> Placement {
     let turn = DQuat::from_axis_angle(DVec3::new(0.3, 0.9, -0.2).normalize(), 0.8);
     Placement::new(DVec3::new(0.4, -0.2, 0.3), turn, scale).expect("a placement")
@@ -104,7 +104,7 @@ fn layers_are_drawn_as_the_scene_that_they_are_parts_of() {
     layered.close().expect("nothing to say");
 }
 
-/// The truth knows nothing of layers here: it draws Gaussians that were moved, turned, scaled and faded one by one.
+/// The truth knows nothing of layers: it draws Gaussians that were moved, turned, scaled and faded one by one.
 #[test]
 fn a_placed_layer_is_its_gaussians_placed() {
     let (_, mut parts) = in_parts(6_000);
@@ -127,7 +127,7 @@ fn a_placed_layer_is_its_gaussians_placed() {
     let mut headless = common::headless();
     headless.load(layers.clone()).expect("uploads");
     let mut cameras = common::views(&moved, 2, common::scaled(SIZE));
-    // And from within, where splats are large and behind the eye.
+    // Also from within, where splats are large and behind the eye.
     cameras[1].eye = 0.3 * cameras[1].eye + 0.7 * rara::Bounds::of(&moved).centre();
     for camera in cameras {
         for (mode, planes, op) in [
@@ -233,7 +233,7 @@ fn a_hidden_layer_is_not_there() {
         let gone = parts[5].len() as u32;
         assert_eq!(ours.culled, theirs.culled + gone);
         assert_eq!((ours.visible, ours.cutoff), (theirs.visible, theirs.cutoff));
-        // Its blocks are settled by themselves: none of its Gaussians is looked at.
+        // Its blocks are settled as a whole: none of its Gaussians is tested.
         let sides = headless.working_buffer("block_sides").expect("a buffer");
         let sides: &[u32] = bytemuck::cast_slice(&sides);
         let blocks = |parts: &[Gaussians]| -> usize {

@@ -1,4 +1,4 @@
-//! What is drawn: against the reference, against itself by other ways, in time and in memory.
+//! Pictures: against the reference, and against the same picture drawn in other ways; and the memory that they take.
 
 #[path = "../common/mod.rs"]
 mod common;

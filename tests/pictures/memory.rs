@@ -1,10 +1,10 @@
-//! What a scene takes on the device, and while it gets there.
+//! The memory that a scene takes on the device, and while it is uploaded.
 
 use crate::common;
 use rara::scene::{Kind, generate};
 use rara::{Gaussians, Preset, ShFormat};
 
-/// Of degree 3, without numbers that a shorter format could leave out.
+/// A scene of degree 3, without numbers that a shorter format could leave out.
 fn scene(count: usize) -> Gaussians {
     let mut scene = generate(Kind::General, count, 1);
     scene.set_sh_degree(3);

@@ -17,7 +17,7 @@ fn far_plane(scene: &rara::Gaussians) -> Clip {
     )
 }
 
-/// Trained scenes carry strays far outside their bounds, so only generated ones are wholly in front of the plane.
+/// Trained scenes carry strays far outside their bounds, so that only generated ones are wholly in front of the plane.
 #[test]
 fn a_plane_at_infinity_gives_the_bytes_of_none_in_every_mode() {
     let mut headless = common::headless();
@@ -45,8 +45,8 @@ fn a_plane_at_infinity_gives_the_bytes_of_none_in_every_mode() {
     }
 }
 
-/// "wo RaRa": with every Gaussian traced, the readings that punish a miss degrade the picture, as the paper reports;
-/// its text's own reading (a miss keeps everything) does not.
+/// "wo RaRa": with every Gaussian traced, the readings that punish a miss degrade the picture, as the paper reports; the
+/// reading of its text (a miss keeps everything) does not.
 #[test]
 fn tracing_every_gaussian_degrades_the_picture_as_the_paper_reports() {
     let mut headless = common::headless();

@@ -1,4 +1,4 @@
-//! Compiled pipelines are kept from one run to the next, and what is damaged there does no harm.
+//! Compiled pipelines are kept from one run to the next, and a damaged cache does no harm.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use rara::gpu::Bindings;
 use rara::scene::{Kind, generate};
 use rara::{Clip, Headless, HeadlessDesc, Picture, PipelineCache, Settings};
 
-/// A picture drawn with a cache in `folder`, and the bytes of compiled pipelines that were there.
+/// A picture drawn with a pipeline cache, and the bytes of compiled pipelines that were in it.
 fn run(pipeline_cache: PipelineCache) -> (Picture, u64) {
     let scene = generate(Kind::General, 500, 1);
     let camera = common::views(&scene, 1, (64, 48))[0];

@@ -1,5 +1,5 @@
-//! What a frame takes over from the one before is what it would have computed: the same bytes, and what it says that it
-//! skipped.
+//! What a frame takes over from the one before is what it would have computed: the bytes are the same, and it says which
+//! stages it skipped.
 
 use crate::common;
 use glam::DVec3;
@@ -13,7 +13,7 @@ const SIZE: (u32, u32) = (250, 190);
 /// All that comes before the pixels.
 const VIEW: [&str; 5] = ["blocks", "classify", "compact", "project", "sort"];
 
-/// Two renderers with one scene: one keeps what it can, the other forgets.
+/// Two renderers with one scene: one keeps what it can, the other forgets everything.
 struct Pair {
     keeps: Headless,
     forgets: Headless,
@@ -43,7 +43,7 @@ impl Pair {
         })
     }
 
-    /// Draws a frame with both and compares all that they report; returns what the one skipped.
+    /// Draws a frame with both and compares the pictures and counts; returns what the first one skipped.
     fn draw(&mut self, camera: &Camera, clip: &Clip, settings: &Settings) -> Vec<&'static str> {
         self.forgets.forget();
         let picture = |headless: &mut Headless| {
@@ -105,7 +105,7 @@ fn a_sweep_computes_the_view_once() {
         let camera = common::views(&scene, 3, common::scaled(SIZE))[1];
         let normal = DVec3::new(0.8, 0.3, 0.5).normalize();
         let (rasters, modes) = (rasters(&pair.keeps), [Mode::Exact, Mode::Rara, Mode::Hard]);
-        // The trained ones are large, and some drivers slow: a part of the combinations each.
+        // Trained scenes are large and some drivers slow, so each scene gets a part of the combinations.
         let all = index < 3 && common::scale() == 1.0;
         for (r, raster) in rasters.into_iter().enumerate() {
             for (m, mode) in modes.into_iter().enumerate() {
@@ -197,7 +197,7 @@ impl Frame {
             13 => settings.precision.beam_switch = [0.0, 0.005, 0.05][pick(3)],
             14 => settings.precision.transmittance_min = [0.0, 4e-6, 0.3][pick(3)],
             15 => settings.sh_degree = [None, Some(0), Some(2)][pick(3)],
-            // A distance that single precision loses: the planes' low words alone.
+            // A change below single precision: only the planes' low words differ.
             16 => self.nudge = [0.0, 1e-9, -1e-9][pick(3)],
             _ => self.share = [0.2, 0.4, 0.5, 0.55, 0.8][pick(5)],
         }
@@ -232,7 +232,7 @@ fn whatever_changes_the_bytes_are_those_of_a_whole_frame() {
             for _ in 0..steps {
                 frame.step(&rasters, &mut pick);
                 let mut cameras = common::views(&scene, 3, frame.size);
-                // Inside the scene, where splats are large, beside the picture and behind the eye.
+                // A view from inside the scene, where splats are large, beside the picture and behind the eye.
                 cameras[2].eye = rara::scene::Bounds::of(&scene).centre();
                 let clip = Clip::of(
                     normals[..frame.planes]
@@ -251,10 +251,10 @@ fn whatever_changes_the_bytes_are_those_of_a_whole_frame() {
     }
 }
 
-/// What one thing that changes is in the two frames, before and after.
+/// The name of one thing that changes, and the settings of the two frames, before and after.
 type Change = (&'static str, Settings, Settings);
 
-/// All that changes neither the camera nor where the clip is, each alone; by tiles, which more depends on.
+/// All changes that leave the camera and the clip's place alone, each by itself; by tiles, on which more depends.
 fn changes() -> Vec<Change> {
     let usual = Settings::default().raster(Raster::Tiles);
     let traced = usual.mode(Mode::Rara);
@@ -281,7 +281,7 @@ fn changes() -> Vec<Change> {
     ]
 }
 
-/// Each alone, under a camera that stands still and then moves; there and back.
+/// Each change by itself, under a camera that stands still and then moves; there and back.
 #[test]
 fn each_setting_alone_changes_what_it_should() {
     let (_, scene) = common::generated_scenes(2_000).remove(0);
@@ -290,7 +290,7 @@ fn each_setting_alone_changes_what_it_should() {
     let normal = DVec3::new(0.8, 0.3, 0.5).normalize();
     let clips = [0.4, 0.45].map(|share| cut(&scene, normal, share));
     for (name, before, after) in changes() {
-        // The second frame begins a sweep: what the third may take over is more than after a whole frame, as the fourth is.
+        // The second frame begins a sweep: the third may take over more than after a whole frame, and so may the fourth.
         let steps = [
             (0, 0, before),
             (0, 1, before),
@@ -307,8 +307,8 @@ fn each_setting_alone_changes_what_it_should() {
     }
 }
 
-/// The same for a clip of which nothing but its planes' low words changes: a million units from the origin single precision
-/// knows an offset to a sixteenth, and so do centres, which stand in sheets there.
+/// The same for a clip of which only the planes' low words change: a million units from the origin single precision knows
+/// an offset to a sixteenth, and so it does the centres, which lie in sheets there.
 #[test]
 fn a_planes_low_word_alone_changes_what_it_should() {
     let (_, mut scene) = common::generated_scenes(2_000).remove(0);

@@ -7,7 +7,7 @@ use rara::stress::{self, Regime, Row};
 fn check(regimes: Vec<Regime>) {
     let mut headless = common::headless();
     let run = |regime: &Regime| -> Row {
-        // On slow drivers each fourth case: of five, the first and the last, which is the crowd.
+        // On slow drivers each fourth case: of five, the first, and the last, which is the crowd.
         let every = if common::scale() < 1.0 { 4 } else { 1 };
         let row = stress::run(&mut headless, regime, every);
         row.unwrap_or_else(|error| panic!("{}: {error}", regime.name))
@@ -15,7 +15,7 @@ fn check(regimes: Vec<Regime>) {
     let rows: Vec<_> = regimes.iter().map(run).collect();
     let failed: Vec<_> = rows.iter().filter(|row| !row.ok).collect();
     assert!(failed.is_empty(), "{failed:#?}");
-    // A regime that draws nothing would pass; one is meant to.
+    // A regime that draws nothing would pass, so only one, which is meant to, may draw nothing.
     let empty = rows
         .iter()
         .filter(|row| row.splats == 0)

@@ -10,10 +10,10 @@ use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings};
 use crate::frame::{self, SIZE, SIZES, Stages};
 use crate::sort::places;
 
-/// Where a cut splat's weight is taken for nothing, in deviations behind its plane.
+/// How many deviations behind its plane a cut splat's weight counts as nothing.
 const TRIM_DEVIATIONS: f32 = 4.55;
 
-/// What the stage is given of a splat.
+/// The splat's outline, from which the stage works.
 fn outline<T: Real>(splat: &Splat) -> Outline<T> {
     let of = |x: f32| T::of(f64::from(x));
     let [cx, cy, k0, k1] = splat.centre_conic;
@@ -36,7 +36,7 @@ fn outline<T: Real>(splat: &Splat) -> Outline<T> {
     }
 }
 
-/// Each splat's spans by the lists of the tiles: what the stage has made of all.
+/// Each splat's spans, found again from the tiles' lists, which are the stage's result.
 fn listed(begins: &[u32], splats: &[u32], count: usize, columns: u32) -> Vec<Vec<Span>> {
     let mut spans = vec![Vec::<Span>::new(); count];
     for (tile, range) in (0..).zip(begins.windows(2)) {
@@ -55,7 +55,7 @@ fn listed(begins: &[u32], splats: &[u32], count: usize, columns: u32) -> Vec<Vec
     spans
 }
 
-/// The spans of a mask; none of a splat that has more tiles than it holds.
+/// The spans of a mask; `None` for a splat that has more tiles than a mask holds.
 fn masked([origin, is_larger, above, below]: [u32; 4]) -> Option<Vec<Span>> {
     let rows = [above, below].map(u32::to_le_bytes).concat();
     let in_row = |(row, bits): (u32, u8)| {
@@ -68,7 +68,8 @@ fn masked([origin, is_larger, above, below]: [u32; 4]) -> Option<Vec<Span>> {
     (is_larger == 0).then(|| (0..).zip(rows).filter_map(in_row).collect())
 }
 
-/// What the device found, and how many spans the twin finds otherwise, at a tie.
+/// Checks a frame's lists; returns how many spans there are, and how many splats have other spans than the twin finds, at
+/// a tie.
 fn check(stages: &mut Stages, what: &str) -> [usize; 2] {
     let size = [SIZE.0, SIZE.1];
     let tiles = [size[0].div_ceil(TILE_WIDTH), size[1].div_ceil(TILE_HEIGHT)];
@@ -80,12 +81,12 @@ fn check(stages: &mut Stages, what: &str) -> [usize; 2] {
     let mut lists: Vec<u32> = stages.read("tile_splats");
     lists.truncate(counts.pairs as usize);
     let found = listed(begins, &lists, splats.len(), tiles[0]);
-    // The lists are those of the spans, in the order of depth: exactly.
+    // The lists are exactly those of the spans, in the order of depth.
     let (depths, numbers) = places(stages);
     let order = sort::order(&depths, &numbers);
     let twin = bin::bin(&found, &order, tiles);
     assert!((begins, &lists) == (&twin.0[..], &twin.1), "{what}");
-    // The spans of each row of tiles, likewise.
+    // So are the spans of each row of tiles.
     let row_begins: Vec<u32> = stages.read("row_begins");
     let span_splats: Vec<u32> = stages.read("span_splats");
     let span_columns: Vec<u32> = stages.read("span_columns");
@@ -101,7 +102,7 @@ fn check(stages: &mut Stages, what: &str) -> [usize; 2] {
         let ours = places.map(|at| (span_splats[at], columns(span_columns[at])));
         assert!(ours.eq(spans.iter().copied()), "{what}, row {row}");
     }
-    // The spans are those of the splats' masks, and of the twin but for ties.
+    // The spans are those of the splats' masks, and those of the twin except for ties.
     let masks: Vec<[u32; 4]> = stages.read("tile_masks");
     let (mut all, mut ties) = (0, 0);
     for (index, splat) in splats.iter().enumerate() {
@@ -113,7 +114,7 @@ fn check(stages: &mut Stages, what: &str) -> [usize; 2] {
         let twin = single.spans(size, single.margin());
         all += twin.len();
         if *ours != twin {
-            // Never less than what the contour reaches, nor more than twice the margin allows.
+            // They hold at least what the contour reaches, and at most what twice the margin allows.
             let truth = outline::<f64>(splat);
             let least = truth.spans(size, 0.0);
             let most = truth.spans(size, 2.0 * truth.margin());
@@ -161,7 +162,7 @@ fn tiles_hold_the_splats_that_the_twin_puts_there() {
     }
     println!("{all} spans, {ties} splats with others than the twin's");
     assert!(all > 50_000, "{all}");
-    // One in twenty thousand; a margin that is not the twin's changes one in a few hundred.
+    // One in twenty thousand; with another margin than the twin's it would be one in a few hundred.
     assert!(ties * 20_000 <= all, "{ties} of {all}");
 }
 
@@ -182,7 +183,7 @@ fn tiles_reach_pixel_centres_on_the_contour() {
         let scene = frame::one(Vec3::new(0.0, 0.0, 2.0), scale, turn, opacity);
         let base = project::project(&scene, 0, &View::<f64>::new(&camera), &Settings::default());
         let f = base.expect("in view").footprint;
-        // The contour's ends to the left and to the right, above and below, each put onto a centre of a pixel that is the
+        // The contour's ends to the left and to the right, above and below, each on the centre of a pixel that is the
         // first or the last of its tile.
         let [k0, k1, k2] = f.conic;
         let right = [f.extent / k0, -k1 / k2 * f.extent / k0];
@@ -190,7 +191,7 @@ fn tiles_reach_pixel_centres_on_the_contour() {
         let below = [-k1 / k * f.extent / k0, f.extent * k / (k0 * k2)];
         let ends = [right, right.map(|x| -x), below, below.map(|x| -x)];
         let [dx, dy] = ends[step % 4];
-        // A right or lower end on the first pixel of a tile, a left or upper one on the last.
+        // A right or lower end is on the first pixel of a tile, a left or upper one on the last.
         let pixel = if step % 2 == 0 { 56.5 } else { 39.5 };
         (camera.cx, camera.cy) = (pixel - dx, pixel - dy);
         stages.load(&scene);

@@ -8,8 +8,8 @@ use rara::{Camera, Clip, ClipOp, Mode, Raster, Settings};
 use crate::frame::{self, SIZES, Stages};
 use crate::ties;
 
-/// What the stages say of each Gaussian, in the device's order; nothing of one that is culled or invisible: of a block,
-/// the stages say only how many of its Gaussians are which.
+/// What the stages find for each Gaussian, in the device's order; `None` for one of which they do not keep whether it is
+/// culled or invisible: a block only counts these.
 pub fn sides(stages: &mut Stages) -> Vec<Option<Side>> {
     let of_blocks: Vec<u32> = stages.read("block_sides");
     let masks: Vec<[[u32; 8]; 2]> = stages.read("masks");
@@ -77,7 +77,7 @@ fn check(stages: &mut Stages, camera: &Camera, planes: &Clip, settings: &Setting
         }
     }
     assert!(ties <= 1 + stages.scene.len() / 5_000, "{ties} ties");
-    // How many are of which class, by block and in all, so that culled and invisible are counted apart.
+    // How many are of each class, by block and in all, so that culled and invisible Gaussians are distinguished.
     let of_blocks: Vec<u32> = stages.read("block_sides");
     let totals: Vec<[u32; 4]> = stages.read("block_counts");
     let mut apart = 0;
@@ -96,7 +96,7 @@ fn check(stages: &mut Stages, camera: &Camera, planes: &Clip, settings: &Setting
     );
 }
 
-/// Literally: what 3DGS does not draw is nearer than 0.2 along the view axis.
+/// The literal rule: 3DGS does not draw what is nearer than 0.2 along the view axis.
 #[test]
 fn the_near_cut_is_at_a_fifth() {
     let camera = Camera::from_world_to_camera(DMat4::IDENTITY, (60.0, 60.0, 32.0, 24.0), (64, 48))

@@ -10,7 +10,7 @@ use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings};
 use crate::frame::{self, SIZES, Stages};
 use crate::ties;
 
-/// What the stage says of each Gaussian, in the device's order.
+/// What the stage finds for each Gaussian, in the device's order.
 pub fn sides(stages: &mut Stages) -> Vec<Side> {
     let of_blocks: Vec<u32> = stages.read("clip_sides");
     let masks: Vec<[[u32; 8]; 2]> = stages.read("clip_masks");
@@ -57,7 +57,7 @@ fn check(stages: &mut Stages, planes: &Clip, settings: &Settings) {
     let twin = clip::clip::<f32>(&stages.scene, planes, settings);
     let mut ties = 0;
     for (index, (ours, twin)) in ours.iter().zip(&twin).enumerate() {
-        // Those that no pixel shows are nobody's: their block may be settled without them.
+        // Gaussians that no pixel shows do not count: their block may be settled without them.
         if ours != twin && stages.scene.opacities()[index] >= ALPHA_MIN {
             let possible = ties::classes(&stages.scene, index, None, planes, settings);
             assert!(
@@ -75,8 +75,8 @@ fn check(stages: &mut Stages, planes: &Clip, settings: &Settings) {
     }
 }
 
-/// The shader widens the box and the band by what rounding may take: where it settles a block, its twin does so too, and it
-/// leaves hardly a block open that the twin settles.
+/// The shader widens the box and the band by what rounding may take. Where it settles a block its twin does so too, and
+/// it leaves hardly a block open that the twin settles.
 fn check_blocks(stages: &mut Stages, planes: &Clip, settings: &Settings) {
     let sides: Vec<u32> = stages.read("clip_sides");
     let blocks: Vec<Block> = stages.read("blocks");
@@ -105,7 +105,7 @@ fn check_blocks(stages: &mut Stages, planes: &Clip, settings: &Settings) {
     );
 }
 
-/// At coordinates of a million single precision knows an offset to a sixteenth only: the rest is in the low word.
+/// At coordinates of a million single precision knows an offset only to a sixteenth; the low word has the rest.
 #[test]
 fn a_planes_distance_has_its_low_word() {
     let mut stages = Stages::new();

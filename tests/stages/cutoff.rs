@@ -1,4 +1,4 @@
-//! Stage `cutoff`: the records of the cut splats, from which pixels are weighted.
+//! Stage `cutoff`: the records of the cut splats, by which pixels weigh them.
 
 use glam::Vec3;
 use rara::reference::{Cut, Footprint, HalfSpace, Real, Vec3 as Vector, View, cutoff, vec3};
@@ -6,8 +6,8 @@ use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings};
 
 use crate::frame::{self, SIZES, Stages};
 
-/// The planes are on each pixel's line of sight; the splat reaches behind the eye; a plane's z is a polynomial; the planes
-/// are the complements of a union's.
+/// The flags of a record: the planes are on each pixel's line of sight; the splat reaches behind the eye; a plane's z is
+/// a polynomial; the planes are the complements of a union's.
 const BEAM: u32 = 1;
 const FRONT: u32 = 2;
 const CURVE: u32 = 4;
@@ -16,16 +16,17 @@ const UNION: u32 = 8;
 /// How far apart device and twin are.
 #[derive(Debug, Default, Clone, Copy)]
 struct Apart {
-    /// Of a plane's distance in deviations, where a pixel sees something of it.
+    /// In a plane's distance, deviations, where a pixel sees something of it.
     z: f64,
-    /// Of the records' gradients and planes, as shares of the largest component.
+    /// In the records' gradients and planes, as shares of the largest component.
     gradients: f32,
     planes: f32,
-    /// Of the alpha of what is fitted.
+    /// In the alpha of fitted curves.
     curves: f64,
-    /// Records of each kind: carried, curves, beams, beams before the eye.
+    /// How many records there are of each kind: carried, curves, beams, beams before the eye.
     kinds: [usize; 4],
-    /// Records whose planes were compared, of intersections and of unions, and those that hold another number of them.
+    /// How many records of intersections and of unions had their planes compared, and how many hold another number of
+    /// them.
     compared: [usize; 2],
     other: usize,
 }
@@ -68,7 +69,7 @@ fn records_are_the_twins() {
     assert!(worst.curves <= 3e-4, "{worst:?}");
     assert!(worst.kinds.iter().all(|&count| count > 20), "{worst:?}");
     assert!(worst.compared.iter().all(|&count| count > 100), "{worst:?}");
-    // A plane at the edge of the band cuts one of the two only.
+    // A plane at the edge of the band may cut in only one of the two.
     let all = worst.compared[0] + worst.compared[1];
     assert!(worst.other <= 1 + all / 1_000, "{worst:?}");
 }
@@ -143,7 +144,7 @@ fn compare(
     }
 }
 
-/// Offsets within the contour of 1/255, pixels, and where they are in deviations.
+/// Offsets within the contour of 1/255, in pixels and in deviations.
 fn within<T: Real>(f: &Footprint<T>) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
     let [k0, k1, k2] = f.conic.map(T::wide);
     let reach = f.extent.wide();

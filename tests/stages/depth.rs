@@ -51,7 +51,8 @@ fn settings() -> Settings {
     Settings::default().mode(Mode::Exact).raster(Raster::Quad)
 }
 
-/// What the fragment stage makes of a record at an offset from the splat's centre: the mean, and the share that it is of.
+/// The mean depth that the fragment stage computes from a record at an offset from the splat's centre, and the share that
+/// it is of.
 fn mean(depth: &SplatDepth, [dx, dy]: [f64; 2]) -> [f64; 2] {
     let at = |[a, b, c, _]: [f32; 4]| f64::from(a) + f64::from(b) * dx + f64::from(c) * dy;
     let density = |z: f64| (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt();

@@ -1,4 +1,4 @@
-//! A frame whose stages are looked at: the scene as it lies on the device, and what the stages have written.
+//! A frame whose stages are examined: the scene as it lies on the device, and what the stages have written.
 
 use glam::{DVec3, Quat, Vec3};
 use rara::gpu::Bindings;
@@ -8,7 +8,7 @@ use rara::{Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, Plane, Setting
 
 use crate::common;
 
-/// None, one, around a workgroup and a block, and enough for every path.
+/// No Gaussian, one, numbers around a workgroup and a block, and enough for every path.
 pub const SIZES: [usize; 6] = [0, 1, 255, 256, 257, 50_000];
 /// Not a multiple of a tile.
 pub const SIZE: (u32, u32) = (253, 190);
@@ -52,13 +52,13 @@ impl Stages {
         self.again(camera, clip, settings)
     }
 
-    /// Draws a frame that may take over what the one before has found out.
+    /// Draws a frame that may take over what the one before has found.
     pub fn again(&mut self, camera: &Camera, clip: &Clip, settings: &Settings) -> FrameStats {
         let drawn = self.headless.render(camera, clip, settings);
         drawn.expect("renders")
     }
 
-    /// What is in a buffer.
+    /// The content of a buffer.
     pub fn read<T: bytemuck::AnyBitPattern>(&mut self, name: &str) -> Vec<T> {
         let bytes = self.headless.working_buffer(name);
         let bytes = bytes.unwrap_or_else(|| panic!("there is no buffer {name}"));
@@ -70,7 +70,7 @@ impl Stages {
         self.read("counts")[0]
     }
 
-    /// The device's numbers of the survivors, and their numbers among the cut ones.
+    /// The indices of the survivors, and their numbers among the cut ones.
     pub fn survivors(&mut self) -> Vec<[u32; 2]> {
         let counts = self.counts();
         let mut survivors = self.read("survivors");
@@ -116,7 +116,7 @@ pub fn picked(scene: &Gaussians, numbers: &[u32]) -> Gaussians {
     picked
 }
 
-/// A generated scene with what such scenes have too little of: faint splats, ones around the limit of 1/255, and ones
+/// A generated scene with splats of which such scenes have too few: faint ones, ones around the limit of 1/255, and ones
 /// without thickness.
 pub fn scene(count: usize) -> Gaussians {
     let mut scene = generate(Kind::General, count, 1);
@@ -131,7 +131,7 @@ pub fn scene(count: usize) -> Gaussians {
     scene
 }
 
-/// From outside, and from within the scene, where splats are large, beside the picture and behind the eye.
+/// A view from outside, and one from within the scene, where splats are large, beside the picture and behind the eye.
 pub fn views(scene: &Gaussians) -> [Camera; 2] {
     let outside = if scene.is_empty() {
         let eye = DVec3::new(0.0, 1.0, -4.0);

@@ -1,4 +1,4 @@
-//! Several layers, stage by stage: what is found of each is what is found of it alone.
+//! Several layers, stage by stage: each layer gives what it gives alone.
 
 use glam::{DQuat, DVec3};
 use rara::types::Splat;
@@ -6,7 +6,7 @@ use rara::{ClipOp, Layer, LayerState, Mode, Placement, Raster, Scene, Settings, 
 
 use crate::frame::{self, Stages};
 
-/// Of powers of two, by which no number is rounded.
+/// Placements by powers of two, which round no number.
 pub fn placements() -> [Placement; 3] {
     let turn = DQuat::from_axis_angle(DVec3::new(0.3, 0.9, -0.2).normalize(), 0.4);
     let at = |shift: DVec3, turn, scale| Placement::new(shift, turn, scale).expect("a placement");
@@ -17,7 +17,7 @@ pub fn placements() -> [Placement; 3] {
     ]
 }
 
-/// What a frame's survivors are: number in the scene, splat, and the whole cutoff record of a cut one.
+/// A frame's survivors: number in the scene, splat, and the whole cutoff record of a cut one.
 fn survivors(stages: &mut Stages, stride: usize) -> Vec<(u32, Splat, Vec<[f32; 4]>)> {
     let records: Vec<[f32; 4]> = stages.read("cut_records");
     let survivors = stages.survivors();
@@ -90,7 +90,7 @@ fn each_layers_splats_and_records_are_those_of_the_layer_alone() {
                     as_alone.middle[2] = splat.middle[2];
                     as_alone.middle[3] *= unit;
                     if splat.conic_cut[2] < -1e30 {
-                        // The record's number, which counts the layers before.
+                        // This is the record's number, which counts the layers before.
                         as_alone.conic_cut[3] = splat.conic_cut[3];
                         as_alone.colour_cut[3] = splat.colour_cut[3];
                     }
@@ -99,7 +99,8 @@ fn each_layers_splats_and_records_are_those_of_the_layer_alone() {
                     assert_eq!(record.is_empty(), its_record.is_empty());
                     cut += usize::from(!record.is_empty());
                     if let Some(&[.., flags]) = record.first() {
-                        // The header is there where lines of sight or a curve are, and behind it a surface each.
+                        // Where there are lines of sight or a curve, there is a header, and behind it a record for each
+                        // surface.
                         let (flags, is_carried) = (flags as u32, flags as u32 & 0xff == 0);
                         let header = if is_carried { 3.. } else { 0.. };
                         let used = header.start..3 + (flags >> 8) as usize;

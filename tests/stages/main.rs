@@ -1,5 +1,5 @@
-//! What each stage writes on the device, read back and held to its twin in single precision in `src/reference`: integers
-//! exactly but for ties, which are said, floats by stated units in the last place.
+//! What each stage writes on the device is read back and compared with its twin in single precision in `src/reference`:
+//! integers exactly except for ties, which are counted, floats to stated units in the last place.
 
 #![allow(unreachable_pub, reason = "modules of one test share with each other")]
 

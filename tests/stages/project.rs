@@ -66,7 +66,7 @@ fn compare(stages: &mut Stages, camera: &Camera, worst: &mut Apart) {
             let size = view.focal[axis] * distance / f.view_centre.z * (1.0 + slope.abs());
             worst.centre = worst.centre.max(ulps(ours, f.screen_centre[axis], size));
         }
-        // The factors' rounding, against what the twin in double precision says of their cancellation.
+        // The factors' rounding, against the cancellation that the twin in double precision finds.
         let [t0, t1, t2] = f.conic;
         let size = t1.hypot(t2);
         let condition = condition(f.gradients.map(|b| Vec3::new(b.x, b.y, b.z)));
@@ -95,8 +95,8 @@ fn condition([b1, b2]: [Vec3; 2]) -> f32 {
     1.0 + size
 }
 
-/// The sixteen basis functions as 3DGS has them, at the direction (2, -3, 6) / 7. From the definition of the associated
-/// Legendre polynomials with the Condon-Shortley phase, orders -l to l, in rational arithmetic, not from any formula here.
+/// The sixteen basis functions of 3DGS in the direction (2, -3, 6) / 7, from the definition of the associated Legendre
+/// polynomials with the Condon-Shortley phase, orders -l to l, in rational arithmetic, not from any formula here.
 const OBLIQUE: [f64; 16] = [
     0.282_094_791_773_878_1,
     0.209_401_076_529_822_8,
@@ -153,13 +153,13 @@ fn the_harmonics_are_those_of_3dgs() {
     }
 }
 
-/// From the origin along z; wide enough for what stands well beside its axis.
+/// A view from the origin along z, wide enough for what is well beside its axis.
 fn ahead() -> Camera {
     Camera::from_world_to_camera(DMat4::IDENTITY, (40.0, 40.0, 48.0, 48.0), (96, 96))
         .expect("a camera at the origin")
 }
 
-/// Coefficients that a format holds exactly are read as they are: its integers, its scales, and where each lies.
+/// Coefficients that a format holds exactly are read as they are: the format's integers, its scales, and where each lies.
 #[test]
 fn stored_harmonics_are_read_as_they_were() {
     let mut stages = Stages::new();
@@ -182,7 +182,7 @@ fn stored_harmonics_are_read_as_they_were() {
                 let (number, channel) = (k % stride / 3, k % 3);
                 let at = (k * 7919 % 401) as f32 - 200.0;
                 let scale = scales[[0, 0, 1, 2][(number as f32).sqrt() as usize]];
-                // The largest of a degree is its scale.
+                // The largest coefficient of a degree sets its scale.
                 let is_first = [1, 4, 9].contains(&number) && channel == 0;
                 *value = match format {
                     _ if number == 0 => 0.5 + at / 1024.0,

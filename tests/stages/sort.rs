@@ -23,15 +23,15 @@ fn check(stages: &mut Stages, what: &str) {
     let twin = sort::order(&depths, &numbers);
     let (keys, order) = sorted(stages, depths.len());
     assert!(order == twin, "{what}: the order is not the twin's");
-    // All bits count here: keys are the depths' bits, counted from one number on.
+    // All bits count here: keys are the depths' bits, counted from one common number.
     let near = |(key, place): (&u32, &u32)| depths[*place as usize].to_bits().wrapping_sub(*key);
     let nears = keys.iter().zip(&twin).map(near);
     let firsts: BTreeSet<_> = nears.collect();
     assert!(firsts.len() <= 1, "{what}: keys are not the depths' bits");
 }
 
-/// The keys and the order where the draw reads them: each pass carries them to the other pair of buffers, and the span of
-/// the keys says how many passes there are.
+/// The keys and the order in the buffers that the draw reads: each pass moves them to the other pair, and the span of the
+/// keys gives the number of passes.
 fn sorted(stages: &mut Stages, count: usize) -> (Vec<u32>, Vec<u32>) {
     let frame: FrameData = stages.read("frame")[0];
     let span = frame.order.key_span >> frame.order.key_shift;
@@ -83,7 +83,7 @@ fn equal_depths_are_in_the_files_order() {
     }
 }
 
-/// With fewer bits neighbours may change places, and nothing else.
+/// With fewer bits only neighbours may change places.
 #[test]
 fn fewer_bits_keep_the_order_of_what_they_distinguish() {
     let mut stages = Stages::new();
@@ -100,7 +100,7 @@ fn fewer_bits_keep_the_order_of_what_they_distinguish() {
         once.sort_unstable();
         assert!(once.into_iter().eq(0..depths.len() as u32), "each once");
         let at = |i: usize| order[i] as usize;
-        let mut deepest = 0.0_f32; // of the keys before
+        let mut deepest = 0.0_f32; // the deepest of the keys before
         let mut of_key = 0.0_f32;
         for i in 1..order.len() {
             of_key = of_key.max(depths[at(i - 1)]);

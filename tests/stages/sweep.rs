@@ -41,7 +41,7 @@ fn a_moved_clip_changes_what_the_twin_says() {
                     continue;
                 }
                 assert_eq!(swept.skipped.contains(&"project"), by != 0.1, "{by}");
-                // All in view survive; the list says which of them the clip changes, and to what.
+                // All in view survive; the list has those that the clip changes, and their new side.
                 let survivors = stages.survivors_in_view();
                 let recuts: Vec<[u32; 2]> = stages.read("recuts");
                 let changed = stages.counts().recut_groups[3] as usize;
@@ -66,7 +66,7 @@ fn a_moved_clip_changes_what_the_twin_says() {
                     }
                 }
                 assert_eq!(cuts, swept.counts.cutoff);
-                // What the rasteriser then holds of each is what a whole frame computes.
+                // The rasteriser then holds for each what a whole frame computes.
                 let swept_splats = stages.splats_in_view(survivors.len());
                 let mut whole = std::collections::HashMap::new();
                 let counts = stages.draw(&camera, &clip, &settings).counts;
@@ -90,7 +90,7 @@ fn a_moved_clip_changes_what_the_twin_says() {
                     assert!(splat == *truth, "{splat:?}, in a whole frame {truth:?}");
                 }
                 assert_eq!(gone, counts.invisible);
-                // The next frame of the sweep goes on from the one before.
+                // The next frame of the sweep goes on from this one.
                 stages.headless.forget();
                 stages.again(&camera, &moved(&clip, 0.05), &settings);
                 stages.again(&camera, &clip, &settings);

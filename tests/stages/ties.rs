@@ -1,4 +1,4 @@
-//! Where single precision may find another class than the twin: at a threshold, and nowhere else.
+//! Ties: single precision may find another class than the twin at a threshold, and nowhere else.
 
 use glam::{DQuat, DVec3, Vec3};
 use rara::reference::{Side, View, classify, clip};
@@ -7,11 +7,11 @@ use rara::{Camera, Clip, Gaussians, Placement, Settings};
 use crate::frame::picked;
 
 /// By how much a Gaussian may seem to be another one, as a share: eight units in the last place. Opacities go through a
-/// logarithm, of which Vulkan promises 2^-21 near 1.
+/// logarithm, for which Vulkan promises 2^-21 near 1.
 const SLACK: f64 = 1.0 / (1 << 20) as f64;
 
-/// The classes that the twin in double precision finds for a Gaussian that is off by so much: in opacity, size, and place
-/// relative to the eye, or to the planes.
+/// The classes that the twin in double precision finds for a Gaussian that is off by so much in opacity, in size, and in
+/// its place relative to the eye or to the planes.
 pub fn classes(
     scene: &Gaussians,
     index: usize,
@@ -35,7 +35,7 @@ pub fn classes(
                 let mut near = one.clone();
                 near.opacities_mut()[0] = (f64::from(one.opacities()[0]) * opacity) as f32;
                 near.scales_mut()[0] = (one.scales()[0].as_dvec3() * size).as_vec3();
-                // Instead of the Gaussian, whose place is rounded, all else moves.
+                // The Gaussian's place is rounded, so everything else moves instead.
                 let place = Placement::new(shift, DQuat::IDENTITY, 1.0);
                 let planes = planes.in_scene(&place.expect("a finite shift"));
                 let sides = match camera {

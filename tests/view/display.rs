@@ -17,8 +17,8 @@ const SCREEN: &str = "640x480x24";
 pub(super) struct Owned(pub(super) Child);
 
 impl Owned {
-    /// All that it says on stderr, until it ends.
-    pub(super) fn messages(&mut self) -> String {
+    /// Everything that it prints on stderr, until it ends.
+    pub(super) fn printed(&mut self) -> String {
         let mut text = String::new();
         let mut stderr = self.0.stderr.take().expect("it is piped");
         let read = stderr.read_to_string(&mut text);
@@ -37,13 +37,13 @@ impl Drop for Owned {
 /// An X server without a screen to look at. It keeps what would be on it in a file.
 pub(super) struct Display {
     server: Owned,
-    /// For `DISPLAY`.
+    /// The value of `DISPLAY`.
     pub(super) name: String,
     frame_buffer: PathBuf,
 }
 
 impl Display {
-    /// Says so loudly, and is none, where Xvfb is missing.
+    /// Starts a server; prints a message and returns `None` where Xvfb is missing.
     pub(super) fn start(folder: &Path) -> Option<Self> {
         let server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-nolisten", "tcp", "-noreset"])
@@ -73,7 +73,7 @@ impl Display {
         this.can_be_drawn_to(folder).then_some(this)
     }
 
-    /// Whether the driver under test knows windows at all; SwiftShader as Chromium ships it does not.
+    /// Whether the driver under test supports windows at all; SwiftShader as Chromium ships it does not.
     fn can_be_drawn_to(&self, folder: &Path) -> bool {
         if std::env::var_os("RARA_TEST_DEVICE").is_none() {
             return true;
@@ -81,21 +81,21 @@ impl Display {
         fs::write(folder.join("quit.txt"), "quit").expect("a script");
         let mut command = rara(folder, "view @/scene.ply --script @/quit.txt");
         let output = command.env("DISPLAY", &self.name).output();
-        let messages = stderr(&output.expect("the rara binary runs"));
-        let lacks = messages.contains("cannot draw into windows")
-            || messages.contains("cannot be used here");
+        let printed = stderr(&output.expect("the rara binary runs"));
+        let lacks =
+            printed.contains("cannot draw into windows") || printed.contains("cannot be used here");
         if lacks {
-            eprintln!("SKIPPED: {}", messages.trim_end());
+            eprintln!("SKIPPED: {}", printed.trim_end());
         }
         !lacks
     }
 
-    /// A client of it.
+    /// A client of the server.
     pub(super) fn client(&self) -> Client {
         Client::connect(self.name.trim_start_matches(':'))
     }
 
-    /// It ends at once, whoever is connected.
+    /// Ends the server at once, whoever is connected.
     pub(super) fn kill(mut self) {
         self.server.0.kill().expect("it runs");
     }

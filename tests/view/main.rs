@@ -1,5 +1,5 @@
-//! `rara view` on a display of its own: Xvfb is started here, a script drives the window, and what the X server holds is
-//! what must be seen. Under validation throughout.
+//! `rara view` on a display of its own: the tests start Xvfb, a script drives the window, and the content of the X server
+//! is compared with what must be seen. All of it runs under validation.
 #![cfg(all(feature = "view", unix))]
 
 mod display;
@@ -47,7 +47,7 @@ impl<'a> Viewer<'a> {
 
     fn say(&mut self, lines: &str) {
         let stdin = self.child.0.stdin.as_mut().expect("it is piped");
-        // If it ended, `end` says why.
+        // If it has ended, a later check reports why.
         let _ = writeln!(
             stdin,
             "{}",
@@ -55,15 +55,15 @@ impl<'a> Viewer<'a> {
         );
     }
 
-    /// A screenshot by that name; a failure shows what the viewer had to say.
+    /// Takes a screenshot of that name; a failure shows what the viewer has printed.
     fn screenshot(&mut self, name: &str) -> Picture {
         self.say(&format!("screenshot @/{name}.png"));
         let path = self.folder.join(name);
         let until = Instant::now() + Duration::from_secs(60);
-        // The camera is written last.
+        // The camera is the last file to be written.
         while !path.with_extension("json").exists() {
             if let Some(status) = self.child.0.try_wait().expect("it can be asked") {
-                panic!("{status}: {}", self.messages());
+                panic!("{status}: {}", self.printed());
             }
             assert!(Instant::now() < until, "no screenshot in a minute");
             sleep(Duration::from_millis(20));
@@ -91,18 +91,18 @@ impl<'a> Viewer<'a> {
         }
     }
 
-    fn messages(&mut self) -> String {
-        self.child.messages()
+    fn printed(&mut self) -> String {
+        self.child.printed()
     }
 
-    /// Quits; what it has printed. No message of the validation layer, no failure.
+    /// Quits; returns what it has printed. Asserts that there is no message of the validation layer and no failure.
     fn quit(mut self) -> String {
         self.say("quit");
-        let messages = self.messages();
+        let printed = self.printed();
         let status = self.child.0.wait().expect("it ends");
-        assert!(status.success(), "{status}: {messages}");
-        assert!(!messages.contains("validation"), "{messages}");
-        messages
+        assert!(status.success(), "{status}: {printed}");
+        assert!(!printed.contains("validation"), "{printed}");
+        printed
     }
 
     /// Processor time so far, hundredths of a second.
@@ -119,7 +119,7 @@ impl<'a> Viewer<'a> {
         fields[12].parse::<u64>().expect("user") + fields[13].parse::<u64>().expect("system")
     }
 
-    /// That it sleeps.
+    /// Asserts that it sleeps.
     fn sleeps(&self, when: &str) {
         #[cfg(target_os = "linux")]
         {
@@ -142,7 +142,7 @@ fn rara(folder: &Path, words: &str) -> Command {
     {
         command.args(["--device", &device]);
     }
-    // The user's own cache and display are not the tests' business.
+    // The tests must not use the user's own cache and display.
     command.env("RARA_CACHE", "");
     command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
     command
@@ -167,7 +167,7 @@ fn folder(test: &str) -> Folder {
     folder
 }
 
-/// The largest difference, in units of 1/255, of what is beyond white too.
+/// The largest difference, in units of 1/255, also beyond white.
 fn apart(a: &Picture, b: &Picture) -> f32 {
     assert_eq!((a.width, a.height), (b.width, b.height));
     let pairs = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
@@ -179,15 +179,15 @@ fn background() -> String {
     format!("--background {r},{g},{b}")
 }
 
-/// Draws a screenshot again from what the viewer printed about it and nothing else, as a person would in a shell: the same
-/// file, to the byte.
-fn draws_again(folder: &Path, name: &str, messages: &str) {
+/// Draws a screenshot again with the flags that the viewer printed and nothing else, as a person would in a shell: the
+/// file is the same, to the byte.
+fn draws_again(folder: &Path, name: &str, printed: &str) {
     let wrote = format!(
         "wrote {}",
         folder.join(name).with_extension("png").display()
     );
-    let line = messages.lines().find(|line| line.starts_with(&wrote));
-    let line = line.unwrap_or_else(|| panic!("{name} is not in {messages}"));
+    let line = printed.lines().find(|line| line.starts_with(&wrote));
+    let line = line.unwrap_or_else(|| panic!("{name} is not in {printed}"));
     let (_, flags) = line.split_once("rara render ").expect("the flags");
     let again = folder.join(format!("{name} again.png"));
     let mut shell = Command::new("sh");
@@ -236,14 +236,14 @@ fn a_plane_is_moved_and_what_is_seen_is_what_render_draws() {
     viewer.say("plane off\ntimings");
     let whole = viewer.screenshot("whole");
     viewer.shows("nothing cut", &whole);
-    let messages = viewer.quit();
+    let printed = viewer.quit();
     assert!(
-        messages.contains("tiles") && messages.contains("on the device"),
-        "{messages}"
+        printed.contains("tiles") && printed.contains("on the device"),
+        "{printed}"
     );
 
     for name in ["first", "moved", "hard", "turned", "flown", "whole"] {
-        draws_again(&folder, name, &messages);
+        draws_again(&folder, name, &printed);
     }
 }
 
@@ -258,20 +258,20 @@ fn every_setting_and_any_name_draws_a_screenshot_again() {
                  --beam-switch 0.0123";
     let mut viewer = Viewer::start(&display, &folder, words);
     viewer.screenshot("it's $one");
-    // No eye goes where no number is.
+    // The eye does not go beyond what numbers can hold.
     viewer.say(
         "repeat 5 move 1e308,0,0\nshift -1e308,0\nturn 20,0\nmode exact\nplane next\nplane +0.2",
     );
     viewer.screenshot("two; more");
-    let messages = viewer.quit();
-    draws_again(&folder, "it's $one", &messages);
-    draws_again(&folder, "two; more", &messages);
+    let printed = viewer.quit();
+    draws_again(&folder, "it's $one", &printed);
+    draws_again(&folder, "two; more", &printed);
 
     let words = "--size 160x120 --clip plane:0,0,1,0 --preset exact --key-bits 16 --target-format 8 --trace-all";
     let mut viewer = Viewer::start(&display, &folder, words);
     viewer.screenshot("three");
-    let messages = viewer.quit();
-    draws_again(&folder, "three", &messages);
+    let printed = viewer.quit();
+    draws_again(&folder, "three", &printed);
 }
 
 #[test]
@@ -290,7 +290,7 @@ fn a_window_may_change_its_size_and_vanish_for_a_while() {
         viewer.shows(&format!("{width}x{height}"), &shot);
         seen.push(shot);
     }
-    // Minimised it draws nothing and waits for nothing; screenshots are still possible.
+    // A minimised window draws nothing and waits for nothing; screenshots are still possible.
     viewer.say("minimise\nrepeat 30 plane +0.005");
     let hidden = viewer.screenshot("hidden");
     assert!(apart(&hidden, &seen[4]) > 20.0, "the plane has moved");
@@ -298,7 +298,7 @@ fn a_window_may_change_its_size_and_vanish_for_a_while() {
     viewer.shows("what it was before", &seen[4]);
     viewer.say("restore");
     viewer.shows("what it is now", &hidden);
-    // Whoever brings it back: it is seen, so it is drawn.
+    // Whoever brings the window back, it is seen, so it is drawn.
     viewer.say("minimise\nplane -0.1");
     let hidden = viewer.screenshot("hidden_again");
     let mut client = display.client();
@@ -306,8 +306,8 @@ fn a_window_may_change_its_size_and_vanish_for_a_while() {
     client.unmap(window);
     client.map(window);
     viewer.shows("what it is after that", &hidden);
-    let messages = viewer.quit();
-    draws_again(&folder, "hidden", &messages);
+    let printed = viewer.quit();
+    draws_again(&folder, "hidden", &printed);
 }
 
 #[test]
@@ -329,14 +329,14 @@ fn a_window_outlives_a_screenshot_that_cannot_be_written() {
         assert!(Instant::now() < until, "no screenshot by key");
         sleep(Duration::from_millis(20));
     }
-    // At once, also where the last picture is still being written.
+    // It ends at once, also where the last picture is still being written.
     fs::rename(&shots, folder.join("gone")).expect("it is there");
     client.press(window, c);
     client.press(window, escape);
-    let messages = viewer.messages();
+    let printed = viewer.printed();
     assert!(
-        messages.contains("rara: ") && messages.contains("does not exist"),
-        "{messages}"
+        printed.contains("rara: ") && printed.contains("does not exist"),
+        "{printed}"
     );
     assert_eq!(viewer.child.0.wait().expect("it ends").code(), Some(0));
 }
@@ -360,20 +360,17 @@ fn a_display_that_goes_away_is_a_failure_and_no_panic() {
             let window = client.window();
             client.kill(window);
         }
-        let messages = child.messages();
+        let printed = child.printed();
         let status = child.0.wait().expect("it ends");
-        assert_eq!(status.code(), Some(1), "{messages}");
-        assert!(!messages.contains("panicked"), "{messages}");
-        // Xlib may be the first to notice; its line is the one or the other by what the socket says.
+        assert_eq!(status.code(), Some(1), "{printed}");
+        assert!(!printed.contains("panicked"), "{printed}");
+        // Xlib may be the first to notice; which of its two lines it prints depends on the socket.
         let says = [
             "rara: the window was lost",
             "X connection to",
             "XIO:  fatal IO error",
         ];
-        assert!(
-            says.iter().any(|says| messages.contains(says)),
-            "{messages}"
-        );
+        assert!(says.iter().any(|says| printed.contains(says)), "{printed}");
     }
 }
 
@@ -388,19 +385,19 @@ fn a_screenshot_replaces_nothing_and_a_script_that_fails_ends_the_viewer() {
     viewer.screenshot("own");
     assert!(folder.join("shot_001.png").is_file() && folder.join("shot_002.json").is_file());
     viewer.say("screenshot @/own.png");
-    let messages = viewer.messages();
+    let printed = viewer.printed();
     assert!(
-        messages.contains("own.png") && messages.contains("replaces nothing"),
-        "{messages}"
+        printed.contains("own.png") && printed.contains("replaces nothing"),
+        "{printed}"
     );
     assert_eq!(viewer.child.0.wait().expect("it ends").code(), Some(1));
 
     let mut viewer = Viewer::start(&display, &folder, "--size 64x64");
     viewer.say("# a comment\nleap");
-    let messages = viewer.messages();
+    let printed = viewer.printed();
     assert!(
-        messages.contains("line 2: \"leap\" is no action"),
-        "{messages}"
+        printed.contains("line 2: \"leap\" is no action"),
+        "{printed}"
     );
     assert_eq!(viewer.child.0.wait().expect("it ends").code(), Some(2));
 }

@@ -1,4 +1,4 @@
-//! As much of the X protocol as it takes to do to a window what a window manager or a person does.
+//! As much of the X protocol as the tests need to treat a window as a window manager or a person does.
 
 use std::io::{Read, Write};
 use std::os::unix::net::UnixStream;
@@ -10,7 +10,7 @@ pub(super) struct Client {
 }
 
 impl Client {
-    /// Of the server on this machine that has this display number.
+    /// Connects to the server on this machine that has this display number.
     pub(super) fn connect(number: &str) -> Self {
         let path = format!("/tmp/.X11-unix/X{number}");
         let mut stream = UnixStream::connect(path).expect("the server listens");
@@ -53,7 +53,7 @@ impl Client {
         self.send(10, 0, &[window]);
     }
 
-    /// Puts it there again.
+    /// Puts it on the screen again.
     pub(super) fn map(&mut self, window: u32) {
         self.send(8, 0, &[window]);
     }
@@ -84,7 +84,8 @@ impl Client {
         self.stream.write_all(&request).expect("the server listens");
     }
 
-    /// A request without a reply; waits until it is done, as the server forgets what a client asks that has left.
+    /// Sends a request without a reply and waits until it is done, as the server forgets the requests of a client that
+    /// has left.
     fn send(&mut self, opcode: u8, detail: u8, words: &[u32]) {
         self.request(opcode, detail, words);
         self.request(43, 0, &[]); // GetInputFocus

@@ -81,7 +81,7 @@ pub(crate) enum Section {
 }
 
 impl Section {
-    /// As typed and as in the CSV.
+    /// The name on the command line and in the CSV.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Correct => "correct",
@@ -118,7 +118,7 @@ impl Args {
             Section::Correct => &[5000],
             _ => &[500_000],
         };
-        // The reference takes its time.
+        // The scenes of `correct` stay small, since the reference takes its time.
         let given = match section {
             Section::Correct => &[],
             _ => &self.gaussians[..],
@@ -142,7 +142,7 @@ impl Args {
         }
     }
 
-    /// The picture width of all else.
+    /// The picture width of all other sections.
     pub(crate) fn size(&self) -> u32 {
         let usual = if self.quick { 64 } else { 1024 };
         self.sizes.first().copied().unwrap_or(usual)

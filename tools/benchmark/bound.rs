@@ -1,6 +1,7 @@
-//! How far a frame is from what it cannot do without, each at the best rate that the device shows in the same round: bytes
-//! moved (each survivor's Gaussian read, its splat written and read, the picture written), fragments blended, keys sorted.
-//! Nothing else counts as needed: not the arithmetic of a projection, no lists of tiles, no fragment without effect.
+//! How far a frame is from what it cannot do without, each at the best rate that the device shows in the same round:
+//! bytes moved (each survivor's Gaussian read, its splat written and read, the picture written), fragments blended, keys
+//! sorted. Nothing else counts as needed: not the arithmetic of a projection, no lists of tiles, no fragment without
+//! effect.
 
 use rara::types::Splat;
 use rara::{Clip, Gaussians, Headless, Result, glam};
@@ -18,7 +19,7 @@ use crate::turns::in_turn;
 use crate::variant::{MODES, Variant};
 use crate::world::Source;
 
-/// Bytes that are copied, and in a run that only shows that everything runs.
+/// Bytes that are copied in a measurement, and in a run that only shows that everything runs.
 const MOVED: [u64; 2] = [128 << 20, 1 << 20];
 
 /// What a frame cannot do without.
@@ -73,7 +74,7 @@ fn scene(bench: &mut Bench, source: &Source, place: &mut Place) -> Result<()> {
     })?;
 
     let survivors = f64::from(frames.last().map_or(0, |timed| timed.stats.counts.drawn));
-    // Whichever sort was the faster one: a bound that the frame itself keeps below would be none.
+    // The faster of the two sorts counts: a bound that the frame itself beats would be none.
     for (rate, ms) in measured[2].iter_mut().zip(column(&frames, "sort")) {
         *rate = rate.max(survivors / ms * 1e3);
     }
@@ -88,7 +89,7 @@ fn scene(bench: &mut Bench, source: &Source, place: &mut Place) -> Result<()> {
     add_rows(bench, place, &variant, (needs, &measured, &frames))
 }
 
-/// The same centres, seen as nothing: what is left of a frame is its sort.
+/// The same centres with Gaussians that nobody sees: all that is left of a frame is its sort.
 fn nothing_but_keys(scene: &Gaussians) -> Gaussians {
     let mut keys = scene.clone();
     keys.set_sh_degree(0);

@@ -1,4 +1,4 @@
-//! What callgrind writes. `tests/files/benchmark.rs` is its test.
+//! Reads what callgrind writes. `tests/files/benchmark.rs` tests it.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::path::Path;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Counted {
     pub(crate) all: u64,
-    /// Those in one program's own code; the others are in libraries and drivers.
+    /// Instructions in the program's own code; the others are in libraries and drivers.
     pub(crate) own: u64,
 }
 

@@ -17,20 +17,20 @@ use crate::args::Args;
 use crate::variant::{MODES, Variant};
 use crate::world::{Source, World};
 
-/// What the process does.
+/// What the child process does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Child {
     /// From nothing to the first picture; prints what each step took, milliseconds.
     Start,
-    /// Loads the file, counted.
+    /// Loads the file; its instructions are counted.
     Load,
-    /// Plans frames, counted.
+    /// Plans frames; their instructions are counted.
     Configure,
-    /// Records frames, counted.
+    /// Records frames; their instructions are counted.
     Record,
 }
 
-/// Frames that are counted, and those before them: the buffers and pipelines they need are there then.
+/// Frames that are counted, and those before them, which create the buffers and pipelines.
 pub(crate) const FRAMES: u32 = 10;
 const WARM_UP: u32 = 2;
 
@@ -61,7 +61,7 @@ pub(crate) fn process(words: &[std::ffi::OsString]) -> Command {
     command
 }
 
-/// What the process does, in it.
+/// Does in the child process what `child` says.
 pub(crate) fn run(child: Child, args: &Args) -> Result<()> {
     let source = Source::File(args.scenes[0].clone(), args.cameras.clone());
     match child {
@@ -98,7 +98,7 @@ fn start(source: &Source, args: &Args) -> Result<()> {
 }
 
 /// Plans and records frames as an engine would, and submits none of them: the driver compiles a shader when it first
-/// executes it, which is not to be seen here, and takes minutes in a simulator.
+/// executes it, which must not be counted here, and takes minutes in a simulator.
 fn frames(child: Child, world: &World, args: &Args) -> Result<()> {
     let headless = Headless::new(&args.desc())?;
     let device = headless.device();
@@ -163,8 +163,8 @@ fn count_if<R>(counts: bool, work: impl FnOnce() -> R) -> R {
     }
 }
 
-/// What callgrind counts: it is given this name. It counts in the calling thread only, so that a CPU driver's threads do
-/// not.
+/// Callgrind counts the function of this name, and only in the thread that calls it, so that a CPU driver's threads do
+/// not count.
 #[inline(never)]
 fn counted_by_callgrind<R>(work: impl FnOnce() -> R) -> R {
     black_box(work())

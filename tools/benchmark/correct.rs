@@ -1,4 +1,4 @@
-//! Correctness first: what draws a wrong picture is not timed.
+//! Correctness first: a variant that draws a wrong picture is not timed.
 
 use rara::glam::DVec3;
 use rara::measure::psnr;
@@ -13,10 +13,10 @@ use crate::table::Table;
 use crate::variant::{MODES, Variant, rasters};
 use crate::world::World;
 
-/// Small: the reference evaluates every splat in double precision. No multiple of a tile.
+/// The picture is small, since the reference evaluates every splat in double precision, and no multiple of a tile.
 const WIDTH: u32 = 123;
-/// Frames that are drawn with and without those before them, the camera's place and the share that the clip keeps:
-/// nothing moves, the clip does, the camera does, both do, the clip goes back.
+/// Frames that are drawn with and without those before them: the camera's place, and the share that the clip keeps.
+/// Nothing moves, the clip does, the camera does, both do, the clip goes back.
 const FRAMES: [(u32, f64); 6] = [(0, 0.5), (0, 0.5), (0, 0.4), (1, 0.4), (2, 0.3), (2, 0.6)];
 
 /// Names of variants that were found wrong.
@@ -27,7 +27,7 @@ pub(crate) struct Wrong(Vec<String>);
 pub(crate) const KEPT: &str = "kept";
 
 impl Wrong {
-    /// Whether this may be timed; says so where it may not.
+    /// Whether a variant may be timed; prints a note if it may not.
     pub(crate) fn allows(&self, name: &str) -> bool {
         let wrong = self.0.iter().any(|wrong| wrong == name);
         if wrong {
@@ -107,7 +107,7 @@ fn against_reference(
     Ok(())
 }
 
-/// What a frame keeps of those before it must not show: byte for byte the same pictures.
+/// Asserts that what a frame keeps of those before it does not show: the pictures are the same byte for byte.
 fn against_forgetting(bench: &mut Bench, world: &World, mut keeping: Headless) -> Result<()> {
     let mut forgetting = Headless::new(&bench.args.desc())?;
     forgetting.load(&world.scene)?;

@@ -1,5 +1,5 @@
-//! How many fragments of a frame count, by the reference in single precision: alpha of 1/255 or more, in a pixel that what
-//! lies before has not saturated.
+//! How many fragments of a frame count, by the reference in single precision: their alpha is 1/255 or more, in a pixel
+//! that the splats before have not saturated.
 
 use std::sync::Mutex;
 
@@ -9,7 +9,7 @@ use rara::{Camera, Clip, Decay, Gaussians, Settings};
 /// Rows that a thread counts in at a time.
 const BAND: u32 = 16;
 
-/// Of a frame without a clip.
+/// Counts the fragments of a frame without a clip.
 pub(crate) fn count(scene: &Gaussians, camera: &Camera, settings: &Settings) -> u64 {
     let view = View::<f32>::new(camera);
     let sides = classify::classify(scene, &view, &Clip::default(), settings);
@@ -47,7 +47,7 @@ pub(crate) fn count(scene: &Gaussians, camera: &Camera, settings: &Settings) -> 
     })
 }
 
-/// Of splats that are sorted front to back.
+/// Counts those in some rows, of splats that are sorted front to back.
 fn in_band(
     splats: &[&Splat<f32>],
     rows: std::ops::Range<u32>,

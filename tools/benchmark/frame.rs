@@ -21,7 +21,7 @@ pub(crate) enum Past {
 pub(crate) struct Timed {
     /// From the call to the picture being ready on the device, planning included, milliseconds.
     pub(crate) frame_ms: f64,
-    /// Of this process on all cores, milliseconds; 0 where the system does not say.
+    /// Of this process on all cores, milliseconds; 0 where the system does not count it.
     pub(crate) processor_ms: f64,
     pub(crate) stats: FrameStats,
 }

@@ -51,7 +51,7 @@ fn lines(bench: &Bench, gaussians: u32, scratch: &Scratch) -> Result<Vec<Line>> 
     say("instructions: load");
     let file = |count| scratch.file(&Source::Made(Kind::General, count));
     let (small, large) = (file(gaussians)?, file(2 * gaussians)?);
-    // What a file costs whatever is in it falls out.
+    // The difference between the two leaves out what any file costs.
     let (a, b) = (
         count(bench, Child::Load, &small, scratch)?,
         count(bench, Child::Load, &large, scratch)?,
@@ -70,7 +70,7 @@ fn lines(bench: &Bench, gaussians: u32, scratch: &Scratch) -> Result<Vec<Line>> 
         let each = [sum.all, sum.own].map(|sum| sum as f64 / f64::from(FRAMES));
         lines.push((name, each));
         if bench.args.quick {
-            break; // Starting a driver in a simulator is not quick, and the other process does the same.
+            break; // Starting a driver in a simulator is slow, and the other process would do the same.
         }
     }
     Ok(lines)

@@ -1,4 +1,4 @@
-//! What rara's frames take: the program behind `tools/bench`. A file a section; each measures and prints.
+//! Measures what rara's frames take: the program behind `tools/bench`. Each file is a section, which measures and prints.
 
 mod args;
 mod bound;
@@ -39,7 +39,7 @@ struct Bench {
 }
 
 impl Bench {
-    /// Measures each scene of a section, and says which ones there is no memory for.
+    /// Measures each scene of a section, and prints which ones there is no memory for.
     fn each_source(
         &mut self,
         section: Section,
@@ -82,7 +82,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs the sections; whether every picture was right.
+/// Runs the sections; returns whether every picture was right.
 fn measure(args: Args) -> Result<bool> {
     let report = Report::new(args.output.as_deref(), &Headless::new(&args.desc())?)?;
     let mut bench = Bench {

@@ -1,16 +1,16 @@
-//! Whether a scene fits. Linux promises memory that it has not got, and ends the process that takes it.
+//! Whether a scene fits. Linux promises memory that it does not have, and ends the process that takes it.
 
 use rara::{Error, Result};
 
-/// Bytes for each Gaussian: in the process (236 with SH of degree 3) while it is made, and once for each renderer that
-/// holds it: the same, a frame's working memory and its pairs of splat and tile.
+/// Bytes for each Gaussian: first in the process (236 with SH of degree 3) while it is made, and then in each renderer
+/// that holds it: the same, a frame's working memory and its pairs of splat and tile.
 const MADE: u64 = 300;
 const HELD: u64 = 600;
-/// For each renderer besides: the driver, pictures and shaders.
+/// Further bytes of each renderer: the driver, pictures and shaders.
 const RENDERER: u64 = 256 << 20;
 
-/// An error where this machine has not enough memory for a scene in so many renderers. It says nothing of a GPU's
-/// memory, whose driver refuses what it has not got.
+/// Returns an error if this machine has not enough memory for a scene in so many renderers. It does not check a GPU's
+/// memory, whose driver refuses what it does not have.
 pub(crate) fn check(gaussians: usize, renderers: u64) -> Result<()> {
     let needed = gaussians as u64 * (MADE + renderers * HELD) + renderers * RENDERER;
     match available() {

@@ -68,7 +68,7 @@ fn size(
 ) -> Result<()> {
     let mut variants: Vec<Variant> = Vec::new();
     for raster in rasters(headless) {
-        // Of no use on a CPU: three times a quad's vertices.
+        // They are of no use on a CPU: three times a quad's vertices.
         if raster.0 == "mesh" && headless.device().info().kind_name() == "cpu" {
             continue;
         }

@@ -15,10 +15,10 @@ use crate::variant::{MODES, Variant};
 use crate::world::Source;
 
 const SHARE: f64 = 0.01;
-/// Halvings in search of the camera that sees so much.
+/// Halvings in the search for the camera that sees the wanted share.
 const STEPS: u32 = 12;
 
-/// A way of seeing a part: what it is called, how it is drawn, where the eye looks to, and the clip.
+/// A way of seeing a part: its name, how it is drawn, how the camera changes, and the clip.
 struct View {
     name: &'static str,
     variant: Variant,
@@ -30,9 +30,9 @@ struct View {
 #[derive(Debug, Clone, Copy)]
 enum Look {
     Whole,
-    /// The field of view so many times narrower, so that the part fills the picture.
+    /// The field of view becomes so many times narrower, so that the part fills the picture.
     Nearer(f64),
-    /// Turned aside by so many radians, so that the part lies at the picture's edge.
+    /// The camera turns aside by so many radians, so that the part lies at the picture's edge.
     Aside(f64),
 }
 
@@ -94,7 +94,7 @@ fn scene(bench: &mut Bench, source: &Source, place: &mut Place) -> Result<()> {
     add_rows(bench, place, &views, &frames)
 }
 
-/// The look that lets the camera see a hundredth, from 0 for all of it to 1 for next to nothing.
+/// Finds the change with which the camera sees a hundredth, from 0 for all of it to 1 for next to nothing.
 fn search(
     headless: &mut Headless,
     variant: &Variant,

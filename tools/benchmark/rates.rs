@@ -11,7 +11,7 @@ use rara::gpu::{
 use rara::limits::{TILE_HEIGHT, TILE_WIDTH};
 use rara::{Error, Result};
 
-/// Splats that cover every tile, and their opacity: each is above 1/255 everywhere, and the last still finds light.
+/// Splats that cover every tile, and their opacity: each is above 1/255 everywhere, and the last still gets light.
 const SPLATS: u32 = 128;
 const OPACITY: f32 = 0.015;
 const TILE_BYTES: u64 = 16 * (TILE_WIDTH * TILE_HEIGHT) as u64;
@@ -19,7 +19,7 @@ const TILE_BYTES: u64 = 16 * (TILE_WIDTH * TILE_HEIGHT) as u64;
 pub(crate) struct Rates {
     device: Device,
     copy: ComputePipeline,
-    /// With a tile's column to an invocation, as CPU drivers like it, and with a pixel.
+    /// One invocation has a tile's column, as CPU drivers like it, or a pixel.
     blends: [ComputePipeline; 2],
     source: Buffer,
     target: Buffer,
@@ -27,7 +27,7 @@ pub(crate) struct Rates {
 }
 
 impl Rates {
-    /// With so many bytes to be moved: more than caches hold.
+    /// Buffers with so many bytes to move, more than caches hold.
     pub(crate) fn new(device: &Device, bytes: u64) -> Result<Self> {
         let buffer = |name, size| {
             let location = Location::GpuOnly;
@@ -65,7 +65,7 @@ impl Rates {
             target: buffer("target", bytes)?,
             splats,
         };
-        // Memory that nothing was ever written to may be one page for all.
+        // Memory that nothing has written may be a single page.
         rates.seconds(|recorder| {
             recorder.fill(&rates.source, 0, bytes, 1);
             recorder.fill(&rates.target, 0, bytes, 2);
@@ -102,7 +102,7 @@ impl Rates {
         Ok(fragments as f64 / least)
     }
 
-    /// What the device takes for a recording.
+    /// How many seconds the device takes for a recording.
     fn seconds(&self, record: impl FnOnce(&mut Recorder<'_>)) -> Result<f64> {
         let mut timer = Timer::new(&self.device, 1)?;
         let begin = Instant::now();

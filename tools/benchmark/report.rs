@@ -78,7 +78,7 @@ impl Report {
             .map_err(Error::io(path.clone()))
     }
 
-    /// What cannot be measured here for want of memory.
+    /// Notes what cannot be measured here for lack of memory.
     pub(crate) fn no_memory(&mut self, place: &Place, why: &str) -> Result<()> {
         println!("\n{}: no memory: {why}", place.title());
         self.row(place, ("", "no memory", ""), &Summary::of(&[]))
@@ -134,7 +134,7 @@ pub(crate) fn grouped(count: usize) -> String {
     text
 }
 
-/// Says on the terminal what is being done.
+/// Prints on the terminal what is being done.
 pub(crate) fn say(text: impl std::fmt::Display) {
     eprintln!("bench: {text}");
 }

@@ -1,4 +1,4 @@
-//! A folder for what only this run needs, gone when it ends.
+//! A folder for files that only this run needs; it is removed at the end.
 
 use std::fs::{create_dir_all, remove_dir_all};
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ impl Scratch {
         &self.0
     }
 
-    /// The file of a scene, written unless it is one.
+    /// The file of a scene; a generated scene is written to one.
     pub(crate) fn file(&self, source: &Source) -> Result<PathBuf> {
         if let Source::File(path, _) = source {
             return Ok(path.clone());

@@ -1,4 +1,4 @@
-//! From nothing to the first picture, in a process of its own: what whoever starts a viewer waits for.
+//! From nothing to the first picture, in a process of its own, which is how long somebody who starts a viewer waits.
 
 use std::fs::{create_dir_all, read, remove_dir_all};
 use std::io::{BufRead as _, BufReader};
@@ -62,14 +62,14 @@ fn scene(bench: &mut Bench, source: &Source, place: &mut Place) -> Result<()> {
 /// A process from its start to its first picture.
 fn one(bench: &Bench, file: &Path, cache: &PathBuf) -> Result<Steps> {
     create_dir_all(cache).map_err(Error::io(cache))?;
-    // Reading is not the renderer's: how long it takes is taken away, and nobody pays for a disk.
+    // Reading the file is not the renderer's work: its time is subtracted, so that no disk counts.
     let begin = Instant::now();
     drop(std::hint::black_box(read(file).map_err(Error::io(file))?));
     let reading = begin.elapsed().as_secs_f64() * 1e3;
 
     let words = child::command(&bench.args, Child::Start, file)?;
     let mut command = child::process(&words);
-    // Where drivers keep compiled shaders, Mesa's under either name.
+    // The folders in which drivers keep compiled shaders, Mesa's under either name.
     command
         .env("XDG_CACHE_HOME", cache)
         .env_remove("MESA_SHADER_CACHE_DIR");

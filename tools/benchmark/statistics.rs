@@ -1,4 +1,4 @@
-//! What a number of measurements comes to. `tests/files/benchmark.rs` is its test.
+//! Summaries of several measurements. `tests/files/benchmark.rs` tests them.
 
 /// The least, the median and the 90th percentile of some values.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +26,7 @@ impl Summary {
     }
 }
 
-/// The ratios of what was measured in the same round: other work on the machine disturbs both alike.
+/// The ratios of two measurements in the same round: other work on the machine disturbs both alike.
 pub(crate) fn ratios(values: &[f64], to: &[f64]) -> Vec<f64> {
     assert_eq!(values.len(), to.len(), "a ratio is of a pair");
     values.iter().zip(to).map(|(a, b)| a / b).collect()

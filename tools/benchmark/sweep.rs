@@ -48,7 +48,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
 }
 
 fn scene(bench: &mut Bench, source: &Source, place: &mut Place) -> Result<()> {
-    // Each mode swept and independently; without a clip nothing changes from frame to frame.
+    // Each mode is swept and drawn independently; without a clip nothing changes from frame to frame.
     let pasts = |mode| {
         if mode == "none" {
             &[Past::Forgotten][..]
@@ -101,7 +101,7 @@ fn sweeps(bench: &Bench, world: &World, lanes: &mut [Lane]) -> Result<Vec<Times>
         .collect();
     let sweeps = in_turn(bench.args.rounds(), 1, |_, round| {
         let mut sums = vec![[0.0; 2]; lanes.len()];
-        // The round that warms up needs no more than the first frame, the middle one and the last.
+        // The round that warms up needs only the first frame, the middle one and the last.
         let frames = if round == 0 { 3 } else { FRAMES };
         for index in 0..frames {
             let clip = clip_at(
@@ -115,7 +115,7 @@ fn sweeps(bench: &Bench, world: &World, lanes: &mut [Lane]) -> Result<Vec<Times>
                     lanes.len() - 1 - turn
                 };
                 let lane = &mut lanes[at];
-                // A sweep begins with a frame that nothing was kept for.
+                // A sweep begins with a frame for which nothing was kept.
                 let past = if index == 0 {
                     Past::Forgotten
                 } else {
@@ -184,7 +184,8 @@ fn add_rows(bench: &mut Bench, place: &Place, all: &[Times]) -> Result<()> {
     Ok(())
 }
 
-/// What a lane is compared with: like with like, but for the unclipped frame, which swept would be none at all.
+/// The lanes that a lane is compared with: like with like, except for the unclipped frame, for which a sweep would be no
+/// work at all.
 fn compared(name: &str) -> [String; 3] {
     let (mode, past) = name.split_once(' ').expect("a mode and a past");
     [

@@ -78,7 +78,7 @@ pub(crate) fn spread(s: &Summary) -> String {
     format!("{} ({}-{})", digits(s.median), digits(s.min), digits(s.p90))
 }
 
-/// Three digits that count, or as many as are before the point: 0.0123, 1.23, 12.3, 1234.
+/// Three significant digits, or all digits before the point if they are more: 0.0123, 1.23, 12.3, 1234.
 pub(crate) fn digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");

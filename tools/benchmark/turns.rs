@@ -1,15 +1,15 @@
-//! What is compared takes turns, so that other work on the machine disturbs all of it alike.
+//! Variants that are compared take turns, so that other work on the machine disturbs all of them alike.
 
 use std::time::{Duration, Instant};
 
 use rara::Result;
 
-/// How often.
+/// How many rounds there are.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rounds {
     pub(crate) most: u32,
     pub(crate) least: u32,
-    /// After this long, the least is enough.
+    /// After this long, the least number of rounds is enough.
     pub(crate) enough: Duration,
 }
 
@@ -29,7 +29,7 @@ pub(crate) fn in_turn<T>(
         if round > rounds.least && begin.elapsed() > rounds.enough {
             break;
         }
-        // There and back, so that none always follows the same one.
+        // The order alternates, so that none always follows the same one.
         let mut order: Vec<usize> = (0..count).collect();
         if round % 2 == 0 {
             order.reverse();

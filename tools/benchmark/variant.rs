@@ -1,4 +1,4 @@
-//! What is compared: modes and raster paths.
+//! The variants that are compared: modes and raster paths.
 
 use rara::{Clip, Headless, Mode, Raster, Settings};
 
@@ -40,12 +40,12 @@ impl Variant {
         }
     }
 
-    /// The path that a device gets unasked.
+    /// The path that a device gets by default.
     pub(crate) fn auto(mode: (&'static str, Mode)) -> Self {
         Self::new(mode, ("auto", Raster::Auto))
     }
 
-    /// As in the CSV.
+    /// The name in the CSV.
     pub(crate) fn name(&self) -> String {
         format!("{} {}", self.mode, self.raster)
     }

@@ -9,7 +9,7 @@ use rara::{Camera, Clip, ClipOp, Error, Gaussians, Plane, Result, glam};
 
 /// Degrees that the camera moves in a frame, as in measurements of other renderers.
 const STEP: f64 = 4.0;
-/// How far away the orbit is, in radii of the scene, and how far above it.
+/// How far away the orbit is, in radii of the scene, and how far above its middle.
 const DISTANCE: f64 = 2.2;
 const HEIGHT: f64 = 0.36;
 const FOV_Y: f64 = 50.0;
@@ -18,7 +18,7 @@ const FOV_Y: f64 = 50.0;
 #[derive(Debug, Clone)]
 pub(crate) enum Source {
     Made(Kind, u32),
-    /// A file, and that of its cameras.
+    /// A file, and the file of its cameras.
     File(PathBuf, Option<PathBuf>),
 }
 
@@ -37,11 +37,11 @@ impl Source {
         }
     }
 
-    /// Gaussians, as far as that is known before it is there.
+    /// Gaussians, as far as their number is known before the scene is.
     pub(crate) fn expected(&self) -> usize {
         match self {
             Self::Made(_, count) => *count as usize,
-            // With SH of degree 3, which makes 248 bytes a Gaussian; fewer are larger files than thought.
+            // This assumes SH of degree 3, with 248 bytes a Gaussian; a file of a lower degree holds more of them.
             Self::File(path, _) => path.metadata().map_or(0, |m| m.len() as usize / 248),
         }
     }
@@ -73,7 +73,7 @@ impl Source {
     }
 }
 
-/// A scene and what looks at it.
+/// A scene, its cameras and the planes that cut it.
 #[derive(Debug)]
 pub(crate) struct World {
     pub(crate) name: String,
@@ -83,7 +83,7 @@ pub(crate) struct World {
 }
 
 impl World {
-    /// The camera of a frame, for a picture so wide: the file's in turn, or round the scene.
+    /// The camera of a frame, for a picture of this width: the file's in turn, or round the scene.
     pub(crate) fn camera(&self, frame: u32, width: u32) -> Result<Camera> {
         if self.cameras.is_empty() {
             let turn = (STEP * f64::from(frame)).to_radians();
@@ -97,8 +97,8 @@ impl World {
         camera.resized((width, (height.round() as u32).max(1)))
     }
 
-    /// The plane across `normal` that keeps this share of the centres. It goes between two of them: which side the one
-    /// that it touches is on would be up to rounding.
+    /// The plane across `normal` that keeps this share of the centres. It goes between two of them: if it touched one,
+    /// rounding would decide on which side that is.
     pub(crate) fn keeping(&self, share: f64, normal: DVec3) -> Result<Clip> {
         let along = self
             .scene

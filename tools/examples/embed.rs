@@ -1,7 +1,7 @@
 //! rara in somebody else's engine: cargo run --release --example embed [OUT.png]
 //!
-//! `host.rs` is the engine: its own instance, device, queue, targets and frames in flight. Here its device is adopted, a
-//! scene uploaded, and each frame asked for in three calls, which record and do nothing else.
+//! `host.rs` is the engine: its own instance, device, queue, targets and frames in flight. Here rara adopts its device,
+//! uploads a scene, and draws each frame in three calls, which record and do nothing else.
 
 mod host;
 
@@ -17,7 +17,7 @@ const TARGET: vk::Extent2D = vk::Extent2D {
     width: 640,
     height: 480,
 };
-/// Where in the target the splats go; the host's stripes are round about it, and shine through.
+/// The part of the target that the splats are drawn in; the host's stripes are around it, and show through.
 const VIEW: vk::Rect2D = vk::Rect2D {
     offset: vk::Offset2D { x: 40, y: 30 },
     extent: vk::Extent2D {
@@ -67,7 +67,7 @@ fn main() -> rara::Result<()> {
     }
     let pixels = host.wait_for_all()?;
 
-    // In this order: the host's device goes last.
+    // The order matters: the host's device goes last.
     drop((renderer, scene, device));
     host.close();
     let picture = Picture {

@@ -1,4 +1,4 @@
-// An engine in small, which knows nothing of splats: images, a depth-tested mesh, pictures to files. For host.cpp alone.
+// A small engine that knows nothing of splats, for host.cpp alone: images, a depth-tested mesh, pictures to files.
 #pragma once
 #include <vulkan/vulkan.h>
 #include "mesh.h"

@@ -17,7 +17,7 @@ int main(int count, char **arguments) {
 
     VkInstance instance = make_instance(validation);
 
-    // Which device will do, asked before there is one, and what rara wants of it added to what the host enables.
+    // Find a device that will do, before there is one, and add what rara needs of it to what the host enables.
     uint32_t devices = 16;
     VkPhysicalDevice all[16];
     VkResult listed = vkEnumeratePhysicalDevices(instance, &devices, all);
@@ -84,7 +84,7 @@ int main(int count, char **arguments) {
     RaraRendererDesc desc;
     RARA(rara_renderer_desc_default(&desc, sizeof desc, COLOUR));
     desc.depth = &tested, desc.timing = VK_TRUE;
-    desc.bindings = validation ? RARA_BINDINGS_BOUND : RARA_BINDINGS_ADDRESS;  // bound, the layer can watch
+    desc.bindings = validation ? RARA_BINDINGS_BOUND : RARA_BINDINGS_ADDRESS;  // the layer can watch bound buffers
     RaraRenderer *renderer;
     RARA(rara_renderer_create(lent, &desc, &renderer));
 
@@ -139,7 +139,7 @@ int main(int count, char **arguments) {
     VK(vkQueueSubmit(queue, 1, &submit, nullptr));
     VK(vkQueueWaitIdle(queue));
 
-    // The picture, and what the frame reports of itself.
+    // The picture, and the statistics of the frame.
     save(arguments[2], readback);
     RaraFrameStats stats;
     RARA(rara_renderer_stats(renderer, &stats, sizeof stats));
@@ -147,7 +147,7 @@ int main(int count, char **arguments) {
     for (uint32_t i = 0; i < stats.pass_count; i++) printf(" %s %.2f", stats.passes[i].name, stats.passes[i].ms);
     printf("\n");
 
-    // What is rara's goes first, what is the host's is the host's to destroy.
+    // What is rara's goes first; the host destroys its own.
     rara_renderer_destroy(renderer);
     rara_scene_buffers_destroy(scene);
     check(rara_device_bytes(lent) == 0, "rara kept memory");

@@ -1,5 +1,5 @@
-//! An engine in small, which knows nothing of splats: its own instance, device, queue and targets, two frames in flight.
-//! It paints its targets with stripes of its own, so that whatever draws afterwards draws onto something.
+//! A small engine that knows nothing of splats: its own instance, device, queue and targets, two frames in flight. It
+//! paints stripes of its own into its targets, so that what draws afterwards draws onto something.
 
 #[path = "validation.rs"]
 pub(crate) mod validation;
@@ -47,7 +47,7 @@ pub(crate) struct Host {
     _entry: Entry,
 }
 
-/// What a frame in flight has to itself.
+/// The part of the host that each frame in flight has to itself.
 struct Slot {
     pool: vk::CommandPool,
     cmd: vk::CommandBuffer,
@@ -77,7 +77,7 @@ impl Host {
             let (instance, messenger) =
                 validation::instance(&entry, VERSION, desc.validation, &messages)?;
 
-            // What rara needs of a device can be asked before there is one, and goes into the host's own creation.
+            // What rara needs of a device is known before there is one, and goes into the host's own creation.
             let wanted = |physical: &vk::PhysicalDevice| {
                 let properties = instance.get_physical_device_properties(*physical);
                 let name = properties.device_name_as_c_str().unwrap_or(c"?");
@@ -133,7 +133,7 @@ impl Host {
         }
     }
 
-    /// What [`rara::gpu::Device::adopt`] wants to know. The host must outlive whatever is made from it.
+    /// What [`rara::gpu::Device::adopt`] needs. The host must outlive whatever is made from it.
     pub(crate) fn lend(&self) -> AdoptDesc {
         AdoptDesc::new(
             VERSION,
@@ -148,8 +148,8 @@ impl Host {
         .pipeline_cache(self.pipeline_cache)
     }
 
-    /// Waits until the frame `FRAMES` ago is done, so that what it used may be used again; its picture, if there was
-    /// such a frame.
+    /// Waits until the frame `FRAMES` ago is done, so that what it used may be used again. Returns its picture, if there
+    /// was such a frame.
     pub(crate) fn wait(&mut self) -> Result<Option<Vec<[f32; 4]>>> {
         if self.submitted < FRAMES {
             return Ok(None);
@@ -157,7 +157,7 @@ impl Host {
         self.picture_of(self.submitted - FRAMES).map(Some)
     }
 
-    /// Waits for the last frame; its picture.
+    /// Waits for the last frame and returns its picture.
     pub(crate) fn wait_for_all(&mut self) -> Result<Vec<[f32; 4]>> {
         self.picture_of(self.submitted - 1)
     }
@@ -301,7 +301,7 @@ impl Host {
         Ok(())
     }
 
-    /// Destroys everything; what the validation layer had to say, of things left alive too.
+    /// Destroys everything; returns the messages of the validation layer, also about objects that were left alive.
     pub(crate) fn close(self) -> Vec<String> {
         let Self { device, .. } = &self;
         // SAFETY: the device is idle after the first call, and nothing is used afterwards; null handles are ignored.

@@ -1,5 +1,5 @@
-//! A host's instance, with the validation layer's checks of synchronisation and best practices, and what of the latter is
-//! allowed to be said, each with its reason.
+//! A host's instance, with the validation layer's checks of synchronisation and best practices, and the warnings of the
+//! latter that are allowed, each with its reason.
 
 use std::ffi::{CStr, c_void};
 use std::sync::Mutex;
@@ -7,13 +7,13 @@ use std::sync::Mutex;
 use rara::ash::{Entry, Instance, ext, vk};
 use rara::{Error, Result};
 
-/// The layer's warnings and errors, but for what is allowed.
+/// The layer's warnings and errors, without those that are allowed.
 pub(crate) type Messages = Mutex<Vec<String>>;
 
 /// What sends the messages, with its functions.
 pub(crate) type Messenger = (ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT);
 
-/// What the layer may say: part of its message's id, and why it is not heeded.
+/// The messages that are allowed: part of the message's id, and the reason.
 const ALLOWED: [(&str, &str); 4] = [
     (
         "BestPractices-pipeline-stage-flags",
@@ -34,7 +34,7 @@ const ALLOWED: [(&str, &str); 4] = [
     ),
 ];
 
-/// The layer of which the list is; a newer one may say more.
+/// The version of the layer that the list is for; a newer one may report more.
 const KNOWN: u32 = vk::make_api_version(0, 1, 3, 239);
 
 /// An instance of a version, with the layer or without.
@@ -91,7 +91,7 @@ pub(crate) unsafe fn instance(
     }
 }
 
-/// What of the layer's checks a host asks for: synchronisation, and best practices where the list above is of this layer.
+/// The checks that a host asks for: synchronisation, and best practices if the list above is for this layer.
 fn checks(entry: &Entry) -> Vec<vk::ValidationFeatureEnableEXT> {
     let mut checks = vec![vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
     // SAFETY: the entry's loader is loaded.

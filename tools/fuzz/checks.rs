@@ -43,7 +43,8 @@ pub fn within<T>(base: usize, each: usize, input: &[u8], work: impl FnOnce() -> 
     result
 }
 
-/// Everything finite, rotations unit, scales not negative, opacities shares, arrays of one length.
+/// Asserts that everything is finite, rotations are unit, scales not negative, opacities from 0 to 1, arrays of one
+/// length.
 pub fn assert_sound(scene: &Gaussians) {
     let n = scene.len();
     let lengths = [
@@ -63,7 +64,7 @@ pub fn assert_sound(scene: &Gaussians) {
     assert!(scene.sh().iter().all(|v| v.is_finite()));
 }
 
-/// A possible size, positive focal lengths, a finite eye and a rotation.
+/// Asserts a possible size, positive focal lengths, a finite eye and a rotation.
 pub fn assert_camera(camera: &Camera) {
     let sides = [camera.width, camera.height];
     assert!(sides.iter().all(|side| (1..=Camera::MAX_SIZE).contains(side)));
@@ -82,13 +83,13 @@ pub fn assert_camera(camera: &Camera) {
     assert!(camera.rotation.determinant() > 0.0, "{camera:?}");
 }
 
-/// A unit normal and a finite distance.
+/// Asserts a unit normal and a finite distance.
 pub fn assert_plane(plane: &Plane) {
     assert!((plane.normal().length() - 1.0).abs() < 1e-12, "{plane:?}");
     assert!(plane.offset().is_finite(), "{plane:?}");
 }
 
-/// What is asked of each kind of surface.
+/// Asserts what each kind of surface must satisfy.
 pub fn assert_surface(surface: &Surface) {
     match surface {
         Surface::Plane(plane) => assert_plane(plane),
@@ -96,7 +97,7 @@ pub fn assert_surface(surface: &Surface) {
     }
 }
 
-/// An error's text is for people: something to read, on one line, without control characters.
+/// Asserts that an error's text is for people: something to read, on one line, without control characters.
 pub fn assert_readable(error: &rara::Error) {
     let text = error.to_string();
     assert!(text.len() > 10, "{text:?}");

@@ -34,7 +34,7 @@ pub(super) fn write(folder: &Path, report: &Report) -> Result<()> {
 }
 
 fn shapes(report: &Report) -> Vec<Mark> {
-    // The unclipped scene is no cut.
+    // The unclipped scene is left out, since it is no cut.
     let rows: Vec<_> = report
         .rows
         .iter()
@@ -127,7 +127,7 @@ fn number(value: f64) -> String {
     if value != 0.0 && value.abs() < 1e-3 {
         return format!("{value:.0e}");
     }
-    // Ticks are few digits times a power of ten; what rounding has added goes.
+    // Ticks are few digits times a power of ten; the conversion removes what rounding has added.
     format!("{}", (value * 1e7).round() / 1e7)
 }
 

@@ -11,16 +11,16 @@ use super::Session;
 pub(super) struct Times {
     /// On the device, the median frame.
     pub(super) ms: f64,
-    /// On the device, each stage at its quickest: what is least disturbed by what else the machine does.
+    /// On the device, each stage at its quickest, which other work on the machine disturbs least.
     pub(super) ms_min: f64,
     /// From recording to the picture, the median frame.
     pub(super) wall_ms: f64,
-    /// Of this process on all cores, the median frame; 0 where the system does not say.
+    /// Of this process on all cores, the median frame; 0 where the system does not count it.
     pub(super) cpu_ms: f64,
-    /// The same, the least frame.
+    /// Of this process on all cores, the least frame.
     pub(super) cpu_ms_min: f64,
-    /// What a choice costs: on the device `ms_min`. Where the device is this machine's processor, and the system
-    /// says, `cpu_ms_min`, which other work on the machine hardly disturbs.
+    /// What a choice costs: `ms_min` on the device, or, where the device is this machine's processor and the system
+    /// counts its time, `cpu_ms_min`, which other work on the machine hardly disturbs.
     pub(super) cost: f64,
     /// Each stage's median and minimum.
     pub(super) passes: Vec<Pass>,
@@ -34,7 +34,8 @@ pub(super) struct Pass {
     pub(super) ms_min: f64,
 }
 
-/// Times each of the settings: a round is one frame of each, and there are `rounds`, the first one on top and unused.
+/// Times each of the settings. A round is one frame of each; there are `rounds` of them after a first one that is not
+/// counted.
 pub(super) fn time(
     session: &mut Session,
     scene: &Scene<'_>,
@@ -45,7 +46,7 @@ pub(super) fn time(
     let mut samples = vec![Samples::default(); all.len()];
     let mut loaded = None;
     for round in 0..=rounds {
-        // There and back, so that none always follows the same one or comes at the same time in a round.
+        // The order alternates, so that none always follows the same one or always has the same place in a round.
         let mut order: Vec<usize> = (0..all.len()).collect();
         if round % 2 == 1 {
             order.reverse();
@@ -55,7 +56,7 @@ pub(super) fn time(
             let sh = settings.precision.sh;
             if loaded != Some(sh) {
                 session.reload(scene, sh)?;
-                // What follows an upload finds other things in the caches.
+                // The frame after an upload finds other data in the caches, so it is not timed.
                 session.frame(camera, clip, settings, 1)?;
                 loaded = Some(sh);
             }
@@ -142,13 +143,13 @@ mod tests {
             (times.cpu_ms, times.cpu_ms_min, times.cost),
             (0.0, 0.0, 1.0)
         );
-        let with_cpu_time = Samples {
+        let counted = Samples {
             cpu: vec![9.0, 8.0],
             ..samples
         };
-        assert_eq!(with_cpu_time.times(true).cost, 8.0);
+        assert_eq!(counted.times(true).cost, 8.0);
         assert_eq!(
-            with_cpu_time.times(false).cost,
+            counted.times(false).cost,
             1.0,
             "a processor's time is not a GPU's"
         );

@@ -15,7 +15,7 @@ use super::Session;
 
 /// A step of the slow sweep as a share of the scene: ten seconds across it at 30 pictures a second.
 const STEP: f64 = 1.0 / 300.0;
-/// Pixels around those in which cuts differ: as far as SSIM's window reaches.
+/// Pixels around those in which cuts differ, as far as SSIM's window reaches.
 const BAND: usize = 5;
 
 /// Errors against the truth, in units of 1/255 but for SSIM, which is 1 at best.
@@ -23,35 +23,35 @@ const BAND: usize = 5;
 pub(super) struct Measures {
     pub(super) l1: f64,
     pub(super) ssim: f64,
-    /// SSIM where the way of cutting shows; none where it shows nowhere.
+    /// SSIM where the way of cutting makes a difference; `None` if it makes none anywhere.
     pub(super) band_ssim: Option<f64>,
     pub(super) max: f64,
     pub(super) leak: f64,
     pub(super) loss: f64,
     pub(super) popping: Popping,
-    /// Against the same choice in double precision, decibels.
+    /// Peak signal to noise ratio against the same choice in double precision, decibels.
     #[serde(serialize_with = "finite")]
     pub(super) twin_psnr: f64,
 }
 
-/// JSON has no infinity; pictures that are equal are 999 dB apart.
+/// JSON has no infinity, so pictures that are equal are 999 dB apart.
 fn finite<S: serde::Serializer>(psnr: &f64, serializer: S) -> std::result::Result<S::Ok, S::Error> {
     serializer.serialize_f64(psnr.min(999.0))
 }
 
-/// The truth about one view of one cut scene.
+/// Judges pictures of one view of one cut scene by the truth.
 pub(super) struct Judge<'a> {
     scene: &'a Scene<'a>,
     camera: &'a Camera,
-    /// The clip, and where it stands in each step of the sweep; the first is where it stands in all else.
+    /// The clip in each step of the sweep; all measures but popping use the first.
     clips: Vec<Clip>,
     truths: Vec<Picture>,
     band: Region,
-    /// Pictures in double precision that were drawn already, by what they depend on.
+    /// Pictures in double precision that have been drawn, by the settings that they depend on.
     twins: RefCell<Vec<(Settings, Picture)>>,
 }
 
-/// The truth: exact in perspective for every splat, called cut or not, by optical depth.
+/// The settings of the truth: every splat, called cut or not, is exact in perspective and weighed by optical depth.
 pub(super) fn truth_settings(look: &Settings) -> Settings {
     look.mode(Mode::Exact)
         .decay(Some(Decay::Depth))
@@ -84,12 +84,12 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// Share of the picture in which the way of cutting shows.
+    /// Share of the picture in which the way of cutting makes a difference.
     pub(super) fn band_share(&self) -> f64 {
         self.band.share()
     }
 
-    /// What there is to say about one choice; the session holds the scene as the choice wants it stored.
+    /// Measures one choice; the session holds the scene in the choice's format.
     pub(super) fn measure(&self, session: &mut Session, settings: &Settings) -> Result<Measures> {
         let draw = |clip| Ok(session.picture(self.camera, clip, settings)?.0);
         let pictures = self.clips.iter().map(draw).collect::<Result<Vec<_>>>()?;
@@ -108,7 +108,7 @@ impl<'a> Judge<'a> {
     }
 
     fn twin_psnr(&self, picture: &Picture, settings: &Settings) -> Result<f64> {
-        // The reference knows of a precision only where the forms of the weight change.
+        // The reference depends on a precision only where the forms of the weight change.
         let key =
             settings.precision(Precision::default().beam_switch(settings.precision.beam_switch));
         let mut twins = self.twins.borrow_mut();
@@ -122,7 +122,7 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// The clip, and `steps` more, each of whose planes stands a little further towards what it keeps.
+/// The clip, and `steps` more, in each of which every plane has moved a little further towards what it keeps.
 fn sweep(scene: &Scene<'_>, clip: &Clip, steps: u32) -> Result<Vec<Clip>> {
     let extent = |normal: DVec3| {
         let (low, high) = extent_along(scene, normal);

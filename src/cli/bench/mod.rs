@@ -75,7 +75,8 @@ struct Report {
     driver: String,
     frames: u32,
     steps: u32,
-    /// Share of the picture in which the way of cutting shows: where the hard and the exact truth differ, and 5 px on.
+    /// Share of the picture in which the way of cutting makes a difference: where the hard and the exact truth differ,
+    /// and 5 px around.
     band_share: f64,
     rows: Vec<Row>,
     paper: Vec<paper::Line>,
@@ -115,7 +116,7 @@ impl Bench {
         all.retain(|v| self.only.is_empty() || self.only.iter().any(|name| name == v.name));
         let mut session = Session::open(&self.device.meant(), &scene, look.precision.sh)?;
 
-        // Which pictures are right, and how far each is from the truth; then what they cost.
+        // First which pictures are right and how far each is from the truth; then what they cost.
         let mut progress = Progress::new("measuring");
         let total = all.len() as u64 + 2;
         let judge = Judge::new(&scene, &camera, &clip, &look, self.steps)?;
@@ -167,7 +168,7 @@ impl Bench {
                 undominated: false,
             })
             .collect();
-        // Not clipping is no way of cutting.
+        // Mode `none` is left out, since it is no way of cutting.
         let point = |row: &Row| match row.name {
             "none" => [f64::NAN; 2],
             _ => [row.times.cost, row.measures.l1],

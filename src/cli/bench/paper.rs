@@ -20,8 +20,7 @@ pub(super) struct Line {
     pub(super) l1_over_exact: f64,
 }
 
-/// Measures them all at the small size, in the precision of `look`; what `measured` has of them by name is at the size
-/// asked for.
+/// Measures all ways at the small size, in the precision of `look`. `measured` has them by name at the size asked for.
 pub(super) fn lines(
     session: &mut Session,
     scene: &Scene<'_>,
@@ -59,7 +58,7 @@ fn with_ratios(camera: &Camera, measured: Vec<(&'static str, Measures)>) -> Vec<
     measured.into_iter().map(line).collect()
 }
 
-/// By centre, the paper's text, our default reading of it, and exact, which the others are compared with.
+/// By centre, by the paper's text, by our default reading of it, and exactly; the others are compared with the last.
 fn ways(look: Settings) -> [(&'static str, Settings); 4] {
     let mode = |mode| look.mode(mode);
     let paper = mode(Mode::Rara).sigma(1.0).miss(Miss::Keep);

@@ -184,7 +184,7 @@ fn optional(value: Option<f64>) -> String {
     value.map_or("-".into(), |value| format!("{value:.5}"))
 }
 
-/// Two digits that count, however small: 0.00031, 0.12, 3.4, 25.
+/// Two significant digits, however small the value: 0.00031, 0.12, 3.4, 25.
 fn small(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");

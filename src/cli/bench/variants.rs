@@ -13,14 +13,14 @@ pub(super) struct Variant {
     pub(super) settings: Settings,
 }
 
-/// The names, as a parser of one.
+/// A parser of one of the names.
 pub(super) fn names() -> clap::builder::PossibleValuesParser {
     let names = variants(Settings::default()).into_iter().map(|v| v.name);
     names.collect::<Vec<_>>().into()
 }
 
-/// All of them, on top of what the command line says about everything else. Choices that store spherical harmonics in
-/// the same way follow each other.
+/// All choices, on top of what the command line says about everything else. Choices that store spherical harmonics in the
+/// same way follow each other.
 pub(super) fn variants(look: Settings) -> Vec<Variant> {
     let variant = |name, flags, settings| Variant {
         name,

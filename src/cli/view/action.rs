@@ -1,4 +1,4 @@
-//! What a viewer can be asked to do, by keys, by the mouse or by a script.
+//! The actions of a viewer, which keys, the mouse and scripts ask for.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -10,59 +10,59 @@ use rara::{Mode, Plane};
 use super::viewpoint::Walk;
 use crate::cli::values;
 
-/// Something to do.
+/// An action.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Action {
     /// Turn the view: what is in front goes right and down, degrees.
     Turn(DVec2),
     /// Move sideways: what is in the middle goes right and down, pixels.
     Shift(DVec2),
-    /// Nearer, steps of the wheel.
+    /// Move nearer, in steps of the wheel.
     Zoom(f64),
-    /// Right, down, forward, world units.
+    /// Move right, down and forward, world units.
     Go(DVec3),
     Walk(Walk),
     OtherWalk,
-    /// Back to where it began.
+    /// Go back to the start.
     Reset,
-    /// The next camera of the file.
+    /// Take the next camera of the file.
     NextView,
     Plane(PlaneAction),
     Mode(Mode),
-    /// To this file, or to the next free number.
+    /// Write a screenshot to this file, or to the next free number.
     Screenshot(Option<PathBuf>),
     Resize((u32, u32)),
     Minimise,
     Restore,
-    /// Tell stage times and counts on stderr.
+    /// Print stage times and counts on stderr.
     Timings,
     Help,
     Quit,
 }
 
-/// What can be done with the held plane.
+/// An action on the held plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum PlaneAction {
-    /// All planes on or off.
+    /// Switch all planes on or off.
     On(bool),
     Toggle,
     Flip,
     Next,
-    /// Across an axis, through the middle.
+    /// Put it across an axis, through the middle.
     Align(DVec3),
     Set(Plane),
-    /// Along its normal, world units.
+    /// Move it along its normal, world units.
     Go(f64),
-    /// Along its normal, hundredths of the scene's radius.
+    /// Move it along its normal, hundredths of the scene's radius.
     Step(f64),
-    /// After the mouse, pixels.
+    /// Let it follow the mouse, pixels.
     Drag(DVec2),
     /// Turn it: its normal goes right and down, degrees.
     Tilt(DVec2),
 }
 
 impl Action {
-    /// Whether it only changes what the next frame shows, so that it need not wait for the last one's numbers.
+    /// Whether the action only changes what the next frame shows, so that it need not wait for the last frame's numbers.
     pub(super) fn moves(&self) -> bool {
         matches!(
             self,

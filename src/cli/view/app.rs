@@ -1,4 +1,4 @@
-//! The event loop: a window is opened, events become actions, and a frame is drawn when something has changed. Without
+//! The event loop: it opens a window, turns events into actions, and draws a frame when something has changed. Without
 //! events and a script to follow it sleeps.
 
 use std::collections::VecDeque;
@@ -24,7 +24,7 @@ use crate::cli::failure::Failure;
 use crate::cli::output::say;
 use crate::cli::scenes::Loaded;
 
-/// What standard input, followed as a script, sends to the event loop.
+/// What the thread that follows standard input as a script sends to the event loop.
 pub(super) type Sent = Result<Vec<Action>, Failure>;
 
 /// What a window is opened with.
@@ -34,9 +34,9 @@ pub(super) struct Start {
     pub(super) sh: ShFormat,
     pub(super) size: (u32, u32),
     pub(super) scenery: Scenery,
-    /// What a script says to do first.
+    /// The actions of a script, which come first.
     pub(super) script: Vec<Action>,
-    /// Standard input says what to do after it.
+    /// Whether standard input is followed as a script afterwards.
     pub(super) follow: bool,
 }
 
@@ -45,7 +45,7 @@ struct App {
     stage: Option<Viewer>,
     input: Input,
     script: VecDeque<Action>,
-    /// The script goes on when the window has this size, or fails at that time.
+    /// The script goes on when the window has this size; it fails at that time.
     resizing: Option<((u32, u32), Instant)>,
     /// When held keys last moved the view.
     moved_at: Option<Instant>,
@@ -57,12 +57,12 @@ const RESIZE_PATIENCE: Duration = Duration::from_secs(5);
 /// A frame that took longer moves the view no farther than this.
 const LONGEST_STEP: Duration = Duration::from_millis(100);
 
-/// Connects to the display; before anything slow, as there may be none.
+/// Connects to the display. This comes before anything slow, as there may be none.
 pub(super) fn connect() -> Result<EventLoop<Sent>, Failure> {
     let remedy = "start rara view in a desktop session (DISPLAY names an X server or XWayland), install libx11-6, \
                   libx11-xcb1, libxcursor1, libxi6 and libxkbcommon-x11-0 where one of them is missing, or draw \
                   without a window (rara render)";
-    // winit panics where it misses a library, and its message would go to the terminal.
+    // winit panics where a library is missing, and its message would go to the terminal.
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| ()));
     let made = panic::catch_unwind(AssertUnwindSafe(|| EventLoop::with_user_event().build()));
@@ -85,7 +85,7 @@ pub(super) fn connect() -> Result<EventLoop<Sent>, Failure> {
     }
 }
 
-/// winit begins its messages with where in its own sources they come from.
+/// Removes the place in winit's sources with which winit begins its messages.
 fn without_place(message: &str) -> &str {
     let place = message.split_once(".rs:");
     let reason = place.and_then(|(_, rest)| rest.split_once(": "));
@@ -96,7 +96,7 @@ fn without_place(message: &str) -> &str {
 pub(super) fn run(events: EventLoop<Sent>, mut start: Start) -> Result<(), Failure> {
     if start.follow {
         let proxy = events.create_proxy();
-        // It ends with standard input, or with the program.
+        // The thread ends with standard input, or with the program.
         thread::spawn(move || script::follow(|actions| proxy.send_event(actions).is_ok()));
     }
     let mut app = App {
@@ -120,7 +120,7 @@ pub(super) fn run(events: EventLoop<Sent>, mut start: Start) -> Result<(), Failu
     ran.map_err(|error| Error::Device(format!("the window's events ended: {error}")).into())
 }
 
-/// Whether a file could not be written, and nothing else is wrong.
+/// Whether the failure is only that a file could not be written.
 fn concerns_a_file(failure: &Failure) -> bool {
     matches!(
         failure,
@@ -154,7 +154,7 @@ impl App {
         Ok(())
     }
 
-    /// Keeps a failure and ends; the first one is reported.
+    /// Keeps a failure and ends the loop; of several failures the first is kept.
     fn end(&mut self, events: &ActiveEventLoop, outcome: Result<(), Failure>) {
         if let Err(failure) = outcome {
             self.failure.get_or_insert(failure);
@@ -226,7 +226,7 @@ impl App {
         Ok(())
     }
 
-    /// Does what the script says, as far as what it did before is on the screen.
+    /// Runs the script as far as the results of what it did before are on the screen.
     fn follow(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
         let Some(stage) = &mut self.stage else {
             return Ok(());
@@ -269,7 +269,7 @@ impl App {
         if let Some(stage) = self.stage.as_mut().filter(|stage| stage.visible())
             && direction != glam::DVec3::ZERO
         {
-            // Once a frame: what has moved is drawn first.
+            // At most once a frame: what has moved is drawn first.
             if stage.dirty {
                 self.moved_at = before.or(Some(now));
                 return;
@@ -320,7 +320,7 @@ impl ApplicationHandler<Sent> for App {
         });
     }
 
-    /// While the display is still there.
+    /// Frees everything while the display is still there.
     fn exiting(&mut self, _: &ActiveEventLoop) {
         match self.stage.take() {
             Some(stage) if self.failure.is_some() => stage.abandon(),

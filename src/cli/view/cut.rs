@@ -5,12 +5,12 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use glam::{DQuat, DVec2, DVec3};
 use rara::{Camera, Clip, ClipOp, Plane, Surface};
 
-/// The planes, which of them is held and whether they cut at all, and what else cuts.
+/// The planes, which of them is held, whether they cut at all, and the other surfaces of the clip.
 #[derive(Debug, Clone)]
 pub(super) struct Cut {
     pub(super) on: bool,
     planes: Vec<Plane>,
-    /// What else was typed: it stays where it is.
+    /// The other surfaces of the clip, which stay where they are.
     rest: Vec<Surface>,
     op: ClipOp,
     held: usize,
@@ -19,7 +19,7 @@ pub(super) struct Cut {
 }
 
 impl Cut {
-    /// The clip that was typed; without one a plane through the middle of the scene, not yet on.
+    /// The clip of the command line; without one a plane through the middle of the scene, which is off at first.
     pub(super) fn new(clip: Clip, centre: DVec3) -> Self {
         let planes = clip.surfaces.iter().filter_map(Surface::as_plane);
         let planes: Vec<Plane> = planes.collect();
@@ -39,7 +39,7 @@ impl Cut {
         this
     }
 
-    /// What is cut away now.
+    /// The clip in force.
     pub(super) fn clip(&self) -> Clip {
         let planes = self.planes.iter().filter(|_| self.on);
         let planes = planes.map(|&plane| plane.into());
@@ -83,15 +83,15 @@ impl Cut {
         self.place(plane.normal(), plane.offset() - by);
     }
 
-    /// Moves the held plane along its normal so that it follows the mouse; where its normal points at the eye or away
-    /// from it, upwards is away.
+    /// Moves the held plane along its normal so that it follows the mouse; where its normal points towards the eye or
+    /// away from it, a drag upwards moves it away.
     pub(super) fn drag(&mut self, pixels: DVec2, camera: &Camera) {
         let normal = camera.rotation * self.plane().normal();
         let mut at = camera.rotation * (self.foot() - camera.eye);
-        // What is behind the eye is nowhere in the picture.
+        // What is behind the eye has no place in the picture.
         at.z = at.z.max(1e-2 * at.length()).max(f64::MIN_POSITIVE);
         let focal = DVec2::new(camera.fx, camera.fy);
-        // Where the foot goes in the picture, for each unit along the normal.
+        // How the foot moves in the picture, per unit along the normal.
         let across = focal * (normal.truncate() - at.truncate() / at.z * normal.z) / at.z;
         let unit = camera.fy / at.z;
         let by = if across.length() > (1.0 - FRAC_1_SQRT_2) * unit {
@@ -102,8 +102,8 @@ impl Cut {
         self.go(by);
     }
 
-    /// Turns the held plane about its point nearest to the middle of the scene, so that what of its normal points to the
-    /// eye goes right and down by so many degrees.
+    /// Turns the held plane about its point nearest to the middle of the scene, so that the tip of a normal that points
+    /// towards the eye goes right and down by so many degrees.
     pub(super) fn tilt(&mut self, degrees: DVec2, camera: &Camera) {
         let axes = camera.rotation.transpose();
         let turn = DQuat::from_axis_angle(-axes.y_axis, degrees.x.to_radians())
@@ -124,7 +124,7 @@ impl Cut {
     }
 
     fn place(&mut self, normal: DVec3, offset: f64) {
-        // A plane beyond all numbers stays where it was.
+        // A plane whose numbers overflow stays where it was.
         if let Ok(plane) = Plane::new(normal, offset) {
             self.set(plane);
         }

@@ -1,11 +1,11 @@
-//! The flags that draw again what is shown.
+//! The flags that draw again what the viewer shows.
 
 use rara::{ClipOp, Precision, Preset, Settings};
 
 use super::cut::Cut;
 use crate::cli::settings::name;
 
-/// `rara render`'s flags for a clip and settings, as typed. What they do not say is the default.
+/// The flags of `rara render` for a clip and settings, as a user would type them. They leave out defaults.
 pub(super) fn flags(cut: &Cut, settings: &Settings) -> String {
     let mut flags = Vec::new();
     let surfaces = cut.clip().surfaces;
@@ -58,9 +58,9 @@ fn add_settings(flags: &mut Vec<String>, settings: &Settings) {
     }
 }
 
-/// The preset that leaves the fewest single flags, and these.
+/// Adds the preset that leaves the fewest single flags, and those flags.
 fn add_precision(flags: &mut Vec<String>, precision: &Precision) {
-    // The default first: no flag says it.
+    // The default preset comes first, since it needs no flag.
     let presets = [
         (Preset::Balanced, None),
         (Preset::Exact, Some("--preset exact")),
@@ -117,7 +117,7 @@ mod tests {
     use glam::DVec3;
     use rara::{Clip, Plane};
 
-    /// What flags mean: the clip and the settings.
+    /// The clip and the settings that flags mean.
     fn meant(flags: &str) -> (Clip, Settings) {
         let command = clap::Command::new("rara").no_binary_name(true);
         let command = SettingsArgs::augment_args(ClipArgs::augment_args(command));
@@ -128,7 +128,7 @@ mod tests {
         (clip.meant().unwrap(), settings.meant().unwrap())
     }
 
-    /// What is written for what was typed.
+    /// The flags that are written for the clip and the settings of `typed`.
     fn written(typed: &str) -> String {
         let (clip, settings) = meant(typed);
         flags(&Cut::new(clip, DVec3::ZERO), &settings)

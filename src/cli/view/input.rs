@@ -1,4 +1,4 @@
-//! Keys and mouse to actions; `KEYS` is their list for people.
+//! Keys and mouse to actions; `KEYS` lists them for people.
 
 use std::collections::HashSet;
 
@@ -9,7 +9,7 @@ use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
 use super::action::{Action, PlaneAction};
 
-/// What `--help` and the key H say.
+/// The text that `--help` and the key H print.
 pub(super) const KEYS: &str = "\
 Mouse:
   left drag                    turn the view
@@ -33,10 +33,10 @@ Keys:
   H                            this list
   Esc                          quit";
 
-/// Degrees of an arrow key.
+/// How many degrees an arrow key turns.
 const ARROW: f64 = 5.0;
 
-/// What is held down, and where the mouse is.
+/// The keys and buttons that are held down, and where the mouse is.
 #[derive(Debug, Default)]
 pub(super) struct Input {
     modifiers: ModifiersState,
@@ -51,7 +51,7 @@ impl Input {
         self.modifiers = modifiers;
     }
 
-    /// A key goes down, or up, or repeats.
+    /// Handles a key that goes down, or up, or repeats.
     pub(super) fn key(
         &mut self,
         logical: &Key,
@@ -62,7 +62,7 @@ impl Input {
         if let PhysicalKey::Code(code) = physical
             && direction(code) != DVec3::ZERO
         {
-            // Where the key is counts, not what stands on it.
+            // The place of the key counts, not its label.
             match state {
                 ElementState::Pressed if !self.modifiers.control_key() => self.held.insert(code),
                 _ => self.held.remove(&code),
@@ -78,7 +78,7 @@ impl Input {
             Key::Character(text) => letter(text)?,
             _ => return None,
         };
-        // What is held down moves on; it does not switch to and fro.
+        // A key that is held down goes on moving, but does not switch to and fro.
         let repeats = action.moves()
             && !matches!(
                 action,
@@ -87,7 +87,7 @@ impl Input {
         (repeats || !repeat).then_some(action)
     }
 
-    /// A mouse button goes down or up.
+    /// Handles a mouse button that goes down or up.
     pub(super) fn button(&mut self, button: MouseButton, state: ElementState) {
         match state {
             ElementState::Pressed => self.buttons.insert(button),
@@ -95,7 +95,7 @@ impl Input {
         };
     }
 
-    /// The mouse moves, in a window of this height.
+    /// Handles a move of the mouse, in a window of this height.
     pub(super) fn cursor(&mut self, to: DVec2, height: u32) -> Option<Action> {
         let by = to - self.cursor.replace(to)?;
         // A drag over the whole window is half a turn.
@@ -116,21 +116,21 @@ impl Input {
         down(MouseButton::Left).then_some(Action::Turn(degrees))
     }
 
-    /// The wheel turns.
+    /// Handles a turn of the wheel.
     pub(super) fn wheel(&self, delta: MouseScrollDelta) -> Action {
         Action::Zoom(match delta {
             MouseScrollDelta::LineDelta(_, lines) => f64::from(lines),
-            // A touchpad's: about as far as a line of text.
+            // A touchpad reports pixels, about so many for a line of text.
             MouseScrollDelta::PixelDelta(pixels) => pixels.y / 20.0,
         })
     }
 
-    /// Nothing is held any more: another window has the keyboard.
+    /// Releases everything, since another window has the keyboard.
     pub(super) fn release(&mut self) {
         *self = Self::default();
     }
 
-    /// Where the held keys lead: right, down, forward.
+    /// The direction that the held keys give: right, down, forward.
     pub(super) fn direction(&self) -> DVec3 {
         let sum: DVec3 = self.held.iter().map(|code| direction(*code)).sum();
         let slowly = if self.modifiers.shift_key() { 0.2 } else { 1.0 };

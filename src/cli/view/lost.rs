@@ -1,9 +1,9 @@
 //! A window that is lost while it is open: its X server ends, or closes the connection.
 //!
-//! Many calls of winit then panic, as they unwrap what only fails in this case; here that becomes a failure. Where winit
-//! looks for events first, as it does when the window was at rest, Xlib notices: its handler prints a line of its own
-//! and ends the process, with exit status 1 as well. winit sets no other handler, and to do so would take unsafe calls
-//! of Xlib.
+//! Many calls of winit then panic, as they unwrap results that fail only in this case; this module turns the panic into a
+//! failure. Where winit looks for events first, as it does when the window was at rest, Xlib notices: its handler prints
+//! a line of its own and ends the process, with exit status 1 as well. winit sets no other handler, and setting one would
+//! take unsafe calls of Xlib.
 
 use std::panic::{self, AssertUnwindSafe, Location};
 use std::sync::Arc;
@@ -36,7 +36,7 @@ pub(super) fn unless_lost<T>(work: impl FnOnce() -> T) -> Option<T> {
     }
 }
 
-/// What to say of it.
+/// The failure to report.
 pub(super) fn failure() -> Failure {
     let message = "the window was lost: the connection to its display (the X server) ended; start rara view again";
     Error::Device(message.into()).into()

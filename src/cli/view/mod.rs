@@ -93,7 +93,7 @@ impl View {
         let loaded = self.scenes.load()?;
         let scene = loaded.scene();
         let views = views.of(&scene)?.into_iter();
-        // Without a direction that was typed, up is what is up in the camera's own picture.
+        // Where a file places the camera, up is what is up in its own picture.
         let up = |camera: &rara::Camera| camera.rotation.transpose() * -glam::DVec3::Y;
         let views: Vec<_> = views
             .map(|view| (view.camera, camera.up().unwrap_or(up(&view.camera))))

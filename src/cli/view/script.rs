@@ -1,4 +1,4 @@
-//! `--script`: a line an action, so that a viewer can be driven without a person.
+//! `--script`: one action a line, so that a viewer can be driven without a person.
 
 use std::fs;
 use std::io::{self, BufRead};
@@ -40,10 +40,10 @@ fn parse(text: &str, name: &str) -> Actions {
     Ok(actions)
 }
 
-/// The most that one line can ask for.
+/// The most repetitions that one line can ask for.
 const MOST: u32 = 1_000_000;
 
-/// `ACTION` or `repeat N ACTION`; nothing behind a #, which no action contains.
+/// Parses `ACTION` or `repeat N ACTION`. Text behind a # is ignored; no action contains one.
 fn of_line(line: &str, name: &str, number: usize) -> Actions {
     let line = line.split('#').next().unwrap_or("").trim();
     if line.is_empty() {

@@ -52,7 +52,7 @@ pub(super) fn save(picture: &Picture, camera: &Camera, path: &Path) -> Result<()
     }
     let matrix = camera.world_to_camera();
     let lens = (camera.fx, camera.fy, camera.cx, camera.cy);
-    // What cannot be read again is not worth a file: JSON has no number for what is not finite.
+    // JSON has no number for what is not finite, and a camera that cannot be read again is not worth a file.
     Camera::from_world_to_camera(matrix, lens, (camera.width, camera.height))?;
     output::check_file(path)?;
     picture.save(path)?;
@@ -65,7 +65,7 @@ pub(super) fn save(picture: &Picture, camera: &Camera, path: &Path) -> Result<()
     output::text(&beside(path), &format!("{file:#}\n"))
 }
 
-/// What was written, and the flags with which `rara render` draws it.
+/// The line that names the file, and the flags with which `rara render` draws it again.
 pub(super) fn wrote(path: &Path, flags: &str) -> String {
     format!(
         "wrote {}; as in rara render --camera {} {flags}",
@@ -74,14 +74,14 @@ pub(super) fn wrote(path: &Path, flags: &str) -> String {
     )
 }
 
-/// A word as a shell takes it for one.
+/// A word, quoted so that a shell takes it for one.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "_-+=.,:/@%".contains(c);
     if !word.is_empty() && word.chars().all(|c| plain(c) || cfg!(windows) && c == '\\') {
         return word.to_owned();
     }
     if cfg!(windows) {
-        // No file's name there has such a quote in it.
+        // On this system no file's name contains such a quote.
         return format!("\"{word}\"");
     }
     format!("'{}'", word.replace('\'', r"'\''"))

@@ -1,4 +1,4 @@
-//! An open window with a scene in it: what can be done to it, and its frames.
+//! An open window with a scene in it: the actions on it, and its frames.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -41,16 +41,16 @@ pub(super) struct Viewer {
     scenery: Scenery,
     view: usize,
     viewpoint: Viewpoint,
-    /// Share of the scene's radius that a second of flying goes.
+    /// Share of the scene's radius that flying covers in a second.
     speed: f64,
-    /// The window's pixels, as its events report them: winit panics when it is asked for them and the window is gone.
+    /// The window's size in pixels, from its events: winit panics when it is asked for the size and the window is gone.
     size: (u32, u32),
     minimised: bool,
-    /// Nothing of it is visible.
+    /// Whether nothing of the window is visible.
     occluded: bool,
-    /// What is shown is not what should be.
+    /// Whether the window does not yet show what it should.
     pub(super) dirty: bool,
-    /// The last frame's numbers are not known yet.
+    /// Whether the last frame's numbers are not known yet.
     pub(super) unsettled: bool,
     /// When the last frame was shown, if the next one follows at once.
     shown_at: Option<Instant>,
@@ -58,11 +58,11 @@ pub(super) struct Viewer {
     titled_at: Option<Instant>,
 }
 
-/// The title changes no more often than this: it costs the window system a message.
+/// The title changes no more often than this, since each change costs the window system a message.
 const TITLE_PAUSE: Duration = Duration::from_millis(200);
-/// Times between frames that are kept.
+/// The most times between frames that are kept.
 const INTERVALS: usize = 10_000;
-/// The least and the most speed: one can still come back from them.
+/// The least and the most speed; a user can still come back from both.
 const SPEEDS: (f64, f64) = (1e-6, 1e6);
 
 impl Viewer {
@@ -86,7 +86,7 @@ impl Viewer {
         }
     }
 
-    /// Its pixels; none while it is minimised.
+    /// The window's size in pixels; zero while it is minimised.
     pub(super) fn size(&self) -> (u32, u32) {
         if self.minimised {
             return (0, 0);
@@ -94,19 +94,19 @@ impl Viewer {
         self.size
     }
 
-    /// Whether a frame would be seen.
+    /// Whether a user would see a frame.
     pub(super) fn visible(&self) -> bool {
         let (width, height) = self.size();
         !self.occluded && width > 0 && height > 0
     }
 
-    /// The window has another size.
+    /// Handles a new size of the window.
     pub(super) fn resized(&mut self, size: (u32, u32)) -> Result<(), Failure> {
         self.size = size;
         self.changed()
     }
 
-    /// Other windows hide all of it, or no longer.
+    /// Handles that other windows hide all of it, or no longer do.
     pub(super) fn occlude(&mut self, occluded: bool) -> Result<(), Failure> {
         self.occluded = occluded;
         if !occluded {
@@ -115,7 +115,7 @@ impl Viewer {
         self.changed()
     }
 
-    /// It has the keyboard. If it was minimised, a user or a window manager has brought it back.
+    /// Handles that the window has the keyboard. If it was minimised, a user or a window manager has brought it back.
     pub(super) fn focus(&mut self) -> Result<(), Failure> {
         if !std::mem::take(&mut self.minimised) {
             return Ok(());
@@ -123,7 +123,7 @@ impl Viewer {
         self.changed()
     }
 
-    /// The window is to be drawn for another reason than an action.
+    /// Asks for a frame for another reason than an action.
     pub(super) fn changed(&mut self) -> Result<(), Failure> {
         self.dirty = true;
         if !self.visible() {
@@ -132,14 +132,14 @@ impl Viewer {
         Ok(())
     }
 
-    /// Goes right, down and forward for a time, at the speed of flying.
+    /// Moves right, down and forward for a time, at the speed of flying.
     pub(super) fn fly(&mut self, direction: DVec3, time: Duration) {
         let by = self.speed * self.scenery.radius * time.as_secs_f64();
         self.viewpoint.go(direction * by);
         self.dirty = true;
     }
 
-    /// Does what is asked, but for quitting and resizing, which take more than the stage.
+    /// Does what an action asks, except for quitting and resizing, which need the event loop.
     pub(super) fn act(&mut self, action: Action) -> Result<(), Failure> {
         let height = self.picture_size().1;
         match action {
@@ -212,7 +212,7 @@ impl Viewer {
         }
     }
 
-    /// The size of what is shown, or would be if it were not minimised.
+    /// The size of the picture that is shown, or would be if the window were not minimised.
     fn picture_size(&self) -> (u32, u32) {
         (self.size.0.max(1), self.size.1.max(1))
     }
@@ -236,7 +236,7 @@ impl Viewer {
     /// Draws a frame and shows it.
     pub(super) fn draw(&mut self) -> Result<(), Failure> {
         let Some(size) = self.windowed.fit(self.size())? else {
-            // Its next size is an event.
+            // An event will report the next size.
             (self.dirty, self.unsettled) = (false, false);
             return Ok(());
         };
@@ -246,7 +246,7 @@ impl Viewer {
         self.dirty = redraw == Redraw::Now;
         self.unsettled = redraw == Redraw::WhenIdle;
         let now = Instant::now();
-        // The frame that only asks for numbers is none that anybody waits for.
+        // A frame that only asks for numbers does not count, since nobody waits for it.
         if let Some(before) = self.shown_at.take().filter(|_| self.unsettled)
             && self.intervals.len() < INTERVALS
         {
@@ -275,27 +275,27 @@ impl Viewer {
         self.window.set_title(&text);
     }
 
-    /// Asks the window for another size; whether it has it already.
+    /// Asks for another size of the window; returns whether it has that size already.
     pub(super) fn resize(&mut self, wanted: (u32, u32)) -> bool {
         if self.size != wanted {
             let granted = self
                 .window
                 .request_inner_size(PhysicalSize::<u32>::from(wanted));
-            // What is granted at once is followed by no event.
+            // No event follows a size that is granted at once.
             self.size = granted.map_or(self.size, Into::into);
         }
         self.size == wanted
     }
 
-    /// Frees everything; the error is what validation says of it.
+    /// Frees everything; an error is what the validation layer has reported about it.
     pub(super) fn close(self) -> Result<(), Failure> {
         Ok(self.windowed.close()?)
     }
 
     /// Frees what is on the device, after a failure.
     pub(super) fn abandon(self) {
-        // The window goes with the process: freeing it talks to a server that may not be there any more, and Xlib then
-        // ends the process before the failure is reported.
+        // The window is left to the end of the process: freeing it talks to a server that may be gone, and Xlib would
+        // then end the process before the failure is reported.
         std::mem::forget(self.window);
         drop(self.windowed);
     }

@@ -1,4 +1,4 @@
-//! A viewer's report on its frames: shortly in the window's title, at length on the terminal.
+//! A viewer's report on its frames: a short one in the window's title, a long one on the terminal.
 
 use std::fmt::Write;
 use std::time::Duration;
@@ -33,7 +33,8 @@ pub(super) fn title(
     text
 }
 
-/// The lines of the key T: the last frame that computed anything, and the time between frames since the last time.
+/// The lines that the key T prints: the last frame that computed anything, and the time between frames since the last
+/// time.
 pub(super) fn lines(
     size: (u32, u32),
     stats: Option<&FrameStats>,

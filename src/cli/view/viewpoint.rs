@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use rara::Camera;
 
-/// What turning turns about.
+/// The pivot of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Walk {
     /// A point on the view's axis.
@@ -22,7 +22,7 @@ pub(super) struct Viewpoint {
     /// The camera at the start, for its focal lengths and principal point.
     lens: Camera,
     home: Pose,
-    /// What is near, in this scene.
+    /// The least distance from the pivot, in this scene.
     least: f64,
 }
 
@@ -31,7 +31,7 @@ struct Pose {
     eye: DVec3,
     /// Columns: right, down and forward in the world.
     axes: DMat3,
-    /// To the point that orbiting goes about.
+    /// The distance from the eye to the point that it orbits.
     distance: f64,
 }
 
@@ -43,7 +43,8 @@ const STEP: f64 = 0.1;
 const FARTHEST: f64 = 1e18;
 
 impl Viewpoint {
-    /// From a camera, in a scene of this middle and radius. It orbits about the point of its axis beside the middle.
+    /// A viewpoint from a camera, in a scene of this middle and radius. It orbits the point of the camera's axis that is
+    /// beside the middle.
     pub(super) fn new(camera: &Camera, up: DVec3, centre: DVec3, radius: f64) -> Self {
         let axes = camera.rotation.transpose();
         let pose = Pose {
@@ -79,7 +80,7 @@ impl Viewpoint {
     /// Turns so that what is in front goes right and down by so many degrees.
     pub(super) fn turn(&mut self, degrees: DVec2) {
         let mut pose = self.pose;
-        // Orbiting takes the eye to the other side; looking about takes the view there.
+        // Orbiting moves the eye to the other side; looking about turns the view there.
         let sign = match self.walk {
             Walk::Orbit => -1.0,
             Walk::Fly => 1.0,
@@ -97,14 +98,15 @@ impl Viewpoint {
         self.place(pose);
     }
 
-    /// Moves the eye sideways, so that what is as far as the pivot moves by so many pixels of a picture of this height.
+    /// Moves the eye sideways, so that what is as far away as the pivot moves by so many pixels of a picture of this
+    /// height.
     pub(super) fn shift(&mut self, pixels: DVec2, height: u32) {
         let focal = self.lens.fy * f64::from(height) / f64::from(self.lens.height);
         let by = -pixels * self.pose.distance / focal;
         self.go(DVec3::new(by.x, by.y, 0.0));
     }
 
-    /// Nearer to the pivot by so many steps, farther where negative.
+    /// Moves so many steps nearer to the pivot, or farther where the number is negative.
     pub(super) fn zoom(&mut self, steps: f64) {
         let mut pose = self.pose;
         let distance = pose.distance * (1.0 - STEP).powf(steps);
@@ -119,13 +121,13 @@ impl Viewpoint {
         self.place(Pose { eye, ..self.pose });
     }
 
-    /// Back to the start.
+    /// Goes back to the start.
     pub(super) fn reset(&mut self) {
         self.pose = self.home;
     }
 
     fn place(&mut self, pose: Pose) {
-        // An eye beyond all numbers stays where it was.
+        // An eye whose numbers overflow stays where it was.
         if pose.eye.abs().cmple(DVec3::splat(FARTHEST)).all() {
             self.pose = pose;
         }
@@ -138,7 +140,7 @@ impl Pose {
     }
 }
 
-/// Without what rounding has added over many turns.
+/// The axes without what rounding has added over many turns.
 fn orthonormal(axes: DMat3) -> DMat3 {
     let forward = axes.z_axis.normalize();
     let right = (axes.x_axis - forward * axes.x_axis.dot(forward)).normalize();
@@ -151,7 +153,7 @@ mod tests {
 
     const SIZE: (u32, u32) = (800, 600);
 
-    /// Four units before the origin, level.
+    /// A viewpoint four units before the origin, level.
     fn start() -> Viewpoint {
         let eye = DVec3::new(0.0, 0.0, -4.0);
         let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, SIZE).unwrap();

@@ -47,7 +47,7 @@ pub(super) fn generate(count: usize, mut random: Random) -> Gaussians {
     let area: f64 = surfaces.iter().map(|(area, _)| area).sum();
     let [on, off] = split(count, [1.0 - FLOATERS, FLOATERS]);
     let sigma = COVERAGE * (area / on.max(1) as f64).sqrt();
-    // Few splats are no scene, but should not be larger than one.
+    // With few splats there is little to see, but none of them should be larger than the scene.
     let sigma = sigma.min(0.2);
     let mut builder = Builder::new(count, 3);
     let counts = split(on, surfaces.map(|(area, _)| area));

@@ -7,7 +7,7 @@ use glam::DVec3;
 /// Coefficients up to degree 3.
 pub(super) const COEFFICIENTS: usize = 16;
 
-/// A splat's colour by direction.
+/// A splat's colour by the direction of view.
 pub(super) struct Colours(pub(super) [DVec3; COEFFICIENTS]);
 
 impl Colours {

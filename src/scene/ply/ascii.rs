@@ -1,4 +1,4 @@
-//! The ascii payload: one element a line, blank lines skipped, every complaint with its line's number.
+//! The ascii payload: one element a line; blank lines are skipped, and every message has the number of its line.
 
 use std::io::{BufRead, BufReader, Read};
 
@@ -105,7 +105,7 @@ fn parse(line: &[u8], fields: &[Field], row: &mut Row) -> Result<(), String> {
     };
     for field in fields {
         match *field {
-            // Not even looked at: an extra property may hold anything.
+            // The text is skipped unread, since an extra property may hold anything.
             Field::Scalar(_, None) => {
                 next()?;
             }
@@ -117,7 +117,7 @@ fn parse(line: &[u8], fields: &[Field], row: &mut Row) -> Result<(), String> {
                         "{items} is no length of a list; export the scene again"
                     ));
                 }
-                // Ends with the line at the latest, whatever the length says.
+                // The loop ends with the line at the latest, whatever the length says.
                 for _ in 0..items as u64 {
                     next()?;
                 }

@@ -63,7 +63,7 @@ impl Assembler {
         }
         let rotation = unit(DVec4::new(row[7], row[8], row[9], row[6]));
         let limit = (SCALES..=OPACITY).find(|&slot| is_limit(slot, row[slot] as f32));
-        // Counted once, whatever there is to repair.
+        // A row counts once, however much of it is repaired.
         if rotation.is_none() {
             self.report.repair_element(element, || {
                 "its rotation was all zeros, now the identity".into()
@@ -89,7 +89,7 @@ impl Assembler {
         );
     }
 
-    /// The scene and what was done to it.
+    /// The scene, and the report on what was done to it.
     pub(super) fn finish(self) -> (Gaussians, LoadReport) {
         (self.gaussians, self.report)
     }

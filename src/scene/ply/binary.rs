@@ -10,7 +10,7 @@ use super::header::Header;
 use super::layout::{Field, Layout, SLOTS, fixed_size};
 use super::number::Number;
 
-/// Read at once. Larger gains nothing, smaller costs system calls.
+/// Bytes read at once. A larger chunk gains nothing, a smaller one costs system calls.
 const CHUNK: usize = 4 << 20;
 
 /// Why reading stopped: the operating system, or the file's content.
@@ -183,7 +183,7 @@ impl<R: Read + Seek> Payload<R> {
         self.reader
             .read_exact(bytes)
             .map_err(|error| match error.kind() {
-                // Only if the file shrank under us: the size was checked.
+                // This happens only if the file shrank while it was read, since its size was checked.
                 ErrorKind::UnexpectedEof => Failure::Format(cut_off(&place())),
                 _ => Failure::Io(error),
             })
@@ -192,7 +192,8 @@ impl<R: Read + Seek> Payload<R> {
     fn skip(&mut self, mut bytes: u64, place: impl Fn() -> String) -> Result<(), Failure> {
         self.take(bytes, &place)?;
         while bytes > 0 {
-            // Steps within the buffer keep it, longer ones seek; the step's sign forbids u64.
+            // Steps within the buffer keep it, longer ones seek. A seek takes a signed number, so one step cannot cover
+            // all of u64.
             let step = bytes.min(1 << 40);
             let buffered = self.reader.buffer().len() as u64;
             if step <= buffered {

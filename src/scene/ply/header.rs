@@ -10,9 +10,9 @@ use ply_rs::ply::{DefaultElement, ElementDef, Encoding, PropertyType, ScalarType
 
 use crate::error::shortened;
 
-/// Headers of real files are below 5 kB; this leaves room for long comments, and is all we read before we know more.
+/// Headers of real files are below 5 kB; this leaves room for long comments. No more is read before the header is known.
 pub(super) const MAX_BYTES: usize = 1 << 20;
-/// Elements and properties beyond these are not scenes; the caps keep each row's bookkeeping small.
+/// Files with more elements or properties than this are no scenes; the caps keep each row's bookkeeping small.
 const MAX_ELEMENTS: usize = 64;
 const MAX_PROPERTIES: usize = 4096;
 
@@ -75,7 +75,8 @@ fn cut(bytes: &[u8]) -> Result<(Vec<String>, usize, u8), String> {
             "this is not a PLY file, which begins with the line \"ply\"{guess}; convert it to a 3DGS .ply"
         ));
     }
-    // Old files end lines with a carriage return alone. The first line shows it; a payload byte can't confuse it.
+    // Old files end lines with a carriage return alone. Only the first line is asked, since a byte of the payload could
+    // mislead.
     let first_end = bytes.iter().position(|b| matches!(b, b'\n' | b'\r'));
     let line_end = match first_end.map(|i| (bytes[i], bytes.get(i + 1))) {
         Some((b'\r', next)) if next != Some(&b'\n') => b'\r',

@@ -1,4 +1,4 @@
-//! What must load, and what must come of it.
+//! Files that must load, and the Gaussians that they must give.
 
 use glam::{Quat, Vec3};
 use rara::scene::{Gaussians, load, save_ply, sh_coefficients};

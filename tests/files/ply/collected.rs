@@ -1,4 +1,4 @@
-//! The collected files of other projects, where this machine has them.
+//! Files that were collected from other projects, where this machine has them.
 
 use std::path::{Path, PathBuf};
 

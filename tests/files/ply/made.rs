@@ -100,7 +100,7 @@ impl File {
     }
 }
 
-/// Value of a property of Gaussian `i` in the made files; integers where `whole`.
+/// Value of a property of Gaussian `i` in the made-up files; an integer if `whole`.
 pub(crate) fn value(name: &str, i: usize, whole: bool) -> f64 {
     let name_number: usize = name.bytes().map(usize::from).sum();
     let value = ((i * 31 + name_number * 17) % 23) as f64 - 7.0;
@@ -133,7 +133,7 @@ pub(crate) fn floats<'a>(names: &[&'a str]) -> Vec<(&'static str, &'a str)> {
     names.iter().map(|name| ("float", *name)).collect()
 }
 
-/// What the renderer relies on, whatever the file held.
+/// Asserts what the renderer relies on, whatever the file held.
 pub(crate) fn assert_sound(scene: &Gaussians) {
     let n = scene.len();
     assert_eq!(

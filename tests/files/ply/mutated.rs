@@ -1,4 +1,4 @@
-//! Random and damaged files: refused or sound, never a panic.
+//! Random and damaged files: each is refused or loads as a sound scene, and none panics.
 
 use proptest::prelude::*;
 
@@ -39,7 +39,7 @@ proptest! {
         }
     }
 
-    /// Beyond the last number at least: digits that are missing from it nobody can notice.
+    /// The cut takes at least the whole last number, since nobody can notice digits that are missing from it.
     #[test]
     fn truncation_is_always_noticed(format in 0..3_usize, cut in 9..440_usize) {
         let bytes = scene_file(FORMATS[format], 8, &floats(FIXED)).bytes();

@@ -1,4 +1,4 @@
-//! What must be refused, in one or two sentences that help.
+//! Files that must be refused, in one or two sentences that help.
 
 use std::path::Path;
 
@@ -110,7 +110,7 @@ fn counts_beyond_the_file_are_refused_before_anything_is_allocated() {
             }
         }
     }
-    // A list whose length leads out of the file.
+    // A list whose length leads beyond the file's end.
     for kind in ["uint", "int"] {
         let mut file = File::new(Format::Little);
         let mut properties = floats(FIXED);

@@ -1,4 +1,4 @@
-//! How a cut is put and how a scene is stored.
+//! The same cut, given in another way, and the same scene, stored in another way.
 
 use proptest::prelude::*;
 use rara::scene::{GaussianArrays, load, save_ply};
@@ -23,7 +23,8 @@ fn cutting_twice_is_cutting_once_and_the_order_of_planes_is_nobodys_business() {
             let mut picture =
                 |planes: Vec<Plane>| draw(headless, &camera, &Clip::of(planes, op), &settings);
             let expected = picture(planes.clone());
-            // A plane given twice is the plane once, and planes are put into an order of their own: not a bit may differ.
+            // A plane given twice is the plane once, and planes are sorted into an order of their own: not a bit may
+            // differ.
             let mut doubled = planes.clone();
             doubled.push(planes[again.index(planes.len())]);
             prop_assert!(picture(doubled) == expected, "{mode:?}: twice");

@@ -1,5 +1,5 @@
-//! What must not change a picture, through the GPU and under validation: how a cut is put, how a scene is stored, where
-//! the world stands.
+//! What must not change a picture, checked on the GPU and under validation: how a cut is given, how a scene is stored,
+//! where the world is.
 
 mod cuts;
 mod layers;
@@ -15,7 +15,7 @@ use rara::scene::{Kind, generate};
 use rara::{Camera, Clip, ClipOp, Gaussians, Headless, Picture, Plane, Settings};
 
 const SIZE: (u32, u32) = (101, 77);
-/// Cases of each property, but for `PROPTEST_CASES`.
+/// Cases of each property, unless `PROPTEST_CASES` is set.
 const CASES: u32 = 12;
 
 /// Runs a check on `CASES` values, with one device for all.
@@ -26,7 +26,7 @@ fn check<S: Strategy>(
     let headless = RefCell::new(common::headless());
     let config = Config {
         failure_persistence: None,
-        // A case is some ten frames; what a shrunk one would show, its message shows too.
+        // A case is some ten frames, so it is hardly shrunk; its message shows what a smaller one's would.
         max_shrink_iters: 20,
         cases: std::env::var("PROPTEST_CASES")
             .map_or(CASES, |cases| cases.parse().expect("a number")),

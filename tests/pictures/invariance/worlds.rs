@@ -1,4 +1,4 @@
-//! Where the world stands and how large a unit is.
+//! Where the world is and how large a unit is.
 
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
@@ -7,7 +7,7 @@ use rara::{Clip, ClipOp, Gaussians, Mode, Plane, Settings};
 
 use super::{check, directions, draw, planes, scenes, views};
 
-/// Everything turned, then moved; the camera and the planes with it. Harmonics do not turn: degree 0.
+/// Everything is turned, then moved, and so are the camera and the planes. Harmonics do not turn: degree 0.
 fn moved(scene: &Gaussians, turn: DQuat, step: DVec3) -> Gaussians {
     let mut moved = scene.clone();
     for position in moved.positions_mut() {
@@ -60,7 +60,7 @@ fn a_rigid_motion_of_everything_leaves_the_picture() {
     );
 }
 
-/// Nothing but the near limit of 0.2 units knows how large a unit is, and powers of two leave every rounding as it was.
+/// Only the near limit of 0.2 units depends on how large a unit is, and powers of two leave every rounding as it was.
 #[test]
 fn a_world_of_another_power_of_two_is_the_same_picture_to_the_bit() {
     let strategy = (scenes(), views(), planes(1..3), -1..10_i32);

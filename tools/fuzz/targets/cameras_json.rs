@@ -8,9 +8,9 @@ use rara::camera_files::cameras_from_json;
 use rara_fuzz::{assert_camera, assert_readable, within};
 
 fuzz_target!(|bytes: &[u8]| {
-    // So that every input is for this parser.
+    // The bracket makes sure that this parser gets every input.
     let json = [&[91], bytes].concat();
-    // What is not known is kept until the object ends: "0," is a value of 32 bytes, and its list grows by doubling.
+    // Unknown fields are kept until the object ends: "0," is a value of 32 bytes, and its list grows by doubling.
     match within(64 << 10, 64, &json, || {
         cameras_from_json(&json, Path::new("fuzz.json"))
     }) {

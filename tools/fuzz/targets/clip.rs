@@ -20,7 +20,7 @@ fuzz_target!(|bytes: &[u8]| {
     });
     for shape in &shapes {
         shape.surfaces().iter().for_each(assert_surface);
-        // Twice outside is inside, to the bit; a plane alone has no operation to come back to.
+        // The outside of the outside is the inside, to the bit; a single plane has no operation to return to.
         let back = shape.clone().complement().complement();
         assert_eq!((back.surfaces(), back.op()), (shape.surfaces(), shape.op()));
     }

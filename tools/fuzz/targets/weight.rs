@@ -7,7 +7,7 @@ use libfuzzer_sys::fuzz_target;
 use rara::reference::{Footprint, Real, View, cutoff, project, splat};
 use rara::{Camera, Clip, ClipOp, ExactForm, Gaussians, Miss, Mode, Plane, Settings};
 
-/// Numbers from the input, zeros when it is used up.
+/// Numbers from the input, and zeros once it is used up.
 struct Numbers<'a>(&'a [u8]);
 
 impl Numbers<'_> {

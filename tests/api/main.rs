@@ -1,17 +1,20 @@
-//! What users of the library can name, read from its source, against `tests/api.txt`: no change of it goes unseen.
+//! What users of the library can name, read from its source and compared with `tests/api.txt`, so that no change goes
+//! unseen.
 //!
-//! After a change that is meant, `RARA_RENEW_API=1 cargo test --test api` writes the list anew; its difference is what the
-//! change's description owes its readers. The features are those of docs.rs.
+//! After an intended change, `RARA_RENEW_API=1 cargo test --test api` writes the list anew; the change's description
+//! explains the difference. The features are those of docs.rs.
+
+mod attributes;
+mod lines;
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use quote::ToTokens;
-use syn::punctuated::Punctuated;
-use syn::{Attribute, Fields, ImplItem, Item, Meta, Token, UseTree, Visibility};
+use syn::{Attribute, Item, Visibility};
 
-const FEATURES: [&str; 5] = ["json", "picture", "ply", "serde", "view"];
+use attributes::{has, is_hidden, is_there};
+use lines::{derived, fields, implemented, leaves, segments, setters, tidy};
 
 #[test]
 fn the_public_interface_is_what_is_written_down() {
@@ -89,7 +92,7 @@ impl Library {
         self.modules.insert(path.to_owned(), kept);
     }
 
-    /// Where what `path` says, seen from a module, is defined; `None` outside of the library.
+    /// Where the definition is that a module means by `path`; `None` if it is outside of the library.
     fn place(&self, module: &str, path: &[String]) -> Option<Place> {
         let (first, rest) = path.split_first()?;
         let inner = |name: &str| format!("{module}::{name}");
@@ -145,13 +148,13 @@ impl Library {
         self.impls = found;
     }
 
-    /// All that can be named, a paragraph each.
+    /// Everything that can be named, a paragraph each.
     fn public(&self) -> String {
         let mut paragraphs = BTreeMap::new();
         self.list("rara", "rara", &mut paragraphs);
         let mut seen: HashMap<Place, String> = HashMap::new();
         let mut text = String::new();
-        // The shortest path first: what else leads there only says so.
+        // The shortest path gets the definition; the others only refer to it.
         let mut names: Vec<_> = paragraphs.into_iter().collect();
         names.sort_by_key(|(name, _)| (name.matches("::").count(), name.clone()));
         for (name, place) in names {
@@ -170,7 +173,7 @@ impl Library {
         text
     }
 
-    /// Adds what a module shows under a path.
+    /// Adds what a module makes public under a path.
     fn list(&self, path: &str, module: &str, to: &mut BTreeMap<String, Option<Place>>) {
         for item in &self.modules[module] {
             if !is_public(item) || is_hidden(attributes(item)) {
@@ -286,202 +289,4 @@ fn is_public(item: &Item) -> bool {
         _ => return false,
     };
     matches!(visibility, Visibility::Public(_))
-}
-
-type List = Punctuated<Meta, Token![,]>;
-
-/// Whether a `cfg` holds where the documentation is made.
-fn holds(meta: &Meta) -> bool {
-    let inner = || match meta {
-        Meta::List(list) => list.parse_args_with(List::parse_terminated).expect("cfg"),
-        _ => List::new(),
-    };
-    let name = meta.path().require_ident().map(ToString::to_string);
-    match name.unwrap_or_default().as_str() {
-        "all" => inner().iter().all(holds),
-        "any" => inner().iter().any(holds),
-        "not" => !inner().iter().any(holds),
-        "feature" => match meta {
-            Meta::NameValue(pair) => {
-                let feature = pair.value.to_token_stream().to_string();
-                FEATURES.contains(&feature.trim_matches('"'))
-            }
-            _ => false,
-        },
-        "test" => false,
-        _ => true,
-    }
-}
-
-/// The attributes that are in force, those of `cfg_attr` included.
-fn in_force(attributes: &[Attribute]) -> Vec<Meta> {
-    let mut found = Vec::new();
-    for attribute in attributes {
-        match &attribute.meta {
-            Meta::List(list) if list.path.is_ident("cfg_attr") => {
-                let parts = list.parse_args_with(List::parse_terminated);
-                let mut parts = parts.expect("cfg_attr").into_iter();
-                if parts.next().as_ref().is_some_and(holds) {
-                    found.extend(parts);
-                }
-            }
-            meta => found.push(meta.clone()),
-        }
-    }
-    found
-}
-
-fn is_there(attributes: &[Attribute]) -> bool {
-    let mut conditions = attributes.iter().filter(|a| a.path().is_ident("cfg"));
-    conditions.all(|a| holds(&a.parse_args().expect("a condition")))
-}
-
-fn has(attributes: &[Attribute], name: &str) -> bool {
-    in_force(attributes)
-        .iter()
-        .any(|meta| meta.path().is_ident(name))
-}
-
-fn is_hidden(attributes: &[Attribute]) -> bool {
-    let hidden = |meta: &Meta| tidy(meta) == "doc(hidden)";
-    in_force(attributes).iter().any(hidden)
-}
-
-fn derived(attributes: &[Attribute]) -> Vec<String> {
-    let mut lines = Vec::new();
-    for meta in in_force(attributes) {
-        if let Meta::List(list) = meta
-            && list.path.is_ident("derive")
-        {
-            let traits = list.parse_args_with(List::parse_terminated);
-            let traits = traits.expect("derive");
-            lines.extend(traits.iter().map(|name| format!("impl {}", tidy(name))));
-        }
-    }
-    lines
-}
-
-/// The lines of fields: all of them, or those that are public.
-fn fields(fields: &Fields, before: &str, all: bool) -> Vec<String> {
-    let mut lines = Vec::new();
-    for (at, field) in fields.iter().enumerate() {
-        if all || matches!(field.vis, Visibility::Public(_)) {
-            let name = field.ident.as_ref();
-            let name = name.map_or(at.to_string(), ToString::to_string);
-            lines.push(format!("{before}{name}: {}", tidy(&field.ty)));
-        }
-    }
-    lines
-}
-
-/// The lines of an `impl`.
-fn implemented(block: &syn::ItemImpl) -> Vec<String> {
-    if let Some((of, _)) = &block.trait_ {
-        return vec![format!("impl {}", tidy(of))];
-    }
-    let mut lines = Vec::new();
-    for item in &block.items {
-        match item {
-            ImplItem::Fn(item)
-                if matches!(item.vis, Visibility::Public(_))
-                    && is_there(&item.attrs)
-                    && !is_hidden(&item.attrs) =>
-            {
-                lines.push(tidy(&item.sig));
-            }
-            ImplItem::Const(item) if matches!(item.vis, Visibility::Public(_)) => {
-                lines.push(format!("const {}: {}", item.ident, tidy(&item.ty)));
-            }
-            _ => {}
-        }
-    }
-    lines
-}
-
-/// The type and the methods of `setters!(Type { field: Value, })`.
-fn setters(tokens: &str) -> (String, Vec<String>) {
-    let text = squeezed(tokens);
-    let (name, fields) = text.split_once('{').expect("setters of a type");
-    let item = format!("struct {name} {{ {}", fields);
-    let item: syn::ItemStruct = syn::parse_str(&item).expect("fields");
-    let method = |field: &syn::Field| {
-        let name = field.ident.as_ref().expect("a name");
-        format!("fn {name}(self, {name}: {}) -> Self", tidy(&field.ty))
-    };
-    (
-        name.trim().to_owned(),
-        item.fields.iter().map(method).collect(),
-    )
-}
-
-/// The segments of a type's path.
-fn segments(of: &syn::Type) -> Vec<String> {
-    match of {
-        syn::Type::Path(path) => path
-            .path
-            .segments
-            .iter()
-            .map(|s| s.ident.to_string())
-            .collect(),
-        _ => Vec::new(),
-    }
-}
-
-/// The names that an import makes, and what each stands for.
-fn leaves(tree: &UseTree) -> Vec<(String, Vec<String>)> {
-    match tree {
-        UseTree::Path(path) => {
-            let mut found = leaves(&path.tree);
-            for (_, from) in &mut found {
-                from.insert(0, path.ident.to_string());
-            }
-            found
-        }
-        UseTree::Name(name) => vec![(name.ident.to_string(), vec![name.ident.to_string()])],
-        UseTree::Rename(name) => vec![(name.rename.to_string(), vec![name.ident.to_string()])],
-        UseTree::Group(group) => group.items.iter().flat_map(leaves).collect(),
-        UseTree::Glob(_) => vec![("*".into(), Vec::new())],
-    }
-}
-
-fn tidy(tokens: &impl ToTokens) -> String {
-    squeezed(&tokens.to_token_stream().to_string())
-}
-
-/// Tokens with the blanks that people put between them.
-fn squeezed(tokens: &str) -> String {
-    let mut text = tokens.split_whitespace().collect::<Vec<_>>().join(" ");
-    let pairs = [
-        (" :: ", "::"),
-        (" <", "<"),
-        ("< ", "<"),
-        (" >", ">"),
-        ("& ", "&"),
-        ("* ", "*"),
-        (" ,", ","),
-        (" ;", ";"),
-        (" :", ":"),
-        ("( ", "("),
-        (" )", ")"),
-        (",)", ")"),
-        ("[ ", "["),
-        (" ]", "]"),
-        ("->", " -> "),
-        ("  ", " "),
-    ];
-    for (from, to) in pairs {
-        text = text.replace(from, to);
-    }
-    // A bracket follows its name at once, and what is no name after a blank.
-    let mut joined = String::new();
-    for (at, letter) in text.char_indices() {
-        let name = joined
-            .trim_end()
-            .ends_with(|c: char| c.is_alphanumeric() || "_>".contains(c));
-        if letter == '(' && name && !joined.ends_with("-> ") && text[..at].ends_with(' ') {
-            joined.pop();
-        }
-        joined.push(letter);
-    }
-    joined
 }

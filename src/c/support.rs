@@ -1,0 +1,189 @@
+//! Requirements before there is a device.
+
+use std::ffi::{c_char, c_void};
+
+use rara::Result;
+use rara::ash::vk;
+use rara::gpu::{self, Support};
+
+use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
+use crate::device::{PFN_vkGetInstanceProcAddr, load_instance};
+
+/// Room for the names of extensions in RaraSupport.
+pub const RARA_MAX_EXTENSIONS: usize = 8;
+
+/// What a physical device that will do offers beyond the requirements. Required are Vulkan 1.3, or 1.2 with
+/// VK_KHR_synchronization2 and VK_KHR_dynamic_rendering, the features bufferDeviceAddress, synchronization2 and
+/// dynamicRendering, and a queue family with graphics and compute.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RaraSupport {
+    /// Set by rara_check.
+    pub struct_size: usize,
+    /// The first queue family with graphics and compute. Any other with both will do too.
+    pub queue_family: u32,
+    /// VK_EXT_mesh_shader with meshShader and taskShader. Optional: splats can be drawn without them.
+    pub mesh_shader: vk::Bool32,
+    /// VK_KHR_push_descriptor. Optional: RARA_BINDINGS_BOUND needs it.
+    pub push_descriptor: vk::Bool32,
+    /// VK_KHR_portability_subset. A host must enable it where the device has it.
+    pub portability_subset: vk::Bool32,
+    /// Nanoseconds of one tick of a timestamp; 0 where the queue family has no timestamps, and frames then have no times.
+    pub timestamp_period: f32,
+    /// Number of extensions.
+    pub extension_count: u32,
+    /// The extensions named above that the device has, and those that Vulkan 1.2 needs, to be added to
+    /// ppEnabledExtensionNames. The strings live as long as the library.
+    pub extensions: [*const c_char; RARA_MAX_EXTENSIONS],
+    /// Bytes of the largest buffer, which limits a scene's spherical harmonics.
+    pub max_buffer_size: u64,
+    /// Most pixels along a side of an image.
+    pub max_image_size: u32,
+    /// The Vulkan version that rara uses: VK_API_VERSION_1_2 or VK_API_VERSION_1_3.
+    pub api_version: u32,
+}
+
+// SAFETY: repr(C), plain numbers and pointers that are not followed, the size first.
+unsafe impl Versioned for RaraSupport {
+    const NAME: &'static str = "RaraSupport";
+}
+
+impl RaraSupport {
+    fn of(support: &Support) -> Self {
+        let mut extensions = [std::ptr::null(); RARA_MAX_EXTENSIONS];
+        let names = support.extensions();
+        for (to, name) in extensions.iter_mut().zip(&names) {
+            *to = name.as_ptr();
+        }
+        Self {
+            struct_size: size_of::<Self>(),
+            queue_family: support.queue_family,
+            mesh_shader: support.mesh_shader.into(),
+            push_descriptor: support.push_descriptor.into(),
+            portability_subset: support.portability_subset.into(),
+            timestamp_period: support.timestamp_period,
+            extension_count: names.len().min(RARA_MAX_EXTENSIONS) as u32,
+            extensions,
+            max_buffer_size: support.max_buffer_size,
+            max_image_size: support.max_image_size,
+            api_version: support.api_version,
+        }
+    }
+}
+
+/// Checks whether a physical device will do, before there is a device. If it will not, the result is RARA_ERROR_DEVICE
+/// and the message names what is missing.
+///
+/// `api_version` is the VkApplicationInfo::apiVersion that the instance was created with, 1.2 or later; `support_size` is
+/// sizeof *support.
+///
+/// # Safety
+/// `instance` is alive and was created for `api_version`, `physical_device` is one of its own, and
+/// `get_instance_proc_addr` is the loader's. `support` has room for `support_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_check(
+    get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
+    instance: vk::Instance,
+    physical_device: vk::PhysicalDevice,
+    api_version: u32,
+    support: *mut RaraSupport,
+    support_size: usize,
+) -> RaraResult {
+    guard(|| {
+        // SAFETY: the caller's promises.
+        unsafe {
+            let instance = load_instance(get_instance_proc_addr, instance, physical_device)?;
+            let found = RaraSupport::of(&gpu::check(&instance, physical_device, api_version)?);
+            write(support, support_size, &found, "support")
+        }
+    })
+}
+
+/// Sets the features that rara needs in the host's own structs: those in the pNext chain of its VkDeviceCreateInfo,
+/// whichever of Vulkan's structs they are in. No other field is touched. RARA_ERROR_INVALID names a feature for which the
+/// chain has no struct; meshShader and taskShader may be missing, since a host can do without.
+///
+/// # Safety
+/// `support` was filled by rara_check; `p_next` is null, or a chain of structs that may be changed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_support_features(
+    support: *const RaraSupport,
+    p_next: *mut c_void,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let default = RaraSupport::of(&Support::default());
+        let support = read(support, default, "support")?;
+        set_features(p_next, support.mesh_shader != 0)
+    })
+}
+
+/// # Safety
+/// `next` is null, or a chain of Vulkan's structs that nobody else uses.
+unsafe fn set_features(next: *mut c_void, mesh_shader: bool) -> Result<()> {
+    use vk::StructureType as Type;
+    let (mut address, mut synchronization, mut rendering) = (false, false, false);
+    let mut next = next.cast::<vk::BaseOutStructure<'_>>();
+    // SAFETY: each struct of a chain begins with its type, which says what it is, and with a pointer to the next one.
+    unsafe {
+        while let Some(base) = next.as_mut() {
+            match base.s_type {
+                Type::PHYSICAL_DEVICE_VULKAN_1_2_FEATURES => {
+                    let all = &mut *next.cast::<vk::PhysicalDeviceVulkan12Features<'_>>();
+                    all.buffer_device_address = vk::TRUE;
+                    address = true;
+                }
+                Type::PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES => {
+                    let one = next.cast::<vk::PhysicalDeviceBufferDeviceAddressFeatures<'_>>();
+                    (*one).buffer_device_address = vk::TRUE;
+                    address = true;
+                }
+                Type::PHYSICAL_DEVICE_VULKAN_1_3_FEATURES => {
+                    let all = &mut *next.cast::<vk::PhysicalDeviceVulkan13Features<'_>>();
+                    (all.synchronization2, all.dynamic_rendering) = (vk::TRUE, vk::TRUE);
+                    (synchronization, rendering) = (true, true);
+                }
+                Type::PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES => {
+                    let one = next.cast::<vk::PhysicalDeviceSynchronization2Features<'_>>();
+                    (*one).synchronization2 = vk::TRUE;
+                    synchronization = true;
+                }
+                Type::PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES => {
+                    let one = next.cast::<vk::PhysicalDeviceDynamicRenderingFeatures<'_>>();
+                    (*one).dynamic_rendering = vk::TRUE;
+                    rendering = true;
+                }
+                Type::PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT if mesh_shader => {
+                    let all = &mut *next.cast::<vk::PhysicalDeviceMeshShaderFeaturesEXT<'_>>();
+                    (all.mesh_shader, all.task_shader) = (vk::TRUE, vk::TRUE);
+                }
+                _ => {}
+            }
+            next = base.p_next;
+        }
+    }
+    for (found, feature, holder) in [
+        (
+            address,
+            "bufferDeviceAddress",
+            "VkPhysicalDeviceVulkan12Features",
+        ),
+        (
+            synchronization,
+            "synchronization2",
+            "VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceSynchronization2Features",
+        ),
+        (
+            rendering,
+            "dynamicRendering",
+            "VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceDynamicRenderingFeatures",
+        ),
+    ] {
+        if !found {
+            return invalid(format!(
+                "no struct of p_next has the feature {feature}: chain a {holder}"
+            ));
+        }
+    }
+    Ok(())
+}

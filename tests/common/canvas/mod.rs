@@ -1,0 +1,299 @@
+//! A canvas that a host draws into, for the tests of depth, formats and views: attachments of any format, in dynamic
+//! rendering or a classic render pass, with rectangles in the depth buffer for opaque meshes.
+#![allow(dead_code, unreachable_pub, reason = "each test binary uses a part")]
+
+mod image;
+mod pixels;
+mod scope;
+
+use rara::ash::{self, vk};
+use rara::gpu::{AdoptDesc, DepthImage, Device};
+
+use crate::host::{Host, HostDesc};
+use image::Image;
+use pixels::decoded;
+
+/// Runs a test with a host and its device, under validation; `optional` enables the device's optional features.
+pub fn with_host(optional: bool, test: impl FnOnce(&Host, &Device)) {
+    let device = std::env::var("RARA_TEST_DEVICE").ok();
+    let host = Host::new(&HostDesc {
+        device: device.as_deref(),
+        validation: true,
+        optional,
+        extent: vk::Extent2D {
+            width: 1,
+            height: 1,
+        },
+        format: vk::Format::R8G8B8A8_UNORM,
+    });
+    let host = host.expect("a Vulkan device and the validation layer (tools/test installs both)");
+    // SAFETY: the handles belong together; everything made from the device is dropped in `test`.
+    let device = unsafe { Device::adopt(host.lend()) }.expect("the host's device draws splats");
+    test(&host, &device);
+    assert_eq!(device.device_bytes(), 0, "everything allocated was freed");
+    drop(device);
+    assert_eq!(host.close(), Vec::<String>::new());
+}
+
+pub struct CanvasDesc {
+    pub extent: vk::Extent2D,
+    pub color: vk::Format,
+    /// `UNDEFINED` for none.
+    pub second: vk::Format,
+    /// `UNDEFINED` for none.
+    pub depth: vk::Format,
+    pub samples: vk::SampleCountFlags,
+    pub render_pass: bool,
+    /// The colour before anything is drawn.
+    pub clear: [f32; 4],
+    /// What the depth buffer holds where there is no mesh.
+    pub far: f32,
+    /// Meshes that face the camera: their places, and what the depth buffer holds there.
+    pub meshes: Vec<(vk::Rect2D, f32)>,
+}
+
+impl CanvasDesc {
+    pub fn new((width, height): (u32, u32), color: vk::Format) -> Self {
+        Self {
+            extent: vk::Extent2D { width, height },
+            color,
+            second: vk::Format::UNDEFINED,
+            depth: vk::Format::UNDEFINED,
+            samples: vk::SampleCountFlags::TYPE_1,
+            render_pass: false,
+            clear: [0.0; 4],
+            far: 1.0,
+            meshes: Vec::new(),
+        }
+    }
+}
+
+pub struct Canvas {
+    desc: CanvasDesc,
+    instance: ash::Instance,
+    physical: vk::PhysicalDevice,
+    raw: ash::Device,
+    device: Device,
+    color: Image,
+    /// For canvases of several samples.
+    resolved: Option<Image>,
+    second: Option<Image>,
+    depth: Option<Image>,
+    render_pass: vk::RenderPass,
+    framebuffer: vk::Framebuffer,
+}
+
+/// A function that records before a scope, and one that records inside it.
+pub type Scope<'a> = (
+    &'a mut dyn FnMut(vk::CommandBuffer),
+    &'a mut dyn FnMut(vk::CommandBuffer),
+);
+
+const COLOR: vk::ImageLayout = vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL;
+const DEPTH: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+const COPIED: vk::ImageLayout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+const UNDEFINED: vk::Format = vk::Format::UNDEFINED;
+
+impl Canvas {
+    /// A canvas on a host's device, which must outlive it.
+    pub fn new(lent: &AdoptDesc, device: &Device, desc: CanvasDesc) -> Self {
+        let mut canvas = Self {
+            instance: lent.instance.clone(),
+            physical: lent.physical_device,
+            raw: lent.device.clone(),
+            device: device.clone(),
+            color: Image::none(),
+            resolved: None,
+            second: None,
+            depth: None,
+            render_pass: vk::RenderPass::null(),
+            framebuffer: vk::Framebuffer::null(),
+            desc,
+        };
+        let one = vk::SampleCountFlags::TYPE_1;
+        let d = &canvas.desc;
+        let (as_color, as_depth) = (
+            vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC,
+            vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC,
+        );
+        let color = canvas.image(d.color, as_color, d.samples);
+        let resolved = (d.samples != one).then(|| canvas.image(d.color, as_color, one));
+        let second = (d.second != UNDEFINED).then(|| canvas.image(d.second, as_color, d.samples));
+        let depth = (d.depth != UNDEFINED).then(|| canvas.image(d.depth, as_depth, d.samples));
+        (canvas.color, canvas.resolved) = (color, resolved);
+        (canvas.second, canvas.depth) = (second, depth);
+        if canvas.desc.render_pass {
+            canvas.make_render_pass();
+        }
+        canvas
+    }
+
+    /// The canvas's render pass, or null if it has none.
+    pub fn render_pass(&self) -> vk::RenderPass {
+        self.render_pass
+    }
+
+    /// The depth buffer as `prepare_behind` takes it, for a viewport that begins at (x, y).
+    pub fn depth_image(&self, x: i32, y: i32) -> DepthImage {
+        DepthImage {
+            image: self.depth.as_ref().expect("a depth buffer").raw,
+            layout: COPIED,
+            extent: self.desc.extent,
+            layer: 0,
+            origin: vk::Offset2D { x, y },
+        }
+    }
+
+    /// Sets viewport and scissor.
+    pub fn viewport(&self, cmd: vk::CommandBuffer, x: i32, y: i32, (width, height): (u32, u32)) {
+        let area = vk::Rect2D {
+            offset: vk::Offset2D {
+                x: x.max(0),
+                y: y.max(0),
+            },
+            extent: vk::Extent2D { width, height },
+        };
+        let viewport = vk::Viewport {
+            x: x as f32,
+            y: y as f32,
+            width: width as f32,
+            height: height as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        };
+        // SAFETY: called from within `draw`, whose command buffer is recording.
+        unsafe {
+            self.raw.cmd_set_viewport(cmd, 0, &[viewport]);
+            self.raw.cmd_set_scissor(cmd, 0, &[area]);
+        }
+    }
+
+    /// Draws a frame and waits: the meshes' depths, what `before` records outside a scope, and what `inside` records in
+    /// it. Returns the pictures of the colour attachments.
+    pub fn draw(
+        &self,
+        mut before: impl FnMut(vk::CommandBuffer),
+        mut inside: impl FnMut(vk::CommandBuffer),
+    ) -> [Vec<[f32; 4]>; 2] {
+        self.draw_scopes(&mut [(&mut before, &mut inside)])
+    }
+
+    /// Draws several scopes, one after the other, in one command buffer.
+    pub fn draw_scopes(&self, scopes: &mut [Scope<'_>]) -> [Vec<[f32; 4]>; 2] {
+        let pixels = u64::from(self.desc.extent.width) * u64::from(self.desc.extent.height);
+        let colors = [
+            self.resolved.as_ref().or(Some(&self.color)),
+            self.second.as_ref(),
+        ];
+        let buffer = |name| {
+            let location = rara::gpu::Location::Readback;
+            let desc = rara::gpu::BufferDesc {
+                name,
+                size: pixels * 16,
+                location,
+            };
+            self.device.create_buffer(&desc).expect("memory")
+        };
+        let readbacks = ["color_readback", "second_readback"].map(buffer);
+        let submitted = self.device.submit_and_wait(|cmd| {
+            // SAFETY: `cmd` is recording, and everything that it uses outlives the wait.
+            unsafe { self.record(cmd, scopes, &colors, &readbacks) };
+            Ok(())
+        });
+        submitted.expect("submits");
+        let read = |(image, buffer): (&Option<&Image>, &rara::gpu::Buffer)| {
+            let image = image.as_ref();
+            image.map_or(Vec::new(), |i| {
+                decoded(i.format, buffer.mapped(), pixels as usize)
+            })
+        };
+        let mut pictures = colors.iter().zip(&readbacks).map(read);
+        [0, 1].map(|_| pictures.next().expect("two"))
+    }
+
+    /// # Safety
+    /// `cmd` is recording.
+    unsafe fn record(
+        &self,
+        cmd: vk::CommandBuffer,
+        scopes: &mut [Scope<'_>],
+        colors: &[Option<&Image>; 2],
+        readbacks: &[rara::gpu::Buffer; 2],
+    ) {
+        let undefined = vk::ImageLayout::UNDEFINED;
+        let drawn = [
+            Some(&self.color),
+            self.resolved.as_ref(),
+            self.second.as_ref(),
+        ];
+        // SAFETY: the caller vouches for `cmd`; images, views and buffers are alive.
+        unsafe {
+            for image in drawn.into_iter().flatten() {
+                self.turn(cmd, image, undefined, COLOR);
+            }
+            if let Some(depth) = &self.depth {
+                self.turn(cmd, depth, undefined, DEPTH);
+                self.paint_depth(cmd, depth);
+                self.turn(cmd, depth, DEPTH, COPIED);
+            }
+            for (number, (before, inside)) in scopes.iter_mut().enumerate() {
+                before(cmd);
+                if let Some(depth) = &self.depth {
+                    self.turn(cmd, depth, COPIED, DEPTH);
+                }
+                self.begin(cmd, number == 0);
+                inside(cmd);
+                if self.desc.render_pass {
+                    self.raw.cmd_end_render_pass(cmd);
+                } else {
+                    self.raw.cmd_end_rendering(cmd);
+                }
+                self.turn(cmd, &self.color, COLOR, COLOR);
+                if let Some(depth) = &self.depth {
+                    self.turn(cmd, depth, DEPTH, COPIED);
+                }
+            }
+            for (image, buffer) in colors.iter().zip(readbacks) {
+                let Some(image) = image else { continue };
+                self.turn(cmd, image, COLOR, COPIED);
+                let region = vk::BufferImageCopy::default()
+                    .image_subresource(
+                        vk::ImageSubresourceLayers::default()
+                            .aspect_mask(vk::ImageAspectFlags::COLOR)
+                            .layer_count(1),
+                    )
+                    .image_extent(self.desc.extent.into());
+                let to = buffer.handle();
+                self.raw
+                    .cmd_copy_image_to_buffer(cmd, image.raw, COPIED, to, &[region]);
+            }
+            let visible = [vk::MemoryBarrier2::default()
+                .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
+                .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+                .dst_stage_mask(vk::PipelineStageFlags2::HOST)
+                .dst_access_mask(vk::AccessFlags2::HOST_READ)];
+            let info = vk::DependencyInfo::default().memory_barriers(&visible);
+            self.raw.cmd_pipeline_barrier2(cmd, &info);
+        }
+    }
+}
+
+impl Drop for Canvas {
+    fn drop(&mut self) {
+        let images = [
+            self.resolved.as_ref(),
+            self.second.as_ref(),
+            self.depth.as_ref(),
+        ];
+        // SAFETY: each frame was waited for; null handles are ignored.
+        unsafe {
+            self.raw.destroy_framebuffer(self.framebuffer, None);
+            self.raw.destroy_render_pass(self.render_pass, None);
+            for image in images.into_iter().flatten().chain([&self.color]) {
+                self.raw.destroy_image_view(image.view, None);
+                self.raw.destroy_image(image.raw, None);
+                self.raw.free_memory(image.memory, None);
+            }
+        }
+    }
+}

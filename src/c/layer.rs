@@ -10,6 +10,7 @@ use crate::boundary::{
     RaraResult, Versioned, create, exclusive, guard, invalid, read, read_list, recording, shared,
     string, write,
 };
+use crate::clip::RaraClip;
 use crate::device::RaraDevice;
 use crate::placement::RaraPlacement;
 use crate::scene::{RaraGaussians, RaraSceneBuffers, RaraShFormat, RaraStaging, sh_format};
@@ -327,7 +328,7 @@ pub unsafe extern "C" fn rara_scene_buffers_layer_state(
         // SAFETY: the caller's promise.
         let scene = unsafe { shared(scene, "scene") }?;
         check_index(scene, index)?;
-        let found = scene.buffers.layers()[index].state.into();
+        let found = scene.buffers.layers()[index].state().into();
         // SAFETY: the caller's promise.
         unsafe { write(state, state_size, &found, "state") }
     })
@@ -350,9 +351,36 @@ pub unsafe extern "C" fn rara_scene_buffers_set_layer_state(
         // SAFETY: the caller's promise.
         let scene = unsafe { exclusive(scene, "scene") }?;
         check_index(scene, index)?;
-        let layer = &mut scene.buffers.layers_mut()[index];
+        let name = scene.buffers.layers()[index].name().to_owned();
         // SAFETY: as above.
-        layer.state = unsafe { self::state(state, "state", layer.name()) }?;
-        Ok(())
+        let state = unsafe { self::state(state, "state", &name) }?;
+        scene.buffers.set_layer_state(index, state)
+    })
+}
+
+/// Sets a clip for a layer alone, in place of the clip of rara_renderer_configure, which then has no say in it: a clip
+/// without planes keeps the whole layer. Null gives the layer the frame's clip again. The clip stands in the scene: neither
+/// the layer's placement nor that of rara_renderer_set_placement moves it. It holds from the next rara_renderer_configure of
+/// every renderer on. RARA_ERROR_INVALID for what is no clip; the layer's clip then stays as it was.
+///
+/// # Safety
+/// `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;
+/// `clip` is null or points to one whose planes are there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_scene_buffers_set_layer_clip(
+    scene: *mut RaraSceneBuffers,
+    index: usize,
+    clip: *const RaraClip,
+) -> RaraResult {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let scene = unsafe { exclusive(scene, "scene") }?;
+        check_index(scene, index)?;
+        let own = match clip.is_null() {
+            true => None,
+            // SAFETY: as above.
+            false => Some(unsafe { crate::clip::clip(clip) }?),
+        };
+        scene.buffers.set_layer_clip(index, own)
     })
 }

@@ -120,6 +120,10 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
         "scene is null"
     );
     call!(
+        rara_scene_buffers_set_layer_clip(null_mut(), 0, null()),
+        "scene is null"
+    );
+    call!(
         rara_cameras_load(null(), null_mut(), null_mut()),
         "count is null"
     );

@@ -285,6 +285,15 @@ unsafe fn what_is_wrong_with_layers_is_said(
         let set = |index, state: *const RaraLayerState| {
             rara_scene_buffers_set_layer_state(scene, index, state)
         };
+        let clip = RaraClip {
+            planes: null(),
+            plane_count: 33,
+            op: RARA_CLIP_OP_AND,
+        };
+        let failed = rara_scene_buffers_set_layer_clip(scene, 0, &clip);
+        assert_fails(failed, RARA_ERROR_INVALID, "clip->plane_count is 33");
+        let failed = rara_scene_buffers_set_layer_clip(scene, 1, null());
+        assert_fails(failed, RARA_ERROR_INVALID, beyond);
         let failed = set(0, &state);
         let says = "state: the opacity of layer 'scene' is 1.1; give 0 to 1";
         assert_fails(failed, RARA_ERROR_INVALID, says);

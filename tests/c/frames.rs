@@ -545,6 +545,37 @@ fn layers_are_the_same_bytes() {
             seen.push(truth);
         }
         assert!(seen[0] != seen[1] && seen[0] != seen[2] && seen[1] != seen[2]);
+
+        // A clip without planes keeps a layer that the frame's clip would cut.
+        let names = NAMES.map(|name| name.to_str().expect("UTF-8"));
+        let world = World {
+            layers: Scene::from_iter([
+                Layer::new(names[0], scene),
+                Layer::new(names[1], &other).clipped(Clip::default()),
+            ]),
+            ..World::new(scene, Raster::Tiles)
+        };
+        let canvas = world.canvas(lent, device);
+        let truth = world.drawn(device, &canvas);
+        assert!(truth != seen[0], "the frame's clip cuts it otherwise");
+        let whole = RaraClip {
+            planes: null(),
+            plane_count: 0,
+            op: RARA_CLIP_OP_AND,
+        };
+        // SAFETY: as above.
+        unsafe {
+            let given = RaraLayerState::from(shown);
+            for index in 0..2 {
+                assert_ok(rara_scene_buffers_set_layer_state(uploaded, index, &given));
+            }
+            assert_ok(rara_scene_buffers_set_layer_clip(uploaded, 1, &whole));
+            let drawn = world.drawn_in_c(ours.device, &canvas, |_| uploaded);
+            assert!(drawn == truth, "a clip of its own");
+            assert_ok(rara_scene_buffers_set_layer_clip(uploaded, 1, null()));
+            let drawn = world.drawn_in_c(ours.device, &canvas, |_| uploaded);
+            assert!(drawn == seen[0], "the frame's clip again");
+        }
         // SAFETY: all frames were waited for.
         unsafe {
             rara_scene_buffers_destroy(uploaded);

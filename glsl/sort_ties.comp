@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// After the sort, splats of one depth are in the order of the blocks; this puts them into the order of the file. Equal
+// After the sort, splats of one depth are in the order of the blocks; this puts them into that of their numbers. Equal
 // depths are rare and few, so each invocation looks for them in a run of its own and orders them alone; where too many have
 // one depth, its workgroup merges them together.
 #include "sort.glsl"
@@ -19,7 +19,7 @@ const uint FEW = 24u;
 shared uvec2 ties[SORT_GROUP_SIZE]; // begin and end of equal keys that are too many for one
 shared uint tie_count;
 
-// A survivor's number in the file.
+// A survivor's number in the scene.
 uint number(uint survivor) {
     return floatBitsToUint(splats.at[survivor].middle.z);
 }

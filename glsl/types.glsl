@@ -124,15 +124,15 @@ struct Surface {
 
 // A Gaussian without its colour.
 struct Gaussian {
-    vec4 position_opacity; // centre, world units; opacity 0 to 1
-    vec4 scale; // standard deviations, world units; w the bits of its number in the file
+    vec4 position_opacity; // centre, the layer's units; opacity 0 to 1
+    vec4 scale; // standard deviations, the layer's units; w the bits of its number in the scene
     vec4 rotation; // unit quaternion x y z w
 };
 
 // What the Gaussians of a block lie within; a block is BLOCK_SIZE neighbours on a space-filling curve. The reach is the
 // farthest that one's contour of 1/255 can lie from its centre, negative where none has such a contour.
 struct Block {
-    vec4 low_reach; // least coordinates of the centres; reach: world units
+    vec4 low_reach; // least coordinates of the centres; reach: the layer's units
     vec4 high_sigma; // greatest ones; largest standard deviation, negative where some may miss all pixels though in view
 };
 
@@ -142,7 +142,7 @@ struct Splat {
     vec4 conic_cut; // k2; opacity; the weight's z at the centre and dz/dx, as cut.glsl says
     vec4 colour_cut; // colour; dz/dy
     vec4 axes; // the quad's two half axes, px
-    vec4 middle; // middle of the quad relative to the centre, px; the bits of its number in the file; the centre's depth
+    vec4 middle; // middle of the quad relative to the centre, px; the bits of its number in the scene; the centre's depth
     vec4 curvature; // of the weight's z: the factors of dx^2, dx dy and dy^2; w unused
 };
 

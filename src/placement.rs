@@ -8,12 +8,13 @@ use crate::camera::Camera;
 use crate::clip::{Clip, Plane, Surface};
 use crate::error::{Error, Result};
 
-/// Where a scene stands in a world: its points are scaled, then turned, then moved.
+/// Where a scene stands in a world, or a [layer](crate::Layer) in its scene: points are scaled, then turned, then moved.
 ///
 /// A placed scene is drawn by taking the world's camera and clip into the scene
 /// ([`Camera::in_scene`], [`Clip::in_scene`], [`DepthMap::in_scene`](crate::DepthMap::in_scene)). This is exact, in
 /// double precision, and touches no Gaussian. The picture is that of the placed Gaussians; spherical harmonics turn with
-/// the scene. All lengths are then in the scene's units, also the depth of 0.2 below which 3DGS culls centres.
+/// the scene. All lengths are then in the scene's units, also the depth of 0.2 below which 3DGS culls centres; that holds
+/// for a layer too, whose own units count before the camera alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
     position: DVec3,

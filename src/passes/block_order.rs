@@ -92,7 +92,7 @@ fn block(scene: &Gaussians, numbers: &[u32]) -> Block {
     }
 }
 
-/// How far from its centre a splat's contour of 1/255 can lie, world units.
+/// How far from its centre a splat's contour of 1/255 can lie, the layer's units.
 fn reach(scene: &Gaussians, index: usize) -> f32 {
     let times = scene.opacities()[index] * limits::ALPHA_MIN_INVERSE;
     // This is a little more than single precision finds on the device.

@@ -113,7 +113,8 @@ impl Sizes {
             gaussians,
             blocks,
             layers: plan.layers.layers().len() as u64,
-            surfaces: plan.layers.surfaces().len() as u64,
+            // For all layers wherever they are placed: one that moves needs no other buffers.
+            surfaces: plan.layers.layers().len() as u64 * u64::from(plan.layers.most_surfaces()),
             clip_blocks: if plan.mode() == types::MODE_NONE {
                 0
             } else {

@@ -6,10 +6,9 @@ use glam::Vec3;
 
 use crate::camera::Camera;
 use crate::clip::Clip;
-use crate::error::Result;
 use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
-use crate::passes::scene_buffers::SceneLayer;
+use crate::passes::scene_layer::SceneLayer;
 use crate::passes::view::layer_view;
 use crate::passes::{region, shaders, work};
 use crate::types::{self, LayerContent, LayerData, LayerRegion, RegionData, Surface};
@@ -51,46 +50,49 @@ impl Layers {
         camera: &Camera,
         clip: &Clip,
         region: &RegionData,
-    ) -> Result<Self> {
+    ) -> Self {
         let has_region = region.mode != types::MODE_NONE;
         let (mut layers, mut surfaces) = (Vec::<LayerData>::with_capacity(scene.len()), Vec::new());
         for (index, layer) in scene.iter().enumerate() {
-            let state = &layer.state;
-            state.check(layer.name())?;
-            // Layers of one placement see one region.
-            let mut before = scene[..index].iter();
-            let is_alike = |other: &SceneLayer| {
-                other.state.placement == state.placement && other.clip == layer.clip
+            let content = LayerContent {
+                first_block: layer.first_block,
+                gaussian_end: layer.gaussian_end(),
+                opacity: layer.state.opacity,
+                visible: layer.is_visible().into(),
             };
-            let region = match before.position(is_alike) {
-                Some(other) => layers[other].region,
-                None if has_region => {
-                    let clip = layer.clip.as_ref().unwrap_or(clip);
-                    let first = surfaces.len();
-                    surfaces.extend(region::surfaces(&clip.in_scene(&state.placement)));
-                    LayerRegion {
-                        op: region::op(clip),
-                        first_surface: first as u32,
-                        surface_count: (surfaces.len() - first) as u32,
-                        pad: 0,
+            let (view, region) = if layer.is_visible() {
+                let placement = &layer.state.placement;
+                let view = layer_view(&camera.in_scene(placement), placement.scale());
+                let before = index.checked_sub(1).map(|before| &scene[before]);
+                let region = match before.filter(|before| before.is_clipped_like(layer)) {
+                    Some(_) => layers[index - 1].region,
+                    None if has_region => {
+                        let clip = layer.clip().unwrap_or(clip);
+                        let first = surfaces.len();
+                        surfaces.extend(region::surfaces(&clip.in_scene(placement)));
+                        LayerRegion {
+                            op: region::op(clip),
+                            first_surface: first as u32,
+                            surface_count: (surfaces.len() - first) as u32,
+                            pad: 0,
+                        }
                     }
-                }
-                None => bytemuck::Zeroable::zeroed(),
+                    None => bytemuck::Zeroable::zeroed(),
+                };
+                (view, region)
+            } else {
+                // Nobody asks, so that no frame has to be computed anew where it changes.
+                (bytemuck::Zeroable::zeroed(), bytemuck::Zeroable::zeroed())
             };
             layers.push(LayerData {
-                view: layer_view(&camera.in_scene(&state.placement), state.placement.scale()),
-                content: LayerContent {
-                    first_block: layer.first_block,
-                    gaussian_end: layer.gaussian_end(),
-                    opacity: state.opacity,
-                    visible: state.visible.into(),
-                },
+                view,
+                content,
                 region,
             });
         }
-        Ok(Self {
+        Self {
             lists: Arc::new((layers, surfaces)),
-        })
+        }
     }
 
     /// The layers, in the scene's order.
@@ -139,9 +141,9 @@ pub(super) fn boxes<'a>(
     scene: &'a [SceneLayer],
     camera: &'a Camera,
 ) -> impl Iterator<Item = (Camera, [Vec3; 2], f64)> {
-    let visible = scene.iter().filter(|layer| layer.state.visible);
+    let visible = scene.iter().filter(|layer| layer.is_visible());
     visible.map(move |layer| {
         let placement = &layer.state.placement;
-        (camera.in_scene(placement), layer.bounds, placement.scale())
+        (camera.in_scene(placement), layer.corners, placement.scale())
     })
 }

@@ -9,7 +9,7 @@ use crate::passes::depth_keys::DepthKeys;
 use crate::passes::layers::{self, Layers};
 use crate::passes::occluders::Occluders;
 use crate::passes::region::region_data;
-use crate::passes::scene_buffers::SceneLayer;
+use crate::passes::scene_layer::SceneLayer;
 use crate::passes::sort;
 use crate::passes::tiles::TileWork;
 use crate::passes::view::view_data;
@@ -92,9 +92,10 @@ impl Plan {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<Self> {
-        let own = scene.layers.iter().filter_map(|layer| layer.clip.as_ref());
+        let visible = scene.layers.iter().filter(|layer| layer.is_visible());
+        let own = visible.filter_map(SceneLayer::clip);
         let region = region_data(own.chain([clip]), settings)?;
-        let layers = Layers::new(scene.layers, camera, clip, &region)?;
+        let layers = Layers::new(scene.layers, camera, clip, &region);
         let weight = weight_data(&scene, &region, layers.most_surfaces(), settings)?;
         let boxes = layers::boxes(scene.layers, camera);
         let keys = DepthKeys::new(boxes, settings.precision.key_bits)?;
@@ -277,17 +278,19 @@ fn tiles_data(size: vk::Extent2D, span_runs: u32, settings: &Settings) -> Result
 
 #[cfg(test)]
 mod tests {
-    use glam::{DVec3, Vec3};
+    use glam::DVec3;
 
     use super::*;
     use crate::clip::{ClipOp, Plane};
     use crate::passes::shaders::project;
     use crate::passes::stage::key;
     use crate::passes::weight::Weight;
+    use crate::scene::{Kind, Layer, generate};
     use crate::settings::Mode;
 
     fn plan(mode: Mode, planes: usize) -> Plan {
-        let layer = SceneLayer::new("one".into(), 0, 1000, [Vec3::NEG_ONE, Vec3::ONE]);
+        let thousand = generate(Kind::General, 1000, 1);
+        let layer = SceneLayer::new(&Layer::new("one", &thousand), 0);
         let facts = SceneFacts {
             layers: &[layer],
             gaussians: 1000,

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::settings::{Mode, Settings};
 use crate::types::{self, RegionData};
 
-/// The largest distance of a surface that is not taken for infinity, world units. It lies beyond every splat: a power of two
+/// The largest distance of a surface that is not taken for infinity, in the layer's units. It lies beyond every splat: a power of two
 /// below the end of single precision's range.
 const FARTHEST: f64 = (1_u128 << 126) as f64;
 

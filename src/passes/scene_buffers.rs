@@ -4,17 +4,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use ash::vk;
 use bytemuck::cast_slice;
-use glam::Vec3;
 
 use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::gpu::{Buffer, Device, Recorder};
 use crate::limits;
 use crate::passes::buffers::gpu_only;
-use crate::passes::{block_order, sh_storage};
+use crate::passes::scene_layer::{PackedLayer, SceneLayer, sizes};
 use crate::precision::ShFormat;
-use crate::scene::{Gaussians, LayerState, Scene, sh_coefficients};
-use crate::types::{Block, Gaussian};
+use crate::scene::{LayerState, Scene, check_clip, sh_coefficients};
+#[cfg(test)]
+use crate::types::Block;
 
 /// A scene's Gaussians in device memory.
 #[derive(Debug)]
@@ -24,62 +24,12 @@ pub struct SceneBuffers {
     pub(crate) gaussians: Buffer,
     pub(crate) sh: Buffer,
     pub(crate) blocks: Buffer,
-    /// Whether the Gaussians lie in another order than the file's.
+    /// Whether the Gaussians of a layer lie in another order than they were given in.
     pub(crate) reordered: bool,
     pub(crate) count: u32,
     pub(crate) sh_degree: u32,
     pub(crate) sh_format: ShFormat,
     layers: Vec<SceneLayer>,
-}
-
-/// A layer of a scene that is on the device.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct SceneLayer {
-    /// How the next frame that is configured shows it.
-    pub state: LayerState,
-    /// The clip of the next frame that is configured, for this layer alone and in place of the frame's; it stands in the
-    /// scene.
-    pub clip: Option<Clip>,
-    name: String,
-    gaussians: u32,
-    /// The layer's first block; it fills whole blocks.
-    pub(crate) first_block: u32,
-    /// The corners of the box around its centres, in its own units.
-    pub(crate) bounds: [Vec3; 2],
-}
-
-impl SceneLayer {
-    pub(crate) fn new(name: String, first_block: u32, gaussians: u32, bounds: [Vec3; 2]) -> Self {
-        Self {
-            state: LayerState::default(),
-            clip: None,
-            name,
-            gaussians,
-            first_block,
-            bounds,
-        }
-    }
-
-    /// The name that it was uploaded with.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// Gaussians in it.
-    pub fn gaussians(&self) -> u32 {
-        self.gaussians
-    }
-
-    /// Its blocks' Gaussians end before this place.
-    pub(crate) fn gaussian_end(&self) -> u32 {
-        self.first_block * limits::BLOCK_SIZE + self.gaussians
-    }
-
-    /// The first block behind it.
-    fn block_end(&self) -> u32 {
-        self.first_block + self.gaussians.div_ceil(limits::BLOCK_SIZE)
-    }
 }
 
 static NEXT_ID: AtomicU64 = AtomicU64::new(0);
@@ -123,9 +73,38 @@ impl SceneBuffers {
         &self.layers
     }
 
-    /// Its layers, whose states the next [`Renderer::configure`](crate::Renderer::configure) takes as they are then.
-    pub fn layers_mut(&mut self) -> &mut [SceneLayer] {
-        &mut self.layers
+    /// Sets how a layer is shown, of the number that it has in [`layers`](Self::layers), from the next
+    /// [`Renderer::configure`](crate::Renderer::configure) on. Nothing is uploaded again, and nothing has to be waited for.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a number that no layer has, and as of [`LayerState::check`]; the state is then as it was.
+    pub fn set_layer_state(&mut self, index: usize, state: LayerState) -> Result<()> {
+        let layer = self.layer_mut(index)?;
+        state.check(layer.name())?;
+        layer.state = state;
+        Ok(())
+    }
+
+    /// Sets the clip of a layer, in place of the frame's as [`Layer::clipped`](crate::Layer::clipped) says, or with `None`
+    /// the frame's, from the next [`Renderer::configure`](crate::Renderer::configure) on.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a number that no layer has, and for more than [`Clip::MAX_SURFACES`]; the clip is then as it
+    /// was.
+    pub fn set_layer_clip(&mut self, index: usize, clip: Option<Clip>) -> Result<()> {
+        let layer = self.layer_mut(index)?;
+        check_clip(layer.name(), clip.as_ref())?;
+        layer.clip = clip;
+        Ok(())
+    }
+
+    fn layer_mut(&mut self, index: usize) -> Result<&mut SceneLayer> {
+        let count = self.layers.len();
+        self.layers.get_mut(index).ok_or_else(|| {
+            Error::Invalid(format!(
+                "there is no layer {index}: the scene has {count}, numbered from 0"
+            ))
+        })
     }
 
     /// Whether it was uploaded to this device.
@@ -221,9 +200,7 @@ impl SceneBuffers {
                 scene.gaussians()
             )));
         }
-        if scene.layers().is_empty() {
-            return Err(Error::Invalid("a scene has at least one layer".into()));
-        }
+        scene.check()?;
         let sizes = sizes(scene, format);
         if sizes[1] > u64::from(u32::MAX) * 4 {
             return Err(Error::Invalid(format!(
@@ -236,29 +213,11 @@ impl SceneBuffers {
         let (mut layers, mut packed) = (Vec::<SceneLayer>::new(), Vec::new());
         let mut count = 0;
         for layer in scene.layers() {
+            let first_block = layers.last().map_or(0, SceneLayer::block_end);
             let gaussians = layer.gaussians();
-            let own = SceneLayer {
-                state: layer.state(),
-                clip: layer.clip().cloned(),
-                ..SceneLayer::new(
-                    layer.name().into(),
-                    layers.last().map_or(0, SceneLayer::block_end),
-                    gaussians.len() as u32,
-                    bounds(gaussians),
-                )
-            };
-            own.state.check(own.name())?;
-            let order = block_order::order(gaussians);
-            packed.push(PackedLayer {
-                gaussians,
-                blocks: block_order::blocks(gaussians, &order),
-                order,
-                first_block: own.first_block,
-                first_number: count,
-                sh,
-            });
-            count += own.gaussians;
-            layers.push(own);
+            packed.push(PackedLayer::new(gaussians, first_block, count, sh));
+            layers.push(SceneLayer::new(layer, first_block));
+            count += gaussians.len() as u32;
         }
         let buffers = Self {
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
@@ -313,82 +272,6 @@ pub struct Staging<'a> {
     pub bytes: &'a mut [u8],
 }
 
-/// Bytes of the Gaussians, their spherical harmonics, and the bounds of their blocks.
-fn sizes(scene: &Scene<'_>, format: ShFormat) -> [u64; 3] {
-    let words = sh_storage::words(format, 3 * sh_coefficients(scene.sh_degree()));
-    let block = limits::BLOCK_SIZE as usize;
-    let (mut blocks, mut end) = (0, 0);
-    for layer in scene.layers() {
-        end = blocks * block + layer.gaussians().len();
-        blocks = end.div_ceil(block);
-    }
-    [
-        end * size_of::<Gaussian>(),
-        end * words * size_of::<u32>(),
-        blocks * size_of::<Block>(),
-    ]
-    .map(|bytes| bytes as u64)
-}
-
-/// The corners of the box around all centres.
-fn bounds(gaussians: &Gaussians) -> [Vec3; 2] {
-    let centres = gaussians.positions().iter();
-    centres.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], &x| {
-        [low.min(x), high.max(x)]
-    })
-}
-
-/// A layer as the device gets it.
-struct PackedLayer<'a> {
-    gaussians: &'a Gaussians,
-    /// The numbers of its Gaussians in the order of the device.
-    order: Vec<u32>,
-    blocks: Vec<Block>,
-    first_block: u32,
-    /// Its first Gaussian's number in the scene.
-    first_number: u32,
-    /// How spherical harmonics are stored, and how many numbers there are of each Gaussian.
-    sh: (ShFormat, usize),
-}
-
-impl PackedLayer<'_> {
-    /// Where its Gaussians, their spherical harmonics and its blocks begin, bytes.
-    fn offsets(&self) -> [u64; 3] {
-        let first = u64::from(self.first_block) * u64::from(limits::BLOCK_SIZE);
-        let words = sh_storage::words(self.sh.0, self.sh.1);
-        [
-            first * size_of::<Gaussian>() as u64,
-            first * (words * size_of::<u32>()) as u64,
-            u64::from(self.first_block) * size_of::<Block>() as u64,
-        ]
-    }
-
-    fn gaussian(&self, number: u32) -> Gaussian {
-        let (scene, index) = (self.gaussians, number as usize);
-        let in_scene = f32::from_bits(self.first_number + number);
-        Gaussian {
-            position_opacity: scene.positions()[index]
-                .extend(scene.opacities()[index])
-                .into(),
-            scale: scene.scales()[index].extend(in_scene).into(),
-            rotation: scene.rotations()[index].into(),
-        }
-    }
-
-    /// Degrees that only other layers have are zero.
-    fn append_sh(&self, number: u32, out: &mut Vec<u32>) {
-        let own = self.gaussians.sh_of(number as usize);
-        let (format, numbers) = self.sh;
-        if own.len() == numbers {
-            sh_storage::pack(format, own, out);
-        } else {
-            let mut all = [0.0; 3 * limits::MAX_SH_COEFFICIENTS as usize];
-            all[..own.len()].copy_from_slice(own);
-            sh_storage::pack(format, &all[..numbers], out);
-        }
-    }
-}
-
 /// Writes what `append` makes of each Gaussian, in an order, to memory that is slow to read.
 fn write_in_chunks<T: bytemuck::NoUninit>(
     mut target: &mut [u8],
@@ -432,7 +315,9 @@ fn upload_in_chunks<T: bytemuck::NoUninit>(
 mod tests {
     use super::*;
     use crate::gpu::{BufferDesc, DeviceDesc, Location};
-    use crate::scene::{Kind, generate};
+    use crate::passes::sh_storage;
+    use crate::scene::{Kind, Layer, generate};
+    use crate::types::Gaussian;
 
     #[test]
     fn a_host_uploads_the_same_bytes() {
@@ -442,15 +327,20 @@ mod tests {
             ..DeviceDesc::default()
         })
         .expect("a device and the validation layer");
-        for (count, format) in [
-            (0, ShFormat::Float),
-            (1, ShFormat::Packed),
-            (3_000, ShFormat::Float),
-            (2_999, ShFormat::Half),
-            (2_049, ShFormat::Packed),
-            (300, ShFormat::Byte),
+        for (counts, format) in [
+            (vec![0], ShFormat::Float),
+            (vec![1], ShFormat::Packed),
+            (vec![3_000], ShFormat::Float),
+            (vec![2_999], ShFormat::Half),
+            (vec![2_049], ShFormat::Packed),
+            (vec![300], ShFormat::Byte),
+            (vec![300, 0, 1, 257], ShFormat::Packed),
+            (vec![0, 513, 1, 0], ShFormat::Byte),
         ] {
-            let scene = generate(Kind::Layers, count, 1);
+            let parts = counts.iter().map(|&count| generate(Kind::Layers, count, 1));
+            let mut parts: Vec<_> = parts.collect();
+            parts[0].set_sh_degree(0); // other layers may have more
+            let scene: Scene<'_> = parts.iter().map(|part| Layer::new("part", part)).collect();
             let whole = SceneBuffers::upload(&device, &scene, format).expect("uploads");
             let needed = SceneBuffers::staging_bytes(&scene, format) as usize;
             let mut lent = device
@@ -489,9 +379,22 @@ mod tests {
                 (&whole.sh, &ours.sh),
                 (&whole.blocks, &ours.blocks),
             ];
-            for ((theirs, ours), size) in pairs.into_iter().zip(sizes(&(&scene).into(), format)) {
-                let read = |buffer| device.download_range(buffer, 0, size).expect("reads back");
-                assert!(read(theirs) == read(ours), "{count}, {format:?}");
+            // Of each layer by itself: nobody writes what is between them.
+            let words = sh_storage::words(format, 3 * sh_coefficients(scene.sh_degree()));
+            for layer in whole.layers() {
+                let first = layer.first_block * limits::BLOCK_SIZE;
+                let blocks = layer.gaussians().div_ceil(limits::BLOCK_SIZE);
+                for ((theirs, ours), (at, count, size)) in pairs.into_iter().zip([
+                    (first, layer.gaussians(), size_of::<Gaussian>()),
+                    (first, layer.gaussians(), words * size_of::<u32>()),
+                    (layer.first_block, blocks, size_of::<Block>()),
+                ]) {
+                    let (at, length) =
+                        (u64::from(at) * size as u64, u64::from(count) * size as u64);
+                    let read = |buffer| device.download_range(buffer, at, length);
+                    let [theirs, ours] = [theirs, ours].map(|b| read(b).expect("reads back"));
+                    assert!(theirs == ours, "{counts:?}, {format:?}");
+                }
             }
             let facts = |b: &SceneBuffers| {
                 (

@@ -17,7 +17,7 @@ pub struct Chord<T> {
     pub gradients: [Vec3<T>; 2],
     /// Rows of M in camera axes: only m3 is used, for the ray and for what is in front of the eye.
     pub rows: [Vec3<T>; 3],
-    /// Depth Z of the centre, world units.
+    /// Depth Z of the centre, the scene's units.
     pub depth: T,
     /// The half-spaces that the surfaces keep of the splat that they cut.
     pub half_spaces: Vec<HalfSpace<T>>,

@@ -130,7 +130,8 @@ impl Renderer {
     }
 
     /// Places the scene in the world, from the next [`configure`](Self::configure) on: camera, clip, the depth map and
-    /// expected depths are the world's. Without a call, the scene's space is the world.
+    /// expected depths are the world's. A layer's own clip stands in the scene and is not: give it what
+    /// [`Clip::in_scene`](crate::Clip::in_scene) makes of one in the world. Without a call, the scene's space is the world.
     pub fn set_placement(&mut self, placement: Placement) {
         self.placement = placement;
     }

@@ -39,16 +39,34 @@ impl LayerState {
     /// found earlier; `name` is the layer's, for the message.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for an opacity that is not 0 to 1.
+    /// [`Error::Invalid`] for an opacity that is not 0 to 1, and for a placement whose scale single precision has not.
     pub fn check(&self, name: &str) -> Result<()> {
-        if (0.0..=1.0).contains(&self.opacity) {
-            return Ok(());
+        if !(0.0..=1.0).contains(&self.opacity) {
+            return Err(Error::Invalid(format!(
+                "the opacity of layer '{name}' is {}; give 0 to 1",
+                self.opacity
+            )));
         }
-        Err(Error::Invalid(format!(
-            "the opacity of layer '{name}' is {}; give 0 to 1",
-            self.opacity
-        )))
+        if !(self.placement.scale() as f32).is_normal() {
+            return Err(Error::Invalid(format!(
+                "layer '{name}' is placed with a scale of {:e}; give one within 1e-37 and 1e38",
+                self.placement.scale()
+            )));
+        }
+        Ok(())
     }
+}
+
+/// That a frame can have the clip of a layer.
+pub(crate) fn check_clip(name: &str, clip: Option<&Clip>) -> Result<()> {
+    let have = clip.map_or(0, |clip| clip.surfaces.len());
+    if have <= Clip::MAX_SURFACES {
+        return Ok(());
+    }
+    Err(Error::Invalid(format!(
+        "the clip of layer '{name}' has {have} surfaces, and a clip has at most {}; use fewer",
+        Clip::MAX_SURFACES
+    )))
 }
 
 /// A layer of a scene that is to be uploaded.
@@ -78,12 +96,22 @@ impl<'a> Layer<'a> {
         self
     }
 
-    /// The same layer with a clip of its own in place of the frame's. It stands in the scene: the layer's placement moves
-    /// the layer and not its clip.
+    /// The same layer with a clip of its own in place of the frame's, which then has no say in it: a clip without surfaces
+    /// keeps the whole layer. It stands in the scene: neither the layer's placement moves it nor
+    /// [`Renderer::set_placement`](crate::Renderer::set_placement).
     #[must_use]
     pub fn clipped(mut self, clip: Clip) -> Self {
         self.clip = Some(clip);
         self
+    }
+
+    /// That a frame can show it so.
+    ///
+    /// # Errors
+    /// As of [`LayerState::check`], and [`Error::Invalid`] for a clip of too many surfaces.
+    pub(crate) fn check(&self) -> Result<()> {
+        self.state.check(&self.name)?;
+        check_clip(&self.name, self.clip.as_ref())
     }
 
     /// Its own clip; `None` where the frame's holds.
@@ -130,6 +158,17 @@ impl<'a> Scene<'a> {
     /// Its layers.
     pub fn layers(&self) -> &[Layer<'a>] {
         &self.layers
+    }
+
+    /// That there is a layer, and that a frame can show each as it is.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where that is not so.
+    pub(crate) fn check(&self) -> Result<()> {
+        if self.layers.is_empty() {
+            return Err(Error::Invalid("a scene has at least one layer".into()));
+        }
+        self.layers.iter().try_for_each(Layer::check)
     }
 
     /// Gaussians of all layers.

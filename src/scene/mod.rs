@@ -20,6 +20,7 @@ pub use gaussians::{GaussianArrays, Gaussians, sh_coefficients};
 #[cfg(feature = "lab")]
 pub(crate) use generate::random::Random;
 pub use generate::{Kind, generate};
+pub(crate) use layer::check_clip;
 pub use layer::{Layer, LayerState, Scene};
 #[cfg(feature = "ply")]
 pub use {

@@ -10,7 +10,7 @@ use crate::passes::{SceneBuffers, SceneLayer};
 use crate::picture::Picture;
 use crate::precision::{ShFormat, TargetFormat};
 use crate::renderer::RendererDesc;
-use crate::scene::Scene;
+use crate::scene::{LayerState, Scene};
 use crate::settings::Settings;
 use crate::stats::FrameStats;
 use crate::trace;
@@ -104,9 +104,20 @@ impl Headless {
         self.session.layers()
     }
 
-    /// The layers of the scene, whose states the next frame takes as they are then; none without a scene.
-    pub fn layers_mut(&mut self) -> &mut [SceneLayer] {
-        self.session.layers_mut()
+    /// As [`SceneBuffers::set_layer_state`], of the scene that is loaded.
+    ///
+    /// # Errors
+    /// The same, and [`Error::Invalid`] without a scene.
+    pub fn set_layer_state(&mut self, index: usize, state: LayerState) -> Result<()> {
+        self.session.scene_mut()?.set_layer_state(index, state)
+    }
+
+    /// As [`SceneBuffers::set_layer_clip`], of the scene that is loaded.
+    ///
+    /// # Errors
+    /// The same, and [`Error::Invalid`] without a scene.
+    pub fn set_layer_clip(&mut self, index: usize, clip: Option<Clip>) -> Result<()> {
+        self.session.scene_mut()?.set_layer_clip(index, clip)
     }
 
     /// Forgets what earlier frames have computed: the next one computes everything. Without it a frame takes over results of

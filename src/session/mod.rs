@@ -67,6 +67,8 @@ impl Session {
 
     /// Uploads a scene in place of the one before, which no frame in flight needs any more.
     fn load(&mut self, scene: Scene<'_>, format: ShFormat) -> Result<()> {
+        // What is refused leaves the scene before it.
+        scene.check()?;
         self.renderer.forget();
         // Free first: both together may not fit.
         self.scene = None;
@@ -79,9 +81,11 @@ impl Session {
         self.scene.as_ref().map_or(&[], SceneBuffers::layers)
     }
 
-    fn layers_mut(&mut self) -> &mut [SceneLayer] {
+    fn scene_mut(&mut self) -> Result<&mut SceneBuffers> {
         let scene = self.scene.as_mut();
-        scene.map_or(&mut [], SceneBuffers::layers_mut)
+        scene.ok_or_else(|| {
+            Error::Invalid("there is no scene whose layers could change; load one first".into())
+        })
     }
 
     /// Draws a frame into a target and waits for it; does nothing where the target has that picture already. All earlier

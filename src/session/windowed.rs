@@ -15,7 +15,7 @@ use crate::passes::SceneLayer;
 use crate::picture::Picture;
 use crate::precision::ShFormat;
 use crate::renderer::{FrameRequest, Outcome, RendererDesc, Submission};
-use crate::scene::Scene;
+use crate::scene::{LayerState, Scene};
 use crate::settings::Settings;
 use crate::stats::FrameStats;
 
@@ -97,9 +97,20 @@ impl Windowed {
         self.session.layers()
     }
 
-    /// The layers of the scene, whose states the next frame takes as they are then; none without a scene.
-    pub fn layers_mut(&mut self) -> &mut [SceneLayer] {
-        self.session.layers_mut()
+    /// As [`SceneBuffers::set_layer_state`](crate::SceneBuffers::set_layer_state), of the scene that is loaded.
+    ///
+    /// # Errors
+    /// The same, and [`Error::Invalid`] without a scene.
+    pub fn set_layer_state(&mut self, index: usize, state: LayerState) -> Result<()> {
+        self.session.scene_mut()?.set_layer_state(index, state)
+    }
+
+    /// As [`SceneBuffers::set_layer_clip`](crate::SceneBuffers::set_layer_clip), of the scene that is loaded.
+    ///
+    /// # Errors
+    /// The same, and [`Error::Invalid`] without a scene.
+    pub fn set_layer_clip(&mut self, index: usize, clip: Option<Clip>) -> Result<()> {
+        self.session.scene_mut()?.set_layer_clip(index, clip)
     }
 
     /// Makes the window's images fit a window of this many pixels. Returns the size that the next frame's camera needs,

@@ -183,7 +183,8 @@ fn colours_turn_with_their_layer() {
         .expect("renders");
     let still = picture(&mut headless);
     let placement = elsewhere(1.0);
-    headless.layers_mut()[0].state.placement = placement;
+    let moved = LayerState::default().placement(placement);
+    headless.set_layer_state(0, moved).expect("a layer");
     let mut world = camera;
     world.eye = placement.to_world(camera.eye);
     world.rotation = camera.rotation * glam::DMat3::from_quat(placement.rotation().inverse());
@@ -199,7 +200,8 @@ fn colours_turn_with_their_layer() {
         .expect("renders");
     common::assert_agrees("turned", &picture(&mut headless), &still);
     // Left where it was, the layer shows another picture.
-    headless.layers_mut()[0].state.placement = Placement::IDENTITY;
+    let back = headless.set_layer_state(0, LayerState::default());
+    back.expect("a layer");
     headless
         .render(&world, &carried, &Settings::default())
         .expect("renders");
@@ -215,7 +217,7 @@ fn a_hidden_layer_is_not_there() {
     let all = named(parts.iter().map(|part| (part, LayerState::default())));
     let mut headless = common::headless();
     headless.load(all).expect("uploads");
-    headless.layers_mut()[5].state = hidden;
+    headless.set_layer_state(5, hidden).expect("a layer");
     let mut rest = common::headless();
     let without = named(parts[..5].iter().map(|part| (part, LayerState::default())));
     rest.load(without).expect("uploads");
@@ -263,7 +265,7 @@ fn layers_that_change_leave_nothing_behind() {
     };
     let cameras = common::views(&scene, 2, common::scaled((125, 95)));
     let (mut camera, mut shift, mut settings) = (0, 0.0, Settings::default());
-    let (mut seen, mut changes) = (None, 0);
+    let (mut seen, mut changes, mut reused) = (None, 0, [0; 3]);
     for _ in 0..90 {
         match pick(9) {
             0 => camera = pick(2),
@@ -274,29 +276,30 @@ fn layers_that_change_leave_nothing_behind() {
                 let value = pick(3);
                 let own = common::clip(&scene, 1 + value, [ClipOp::And, ClipOp::Or][layer % 2]);
                 for headless in [&mut keeps, &mut forgets] {
-                    let layer = &mut headless.layers_mut()[layer];
-                    let state = &mut layer.state;
-                    match kind {
-                        8 => layer.clip = (value > 0).then(|| own.clone()),
-                        3 => state.opacity = [1.0, 0.5, 0.0][value],
-                        4 | 5 => state.visible = value > 0,
-                        _ => {
-                            state.placement =
-                                [Placement::IDENTITY, elsewhere(1.0), elsewhere(0.5)][value];
-                        }
-                    }
+                    let state = headless.layers()[layer].state();
+                    let placements = [Placement::IDENTITY, elsewhere(1.0), elsewhere(0.5)];
+                    let changed = match kind {
+                        8 => headless.set_layer_clip(layer, (value > 0).then(|| own.clone())),
+                        3 => headless.set_layer_state(layer, state.opacity([1.0, 0.5, 0.0][value])),
+                        4 | 5 => headless.set_layer_state(layer, state.visible(value > 0)),
+                        _ => headless.set_layer_state(layer, state.placement(placements[value])),
+                    };
+                    changed.expect("a layer");
                 }
             }
         }
         let clip = common::moved(common::clip(&scene, 2, ClipOp::And), shift);
         forgets.forget();
         let [ours, theirs] = [&mut keeps, &mut forgets].map(|headless| {
-            headless
-                .render(&cameras[camera], &clip, &settings)
-                .expect("renders");
-            picture(headless)
+            let drawn = headless.render(&cameras[camera], &clip, &settings);
+            (drawn.expect("renders").skipped, picture(headless))
         });
+        let ((skipped, ours), (_, theirs)) = (ours, theirs);
         assert!(ours == theirs, "{settings:?}");
+        let skips = |stage| skipped.contains(&stage);
+        reused[0] += usize::from(skips("project") && !skips("recut"));
+        reused[1] += usize::from(!skips("project") && skips("clip"));
+        reused[2] += usize::from(skips("project") && skips("tiles"));
         changes += usize::from(seen.as_ref() != Some(&ours));
         seen = Some(ours);
     }
@@ -304,8 +307,42 @@ fn layers_that_change_leave_nothing_behind() {
         changes > 25,
         "only {changes} of 90 frames were another picture"
     );
+    // Frames whose clip alone has moved, that find the view anew with the sides that there are, and that change nothing.
+    assert!(reused.iter().all(|&frames| frames > 2), "{reused:?}");
     keeps.close().expect("nothing to say");
     forgets.close().expect("nothing to say");
+}
+
+/// Layers without Gaussians, wherever they stand among the others, and the last block of each no fuller than it is.
+#[test]
+fn layers_may_be_empty() {
+    let (_, scene) = common::generated_scenes(300).remove(0);
+    let none = Gaussians::default();
+    let camera = common::views(&scene, 1, common::scaled((97, 61)))[0];
+    let clip = common::clip(&scene, 1, ClipOp::And);
+    let mut headless = common::headless();
+    let mut draw = |scene: Scene<'_>, format| {
+        headless.load_as(scene, format).expect("uploads");
+        let stats = headless
+            .render(&camera, &clip, &Settings::default())
+            .expect("renders");
+        (stats.counts, picture(&mut headless))
+    };
+    for format in [rara::ShFormat::Float, rara::ShFormat::Packed] {
+        let alone = draw((&scene).into(), format);
+        assert!(alone.0.drawn > 50, "{:?}", alone.0);
+        for order in [
+            [&scene, &none, &none],
+            [&none, &scene, &none],
+            [&none, &none, &scene],
+        ] {
+            let layers = order.map(|part| (part, LayerState::default()));
+            assert!(draw(named(layers), format) == alone, "{format:?}");
+        }
+        let empty = draw(named([(&none, LayerState::default()); 2]), format);
+        assert_eq!(empty.0, rara::Counts::default());
+    }
+    headless.close().expect("nothing to say");
 }
 
 #[test]
@@ -328,37 +365,127 @@ fn what_is_no_layer_is_refused() {
     headless
         .load(named([(&part, LayerState::default())]))
         .expect("uploads");
-    headless.layers_mut()[0].state.opacity = 2.0;
-    let camera = common::views(&common::generated_scenes(10)[0].1, 1, (8, 8))[0];
-    let error = headless.render(&camera, &Clip::default(), &Settings::default());
-    let text = error.expect_err("no opacity").to_string();
-    assert!(text.contains("'layer 0'"), "{text}");
+    let state = LayerState::default();
+    for state in [state.opacity(2.0), state.opacity(f32::NAN)] {
+        let error = headless.set_layer_state(0, state).expect_err("no opacity");
+        assert!(error.to_string().contains("'layer 0'"), "{error}");
+    }
+    let error = headless.set_layer_state(1, state).expect_err("no layer");
+    assert!(error.to_string().contains("the scene has 1"), "{error}");
+    let plane = rara::Plane::new(DVec3::X, 0.0).expect("a plane");
+    let error = headless.set_layer_clip(0, Some(Clip::of(vec![plane; 33], ClipOp::And)));
+    let error = error.expect_err("too many surfaces").to_string();
+    assert!(
+        error.contains("'layer 0'") && error.contains("33 surfaces"),
+        "{error}"
+    );
+    let far = Placement::new(DVec3::ZERO, DQuat::IDENTITY, 1e39).expect("a placement");
+    let error = headless.set_layer_state(0, state.placement(far));
+    assert!(error.expect_err("no scale").to_string().contains("1e39"));
+    assert_eq!(
+        headless.layers()[0].state(),
+        state,
+        "what is refused changes nothing"
+    );
+    // A scene that is refused leaves the one before it.
+    headless.load(Scene::default()).expect_err("no layer");
+    assert_eq!(headless.layers().len(), 1);
     headless.close().expect("nothing to say");
 }
 
-/// Unions and intersections of so many surfaces, and none at all, in one frame that has no clip itself.
+/// Unions and intersections of so many surfaces, and none at all, in one frame that has no clip itself. The truth draws
+/// Gaussians that were placed one by one, so that it takes no clip into any layer's space.
 #[test]
 fn each_layer_may_have_a_clip_of_its_own() {
-    let (scene, parts) = in_parts(6_000);
-    let mut headless = common::headless();
-    let camera = common::views(&scene, 1, common::scaled(SIZE))[0];
+    let (scene, mut parts) = in_parts(6_000);
+    for part in &mut parts {
+        part.set_sh_degree(0);
+    }
     let clips = [
         common::clip(&scene, 2, ClipOp::Or),
         common::clip(&scene, 1, ClipOp::And),
         common::clip(&scene, 0, ClipOp::Or), // keeps everything
         common::clip(&scene, 3, ClipOp::And),
     ];
-    let layer =
-        |(index, part): (usize, _)| Layer::new("own", part).clipped(clips[index % 4].clone());
-    let layers: Scene<'_> = parts.iter().enumerate().map(layer).collect();
-    headless.load(layers.clone()).expect("uploads");
+    let states = [elsewhere(1.3), Placement::IDENTITY, elsewhere(0.6)];
+    let states = states.map(|placement| LayerState::default().placement(placement));
+    let layers = |parts| -> Scene<'_> {
+        let each = <[Gaussians]>::iter(parts).enumerate();
+        each.map(|(index, part)| Layer::new("own", part).clipped(clips[index % 4].clone()))
+            .collect()
+    };
+    let each = parts.iter().enumerate();
+    let moved: Vec<_> = each
+        .map(|(index, part)| placed(part, &states[index % 3]))
+        .collect();
+    let camera = common::views(&scene, 1, common::scaled(SIZE))[0];
+    let mut headless = common::headless();
+    headless.load(layers(&parts)).expect("uploads");
+    for index in 0..parts.len() {
+        let placed = headless.set_layer_state(index, states[index % 3]);
+        placed.expect("a layer");
+    }
     for mode in [Mode::Exact, Mode::Rara] {
         let settings = Settings::default().mode(mode);
-        headless
-            .render(&camera, &Clip::default(), &settings)
-            .expect("renders");
-        let truth = reference::render::<f64>(layers.clone(), &camera, &Clip::default(), &settings);
+        let drawn = headless.render(&camera, &Clip::default(), &settings);
+        assert!(drawn.expect("renders").counts.cutoff > 50);
+        let truth = reference::render::<f64>(layers(&moved), &camera, &Clip::default(), &settings);
         common::assert_agrees("own clips", &picture(&mut headless), &truth.picture);
     }
+    headless.close().expect("nothing to say");
+}
+
+/// Layers store their harmonics at the highest degree of any, in every format.
+#[test]
+fn layers_of_different_degrees_keep_their_colours() {
+    let (scene, mut parts) = in_parts(2_000);
+    for (index, part) in parts.iter_mut().enumerate() {
+        part.set_sh_degree([3, 0, 1, 2][index % 4]);
+    }
+    let layers = named(parts.iter().map(|part| (part, LayerState::default())));
+    let camera = common::views(&scene, 1, common::scaled((125, 95)))[0];
+    let (clip, settings) = (Clip::default(), Settings::default());
+    let truth = reference::render::<f64>(&layers, &camera, &clip, &settings).picture;
+    let mut headless = common::headless();
+    for (format, least) in [
+        (rara::ShFormat::Float, 60.0),
+        (rara::ShFormat::Half, 50.0),
+        (rara::ShFormat::Packed, 45.0),
+        (rara::ShFormat::Byte, 40.0),
+    ] {
+        headless.load_as(&layers, format).expect("uploads");
+        headless.render(&camera, &clip, &settings).expect("renders");
+        let apart = rara::measure::compare(&picture(&mut headless), &truth).expect("one size");
+        assert!(apart.psnr >= least, "{format:?}: {apart:?}");
+    }
+    headless.close().expect("nothing to say");
+}
+
+/// With all layers hidden a frame shows nothing, whatever it takes over, and then shows again what it did.
+#[test]
+fn all_layers_may_be_hidden() {
+    let (scene, parts) = in_parts(2_000);
+    let layers = named(parts.iter().map(|part| (part, LayerState::default())));
+    let mut headless = common::headless();
+    headless.load(&layers).expect("uploads");
+    let camera = common::views(&scene, 1, common::scaled((125, 95)))[0];
+    let clips = [0.0, 0.1].map(|by| common::moved(common::clip(&scene, 1, ClipOp::And), by));
+    let mut draw = |visible: Option<bool>, clip| {
+        for index in 0..visible.map_or(0, |_| parts.len()) {
+            let state = LayerState::default().visible(visible == Some(true));
+            headless.set_layer_state(index, state).expect("a layer");
+        }
+        let drawn = headless.render(&camera, clip, &Settings::default());
+        (drawn.expect("renders").counts, picture(&mut headless))
+    };
+    let shown = draw(None, &clips[0]);
+    assert!(shown.0.cutoff > 10, "{:?}", shown.0);
+    // A whole frame, one whose clip alone has moved, and one in which nothing has changed.
+    for (visible, clip) in [(Some(false), 0), (None, 1), (None, 1)] {
+        let (counts, picture) = draw(visible, &clips[clip]);
+        assert_eq!((counts.drawn, counts.culled as usize), (0, scene.len()));
+        assert!(picture.pixels.iter().all(|pixel| *pixel == [0.0; 4]));
+    }
+    assert!(draw(Some(true), &clips[0]) == shown);
     headless.close().expect("nothing to say");
 }

@@ -12,7 +12,7 @@ use rara::{
 use crate::frame::{self, SIZES};
 use crate::layers;
 
-/// What the stage has written of each survivor, and the survivor's number in the file.
+/// What the stage has written of each survivor, and the survivor's number in the scene.
 fn depths<'a>(
     device: &Device,
     renderer: &mut Renderer,

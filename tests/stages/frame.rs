@@ -18,8 +18,18 @@ pub struct Stages {
     pub headless: Headless,
     /// In the device's order.
     pub scene: Gaussians,
-    /// The numbers of its Gaussians in the file.
+    /// The numbers of its Gaussians in the scene.
     pub numbers: Vec<u32>,
+}
+
+/// Every test of a stage ends without messages of the validation layer, of whatever it has drawn and read back.
+impl Drop for Stages {
+    fn drop(&mut self) {
+        if !std::thread::panicking() {
+            let messages = self.headless.device().validation_messages();
+            assert_eq!(messages, Vec::<String>::new());
+        }
+    }
 }
 
 impl Stages {

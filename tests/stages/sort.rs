@@ -10,7 +10,7 @@ use rara::{Clip, Gaussians, Raster, Settings};
 
 use crate::frame::{self, SIZES, Stages};
 
-/// The splats' depths and their numbers in the file.
+/// The splats' depths and their numbers in the scene.
 pub fn places(stages: &mut Stages) -> (Vec<f32>, Vec<u32>) {
     let splats = stages.splats();
     let depths = splats.iter().map(|splat| splat.middle[3]);
@@ -61,7 +61,7 @@ fn the_order_is_the_twins() {
     }
 }
 
-/// Splats of one depth are in the order of the file, however many they are.
+/// Splats of one depth are in the order of their numbers, however many they are.
 #[test]
 fn equal_depths_are_in_the_files_order() {
     let mut stages = Stages::new();

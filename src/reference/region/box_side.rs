@@ -10,13 +10,13 @@ use crate::{Clip, Mode, Settings};
 /// Gaussians whose centres lie in a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// The box's middle, world units.
+    /// The box's middle, the layer's units.
     pub middle: DVec3,
-    /// Half its sides, world units.
+    /// Half its sides, the layer's units.
     pub half: DVec3,
-    /// The farthest that the contour of 1/255 of one lies from its centre, world units.
+    /// The farthest that the contour of 1/255 of one lies from its centre, the layer's units.
     pub reach: f64,
-    /// The largest standard deviation of one, world units.
+    /// The largest standard deviation of one, the layer's units.
     pub sigma: f64,
 }
 

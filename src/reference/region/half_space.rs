@@ -6,9 +6,9 @@ use crate::reference::real::{Real, Vec3};
 /// `offset + normal . u >= 0`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfSpace<T> {
-    /// `a = M^T n`, with n the surface's unit normal; world units.
+    /// `a = M^T n`, with n the surface's unit normal; the layer's units.
     pub normal: Vec3<T>,
-    /// `g`: the signed distance of the Gaussian's centre, world units.
+    /// `g`: the signed distance of the Gaussian's centre, the layer's units.
     pub offset: T,
 }
 

@@ -30,7 +30,7 @@ pub(in crate::reference) fn surface_gaussian_side<T: Real>(
     }
 }
 
-/// On which side all Gaussians are whose centres lie in a box and that reach at most `support` from them, world units.
+/// On which side all Gaussians are whose centres lie in a box and that reach at most `support` from them, the layer's units.
 pub(super) fn surface_box_side(
     surface: &Surface,
     middle: DVec3,

@@ -1,0 +1,180 @@
+//! A layer of a scene on the device: what a frame asks of it, and what goes into the scene's buffers.
+
+use glam::Vec3;
+
+use crate::clip::Clip;
+use crate::limits;
+use crate::passes::{block_order, sh_storage};
+use crate::precision::ShFormat;
+use crate::scene::{Bounds, Gaussians, Layer, LayerState, Scene, sh_coefficients};
+use crate::types::{Block, Gaussian};
+
+/// A layer of a scene that is on the device.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct SceneLayer {
+    name: String,
+    gaussians: u32,
+    /// The layer's first block; it fills whole blocks.
+    pub(super) first_block: u32,
+    /// The corners of the box around its centres, in its own units.
+    pub(super) corners: [Vec3; 2],
+    pub(super) state: LayerState,
+    pub(super) clip: Option<Clip>,
+}
+
+impl SceneLayer {
+    /// That of a layer whose Gaussians begin with a block.
+    pub(super) fn new(layer: &Layer<'_>, first_block: u32) -> Self {
+        Self {
+            name: layer.name().into(),
+            gaussians: layer.gaussians().len() as u32,
+            first_block,
+            corners: corners(layer.gaussians()),
+            state: layer.state(),
+            clip: layer.clip().cloned(),
+        }
+    }
+
+    /// The name that it was uploaded with.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Gaussians in it.
+    pub fn gaussians(&self) -> u32 {
+        self.gaussians
+    }
+
+    /// How the next frame that is configured shows it.
+    pub fn state(&self) -> LayerState {
+        self.state
+    }
+
+    /// Its own clip in the next frame that is configured; `None` where the frame's holds.
+    pub fn clip(&self) -> Option<&Clip> {
+        self.clip.as_ref()
+    }
+
+    /// Whether the frame's clip or the own ones keep the same of both, in the same place of each.
+    pub(super) fn is_clipped_like(&self, other: &Self) -> bool {
+        self.is_visible()
+            && self.state.placement == other.state.placement
+            && self.clip == other.clip
+    }
+
+    /// Whether anything of it shows: of one so faint no pixel shows anything.
+    pub(super) fn is_visible(&self) -> bool {
+        self.state.visible && self.state.opacity >= limits::ALPHA_MIN
+    }
+
+    /// The box around all of its centres, in its own units; `None` without Gaussians.
+    pub fn bounds(&self) -> Option<Bounds> {
+        let [min, max] = self.corners.map(|corner| corner.as_dvec3());
+        (self.gaussians > 0).then_some(Bounds { min, max })
+    }
+
+    /// Its blocks' Gaussians end before this place.
+    pub(crate) fn gaussian_end(&self) -> u32 {
+        self.first_block * limits::BLOCK_SIZE + self.gaussians
+    }
+
+    /// The first block behind it.
+    pub(super) fn block_end(&self) -> u32 {
+        self.first_block + self.gaussians.div_ceil(limits::BLOCK_SIZE)
+    }
+}
+
+/// Bytes of the Gaussians, their spherical harmonics, and the bounds of their blocks.
+pub(super) fn sizes(scene: &Scene<'_>, format: ShFormat) -> [u64; 3] {
+    let words = sh_storage::words(format, 3 * sh_coefficients(scene.sh_degree()));
+    let block = limits::BLOCK_SIZE as usize;
+    let (mut blocks, mut end) = (0, 0);
+    for layer in scene.layers() {
+        end = blocks * block + layer.gaussians().len();
+        blocks = end.div_ceil(block);
+    }
+    [
+        end * size_of::<Gaussian>(),
+        end * words * size_of::<u32>(),
+        blocks * size_of::<Block>(),
+    ]
+    .map(|bytes| bytes as u64)
+}
+
+/// The corners of the box around all centres.
+fn corners(gaussians: &Gaussians) -> [Vec3; 2] {
+    let centres = gaussians.positions().iter();
+    centres.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], &x| {
+        [low.min(x), high.max(x)]
+    })
+}
+
+/// A layer as the device gets it.
+pub(super) struct PackedLayer<'a> {
+    gaussians: &'a Gaussians,
+    /// The numbers of its Gaussians in the order of the device.
+    pub(super) order: Vec<u32>,
+    pub(super) blocks: Vec<Block>,
+    first_block: u32,
+    /// Its first Gaussian's number in the scene.
+    first_number: u32,
+    /// How spherical harmonics are stored, and how many numbers there are of each Gaussian.
+    sh: (ShFormat, usize),
+}
+
+impl<'a> PackedLayer<'a> {
+    /// Orders the Gaussians of a layer that begins with a block and with a number in the scene; `sh` as the field says.
+    pub(super) fn new(
+        gaussians: &'a Gaussians,
+        first_block: u32,
+        first_number: u32,
+        sh: (ShFormat, usize),
+    ) -> Self {
+        let order = block_order::order(gaussians);
+        Self {
+            gaussians,
+            blocks: block_order::blocks(gaussians, &order),
+            order,
+            first_block,
+            first_number,
+            sh,
+        }
+    }
+
+    /// Where its Gaussians, their spherical harmonics and its blocks begin, bytes.
+    pub(super) fn offsets(&self) -> [u64; 3] {
+        let first = u64::from(self.first_block) * u64::from(limits::BLOCK_SIZE);
+        let words = sh_storage::words(self.sh.0, self.sh.1);
+        [
+            first * size_of::<Gaussian>() as u64,
+            first * (words * size_of::<u32>()) as u64,
+            u64::from(self.first_block) * size_of::<Block>() as u64,
+        ]
+    }
+
+    pub(super) fn gaussian(&self, number: u32) -> Gaussian {
+        let (scene, index) = (self.gaussians, number as usize);
+        let in_scene = f32::from_bits(self.first_number + number);
+        Gaussian {
+            position_opacity: scene.positions()[index]
+                .extend(scene.opacities()[index])
+                .into(),
+            scale: scene.scales()[index].extend(in_scene).into(),
+            rotation: scene.rotations()[index].into(),
+        }
+    }
+
+    /// Degrees that only other layers have are zero.
+    pub(super) fn append_sh(&self, number: u32, out: &mut Vec<u32>) {
+        let own = self.gaussians.sh_of(number as usize);
+        let (format, numbers) = self.sh;
+        if own.len() == numbers {
+            sh_storage::pack(format, own, out);
+        } else {
+            let mut all = [0.0; 3 * limits::MAX_SH_COEFFICIENTS as usize];
+            all[..own.len()].copy_from_slice(own);
+            sh_storage::pack(format, &all[..numbers], out);
+        }
+    }
+}

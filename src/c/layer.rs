@@ -4,16 +4,15 @@ use std::ffi::c_char;
 use std::ptr::null;
 
 use rara::ash::vk;
-use rara::{Error, Layer, LayerState, Result, Scene, SceneBuffers};
+use rara::{Error, Layer, LayerState, Result, Scene};
 
 use crate::boundary::{
-    RaraResult, Versioned, create, exclusive, guard, invalid, read, read_list, recording, shared,
-    string, write,
+    RaraResult, Versioned, exclusive, guard, invalid, read, read_list, shared, string, write,
 };
 use crate::clip::RaraClip;
 use crate::device::RaraDevice;
 use crate::placement::RaraPlacement;
-use crate::scene::{RaraGaussians, RaraSceneBuffers, RaraShFormat, RaraStaging, sh_format};
+use crate::scene::{self, RaraGaussians, RaraSceneBuffers, RaraShFormat, RaraStaging};
 
 /// The state of a layer, which may change from frame to frame.
 #[repr(C)]
@@ -184,14 +183,11 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_layers(
     scene: *mut *mut RaraSceneBuffers,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        create(scene, "scene", || {
-            let device = &shared(device, "device")?.0;
-            let layers = self::scene(layers, layer_count)?;
-            let format = self::sh_format(sh_format)?;
-            SceneBuffers::upload(device, layers, format).map(RaraSceneBuffers::new)
+    unsafe {
+        scene::upload(device, sh_format, scene, || {
+            self::scene(layers, layer_count)
         })
-    })
+    }
 }
 
 /// Bytes of staging memory that rara_scene_buffers_upload_layers_with needs for a scene.
@@ -207,12 +203,7 @@ pub unsafe extern "C" fn rara_scene_buffers_staging_bytes_of_layers(
     bytes: *mut u64,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        let bytes = exclusive(bytes, "bytes")?;
-        let layers = scene(layers, layer_count)?;
-        *bytes = SceneBuffers::staging_bytes(layers, self::sh_format(sh_format)?);
-        Ok(())
-    })
+    unsafe { scene::staging_bytes(sh_format, bytes, || self::scene(layers, layer_count)) }
 }
 
 /// Uploads a scene of several layers as rara_scene_buffers_upload_with does one of a single layer. `layers` and what they
@@ -231,17 +222,11 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_layers_with(
     scene: *mut *mut RaraSceneBuffers,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        create(scene, "scene", || {
-            let device = &shared(device, "device")?.0;
-            let cmd = recording(cmd)?;
-            let staging = shared(staging, "staging")?.staging()?;
-            let layers = self::scene(layers, layer_count)?;
-            let format = self::sh_format(sh_format)?;
-            SceneBuffers::upload_with(device, cmd, staging, layers, format)
-                .map(RaraSceneBuffers::new)
+    unsafe {
+        scene::upload_with(device, cmd, staging, sh_format, scene, || {
+            self::scene(layers, layer_count)
         })
-    })
+    }
 }
 
 /// A layer of a scene in device memory.

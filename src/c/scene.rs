@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 use rara::ash::vk;
 use rara::scene::{Bounds, Loaded, load, load_from};
-use rara::{Gaussians, Result, SceneBuffers, ShFormat, Staging};
+use rara::{Gaussians, Result, Scene, SceneBuffers, ShFormat, Staging};
 
 use crate::boundary::{
     self, RaraResult, Versioned, c_string, create, destroy, exclusive, guard, invalid, list,
@@ -195,12 +195,80 @@ pub unsafe extern "C" fn rara_scene_buffers_upload(
     scene: *mut *mut RaraSceneBuffers,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
+    unsafe { upload(device, sh_format, scene, || one_layer(gaussians)) }
+}
+
+/// The scene of one layer that a set of Gaussians is.
+///
+/// # Safety
+/// `gaussians` is null, or alive for `'a`.
+unsafe fn one_layer<'a>(gaussians: *const RaraGaussians) -> Result<Scene<'a>> {
+    // SAFETY: the caller's promise.
+    let gaussians: &Gaussians = &unsafe { shared(gaussians, "gaussians") }?.0.gaussians;
+    Ok(gaussians.into())
+}
+
+/// Uploads the scene that `layers` gives.
+///
+/// # Safety
+/// As for rara_scene_buffers_upload, but for what `layers` reads.
+pub(crate) unsafe fn upload<'a>(
+    device: *const RaraDevice,
+    sh_format: RaraShFormat,
+    scene: *mut *mut RaraSceneBuffers,
+    layers: impl FnOnce() -> Result<Scene<'a>>,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
     guard(|| unsafe {
         create(scene, "scene", || {
             let device = &shared(device, "device")?.0;
-            let gaussians: &Gaussians = &shared(gaussians, "gaussians")?.0.gaussians;
+            let layers = layers()?;
             let format = self::sh_format(sh_format)?;
-            SceneBuffers::upload(device, gaussians, format).map(RaraSceneBuffers::new)
+            SceneBuffers::upload(device, layers, format).map(RaraSceneBuffers::new)
+        })
+    })
+}
+
+/// Bytes of staging memory for the scene that `layers` gives.
+///
+/// # Safety
+/// `bytes` is null, or may be overwritten.
+pub(crate) unsafe fn staging_bytes<'a>(
+    sh_format: RaraShFormat,
+    bytes: *mut u64,
+    layers: impl FnOnce() -> Result<Scene<'a>>,
+) -> RaraResult {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let bytes = unsafe { exclusive(bytes, "bytes") }?;
+        let layers = layers()?;
+        *bytes = SceneBuffers::staging_bytes(layers, self::sh_format(sh_format)?);
+        Ok(())
+    })
+}
+
+/// Uploads the scene that `layers` gives by the host's own means.
+///
+/// # Safety
+/// As for rara_scene_buffers_upload_with, but for what `layers` reads.
+pub(crate) unsafe fn upload_with<'a>(
+    device: *const RaraDevice,
+    cmd: vk::CommandBuffer,
+    staging: *const RaraStaging,
+    sh_format: RaraShFormat,
+    scene: *mut *mut RaraSceneBuffers,
+    layers: impl FnOnce() -> Result<Scene<'a>>,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        create(scene, "scene", || {
+            let device = &shared(device, "device")?.0;
+            let cmd = recording(cmd)?;
+            let staging = shared(staging, "staging")?.staging()?;
+            let layers = layers()?;
+            let format = self::sh_format(sh_format)?;
+            SceneBuffers::upload_with(device, cmd, staging, layers, format)
+                .map(RaraSceneBuffers::new)
         })
     })
 }
@@ -230,12 +298,7 @@ pub unsafe extern "C" fn rara_scene_buffers_staging_bytes(
     bytes: *mut u64,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        let bytes = exclusive(bytes, "bytes")?;
-        let gaussians = &shared(gaussians, "gaussians")?.0.gaussians;
-        *bytes = SceneBuffers::staging_bytes(gaussians, self::sh_format(sh_format)?);
-        Ok(())
-    })
+    unsafe { staging_bytes(sh_format, bytes, || one_layer(gaussians)) }
 }
 
 /// Uploads a scene of one layer by the host's own means: allocates its buffers, writes it into the host's staging memory
@@ -265,17 +328,11 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_with(
     scene: *mut *mut RaraSceneBuffers,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        create(scene, "scene", || {
-            let device = &shared(device, "device")?.0;
-            let cmd = recording(cmd)?;
-            let staging = shared(staging, "staging")?.staging()?;
-            let gaussians = &shared(gaussians, "gaussians")?.0.gaussians;
-            let format = self::sh_format(sh_format)?;
-            SceneBuffers::upload_with(device, cmd, staging, gaussians, format)
-                .map(RaraSceneBuffers::new)
+    unsafe {
+        upload_with(device, cmd, staging, sh_format, scene, || {
+            one_layer(gaussians)
         })
-    })
+    }
 }
 
 impl RaraStaging {

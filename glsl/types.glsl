@@ -115,7 +115,7 @@ struct LayerData {
 };
 
 // A surface of a region, in the units of the layer that it cuts.
-struct Surface {
+struct SurfaceData {
     vec4 high; // SURFACE_PLANE: unit normal and distance, rounded to single precision
     vec4 low; // SURFACE_PLANE: what the rounding lost
     uint kind; // SURFACE_*

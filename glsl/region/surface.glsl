@@ -5,7 +5,7 @@
 #include "region/sides.glsl"
 #include "layer.glsl"
 
-BUFFER(readonly, 1, Surface, surfaces)
+BUFFER(readonly, 1, SurfaceData, surfaces)
 
 #include "region/plane.glsl"
 

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::gpu::{Buffer, BufferDesc, Device, Location};
 use crate::limits;
 use crate::passes::plan::Plan;
-use crate::types::{self, FrameCounts, FrameData, LayerData, Splat, SplatDepth, Surface};
+use crate::types::{self, FrameCounts, FrameData, LayerData, Splat, SplatDepth, SurfaceData};
 
 /// Everything the stages hand to each other. No stage reads a count on the CPU, so each array but the
 /// tiles' lists has room for every Gaussian of the scene; drivers back untouched memory lazily.
@@ -165,7 +165,7 @@ impl Buffers {
         let digits = (1_u64 << limits::SORT_BITS) + 2;
         Ok(Self {
             frame: gpu("frame", frame_bytes)?,
-            surfaces: gpu("surfaces", sizes.surfaces * size_of::<Surface>() as u64)?,
+            surfaces: gpu("surfaces", sizes.surfaces * size_of::<SurfaceData>() as u64)?,
             masks: gpu("masks", blocks * mask_bytes)?,
             clip_sides: gpu("clip_sides", sizes.clip_blocks * 4)?,
             clip_masks: gpu("clip_masks", sizes.clip_blocks * mask_bytes)?,

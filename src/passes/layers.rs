@@ -11,7 +11,7 @@ use crate::passes::plan::Plan;
 use crate::passes::scene_layer::SceneLayer;
 use crate::passes::view::layer_view;
 use crate::passes::{region, shaders, work};
-use crate::types::{self, LayerContent, LayerData, LayerRegion, RegionData, Surface};
+use crate::types::{self, LayerContent, LayerData, RegionData, SurfaceData};
 
 /// Programs whose only constant is whether there are several layers.
 macro_rules! layered {
@@ -40,7 +40,7 @@ layered!(
 /// The layers and their surfaces. A copy has the same ones.
 #[derive(Debug, Clone)]
 pub(crate) struct Layers {
-    lists: Arc<(Vec<LayerData>, Vec<Surface>)>,
+    lists: Arc<(Vec<LayerData>, Vec<SurfaceData>)>,
 }
 
 impl Layers {
@@ -54,41 +54,30 @@ impl Layers {
         let has_region = region.mode != types::MODE_NONE;
         let (mut layers, mut surfaces) = (Vec::<LayerData>::with_capacity(scene.len()), Vec::new());
         for (index, layer) in scene.iter().enumerate() {
-            let content = LayerContent {
-                first_block: layer.first_block,
-                gaussian_end: layer.gaussian_end(),
-                opacity: layer.state.opacity,
-                visible: layer.is_visible().into(),
+            // Nobody asks for a hidden layer's view and region: no frame is computed anew where only they change.
+            let mut data = LayerData {
+                content: LayerContent {
+                    first_block: layer.first_block,
+                    gaussian_end: layer.gaussian_end(),
+                    opacity: layer.state.opacity,
+                    visible: layer.is_visible().into(),
+                },
+                ..bytemuck::Zeroable::zeroed()
             };
-            let (view, region) = if layer.is_visible() {
+            if layer.is_visible() {
                 let placement = &layer.state.placement;
-                let view = layer_view(&camera.in_scene(placement), placement.scale());
-                let before = index.checked_sub(1).map(|before| &scene[before]);
-                let region = match before.filter(|before| before.is_clipped_like(layer)) {
-                    Some(_) => layers[index - 1].region,
-                    None if has_region => {
-                        let clip = layer.clip().unwrap_or(clip);
-                        let first = surfaces.len();
-                        surfaces.extend(region::surfaces(&clip.in_scene(placement)));
-                        LayerRegion {
-                            op: region::op(clip),
-                            first_surface: first as u32,
-                            surface_count: (surfaces.len() - first) as u32,
-                            pad: 0,
-                        }
-                    }
-                    None => bytemuck::Zeroable::zeroed(),
-                };
-                (view, region)
-            } else {
-                // Nobody asks, so that no frame has to be computed anew where it changes.
-                (bytemuck::Zeroable::zeroed(), bytemuck::Zeroable::zeroed())
-            };
-            layers.push(LayerData {
-                view,
-                content,
-                region,
-            });
+                data.view = layer_view(&camera.in_scene(placement), placement.scale());
+                if index > 0 && scene[index - 1].is_clipped_like(layer) {
+                    data.region = layers[index - 1].region;
+                } else if has_region {
+                    let clip = layer.clip().unwrap_or(clip);
+                    data.region.op = region::op(clip);
+                    data.region.first_surface = surfaces.len() as u32;
+                    surfaces.extend(region::surfaces(&clip.in_scene(placement)));
+                    data.region.surface_count = surfaces.len() as u32 - data.region.first_surface;
+                }
+            }
+            layers.push(data);
         }
         Self {
             lists: Arc::new((layers, surfaces)),
@@ -101,7 +90,7 @@ impl Layers {
     }
 
     /// The surfaces of their regions.
-    pub(crate) fn surfaces(&self) -> &[Surface] {
+    pub(crate) fn surfaces(&self) -> &[SurfaceData] {
         &self.lists.1
     }
 

@@ -53,7 +53,7 @@ pub(super) fn op(clip: &Clip) -> u32 {
 /// The surfaces of a clip, which is given in the space of the layer that it cuts. There are no repetitions, since cutting
 /// twice is cutting once, and the order is their own, so that no bit of a picture depends on the order in which they are
 /// given.
-pub(super) fn surfaces(clip: &Clip) -> impl Iterator<Item = types::Surface> {
+pub(super) fn surfaces(clip: &Clip) -> impl Iterator<Item = types::SurfaceData> {
     let mut surfaces: Vec<_> = clip.surfaces.iter().map(Numbers::of).collect();
     surfaces.sort_by(Numbers::order);
     surfaces.dedup();
@@ -87,11 +87,11 @@ impl Numbers {
     }
 
     /// Stores each number as two floats.
-    fn packed(self) -> types::Surface {
+    fn packed(self) -> types::SurfaceData {
         let values = self.values.map(|v| v.clamp(-FARTHEST, FARTHEST));
         let high = values.map(|v| v as f32);
         let low = std::array::from_fn(|i| (values[i] - f64::from(high[i])) as f32);
-        types::Surface {
+        types::SurfaceData {
             high,
             low,
             kind: self.kind,

@@ -103,7 +103,7 @@ pub(crate) fn is_slow() -> bool {
 
 /// A device as a host would lend it.
 pub(crate) fn lent(host: &Device) -> AdoptDesc {
-    let queue = host.inner.queue.lock().expect("nobody has panicked");
+    let queue = host.lock_queue();
     AdoptDesc {
         api_version: host.support().api_version,
         instance: host.instance().clone(),

@@ -1,7 +1,5 @@
 //! Frames that are recorded while earlier ones are still drawn.
 
-use std::sync::PoisonError;
-
 use ash::vk;
 
 use super::Device;
@@ -133,12 +131,7 @@ impl InFlight {
             .wait_semaphore_infos(&waits)
             .command_buffer_infos(&commands)
             .signal_semaphore_infos(&signals);
-        let queue = self
-            .device
-            .inner
-            .queue
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let queue = self.device.lock_queue();
         // SAFETY: the lock keeps our threads from the queue; the fence is unsignalled, the command buffer executable, and
         // the caller vouches for the semaphores.
         unsafe { self.device.commands().submit(*queue, &submit, slot.fence) }
@@ -152,12 +145,7 @@ impl InFlight {
 
 impl Drop for InFlight {
     fn drop(&mut self) {
-        let _queue = self
-            .device
-            .inner
-            .queue
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let _queue = self.device.lock_queue();
         let raw = self.device.raw();
         // SAFETY: the device's only queue is locked, and nothing is in use after the first call, or the device is lost;
         // null handles are ignored.

@@ -1,6 +1,6 @@
 //! Records, submits and waits, for headless frames, uploads and downloads.
 
-use std::sync::PoisonError;
+use std::sync::{MutexGuard, PoisonError};
 
 use ash::vk;
 
@@ -89,11 +89,7 @@ impl OneOff {
         let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(self.cmd)];
         let submit = vk::SubmitInfo2::default().command_buffer_infos(&commands);
         {
-            let queue = device
-                .inner
-                .queue
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner);
+            let queue = device.lock_queue();
             // SAFETY: the lock keeps our threads from the queue, the host keeps its own (see `Device::adopt`); the fence
             // is unsignalled and the command buffer executable.
             unsafe { device.commands().submit(*queue, &submit, self.fence) }
@@ -118,12 +114,7 @@ struct Lease<'a> {
 
 impl<'a> Lease<'a> {
     fn new(device: &'a Device) -> Result<Self> {
-        let idle = device
-            .inner
-            .idle
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .pop();
+        let idle = device.lock_idle().pop();
         let one_off = match idle {
             Some(one_off) => one_off,
             None => OneOff::new(device)?,
@@ -137,12 +128,7 @@ impl<'a> Lease<'a> {
 
 impl Drop for Lease<'_> {
     fn drop(&mut self) {
-        self.device
-            .inner
-            .idle
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .extend(self.one_off.take());
+        self.device.lock_idle().extend(self.one_off.take());
     }
 }
 
@@ -161,5 +147,16 @@ impl Device {
             Ok(())
         })?;
         Ok(result.expect("run succeeds only after record did"))
+    }
+
+    /// The queue, which no other thread of ours uses meanwhile.
+    pub(super) fn lock_queue(&self) -> MutexGuard<'_, vk::Queue> {
+        let queue = self.inner.queue.lock();
+        queue.unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn lock_idle(&self) -> MutexGuard<'_, Vec<OneOff>> {
+        let idle = self.inner.idle.lock();
+        idle.unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,7 +1,5 @@
 //! The images that a window shows in turn. They are made to fit it, acquired, drawn into and shown.
 
-use std::sync::PoisonError;
-
 use ash::{khr, vk};
 
 use super::failure::failed;
@@ -267,12 +265,7 @@ impl Swapchain {
             .wait_semaphores(&drawn)
             .swapchains(&chains)
             .image_indices(&images);
-        let queue = self
-            .device
-            .inner
-            .queue
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let queue = self.device.lock_queue();
         // SAFETY: the lock keeps our threads from the queue, which belongs to nobody else; its family shows pictures in
         // this window. The caller vouches for image and semaphore.
         match unsafe { self.loader.queue_present(*queue, &info) } {
@@ -299,12 +292,7 @@ impl Swapchain {
 
     /// Waits until nothing uses the images any more.
     fn wait(&self) -> Result<()> {
-        let _queue = self
-            .device
-            .inner
-            .queue
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let _queue = self.device.lock_queue();
         // SAFETY: the device is alive, and its only queue locked.
         unsafe { self.device.raw().device_wait_idle() }.map_err(failed("vkDeviceWaitIdle"))
     }

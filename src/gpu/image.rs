@@ -152,19 +152,12 @@ impl Image {
     ///
     /// `cmd` must be recording on this image's device, outside rendering; the image must outlive its execution.
     pub unsafe fn begin_rendering(&self, cmd: vk::CommandBuffer, clear: [f32; 4]) {
-        let to_draw = vk::ImageMemoryBarrier2::default()
+        let to_draw = to_be_drawn()
             .src_stage_mask(
                 vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT
                     | vk::PipelineStageFlags2::ALL_TRANSFER,
             )
-            .src_access_mask(vk::AccessFlags2::COLOR_ATTACHMENT_WRITE)
-            .dst_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)
-            .dst_access_mask(
-                vk::AccessFlags2::COLOR_ATTACHMENT_READ | vk::AccessFlags2::COLOR_ATTACHMENT_WRITE,
-            )
-            // An undefined layout drops the old contents, which the clear would overwrite anyway.
-            .old_layout(vk::ImageLayout::UNDEFINED)
-            .new_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
+            .src_access_mask(vk::AccessFlags2::COLOR_ATTACHMENT_WRITE);
         begin_label(&self.device, cmd, &self.name);
         // SAFETY: the caller vouches for `cmd`; the view is the image's own and covers the render area.
         unsafe {
@@ -251,6 +244,18 @@ pub(super) unsafe fn barrier(
     let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
     // SAFETY: the caller vouches for `cmd` and image.
     unsafe { device.commands().pipeline_barrier(cmd, &info) };
+}
+
+/// The barrier that makes a target ready to be drawn into, whatever it held; the caller adds the uses that it waits for.
+pub(super) fn to_be_drawn() -> vk::ImageMemoryBarrier2<'static> {
+    vk::ImageMemoryBarrier2::default()
+        .dst_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)
+        .dst_access_mask(
+            vk::AccessFlags2::COLOR_ATTACHMENT_READ | vk::AccessFlags2::COLOR_ATTACHMENT_WRITE,
+        )
+        // An undefined layout drops the old contents, which the clear would overwrite anyway.
+        .old_layout(vk::ImageLayout::UNDEFINED)
+        .new_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
 }
 
 /// Clears a target and begins rendering to all of it.

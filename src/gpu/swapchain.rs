@@ -3,7 +3,7 @@
 use ash::{khr, vk};
 
 use super::failure::failed;
-use super::image::{WHOLE, barrier, begin_rendering};
+use super::image::{WHOLE, barrier, begin_rendering, to_be_drawn};
 use super::surface::{Surface, lost};
 use super::{Device, Drawer};
 use crate::Result;
@@ -216,16 +216,9 @@ impl Swapchain {
     ) {
         let chain = self.chain();
         let shown = &chain.images[image];
-        let to_draw = vk::ImageMemoryBarrier2::default()
-            // The barrier comes after the wait for the image, which is in this stage.
-            .src_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)
-            .dst_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)
-            .dst_access_mask(
-                vk::AccessFlags2::COLOR_ATTACHMENT_READ | vk::AccessFlags2::COLOR_ATTACHMENT_WRITE,
-            )
-            // The image's old contents are dropped.
-            .old_layout(vk::ImageLayout::UNDEFINED)
-            .new_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
+        // The barrier comes after the wait for the image, which is in this stage.
+        let to_draw =
+            to_be_drawn().src_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT);
         // SAFETY: the caller vouches for `cmd`; the view is the image's own and covers the render area.
         unsafe {
             barrier(&self.device, cmd, shown.image, to_draw);

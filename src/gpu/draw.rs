@@ -4,7 +4,7 @@
 
 use ash::vk;
 
-use super::label::{begin_label, end_label};
+use super::label::{begin_pass, end_pass};
 use super::{Buffer, Device, GraphicsPipeline, Timer};
 
 /// Records draws whose number stands in buffers.
@@ -33,18 +33,11 @@ impl<'a> Drawer<'a> {
 
     /// Records `record` as a pass: its name is the debug label and the timer's entry.
     pub fn pass<R>(&mut self, name: &'static str, record: impl FnOnce(&mut Self) -> R) -> R {
-        begin_label(self.device, self.cmd, name);
         // SAFETY: `new`'s contract covers `cmd`, and that the timer was reset before.
-        let timed = self
-            .timer
-            .as_mut()
-            .and_then(|timer| unsafe { timer.begin(self.cmd, name) });
+        let timed = unsafe { begin_pass(self.device, self.cmd, self.timer.as_deref_mut(), name) };
         let result = record(self);
-        if let (Some(timer), Some(pass)) = (&mut self.timer, timed) {
-            // SAFETY: as above.
-            unsafe { timer.end(self.cmd, pass) };
-        }
-        end_label(self.device, self.cmd);
+        // SAFETY: as above.
+        unsafe { end_pass(self.device, self.cmd, self.timer.as_deref_mut(), timed) };
         result
     }
 

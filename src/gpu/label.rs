@@ -1,10 +1,10 @@
-//! Debug labels around what a command buffer records.
+//! Debug labels and timestamps around what a command buffer records.
 
 use std::ffi::CStr;
 
 use ash::vk;
 
-use super::{Device, validation};
+use super::{Device, Timer, validation};
 
 /// Opens a debug label on a command buffer, which the caller has made sure is recording on `device`.
 pub(super) fn begin_label(device: &Device, cmd: vk::CommandBuffer, name: &str) {
@@ -33,4 +33,38 @@ pub(super) fn end_label(device: &Device, cmd: vk::CommandBuffer) {
             validation::leave();
         }
     }
+}
+
+/// Opens a pass, which is a debug label and an entry of the timer. Returns the entry for [`end_pass`], if it has one.
+///
+/// # Safety
+///
+/// `cmd` must be recording on `device`, after the timer was reset for it.
+pub(super) unsafe fn begin_pass(
+    device: &Device,
+    cmd: vk::CommandBuffer,
+    timer: Option<&mut Timer>,
+    name: &'static str,
+) -> Option<u32> {
+    begin_label(device, cmd, name);
+    // SAFETY: the caller vouches for `cmd` and the timer.
+    timer.and_then(|timer| unsafe { timer.begin(cmd, name) })
+}
+
+/// Closes the pass that [`begin_pass`] opened.
+///
+/// # Safety
+///
+/// As for [`begin_pass`], once for each pass, with the same timer.
+pub(super) unsafe fn end_pass(
+    device: &Device,
+    cmd: vk::CommandBuffer,
+    timer: Option<&mut Timer>,
+    timed: Option<u32>,
+) {
+    if let (Some(timer), Some(pass)) = (timer, timed) {
+        // SAFETY: the caller vouches for `cmd` and the timer.
+        unsafe { timer.end(cmd, pass) };
+    }
+    end_label(device, cmd);
 }

@@ -4,7 +4,7 @@
 use ash::vk;
 use smallvec::SmallVec;
 
-use super::label::{begin_label, end_label};
+use super::label::{begin_label, begin_pass, end_label, end_pass};
 use super::{Access, Buffer, ComputePipeline, Device, MAX_BUFFERS, Timer, Tracker};
 use crate::limits::GROUP_COLUMNS;
 
@@ -95,18 +95,11 @@ impl<'a> Recorder<'a> {
 
     /// Records `record` as a pass: its name is the debug label and the timer's entry. Passes may nest.
     pub fn pass<R>(&mut self, name: &'static str, record: impl FnOnce(&mut Self) -> R) -> R {
-        begin_label(self.device, self.cmd, name);
         // SAFETY: `begin`'s contract covers `cmd`, and it reset the timer.
-        let timed = self
-            .timer
-            .as_mut()
-            .and_then(|timer| unsafe { timer.begin(self.cmd, name) });
+        let timed = unsafe { begin_pass(self.device, self.cmd, self.timer.as_deref_mut(), name) };
         let result = record(self);
-        if let (Some(timer), Some(pass)) = (&mut self.timer, timed) {
-            // SAFETY: as above.
-            unsafe { timer.end(self.cmd, pass) };
-        }
-        end_label(self.device, self.cmd);
+        // SAFETY: as above.
+        unsafe { end_pass(self.device, self.cmd, self.timer.as_deref_mut(), timed) };
         result
     }
 

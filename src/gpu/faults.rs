@@ -14,7 +14,7 @@ use ash::vk;
 use ash::vk::Handle;
 
 use super::instance::Instance;
-use super::{AdoptDesc, Device, DeviceDesc};
+use super::{AdoptDesc, Device, testing};
 use crate::Result;
 pub(crate) use pretence::Pretence;
 
@@ -85,14 +85,14 @@ pub(crate) fn instance(pretence: Option<Pretence>) -> Instance {
 
 /// A device under validation that fails as `set_among` asks.
 pub(crate) fn device(pretence: Option<Pretence>) -> Result<Device> {
-    let desc = DeviceDesc {
-        selector: std::env::var("RARA_TEST_DEVICE").ok(),
-        validation: true,
-        ..DeviceDesc::default()
-    };
     let instance = instance(pretence);
     let candidates = instance.devices()?;
-    Device::open(std::sync::Arc::new(instance), candidates, &desc, &[])
+    Device::open(
+        std::sync::Arc::new(instance),
+        candidates,
+        &testing::desc(),
+        &[],
+    )
 }
 
 /// Whether fewer places are enough, as on slow drivers: the code under test is not theirs.

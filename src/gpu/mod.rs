@@ -43,6 +43,8 @@ mod submit;
 mod surface;
 #[cfg(feature = "view")]
 mod swapchain;
+#[cfg(test)]
+pub(crate) mod testing;
 mod timer;
 mod tracker;
 mod upload;

@@ -3,7 +3,7 @@
 use super::*;
 use crate::camera::Camera;
 use crate::clip::Clip;
-use crate::gpu::{DeviceDesc, Drawer, ImageDesc};
+use crate::gpu::{Drawer, ImageDesc, testing};
 use crate::passes::SceneBuffers;
 use crate::precision::ShFormat;
 use crate::scene::{Bounds, Kind, generate};
@@ -17,13 +17,7 @@ const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 /// either.
 #[test]
 fn recording_waits_for_no_compiler() {
-    let device = Device::headless(&DeviceDesc {
-        selector: std::env::var("RARA_TEST_DEVICE").ok(),
-        validation: true,
-        ..DeviceDesc::default()
-    });
-    let device =
-        device.expect("a Vulkan device and the validation layer (tools/test installs both)");
+    let device = testing::device();
     let scene = generate(Kind::General, 600, 1);
     let camera = Camera::frame(&Bounds::of(&scene), -DVec3::Y, 50.0, (24, 16)).expect("a view");
     let buffers = SceneBuffers::upload(&device, &scene, ShFormat::Packed).expect("uploads");

@@ -1,7 +1,7 @@
 //! Tests of the loop itself, without a window and with several frames in flight.
 
 use super::*;
-use crate::gpu::{DeviceDesc, PipelineCache};
+use crate::gpu::{PipelineCache, testing};
 use crate::precision::TargetFormat;
 use crate::renderer::RecordedFrame;
 use crate::scene::{Bounds, Gaussians, Kind, generate};
@@ -10,11 +10,6 @@ use glam::{DVec3, Vec3};
 
 /// A session as a window has it, with frames in flight.
 fn session() -> Session {
-    let device = Device::headless(&DeviceDesc {
-        selector: std::env::var("RARA_TEST_DEVICE").ok(),
-        validation: true,
-        ..DeviceDesc::default()
-    });
     let desc = HeadlessDesc {
         validation: true,
         pipeline_cache: PipelineCache::Off,
@@ -24,8 +19,7 @@ fn session() -> Session {
         frames_in_flight: 2,
         ..RendererDesc::new(TargetFormat::default().vulkan())
     };
-    let device = device.expect("a device and the validation layer");
-    Session::new(device, &desc, renderer).expect("a renderer")
+    Session::new(testing::device(), &desc, renderer).expect("a renderer")
 }
 
 /// Closes a session of which the validation layer has nothing to say.

@@ -4,7 +4,7 @@ use super::*;
 use crate::clip::{ClipOp, Plane};
 use crate::gpu::faults;
 use crate::limits;
-use crate::scene::{Bounds, Gaussians, Kind, extent_along, generate};
+use crate::scene::{Bounds, Gaussians, Kind, Random, extent_along, generate};
 use crate::settings::{ExactForm, Mode, Raster, Show};
 use ash::vk;
 use glam::{DVec3, Vec3};
@@ -130,13 +130,8 @@ fn at_the_edge(camera: Camera, point: Vec3, pixels: f64) -> Camera {
 /// Blocks that are settled as a whole give the same counts and the same bytes as their Gaussians looked at one by one.
 #[test]
 fn blocks_change_nothing() {
-    let mut state = 5_u64;
-    let mut pick = |count: usize| {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        (state >> 33) as usize % count
-    };
+    let mut random = Random::new(5);
+    let mut pick = |count: usize| random.range(0.0, count as f64) as usize;
     let (mut settles, mut looks) = (headless(), headless());
     let mut settled = 0;
     for scene in scenes_of_blocks() {

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One splat in one pixel, for the expected depth: alpha times depth, and alpha.
-#include "splat_depth_params.glsl"
+#define EXPECTED_DEPTH
+#include "splat_params.glsl"
 #include "weight_constants.glsl"
 #include "buffers.glsl"
 

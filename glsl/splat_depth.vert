@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One instance a splat, a strip of four corners, for the expected depth.
-#include "splat_depth_params.glsl"
+#define EXPECTED_DEPTH
+#include "splat_params.glsl"
 #include "corners.glsl"
 
 BUFFER(readonly, 5, SplatDepth, depths)

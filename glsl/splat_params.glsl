@@ -1,4 +1,4 @@
-// The parameters of the splat pass.
+// The parameters of the splat pass and, with EXPECTED_DEPTH, of the pass that draws expected depths.
 struct Params {
     vec2 origin; // where the viewport begins in the attachment, px
     vec2 principal_point; // of the camera, in the coordinates of gl_FragCoord, px
@@ -6,5 +6,8 @@ struct Params {
     float depth_scale;
     float sigma; // the ellipsoid that mode `rara` traces, standard deviations
     uint cut_stride; // vec4s of a cutoff record
+#ifdef EXPECTED_DEPTH
+    float unit; // what depths are multiplied by
+#endif
 };
 #define PARAMS Params

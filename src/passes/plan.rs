@@ -159,6 +159,12 @@ impl Plan {
         self.data.region.mode
     }
 
+    /// The camera's principal point in an attachment in which the viewport begins at `origin`, px.
+    pub(crate) fn principal_point(&self, origin: [f32; 2]) -> [f32; 2] {
+        let [_, _, cx, cy] = self.data.view.focal;
+        [cx + origin[0], cy + origin[1]]
+    }
+
     /// Whether cutoff Gaussians can exist.
     pub(crate) fn cuts(&self) -> bool {
         cuts(self.mode())

@@ -50,11 +50,10 @@ pub(crate) fn record(
         order: &b.order[plan.sorted()],
         cut_records: &b.cut_records,
     };
-    let [_, _, cx, cy] = plan.data.view.focal;
     let [depth_offset, depth_scale] = map.map_or([0.0; 2], |map| map.factors());
     let params = splat::Params {
         origin,
-        principal_point: [cx + origin[0], cy + origin[1]],
+        principal_point: plan.principal_point(origin),
         depth_offset,
         depth_scale,
         sigma: plan.data.region.sigma,

@@ -84,11 +84,10 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         dirty: b.reclip.as_ref().map_or(&b.counts, |reclip| &reclip.dirty),
         occluders: plan.occluders.map_or(&b.counts, |_| &t.occluders),
     };
-    let [_, _, cx, cy] = plan.data.view.focal;
     let [depth_offset, depth_scale] = plan.occluders.map_or([0.0; 2], |o| o.map.factors());
     let (at, size) = (frame.copied.offset, frame.copied.extent);
     let params = tiles::Params {
-        principal_point: [cx, cy],
+        principal_point: plan.principal_point([0.0; 2]),
         sigma: plan.data.region.sigma,
         cut_stride: plan.data.weight.cut_stride,
         depth_offset,

@@ -6,13 +6,12 @@ use glam::DVec3;
 use rara::{Clip, ClipOp, Miss, Mode, Plane, Settings};
 use serde::Serialize;
 
-use super::camera::CameraArgs;
 use super::compare::Measures;
 use super::failure::Failure;
+use super::frame::ComparisonArgs;
 use super::output::{self, say};
 use super::scenes::SceneArgs;
 use super::session::Session;
-use super::settings::{DeviceArgs, LookArgs};
 use rara::measure;
 use rara::scene::Bounds;
 
@@ -31,11 +30,7 @@ pub(super) struct Ablate {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    camera: CameraArgs,
-    #[command(flatten)]
-    look: LookArgs,
-    #[command(flatten)]
-    device: DeviceArgs,
+    common: ComparisonArgs,
 }
 
 #[derive(Debug, Serialize)]
@@ -48,9 +43,9 @@ struct Row {
 
 impl Ablate {
     pub(super) fn run(self) -> Result<(), Failure> {
-        let look = self.look.meant()?;
-        self.camera.single("an ablation")?;
-        let views = self.camera.meant()?;
+        let look = self.common.look.meant()?;
+        self.common.camera.single("an ablation")?;
+        let views = self.common.camera.meant()?;
         let loaded = self.scenes.load()?;
         let scene = loaded.scene();
         let camera = views.of(&scene)?.remove(0).camera;
@@ -63,7 +58,7 @@ impl Ablate {
             .max(1.0);
         let far = Clip::of([Plane::new(DVec3::Z, 1e9 * reach)?], ClipOp::And);
 
-        let mut session = Session::open(&self.device.meant(), &scene, look.precision.sh)?;
+        let mut session = Session::open(&self.common.device.meant(), &scene, look.precision.sh)?;
         let unclipped = look.mode(Mode::None);
         let (truth, _) = session.picture(&camera, &Clip::default(), &unclipped)?;
         let mut rows = Vec::new();

@@ -8,13 +8,13 @@ use rara::{
 };
 use rara::{measure, reference, scene};
 
-use super::camera::CameraArgs;
 use super::compare::Measures;
 use super::failure::Failure;
+use super::frame::ComparisonArgs;
 use super::output::{self, grouped, say};
 use super::scenes::{self, Loaded};
 use super::session::Session;
-use super::settings::{DeviceArgs, LookArgs, name};
+use super::settings::name;
 use super::sheet;
 
 /// Draw a scene cut through its middle in all four modes, and measure them
@@ -38,11 +38,7 @@ pub(super) struct Demo {
     #[arg(long)]
     no_reference: bool,
     #[command(flatten)]
-    camera: CameraArgs,
-    #[command(flatten)]
-    look: LookArgs,
-    #[command(flatten)]
-    device: DeviceArgs,
+    common: ComparisonArgs,
 }
 
 /// The result of one mode.
@@ -55,9 +51,9 @@ struct Shot {
 
 impl Demo {
     pub(super) fn run(self) -> Result<(), Failure> {
-        let look = self.look.meant()?;
-        self.camera.single("a demo")?;
-        let views = self.camera.meant()?;
+        let look = self.common.look.meant()?;
+        self.common.camera.single("a demo")?;
+        let views = self.common.camera.meant()?;
         output::make_folder(&self.output)?;
         let loaded = if self.scenes.is_empty() {
             made_up()
@@ -68,7 +64,7 @@ impl Demo {
         let camera = views.of(&scene)?.remove(0).camera;
         let clip = Clip::of([middle(&scene, &camera)?], ClipOp::And);
 
-        let mut session = Session::open(&self.device.meant(), &scene, look.precision.sh)?;
+        let mut session = Session::open(&self.common.device.meant(), &scene, look.precision.sh)?;
         let (device, driver, _) = session.about();
         let count = grouped(scene.gaussians() as u64);
         say(format_args!(

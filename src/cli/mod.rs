@@ -12,6 +12,7 @@ mod compare;
 mod demo;
 mod devices;
 mod failure;
+mod frame;
 mod generate;
 mod info;
 mod ink;

@@ -1,9 +1,9 @@
 //! The flags that show what is in a frame: a trace, and what the stages have done.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::{HeadlessDesc, Trace};
+use rara::{HeadlessDesc, Scene, ShFormat, Trace};
 
 use super::failure::Failure;
 use super::output;
@@ -49,9 +49,25 @@ impl ProfileArgs {
 }
 
 impl Profile {
-    /// The description of the device, with what the profile needs.
-    pub(super) fn of(&self, desc: HeadlessDesc) -> HeadlessDesc {
-        desc.trace(self.trace.clone()).statistics(self.statistics)
+    /// Opens a session that records what the profile needs, with a note if its device has no statistics.
+    pub(super) fn open(
+        &self,
+        device: HeadlessDesc,
+        scene: &Scene<'_>,
+        sh: ShFormat,
+    ) -> Result<Session, Failure> {
+        let device = device.trace(self.trace.clone()).statistics(self.statistics);
+        let session = Session::open(&device, scene, sh)?;
+        if self.statistics && !session.has_statistics() {
+            output::say("note: this device counts nothing (no pipelineStatisticsQuery)");
+        }
+        Ok(session)
+    }
+
+    /// Writes the picture of a session's last frame to a file.
+    pub(super) fn save_picture(&self, session: &mut Session, file: &Path) -> Result<(), Failure> {
+        let picture = session.last_picture()?;
+        Ok(self.span("encode", || picture.save(file))?)
     }
 
     /// Records how long `act` takes.
@@ -59,13 +75,6 @@ impl Profile {
         match &self.trace {
             Some(trace) => trace.span(name, act),
             None => act(),
-        }
-    }
-
-    /// Prints a note if the device has no statistics.
-    pub(super) fn check(&self, session: &Session) {
-        if self.statistics && !session.has_statistics() {
-            output::say("note: this device counts nothing (no pipelineStatisticsQuery)");
         }
     }
 

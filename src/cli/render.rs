@@ -5,15 +5,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use rara::{Clip, Settings};
 
-use super::camera::{CameraArgs, Views};
-use super::clip::ClipArgs;
+use super::camera::Views;
 use super::failure::Failure;
-use super::output::{self, Progress, say};
+use super::frame::FrameArgs;
+use super::output::{self, Progress};
 use super::profile::{Profile, ProfileArgs};
-use super::report::{self, Report};
+use super::report::Report;
 use super::scenes::SceneArgs;
-use super::session::Session;
-use super::settings::{DeviceArgs, SettingsArgs, name};
+use super::settings::name;
 use super::values;
 
 /// Draw one picture, or one for each camera of a file
@@ -42,22 +41,16 @@ pub(super) struct Render {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    camera: CameraArgs,
-    #[command(flatten)]
-    clip: ClipArgs,
-    #[command(flatten)]
-    settings: SettingsArgs,
-    #[command(flatten)]
-    device: DeviceArgs,
+    frame: FrameArgs,
     #[command(flatten)]
     profile: ProfileArgs,
 }
 
 impl Render {
     pub(super) fn run(self) -> Result<(), Failure> {
-        let settings = self.settings.meant()?;
-        let clip = self.clip.meant()?;
-        let views = self.camera.meant()?;
+        let settings = self.frame.settings.meant()?;
+        let clip = self.frame.clip.meant()?;
+        let views = self.frame.camera.meant()?;
         self.check_output(&views)?;
 
         let pictures = views.numbers().map(|n| self.picture_file(n));
@@ -78,12 +71,8 @@ impl Render {
         let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
         let views = views.of(&scene)?;
-        let mut session = Session::open(
-            &profile.of(self.device.meant()),
-            &scene,
-            settings.precision.sh,
-        )?;
-        profile.check(&session);
+        let device = self.frame.device.meant();
+        let mut session = profile.open(device, &scene, settings.precision.sh)?;
         let mut frames = Vec::new();
         let mut written = Vec::new();
         let mut progress = Progress::new("rendering");
@@ -91,8 +80,7 @@ impl Render {
             progress.update(done as u64, views.len() as u64);
             frames.push(session.frame(&view.camera, clip, settings, self.repeat)?);
             if let Some(path) = self.picture_file(view.number) {
-                let picture = session.last_picture()?;
-                profile.span("encode", || picture.save(&path))?;
+                profile.save_picture(&mut session, &path)?;
                 written.push(path);
             }
         }
@@ -102,18 +90,13 @@ impl Render {
             .first()
             .map_or((0, 0), |v| (v.camera.width, v.camera.height));
         let report = Report::new(&session, &loaded, size, name(settings.mode), &frames);
-        let report = if self.camera.all() {
+        let report = if self.frame.camera.all() {
             report.with_frames(frames)
         } else {
             report
         };
         session.close()?;
-        if self.json {
-            return Ok(output::json(&report)?);
-        }
-        say(&report);
-        say(report::wrote(&written));
-        Ok(())
+        Ok(report.print(self.json, &written)?)
     }
 
     /// Where the picture of a view goes.
@@ -127,7 +110,7 @@ impl Render {
             return Ok(());
         };
         let first = views.numbers().next().unwrap_or(0);
-        if self.camera.all() && numbered(pattern, 0) == numbered(pattern, 1) {
+        if self.frame.camera.all() && numbered(pattern, 0) == numbered(pattern, 1) {
             return Err(Failure::Usage(
                 "--view all makes several pictures: put {} where their number goes, as in -o view_{}.png".into(),
             ));

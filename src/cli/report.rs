@@ -8,7 +8,7 @@ use rara::{Counts, FrameStats};
 use serde::Serialize;
 
 use super::combine::{Combine, combine};
-use super::output::grouped;
+use super::output::{self, grouped, say};
 use super::scenes::Loaded;
 use super::session::Session;
 
@@ -57,6 +57,16 @@ struct Memory {
 }
 
 impl Report {
+    /// Prints it as JSON to stdout, or for people, with the pictures that were written.
+    pub(super) fn print(&self, json: bool, written: &[PathBuf]) -> rara::Result<()> {
+        if json {
+            return output::json(self);
+        }
+        say(self);
+        say(wrote(written));
+        Ok(())
+    }
+
     /// A report whose top level holds the frames' medians.
     pub(super) fn new(
         session: &Session,
@@ -204,7 +214,7 @@ impl fmt::Display for CountsText<'_> {
 }
 
 /// The line that says where the pictures went.
-pub(super) fn wrote(paths: &[PathBuf]) -> String {
+fn wrote(paths: &[PathBuf]) -> String {
     match paths {
         [] => "wrote    nothing (no -o)".into(),
         [only] => format!("wrote    {}", only.display()),

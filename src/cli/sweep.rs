@@ -6,15 +6,14 @@ use clap::Args;
 use glam::DVec3;
 use rara::{Clip, Plane, Settings, Shape};
 
-use super::camera::{CameraArgs, Views};
-use super::clip::ClipArgs;
+use super::camera::Views;
 use super::failure::Failure;
-use super::output::{self, Progress, say};
+use super::frame::FrameArgs;
+use super::output::{self, Progress};
 use super::profile::{Profile, ProfileArgs};
-use super::report::{self, Report};
+use super::report::Report;
 use super::scenes::SceneArgs;
-use super::session::Session;
-use super::settings::{DeviceArgs, SettingsArgs, name};
+use super::settings::name;
 use super::values;
 use rara::scene::extent_along;
 
@@ -51,27 +50,21 @@ pub(super) struct Sweep {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    camera: CameraArgs,
-    #[command(flatten)]
-    clip: ClipArgs,
-    #[command(flatten)]
-    settings: SettingsArgs,
-    #[command(flatten)]
-    device: DeviceArgs,
+    frame: FrameArgs,
     #[command(flatten)]
     profile: ProfileArgs,
 }
 
 impl Sweep {
     pub(super) fn run(self) -> Result<(), Failure> {
-        let settings = self.settings.meant()?;
+        let settings = self.frame.settings.meant()?;
         let plane = Plane::new(self.clip_normal, 0.0).map_err(Failure::usage)?;
         // The shapes that stand still, and the one that moves.
-        let mut shapes = self.clip.shapes()?;
+        let mut shapes = self.frame.clip.shapes()?;
         shapes.push(plane.into());
-        Clip::of_shapes(&shapes, self.clip.op()).map_err(Failure::usage)?;
-        self.camera.single("a sweep")?;
-        let views = self.camera.meant()?;
+        Clip::of_shapes(&shapes, self.frame.clip.op()).map_err(Failure::usage)?;
+        self.frame.camera.single("a sweep")?;
+        let views = self.frame.camera.meant()?;
         if let Some(folder) = &self.output {
             output::make_folder(folder)?;
         }
@@ -90,17 +83,13 @@ impl Sweep {
         settings: &Settings,
     ) -> Result<(), Failure> {
         let normal = Plane::new(self.clip_normal, 0.0)?.normal();
-        let op = self.clip.op();
+        let op = self.frame.clip.op();
         let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
         let camera = views.of(&scene)?.remove(0).camera;
         let range = extent_along(&scene, normal);
-        let mut session = Session::open(
-            &profile.of(self.device.meant()),
-            &scene,
-            settings.precision.sh,
-        )?;
-        profile.check(&session);
+        let device = self.frame.device.meant();
+        let mut session = profile.open(device, &scene, settings.precision.sh)?;
         let mut frames = Vec::new();
         let mut written = Vec::new();
         let mut progress = Progress::new("sweeping");
@@ -117,8 +106,7 @@ impl Sweep {
             });
             if let Some(folder) = &self.output {
                 let path = folder.join(format!("frame_{index:03}.png"));
-                let picture = session.last_picture()?;
-                profile.span("encode", || picture.save(&path))?;
+                profile.save_picture(&mut session, &path)?;
                 written.push(path);
             }
         }
@@ -128,12 +116,7 @@ impl Sweep {
         let report = Report::new(&session, &loaded, size, name(settings.mode), &frames);
         let report = report.with_frames(frames).with_mean();
         session.close()?;
-        if self.json {
-            return Ok(output::json(&report)?);
-        }
-        say(&report);
-        say(report::wrote(&written));
-        Ok(())
+        Ok(report.print(self.json, &written)?)
     }
 }
 

@@ -22,11 +22,9 @@ use self::cut::Cut;
 use self::input::KEYS;
 use self::shots::Shots;
 use self::stage::Scenery;
-use super::camera::CameraArgs;
-use super::clip::ClipArgs;
 use super::failure::Failure;
+use super::frame::FrameArgs;
 use super::scenes::SceneArgs;
-use super::settings::{DeviceArgs, SettingsArgs};
 use super::{output, values};
 
 /// Look at a scene in a window, and drag a clip plane through it
@@ -64,13 +62,7 @@ pub(super) struct View {
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
     #[command(flatten)]
-    camera: CameraArgs,
-    #[command(flatten)]
-    clip: ClipArgs,
-    #[command(flatten)]
-    settings: SettingsArgs,
-    #[command(flatten)]
-    device: DeviceArgs,
+    frame: FrameArgs,
 }
 
 /// A window that fits most screens.
@@ -78,9 +70,9 @@ const SIZE: (u32, u32) = (1280, 720);
 
 impl View {
     pub(super) fn run(self) -> Result<(), Failure> {
-        let settings = self.settings.meant()?;
-        let clip = self.clip.meant()?;
-        let camera = self.camera.sized_by_default(SIZE);
+        let settings = self.frame.settings.meant()?;
+        let clip = self.frame.clip.meant()?;
+        let camera = self.frame.camera.sized_by_default(SIZE);
         let views = camera.meant()?;
         let shots = shots(&self.output)?;
         let follow = self.script.as_deref() == Some(Path::new("-"));
@@ -105,7 +97,7 @@ impl View {
         app::run(
             events,
             app::Start {
-                device: self.device.meant(),
+                device: self.frame.device.meant(),
                 sh: settings.precision.sh,
                 size: (first.width, first.height),
                 scenery: Scenery {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rara::Result;
 
-use super::{Report, Row, output};
+use super::{Measures, Report, Row, output};
 
 /// Writes all three into a folder.
 pub(super) fn write(folder: &Path, report: &Report) -> Result<()> {
@@ -47,18 +47,13 @@ pub(super) fn markdown(report: &Report) -> String {
         let star = if *undominated { "**" } else { "" };
         let _ = writeln!(
             text,
-            "| {star}{name}{star} | `{flags}` | {:.1} | {:.1} | {:.1} | {:.1} | {} | {:.5} | {} | {} | {} | {:.1} | {:.2} | {:.1} |",
+            "| {star}{name}{star} | `{flags}` | {:.1} | {:.1} | {:.1} | {:.1} | {} | {} | {:.1} |",
             t.ms_min,
             t.ms,
             t.cpu_ms_min,
             t.cpu_ms,
             small(m.l1),
-            m.ssim,
-            optional(m.band_ssim),
-            small(m.leak),
-            small(m.loss),
-            m.popping.worst,
-            m.popping.worst_beyond,
+            other_errors(m),
             m.twin_psnr,
         );
     }
@@ -85,6 +80,19 @@ pub(super) fn markdown(report: &Report) -> String {
         best.collect::<Vec<_>>().join("; ")
     );
     text
+}
+
+/// The columns of a picture's errors after L1: SSIM, band SSIM, leak, loss, and both numbers of popping.
+fn other_errors(m: &Measures) -> String {
+    format!(
+        "{:.5} | {} | {} | {} | {:.1} | {:.2}",
+        m.ssim,
+        optional(m.band_ssim),
+        small(m.leak),
+        small(m.loss),
+        m.popping.worst,
+        m.popping.worst_beyond,
+    )
 }
 
 fn stages(text: &mut String, report: &Report) {
@@ -120,18 +128,13 @@ fn paper(text: &mut String, report: &Report) {
         let m = &line.measures;
         let _ = writeln!(
             text,
-            "| {}x{} | {} | {} | {:.1} | {:.5} | {} | {} | {} | {:.1} | {:.2} |",
+            "| {}x{} | {} | {} | {:.1} | {} |",
             line.size[0],
             line.size[1],
             line.name,
             small(m.l1),
             line.l1_over_exact,
-            m.ssim,
-            optional(m.band_ssim),
-            small(m.leak),
-            small(m.loss),
-            m.popping.worst,
-            m.popping.worst_beyond,
+            other_errors(m),
         );
     }
 }

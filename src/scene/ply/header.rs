@@ -112,25 +112,25 @@ fn scan(lines: &[String]) -> Result<(), String> {
     let mut elements = HashSet::new();
     let mut properties = HashSet::new();
     for (number, line) in (1..).zip(lines) {
+        let repeated = |kind: &str, name: &str| {
+            format!(
+                "line {number} of the header declares the {kind} `{}` a second time; remove one",
+                shortened(name)
+            )
+        };
         let mut words = line.split_ascii_whitespace();
         match words.next() {
             Some("element") => {
                 let name = words.next().unwrap_or_default();
                 if !elements.insert(name) {
-                    return Err(format!(
-                        "line {number} of the header declares the element `{}` a second time; remove one",
-                        shortened(name)
-                    ));
+                    return Err(repeated("element", name));
                 }
                 properties.clear();
             }
             Some("property") => {
                 let name = words.next_back().unwrap_or_default();
                 if !properties.insert(name) {
-                    return Err(format!(
-                        "line {number} of the header declares the property `{}` a second time; remove one",
-                        shortened(name)
-                    ));
+                    return Err(repeated("property", name));
                 }
             }
             _ => {}

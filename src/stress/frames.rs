@@ -42,6 +42,20 @@ fn oblique(offset: f64) -> Clip {
     )
 }
 
+/// Adds a sheet across the view, whose deviations are between `low` and `high`.
+fn push_sheet(
+    scene: &mut Gaussians,
+    random: &mut Random,
+    depth: f64,
+    [low, high]: [f64; 2],
+    opacity: f32,
+) {
+    let at = DVec3::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0), depth);
+    let scales = DVec3::new(random.range(low, high), random.range(low, high), 1e-5);
+    push(scene, at.as_vec3(), scales, Quat::IDENTITY, opacity);
+    set_colour(scene, random);
+}
+
 /// Sheets across the view, `spacing` apart, which cover each other. They are shuffled, so that only the sort orders them.
 fn layers(count: usize, spacing: f64) -> Case {
     let mut random = Random::new(40);
@@ -49,10 +63,7 @@ fn layers(count: usize, spacing: f64) -> Case {
     for index in 0..count {
         // 7919 is prime to the counts: every depth once, in a scattered order.
         let depth = (index * 7919 % count) as f64 * spacing;
-        let at = DVec3::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0), depth);
-        let scales = DVec3::new(random.range(0.2, 0.5), random.range(0.2, 0.5), 1e-5);
-        push(&mut scene, at.as_vec3(), scales, Quat::IDENTITY, 0.02);
-        set_colour(&mut scene, &mut random);
+        push_sheet(&mut scene, &mut random, depth, [0.2, 0.5], 0.02);
     }
     Case {
         scene,
@@ -69,10 +80,7 @@ fn ties() -> Case {
     let mut random = Random::new(46);
     let mut scene = Gaussians::default();
     for _ in 0..400 {
-        let at = DVec3::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0), 0.0);
-        let scales = DVec3::new(random.range(20.0, 50.0), random.range(20.0, 50.0), 1e-5);
-        push(&mut scene, at.as_vec3(), scales, Quat::IDENTITY, 0.05);
-        set_colour(&mut scene, &mut random);
+        push_sheet(&mut scene, &mut random, 0.0, [20.0, 50.0], 0.05);
     }
     Case {
         scene,
@@ -101,24 +109,16 @@ fn opacities() -> Vec<Case> {
         0.999,
         1.0,
     ];
+    let set_opacities = |case: &mut Case| {
+        let opacities = case.scene.opacities_mut().iter_mut();
+        for (opacity, value) in opacities.zip(values.iter().cycle()) {
+            *opacity = *value as f32;
+        }
+    };
     let mut case = strewn(&mut random, PLAIN, &any_normal, &mix, 60, true);
-    for (opacity, value) in case
-        .scene
-        .opacities_mut()
-        .iter_mut()
-        .zip(values.iter().cycle())
-    {
-        *opacity = *value as f32;
-    }
+    set_opacities(&mut case);
     let mut crowd = strewn(&mut random, PLAIN, &any_normal, &mix, 400, false);
-    for (opacity, value) in crowd
-        .scene
-        .opacities_mut()
-        .iter_mut()
-        .zip(values.iter().cycle())
-    {
-        *opacity = *value as f32;
-    }
+    set_opacities(&mut crowd);
     vec![case, crowd]
 }
 

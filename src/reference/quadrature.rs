@@ -29,74 +29,68 @@ const EXTENT: f64 = 6.5;
 /// Gauss-Legendre nodes on each stretch of a ray.
 const NODES: usize = 32;
 
-/// The share of Gaussian `index` that the clip leaves visible in the pixel at `position` (pixels from the picture's
-/// corner), by `steps` times `steps` rays. It is not a number if the Gaussian is flat or wholly behind the eye.
-pub fn share(
-    scene: &Gaussians,
-    index: usize,
-    camera: &Camera,
-    clip: &Clip,
-    position: DVec2,
-    bundle: Bundle,
-    steps: u32,
-) -> f64 {
-    let [visible, whole, _] = sums(scene, index, camera, clip, position, bundle, steps);
-    visible / whole
+/// A pixel's rays, and the clip that they are cut by.
+#[derive(Debug, Clone, Copy)]
+pub struct PixelRays<'a> {
+    /// The camera whose pixel it is.
+    pub camera: &'a Camera,
+    /// The clip.
+    pub clip: &'a Clip,
+    /// The pixel's position from the picture's corner, pixels.
+    pub position: DVec2,
+    /// The rays that its low-pass gathers.
+    pub bundle: Bundle,
+    /// The number of rays along each side of their grid.
+    pub steps: u32,
 }
 
-/// The mean depth along the view axis of what the clip leaves visible of Gaussian `index` in that pixel, world units. It is
-/// not a number if that is nothing.
-pub fn mean_depth(
-    scene: &Gaussians,
-    index: usize,
-    camera: &Camera,
-    clip: &Clip,
-    position: DVec2,
-    bundle: Bundle,
-    steps: u32,
-) -> f64 {
-    let centre = camera.rotation * (scene.positions()[index].as_dvec3() - camera.eye);
-    let [visible, _, depth] = sums(scene, index, camera, clip, position, bundle, steps);
-    centre.z + depth / visible
-}
+impl PixelRays<'_> {
+    /// The share of Gaussian `index` that the clip leaves visible in the pixel. It is not a number if the Gaussian is flat
+    /// or wholly behind the eye.
+    pub fn share(&self, scene: &Gaussians, index: usize) -> f64 {
+        let [visible, whole, _] = self.sums(scene, index);
+        visible / whole
+    }
 
-/// The visible part, the whole, and the depth of the visible part counted from the centre times that part.
-fn sums(
-    scene: &Gaussians,
-    index: usize,
-    camera: &Camera,
-    clip: &Clip,
-    position: DVec2,
-    bundle: Bundle,
-    steps: u32,
-) -> [f64; 3] {
-    let pixel = Pixel::new(scene, index, camera, position, bundle);
-    let (middle, spread) = pixel.densest();
-    // The clip is relative to the Gaussian's centre, as the rays are: there nothing cancels, however far the origin is.
-    let centred = Placement::new(pixel.centre, DQuat::IDENTITY, 1.0);
-    let clip = clip.in_scene(&centred.expect("centres are finite"));
-    let nodes = legendre();
-    let peak = pixel.exponent(middle);
+    /// The mean depth along the view axis of what the clip leaves visible of Gaussian `index` in the pixel, world units. It
+    /// is not a number if that is nothing.
+    pub fn mean_depth(&self, scene: &Gaussians, index: usize) -> f64 {
+        let camera = self.camera;
+        let centre = camera.rotation * (scene.positions()[index].as_dvec3() - camera.eye);
+        let [visible, _, depth] = self.sums(scene, index);
+        centre.z + depth / visible
+    }
 
-    // The grid covers the offsets that matter, turned so that no straight edge lies along its lines.
-    let step = 2.0 * EXTENT / f64::from(steps);
-    let turn = DVec2::from_angle(0.5);
-    let mut total = [0.0; 3];
-    for i in 0..steps {
-        for j in 0..steps {
-            let white = DVec2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) * step - EXTENT;
-            if white.length_squared() > EXTENT * EXTENT {
-                continue;
-            }
-            let white = turn.rotate(white);
-            let offset = middle + spread[0] * white.x + spread[1] * white.y;
-            let parts = pixel.integrate(offset, peak, &clip, &nodes);
-            for (total, part) in total.iter_mut().zip(parts) {
-                *total += part;
+    /// The visible part, the whole, and the depth of the visible part counted from the centre times that part.
+    fn sums(&self, scene: &Gaussians, index: usize) -> [f64; 3] {
+        let pixel = Pixel::new(scene, index, self.camera, self.position, self.bundle);
+        let (middle, spread) = pixel.densest();
+        // The clip is relative to the Gaussian's centre, as the rays are: there nothing cancels, however far the origin is.
+        let centred = Placement::new(pixel.centre, DQuat::IDENTITY, 1.0);
+        let clip = self.clip.in_scene(&centred.expect("centres are finite"));
+        let nodes = legendre();
+        let peak = pixel.exponent(middle);
+
+        // The grid covers the offsets that matter, turned so that no straight edge lies along its lines.
+        let step = 2.0 * EXTENT / f64::from(self.steps);
+        let turn = DVec2::from_angle(0.5);
+        let mut total = [0.0; 3];
+        for i in 0..self.steps {
+            for j in 0..self.steps {
+                let white = DVec2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) * step - EXTENT;
+                if white.length_squared() > EXTENT * EXTENT {
+                    continue;
+                }
+                let white = turn.rotate(white);
+                let offset = middle + spread[0] * white.x + spread[1] * white.y;
+                let parts = pixel.integrate(offset, peak, &clip, &nodes);
+                for (total, part) in total.iter_mut().zip(parts) {
+                    *total += part;
+                }
             }
         }
+        total
     }
-    total
 }
 
 /// One Gaussian and one pixel.

@@ -1,6 +1,6 @@
 //! The weights of mode `exact` against numerical integration of the truncated Gaussian.
 
-use super::quadrature::Bundle;
+use super::quadrature::{Bundle, PixelRays};
 use super::*;
 use crate::ExactForm;
 use glam::DVec2;
@@ -16,6 +16,23 @@ struct Errors {
     count: usize,
     /// Pixels of which the truth is between 1 and 99 percent.
     partial: usize,
+}
+
+impl Errors {
+    /// Fails unless more than so many pixels are cut partly, since the test would say nothing otherwise.
+    #[track_caller]
+    fn assert_partial(&self, pixels: usize) {
+        assert!(
+            self.partial > pixels,
+            "the test would say nothing: {self:?}"
+        );
+    }
+
+    /// Fails unless the mean and the largest error are below these; `about` names the case.
+    #[track_caller]
+    fn assert_within(&self, mean: f64, max: f64, about: impl std::fmt::Display) {
+        assert!(self.mean < mean && self.max < max, "{about}: {self:?}");
+    }
 }
 
 /// What is compared.
@@ -97,8 +114,14 @@ impl Study {
                 footprint.screen_centre[0] + dx,
                 footprint.screen_centre[1] + dy,
             );
-            let truth =
-                quadrature::share(&scene, 0, &camera, &clip, position, self.bundle, self.steps);
+            let rays = PixelRays {
+                camera: &camera,
+                clip: &clip,
+                position,
+                bundle: self.bundle,
+                steps: self.steps,
+            };
+            let truth = rays.share(&scene, 0);
             if truth.is_nan() {
                 continue;
             }
@@ -195,14 +218,8 @@ fn the_perspective_form_is_the_integral_over_the_parallel_bundle() {
             ..STUDY
         }
         .run();
-        assert!(
-            errors.partial > 15,
-            "the test would say nothing: {errors:?}"
-        );
-        assert!(
-            errors.mean < 1e-4 && errors.max < 5e-4,
-            "{pixels:?}: {errors:?}"
-        );
+        errors.assert_partial(15);
+        errors.assert_within(1e-4, 5e-4, format_args!("{pixels:?}"));
     }
 }
 
@@ -215,10 +232,7 @@ fn the_perspective_form_is_close_to_the_blurred_picture_of_the_cut_gaussian() {
             ..STUDY
         }
         .run();
-        assert!(
-            errors.mean < 5e-4 && errors.max < 3e-3,
-            "{pixels:?}: {errors:?}"
-        );
+        errors.assert_within(5e-4, 3e-3, format_args!("{pixels:?}"));
     }
 }
 
@@ -283,14 +297,8 @@ fn an_eye_within_the_splat_sees_its_front_part_only() {
                     ..STUDY
                 }
                 .run();
-                assert!(
-                    errors.partial > 10,
-                    "the test would say nothing: {errors:?}"
-                );
-                assert!(
-                    errors.mean < 1e-4 && errors.max < 1e-3,
-                    "{op:?} {planes} {inside:?}: {errors:?}"
-                );
+                errors.assert_partial(10);
+                errors.assert_within(1e-4, 1e-3, format_args!("{op:?} {planes} {inside:?}"));
             }
         }
     }
@@ -324,7 +332,14 @@ fn the_last_of_a_splat_in_front_of_the_eye_is_cut_like_the_rest() {
             position.y - footprint.screen_centre[1],
         ];
         let weight = cut.weight(dx, dy);
-        let truth = quadrature::share(&scene, 0, &camera, &clip, position, Bundle::Parallel, 64);
+        let rays = PixelRays {
+            camera: &camera,
+            clip: &clip,
+            position,
+            bundle: Bundle::Parallel,
+            steps: 64,
+        };
+        let truth = rays.share(&scene, 0);
         // Behind the eye's tail quadrature has nothing to sum up.
         if truth.is_finite() {
             assert!((weight - truth).abs() < 2e-3, "{x}: {weight}, {truth}");
@@ -350,9 +365,6 @@ fn a_centre_far_outside_the_picture_gets_the_perspective_form() {
         ..STUDY
     }
     .run();
-    assert!(
-        errors.partial > 15,
-        "the test would say nothing: {errors:?}"
-    );
-    assert!(errors.mean < 1e-4 && errors.max < 1e-3, "{errors:?}");
+    errors.assert_partial(15);
+    errors.assert_within(1e-4, 1e-3, "");
 }

@@ -365,6 +365,9 @@ pub unsafe extern "C" fn rara_scene_buffers_set_layer_clip(
             true => None,
             // SAFETY: as above.
             false => Some(unsafe { crate::clip::clip(clip) }?),
+
+#[cfg(test)]
+mod tests;
         };
         scene.buffers.set_layer_clip(index, own)
     })

@@ -258,6 +258,24 @@ pub(crate) unsafe fn destroy<T>(handle: *mut T) {
     });
 }
 
+/// A number of what a handle stands for; 0 if it is null.
+///
+/// # Safety
+/// `handle` is null or alive.
+pub(crate) unsafe fn number<T, N: Default>(
+    handle: *const T,
+    name: &str,
+    number: impl FnOnce(&T) -> N,
+) -> N {
+    let mut found = N::default();
+    guard(|| {
+        // SAFETY: the caller's promise.
+        found = number(unsafe { shared(handle, name) }?);
+        Ok(())
+    });
+    found
+}
+
 /// Structs that may grow at their end. A host says how large its own are, so that each side can be the newer one.
 ///
 /// # Safety

@@ -74,16 +74,16 @@ pub unsafe extern "C" fn rara_camera_look_at(
     camera: *mut RaraCamera,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        let camera = exclusive(camera, "camera")?;
-        let (eye, target, up) = (
-            vector(eye, "eye")?,
-            vector(target, "target")?,
-            vector(up, "up")?,
-        );
-        *camera = Camera::look_at(eye, target, up, fov_y, (width, height))?.into();
-        Ok(())
-    })
+    unsafe {
+        make(camera, || {
+            let (eye, target, up) = (
+                vector(eye, "eye")?,
+                vector(target, "target")?,
+                vector(up, "up")?,
+            );
+            Camera::look_at(eye, target, up, fov_y, (width, height))
+        })
+    }
 }
 
 /// A camera from a rigid world-to-camera matrix: 16 numbers, row-major, so that the translation is in numbers 3, 7
@@ -103,13 +103,12 @@ pub unsafe extern "C" fn rara_camera_from_world_to_camera(
     camera: *mut RaraCamera,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        let camera = exclusive(camera, "camera")?;
-        let matrix = DMat4::from_cols_slice(list(matrix, 16, "matrix")?).transpose();
-        let made = Camera::from_world_to_camera(matrix, (fx, fy, cx, cy), (width, height))?;
-        *camera = made.into();
-        Ok(())
-    })
+    unsafe {
+        make(camera, || {
+            let matrix = DMat4::from_cols_slice(list(matrix, 16, "matrix")?).transpose();
+            Camera::from_world_to_camera(matrix, (fx, fy, cx, cy), (width, height))
+        })
+    }
 }
 
 /// A camera that shows a scene from the front, the right and above, near enough to fill the picture. `up` and `fov_y` are
@@ -127,11 +126,23 @@ pub unsafe extern "C" fn rara_camera_frame(
     camera: *mut RaraCamera,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        let camera = exclusive(camera, "camera")?;
-        let bounds = Bounds::of(&shared(gaussians, "gaussians")?.0.gaussians);
-        let up = vector(up, "up")?;
-        *camera = Camera::frame(&bounds, up, fov_y, (width, height))?.into();
+    unsafe {
+        make(camera, || {
+            let bounds = Bounds::of(&shared(gaussians, "gaussians")?.0.gaussians);
+            Camera::frame(&bounds, vector(up, "up")?, fov_y, (width, height))
+        })
+    }
+}
+
+/// Writes the camera that `made` gives.
+///
+/// # Safety
+/// `camera` is null or may be overwritten.
+unsafe fn make(camera: *mut RaraCamera, made: impl FnOnce() -> Result<Camera>) -> RaraResult {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let camera = unsafe { exclusive(camera, "camera") }?;
+        *camera = made()?.into();
         Ok(())
     })
 }

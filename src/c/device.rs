@@ -7,7 +7,7 @@ use rara::gpu::{AdoptDesc, Device};
 use rara::{Error, Result};
 
 use crate::boundary::{
-    RaraResult, Versioned, create, destroy, guard, invalid, read, shared, write,
+    RaraResult, Versioned, create, destroy, guard, invalid, number, read, write,
 };
 
 /// `vkGetInstanceProcAddr`, or null.
@@ -123,13 +123,8 @@ pub unsafe extern "C" fn rara_device_adopt(
 /// `device` is null or alive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_device_bytes(device: *const RaraDevice) -> u64 {
-    let mut bytes = 0;
-    guard(|| {
-        // SAFETY: the caller's promise.
-        bytes = unsafe { shared(device, "device") }?.0.device_bytes();
-        Ok(())
-    });
-    bytes
+    // SAFETY: the caller's promise.
+    unsafe { number(device, "device", |device| device.0.device_bytes()) }
 }
 
 /// Gives the device back; the VkDevice lives on. What was made from the RaraDevice may be destroyed later, but before the

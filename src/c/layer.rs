@@ -7,7 +7,8 @@ use rara::ash::vk;
 use rara::{Error, Layer, LayerState, Result, Scene};
 
 use crate::boundary::{
-    RaraResult, Versioned, exclusive, guard, invalid, read, read_list, shared, string, write,
+    RaraResult, Versioned, exclusive, guard, invalid, number, read, read_list, shared, string,
+    write,
 };
 use crate::clip::RaraClip;
 use crate::device::RaraDevice;
@@ -253,13 +254,8 @@ unsafe impl Versioned for RaraLayerInfo {
 /// `scene` is null or alive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_layer_count(scene: *const RaraSceneBuffers) -> usize {
-    let mut count = 0;
-    guard(|| {
-        // SAFETY: the caller's promise.
-        count = unsafe { shared(scene, "scene") }?.names.len();
-        Ok(())
-    });
-    count
+    // SAFETY: the caller's promise.
+    unsafe { number(scene, "scene", |scene| scene.names.len()) }
 }
 
 /// Checks that a scene has a layer of this number.
@@ -365,10 +361,10 @@ pub unsafe extern "C" fn rara_scene_buffers_set_layer_clip(
             true => None,
             // SAFETY: as above.
             false => Some(unsafe { crate::clip::clip(clip) }?),
-
-#[cfg(test)]
-mod tests;
         };
         scene.buffers.set_layer_clip(index, own)
     })
 }
+
+#[cfg(test)]
+mod tests;

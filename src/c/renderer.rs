@@ -154,6 +154,21 @@ unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<RendererDesc> {
         .frames_in_flight(desc.frames_in_flight))
 }
 
+/// Does something with a renderer.
+///
+/// # Safety
+/// `renderer` is null, or alive and not used by another thread.
+unsafe fn with(
+    renderer: *mut RaraRenderer,
+    act: impl FnOnce(&mut Renderer) -> Result<()>,
+) -> RaraResult {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let renderer = unsafe { exclusive(renderer, "renderer") }?;
+        act(&mut renderer.0)
+    })
+}
+
 /// One colour attachment of one sample in dynamic rendering, no timestamps, no reuse, one frame in flight. `desc_size` is
 /// sizeof *desc.
 ///
@@ -220,10 +235,11 @@ pub unsafe extern "C" fn rara_renderer_set_depth_map(
     map: *const RaraDepthMap,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        let renderer = exclusive(renderer, "renderer")?;
-        renderer.0.set_depth_map(shared(map, "map")?.map()?)
-    })
+    unsafe {
+        with(renderer, |renderer| {
+            renderer.set_depth_map(shared(map, "map")?.map()?)
+        })
+    }
 }
 
 /// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the viewport of
@@ -242,15 +258,14 @@ pub unsafe extern "C" fn rara_renderer_configure(
     settings: *const RaraSettings,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        let renderer = exclusive(renderer, "renderer")?;
-        let scene = shared(scene, "scene")?;
-        let camera = shared(camera, "camera")?.camera()?;
-        let (clip, settings) = (clip::clip(clip)?, settings::settings(settings)?);
-        renderer
-            .0
-            .configure(&scene.buffers, &camera, &clip, &settings)
-    })
+    unsafe {
+        with(renderer, |renderer| {
+            let scene = shared(scene, "scene")?;
+            let camera = shared(camera, "camera")?.camera()?;
+            let (clip, settings) = (clip::clip(clip)?, settings::settings(settings)?);
+            renderer.configure(&scene.buffers, &camera, &clip, &settings)
+        })
+    }
 }
 
 /// Records the stages up to the draw, outside any rendering scope.
@@ -265,11 +280,12 @@ pub unsafe extern "C" fn rara_renderer_prepare(
     scene: *const RaraSceneBuffers,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        let renderer = exclusive(renderer, "renderer")?;
-        let scene = shared(scene, "scene")?;
-        renderer.0.prepare(recording(cmd)?, &scene.buffers)
-    })
+    unsafe {
+        with(renderer, |renderer| {
+            let scene = shared(scene, "scene")?;
+            renderer.prepare(recording(cmd)?, &scene.buffers)
+        })
+    }
 }
 
 /// Like rara_renderer_prepare, for a renderer whose RaraDepthDesc is readable. It also takes the depths of what the host
@@ -289,14 +305,13 @@ pub unsafe extern "C" fn rara_renderer_prepare_behind(
     depth: *const RaraDepthImage,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        let renderer = exclusive(renderer, "renderer")?;
-        let scene = shared(scene, "scene")?;
-        let depth = depth::depth_image(depth)?;
-        renderer
-            .0
-            .prepare_behind(recording(cmd)?, &scene.buffers, &depth)
-    })
+    unsafe {
+        with(renderer, |renderer| {
+            let scene = shared(scene, "scene")?;
+            let depth = depth::depth_image(depth)?;
+            renderer.prepare_behind(recording(cmd)?, &scene.buffers, &depth)
+        })
+    }
 }
 
 /// Records the splats inside the host's rendering scope, premultiplied and over what is there. `x` and `y` are the
@@ -314,10 +329,7 @@ pub unsafe extern "C" fn rara_renderer_draw(
     y: f32,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        let renderer = exclusive(renderer, "renderer")?;
-        renderer.0.draw(recording(cmd)?, [x, y])
-    })
+    unsafe { with(renderer, |renderer| renderer.draw(recording(cmd)?, [x, y])) }
 }
 
 /// Records the splats' depths inside a rendering scope of their own, with a colour attachment of expected_depth_format
@@ -335,10 +347,11 @@ pub unsafe extern "C" fn rara_renderer_draw_depth(
     y: f32,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        let renderer = exclusive(renderer, "renderer")?;
-        renderer.0.draw_depth(recording(cmd)?, [x, y])
-    })
+    unsafe {
+        with(renderer, |renderer| {
+            renderer.draw_depth(recording(cmd)?, [x, y])
+        })
+    }
 }
 
 /// Forgets what earlier frames have computed, as is needed after a frame that was prepared and not submitted.
@@ -348,11 +361,13 @@ pub unsafe extern "C" fn rara_renderer_draw_depth(
 /// `renderer` is alive, and no other thread uses it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_forget(renderer: *mut RaraRenderer) -> RaraResult {
-    guard(|| {
-        // SAFETY: the caller's promise.
-        unsafe { exclusive(renderer, "renderer") }?.0.forget();
-        Ok(())
-    })
+    // SAFETY: the caller's promise.
+    unsafe {
+        with(renderer, |renderer| {
+            renderer.forget();
+            Ok(())
+        })
+    }
 }
 
 /// Frees a renderer's memory and pipelines; null is ignored. The host has waited for all of its frames.

@@ -9,7 +9,7 @@ use rara::{Gaussians, Result, Scene, SceneBuffers, ShFormat, Staging};
 
 use crate::boundary::{
     self, RaraResult, Versioned, c_string, create, destroy, exclusive, guard, invalid, list,
-    memory, recording, shared, write,
+    memory, number, recording, shared, write,
 };
 use crate::device::RaraDevice;
 
@@ -360,13 +360,8 @@ impl RaraStaging {
 /// `scene` is null or alive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_bytes(scene: *const RaraSceneBuffers) -> u64 {
-    let mut bytes = 0;
-    guard(|| {
-        // SAFETY: the caller's promise.
-        bytes = unsafe { shared(scene, "scene") }?.buffers.bytes();
-        Ok(())
-    });
-    bytes
+    // SAFETY: the caller's promise.
+    unsafe { number(scene, "scene", |scene| scene.buffers.bytes()) }
 }
 
 /// Frees a scene's device memory; null is ignored. The host has waited for the frames that use it.

@@ -3,7 +3,8 @@
 #define RARA_BAND
 #include "footprint.glsl"
 
-// Whether the exact form of a splat follows each pixel's true ray. `sigma` is its largest deviation, the layer's units.
+// True when the exact form of a splat follows each pixel's true ray. `sigma` is its largest deviation, the layer's
+// units.
 bool is_beam(Footprint f, float sigma) {
     return FRAME.weight.form == FORM_BEAM
         || (FRAME.weight.form == FORM_AUTO && (f.clamped || LAYER.view.unit * sigma > FRAME.weight.beam_switch * f.view_centre.z));

@@ -156,7 +156,7 @@ Span next_span(uint origin, inout uvec2 mask) {
     return Span((origin >> 16) + row + (below ? 4u : 0u), uvec2(column, column + uint(bitCount(tiles))));
 }
 
-// Where span_counts holds how many tiles a run's splats touch in all.
+// The place in span_counts of the number of tiles that a run's splats touch in all.
 uint pairs_place(uint run) {
     return FRAME.tiles.span_runs * tile_rows() + run;
 }

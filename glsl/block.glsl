@@ -1,5 +1,6 @@
-// What view and clip say about a whole block of Gaussians, from its bounds. The answers are conservative: a block has a
-// side only where each of its Gaussians has it. SIDE_CUTOFF says that they may differ, so that each has to be looked at.
+// The side of a whole block of Gaussians in view and clip, from its bounds. The answers are conservative: a block has a
+// side only where each of its Gaussians has it. SIDE_CUTOFF says that they may differ, so that each has to be looked
+// at.
 #ifndef RARA_BLOCK
 #define RARA_BLOCK
 #include "band.glsl"
@@ -84,7 +85,7 @@ float block_nearest(Block block) {
     return depth.x - depth.y;
 }
 
-// Whether the exact form of some splat may follow true rays, because the splat is large or its slope is clamped.
+// True when the exact form of some splat may follow true rays, because the splat is large or its slope is clamped.
 bool may_be_beam(Block block) {
     if (FRAME.region.mode != MODE_EXACT || FRAME.weight.form == FORM_AFFINE) {
         return false;

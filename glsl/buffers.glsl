@@ -1,4 +1,4 @@
-// What a shader declares to its host, by name. A buffer is declared as in
+// A shader's declarations to its host, by name. A buffer is declared as in
 //     BUFFER(readonly, 0, Gaussian, gaussians)
 // and used as gaussians.at[i]. By default the buffer is reached through its device address in the push constants: fast,
 // and not bound by the device's limit on binding sizes (128 MiB on lavapipe). With RARA_BOUND it is a bound storage

@@ -1,4 +1,5 @@
-// What the rasteriser carries of a splat's weight: see cut.glsl. Included after the buffer `cut_records` is declared.
+// The part of a splat's weight that the rasteriser carries: see cut.glsl. Included after the buffer `cut_records` is
+// declared.
 #ifndef RARA_CARRIED
 #define RARA_CARRIED
 #include "bin.glsl"

@@ -24,7 +24,7 @@ shared uint visible_count;
 shared uint cutoff_count;
 shared uint invisible_count;
 
-// Whether some pixel centre lies in the splat's bounding box and in the picture.
+// True when some pixel centre lies in the splat's bounding box and in the picture.
 bool covers_a_pixel(vec2 centre, vec2 half_sides) {
     vec2 low = max(ceil(centre - half_sides - 0.5), vec2(0.0));
     vec2 high = min(floor(centre + half_sides - 0.5), FRAME.view.size.xy - 1.0);

@@ -56,7 +56,7 @@ void carried_weights(vec3 linear, vec3 curvature, vec2 delta, float alpha[ROWS],
     phi_or_side(z, alpha, weight);
 }
 
-// Whether nothing of a column is visible. Outside reclipped frames the tiles' lists leave most such splats out.
+// True when nothing of a column is visible. Outside reclipped frames the tiles' lists leave most such splats out.
 bool is_carried_away(vec3 linear, vec3 curvature, vec2 delta) {
     float at = linear.x + delta.x * (linear.y + curvature.x * delta.x);
     float slope = linear.z + curvature.y * delta.x;
@@ -87,8 +87,8 @@ void curve_weights(uint base, float u, float v, float v_step, float alpha[ROWS],
     phi_or_side(z, alpha, weight);
 }
 
-// What all planes of a splat share in a column: the line of sight in its middle, by how much b2 and c change a row, and
-// the determinant, a polynomial in the row.
+// The values that all planes of a splat share in a column: the line of sight in its middle, by how much b2 and c change
+// a row, and the determinant, a polynomial in the row.
 struct ColumnSight {
     Sight s;
     vec3 b2_step;

@@ -1,4 +1,4 @@
-// What the two front ends of the splat pass share: which splat is the n-th, and where its corners are.
+// The code that the two front ends of the splat pass share: the n-th splat, and its corners.
 #ifndef RARA_CORNERS
 #define RARA_CORNERS
 #include "frame.glsl"
@@ -17,7 +17,7 @@ Splat splat_at(uint number) {
     return splats.at[number_at(number)];
 }
 
-// Whether splats have a depth in the host's buffer.
+// True when splats have a depth in the host's buffer.
 layout(constant_id = 5) const bool DEPTH = false;
 
 // Corner 0 to 3 of a strip.

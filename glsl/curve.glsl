@@ -155,7 +155,7 @@ float exact_change(CurveSamples z, uint outwards, uint step) {
     return max(max(abs(next - here), abs(last - here)), max(abs(inside - here), abs(outside - here)));
 }
 
-// Whether no pixel's alpha differs by more than CURVE_TOLERANCE from the exact form's.
+// True when no pixel's alpha differs by more than CURVE_TOLERANCE from the exact form's.
 bool is_good(Curve curve, CurveSamples z, float opacity, float extent) {
     for (uint outwards = 0u; outwards < CURVE_RINGS; outwards++) {
         uint ring = CURVE_OUTWARDS[outwards];

@@ -35,9 +35,9 @@ const float Z_RECORD = -2e30;
 // In a reclipped frame the survivors are all that is in view; this z says that a splat is clipped away.
 const float Z_CUT_AWAY = 4e30;
 
-// Whether a plane keeps the far part of a line of sight: by its normal's component along the line. Where that is zero
-// (a Gaussian without thickness) any fixed rule would do, if it distinguished opposed planes: the normal's first non-zero
-// component does.
+// True when a plane keeps the far part of a line of sight, by its normal's component along the line. Where that is zero
+// (a Gaussian without thickness) any fixed rule would do, if it distinguished opposed planes: the normal's first
+// non-zero component does.
 bool keeps_far(float along, vec3 normal) {
     float first = along != 0.0 ? along : normal.x != 0.0 ? normal.x : normal.y != 0.0 ? normal.y : normal.z;
     return first >= 0.0;

@@ -1,5 +1,5 @@
-// What the host's depth buffer holds for a splat: the host's depth_offset plus its depth_scale over the splat's depth.
-// Splats before the buffer's nearest depth or beyond its farthest one are still drawn.
+// The value that the host's depth buffer holds for a splat: the host's depth_offset plus its depth_scale over the
+// splat's depth. Splats before the buffer's nearest depth or beyond its farthest one are still drawn.
 #ifndef RARA_HOST_DEPTH
 #define RARA_HOST_DEPTH
 #include "frame.glsl"

@@ -4,7 +4,7 @@
 #define RARA_LAYER
 #include "frame.glsl"
 
-// Whether the scene has several layers.
+// True when the scene has several layers.
 layout(constant_id = 9) const bool LAYERED = false;
 
 // The number of the layer.

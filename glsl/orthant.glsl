@@ -102,8 +102,9 @@ const uint STEPS = 6u;
 const float STEP[STEPS] = float[](0.06639039, 0.31009584, 0.61645563, 0.85507481, 0.97130523, 0.99885991);
 const float STEP_WEIGHT[STEPS] = float[](0.16553968, 0.29965026, 0.28978359, 0.17813035, 0.06111132, 0.00578481);
 
-// What one of the first variable's two correlations adds along the path: the density of the two variables, times the chance
-// that the third is positive. `r` is their correlation, `s` and `q` are the third's with the first and with the other.
+// The contribution of one of the first variable's two correlations along the path: the density of the two variables,
+// times the chance that the third is positive. `r` is their correlation, `s` and `q` are the third's with the first and
+// with the other.
 float path_density(float h, float k, float third, float r, float s, float q) {
     float rest = 1.0 - r * r;
     float open = max(rest - s * s - q * q + 2.0 * r * s * q, 1e-12);

@@ -8,7 +8,7 @@
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 layout(constant_id = 0) const bool CUT = false;
-// Whether tiles are wanted.
+// True when tiles are wanted.
 layout(constant_id = 2) const bool TILES = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)

@@ -14,7 +14,7 @@ const uint RECLIP_TOTALS = 3u * WORDS;
 const uint RECLIP_PLACES = RECLIP_TOTALS + 4u;
 const uint RECLIP_SIDE = RECLIP_PLACES + 2u;
 
-// Whether the clip has to revisit a block's Gaussians: it cuts the block, or settles it in another way than before.
+// True when the clip has to revisit a block's Gaussians: it cuts the block, or settles it in another way than before.
 bool is_revisited(uint revisit) {
     return (revisit & 3u) == SIDE_CUTOFF;
 }

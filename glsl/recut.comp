@@ -7,7 +7,7 @@
 #include "bin.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
-// Whether tiles are wanted.
+// True when tiles are wanted.
 layout(constant_id = 0) const bool TILES = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)

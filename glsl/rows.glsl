@@ -11,7 +11,7 @@ uint part_count() {
     return tile_rows() * FRAME.tiles.row_parts;
 }
 
-// Where the counts of a part's columns begin.
+// The place where the counts of a part's columns begin.
 uint columns_place(uint part) {
     return part * (FRAME.tiles.tile_columns + 1u);
 }

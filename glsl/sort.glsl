@@ -21,7 +21,7 @@ uint digit(uint key, uint number) {
     return bitfieldExtract(key, int(number * SORT_BITS), int(SORT_BITS));
 }
 
-// Where a run's least and greatest key stand in the histogram.
+// The place of a run's least and greatest key in the histogram.
 uint range_place(uint run) {
     return FRAME.order.sort_runs * DIGITS + 2u * run;
 }

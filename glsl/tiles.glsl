@@ -19,8 +19,8 @@ struct Params {
 // Pixels of an invocation, one above the other.
 layout(constant_id = 5) const uint ROWS = 8u;
 layout(local_size_x = TILE_WIDTH, local_size_y_id = 6) in;
-// Whether the frame is a reclipped one: tiles in which nothing has changed keep their pixels, and some of the splats are
-// clipped away.
+// True in a reclipped frame: tiles in which nothing has changed keep their pixels, and some of the splats are clipped
+// away.
 layout(constant_id = 7) const bool RECLIPPED = false;
 // How the host's depth that hides splats is stored, if there is one.
 layout(constant_id = 8) const uint DEPTH_FORM = DEPTH_NONE;
@@ -129,7 +129,7 @@ void blend(Seen splat, vec2 delta, float far) {
     }
 }
 
-// Whether a splat is clipped away, which a reclipped frame's list still holds.
+// True when a splat is clipped away, which a reclipped frame's list still holds.
 bool is_away(Seen splat, vec2 delta) {
     return splat.linear.x == Z_CUT_AWAY || (CLIP_MODE == MODE_EXACT && abs(splat.linear.x) < Z_RANGE
         && is_carried_away(splat.linear, splat.curvature, delta));

@@ -59,7 +59,7 @@ struct WeightData {
     uint pad; // unused
 };
 
-// What all layers' regions have in common.
+// The values that all layers' regions share.
 struct RegionData {
     uint mode; // MODE_*
     uint trace_all; // 1: every Gaussian in view is cutoff
@@ -67,7 +67,7 @@ struct RegionData {
     uint pad; // unused
 };
 
-// What is constant in a frame.
+// The values that are constant in a frame.
 struct FrameData {
     SceneData scene; // the scene's sizes
     ViewData view; // the camera
@@ -91,7 +91,7 @@ struct LayerView {
     uint pad[3]; // unused
 };
 
-// What a layer holds, and how much of it shows.
+// The Gaussians of a layer, and how visible they are.
 struct LayerContent {
     uint first_block; // its first block; the next layer's first one is behind its last
     uint gaussian_end; // its Gaussians fill its blocks up to this number
@@ -99,7 +99,7 @@ struct LayerContent {
     uint visible; // 0: nothing of it is drawn
 };
 
-// What is kept of a layer.
+// The region of a layer that is kept.
 struct LayerRegion {
     uint op; // OP_*: how its surfaces combine
     uint first_surface; // its first one
@@ -129,7 +129,7 @@ struct Gaussian {
     vec4 rotation; // unit quaternion x y z w
 };
 
-// What the Gaussians of a block lie within; a block is BLOCK_SIZE neighbours on a space-filling curve. The reach is the
+// The bounds of the Gaussians of a block; a block is BLOCK_SIZE neighbours on a space-filling curve. The reach is the
 // farthest that one's contour of 1/255 can lie from its centre, negative where none has such a contour.
 struct Block {
     vec4 low_reach; // least coordinates of the centres; reach: the layer's units

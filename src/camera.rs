@@ -21,7 +21,7 @@ pub struct Camera {
     pub cx: f64,
     /// Principal point, pixels from the picture's top edge (`height / 2` is the middle).
     pub cy: f64,
-    /// Where the eye stands, world units.
+    /// The eye's position, world units.
     pub eye: DVec3,
     /// World to camera rotation (rows are the camera's right, down and forward axes in the world).
     pub rotation: DMat3,

@@ -7,9 +7,9 @@ use glam::DMat4;
 use crate::error::{Error, Result};
 use crate::placement::Placement;
 
-/// What a depth buffer holds for something at a depth `z` along the view axis, world units: `offset + scale / z`, with
-/// viewports whose depths go from 0 to 1. That is every perspective projection; nearer is more ("reversed") where `scale`
-/// is positive.
+/// The value that a depth buffer holds at a depth `z` along the view axis, world units: `offset + scale / z`, with
+/// viewports whose depths go from 0 to 1. That is every perspective projection; nearer is more ("reversed") where
+/// `scale` is positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DepthMap {
     offset: f64,
@@ -80,12 +80,12 @@ impl DepthMap {
         }
     }
 
-    /// Whether nearer is more.
+    /// True when nearer is more.
     pub fn is_reversed(&self) -> bool {
         self.scale > 0.0
     }
 
-    /// What the buffer holds for a depth along the view axis, kept within 0 to 1.
+    /// The buffer's value for a depth along the view axis, kept within 0 to 1.
     pub fn at(&self, depth: f64) -> f64 {
         (self.offset + self.scale / depth).clamp(0.0, 1.0)
     }

@@ -15,7 +15,7 @@ pub enum Error {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// The operating system's error.
         source: std::io::Error,
     },
     /// A file was read but what stands in it is not usable.
@@ -23,7 +23,7 @@ pub enum Error {
     Format {
         /// The file.
         path: PathBuf,
-        /// What is wrong, where in the file, and the remedy.
+        /// The mistake, its place in the file, and the remedy.
         message: String,
     },
     /// The caller asked for something that is not possible, for example a clip plane with a zero normal.

@@ -1,4 +1,4 @@
-//! What the readers of JSON files share.
+//! The code that the readers of JSON files share.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! Where a scene stands in a host's world.
+//! The placement of a scene in a host's world.
 
 #![forbid(unsafe_code)]
 
@@ -8,7 +8,8 @@ use crate::camera::Camera;
 use crate::clip::{Clip, Plane, Surface};
 use crate::error::{Error, Result};
 
-/// Where a scene stands in a world, or a [layer](crate::Layer) in its scene: points are scaled, then turned, then moved.
+/// The placement of a scene in a world, or of a [layer](crate::Layer) in its scene: points are scaled, then turned,
+/// then moved.
 ///
 /// A placed scene is drawn by taking the world's camera and clip into the scene
 /// ([`Camera::in_scene`], [`Clip::in_scene`], [`DepthMap::in_scene`](crate::DepthMap::in_scene)). This is exact, in
@@ -50,7 +51,7 @@ impl Placement {
         })
     }
 
-    /// Where the scene's origin is, world units.
+    /// The position of the scene's origin, world units.
     pub fn position(&self) -> DVec3 {
         self.position
     }

@@ -116,7 +116,7 @@ impl PhiForm {
     }
 }
 
-/// What a frame gives up for time.
+/// The precision that a frame gives up for time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Precision {
@@ -189,15 +189,15 @@ impl Default for Precision {
 pub enum Preset {
     /// Nothing is given up.
     Exact,
-    /// What no picture shows is given up.
+    /// Approximations that no picture shows.
     #[default]
     Balanced,
-    /// What pictures hardly show is given up.
+    /// Approximations that pictures hardly show.
     Fast,
 }
 
 impl Preset {
-    /// What the preset stands for.
+    /// The precision that the preset stands for.
     pub const fn precision(self) -> Precision {
         let balanced = Precision {
             target: TargetFormat::Float,

@@ -1,4 +1,4 @@
-//! What a frame is asked to be, apart from scene, camera and clip.
+//! The settings of a frame, apart from scene, camera and clip.
 
 use crate::precision::Precision;
 use crate::setters::setters;
@@ -19,7 +19,7 @@ pub enum Mode {
     Exact,
 }
 
-/// What the weight w of a cut splat scales.
+/// The quantity that the weight w of a cut splat scales.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Decay {
@@ -60,7 +60,7 @@ pub enum Raster {
     Tiles,
 }
 
-/// What a frame shows of its splats.
+/// The quantity that a frame shows of its splats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[non_exhaustive]
@@ -68,8 +68,8 @@ pub enum Show {
     /// The splats' colours.
     #[default]
     Colour,
-    /// What the clip does to them: a splat that it leaves whole is blue; one that it cuts goes from red, where the pixel
-    /// keeps nothing, to yellow, where it keeps all. Blended like colours.
+    /// The effect of the clip on them: a splat that it leaves whole is blue; one that it cuts goes from red, where the
+    /// pixel keeps nothing, to yellow, where it keeps all. Blended like colours.
     Weight,
 }
 
@@ -97,7 +97,7 @@ pub enum ExactForm {
 pub struct Settings {
     /// How cut Gaussians are treated.
     pub mode: Mode,
-    /// What the weight scales; `None` is the mode's own (linear for `rara`, depth for `exact`).
+    /// The quantity that the weight scales; `None` is the mode's own (linear for `rara`, depth for `exact`).
     pub decay: Option<Decay>,
     /// [`Mode::Rara`]: the traced ellipsoid, in standard deviations.
     pub sigma: f32,
@@ -115,7 +115,7 @@ pub struct Settings {
     pub raster: Raster,
     /// Colours, or a debug view.
     pub show: Show,
-    /// What is given up for time.
+    /// The precision that is given up for time.
     pub precision: Precision,
 }
 

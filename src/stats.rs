@@ -26,7 +26,7 @@ pub struct PassTime {
     pub ms: f64,
 }
 
-/// What one stage did, as the device counts it.
+/// The work of one stage, as the device counts it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -71,7 +71,7 @@ pub struct FrameStats {
     pub skipped: Vec<&'static str>,
     /// How splats became pixels, and why in that way.
     pub raster: RasterChoice,
-    /// What each stage did, where that was asked for and the device counts it.
+    /// The work of each stage, where that was asked for and the device counts it.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub statistics: Vec<PassStatistics>,
 }

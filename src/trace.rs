@@ -23,7 +23,7 @@ struct Events {
     notes: Vec<(&'static str, Note)>,
 }
 
-/// What the document says about itself.
+/// A fact in the document about its recording.
 #[derive(Debug)]
 #[cfg_attr(feature = "json", derive(serde::Serialize), serde(untagged))]
 #[cfg_attr(
@@ -92,7 +92,7 @@ impl Trace {
         self.push(Lane::Gpu, name, begin, end, about);
     }
 
-    /// What the document says about itself.
+    /// Notes a fact in the document about its recording.
     pub(crate) fn note(&self, key: &'static str, value: Note) {
         let mut events = self.events();
         events.notes.retain(|(noted, _)| *noted != key);

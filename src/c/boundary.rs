@@ -1,4 +1,4 @@
-//! What crosses the boundary: codes and messages, panics, null pointers, structs of other versions.
+//! Everything that crosses the boundary: codes and messages, panics, null pointers, structs of other versions.
 
 use std::any::Any;
 use std::cell::RefCell;
@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use rara::ash::vk;
 use rara::{Error, Result};
 
-/// What every function that can fail returns. After anything but RARA_OK rara_last_error_message says more.
+/// The result of every function that can fail. After anything but RARA_OK rara_last_error_message says more.
 pub type RaraResult = i32;
 /// Done.
 pub const RARA_OK: RaraResult = 0;
@@ -119,7 +119,7 @@ pub(crate) fn invalid<T>(message: impl Into<String>) -> Result<T> {
     Err(Error::Invalid(message.into()))
 }
 
-/// What an argument points to, to be read.
+/// The value that an argument points to, to be read.
 ///
 /// # Safety
 /// `pointer` is null, or points to a `T` that nobody changes for `'a`.
@@ -131,7 +131,7 @@ pub(crate) unsafe fn shared<'a, T>(pointer: *const T, name: &str) -> Result<&'a 
     }
 }
 
-/// What an argument points to, to be changed.
+/// The value that an argument points to, to be changed.
 ///
 /// # Safety
 /// `pointer` is null, or points to a `T` that nobody else uses for `'a`.
@@ -285,8 +285,8 @@ pub(crate) unsafe trait Versioned: Copy {
     const NAME: &'static str;
 }
 
-/// Whether a struct of some version, older or newer than this one, can have this size: in C the size is a multiple of the
-/// alignment, and the struct's first field holds the size.
+/// True when a struct of some version, older or newer than this one, can have this size: in C the size is a multiple of
+/// the alignment, and the struct's first field holds the size.
 fn is_a_version<T: Versioned>(size: usize) -> bool {
     size >= size_of::<usize>() && size.is_multiple_of(align_of::<T>())
 }

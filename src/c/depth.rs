@@ -6,7 +6,7 @@ use rara::{DepthDesc, DepthMap, Result};
 
 use crate::boundary::{RaraResult, Versioned, guard, invalid, read, shared, write};
 
-/// What a depth buffer holds, for any perspective projection into depths from 0 to 1.
+/// The values in a depth buffer, for any perspective projection into depths from 0 to 1.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraDepthMap {
@@ -14,7 +14,7 @@ pub struct RaraDepthMap {
     pub z_near: f64,
     /// Depth along the view axis that becomes 1, or 0 if reversed; beyond z_near, INFINITY too.
     pub z_far: f64,
-    /// Whether nearer is more.
+    /// True when nearer is more.
     pub reversed: vk::Bool32,
 }
 
@@ -36,12 +36,12 @@ pub struct RaraDepthDesc {
     pub struct_size: usize,
     /// Its format, with or without stencil.
     pub format: vk::Format,
-    /// Whether a dynamic rendering scope has the same image as stencil attachment too. Default: no.
+    /// True when a dynamic rendering scope has the same image as stencil attachment too. Default: false.
     pub stencil: vk::Bool32,
-    /// Whether the host shows each frame's depth to rara_renderer_prepare_behind. Tiles need that; without it quads
-    /// replace them. Default: no.
+    /// True when the host shows each frame's depth to rara_renderer_prepare_behind. Tiles need that; without it quads
+    /// replace them. Default: false.
     pub readable: vk::Bool32,
-    /// What the buffer holds for a depth; rara_renderer_set_depth_map changes it from frame to frame.
+    /// The buffer's value for a depth; rara_renderer_set_depth_map changes it from frame to frame.
     pub map: RaraDepthMap,
 }
 

@@ -35,14 +35,14 @@ pub struct RaraAdoptDesc {
     pub queue: vk::Queue,
     /// The queue's family.
     pub queue_family: u32,
-    /// Whether VK_EXT_mesh_shader, meshShader and taskShader were enabled. Default: no.
+    /// True when VK_EXT_mesh_shader, meshShader and taskShader were enabled. Default: false.
     pub mesh_shader: vk::Bool32,
-    /// Whether VK_KHR_push_descriptor was enabled. Default: no.
+    /// True when VK_KHR_push_descriptor was enabled. Default: false.
     pub push_descriptor: vk::Bool32,
-    /// Whether VK_EXT_debug_utils was enabled on the instance: rara then names its objects and labels its stages.
-    /// Default: no.
+    /// True when VK_EXT_debug_utils was enabled on the instance: rara then names its objects and labels its stages.
+    /// Default: false.
     pub debug_utils: vk::Bool32,
-    /// Where compiled pipelines are looked up and kept. Default: null, and none are kept.
+    /// The cache in which compiled pipelines are looked up and kept. Default: null, and none are kept.
     pub pipeline_cache: vk::PipelineCache,
     /// VkApplicationInfo::apiVersion of the instance, 1.2 or later. Default: VK_API_VERSION_1_3.
     pub api_version: u32,

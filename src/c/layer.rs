@@ -21,12 +21,12 @@ use crate::scene::{self, RaraGaussians, RaraSceneBuffers, RaraShFormat, RaraStag
 pub struct RaraLayerState {
     /// Set by rara_layer_state_default and rara_scene_buffers_layer_state.
     pub struct_size: usize,
-    /// Where the layer stands in its scene, which rara_renderer_set_placement places as a whole. Default: where it was
+    /// The layer's placement in its scene, which rara_renderer_set_placement places as a whole. Default: where it was
     /// made.
     pub placement: RaraPlacement,
-    /// What the opacities of its Gaussians are multiplied by, 0 to 1. Default: 1.
+    /// The factor of its Gaussians' opacities, 0 to 1. Default: 1.
     pub opacity: f32,
-    /// Whether it is drawn. A hidden layer costs next to nothing. Default: yes.
+    /// True when it is drawn. A hidden layer costs next to nothing. Default: true.
     pub visible: vk::Bool32,
 }
 

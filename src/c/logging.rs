@@ -15,9 +15,9 @@ pub type RaraLogLevel = u32;
 pub const RARA_LOG_LEVEL_ERROR: RaraLogLevel = 1;
 /// Something may be wrong.
 pub const RARA_LOG_LEVEL_WARN: RaraLogLevel = 2;
-/// What a user may want to know.
+/// Messages that a user may want to read.
 pub const RARA_LOG_LEVEL_INFO: RaraLogLevel = 3;
-/// What a developer may want to know.
+/// Messages that a developer may want to read.
 pub const RARA_LOG_LEVEL_DEBUG: RaraLogLevel = 4;
 /// Every step.
 pub const RARA_LOG_LEVEL_TRACE: RaraLogLevel = 5;
@@ -30,7 +30,7 @@ pub const RARA_LOG_LEVEL_TRACE: RaraLogLevel = 5;
 pub type RaraLog =
     Option<unsafe extern "C" fn(level: RaraLogLevel, text: *const c_char, user: *mut c_void)>;
 
-/// Where records go.
+/// The host's function for log records, and the pointer that it is given.
 struct Host {
     log: unsafe extern "C" fn(RaraLogLevel, *const c_char, *mut c_void),
     user: *mut c_void,
@@ -45,11 +45,11 @@ unsafe impl Sync for Host {}
 /// function.
 static HOST: RwLock<Option<Host>> = RwLock::new(None);
 
-/// Whether this process's records come to us; decided once.
+/// True when this process's records come to us; decided once.
 static OURS: OnceLock<bool> = OnceLock::new();
 
 thread_local! {
-    /// Whether this thread is in the host's function and has locked HOST.
+    /// True when this thread is in the host's function and has locked HOST.
     static TELLING: Cell<bool> = const { Cell::new(false) };
 }
 

@@ -24,7 +24,7 @@ thread_local! {
     static PANIC: Cell<bool> = const { Cell::new(false) };
 }
 
-/// What a test makes every function do.
+/// Panics when a test asks every function to.
 pub(crate) fn panic_if_asked() {
     assert!(!PANIC.get(), "injected");
 }

@@ -1,4 +1,4 @@
-//! Where a scene stands in the host's world.
+//! The placement of a scene in the host's world.
 
 use rara::glam::{DQuat, DVec3};
 use rara::{Placement, Result};
@@ -6,12 +6,12 @@ use rara::{Placement, Result};
 use crate::boundary::{RaraResult, exclusive, guard, shared};
 use crate::renderer::RaraRenderer;
 
-/// Where a scene stands in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1} leaves
-/// it where it was made.
+/// The placement of a scene in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1}
+/// leaves it where it was made.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraPlacement {
-    /// Where the scene's origin goes, world units.
+    /// The position of the scene's origin, world units.
     pub position: [f64; 3],
     /// How it is turned: a quaternion x, y, z, w, of any length but zero.
     pub rotation: [f64; 4],

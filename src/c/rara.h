@@ -60,7 +60,7 @@ typedef struct RaraRenderer RaraRenderer;
 // while rara_scene_buffers_set_layer_state runs.
 typedef struct RaraSceneBuffers RaraSceneBuffers;
 
-// What every function that can fail returns. After anything but RARA_OK rara_last_error_message says more.
+// The result of every function that can fail. After anything but RARA_OK rara_last_error_message says more.
 typedef int32_t RaraResult;
 
 // How much a line of the log matters.
@@ -87,7 +87,7 @@ typedef struct RaraCamera {
     double cx;
     // Principal point, pixels from the picture's top edge; height / 2 is the middle.
     double cy;
-    // Where the eye stands, world units.
+    // The eye's position, world units.
     double eye[3];
     // World to camera rotation, row-major: the rows are the camera's right, down and forward axes in the world.
     double rotation[9];
@@ -101,13 +101,13 @@ typedef struct RaraNamedCamera {
     struct RaraCamera camera;
 } RaraNamedCamera;
 
-// What a depth buffer holds, for any perspective projection into depths from 0 to 1.
+// The values in a depth buffer, for any perspective projection into depths from 0 to 1.
 typedef struct RaraDepthMap {
     // Depth along the view axis that becomes 0, or 1 if reversed, world units above 0.
     double z_near;
     // Depth along the view axis that becomes 1, or 0 if reversed; beyond z_near, INFINITY too.
     double z_far;
-    // Whether nearer is more.
+    // True when nearer is more.
     VkBool32 reversed;
 } RaraDepthMap;
 
@@ -118,16 +118,16 @@ typedef struct RaraDepthDesc {
     size_t struct_size;
     // Its format, with or without stencil.
     VkFormat format;
-    // Whether a dynamic rendering scope has the same image as stencil attachment too. Default: no.
+    // True when a dynamic rendering scope has the same image as stencil attachment too. Default: false.
     VkBool32 stencil;
-    // Whether the host shows each frame's depth to rara_renderer_prepare_behind. Tiles need that; without it quads
-    // replace them. Default: no.
+    // True when the host shows each frame's depth to rara_renderer_prepare_behind. Tiles need that; without it quads
+    // replace them. Default: false.
     VkBool32 readable;
-    // What the buffer holds for a depth; rara_renderer_set_depth_map changes it from frame to frame.
+    // The buffer's value for a depth; rara_renderer_set_depth_map changes it from frame to frame.
     struct RaraDepthMap map;
 } RaraDepthDesc;
 
-// What a physical device that will do offers beyond the requirements. Required are Vulkan 1.3, or 1.2 with
+// The features of a suitable physical device beyond the requirements. Required are Vulkan 1.3, or 1.2 with
 // VK_KHR_synchronization2 and VK_KHR_dynamic_rendering, the features bufferDeviceAddress, synchronization2 and
 // dynamicRendering, and a queue family with graphics and compute.
 typedef struct RaraSupport {
@@ -172,23 +172,23 @@ typedef struct RaraAdoptDesc {
     VkQueue queue;
     // The queue's family.
     uint32_t queue_family;
-    // Whether VK_EXT_mesh_shader, meshShader and taskShader were enabled. Default: no.
+    // True when VK_EXT_mesh_shader, meshShader and taskShader were enabled. Default: false.
     VkBool32 mesh_shader;
-    // Whether VK_KHR_push_descriptor was enabled. Default: no.
+    // True when VK_KHR_push_descriptor was enabled. Default: false.
     VkBool32 push_descriptor;
-    // Whether VK_EXT_debug_utils was enabled on the instance: rara then names its objects and labels its stages.
-    // Default: no.
+    // True when VK_EXT_debug_utils was enabled on the instance: rara then names its objects and labels its stages.
+    // Default: false.
     VkBool32 debug_utils;
-    // Where compiled pipelines are looked up and kept. Default: null, and none are kept.
+    // The cache in which compiled pipelines are looked up and kept. Default: null, and none are kept.
     VkPipelineCache pipeline_cache;
     // VkApplicationInfo::apiVersion of the instance, 1.2 or later. Default: VK_API_VERSION_1_3.
     uint32_t api_version;
 } RaraAdoptDesc;
 
-// Where a scene stands in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1} leaves
-// it where it was made.
+// The placement of a scene in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1}
+// leaves it where it was made.
 typedef struct RaraPlacement {
-    // Where the scene's origin goes, world units.
+    // The position of the scene's origin, world units.
     double position[3];
     // How it is turned: a quaternion x, y, z, w, of any length but zero.
     double rotation[4];
@@ -199,7 +199,7 @@ typedef struct RaraPlacement {
 // How shaders reach buffers.
 typedef uint32_t RaraBindings;
 
-// What a renderer is created with.
+// The description of a renderer to be created.
 typedef struct RaraRendererDesc {
     // Set by rara_renderer_desc_default.
     size_t struct_size;
@@ -217,10 +217,10 @@ typedef struct RaraRendererDesc {
     uint32_t subpass;
     // How shaders reach buffers.
     RaraBindings bindings;
-    // Whether to take timestamps, for the times in RaraFrameStats. Default: no.
+    // True to take timestamps, for the times in RaraFrameStats. Default: false.
     VkBool32 timing;
-    // Whether a frame takes over what the one before has computed and it would compute again. The host must then submit
-    // every frame that it prepares, in order, or call rara_renderer_forget. Default: no.
+    // True to let a frame take over what the one before has computed and it would compute again. The host must then
+    // submit every frame that it prepares, in order, or call rara_renderer_forget. Default: false.
     VkBool32 reuse;
     // How many recorded frames may be unfinished at once, 1 or more. Default: 1.
     uint32_t frames_in_flight;
@@ -258,7 +258,7 @@ typedef struct RaraClip {
 // How a clip treats the Gaussians that it cuts.
 typedef uint32_t RaraMode;
 
-// What the weight w of a cut splat scales.
+// The quantity that the weight w of a cut splat scales.
 typedef uint32_t RaraDecay;
 
 // RARA_MODE_RARA only: what a cut splat keeps in a pixel whose ray misses the traced ellipsoid.
@@ -270,7 +270,7 @@ typedef uint32_t RaraExactForm;
 // How splats become pixels. All give the same picture.
 typedef uint32_t RaraRaster;
 
-// What a frame shows of its splats.
+// The quantity that a frame shows of its splats.
 typedef uint32_t RaraShow;
 
 // RARA_MODE_EXACT only: how the normal distribution's Phi is approximated, and the largest error.
@@ -282,13 +282,13 @@ typedef struct RaraSettings {
     size_t struct_size;
     // How cut Gaussians are treated.
     RaraMode mode;
-    // What the weight scales.
+    // The quantity that the weight scales.
     RaraDecay decay;
     // RARA_MODE_RARA: the traced ellipsoid, in standard deviations. Default: 3.
     float sigma;
     // RARA_MODE_RARA: what a missed pixel keeps.
     RaraMiss miss;
-    // Ablation: treat every Gaussian as cut. Default: no.
+    // Ablation: treat every Gaussian as cut. Default: false.
     VkBool32 trace_all;
     // RARA_MODE_EXACT: the form of the weight.
     RaraExactForm form;
@@ -353,7 +353,7 @@ typedef uint32_t RaraShFormat;
 typedef struct RaraStaging {
     // A buffer created with VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
     VkBuffer buffer;
-    // Where the part begins in the buffer, bytes.
+    // The offset of the part in the buffer, bytes.
     uint64_t offset;
     // The part, mapped for writing.
     void *mapped;
@@ -365,12 +365,12 @@ typedef struct RaraStaging {
 typedef struct RaraLayerState {
     // Set by rara_layer_state_default and rara_scene_buffers_layer_state.
     size_t struct_size;
-    // Where the layer stands in its scene, which rara_renderer_set_placement places as a whole. Default: where it was
+    // The layer's placement in its scene, which rara_renderer_set_placement places as a whole. Default: where it was
     // made.
     struct RaraPlacement placement;
-    // What the opacities of its Gaussians are multiplied by, 0 to 1. Default: 1.
+    // The factor of its Gaussians' opacities, 0 to 1. Default: 1.
     float opacity;
-    // Whether it is drawn. A hidden layer costs next to nothing. Default: yes.
+    // True when it is drawn. A hidden layer costs next to nothing. Default: true.
     VkBool32 visible;
 } RaraLayerState;
 
@@ -428,7 +428,7 @@ typedef struct RaraFrameStats {
     RaraRaster raster;
     // Why splats become pixels in that way.
     char raster_reason[RARA_REASON_SIZE];
-    // Whether tiles had no room for their lists, so that the frame was drawn as quads, which is slower and gives the
+    // True when tiles had no room for their lists, so that the frame was drawn as quads, which is slower and gives the
     // same picture. The next rara_renderer_configure makes the room.
     VkBool32 fell_back;
     // Number of passes; 0 without RaraRendererDesc's timing.
@@ -478,10 +478,10 @@ typedef struct RaraFrameStats {
 // Something may be wrong.
 #define RARA_LOG_LEVEL_WARN 2
 
-// What a user may want to know.
+// Messages that a user may want to read.
 #define RARA_LOG_LEVEL_INFO 3
 
-// What a developer may want to know.
+// Messages that a developer may want to read.
 #define RARA_LOG_LEVEL_DEBUG 4
 
 // Every step.
@@ -566,8 +566,8 @@ typedef struct RaraFrameStats {
 // Their colours. The default.
 #define RARA_SHOW_COLOUR 0
 
-// What the clip does to them: a splat that it leaves whole is blue; one that it cuts goes from red, where the pixel
-// keeps nothing, to yellow, where it keeps all.
+// The effect of the clip on them: a splat that it leaves whole is blue; one that it cuts goes from red, where the
+// pixel keeps nothing, to yellow, where it keeps all.
 #define RARA_SHOW_WEIGHT 1
 
 // 1.9e-5.
@@ -582,10 +582,10 @@ typedef struct RaraFrameStats {
 // Nothing is given up. It goes with scenes in RARA_SH_FORMAT_FLOAT.
 #define RARA_PRESET_EXACT 0
 
-// What no picture shows is given up: the usual choice. It goes with scenes in RARA_SH_FORMAT_PACKED.
+// Approximations that no picture shows: the usual choice. It goes with scenes in RARA_SH_FORMAT_PACKED.
 #define RARA_PRESET_BALANCED 1
 
-// What pictures hardly show is given up. It goes with scenes in RARA_SH_FORMAT_PACKED.
+// Approximations that pictures hardly show. It goes with scenes in RARA_SH_FORMAT_PACKED.
 #define RARA_PRESET_FAST 2
 
 #ifdef __cplusplus

@@ -39,7 +39,7 @@ pub const RARA_BINDINGS_ADDRESS: RaraBindings = 0;
 /// address.
 pub const RARA_BINDINGS_BOUND: RaraBindings = 1;
 
-/// What a renderer is created with.
+/// The description of a renderer to be created.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraRendererDesc {
@@ -59,10 +59,10 @@ pub struct RaraRendererDesc {
     pub subpass: u32,
     /// How shaders reach buffers.
     pub bindings: RaraBindings,
-    /// Whether to take timestamps, for the times in RaraFrameStats. Default: no.
+    /// True to take timestamps, for the times in RaraFrameStats. Default: false.
     pub timing: vk::Bool32,
-    /// Whether a frame takes over what the one before has computed and it would compute again. The host must then submit
-    /// every frame that it prepares, in order, or call rara_renderer_forget. Default: no.
+    /// True to let a frame take over what the one before has computed and it would compute again. The host must then
+    /// submit every frame that it prepares, in order, or call rara_renderer_forget. Default: false.
     pub reuse: vk::Bool32,
     /// How many recorded frames may be unfinished at once, 1 or more. Default: 1.
     pub frames_in_flight: u32,

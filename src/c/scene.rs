@@ -279,7 +279,7 @@ pub(crate) unsafe fn upload_with<'a>(
 pub struct RaraStaging {
     /// A buffer created with VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
     pub buffer: vk::Buffer,
-    /// Where the part begins in the buffer, bytes.
+    /// The offset of the part in the buffer, bytes.
     pub offset: u64,
     /// The part, mapped for writing.
     pub mapped: *mut c_void,

@@ -18,7 +18,7 @@ pub const RARA_MODE_RARA: RaraMode = 2;
 /// The exact visible share of the splat, the low-pass of 3DGS included. The default.
 pub const RARA_MODE_EXACT: RaraMode = 3;
 
-/// What the weight w of a cut splat scales.
+/// The quantity that the weight w of a cut splat scales.
 pub type RaraDecay = u32;
 /// The mode's own: linear for RARA_MODE_RARA, depth for RARA_MODE_EXACT. The default.
 pub const RARA_DECAY_AUTO: RaraDecay = 0;
@@ -56,12 +56,12 @@ pub const RARA_RASTER_QUAD: RaraRaster = 2;
 /// Tiles of pixels in a compute shader.
 pub const RARA_RASTER_TILES: RaraRaster = 3;
 
-/// What a frame shows of its splats.
+/// The quantity that a frame shows of its splats.
 pub type RaraShow = u32;
 /// Their colours. The default.
 pub const RARA_SHOW_COLOUR: RaraShow = 0;
-/// What the clip does to them: a splat that it leaves whole is blue; one that it cuts goes from red, where the pixel
-/// keeps nothing, to yellow, where it keeps all.
+/// The effect of the clip on them: a splat that it leaves whole is blue; one that it cuts goes from red, where the
+/// pixel keeps nothing, to yellow, where it keeps all.
 pub const RARA_SHOW_WEIGHT: RaraShow = 1;
 
 /// RARA_MODE_EXACT only: how the normal distribution's Phi is approximated, and the largest error.
@@ -77,9 +77,9 @@ pub const RARA_PHI_FORM_LOGISTIC: RaraPhiForm = 2;
 pub type RaraPreset = u32;
 /// Nothing is given up. It goes with scenes in RARA_SH_FORMAT_FLOAT.
 pub const RARA_PRESET_EXACT: RaraPreset = 0;
-/// What no picture shows is given up: the usual choice. It goes with scenes in RARA_SH_FORMAT_PACKED.
+/// Approximations that no picture shows: the usual choice. It goes with scenes in RARA_SH_FORMAT_PACKED.
 pub const RARA_PRESET_BALANCED: RaraPreset = 1;
-/// What pictures hardly show is given up. It goes with scenes in RARA_SH_FORMAT_PACKED.
+/// Approximations that pictures hardly show. It goes with scenes in RARA_SH_FORMAT_PACKED.
 pub const RARA_PRESET_FAST: RaraPreset = 2;
 
 /// The options of a frame, apart from scene, camera and clip.
@@ -90,13 +90,13 @@ pub struct RaraSettings {
     pub struct_size: usize,
     /// How cut Gaussians are treated.
     pub mode: RaraMode,
-    /// What the weight scales.
+    /// The quantity that the weight scales.
     pub decay: RaraDecay,
     /// RARA_MODE_RARA: the traced ellipsoid, in standard deviations. Default: 3.
     pub sigma: f32,
     /// RARA_MODE_RARA: what a missed pixel keeps.
     pub miss: RaraMiss,
-    /// Ablation: treat every Gaussian as cut. Default: no.
+    /// Ablation: treat every Gaussian as cut. Default: false.
     pub trace_all: vk::Bool32,
     /// RARA_MODE_EXACT: the form of the weight.
     pub form: RaraExactForm,

@@ -12,7 +12,7 @@ use crate::device::{PFN_vkGetInstanceProcAddr, load_instance};
 /// Room for the names of extensions in RaraSupport.
 pub const RARA_MAX_EXTENSIONS: usize = 8;
 
-/// What a physical device that will do offers beyond the requirements. Required are Vulkan 1.3, or 1.2 with
+/// The features of a suitable physical device beyond the requirements. Required are Vulkan 1.3, or 1.2 with
 /// VK_KHR_synchronization2 and VK_KHR_dynamic_rendering, the features bufferDeviceAddress, synchronization2 and
 /// dynamicRendering, and a queue family with graphics and compute.
 #[repr(C)]

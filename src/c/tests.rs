@@ -1,4 +1,4 @@
-//! What a host can do wrong without a device: impossible arguments, and structs of other versions.
+//! Mistakes that a host can make without a device: impossible arguments, and structs of other versions.
 
 use std::ffi::{CStr, CString};
 use std::ptr::{null, null_mut};

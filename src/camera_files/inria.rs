@@ -14,7 +14,7 @@ struct Entry {
     img_name: Option<String>,
     width: f64,
     height: f64,
-    /// Where the camera stands.
+    /// The camera's position.
     position: DVec3Json,
     /// Camera to world, row by row: the columns are the camera's right, down and forward axes.
     rotation: [DVec3Json; 3],

@@ -122,7 +122,7 @@ pub fn camera_from_json(json: &[u8], name: &Path) -> Result<Camera> {
     single::parse(json::bare(json)).map_err(|message| Error::format(name, message))
 }
 
-/// What each format comes down to. `pose` takes camera coordinates (right, down, forward) to the world.
+/// The parts that each format is reduced to. `pose` takes camera coordinates (right, down, forward) to the world.
 struct Parts {
     width: f64,
     height: f64,

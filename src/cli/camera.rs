@@ -10,18 +10,18 @@ use super::failure::Failure;
 use super::values;
 use rara::{camera_files, scene::Bounds};
 
-/// Where the camera stands. Without any of these it frames the scene.
+/// The camera's position and lens. Without any of these it frames the scene.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Camera (without any of these it frames the scene)")]
 pub(super) struct CameraArgs {
-    /// Where the eye stands
+    /// The eye's position
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
     #[arg(requires = "target", conflicts_with_all = ["cameras", "camera"])]
     eye: Option<DVec3>,
-    /// What it looks at
+    /// The point that it looks at
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true, requires = "eye")]
     target: Option<DVec3>,
-    /// What is up in the picture
+    /// The direction that is up in the picture
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(default_value = "0,-1,0", conflicts_with_all = ["cameras", "camera"])]
     up: DVec3,
@@ -90,7 +90,7 @@ impl Views {
 }
 
 impl CameraArgs {
-    /// Whether `--view all` was typed: a run of several frames, however many there are.
+    /// True when `--view all` was typed: a run of several frames, however many there are.
     pub(super) fn all(&self) -> bool {
         self.view == "all"
     }

@@ -8,7 +8,7 @@ use rara::{Clip, ClipOp, Shape};
 
 use super::failure::Failure;
 
-/// What to cut away.
+/// The clip: the parts to cut away.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Clip")]
 pub(super) struct ClipArgs {

@@ -27,7 +27,7 @@ struct Line {
     driver: String,
     kind: &'static str,
     supported: bool,
-    /// What the device lacks.
+    /// The requirement that the device lacks.
     problem: Option<String>,
 }
 

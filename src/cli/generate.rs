@@ -15,7 +15,7 @@ Examples:
   rara generate general -n 100000 -o general.ply
   rara generate strands -n 3000000 --seed 7 -o hair.ply")]
 pub(super) struct Generate {
-    /// What it looks like
+    /// The kind of scene
     kind: scene::Kind,
     /// Number of Gaussians
     #[arg(short = 'n', long, value_name = "COUNT", default_value_t = 100_000)]
@@ -24,7 +24,7 @@ pub(super) struct Generate {
     /// The same seed makes the same scene
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// Where the scene goes
+    /// The scene's file
     #[arg(short, long, value_name = "OUT.ply", value_parser = ply_path)]
     output: PathBuf,
 }

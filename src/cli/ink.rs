@@ -90,7 +90,7 @@ pub(super) fn text(
     let Ok(_end) = Text::new(words, Point::new(0, BASELINE), style).draw(&mut dots);
 }
 
-/// What the font's dots are painted into, as squares.
+/// The picture that the font's dots are painted into, as squares.
 struct Dots<'a> {
     picture: &'a mut Picture,
     corner: [i64; 2],

@@ -1,4 +1,4 @@
-//! What leaves the program: lines for people on stderr, one JSON document on stdout, pictures, and a progress bar.
+//! Output of the program: lines for people on stderr, one JSON document on stdout, pictures, and a progress bar.
 
 use std::fmt::Display;
 use std::fs;

@@ -3,7 +3,7 @@
 use clap::Args;
 use rara::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 
-/// What is given up for time. A single choice overrides the preset's.
+/// The precision that is given up for time. A single choice overrides the preset's.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Precision")]
 pub(super) struct PrecisionArgs {

@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::output;
 use super::session::Session;
 
-/// What to record beside the pictures.
+/// Recordings to make beside the pictures.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Profiling")]
 pub(super) struct ProfileArgs {

@@ -31,7 +31,7 @@ Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premu
 pub(super) struct Render {
     #[command(flatten)]
     scenes: SceneArgs,
-    /// Where the picture goes, .png or .exr; {} becomes the camera's number. May be left out with --json
+    /// The picture's file, .png or .exr; {} becomes the camera's number. May be left out with --json
     #[arg(short, long, value_name = "OUT", value_parser = values::picture_path, required_unless_present = "json")]
     output: Option<PathBuf>,
     /// Render N times, nothing carried over between them, and report the medians
@@ -99,7 +99,7 @@ impl Render {
         Ok(report.print(self.json, &written)?)
     }
 
-    /// Where the picture of a view goes.
+    /// The file of the picture of a view.
     fn picture_file(&self, number: usize) -> Option<PathBuf> {
         Some(numbered(self.output.as_ref()?, number))
     }

@@ -32,7 +32,7 @@ pub(super) struct Loaded {
     pub(super) repaired: u64,
     /// Gaussians that could not be used.
     pub(super) dropped: u64,
-    /// What the loader reports, a line each.
+    /// The loader's reports, a line each.
     pub(super) notes: Vec<String>,
 }
 

@@ -72,12 +72,12 @@ impl Session {
         self.headless.close()
     }
 
-    /// Whether the device is this machine's processor.
+    /// True when the device is this machine's processor.
     pub(super) fn is_cpu(&self) -> bool {
         self.headless.device().info().kind_name() == "cpu"
     }
 
-    /// Whether the device counts what the stages do.
+    /// True when the device counts what the stages do.
     pub(super) fn has_statistics(&self) -> bool {
         self.headless.device().support().pipeline_statistics
     }

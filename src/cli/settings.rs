@@ -14,7 +14,7 @@ pub(super) struct SettingsArgs {
     /// How Gaussians that the clip cuts are treated
     #[arg(long, default_value = "exact")]
     pub(super) mode: Mode,
-    /// What a cut splat's visible share scales [default: linear for rara, depth for exact]
+    /// The quantity that a cut splat's visible share scales [default: linear for rara, depth for exact]
     #[arg(long, value_name = "LAW")]
     decay: Option<Decay>,
     /// Mode rara: the ellipsoid it traces, in standard deviations [default: 3]

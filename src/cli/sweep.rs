@@ -120,7 +120,7 @@ impl Sweep {
     }
 }
 
-/// Where the plane of one frame stands: both ends included, the middle when there is one frame only.
+/// The plane's position in one frame: both ends included, the middle when there is one frame only.
 fn position((from, to): (f64, f64), index: u32, frames: u32) -> f64 {
     match frames {
         1 => (from + to) / 2.0,

@@ -1,4 +1,4 @@
-//! What a clip keeps: surfaces, of which each keeps one side, and how they combine.
+//! The region that a clip keeps: surfaces, of which each keeps one side, and how they combine.
 
 #![forbid(unsafe_code)]
 

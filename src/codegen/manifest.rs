@@ -94,12 +94,12 @@ pub(crate) fn stale(folder: &Path, spirv: &Path) -> Vec<String> {
     stale
 }
 
-/// Where a shader's manifest is.
+/// The path of a shader's manifest.
 pub(crate) fn manifest_path(spirv: &Path, shader: &Path) -> PathBuf {
     spirv.join(format!("{}.manifest", file_name(shader)))
 }
 
-/// Where a shader's module is.
+/// The path of a shader's module.
 pub(crate) fn module_path(spirv: &Path, shader: &Path, variant: &str) -> PathBuf {
     spirv.join(format!("{}.{variant}.spv", file_name(shader)))
 }

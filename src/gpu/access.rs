@@ -65,12 +65,12 @@ impl Access {
         (stages, reads | writes)
     }
 
-    /// Whether the access writes.
+    /// True when the access writes.
     pub fn writes(self) -> bool {
         !TABLE[self as usize].3.is_empty()
     }
 
-    /// Whether the access reads.
+    /// True when the access reads.
     pub fn reads(self) -> bool {
         !TABLE[self as usize].2.is_empty()
     }

@@ -20,9 +20,9 @@ pub struct Attachments {
 pub struct DepthAttachment {
     /// Its format, with or without stencil.
     pub format: vk::Format,
-    /// Whether the same image is the scope's stencil attachment too; unused with a render pass.
+    /// True when the same image is the scope's stencil attachment too; unused with a render pass.
     pub stencil: bool,
-    /// Whether nearer is more.
+    /// True when nearer is more.
     pub reversed: bool,
 }
 

@@ -103,7 +103,7 @@ impl Device {
         }
     }
 
-    /// Whether two handles are of one device.
+    /// True when two handles are of one device.
     pub(crate) fn is(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.inner, &other.inner)
     }
@@ -237,7 +237,7 @@ impl Device {
             .unwrap_or_default()
     }
 
-    /// Whether the validation layer's messages come to us.
+    /// True when the validation layer's messages come to us.
     pub(super) fn validates(&self) -> bool {
         let owned = self.inner.owned.as_ref();
         owned.is_some_and(|instance| instance.validation.is_some())

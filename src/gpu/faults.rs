@@ -95,7 +95,7 @@ pub(crate) fn device(pretence: Option<Pretence>) -> Result<Device> {
     )
 }
 
-/// Whether fewer places are enough, as on slow drivers: the code under test is not theirs.
+/// True when fewer places are enough, as on slow drivers: the code under test is not theirs.
 pub(crate) fn is_slow() -> bool {
     let scale = std::env::var("RARA_TEST_SCALE").ok();
     scale.is_some_and(|scale| scale.parse().is_ok_and(|scale: f64| scale < 1.0))

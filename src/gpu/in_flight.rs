@@ -24,7 +24,7 @@ struct Slot {
     fence: vk::Fence,
     /// Signalled when the frame's image may be drawn into.
     acquired: vk::Semaphore,
-    /// Whether a submission will signal, or has signalled, the fence.
+    /// True when a submission will signal, or has signalled, the fence.
     submitted: bool,
 }
 

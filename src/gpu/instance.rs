@@ -17,7 +17,7 @@ pub(super) const API_VERSION: u32 = vk::API_VERSION_1_3;
 pub(crate) struct Instance {
     pub(crate) raw: ash::Instance,
     pub(crate) validation: Option<Validation>,
-    /// Whether debug labels and names are recorded, for a layer or a capture tool if there is one.
+    /// True when debug labels and names are recorded, for a layer or a capture tool if there is one.
     pub(crate) debug_utils: bool,
     /// Keeps the loader's library open.
     pub(super) entry: ash::Entry,

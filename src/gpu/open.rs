@@ -62,15 +62,15 @@ pub struct AdoptDesc {
     pub queue: vk::Queue,
     /// The queue's family.
     pub queue_family: u32,
-    /// Whether `VK_EXT_mesh_shader` and its features were enabled.
+    /// True when `VK_EXT_mesh_shader` and its features were enabled.
     pub mesh_shader: bool,
-    /// Whether `VK_KHR_push_descriptor` was enabled.
+    /// True when `VK_KHR_push_descriptor` was enabled.
     pub push_descriptor: bool,
-    /// Whether `VK_EXT_debug_utils` was enabled on the instance.
+    /// True when `VK_EXT_debug_utils` was enabled on the instance.
     pub debug_utils: bool,
-    /// Whether the feature `pipelineStatisticsQuery` was enabled.
+    /// True when the feature `pipelineStatisticsQuery` was enabled.
     pub pipeline_statistics: bool,
-    /// Where compiled pipelines are looked up and kept; null for nowhere.
+    /// The cache in which compiled pipelines are looked up and kept; null for none.
     pub pipeline_cache: vk::PipelineCache,
     /// The source of all device memory, made for this device and with `buffer_device_address`. `None` means an allocator of
     /// rara's own. It is locked while a buffer or an image is made or destroyed, never by

@@ -94,7 +94,7 @@ pub struct GraphicsDesc<'a> {
     pub constants: &'a [(u32, u32)],
     /// The attachments that it draws into.
     pub attachments: Attachments,
-    /// Whether fragments behind the depth attachment, where there is one, are left out.
+    /// True when fragments behind the depth attachment, where there is one, are left out.
     pub depth_test: bool,
     /// How fragments are blended; `None` overwrites.
     pub blend: Option<vk::PipelineColorBlendAttachmentState>,
@@ -222,7 +222,7 @@ impl GraphicsPipeline {
         self.inner.name
     }
 
-    /// Whether its front is a mesh shader.
+    /// True when its front is a mesh shader.
     pub fn is_mesh(&self) -> bool {
         self.mesh
     }

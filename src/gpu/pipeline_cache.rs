@@ -24,7 +24,7 @@ pub struct PipelineCacheId {
 const HEADER: usize = 16 + vk::UUID_SIZE;
 
 impl PipelineCacheId {
-    /// Whether `data` begins with the header of this driver's caches.
+    /// True when `data` begins with the header of this driver's caches.
     pub fn matches(&self, data: &[u8]) -> bool {
         let word = |at: usize| u32::from_le_bytes(std::array::from_fn(|byte| data[4 * at + byte]));
         data.len() >= HEADER

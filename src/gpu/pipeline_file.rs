@@ -9,7 +9,7 @@ use super::{Device, PipelineCacheId};
 use crate::files::write_atomically;
 use crate::{Error, Result};
 
-/// Where [`Headless`](crate::Headless) keeps compiled pipelines from one run to the next.
+/// The place in which [`Headless`](crate::Headless) keeps compiled pipelines from one run to the next.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum PipelineCache {
     /// They are kept in the user's cache folder: `RARA_CACHE`, else `rara` in `XDG_CACHE_HOME`, else `~/.cache/rara`. They

@@ -114,7 +114,7 @@ impl Features {
     }
 }
 
-/// Whether a physical device can run this library; the error says in a sentence what it lacks.
+/// Checks that a physical device can run this library; the error says in a sentence what it lacks.
 ///
 /// # Safety
 ///

@@ -25,9 +25,9 @@ struct Chain {
     /// The window's size for which it was made, as the window system reported it.
     window: (u32, u32),
     images: Vec<Presented>,
-    /// Whether it must be made anew before the next frame.
+    /// True when it must be made anew before the next frame.
     outdated: bool,
-    /// Whether another might fit better, although it works.
+    /// True when another might fit better, although it works.
     suboptimal: bool,
 }
 

@@ -18,7 +18,7 @@ pub struct Timer {
     capacity: u32,
     /// Passes begun since the last reset; pass `i` has the queries `2 i` and `2 i + 1`.
     names: Vec<&'static str>,
-    /// Whether a recording has reset the pool and may write to it.
+    /// True when a recording has reset the pool and may write to it.
     ready: bool,
     statistics: Option<Statistics>,
 }
@@ -206,7 +206,7 @@ impl Timer {
         Some(pairs.map(span).collect())
     }
 
-    /// What each pass did; passes of one name are added up. It is empty without statistics, else as for
+    /// The statistics of each pass; passes of one name are added up. It is empty without statistics, else as for
     /// [`read`](Self::read).
     pub fn statistics(&self) -> Vec<PassStatistics> {
         let mut sums: Vec<PassStatistics> = Vec::new();

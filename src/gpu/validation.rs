@@ -88,7 +88,7 @@ impl Validation {
     }
 }
 
-/// Whether the layer is installed, and its own extension for switching checks on.
+/// Finds the layer, which must be installed; true when it has its own extension for switching checks on.
 pub(crate) fn find(entry: &ash::Entry) -> Result<bool> {
     // SAFETY: the entry's loader is loaded, as for the call below.
     let layers = unsafe { entry.enumerate_instance_layer_properties() }

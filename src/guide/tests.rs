@@ -1,4 +1,4 @@
-//! What rustdoc does not see of the guide: that it can be read in the repository too.
+//! A property of the guide that rustdoc does not see: that it can be read in the repository too.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

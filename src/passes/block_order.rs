@@ -104,7 +104,7 @@ fn is_spanning(scene: &Gaussians, index: usize) -> bool {
     scene.opacities()[index] >= limits::OPACITY_SPANNING
 }
 
-/// Where nearly all centres are, from a sample.
+/// The bounds of nearly all centres, from a sample.
 fn extent(positions: &[Vec3]) -> [Vec3; 2] {
     let step = positions.len().div_ceil(SAMPLES);
     let along = |pick: fn(&Vec3) -> f32| {

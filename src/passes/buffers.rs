@@ -231,7 +231,7 @@ impl Buffers {
         Ok(())
     }
 
-    /// Whether a plan fits into what is allocated.
+    /// True when a plan fits into what is allocated.
     pub(crate) fn fit(&self, plan: &Plan) -> bool {
         let (have, need) = (self.sized_for, Sizes::of(plan));
         have.gaussians == need.gaussians

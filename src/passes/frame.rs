@@ -28,7 +28,7 @@ pub(crate) const STAGES: [&Stage; 13] = [
     &sort::STAGE,
     // Finds which of them each tile of pixels holds.
     &bin::STAGE,
-    // Where the camera stands still and the clip has moved, finds which Gaussians in view change their side,
+    // Finds, where the camera stands still and the clip has moved, which Gaussians in view change their side,
     &reclip::RECLIP,
     // writes the records of those that are cut now,
     &cutoff::STAGE_OF_RECLIP,

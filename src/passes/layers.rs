@@ -100,17 +100,17 @@ impl Layers {
         counts.max().unwrap_or(0)
     }
 
-    /// Whether other layers hold and show the same.
+    /// True when other layers hold and show the same.
     pub(super) fn contain_like(&self, other: &Self) -> bool {
         self.are_like(other, |layer| layer.content)
     }
 
-    /// Whether other layers have the camera where these have it.
+    /// True when other layers have the camera where these have it.
     pub(super) fn see_like(&self, other: &Self) -> bool {
         self.are_like(other, |layer| layer.view)
     }
 
-    /// Whether the same is kept of other layers.
+    /// True when the same is kept of other layers.
     pub(super) fn keep_like(&self, other: &Self) -> bool {
         self.are_like(other, |layer| layer.region)
             && bytemuck::cast_slice::<_, u8>(self.surfaces())

@@ -10,7 +10,7 @@ use crate::types;
 pub(crate) struct Occluders {
     /// `DEPTH_*`: how a copied depth is stored.
     pub(crate) form: u32,
-    /// What the stored numbers mean.
+    /// The meaning of the stored numbers.
     pub(crate) map: DepthMap,
     /// The picture's size, px.
     pub(crate) size: vk::Extent2D,

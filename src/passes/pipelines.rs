@@ -178,7 +178,7 @@ impl Pipelines {
         }
     }
 
-    /// Whether a pipeline is there.
+    /// True when a pipeline is there.
     pub(crate) fn has(&self, key: &PipelineKey) -> bool {
         self.compute.contains_key(key) || self.graphics.contains_key(key)
     }

@@ -47,11 +47,11 @@ pub(crate) struct Way {
     pub(crate) shape: DeviceShape,
     /// How the scene's spherical harmonics are stored.
     pub(crate) sh_format: ShFormat,
-    /// Whether the scene has several layers.
+    /// True when the scene has several layers.
     pub(crate) layered: bool,
     /// Passes of the sort that the scene's bounds ask for, at least one.
     pub(crate) sort_passes: u32,
-    /// Whether the splats' depths are wanted.
+    /// True when the splats' depths are wanted.
     pub(crate) expects_depth: bool,
     /// Colours, or a debug view.
     pub(crate) show: Show,
@@ -76,11 +76,11 @@ pub(crate) struct SceneFacts<'a> {
     pub(crate) tile_work: TileWork,
     /// The number of pairs of tile and splat that have room.
     pub(crate) pair_capacity: u32,
-    /// Whether a frame without room for its pairs is drawn once more, instead of as quads.
+    /// True when a frame without room for its pairs is drawn once more, instead of as quads.
     pub(crate) redrawn: bool,
     /// The depth that hides splats of tiles, if they are wanted.
     pub(crate) occluders: Option<Occluders>,
-    /// Whether the splats' depths are wanted.
+    /// True when the splats' depths are wanted.
     pub(crate) expects_depth: bool,
 }
 
@@ -165,7 +165,7 @@ impl Plan {
         [cx + origin[0], cy + origin[1]]
     }
 
-    /// Whether cutoff Gaussians can exist.
+    /// True when cutoff Gaussians can exist.
     pub(crate) fn cuts(&self) -> bool {
         cuts(self.mode())
     }
@@ -175,17 +175,17 @@ impl Plan {
         sort::result(self)
     }
 
-    /// Whether splats become pixels by tiles.
+    /// True when splats become pixels by tiles.
     pub(crate) fn is_tiled(&self) -> bool {
         self.way.raster == Raster::Tiles
     }
 
-    /// Whether the clip's sides have to be found, of blocks and Gaussians whether in view or not.
+    /// True when the clip's sides have to be found, of blocks and Gaussians whether in view or not.
     pub(crate) fn finds_clip(&self) -> bool {
         self.work == Work::Whole { clip: true }
     }
 
-    /// Whether the Gaussians in view have to be found.
+    /// True when the Gaussians in view have to be found.
     pub(crate) fn finds_view(&self) -> bool {
         matches!(
             self.work,
@@ -193,23 +193,23 @@ impl Plan {
         )
     }
 
-    /// Whether the clip moves over what is in view, clipped away or not.
+    /// True when the clip moves over what is in view, clipped away or not.
     pub(crate) fn reclips(&self) -> bool {
         matches!(self.work, Work::Reclip { .. })
     }
 
-    /// Whether the Gaussians that the clip removes are left out when those in view are found.
+    /// True when the Gaussians that the clip removes are left out when those in view are found.
     pub(crate) fn view_is_clipped(&self) -> bool {
         self.mode() != types::MODE_NONE && !self.reclips()
     }
 
-    /// Whether cutoff records are written when the Gaussians in view are found.
+    /// True when cutoff records are written when the Gaussians in view are found.
     pub(crate) fn view_is_cut(&self) -> bool {
         self.cuts() && !self.reclips()
     }
 }
 
-/// Whether a mode can have cutoff Gaussians.
+/// True when a mode can have cutoff Gaussians.
 fn cuts(mode: u32) -> bool {
     mode == types::MODE_RARA || mode == types::MODE_EXACT
 }

@@ -12,8 +12,8 @@ use crate::types::{self, RegionData};
 /// below the end of single precision's range.
 const FARTHEST: f64 = (1_u128 << 126) as f64;
 
-/// What all regions have in common that these clips make in the mode of the settings. Without anything to clip with, that is
-/// the same as in mode `none`.
+/// The values that are common to all regions that these clips make in the mode of the settings. Without anything to clip
+/// with, they are the same as in mode `none`.
 pub(super) fn region_data<'a>(
     clips: impl Iterator<Item = &'a Clip>,
     settings: &Settings,

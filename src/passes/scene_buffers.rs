@@ -24,7 +24,7 @@ pub struct SceneBuffers {
     pub(crate) gaussians: Buffer,
     pub(crate) sh: Buffer,
     pub(crate) blocks: Buffer,
-    /// Whether the Gaussians of a layer lie in another order than they were given in.
+    /// True when the Gaussians of a layer lie in another order than they were given in.
     pub(crate) reordered: bool,
     pub(crate) count: u32,
     pub(crate) sh_degree: u32,
@@ -107,7 +107,7 @@ impl SceneBuffers {
         })
     }
 
-    /// Whether it was uploaded to this device.
+    /// True when it was uploaded to this device.
     pub(crate) fn is_on(&self, device: &Device) -> bool {
         self.gaussians.device().is(device)
     }
@@ -266,7 +266,7 @@ impl SceneBuffers {
 pub struct Staging<'a> {
     /// A buffer that was created with `TRANSFER_SRC`.
     pub buffer: vk::Buffer,
-    /// Where the part begins in it.
+    /// The offset of the part in it, bytes.
     pub offset: u64,
     /// The part, mapped for writing; it may be longer than what is needed.
     pub bytes: &'a mut [u8],

@@ -56,14 +56,14 @@ impl SceneLayer {
         self.clip.as_ref()
     }
 
-    /// Whether the frame's clip or the own ones keep the same of both, in the same place of each.
+    /// True when the frame's clip or the own ones keep the same of both, in the same place of each.
     pub(super) fn is_clipped_like(&self, other: &Self) -> bool {
         self.is_visible()
             && self.state.placement == other.state.placement
             && self.clip == other.clip
     }
 
-    /// Whether anything of it shows: of one so faint no pixel shows anything.
+    /// True when anything of it shows; a layer that is faint enough shows in no pixel.
     pub(super) fn is_visible(&self) -> bool {
         self.state.visible && self.state.opacity >= limits::ALPHA_MIN
     }
@@ -142,7 +142,7 @@ impl<'a> PackedLayer<'a> {
         }
     }
 
-    /// Where its Gaussians, their spherical harmonics and its blocks begin, bytes.
+    /// The offsets of its Gaussians, their spherical harmonics and its blocks, bytes.
     pub(super) fn offsets(&self) -> [u64; 3] {
         let first = u64::from(self.first_block) * u64::from(limits::BLOCK_SIZE);
         let words = sh_storage::words(self.sh.0, self.sh.1);

@@ -14,9 +14,9 @@ use crate::passes::shaders::{BufferSet, Compute};
 pub(crate) struct Stage {
     /// The name of its file, debug label, timer and statistics.
     pub(crate) name: &'static str,
-    /// Whether a frame needs it.
+    /// True for a frame that needs it.
     pub(crate) needed: fn(&Plan) -> bool,
-    /// Whether a frame without it reports that it was skipped.
+    /// True for a frame that, without it, reports that it was skipped.
     pub(crate) missed: fn(&Plan) -> bool,
     /// The pipelines that it dispatches in a frame that needs it.
     pub(crate) pipelines: fn(&Plan, &mut dyn FnMut(PipelineKey)),
@@ -40,7 +40,7 @@ pub(crate) struct Frame<'a> {
     pub(crate) pipelines: &'a Pipelines,
     pub(crate) scene: &'a SceneBuffers,
     pub(crate) buffers: &'a Buffers,
-    /// Where the host's depth lies under the picture, for tiles that it hides.
+    /// The rectangle of the host's depth under the picture, for tiles that it hides.
     pub(crate) copied: vk::Rect2D,
 }
 

@@ -28,7 +28,7 @@ pub(crate) const STAGE: Stage = Stage {
 pub(crate) struct TileWork {
     /// Pixels that an invocation owns, one above the other.
     rows: u32,
-    /// Whether subgroups load splats together.
+    /// True when subgroups load splats together.
     subgroups: bool,
 }
 

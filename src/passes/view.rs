@@ -28,7 +28,8 @@ pub(super) fn view_data(camera: &Camera, sh_degree: u32) -> ViewData {
     }
 }
 
-/// Where a layer has the camera, which is given in the layer's space. `unit` is the scene's units in one of the layer's.
+/// The view of a layer from the camera, which is given in the layer's space. `unit` is the scene's units in one of the
+/// layer's.
 pub(super) fn layer_view(camera: &Camera, unit: f64) -> LayerView {
     let rows = camera.rotation.transpose();
     let row = |v: DVec3| {

@@ -39,7 +39,7 @@ impl Laws {
 pub(crate) struct Weight {
     /// `MODE_*`.
     pub(crate) mode: u32,
-    /// Whether a splat may be cut by more than one surface.
+    /// True when a splat may be cut by more than one surface.
     pub(crate) several: bool,
     /// `DECAY_*`.
     pub(crate) decay: u32,

@@ -12,14 +12,14 @@ use crate::types::{self, RegionData};
 pub(crate) enum Work {
     /// Everything, but for the clip's sides where those in the buffers hold.
     Whole {
-        /// Whether the clip's sides have to be found.
+        /// True when the clip's sides have to be found.
         clip: bool,
     },
     /// The camera stands still and the clip has moved: the sides that change, and what follows from them.
     Reclip {
-        /// Whether the Gaussians in view, clipped away or not, have to be found first.
+        /// True when the Gaussians in view, clipped away or not, have to be found first.
         base: bool,
-        /// Whether no clip has changed them yet.
+        /// True when no clip has changed them yet.
         fresh: bool,
     },
     /// Nothing has changed: the draw alone.
@@ -31,7 +31,7 @@ pub(crate) enum Work {
 pub(crate) struct Kept {
     scene: u64,
     plan: Plan,
-    /// Whether the buffers are still those that the frame wrote.
+    /// True when the buffers are still those that the frame wrote.
     pub(crate) holds: bool,
     /// The survivors are all in view, clipped away or not; `Some(true)` if no clip has changed them yet.
     base: Option<bool>,
@@ -90,7 +90,7 @@ impl Kept {
 }
 
 impl Plan {
-    /// Whether another plan gives the same pixels.
+    /// True when another plan gives the same pixels.
     fn is_drawn_like(&self, other: &Self) -> bool {
         self.sees_like(other)
             && same(&self.data.weight, &other.data.weight)
@@ -99,15 +99,15 @@ impl Plan {
             && Weight::of(self) == Weight::of(other)
     }
 
-    /// Whether stage clip would find the sides that it has found from these regions and layers.
+    /// True when stage clip would find the sides that it has found from these regions and layers.
     fn has_classes_of(&self, (region, layers): &(RegionData, Layers)) -> bool {
         same(region, &self.data.region)
             && self.layers.contain_like(layers)
             && self.layers.keep_like(layers)
     }
 
-    /// Whether another plan differs in nothing but the clip and its weights, and its stages leave the same kinds of things
-    /// in the same buffers.
+    /// True when another plan differs in nothing but the clip and its weights, and its stages leave the same kinds of
+    /// things in the same buffers.
     fn sees_like(&self, other: &Self) -> bool {
         same(&self.data.scene, &other.data.scene)
             && same(&self.data.view, &other.data.view)

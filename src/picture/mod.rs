@@ -31,7 +31,7 @@ impl Picture {
         self.pixels[y as usize * self.width as usize + x as usize]
     }
 
-    /// What a PNG keeps of the picture: each pixel un-premultiplied, rounded to 8 bits, and premultiplied again.
+    /// The picture as a PNG keeps it: each pixel un-premultiplied, rounded to 8 bits, and premultiplied again.
     pub fn quantised(&self) -> Self {
         Self {
             pixels: self

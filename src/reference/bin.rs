@@ -107,8 +107,8 @@ fn tiles_between<T: Real>(low: T, high: T, pixels: u32, side: u32) -> Option<[u3
     (first <= last).then(|| [first.wide() as u32 / side, last.wide() as u32 / side + 1])
 }
 
-/// Where each tile's splats begin in the list of all, and that list: for each tile, row by row, the splats that reach it
-/// in their order.
+/// The place in the list of all at which each tile's splats begin, and that list: for each tile, row by row, the splats
+/// that reach it in their order.
 pub fn bin(spans: &[Vec<Span>], order: &[u32], tiles: [u32; 2]) -> (Vec<u32>, Vec<u32>) {
     let [columns, rows] = tiles;
     let mut lists = vec![Vec::new(); (columns * rows) as usize];

@@ -74,8 +74,8 @@ pub fn cutoff<T: Real>(
     })
 }
 
-/// Whether a splat is too large or too far off the axis for the affine form. An eye within the splat makes it too large:
-/// its depth is then less than K < 3.4 deviations.
+/// True when a splat is too large or too far off the axis for the affine form. An eye within the splat makes it too
+/// large: its depth is then less than K < 3.4 deviations.
 pub(super) fn is_beam<T: Real>(
     scene: &Gaussians,
     index: usize,

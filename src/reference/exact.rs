@@ -62,7 +62,7 @@ fn condition<T: Real>(gradients: [Vec3<T>; 2], half_space: &HalfSpace<T>) -> Con
     }
 }
 
-/// Whether a half-space keeps the farther side of a ray, from `along = a . c`.
+/// True when a half-space keeps the farther side of a ray, from `along = a . c`.
 ///
 /// c points away from the eye: the depth changes along it by `m3 . c = fx fy / Z^2 det(M)`, which is not negative for
 /// a rotation and scales that are not negative. Flat Gaussians have `a . c = 0` for every half-space: any rule
@@ -80,7 +80,7 @@ fn keeps_far<T: Real>(along: T, a: Vec3<T>) -> bool {
 pub struct AffinePlane<T> {
     /// Coefficients of the argument; dx and dy in pixels from the splat's centre.
     pub z: [T; 3],
-    /// Whether the visible side is the farther one.
+    /// True when the visible side is the farther one.
     pub far: bool,
     /// The direction that correlates it with others.
     pub direction: Direction<T>,
@@ -172,7 +172,7 @@ impl<T: Real> Beam<T> {
     }
 }
 
-/// Whether the eye's plane reaches into the splat, whose part behind it must not count.
+/// True when the eye's plane reaches into the splat, whose part behind it must not count.
 pub fn holds_the_eye<T: Real>(footprint: &Footprint<T>) -> bool {
     footprint.view_centre.z < footprint.extent * footprint.rows[2].length()
 }

@@ -27,7 +27,7 @@ pub struct Footprint<T> {
     pub unit: T,
     /// Image derivatives b1, b2 of the footprint, evaluated at the clamped direction, pixels.
     pub gradients: [Vec3<T>; 2],
-    /// Whether that direction was clamped.
+    /// True when that direction was clamped.
     pub clamped: bool,
     /// How much farther from the centre, in deviations, a pixel can be by the true direction than by the clamped one: at
     /// least 1, and 1 where nothing was clamped.

@@ -11,13 +11,13 @@ use crate::{Camera, Clip, Gaussians, Layer, Scene};
 pub struct SeenLayer<'a, T> {
     /// Its Gaussians, as opaque as the layer leaves them.
     pub gaussians: Cow<'a, Gaussians>,
-    /// Where it has the camera.
+    /// Its view, from the camera in its own space.
     pub view: View<T>,
-    /// What is kept of it, in its own space.
+    /// The clip of it, in its own space.
     pub clip: Clip,
     /// The number of its first Gaussian in the scene.
     pub first: u32,
-    /// Whether it is drawn.
+    /// True when it is drawn.
     pub visible: bool,
 }
 

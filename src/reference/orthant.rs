@@ -25,7 +25,7 @@ use super::real::{Real, Vec3};
 pub struct Threshold<T> {
     /// Mean over deviation of the plane's distance.
     pub z: T,
-    /// Whether the visible side is the farther one along the ray.
+    /// True when the visible side is the farther one along the ray.
     pub far: bool,
     /// The half-space's direction among what the pixel leaves open of the Gaussian: a unit vector of ten components.
     pub direction: Direction<T>,

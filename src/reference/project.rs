@@ -12,7 +12,7 @@ use crate::{Gaussians, Settings};
 pub struct Splat<T> {
     /// Its number in the scene, where the layers' Gaussians stand one after the other.
     pub index: u32,
-    /// Where and how large it is, and how opaque.
+    /// Its position, size and opacity.
     pub footprint: Footprint<T>,
     /// Red, green and blue, not negative.
     pub colour: [T; 3],

@@ -182,7 +182,7 @@ impl Pixel {
         0.5 * self.residual(offset).iter().map(|r| r * r).sum::<f64>()
     }
 
-    /// Where the grid of rays belongs: the offset about which the bundle's rays carry most weight, and two offsets from
+    /// The place of the grid of rays: the offset about which the bundle's rays carry most weight, and two offsets from
     /// there that make the weight a standard normal one (nearly so if the bundle diverges).
     fn densest(&self) -> (DVec2, [DVec2; 2]) {
         let mut middle = DVec2::ZERO;

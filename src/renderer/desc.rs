@@ -24,17 +24,16 @@ pub struct RendererDesc {
     pub samples: vk::SampleCountFlags,
     /// Dynamic rendering, or a classic render pass.
     pub target: Target,
-    /// Whether buffers are reached by address or bound, where the validation layer can watch them; [`Bindings::suiting`]
-    /// says which is faster on a device. With [`Bindings::Bound`] a frame whose buffers exceed the device's binding size
-    /// still uses addresses.
+    /// The way to reach buffers: by address or bound, where the validation layer can watch them; [`Bindings::suiting`]
+    /// says which is faster on a device. With [`Bindings::Bound`] a frame whose buffers exceed the device's binding
+    /// size still uses addresses.
     pub bindings: Bindings,
-    /// Whether to take timestamps around the stages.
+    /// True to take timestamps around the stages.
     pub timing: bool,
-    /// Whether to count also what the stages do, where the device was opened for it; only with `timing`.
+    /// True to count also what the stages do, where the device was opened for it; only with `timing`.
     pub statistics: bool,
-    /// Whether a frame takes over results of the one before that it would compute again to the same bytes.
-    /// The host then submits every frame that it prepares, in order, or calls
-    /// [`Renderer::forget`](super::Renderer::forget).
+    /// True to let a frame take over results of the one before that it would compute again to the same bytes. The host
+    /// then submits every frame that it prepares, in order, or calls [`Renderer::forget`](super::Renderer::forget).
     pub reuse: bool,
     /// How many recorded frames may be unfinished at once, from 1 to [`MAX_FRAMES`](Self::MAX_FRAMES);
     /// [`Renderer`](super::Renderer) says what the host promises.
@@ -61,14 +60,13 @@ setters!(RendererDesc {
 pub struct DepthDesc {
     /// Its format, with or without stencil.
     pub format: vk::Format,
-    /// Whether a dynamic rendering scope has the same image as stencil attachment too.
+    /// True when a dynamic rendering scope has the same image as stencil attachment too.
     pub stencil: bool,
-    /// What it holds for a depth, on ordinary or reversed depth;
+    /// The buffer's value for a depth, on ordinary or reversed depth;
     /// [`Renderer::set_depth_map`](super::Renderer::set_depth_map) changes it from frame to frame.
     pub map: DepthMap,
-    /// Whether the host shows each frame's depth to
-    /// [`Renderer::prepare_behind`](super::Renderer::prepare_behind), before its scope. Tiles need that; without it
-    /// they are replaced by quads.
+    /// True when the host shows each frame's depth to [`Renderer::prepare_behind`](super::Renderer::prepare_behind),
+    /// before its scope. Tiles need that; without it they are replaced by quads.
     pub readable: bool,
 }
 
@@ -77,7 +75,7 @@ setters!(DepthDesc {
     readable: bool,
 });
 
-/// Where expected depths are drawn.
+/// The target of expected depths.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ExpectedDepthDesc {
@@ -155,7 +153,7 @@ impl RendererDesc {
         })
     }
 
-    /// Whether there can be such attachments, and a device can draw into them; the error says what it cannot.
+    /// Checks that there can be such attachments, and that a device can draw into them; the error says what it cannot.
     pub(super) fn check(&self, device: &Device) -> Result<()> {
         if !(1..=Self::MAX_FRAMES).contains(&self.frames_in_flight) {
             return Err(Error::Invalid(format!(

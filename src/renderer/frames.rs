@@ -23,14 +23,14 @@ pub(super) struct Configured {
     pub(super) unit: f64,
     /// How it is submitted.
     pub(super) submission: Submission,
-    /// Whether nothing is drawn of it without room for its pairs of tile and splat.
+    /// True when nothing is drawn of it without room for its pairs of tile and splat.
     pub(super) redrawn: bool,
-    /// Whether it has been prepared.
+    /// True when it has been prepared.
     pub(super) prepared: bool,
 }
 
 impl Configured {
-    /// Whether its pixels are those of the frame before it.
+    /// True when its pixels are those of the frame before it.
     pub(super) fn changes_nothing(&self) -> bool {
         self.plan.work == Work::Draw || self.plan.gaussians() == 0
     }
@@ -40,7 +40,7 @@ impl Configured {
 #[derive(Debug)]
 pub(crate) struct RecordedFrame {
     pub(super) timer: Option<Timer>,
-    /// Where the host reads the frame's [`FrameCounts`].
+    /// The buffer in which the host reads the frame's [`FrameCounts`].
     pub(super) counts: Buffer,
     /// The recorded frame; `None` before the first one, and for one that was never submitted.
     pub(super) configured: Option<Configured>,

@@ -18,7 +18,7 @@ pub(super) struct WorkingMemory {
 }
 
 impl WorkingMemory {
-    /// Whether a plan fits into the present buffers.
+    /// True when a plan fits into the present buffers.
     pub(super) fn fits(&self, plan: &Plan) -> bool {
         self.buffers
             .as_ref()

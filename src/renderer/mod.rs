@@ -83,7 +83,7 @@ pub struct Renderer {
     device: Device,
     /// The description that it was created from, with the changes for the next frame.
     desc: RendererDesc,
-    /// Where the next frame's scene stands in the world of camera, clip and depths.
+    /// The placement of the next frame's scene in the world of camera, clip and depths.
     placement: Placement,
     pipelines: SharedPipelines,
     memory: WorkingMemory,
@@ -174,7 +174,7 @@ impl Renderer {
         self.forget();
     }
 
-    /// Whether the configured frame's pixels are those of the last prepared one.
+    /// True when the configured frame's pixels are those of the last prepared one.
     pub(crate) fn changes_nothing(&self) -> bool {
         let configured = self.configured.as_ref();
         configured.is_some_and(Configured::changes_nothing)

@@ -38,7 +38,8 @@ impl PairRoom {
         self.room = self.room.max(usual.min(self.most));
     }
 
-    /// Whether there is no room for so many pairs, but can be. Pairs that would not fit anyway are no reason to take memory.
+    /// True when there is no room for so many pairs, but can be. Pairs that would not fit anyway are no reason to take
+    /// memory.
     pub(super) fn can_grow_to(&self, needed: u32) -> bool {
         needed > self.room && with_margin(needed) <= self.most
     }

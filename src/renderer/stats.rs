@@ -24,9 +24,9 @@ impl Renderer {
         choice.unwrap_or_default()
     }
 
-    /// Whether the frame that [`counts`](Self::counts) is about had more pairs of tile and splat than there was room for,
-    /// so that it was drawn as quads: the same picture, but slower. The next [`configure`](Self::configure) makes the
-    /// room, up to 1.5 GiB.
+    /// True when the frame that [`counts`](Self::counts) is about had more pairs of tile and splat than there was room
+    /// for, so that it was drawn as quads: the same picture, but slower. The next [`configure`](Self::configure) makes
+    /// the room, up to 1.5 GiB.
     pub fn fell_back(&self) -> bool {
         self.oldest().is_some_and(RecordedFrame::fell_back)
     }
@@ -49,7 +49,7 @@ impl Renderer {
         oldest.map(RecordedFrame::pass_spans).unwrap_or_default()
     }
 
-    /// What each of these stages did; empty without statistics.
+    /// The statistics of each of these stages; empty without statistics.
     pub fn pass_statistics(&self) -> Vec<PassStatistics> {
         let oldest = self.oldest();
         oldest
@@ -122,7 +122,7 @@ impl Configured {
 }
 
 impl RecordedFrame {
-    /// Whether it was submitted while earlier frames were unfinished.
+    /// True when it was submitted while earlier frames were unfinished.
     pub(crate) fn is_in_flight(&self) -> bool {
         let configured = self.configured.as_ref();
         configured.is_some_and(|configured| configured.submission == Submission::InFlight)
@@ -153,7 +153,7 @@ impl RecordedFrame {
         self.timer().map(Timer::statistics).unwrap_or_default()
     }
 
-    /// Whether its tiles' lists had no room.
+    /// True when its tiles' lists had no room.
     pub(super) fn fell_back(&self) -> bool {
         let counts = self.read_counts();
         counts.is_some_and(|counts| counts.pairs > 0 && counts.tiled == 0)
@@ -204,7 +204,7 @@ impl RecordedFrame {
         self.timer.as_ref().filter(|_| !self.recorded_nothing())
     }
 
-    /// Whether nothing was recorded, so that nothing was counted.
+    /// True when nothing was recorded, so that nothing was counted.
     fn recorded_nothing(&self) -> bool {
         let configured = self.configured.as_ref();
         configured.is_none_or(|configured| configured.plan.gaussians() == 0)

@@ -1,4 +1,5 @@
-//! Where a scene is, by percentiles: scanner exports carry far shells, and trained scenes a few strays at infinity.
+//! The bounds of a scene, by percentiles: scanner exports carry far shells, and trained scenes a few strays at
+//! infinity.
 
 use glam::DVec3;
 

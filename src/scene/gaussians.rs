@@ -72,7 +72,7 @@ impl Gaussians {
         self.0.positions.len()
     }
 
-    /// Whether there are none.
+    /// True when there are none.
     pub fn is_empty(&self) -> bool {
         self.0.positions.is_empty()
     }

@@ -10,11 +10,11 @@ use crate::setters::setters;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct LayerState {
-    /// Where the layer stands in its scene.
+    /// The layer's placement in its scene.
     pub placement: Placement,
-    /// What the opacities of its Gaussians are multiplied by, 0 to 1.
+    /// The factor of its Gaussians' opacities, 0 to 1.
     pub opacity: f32,
-    /// Whether it is drawn. A hidden layer costs a test for each of its blocks of 256 Gaussians.
+    /// True when it is drawn. A hidden layer costs a test for each of its blocks of 256 Gaussians.
     pub visible: bool,
 }
 

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 
 /// A file format of scenes.
 pub(super) struct Format {
-    /// Whether a file is of the format: by its first bytes, or by its name where the format has none of its own.
+    /// True for a file of the format, by its first bytes, or by its name where the format has none of its own.
     pub(super) is: fn(&[u8], &Path) -> bool,
     /// Reads a whole file, of which nothing has been read yet. The name stands for it in messages.
     pub(super) read: fn(&mut dyn Source, &Path, &mut Progress<'_>) -> Result<Loaded>,
@@ -21,7 +21,7 @@ const FORMATS: [&Format; 1] = [&ply::FORMAT];
 /// Bytes that a format is recognised by, at most.
 const START: u64 = 64;
 
-/// What a scene is read from.
+/// A source that a scene is read from.
 pub(super) trait Source: Read + Seek {}
 
 impl<T: Read + Seek> Source for T {}

@@ -10,11 +10,11 @@ const NAMED: usize = 5;
 pub struct Remark {
     /// Number of the element in the file, counted from 0.
     pub element: u64,
-    /// What was wrong with it.
+    /// The reason why it was dropped or repaired.
     pub reason: String,
 }
 
-/// What a loader did to a file's elements.
+/// A loader's changes to a file's elements.
 ///
 /// *Dropped* elements hold a number that is not finite (or is not once converted to single precision, or whose scale
 /// is not once exponentiated); nothing sensible can be drawn from them. *Repaired* elements have a quaternion of four
@@ -37,7 +37,7 @@ pub struct LoadReport {
 }
 
 impl LoadReport {
-    /// Whether the file needed no intervention at all.
+    /// True when the file needed no intervention at all.
     pub fn is_clean(&self) -> bool {
         *self == Self::default()
     }

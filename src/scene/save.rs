@@ -7,7 +7,7 @@ use super::Gaussians;
 use crate::error::Result;
 use crate::files::write_atomically;
 
-/// What the logarithm of a scale of exactly zero is written as: exp(-104) is below the smallest single-precision
+/// The number written as the logarithm of a scale of exactly zero: exp(-104) is below the smallest single-precision
 /// number, so that loading gives zero again, and other readers see a finite number.
 const LN_ZERO: f32 = -104.0;
 /// Opacities of exactly 0 and 1 have no finite logit. Loading -104 gives zero again, loading 40 gives one.

@@ -16,9 +16,9 @@ pub struct HeadlessDesc {
     /// How buffers are reached. `None` is [what suits the device](Bindings::suiting), but bound under validation, whose
     /// synchronisation checks cannot watch an address.
     pub bindings: Option<Bindings>,
-    /// Where compiled pipelines are kept from one run to the next.
+    /// The place in which compiled pipelines are kept from one run to the next.
     pub pipeline_cache: PipelineCache,
-    /// Where to note how long each step takes on the processor and on the device.
+    /// The trace in which to note how long each step takes on the processor and on the device.
     pub trace: Option<Trace>,
     /// Count what the stages do, where the device can.
     pub statistics: bool,

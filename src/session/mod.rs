@@ -67,7 +67,7 @@ impl Session {
 
     /// Uploads a scene in place of the one before, which no frame in flight needs any more.
     fn load(&mut self, scene: Scene<'_>, format: ShFormat) -> Result<()> {
-        // What is refused leaves the scene before it.
+        // A scene that is refused leaves the one before it.
         scene.check()?;
         self.renderer.forget();
         // Free first: both together may not fit.

@@ -63,7 +63,7 @@ impl Target {
         self.held = Some(bits(background));
     }
 
-    /// Whether the image shows the renderer's last frame on this background.
+    /// True when the image shows the renderer's last frame on this background.
     pub(super) fn holds(&self, background: Option<[f32; 3]>) -> bool {
         self.held == Some(bits(background))
     }

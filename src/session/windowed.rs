@@ -31,11 +31,11 @@ pub struct Windowed {
     session: Session,
     /// The statistics of the last frame that was waited for and has computed anything.
     stats: Option<FrameStats>,
-    /// Whether a frame has failed between its image and the window.
+    /// True when a frame has failed between its image and the window.
     broken: bool,
 }
 
-/// Whether a frame has to be shown once more.
+/// Tells whether a frame has to be shown once more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Redraw {
     /// It is shown, and all that can be known of it is known.

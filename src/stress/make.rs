@@ -7,10 +7,10 @@ use crate::reference::{Footprint, View};
 use crate::scene::Random;
 use crate::{Camera, Clip, ClipOp, Gaussians, Plane};
 
-/// Where a case takes place.
+/// The viewing geometry of a case.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Setup {
-    /// What the camera looks at, world units.
+    /// The point that the camera looks at, world units.
     pub(super) centre: DVec3,
     /// How far it stands from there.
     pub(super) distance: f64,

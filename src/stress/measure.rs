@@ -1,4 +1,4 @@
-//! What a regime is measured by: pictures of the GPU against pictures of the reference in double precision.
+//! The measures of a regime: pictures of the GPU against pictures of the reference in double precision.
 
 use serde::Serialize;
 
@@ -18,7 +18,7 @@ const FORMS: [(&str, Mode, ExactForm); 4] = [
 ];
 /// Pixels whose uncut alpha is this near to 1/255, relatively, may count on one side and not on the other.
 const THRESHOLD_BAND: f64 = 2e-3;
-/// What pictures are held to: decibels, and the share of pixels that are more than 2/255 off.
+/// The limits of pictures: decibels, and the share of pixels that are more than 2/255 off.
 const PICTURE_PSNR: f64 = 60.0;
 const PICTURE_SHARE: f64 = 1e-3;
 
@@ -57,13 +57,13 @@ pub struct Row {
     pub not_finite: usize,
     /// A row a form.
     pub forms: Vec<FormRow>,
-    /// What the weight's error is held to.
+    /// The limit of the weight's error.
     pub target: f64,
-    /// What pictures are held to, decibels.
+    /// The limit of pictures, decibels.
     pub least_psnr: f64,
     /// Why these are not the suite's targets.
     pub reason: Option<&'static str>,
-    /// Whether everything is as it must be.
+    /// True when everything is as it must be.
     pub ok: bool,
 }
 
@@ -198,7 +198,7 @@ fn scaled(picture: &Picture, truth: &Picture) -> Picture {
     }
 }
 
-/// Whether a splat's alpha is so near to 1/255 that single precision may count it on either side.
+/// True when a splat's alpha is so near to 1/255 that single precision may count it on either side.
 fn undecided(whole: f32) -> bool {
     (f64::from(whole) * f64::from(ALPHA_MIN_INVERSE) - 1.0).abs() < THRESHOLD_BAND
 }

@@ -31,11 +31,11 @@ pub const TARGET: f64 = 2e-4;
 pub struct Case {
     /// The splats.
     pub scene: Gaussians,
-    /// Where they are seen from.
+    /// The camera that they are seen from.
     pub camera: Camera,
-    /// What cuts them.
+    /// The clip that cuts them.
     pub clip: Clip,
-    /// Whether the footprints are apart: a pixel's alpha is then that of one splat, and shows its weight.
+    /// True when the footprints are apart: a pixel's alpha is then that of one splat, and shows its weight.
     pub apart: bool,
 }
 
@@ -46,21 +46,21 @@ pub struct Limit {
     pub weight: f64,
     /// Least peak signal to noise ratio of a picture, decibels.
     pub psnr: f64,
-    /// What sets it.
+    /// The cause of it.
     pub reason: &'static str,
 }
 
 /// A kind of difficulty.
 #[derive(Debug, Clone)]
 pub struct Regime {
-    /// What is difficult.
+    /// The difficulty.
     pub name: &'static str,
-    /// Where the target cannot be met.
+    /// The limit of a regime that cannot meet the target.
     pub limit: Option<Limit>,
     /// Largest error of a colour in any pixel, for regimes in which the usual two levels of 255 in a thousandth of the
     /// pixels are too many: an order of splats is wrong or right.
     pub exact: Option<f64>,
-    /// Whether there is nothing to draw.
+    /// True when there is nothing to draw.
     pub empty: bool,
     /// Builds the cases.
     pub cases: fn() -> Vec<Case>,

@@ -17,7 +17,7 @@ const GREY: [u8; 3] = [150, 150, 150];
 const PALE: [u8; 3] = [228, 228, 228];
 const RED: [u8; 3] = [200, 40, 30];
 
-/// What a chart is made of; coordinates in pixels from the top left.
+/// An element of a chart; coordinates in pixels from the top left.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Mark {
     Line([f64; 2], [f64; 2], [u8; 3]),

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::Session;
 
-/// What one choice takes, milliseconds.
+/// The times of one choice, milliseconds.
 #[derive(Debug, Clone, Default, Serialize)]
 pub(super) struct Times {
     /// On the device, the median frame.
@@ -19,14 +19,14 @@ pub(super) struct Times {
     pub(super) cpu_ms: f64,
     /// Of this process on all cores, the least frame.
     pub(super) cpu_ms_min: f64,
-    /// What a choice costs: `ms_min` on the device, or, where the device is this machine's processor and the system
+    /// The cost of a choice: `ms_min` on the device, or, where the device is this machine's processor and the system
     /// counts its time, `cpu_ms_min`, which other work on the machine hardly disturbs.
     pub(super) cost: f64,
     /// Each stage's median and minimum.
     pub(super) passes: Vec<Pass>,
 }
 
-/// What one stage takes, milliseconds.
+/// The times of one stage, milliseconds.
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Pass {
     pub(super) name: &'static str,

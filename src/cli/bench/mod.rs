@@ -83,7 +83,7 @@ struct Report {
     refused: Vec<String>,
 }
 
-/// What was measured of one choice.
+/// The measurements of one choice.
 #[derive(Debug, Serialize)]
 struct Row {
     name: &'static str,
@@ -92,7 +92,7 @@ struct Row {
     measures: Measures,
     #[serde(flatten)]
     times: Times,
-    /// Whether no other choice is both faster and nearer to the truth.
+    /// True when no other choice is both faster and nearer to the truth.
     undominated: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What was measured as Markdown, CSV and JSON.
+//! The measurements as Markdown, CSV and JSON.
 
 use std::fmt::Write as _;
 use std::path::Path;

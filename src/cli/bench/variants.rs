@@ -1,4 +1,4 @@
-//! What is compared: every mode, law and preset, and every choice of precision by itself.
+//! The choices that are compared: every mode, law and preset, and every choice of precision by itself.
 
 use rara::{
     Decay, ExactForm, Miss, Mode, PhiForm, Preset, Raster, Settings, ShFormat, TargetFormat,

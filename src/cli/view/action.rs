@@ -62,7 +62,8 @@ pub(super) enum PlaneAction {
 }
 
 impl Action {
-    /// Whether the action only changes what the next frame shows, so that it need not wait for the last frame's numbers.
+    /// True when the action only changes what the next frame shows, so that it need not wait for the last frame's
+    /// numbers.
     pub(super) fn moves(&self) -> bool {
         matches!(
             self,

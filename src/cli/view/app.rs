@@ -24,10 +24,10 @@ use crate::cli::failure::Failure;
 use crate::cli::output::say;
 use crate::cli::scenes::Loaded;
 
-/// What the thread that follows standard input as a script sends to the event loop.
+/// A message to the event loop from the thread that follows standard input as a script.
 pub(super) type Sent = Result<Vec<Action>, Failure>;
 
-/// What a window is opened with.
+/// The description of a window to be opened.
 pub(super) struct Start {
     pub(super) device: HeadlessDesc,
     pub(super) loaded: Loaded,
@@ -36,7 +36,7 @@ pub(super) struct Start {
     pub(super) scenery: Scenery,
     /// The actions of a script, which come first.
     pub(super) script: Vec<Action>,
-    /// Whether standard input is followed as a script afterwards.
+    /// True when standard input is followed as a script afterwards.
     pub(super) follow: bool,
 }
 
@@ -120,7 +120,7 @@ pub(super) fn run(events: EventLoop<Sent>, mut start: Start) -> Result<(), Failu
     ran.map_err(|error| Error::Device(format!("the window's events ended: {error}")).into())
 }
 
-/// Whether the failure is only that a file could not be written.
+/// True when the failure is only that a file could not be written.
 fn concerns_a_file(failure: &Failure) -> bool {
     matches!(
         failure,

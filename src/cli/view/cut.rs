@@ -88,7 +88,7 @@ impl Cut {
     pub(super) fn drag(&mut self, pixels: DVec2, camera: &Camera) {
         let normal = camera.rotation * self.plane().normal();
         let mut at = camera.rotation * (self.foot() - camera.eye);
-        // What is behind the eye has no place in the picture.
+        // A point behind the eye has no place in the picture.
         at.z = at.z.max(1e-2 * at.length()).max(f64::MIN_POSITIVE);
         let focal = DVec2::new(camera.fx, camera.fy);
         // How the foot moves in the picture, per unit along the normal.

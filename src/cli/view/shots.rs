@@ -7,7 +7,7 @@ use serde_json::json;
 
 use crate::cli::output;
 
-/// Where screenshots go: `{}` becomes their number.
+/// The screenshots' files: `{}` becomes their number.
 #[derive(Debug)]
 pub(super) struct Shots {
     pattern: String,

@@ -20,7 +20,7 @@ use crate::cli::failure::Failure;
 use crate::cli::output::say;
 use crate::cli::settings;
 
-/// What is shown, and how it is moved.
+/// The scene that is shown, and how it is moved.
 #[derive(Debug)]
 pub(super) struct Scenery {
     /// The scene's name, for the title.
@@ -46,11 +46,11 @@ pub(super) struct Viewer {
     /// The window's size in pixels, from its events: winit panics when it is asked for the size and the window is gone.
     size: (u32, u32),
     minimised: bool,
-    /// Whether nothing of the window is visible.
+    /// True when nothing of the window is visible.
     occluded: bool,
-    /// Whether the window does not yet show what it should.
+    /// True when the window does not yet show what it should.
     pub(super) dirty: bool,
-    /// Whether the last frame's numbers are not known yet.
+    /// True when the last frame's numbers are not known yet.
     pub(super) unsettled: bool,
     /// When the last frame was shown, if the next one follows at once.
     shown_at: Option<Instant>,
@@ -94,7 +94,7 @@ impl Viewer {
         self.size
     }
 
-    /// Whether a user would see a frame.
+    /// True when a user would see a frame.
     pub(super) fn visible(&self) -> bool {
         let (width, height) = self.size();
         !self.occluded && width > 0 && height > 0

@@ -1,4 +1,4 @@
-//! Where the viewer stands, and how it moves: about a point (orbit) or about itself (fly).
+//! The viewer's position, and how it moves: about a point (orbit) or about itself (fly).
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use rara::Camera;

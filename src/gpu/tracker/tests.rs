@@ -181,7 +181,7 @@ fn a_barrier_never_names_mesh_stages_where_there_are_none() {
 type Use = (usize, vk::Buffer, Access);
 type Barriers = Vec<Option<vk::MemoryBarrier2<'static>>>;
 
-/// Whether two uses must not run in any order.
+/// True when two uses must not run in any order.
 fn conflict(a: &Use, b: &Use) -> bool {
     a.0 < b.0 && a.1 == b.1 && (a.2.writes() || b.2.writes())
 }

@@ -22,7 +22,7 @@ pub(super) fn combined(op: ClipOp, sides: impl Iterator<Item = Side>) -> Side {
     side
 }
 
-/// Whether the region keeps a point, from which of its surfaces keep it.
+/// True when the region keeps a point; `kept` says which of its surfaces keep it.
 pub(in crate::reference) fn keeps(op: ClipOp, mut kept: impl Iterator<Item = bool>) -> bool {
     match op {
         ClipOp::And => kept.all(|k| k),

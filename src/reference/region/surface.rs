@@ -54,8 +54,8 @@ pub(in crate::reference) fn surface_half_space<T: Real>(
     }
 }
 
-/// Where the points `start + t step` of a line cross a surface: all such t, in any order. No shader asks this; the truth
-/// does, which uses none of the renderer's formulas.
+/// The crossings of the line of points `start + t step` with a surface: all such t, in any order. No shader asks this;
+/// the truth does, which uses none of the renderer's formulas.
 pub(in crate::reference) fn surface_crossings(
     surface: &Surface,
     start: DVec3,

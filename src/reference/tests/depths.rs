@@ -66,7 +66,7 @@ fn errors(sigma: f64, op: ClipOp, planes: usize, slab: bool) -> (f64, f64) {
 
 #[test]
 fn one_plane_moves_the_mean_depth_as_integration_says() {
-    // What is left grows with the splat: the form is of first order in sigma over depth.
+    // The rest grows with the splat: the form is of first order in sigma over depth.
     for (sigma, most) in [(0.0002, 0.001), (0.002, 0.005), (0.02, 0.015), (0.1, 0.1)] {
         let (worst, moved) = errors(sigma, ClipOp::And, 1, false);
         assert!(worst < most && moved > 0.5, "{sigma}: {worst}");

@@ -1,4 +1,4 @@
-//! What must not change a frame: planes at infinity, rigid motions, cutting in two, single precision.
+//! Changes of the input that must leave a frame the same: planes at infinity, rigid motions, cutting in two, single precision.
 
 use super::*;
 use crate::{Decay, ExactForm, Miss};

@@ -42,7 +42,7 @@ fn camera(width: u32, height: u32, focal: f64) -> Camera {
     }
 }
 
-/// What a test says of one Gaussian.
+/// A test's description of one Gaussian.
 #[derive(Debug, Clone, Copy)]
 struct One {
     position: [f32; 3],

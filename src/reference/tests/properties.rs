@@ -1,4 +1,4 @@
-//! What holds for every splat, plane and pixel, however odd.
+//! Properties of every splat, plane and pixel, however odd.
 
 use super::*;
 use crate::{ExactForm, Miss};

@@ -5,7 +5,7 @@ use super::*;
 use crate::ExactForm;
 use glam::DVec2;
 
-/// What a comparison of many pixels found.
+/// The result of a comparison of many pixels.
 #[derive(Debug, Default)]
 struct Errors {
     /// Sum of alpha |w - truth| over the sum of alpha.
@@ -35,7 +35,7 @@ impl Errors {
     }
 }
 
-/// What is compared.
+/// The splats and pixels to be compared.
 struct Study {
     /// Largest deviation of the splats, pixels: from and to.
     pixels: [f64; 2],

@@ -15,7 +15,7 @@ use self::random::Random;
 use super::gaussians::MAX_SH_DEGREE;
 use super::{Gaussians, sh_coefficients};
 
-/// What to generate.
+/// The kind of scene to generate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Kind {

@@ -95,7 +95,7 @@ impl Assembler {
     }
 }
 
-/// Whether an infinite value is the exact stored form of a sensible one: editors write the logit of opacity 1 as
+/// True when an infinite value is the exact stored form of a sensible one: editors write the logit of opacity 1 as
 /// infinity, and the logarithm of scale 0 as its negative.
 fn is_limit(slot: usize, value: f32) -> bool {
     match slot {

@@ -22,7 +22,7 @@ pub(super) struct Header {
     pub(super) encoding: Encoding,
     /// In file order.
     pub(super) elements: Vec<ElementDef>,
-    /// Where the payload begins.
+    /// The offset of the payload, bytes.
     pub(super) size: u64,
     /// Lines up to and with `end_header`.
     pub(super) lines: u64,

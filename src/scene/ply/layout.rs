@@ -33,7 +33,7 @@ pub(super) enum Field {
     List(Number, Number),
 }
 
-/// Where everything stands in the payload.
+/// The layout of the payload.
 #[derive(Debug)]
 pub(super) struct Layout<'a> {
     /// Elements that stand before the Gaussians.

@@ -7,6 +7,7 @@ use ash::{ext, khr, vk};
 
 use super::devices::{DeviceInfo, describe, no_device};
 use super::failure::failed;
+use super::requirements::offers;
 use super::validation::{self, Messages, Validation};
 use crate::{Error, Result};
 
@@ -42,11 +43,7 @@ impl Instance {
         // SAFETY: the entry is loaded.
         let offered = unsafe { entry.enumerate_instance_extension_properties(None) }
             .map_err(failed("vkEnumerateInstanceExtensionProperties"))?;
-        let has = |wanted: &CStr| {
-            offered
-                .iter()
-                .any(|e| e.extension_name_as_c_str() == Ok(wanted))
-        };
+        let has = |wanted: &CStr| offers(&offered, wanted);
         let debug_utils = with_validation || has(ext::debug_utils::NAME);
         let portability = has(khr::portability_enumeration::NAME);
 

@@ -114,6 +114,13 @@ impl Features {
     }
 }
 
+/// True when an extension is among those that a device, an instance or a layer offers.
+pub(super) fn offers(extensions: &[vk::ExtensionProperties], wanted: &CStr) -> bool {
+    extensions
+        .iter()
+        .any(|offered| offered.extension_name_as_c_str() == Ok(wanted))
+}
+
 /// Checks that a physical device can run this library; the error says in a sentence what it lacks.
 ///
 /// # Safety
@@ -155,11 +162,7 @@ pub unsafe fn check(
     // SAFETY: as above.
     let extensions = unsafe { instance.enumerate_device_extension_properties(physical) }
         .map_err(failed("vkEnumerateDeviceExtensionProperties"))?;
-    let has = |wanted: &CStr| {
-        extensions
-            .iter()
-            .any(|e| e.extension_name_as_c_str() == Ok(wanted))
-    };
+    let has = |wanted: &CStr| offers(&extensions, wanted);
     let has_mesh = has(ext::mesh_shader::NAME);
     for needed in [khr::synchronization2::NAME, khr::dynamic_rendering::NAME] {
         if !has_1_3 && !has(needed) {

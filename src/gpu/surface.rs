@@ -8,6 +8,7 @@ use raw_window_handle::{HandleError, HasDisplayHandle, HasWindowHandle};
 
 use super::failure::failed;
 use super::instance::Instance;
+use super::requirements::offers;
 use super::{Device, DeviceDesc, Support};
 use crate::{Error, Result};
 
@@ -84,9 +85,7 @@ impl Surface {
         // SAFETY: the instance is alive and the physical device its own, as for the calls below.
         let offered = unsafe { raw.enumerate_device_extension_properties(physical) }
             .map_err(failed("vkEnumerateDeviceExtensionProperties"))?;
-        let has =
-            |e: &vk::ExtensionProperties| e.extension_name_as_c_str() == Ok(khr::swapchain::NAME);
-        if !offered.iter().any(has) {
+        if !offers(&offered, khr::swapchain::NAME) {
             return no(
                 "it has no VK_KHR_swapchain, so that it can only draw without a window (rara render)",
             );

@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use ash::{ext, vk};
 
 use super::failure::failed;
+use super::requirements::offers;
 use crate::{Error, Result};
 
 /// The layer's name.
@@ -106,9 +107,7 @@ pub(crate) fn find(entry: &ash::Entry) -> Result<bool> {
     // SAFETY: as above.
     let extensions = unsafe { entry.enumerate_instance_extension_properties(Some(LAYER)) }
         .map_err(failed("vkEnumerateInstanceExtensionProperties"))?;
-    Ok(extensions
-        .iter()
-        .any(|e| e.extension_name_as_c_str() == Ok(ext::validation_features::NAME)))
+    Ok(offers(&extensions, ext::validation_features::NAME))
 }
 
 /// The messenger's callback. General messages are the loader's, about drivers and layers of the machine and not about our

@@ -44,7 +44,18 @@ pub struct PixelRays<'a> {
     pub steps: u32,
 }
 
-impl PixelRays<'_> {
+impl<'a> PixelRays<'a> {
+    /// The rays of the parallel bundle.
+    pub fn parallel(camera: &'a Camera, clip: &'a Clip, position: DVec2, steps: u32) -> Self {
+        Self {
+            camera,
+            clip,
+            position,
+            bundle: Bundle::Parallel,
+            steps,
+        }
+    }
+
     /// The share of Gaussian `index` that the clip leaves visible in the pixel. It is not a number if the Gaussian is flat
     /// or wholly behind the eye.
     pub fn share(&self, scene: &Gaussians, index: usize) -> f64 {

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::*;
 use crate::reference::depth::SplatDepth;
-use crate::reference::quadrature::{Bundle, PixelRays};
+use crate::reference::quadrature::PixelRays;
 
 /// Random splats, planes and a pixel within a footprint: how far the mean depth is from the integrated one, in deviations of
 /// the splat's depth, at worst, and by how much the planes move it.
@@ -49,13 +49,7 @@ fn errors(sigma: f64, op: ClipOp, planes: usize, slab: bool) -> (f64, f64) {
             footprint.screen_centre[0] + dx,
             footprint.screen_centre[1] + dy,
         );
-        let rays = PixelRays {
-            camera: &view,
-            clip: &clip,
-            position: at,
-            bundle: Bundle::Parallel,
-            steps: 200,
-        };
+        let rays = PixelRays::parallel(&view, &clip, at, 200);
         let truth = rays.mean_depth(&scene, 0);
         let deviation = footprint.rows[2].length();
         worst = worst.max((depth.mean(dx, dy) - truth).abs() / deviation);

@@ -115,11 +115,8 @@ impl Study {
                 footprint.screen_centre[1] + dy,
             );
             let rays = PixelRays {
-                camera: &camera,
-                clip: &clip,
-                position,
                 bundle: self.bundle,
-                steps: self.steps,
+                ..PixelRays::parallel(&camera, &clip, position, self.steps)
             };
             let truth = rays.share(&scene, 0);
             if truth.is_nan() {
@@ -332,13 +329,7 @@ fn the_last_of_a_splat_in_front_of_the_eye_is_cut_like_the_rest() {
             position.y - footprint.screen_centre[1],
         ];
         let weight = cut.weight(dx, dy);
-        let rays = PixelRays {
-            camera: &camera,
-            clip: &clip,
-            position,
-            bundle: Bundle::Parallel,
-            steps: 64,
-        };
+        let rays = PixelRays::parallel(&camera, &clip, position, 64);
         let truth = rays.share(&scene, 0);
         // Behind the eye's tail quadrature has nothing to sum up.
         if truth.is_finite() {

@@ -4,7 +4,6 @@
 use crate::gpu::{Groups, Recorder};
 use crate::limits;
 use crate::passes::block_list::{self, ListFor};
-use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::shaders::blocks;
 use crate::passes::stage::{Frame, Stage, key};
@@ -19,15 +18,6 @@ pub(crate) const STAGE: Stage = Stage {
     },
     record,
 };
-
-impl OfPlan for blocks::Constants {
-    fn of(plan: &Plan) -> Self {
-        Self {
-            clip: plan.view_is_clipped(),
-            layered: plan.way.layered,
-        }
-    }
-}
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;

@@ -3,8 +3,6 @@
 
 use crate::gpu::Recorder;
 use crate::passes::buffers::indirect;
-use crate::passes::pipelines::OfPlan;
-use crate::passes::plan::Plan;
 use crate::passes::shaders::classify;
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
@@ -16,16 +14,6 @@ pub(crate) const STAGE: Stage = Stage {
     pipelines: |plan, need| need(key::<classify::Program>(plan)),
     record,
 };
-
-/// Without a clip the shader holds no clip code.
-impl OfPlan for classify::Constants {
-    fn of(plan: &Plan) -> Self {
-        Self {
-            clip: plan.view_is_clipped(),
-            layered: plan.way.layered,
-        }
-    }
-}
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;

@@ -13,29 +13,32 @@ use crate::passes::view::layer_view;
 use crate::passes::{region, shaders, work};
 use crate::types::{self, LayerContent, LayerData, RegionData, SurfaceData};
 
-/// Programs whose only constant is whether there are several layers.
+/// The constants of a program: whether there are several layers, and what else is named.
 macro_rules! layered {
-    ($($program:ident),+ $(,)?) => {
-        $(impl OfPlan for shaders::$program::Constants {
+    ($program:ident $(, $constant:ident: $of:expr)?) => {
+        impl OfPlan for shaders::$program::Constants {
             fn of(plan: &Plan) -> Self {
                 Self {
+                    $($constant: $of(plan),)?
                     layered: plan.way.layered,
                 }
             }
-        })+
+        }
     };
 }
 
-layered!(
-    clip_blocks,
-    clip,
-    compact_scan,
-    compact,
-    cutoff,
-    depth,
-    reclip_blocks,
-    reclip
-);
+// Without a clip the shaders hold no clip code.
+layered!(blocks, clip: Plan::view_is_clipped);
+layered!(classify, clip: Plan::view_is_clipped);
+layered!(clip_blocks);
+layered!(clip);
+layered!(compact_scan);
+layered!(compact);
+layered!(cutoff);
+layered!(depth);
+layered!(reclip_blocks);
+layered!(reclip);
+layered!(recut, tiles: Plan::is_tiled);
 
 /// The layers and their surfaces. A copy has the same ones.
 #[derive(Debug, Clone)]

@@ -6,8 +6,6 @@ use crate::gpu::{Groups, Recorder};
 use crate::passes::block_list::{self, ListFor};
 use crate::passes::blocks::groups_of_blocks;
 use crate::passes::buffers::indirect;
-use crate::passes::pipelines::OfPlan;
-use crate::passes::plan::Plan;
 use crate::passes::shaders::{reclip, reclip_blocks, reclip_compact, reclip_scan, recut};
 use crate::passes::stage::{Frame, Stage, key};
 use crate::passes::work::Work;
@@ -36,15 +34,6 @@ pub(crate) const RECUT: Stage = Stage {
     pipelines: |plan, need| need(key::<recut::Program>(plan)),
     record: record_recut,
 };
-
-impl OfPlan for recut::Constants {
-    fn of(plan: &Plan) -> Self {
-        Self {
-            tiles: plan.is_tiled(),
-            layered: plan.way.layered,
-        }
-    }
-}
 
 fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (scene, b, s) = (frame.scene, frame.buffers, frame.reclip());

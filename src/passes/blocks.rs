@@ -8,16 +8,14 @@ use crate::passes::plan::Plan;
 use crate::passes::shaders::blocks;
 use crate::passes::stage::{Frame, Stage, key};
 
-pub(crate) const STAGE: Stage = Stage {
-    name: "blocks",
-    needed: |plan| plan.finds_view(),
-    missed: |_| true,
-    pipelines: |plan, need| {
+pub(crate) const STAGE: Stage = Stage::of_view(
+    "blocks",
+    |plan, need| {
         need(key::<blocks::Program>(plan));
         need(key::<block_list::Program>(plan));
     },
     record,
-};
+);
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;

@@ -7,13 +7,11 @@ use crate::passes::shaders::classify;
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
 
-pub(crate) const STAGE: Stage = Stage {
-    name: "classify",
-    needed: |plan| plan.finds_view(),
-    missed: |_| true,
-    pipelines: |plan, need| need(key::<classify::Program>(plan)),
+pub(crate) const STAGE: Stage = Stage::of_view(
+    "classify",
+    |plan, need| need(key::<classify::Program>(plan)),
     record,
-};
+);
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;

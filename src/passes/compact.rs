@@ -7,16 +7,14 @@ use crate::passes::shaders::{compact, compact_scan};
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
 
-pub(crate) const STAGE: Stage = Stage {
-    name: "compact",
-    needed: |plan| plan.finds_view(),
-    missed: |_| true,
-    pipelines: |plan, need| {
+pub(crate) const STAGE: Stage = Stage::of_view(
+    "compact",
+    |plan, need| {
         need(key::<compact_scan::Program>(plan));
         need(key::<compact::Program>(plan));
     },
     record,
-};
+);
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;

@@ -8,13 +8,11 @@ use crate::passes::shaders::project;
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
 
-pub(crate) const STAGE: Stage = Stage {
-    name: "project",
-    needed: |plan| plan.finds_view(),
-    missed: |_| true,
-    pipelines: |plan, need| need(key::<project::Program>(plan)),
+pub(crate) const STAGE: Stage = Stage::of_view(
+    "project",
+    |plan, need| need(key::<project::Program>(plan)),
     record,
-};
+);
 
 /// The shader reads spherical harmonics in one format; without cut splats it reads no cutoff records.
 impl OfPlan for project::Constants {

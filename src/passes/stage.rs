@@ -24,6 +24,23 @@ pub(crate) struct Stage {
     pub(crate) record: fn(&Frame<'_>, &mut Recorder<'_>),
 }
 
+impl Stage {
+    /// A stage of every frame that finds which Gaussians are in view.
+    pub(crate) const fn of_view(
+        name: &'static str,
+        pipelines: fn(&Plan, &mut dyn FnMut(PipelineKey)),
+        record: fn(&Frame<'_>, &mut Recorder<'_>),
+    ) -> Self {
+        Self {
+            name,
+            needed: |plan| plan.finds_view(),
+            missed: |_| true,
+            pipelines,
+            record,
+        }
+    }
+}
+
 /// One way to do a stage's work, where there may be several.
 #[derive(Debug)]
 pub(crate) struct KernelSet {

@@ -11,13 +11,11 @@ use crate::gpu::{Buffer, DeviceShape};
 use crate::passes::plan::Plan;
 use crate::passes::stage::{Frame, KernelSet, Stage};
 
-pub(crate) const STAGE: Stage = Stage {
-    name: "sort",
-    needed: |plan| plan.finds_view(),
-    missed: |_| true,
-    pipelines: |plan, need| (kernels(plan).pipelines)(plan, need),
-    record: |frame, recorder| (kernels(frame.plan).record)(frame, recorder),
-};
+pub(crate) const STAGE: Stage = Stage::of_view(
+    "sort",
+    |plan, need| (kernels(plan).pipelines)(plan, need),
+    |frame, recorder| (kernels(frame.plan).record)(frame, recorder),
+);
 
 /// The kernels that suit the plan's kind of device.
 fn kernels(plan: &Plan) -> &'static KernelSet {

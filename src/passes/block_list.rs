@@ -1,6 +1,7 @@
 //! Lists the blocks whose Gaussians differ, for one stage.
 
 use crate::gpu::{Buffer, Groups, Recorder};
+use crate::passes::buffers::buffers;
 use crate::passes::shaders::block_list;
 use crate::passes::stage::Frame;
 
@@ -21,12 +22,10 @@ pub(crate) fn record(
     list_for: ListFor,
 ) {
     let b = frame.buffers;
-    let buffers = block_list::Buffers {
-        frame: &b.frame,
+    let buffers = buffers!(block_list {
+        b => [frame, block_list, counts];
         sides,
-        block_list: &b.block_list,
-        counts: &b.counts,
-    };
+    });
     let params = block_list::Params {
         stage: list_for as u32,
     };

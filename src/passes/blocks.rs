@@ -4,6 +4,7 @@
 use crate::gpu::{Groups, Recorder};
 use crate::limits;
 use crate::passes::block_list::{self, ListFor};
+use crate::passes::buffers::buffers;
 use crate::passes::plan::Plan;
 use crate::passes::shaders::blocks;
 use crate::passes::stage::{Frame, Stage, key};
@@ -19,13 +20,10 @@ pub(crate) const STAGE: Stage = Stage::of_view(
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
-    let buffers = blocks::Buffers {
-        frame: &b.frame,
-        surfaces: &b.surfaces,
-        blocks: &frame.scene.blocks,
-        clip_sides: &b.clip_sides,
-        block_sides: &b.block_sides,
-    };
+    let buffers = buffers!(blocks {
+        b => [frame, surfaces, clip_sides, block_sides],
+        frame.scene => [blocks],
+    });
     let groups = groups_of_blocks(frame.plan);
     frame.dispatch(recorder, buffers, (), groups);
     block_list::record(frame, recorder, &b.block_sides, ListFor::Classify);

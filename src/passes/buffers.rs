@@ -143,6 +143,21 @@ macro_rules! indirect {
 }
 pub(super) use indirect;
 
+/// The buffers of a program: `from => [name]` binds the field `name` of `from` to the binding of that name; after a
+/// semicolon come those whose binding has another name, or that are no field.
+macro_rules! buffers {
+    ($program:ident {
+        $($from:expr => [$($name:ident),+ $(,)?]),+ $(,)?
+        $(; $($other:ident $(: $buffer:expr)?),+ $(,)?)?
+    }) => {
+        $program::Buffers {
+            $($($name: &$from.$name,)+)+
+            $($($other $(: $buffer)?,)+)?
+        }
+    };
+}
+pub(super) use buffers;
+
 /// A buffer that only the device sees.
 pub(super) fn gpu_only(device: &Device, name: &'static str, size: u64) -> Result<Buffer> {
     device.create_buffer(&BufferDesc {

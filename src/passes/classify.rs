@@ -2,7 +2,7 @@
 //! and size, and finds the side of what is in view.
 
 use crate::gpu::Recorder;
-use crate::passes::buffers::indirect;
+use crate::passes::buffers::{buffers, indirect};
 use crate::passes::shaders::classify;
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
@@ -15,17 +15,10 @@ pub(crate) const STAGE: Stage = Stage::of_view(
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
-    let buffers = classify::Buffers {
-        frame: &b.frame,
-        surfaces: &b.surfaces,
-        gaussians: &frame.scene.gaussians,
-        block_list: &b.block_list,
-        counts: &b.counts,
-        clip_sides: &b.clip_sides,
-        clip_masks: &b.clip_masks,
-        masks: &b.masks,
-        block_counts: &b.block_counts,
-    };
+    let buffers = buffers!(classify {
+        b => [frame, surfaces, block_list, counts, clip_sides, clip_masks, masks, block_counts],
+        frame.scene => [gaussians],
+    });
     let groups = indirect!(b.counts, FrameCounts, classify_groups);
     frame.dispatch(recorder, buffers, (), groups);
 }

@@ -4,7 +4,7 @@
 use crate::gpu::Recorder;
 use crate::passes::block_list::{self, ListFor};
 use crate::passes::blocks::groups_of_blocks;
-use crate::passes::buffers::indirect;
+use crate::passes::buffers::{buffers, indirect};
 use crate::passes::shaders::{clip, clip_blocks};
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
@@ -23,22 +23,16 @@ pub(crate) const STAGE: Stage = Stage {
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (scene, b) = (frame.scene, frame.buffers);
-    let buffers = clip_blocks::Buffers {
-        frame: &b.frame,
-        surfaces: &b.surfaces,
-        blocks: &scene.blocks,
-        clip_sides: &b.clip_sides,
-    };
+    let buffers = buffers!(clip_blocks {
+        b => [frame, surfaces, clip_sides],
+        scene => [blocks],
+    });
     frame.dispatch(recorder, buffers, (), groups_of_blocks(frame.plan));
     block_list::record(frame, recorder, &b.clip_sides, ListFor::Clip);
-    let buffers = clip::Buffers {
-        frame: &b.frame,
-        surfaces: &b.surfaces,
-        gaussians: &scene.gaussians,
-        block_list: &b.block_list,
-        counts: &b.counts,
-        clip_masks: &b.clip_masks,
-    };
+    let buffers = buffers!(clip {
+        b => [frame, surfaces, block_list, counts, clip_masks],
+        scene => [gaussians],
+    });
     let groups = indirect!(b.counts, FrameCounts, clip_groups);
     frame.dispatch(recorder, buffers, (), groups);
 }

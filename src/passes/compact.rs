@@ -2,7 +2,7 @@
 //! indirect commands of all later stages. No place in a list depends on the order of atomics.
 
 use crate::gpu::{Groups, Recorder};
-use crate::passes::buffers::indirect;
+use crate::passes::buffers::{buffers, indirect};
 use crate::passes::shaders::{compact, compact_scan};
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
@@ -18,25 +18,13 @@ pub(crate) const STAGE: Stage = Stage::of_view(
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
-    let buffers = compact_scan::Buffers {
-        frame: &b.frame,
-        block_sides: &b.block_sides,
-        block_counts: &b.block_counts,
-        block_offsets: &b.block_offsets,
-        block_list: &b.block_list,
-        counts: &b.counts,
-    };
+    let buffers = buffers!(compact_scan {
+        b => [frame, block_sides, block_counts, block_offsets, block_list, counts],
+    });
     frame.dispatch(recorder, buffers, (), Groups::Count(1));
-    let buffers = compact::Buffers {
-        frame: &b.frame,
-        block_list: &b.block_list,
-        counts: &b.counts,
-        block_sides: &b.block_sides,
-        masks: &b.masks,
-        block_offsets: &b.block_offsets,
-        survivors: &b.survivors,
-        cutoffs: &b.cutoffs,
-    };
+    let buffers = buffers!(compact {
+        b => [frame, block_list, counts, block_sides, masks, block_offsets, survivors, cutoffs],
+    });
     let groups = indirect!(b.counts, FrameCounts, compact_groups);
     frame.dispatch(recorder, buffers, (), groups);
 }

@@ -1,7 +1,7 @@
 //! Stage `cutoff`, one invocation a cutoff Gaussian, writes the cutoff record, from which the fragment stage weights it.
 
 use crate::gpu::Recorder;
-use crate::passes::buffers::indirect;
+use crate::passes::buffers::{buffers, indirect};
 use crate::passes::shaders::cutoff;
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
@@ -24,14 +24,10 @@ pub(crate) const STAGE_OF_RECLIP: Stage = Stage {
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
-    let buffers = cutoff::Buffers {
-        frame: &b.frame,
-        surfaces: &b.surfaces,
-        gaussians: &frame.scene.gaussians,
-        cutoffs: &b.cutoffs,
-        counts: &b.counts,
-        cut_records: &b.cut_records,
-    };
+    let buffers = buffers!(cutoff {
+        b => [frame, surfaces, cutoffs, counts, cut_records],
+        frame.scene => [gaussians],
+    });
     let groups = indirect!(b.counts, FrameCounts, cutoff_groups);
     frame.dispatch(recorder, buffers, (), groups);
 }

@@ -5,7 +5,7 @@ use std::mem::offset_of;
 
 use crate::depth::DepthMap;
 use crate::gpu::{Attachments, Drawer, Recorder};
-use crate::passes::buffers::{Buffers, DepthBuffers, indirect};
+use crate::passes::buffers::{Buffers, DepthBuffers, buffers, indirect};
 use crate::passes::pipelines::{Draw, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{depth, splat_depth};
@@ -25,14 +25,11 @@ pub(crate) const STAGE: Stage = Stage {
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (b, d) = (frame.buffers, frame.depths());
-    let buffers = depth::Buffers {
-        frame: &b.frame,
-        surfaces: &b.surfaces,
-        gaussians: &frame.scene.gaussians,
-        survivors: &b.survivors,
-        counts: &b.counts,
-        depths: &d.depths,
-    };
+    let buffers = buffers!(depth {
+        b => [frame, surfaces, survivors, counts],
+        frame.scene => [gaussians],
+        d => [depths],
+    });
     let groups = indirect!(b.counts, FrameCounts, project_groups);
     frame.dispatch(recorder, buffers, (), groups);
     // Each survivor is drawn as a quad, also where tiles draw the colours.
@@ -73,14 +70,11 @@ pub(crate) fn record_draw(
     origin: [f32; 2],
     (map, unit): (Option<DepthMap>, f64),
 ) {
-    let buffers = splat_depth::Buffers {
-        frame: &b.frame,
-        counts: &b.counts,
-        splats: &b.splats,
+    let buffers = buffers!(splat_depth {
+        b => [frame, counts, splats, cut_records],
+        d => [depths];
         order: &b.order[plan.sorted()],
-        cut_records: &b.cut_records,
-        depths: &d.depths,
-    };
+    });
     let [depth_offset, depth_scale] = map.map_or([0.0; 2], |map| map.factors());
     let params = splat_depth::Params {
         origin,

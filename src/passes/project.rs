@@ -1,7 +1,7 @@
 //! Stage `project`, one invocation a survivor, computes conic, quad, colour and depth key.
 
 use crate::gpu::Recorder;
-use crate::passes::buffers::indirect;
+use crate::passes::buffers::{buffers, indirect};
 use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::shaders::project;
@@ -29,18 +29,11 @@ impl OfPlan for project::Constants {
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (scene, b) = (frame.scene, frame.buffers);
     let [keys, same_keys] = &b.keys;
-    let buffers = project::Buffers {
-        frame: &b.frame,
-        gaussians: &scene.gaussians,
-        sh: &scene.sh,
-        survivors: &b.survivors,
-        counts: &b.counts,
-        splats: &b.splats,
-        keys,
-        same_keys,
-        cut_records: &b.cut_records,
-        tile_masks: &b.tile_masks,
-    };
+    let buffers = buffers!(project {
+        b => [frame, survivors, counts, splats, cut_records, tile_masks],
+        scene => [gaussians, sh];
+        keys, same_keys,
+    });
     let groups = indirect!(b.counts, FrameCounts, project_groups);
     frame.dispatch(recorder, buffers, (), groups);
 }

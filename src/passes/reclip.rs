@@ -5,7 +5,7 @@
 use crate::gpu::{Groups, Recorder};
 use crate::passes::block_list::{self, ListFor};
 use crate::passes::blocks::groups_of_blocks;
-use crate::passes::buffers::indirect;
+use crate::passes::buffers::{buffers, indirect};
 use crate::passes::shaders::{reclip, reclip_blocks, reclip_compact, reclip_scan, recut};
 use crate::passes::stage::{Frame, Stage, key};
 use crate::passes::work::Work;
@@ -37,15 +37,11 @@ pub(crate) const RECUT: Stage = Stage {
 
 fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (scene, b, s) = (frame.scene, frame.buffers, frame.reclip());
-    let buffers = reclip_blocks::Buffers {
-        frame: &b.frame,
-        surfaces: &b.surfaces,
-        blocks: &scene.blocks,
-        block_sides: &b.block_sides,
-        block_counts: &b.block_counts,
-        revisits: &s.revisits,
-        reclips: &s.reclips,
-    };
+    let buffers = buffers!(reclip_blocks {
+        b => [frame, surfaces, block_sides, block_counts],
+        scene => [blocks],
+        s => [revisits, reclips],
+    });
     // No clip may have changed the survivors yet.
     let fresh = matches!(frame.plan.work, Work::Reclip { fresh: true, .. });
     let params = reclip_blocks::Params {
@@ -55,36 +51,21 @@ fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     frame.dispatch(recorder, buffers, params, groups);
     block_list::record(frame, recorder, &s.revisits, ListFor::Clip);
     let looked_at = indirect!(b.counts, FrameCounts, clip_groups);
-    let buffers = reclip::Buffers {
-        frame: &b.frame,
-        surfaces: &b.surfaces,
-        gaussians: &scene.gaussians,
-        block_list: &b.block_list,
-        counts: &b.counts,
-        revisits: &s.revisits,
-        block_sides: &b.block_sides,
-        masks: &b.masks,
-        reclips: &s.reclips,
-    };
+    let buffers = buffers!(reclip {
+        b => [frame, surfaces, block_list, counts, block_sides, masks],
+        scene => [gaussians],
+        s => [revisits, reclips],
+    });
     frame.dispatch(recorder, buffers, (), looked_at);
-    let buffers = reclip_scan::Buffers {
-        frame: &b.frame,
-        revisits: &s.revisits,
-        reclips: &s.reclips,
-        counts: &b.counts,
-    };
+    let buffers = buffers!(reclip_scan {
+        b => [frame, counts],
+        s => [revisits, reclips],
+    });
     frame.dispatch(recorder, buffers, (), Groups::Count(1));
-    let buffers = reclip_compact::Buffers {
-        frame: &b.frame,
-        block_list: &b.block_list,
-        counts: &b.counts,
-        block_sides: &b.block_sides,
-        masks: &b.masks,
-        block_offsets: &b.block_offsets,
-        reclips: &s.reclips,
-        recuts: &s.recuts,
-        cutoffs: &b.cutoffs,
-    };
+    let buffers = buffers!(reclip_compact {
+        b => [frame, block_list, counts, block_sides, masks, block_offsets, cutoffs],
+        s => [reclips, recuts],
+    });
     frame.dispatch(recorder, buffers, (), looked_at);
 }
 
@@ -93,17 +74,11 @@ fn record_recut(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     // All tiles are drawn again where no frame has drawn what is in view.
     let all = frame.plan.finds_view();
     recorder.fill(&s.dirty, 0, s.dirty.size(), all.into());
-    let buffers = recut::Buffers {
-        frame: &b.frame,
-        gaussians: &scene.gaussians,
-        survivors: &b.survivors,
-        counts: &b.counts,
-        recuts: &s.recuts,
-        cut_records: &b.cut_records,
-        tile_masks: &b.tile_masks,
-        splats: &b.splats,
-        dirty: &s.dirty,
-    };
+    let buffers = buffers!(recut {
+        b => [frame, survivors, counts, cut_records, tile_masks, splats],
+        scene => [gaussians],
+        s => [recuts, dirty],
+    });
     let groups = indirect!(b.counts, FrameCounts, recut_groups);
     frame.dispatch(recorder, buffers, (), groups);
 }

@@ -5,7 +5,7 @@ use std::mem::offset_of;
 
 use crate::depth::DepthMap;
 use crate::gpu::{Attachments, Drawer};
-use crate::passes::buffers::Buffers;
+use crate::passes::buffers::{Buffers, buffers};
 use crate::passes::pipelines::{Draw, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::splat;
@@ -43,13 +43,10 @@ pub(crate) fn record(
     origin: [f32; 2],
     map: Option<DepthMap>,
 ) {
-    let buffers = splat::Buffers {
-        frame: &b.frame,
-        counts: &b.counts,
-        splats: &b.splats,
+    let buffers = buffers!(splat {
+        b => [frame, counts, splats, cut_records];
         order: &b.order[plan.sorted()],
-        cut_records: &b.cut_records,
-    };
+    });
     let [depth_offset, depth_scale] = map.map_or([0.0; 2], |map| map.factors());
     let params = splat::Params {
         origin,

@@ -5,7 +5,7 @@ use std::mem::offset_of;
 
 use crate::gpu::{Attachments, DeviceShape, Drawer, Recorder};
 use crate::limits;
-use crate::passes::buffers::{Buffers, TileBuffers, indirect};
+use crate::passes::buffers::{Buffers, TileBuffers, buffers, indirect};
 use crate::passes::pipelines::{Draw, Kernel, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{composite, tiles};
@@ -73,17 +73,15 @@ fn kernel(plan: &Plan) -> Kernel<tiles::Program> {
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (plan, b, t) = (frame.plan, frame.buffers, frame.tiles());
-    let buffers = tiles::Buffers {
-        frame: &b.frame,
-        splats: &b.splats,
+    let buffers = buffers!(tiles {
+        b => [frame, splats, cut_records],
+        t => [picture];
         tile_splats: &t.splats,
         tile_begins: &t.begins,
-        cut_records: &b.cut_records,
-        picture: &t.picture,
         // Only a reclipped frame reads which tiles are dirty.
         dirty: b.reclip.as_ref().map_or(&b.counts, |reclip| &reclip.dirty),
         occluders: plan.occluders.map_or(&b.counts, |_| &t.occluders),
-    };
+    });
     let [depth_offset, depth_scale] = plan.occluders.map_or([0.0; 2], |o| o.map.factors());
     let (at, size) = (frame.copied.offset, frame.copied.extent);
     let params = tiles::Params {
@@ -113,11 +111,11 @@ pub(crate) fn record_composite(
     attachments: Attachments,
     origin: [f32; 2],
 ) {
-    let buffers = composite::Buffers {
-        frame: &b.frame,
-        picture: &t.picture,
+    let buffers = buffers!(composite {
+        b => [frame],
+        t => [picture];
         tile_begins: &t.begins,
-    };
+    });
     let args = (&b.counts, offset_of!(FrameCounts, composite) as u64);
     let params = composite::Params { origin };
     composite(attachments).draw(pipelines, drawer, buffers, params, args);

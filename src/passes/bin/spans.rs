@@ -2,7 +2,7 @@
 //! scratch is the counts and the spans of [`TileBuffers`](crate::passes::buffers::TileBuffers).
 
 use crate::gpu::{Groups, Recorder};
-use crate::passes::buffers::indirect;
+use crate::passes::buffers::{buffers, indirect};
 use crate::passes::shaders::{
     span_count, span_scan, span_scatter, tile_count, tile_scan, tile_scatter,
 };
@@ -33,60 +33,38 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let runs_with_room = indirect!(b.counts, FrameCounts, span_groups);
     let parts = indirect!(b.counts, FrameCounts, part_groups);
     let rows = indirect!(b.counts, FrameCounts, row_groups);
-    let buffers = span_count::Buffers {
-        frame: &b.frame,
-        counts: &b.counts,
-        splats: &b.splats,
-        order,
-        span_counts: &t.span_counts,
-        tile_masks: &b.tile_masks,
-        mask_origins,
-        masks_above,
-        masks_below,
-    };
+    let buffers = buffers!(span_count {
+        b => [frame, counts, splats, tile_masks],
+        t => [span_counts];
+        order, mask_origins, masks_above, masks_below,
+    });
     frame.dispatch(recorder, buffers, (), runs);
-    let buffers = span_scan::Buffers {
-        frame: &b.frame,
-        counts: &b.counts,
-        span_counts: &t.span_counts,
-        row_begins: &t.row_begins,
-    };
+    let buffers = buffers!(span_scan {
+        b => [frame, counts],
+        t => [span_counts, row_begins],
+    });
     frame.dispatch(recorder, buffers, (), Groups::Count(1));
-    let buffers = span_scatter::Buffers {
-        frame: &b.frame,
-        counts: &b.counts,
-        splats: &b.splats,
-        order,
-        span_counts: &t.span_counts,
-        span_splats: &t.span_splats,
-        span_columns: &t.span_columns,
-        mask_origins,
-        masks_above,
-        masks_below,
-    };
+    let buffers = buffers!(span_scatter {
+        b => [frame, counts, splats],
+        t => [span_counts, span_splats, span_columns];
+        order, mask_origins, masks_above, masks_below,
+    });
     frame.dispatch(recorder, buffers, (), runs_with_room);
-    let buffers = tile_count::Buffers {
-        frame: &b.frame,
-        row_begins: &t.row_begins,
-        column_counts: &t.column_counts,
-        span_columns: &t.span_columns,
-    };
+    let buffers = buffers!(tile_count {
+        b => [frame],
+        t => [row_begins, column_counts, span_columns],
+    });
     frame.dispatch(recorder, buffers, (), parts);
-    let buffers = tile_scan::Buffers {
-        frame: &b.frame,
-        row_begins: &t.row_begins,
-        column_counts: &t.column_counts,
+    let buffers = buffers!(tile_scan {
+        b => [frame],
+        t => [row_begins, column_counts];
         tile_begins: &t.begins,
-    };
+    });
     frame.dispatch(recorder, buffers, (), rows);
-    let buffers = tile_scatter::Buffers {
-        frame: &b.frame,
-        row_begins: &t.row_begins,
-        column_counts: &t.column_counts,
-        span_splats: &t.span_splats,
-        span_columns: &t.span_columns,
-        counts: &b.counts,
+    let buffers = buffers!(tile_scatter {
+        b => [frame, counts],
+        t => [row_begins, column_counts, span_splats, span_columns];
         tile_splats: &t.splats,
-    };
+    });
     frame.dispatch(recorder, buffers, (), parts);
 }

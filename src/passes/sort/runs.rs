@@ -5,7 +5,7 @@ use std::mem::offset_of;
 
 use crate::gpu::{Groups, Recorder};
 use crate::limits;
-use crate::passes::buffers::indirect;
+use crate::passes::buffers::{buffers, indirect};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{sort_count, sort_scan, sort_scatter, sort_ties};
 use crate::passes::stage::{Frame, KernelSet, key};
@@ -44,45 +44,34 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     for pass in 0..passes {
         let (keys, order) = pairs[(pass % 2) as usize];
         let (sorted_keys, sorted_order) = pairs[(pass % 2) as usize ^ 1];
-        let buffers = sort_count::Buffers {
-            frame: &b.frame,
-            counts: &b.counts,
+        let buffers = buffers!(sort_count {
+            b => [frame, counts, histogram];
             keys,
-            histogram: &b.histogram,
-        };
+        });
         // The first count always runs: it decides which passes are skipped.
         let groups = if pass == 0 { runs } else { of_pass(pass - 1) };
         let params = sort_count::Params { pass };
         frame.dispatch(recorder, buffers, params, groups);
-        let buffers = sort_scan::Buffers {
-            frame: &b.frame,
-            counts: &b.counts,
-            histogram: &b.histogram,
-        };
+        let buffers = buffers!(sort_scan {
+            b => [frame, counts, histogram],
+        });
         let params = sort_scan::Params { pass, passes };
         frame.dispatch(recorder, buffers, params, Groups::Count(1));
-        let buffers = sort_scatter::Buffers {
-            frame: &b.frame,
-            counts: &b.counts,
-            keys,
-            order,
-            histogram: &b.histogram,
-            sorted_keys,
-            sorted_order,
-        };
+        let buffers = buffers!(sort_scatter {
+            b => [frame, counts, histogram];
+            keys, order, sorted_keys, sorted_order,
+        });
         let params = sort_scatter::Params { pass };
         frame.dispatch(recorder, buffers, params, of_pass(pass));
     }
     if frame.scene.reordered {
         let sorted = frame.plan.sorted();
-        let buffers = sort_ties::Buffers {
-            frame: &b.frame,
-            counts: &b.counts,
+        let buffers = buffers!(sort_ties {
+            b => [frame, counts, splats];
             keys: &b.keys[sorted],
             order: &b.order[sorted],
             scratch: &b.order[sorted ^ 1],
-            splats: &b.splats,
-        };
+        });
         frame.dispatch(recorder, buffers, (), runs);
     }
 }

@@ -1,8 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // After the sort, splats of one depth are in the order of the blocks; this puts them into that of their numbers. Equal
-// depths are rare and few, so each invocation looks for them in a run of its own and orders them alone; where too many have
-// one depth, its workgroup merges them together.
+// depths are rare and few, so each invocation looks for them in a run of its own and orders them alone. Where too many for
+// one invocation have one depth, its workgroup merges them together, and where they are a layer, it sorts them by the
+// digits of their numbers.
 #include "sort.glsl"
 
 layout(local_size_x = SORT_GROUP_SIZE) in;
@@ -12,12 +13,20 @@ BUFFER(readonly, 2, uint, keys)
 BUFFER(coherent, 3, uint, order)
 BUFFER(coherent, 4, uint, scratch)
 BUFFER(readonly, 5, Splat, splats)
+// By survivor, the numbers of those that are sorted by digits.
+BUFFER(coherent, 6, uint, numbers)
+// The sort's, of which each invocation uses its own run's part.
+BUFFER(coherent, 7, uint, histogram)
 
 // Most that one invocation orders alone.
 const uint FEW = 24u;
+// Most that a workgroup merges. Beyond, the steps of the merges outweigh the histograms of the digits.
+const uint MANY = 4096u;
 
 shared uvec2 ties[SORT_GROUP_SIZE]; // begin and end of equal keys that are too many for one
 shared uint tie_count;
+shared uint totals[DIGITS]; // of each digit, all runs together
+shared uint differing; // bits in which the numbers differ
 
 // A survivor's number in the scene.
 uint number(uint survivor) {
@@ -55,8 +64,29 @@ uint rank_among(bool second, uint begin, uint end, uint its_number) {
     return low - begin;
 }
 
+void put(bool second, uint i, uint survivor) {
+    if (second) {
+        scratch.at[i] = survivor;
+    } else {
+        order.at[i] = survivor;
+    }
+}
+
+// All invocations see what the others have written.
+void publish() {
+    memoryBarrierBuffer();
+    barrier();
+}
+
+void copy_back(uint begin, uint end) {
+    for (uint i = begin + gl_LocalInvocationIndex; i < end; i += SORT_GROUP_SIZE) {
+        order.at[i] = scratch.at[i];
+    }
+    publish();
+}
+
 // The whole workgroup merges ever longer pieces, to and fro between the two buffers.
-void order_together(uint begin, uint end) {
+void merge_together(uint begin, uint end) {
     bool second = false;
     for (uint width = 1u; width < end - begin; width *= 2u) {
         for (uint i = begin + gl_LocalInvocationIndex; i < end; i += SORT_GROUP_SIZE) {
@@ -65,23 +95,87 @@ void order_together(uint begin, uint end) {
             uint other = min(begin + (piece ^ 1u) * width, end);
             uint survivor = at(second, i);
             uint rank = rank_among(second, other, min(other + width, end), number(survivor));
-            uint place = min(own, other) + (i - own) + rank;
-            if (second) {
-                order.at[place] = survivor;
-            } else {
-                scratch.at[place] = survivor;
-            }
+            put(!second, min(own, other) + (i - own) + rank, survivor);
         }
         second = !second;
-        memoryBarrierBuffer();
-        barrier();
+        publish();
     }
     if (second) {
-        for (uint i = begin + gl_LocalInvocationIndex; i < end; i += SORT_GROUP_SIZE) {
-            order.at[i] = scratch.at[i];
+        copy_back(begin, end);
+    }
+}
+
+// The whole workgroup carries survivors to the other buffer by one digit of their numbers, as a pass of the sort does: each
+// invocation counts a run of its own, and carries it in order.
+void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
+    uint local = gl_LocalInvocationIndex;
+    uint first_slot = gl_WorkGroupID.x * SORT_GROUP_SIZE * DIGITS;
+    uint slots = first_slot + local * DIGITS;
+    uvec2 run = begin + run_bounds(local, SORT_GROUP_SIZE, end - begin);
+    for (uint d = 0u; d < DIGITS; d++) {
+        histogram.at[slots + d] = 0u;
+    }
+    for (uint i = run.x; i < run.y; i++) {
+        histogram.at[slots + digit(numbers.at[at(second, i)], digit_number)]++;
+    }
+    publish();
+    for (uint d = local; d < DIGITS; d += SORT_GROUP_SIZE) {
+        uint total = 0u;
+        for (uint other = 0u; other < SORT_GROUP_SIZE; other++) {
+            total += histogram.at[first_slot + other * DIGITS + d];
         }
-        memoryBarrierBuffer();
-        barrier();
+        totals[d] = total;
+    }
+    barrier();
+    for (uint d = local; d < DIGITS; d += SORT_GROUP_SIZE) {
+        uint place = begin;
+        for (uint before = 0u; before < d; before++) {
+            place += totals[before];
+        }
+        for (uint other = 0u; other < SORT_GROUP_SIZE; other++) {
+            uint slot = first_slot + other * DIGITS + d;
+            uint count = histogram.at[slot];
+            histogram.at[slot] = place;
+            place += count;
+        }
+    }
+    publish();
+    for (uint i = run.x; i < run.y; i++) {
+        uint survivor = at(second, i);
+        uint slot = slots + digit(numbers.at[survivor], digit_number);
+        uint place = histogram.at[slot];
+        histogram.at[slot] = place + 1u;
+        put(!second, place, survivor);
+    }
+    publish();
+}
+
+// The whole workgroup sorts by the digits in which the numbers differ.
+void sort_together(uint begin, uint end) {
+    if (gl_LocalInvocationIndex == 0u) {
+        differing = 0u;
+    }
+    barrier();
+    uint first_number = number(order.at[begin]);
+    uint differs = 0u;
+    for (uint i = begin + gl_LocalInvocationIndex; i < end; i += SORT_GROUP_SIZE) {
+        uint survivor = order.at[i];
+        uint its_number = number(survivor);
+        numbers.at[survivor] = its_number;
+        differs |= its_number ^ first_number;
+    }
+    atomicOr(differing, differs);
+    publish();
+    uint differing_bits = differing; // the next layer may reset it as soon as this one is sorted
+    bool second = false;
+    for (uint digit_number = 0u; digit_number * SORT_BITS < 32u; digit_number++) {
+        if (digit(differing_bits, digit_number) != 0u) {
+            sort_by_digit(second, begin, end, digit_number);
+            second = !second;
+        }
+    }
+    if (second) {
+        copy_back(begin, end);
     }
 }
 
@@ -122,7 +216,12 @@ void main() {
         if (tie_count > 0u) {
             for (uint owner = 0u; owner < SORT_GROUP_SIZE; owner++) {
                 if (ties[owner].y != 0u) {
-                    order_together(ties[owner].x, ties[owner].y);
+                    uvec2 together = ties[owner];
+                    if (together.y - together.x > MANY) {
+                        sort_together(together.x, together.y);
+                    } else {
+                        merge_together(together.x, together.y);
+                    }
                 }
             }
         }

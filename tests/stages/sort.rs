@@ -65,13 +65,23 @@ fn the_order_is_the_twins() {
 #[test]
 fn equal_depths_are_in_the_files_order() {
     let mut stages = Stages::new();
-    let scene = generate(Kind::General, 3_000, 2);
-    let mut camera = frame::views(&scene)[0];
-    camera.rotation = glam::DMat3::IDENTITY;
-    camera.eye = glam::DVec3::new(0.0, 0.0, -40.0);
+    let (few, many) = (3_000, 70_000);
     let settings = Settings::default().raster(Raster::Quad);
-    for layers in [1, 7, 40, 900] {
-        let mut flat: Gaussians = scene.clone();
+    for (count, layers) in [
+        (few, 1),
+        (few, 7),
+        (few, 40),
+        (few, 900),
+        (6_000, 1),
+        (many, 1),
+        (many, 3),
+        (many, 900),
+    ] {
+        let scene = generate(Kind::General, count, 2);
+        let mut camera = frame::views(&scene)[0];
+        camera.rotation = glam::DMat3::IDENTITY;
+        camera.eye = glam::DVec3::new(0.0, 0.0, -40.0);
+        let mut flat: Gaussians = scene;
         for (index, position) in flat.positions_mut().iter_mut().enumerate() {
             *position *= 0.5;
             position.z = (index * 7919 % layers) as f32 / 64.0;
@@ -79,7 +89,7 @@ fn equal_depths_are_in_the_files_order() {
         stages.load(&flat);
         let counts = stages.draw(&camera, &Clip::default(), &settings).counts;
         assert!(counts.drawn > 1_000, "{counts:?}");
-        check(&mut stages, &format!("{layers} layers"));
+        check(&mut stages, &format!("{count} in {layers} layers"));
     }
 }
 

@@ -67,10 +67,11 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     if frame.scene.reordered {
         let sorted = frame.plan.sorted();
         let buffers = buffers!(sort_ties {
-            b => [frame, counts, splats];
+            b => [frame, counts, splats, histogram];
             keys: &b.keys[sorted],
             order: &b.order[sorted],
             scratch: &b.order[sorted ^ 1],
+            numbers: &b.keys[sorted ^ 1],
         });
         frame.dispatch(recorder, buffers, (), runs);
     }

@@ -53,11 +53,8 @@ fn recording_allocates_nothing() {
             format: FORMAT,
         });
         let target = target.expect("a target");
-        let mut rasters = vec![Raster::Tiles, Raster::Quad];
-        if device.support().mesh_shader {
-            rasters.push(Raster::Mesh);
-        }
-        for (raster, reuse) in rasters.into_iter().flat_map(|r| [(r, false), (r, true)]) {
+        let rasters = common::rasters(device).into_iter();
+        for (raster, reuse) in rasters.flat_map(|r| [(r, false), (r, true)]) {
             let desc = RendererDesc::new(FORMAT)
                 .bindings(bindings)
                 .reuse(reuse)

@@ -11,7 +11,7 @@ use rara::measure::compare;
 use rara::scene::{Bounds, Kind, generate, load};
 use rara::{
     Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, HeadlessDesc, Picture, PipelineCache,
-    Plane, Settings, reference,
+    Plane, Raster, Settings, reference,
 };
 
 /// The scale of generated scenes and pictures against the usual size, `RARA_TEST_SCALE`, for slow drivers. The tests'
@@ -36,6 +36,26 @@ pub fn bindings(device: &Device) -> Vec<Bindings> {
         all.push(Bindings::Bound);
     }
     all
+}
+
+/// The ways of drawing that a device has.
+pub fn rasters(device: &Device) -> Vec<Raster> {
+    let mut rasters = vec![Raster::Tiles, Raster::Quad];
+    if device.support().mesh_shader {
+        rasters.push(Raster::Mesh);
+    }
+    rasters
+}
+
+/// A generator of numbers below a limit, the same ones in every run.
+pub fn picker(seed: u64) -> impl FnMut(usize) -> usize {
+    let mut state = seed;
+    move |count| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 33) as usize % count
+    }
 }
 
 /// A renderer whose every validation message is an error. Its buffers are bound where the driver can, so that the
@@ -133,6 +153,22 @@ pub fn generated_scenes(count: usize) -> Vec<(String, Gaussians)> {
         .iter()
         .map(|(name, kind)| (format!("generated {name}"), generate(*kind, count, 1)))
         .collect()
+}
+
+/// Some Gaussians of a scene.
+pub fn picked(scene: &Gaussians, indices: impl IntoIterator<Item = usize>) -> Gaussians {
+    let mut picked = Gaussians::default();
+    picked.set_sh_degree(scene.sh_degree());
+    for index in indices {
+        picked.push(
+            scene.positions()[index],
+            scene.scales()[index],
+            scene.rotations()[index],
+            scene.opacities()[index],
+            scene.sh_of(index),
+        );
+    }
+    picked
 }
 
 /// `count` views around a scene, from changing heights.

@@ -3,8 +3,7 @@
 use glam::{DQuat, DVec3, Quat};
 use rara::reference;
 use rara::{
-    Clip, ClipOp, Gaussians, Headless, Layer, LayerState, Mode, Picture, Placement, Raster, Scene,
-    Settings,
+    Clip, ClipOp, Gaussians, Headless, Layer, LayerState, Mode, Picture, Placement, Scene, Settings,
 };
 
 use crate::common;
@@ -15,20 +14,9 @@ const SIZE: (u32, u32) = (253, 190);
 fn in_parts(count: usize) -> (Gaussians, Vec<Gaussians>) {
     let (_, scene) = common::generated_scenes(count).remove(0);
     let ends = [0, 1, 1, 200, 457, scene.len() / 3, scene.len()];
-    let parts = ends.windows(2).map(|ends| {
-        let mut part = Gaussians::default();
-        part.set_sh_degree(scene.sh_degree());
-        for index in ends[0]..ends[1] {
-            part.push(
-                scene.positions()[index],
-                scene.scales()[index],
-                scene.rotations()[index],
-                scene.opacities()[index],
-                scene.sh_of(index),
-            );
-        }
-        part
-    });
+    let parts = ends
+        .windows(2)
+        .map(|ends| common::picked(&scene, ends[0]..ends[1]));
     let parts = parts.collect();
     (scene, parts)
 }
@@ -50,18 +38,6 @@ fn picture(headless: &mut Headless) -> Picture {
     headless.picture().expect("reads back")
 }
 
-fn rasters(headless: &Headless) -> Vec<Raster> {
-    let mut rasters = vec![Raster::Tiles, Raster::Quad];
-    rasters.extend(
-        headless
-            .device()
-            .support()
-            .mesh_shader
-            .then_some(Raster::Mesh),
-    );
-    rasters
-}
-
 #[test]
 fn layers_are_drawn_as_the_scene_that_they_are_parts_of() {
     let (scene, parts) = in_parts(6_000);
@@ -76,7 +52,7 @@ fn layers_are_drawn_as_the_scene_that_they_are_parts_of() {
         .collect();
     assert_eq!(names[1], "layer 1");
     for camera in common::views(&scene, 2, common::scaled(SIZE)) {
-        for raster in rasters(&whole) {
+        for raster in common::rasters(whole.device()) {
             for (mode, planes, op) in [
                 (Mode::None, 0, ClipOp::And),
                 (Mode::Hard, 1, ClipOp::And),
@@ -137,7 +113,7 @@ fn a_placed_layer_is_its_gaussians_placed() {
             (Mode::Rara, 1, ClipOp::And),
         ] {
             let clip = common::clip(&moved, planes, op);
-            for raster in rasters(&headless) {
+            for raster in common::rasters(headless.device()) {
                 let settings = Settings::default().mode(mode).raster(raster);
                 common::check(&mut headless, "placed", &moved, &camera, &clip, &settings);
             }
@@ -256,13 +232,7 @@ fn layers_that_change_leave_nothing_behind() {
     let (mut keeps, mut forgets) = (common::headless(), common::headless());
     keeps.load(layers.clone()).expect("uploads");
     forgets.load(layers).expect("uploads");
-    let mut state = 5_u64;
-    let mut pick = |count: usize| {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        (state >> 33) as usize % count
-    };
+    let mut pick = common::picker(5);
     let cameras = common::views(&scene, 2, common::scaled((125, 95)));
     let (mut camera, mut shift, mut settings) = (0, 0.0, Settings::default());
     let (mut seen, mut changes, mut reused) = (None, 0, [0; 3]);

@@ -89,14 +89,6 @@ fn cut(scene: &Gaussians, normal: DVec3, share: f64) -> Clip {
     Clip::of([plane(scene, normal, share)], ClipOp::And)
 }
 
-fn rasters(headless: &Headless) -> Vec<Raster> {
-    let mut all = vec![Raster::Tiles, Raster::Quad];
-    if headless.device().support().mesh_shader {
-        all.push(Raster::Mesh);
-    }
-    all
-}
-
 #[test]
 fn a_sweep_computes_the_view_once() {
     let scenes = common::generated_scenes(6_000).into_iter();
@@ -104,7 +96,10 @@ fn a_sweep_computes_the_view_once() {
         let mut pair = Pair::new(&scene);
         let camera = common::views(&scene, 3, common::scaled(SIZE))[1];
         let normal = DVec3::new(0.8, 0.3, 0.5).normalize();
-        let (rasters, modes) = (rasters(&pair.keeps), [Mode::Exact, Mode::Rara, Mode::Hard]);
+        let (rasters, modes) = (
+            common::rasters(pair.keeps.device()),
+            [Mode::Exact, Mode::Rara, Mode::Hard],
+        );
         // Trained scenes are large and some drivers slow, so each scene gets a part of the combinations.
         let all = index < 3 && common::scale() == 1.0;
         for (r, raster) in rasters.into_iter().enumerate() {
@@ -131,7 +126,7 @@ fn a_frame_like_the_one_before_does_nothing_and_another_background_only_draws() 
     let mut pair = Pair::new(&scene);
     let camera = common::views(&scene, 3, SIZE)[0];
     let clip = cut(&scene, DVec3::X, 0.5);
-    for raster in rasters(&pair.keeps) {
+    for raster in common::rasters(pair.keeps.device()) {
         let settings = Settings::default().raster(raster);
         assert!(!pair.draw(&camera, &clip, &settings).contains(&"project"));
         let skipped = pair.draw(&camera, &clip, &settings);
@@ -206,19 +201,13 @@ impl Frame {
 
 #[test]
 fn whatever_changes_the_bytes_are_those_of_a_whole_frame() {
-    let mut state = 11_u64;
-    let mut pick = |count: usize| {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        (state >> 33) as usize % count
-    };
+    let mut pick = common::picker(11);
     let normals = [DVec3::X, DVec3::new(0.1, 0.9, -0.3).normalize()];
     let steps = (80.0 * common::scale()) as usize;
     for (_, scene) in common::generated_scenes(4_000) {
         for bindings in common::bindings(common::headless().device()) {
             let mut pair = Pair::by(bindings, &scene);
-            let rasters = rasters(&pair.keeps);
+            let rasters = common::rasters(pair.keeps.device());
             let mut frame = Frame {
                 settings: Settings::default(),
                 size: common::scaled(SIZE),

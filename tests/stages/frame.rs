@@ -53,7 +53,8 @@ impl Stages {
         let mut once = self.numbers.clone();
         once.sort_unstable();
         assert!(once.into_iter().eq(0..scene.len() as u32), "each once");
-        self.scene = picked(scene, &self.numbers);
+        let indices = self.numbers.iter().map(|&number| number as usize);
+        self.scene = common::picked(scene, indices);
     }
 
     /// Draws a whole frame.
@@ -108,22 +109,6 @@ impl Stages {
         splats.truncate(count);
         splats
     }
-}
-
-/// Some Gaussians of a scene.
-pub fn picked(scene: &Gaussians, numbers: &[u32]) -> Gaussians {
-    let mut picked = Gaussians::default();
-    picked.set_sh_degree(scene.sh_degree());
-    for index in numbers.iter().map(|&number| number as usize) {
-        picked.push(
-            scene.positions()[index],
-            scene.scales()[index],
-            scene.rotations()[index],
-            scene.opacities()[index],
-            scene.sh_of(index),
-        );
-    }
-    picked
 }
 
 /// A generated scene with splats of which such scenes have too few: faint ones, ones around the limit of 1/255, and ones

@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3, Vec3};
 use rara::reference::{Side, View, classify, clip};
 use rara::{Camera, Clip, Gaussians, Placement, Settings};
 
-use crate::frame::picked;
+use crate::common;
 
 /// By how much a Gaussian may seem to be another one, as a share: eight units in the last place. Opacities go through a
 /// logarithm, for which Vulkan promises 2^-21 near 1.
@@ -19,7 +19,7 @@ pub fn classes(
     planes: &Clip,
     settings: &Settings,
 ) -> Vec<Side> {
-    let one = picked(scene, &[index as u32]);
+    let one = common::picked(scene, [index]);
     let at = one.positions()[0].as_dvec3();
     let distance = camera.map_or(at.length(), |camera| (at - camera.eye).length());
     let ways = [DVec3::X, DVec3::Y, DVec3::Z];

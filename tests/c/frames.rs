@@ -2,12 +2,12 @@
 //! behind what the host has drawn, expected depths, a scene placed in a world, a scene by the host's own staging memory,
 //! layers that are hidden, moved and faded.
 
-use std::cell::{Cell, RefCell};
+use std::cell::Cell;
 use std::ffi::{CStr, CString};
 use std::path::{Path, PathBuf};
 use std::ptr::{null, null_mut};
 
-use crate::canvas::{Canvas, CanvasDesc, with_host};
+use crate::canvas::{Canvas, CanvasDesc, Frame, with_host};
 use crate::folder::Folder;
 use rara::ash::{Entry, vk};
 use rara::glam::{DQuat, DVec3};
@@ -111,33 +111,18 @@ impl<'a> World<'a> {
             .bindings(Bindings::Bound);
         let scene = SceneBuffers::upload(device, self.layers.clone(), ShFormat::Packed);
         let scene = scene.expect("uploads");
-        let renderer = RefCell::new(Renderer::new(device, desc).expect("a renderer"));
-        renderer.borrow_mut().set_placement(self.placement);
+        let mut renderer = Renderer::new(device, desc).expect("a renderer");
+        renderer.set_placement(self.placement);
         let settings = Settings::default().raster(self.raster);
         let clip = Clip::of([self.plane], ClipOp::And);
-        let configured = (renderer.borrow_mut()).configure(&scene, &self.camera, &clip, &settings);
+        let configured = renderer.configure(&scene, &self.camera, &clip, &settings);
         configured.expect("configures");
-        let depth = canvas.depth_image(0, 0);
-        // SAFETY: recording outside a scope; the canvas's depth is ready to be copied, and all is waited for.
-        let before = |cmd| unsafe {
-            renderer
-                .borrow_mut()
-                .prepare_behind(cmd, &scene, &depth)
-                .expect("records")
+        let frame = Frame {
+            behind: Some(canvas.depth_image(0, 0)),
+            depths: self.depths,
+            ..Frame::new(VIEW)
         };
-        let inside = |cmd| {
-            canvas.viewport(cmd, 0, 0, VIEW);
-            let mut renderer = renderer.borrow_mut();
-            // SAFETY: inside the canvas's scope, which the renderer was made for.
-            unsafe {
-                match self.depths {
-                    true => renderer.draw_depth(cmd, [0.0; 2]).expect("records"),
-                    false => renderer.draw(cmd, [0.0; 2]).expect("records"),
-                }
-            }
-        };
-        let [pixels, _] = canvas.draw(before, inside);
-        pixels
+        canvas.draw_frame(&mut renderer, &scene, &frame)
     }
 
     /// Draws by rara.h the scene that `scene` returns, which may upload it in the frame's own commands.

@@ -1,6 +1,6 @@
 //! Splats in a host's format: 8 bits, sRGB, halves and floats show the same picture, each as well as it can.
 
-use crate::canvas::{Canvas, CanvasDesc, with_host};
+use crate::canvas::{Canvas, CanvasDesc, Frame, with_host};
 use crate::common;
 use rara::ash::vk;
 use rara::gpu::Bindings;
@@ -43,30 +43,17 @@ fn every_format_holds_the_picture_as_well_as_it_can() {
             let mut desc = CanvasDesc::new(SIZE, format);
             desc.clear = BACKDROP;
             let canvas = Canvas::new(&host.lend(), device, desc);
-            let mut rasters = vec![(Raster::Tiles, tiles), (Raster::Quad, quads)];
-            if device.support().mesh_shader {
-                rasters.push((Raster::Mesh, quads));
-            }
-            for (raster, [most, average]) in rasters {
+            for raster in common::rasters(device) {
+                let [most, average] = match raster {
+                    Raster::Tiles => tiles,
+                    _ => quads,
+                };
                 let desc = RendererDesc::new(format).bindings(Bindings::Bound);
                 let mut renderer = Renderer::new(device, desc).expect("a renderer");
                 let settings = Settings::default().raster(raster);
                 let configured = renderer.configure(&buffers, &camera, &clip, &settings);
                 configured.expect("configures");
-                let renderer = std::cell::RefCell::new(renderer);
-                // SAFETY: recording outside the canvas's scope, and all is waited for.
-                let before = |cmd| unsafe {
-                    renderer
-                        .borrow_mut()
-                        .prepare(cmd, &buffers)
-                        .expect("prepares")
-                };
-                let inside = |cmd| {
-                    canvas.viewport(cmd, 0, 0, SIZE);
-                    // SAFETY: inside the canvas's scope, of the renderer's format.
-                    unsafe { renderer.borrow_mut().draw(cmd, [0.0; 2]).expect("draws") };
-                };
-                let [pixels, _] = canvas.draw(before, inside);
+                let pixels = canvas.draw_frame(&mut renderer, &buffers, &Frame::new(SIZE));
                 let pairs = pixels.iter().flatten().zip(truth.iter().flatten());
                 let differences: Vec<_> = pairs
                     .map(|(a, b)| 255.0 * (a.clamp(0.0, 1.0) - b).abs())

@@ -2,6 +2,7 @@
 //! rendering or a classic render pass, with rectangles in the depth buffer for opaque meshes.
 #![allow(dead_code, unreachable_pub, reason = "each test binary uses a part")]
 
+mod frame;
 mod image;
 mod pixels;
 mod scope;
@@ -10,6 +11,7 @@ use rara::ash::{self, vk};
 use rara::gpu::{AdoptDesc, DepthImage, Device};
 
 use crate::host::{Host, HostDesc};
+pub use frame::Frame;
 use image::Image;
 use pixels::decoded;
 

@@ -1,0 +1,71 @@
+//! A renderer's frame on a canvas.
+
+use std::cell::RefCell;
+
+use rara::gpu::DepthImage;
+use rara::{Renderer, SceneBuffers};
+
+use super::Canvas;
+
+/// A camera's picture on a canvas.
+pub struct Frame {
+    /// The picture's size.
+    pub size: (u32, u32),
+    /// The pixel of the canvas at which the picture begins.
+    pub origin: (i32, i32),
+    /// The depth that the renderer reads, if it reads one.
+    pub behind: Option<DepthImage>,
+    /// Draw expected depths, not colours.
+    pub depths: bool,
+}
+
+impl Frame {
+    /// A picture of colours in the canvas's upper left corner, by a renderer that reads no depth.
+    pub fn new(size: (u32, u32)) -> Self {
+        Self {
+            size,
+            origin: (0, 0),
+            behind: None,
+            depths: false,
+        }
+    }
+}
+
+impl Canvas {
+    /// Draws the frame that the renderer is configured for, and waits; returns the picture of the first colour attachment.
+    pub fn draw_frame(
+        &self,
+        renderer: &mut Renderer,
+        scene: &SceneBuffers,
+        frame: &Frame,
+    ) -> Vec<[f32; 4]> {
+        let renderer = RefCell::new(renderer);
+        let before = |cmd| {
+            let mut renderer = renderer.borrow_mut();
+            // SAFETY: `cmd` is recording outside a scope, a depth is ready to be copied, and all is waited for.
+            let prepared = unsafe {
+                match &frame.behind {
+                    Some(depth) => renderer.prepare_behind(cmd, scene, depth),
+                    None => renderer.prepare(cmd, scene),
+                }
+            };
+            prepared.expect("prepares");
+        };
+        let inside = |cmd| {
+            let (x, y) = frame.origin;
+            self.viewport(cmd, x, y, frame.size);
+            let mut renderer = renderer.borrow_mut();
+            let origin = [x as f32, y as f32];
+            // SAFETY: `cmd` is inside the canvas's scope, which the renderer was made for.
+            let drawn = unsafe {
+                match frame.depths {
+                    true => renderer.draw_depth(cmd, origin),
+                    false => renderer.draw(cmd, origin),
+                }
+            };
+            drawn.expect("draws");
+        };
+        let [pixels, _] = self.draw(before, inside);
+        pixels
+    }
+}

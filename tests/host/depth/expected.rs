@@ -1,0 +1,116 @@
+//! Expected depths are the reference's, alone and against a host's depth buffer.
+
+use super::*;
+use crate::canvas::with_host;
+use rara::gpu::Bindings;
+use rara::{ExpectedDepthDesc, Mode, reference};
+
+const FORMAT: vk::Format = vk::Format::R32G32_SFLOAT;
+
+/// Draws a frame of expected depths on a canvas of their format; returns the whole canvas.
+fn draw(
+    device: &Device,
+    canvas: &Canvas,
+    world: &World,
+    desc: RendererDesc,
+    (clip, settings): (&Clip, &Settings),
+    frame: Frame,
+) -> Vec<[f32; 4]> {
+    let scene = SceneBuffers::upload(device, &world.scene, rara::ShFormat::Float);
+    let scene = scene.expect("uploads");
+    let desc = desc.expected_depth(Some(ExpectedDepthDesc::new(FORMAT)));
+    let mut renderer = Renderer::new(device, desc).expect("a renderer");
+    let configured = renderer.configure(&scene, &world.camera, clip, settings);
+    configured.expect("configures");
+    let frame = Frame {
+        depths: true,
+        ..frame
+    };
+    canvas.draw_frame(&mut renderer, &scene, &frame)
+}
+
+/// A frame of expected depths on a canvas of two channels is the reference's, in every way of drawing the colours.
+#[test]
+fn expected_depths_are_the_references() {
+    let world = World::new();
+    for (mode, planes, op) in [
+        (Mode::None, 0, ClipOp::And),
+        (Mode::Exact, 1, ClipOp::And),
+        (Mode::Exact, 2, ClipOp::Or),
+        (Mode::Rara, 1, ClipOp::And),
+        (Mode::Hard, 1, ClipOp::And),
+    ] {
+        let clip = common::clip(&world.scene, planes, op);
+        let settings = Settings::default().mode(mode);
+        let truth =
+            reference::depth::expected::<f64>(&world.scene, &world.camera, &clip, &settings);
+        with_host(true, |host, device| {
+            let canvas = Canvas::new(&host.lend(), device, CanvasDesc::new(VIEW, FORMAT));
+            for (raster, bindings) in [
+                (Raster::Tiles, Bindings::Bound),
+                (Raster::Quad, Bindings::Address),
+            ] {
+                let desc = RendererDesc::new(FLOATS).bindings(bindings);
+                let look = (&clip, &settings.raster(raster));
+                let pixels = draw(device, &canvas, &world, desc, look, Frame::new(VIEW));
+                let mut errors: Vec<_> = pixels
+                    .iter()
+                    .zip(&truth)
+                    .filter(|(_, truth)| truth[1] > 0.02)
+                    .map(|(ours, truth)| {
+                        let depth = f64::from(ours[0]) / f64::from(ours[1]);
+                        ((depth - truth[0] / truth[1]) / depth).abs()
+                    })
+                    .collect();
+                errors.sort_by(f64::total_cmp);
+                assert!(errors.len() > 2_000, "{} pixels", errors.len());
+                let most = errors[errors.len() * 998 / 1000];
+                let worst = errors[errors.len() - 1];
+                let what = format!(
+                    "{mode:?}, {planes} planes {op:?}, {raster:?}: {worst:.1e}, {most:.1e} for 99.8 %"
+                );
+                eprintln!("{what}");
+                assert!(most < 2e-4 && worst < 0.02, "{what}");
+            }
+        });
+    }
+}
+
+/// What is left of a big cut splat lies farther away than its centre, and a host's mesh hides depths like colours.
+#[test]
+fn expected_depths_are_behind_the_cut_and_before_the_mesh() {
+    let world = World::new();
+    let map = maps()[2];
+    with_host(true, |host, device| {
+        let mut desc = canvas(&world, map, vk::Format::D32_SFLOAT);
+        desc.color = FORMAT;
+        let depth = depth_desc(&desc, map, false);
+        let canvas = Canvas::new(&host.lend(), device, desc);
+        let desc = RendererDesc::new(FLOATS)
+            .depth(Some(depth))
+            .bindings(Bindings::Bound);
+        let clip = Clip::default();
+        let look = (&clip, &Settings::default());
+        let pixels = draw(device, &canvas, &world, desc, look, frame(None));
+        let depths = part(&pixels);
+        let (rect, mesh) = world.meshes[1];
+        let middle = (rect.offset.y + 20) as u32 * VIEW.0 + rect.offset.x as u32 + 60;
+        let whole = reference::depth::expected::<f64>(
+            &world.before(mesh),
+            &world.camera,
+            &clip,
+            &Settings::default(),
+        );
+        for at in (middle..middle + 20).map(|at| at as usize) {
+            let ([sum, alpha, ..], truth) = (depths.pixels[at], whole[at]);
+            assert!(
+                (f64::from(sum) - truth[0]).abs() < 2e-3 * truth[0],
+                "{sum} {truth:?}"
+            );
+            assert!(
+                (f64::from(alpha) - truth[1]).abs() < 2e-3,
+                "{alpha} {truth:?}"
+            );
+        }
+    });
+}

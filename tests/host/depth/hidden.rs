@@ -1,0 +1,120 @@
+//! Splats behind an opaque mesh are hidden, on ordinary and reversed depth, in few bits and many, in every way of drawing.
+
+use super::*;
+use crate::canvas::with_host;
+use rara::gpu::Bindings;
+
+#[test]
+fn meshes_hide_the_splats_behind_them_on_ordinary_and_reversed_depth() {
+    let world = World::new();
+    let truth = world.truth();
+    with_host(true, |host, device| {
+        for map in maps() {
+            let desc = canvas(&world, map, vk::Format::D32_SFLOAT);
+            let depth = depth_desc(&desc, map, true);
+            let canvas = Canvas::new(&host.lend(), device, desc);
+            for (raster, bindings) in common::rasters(device)
+                .into_iter()
+                .flat_map(|raster| [(raster, Bindings::Bound), (raster, Bindings::Address)])
+            {
+                let desc = RendererDesc::new(FLOATS)
+                    .depth(Some(depth))
+                    .bindings(bindings);
+                let (picture, path) = draw(device, &canvas, &world, desc, raster);
+                let asked = match raster {
+                    Raster::Tiles => "tiles",
+                    Raster::Mesh => "mesh",
+                    _ => "quad",
+                };
+                assert_eq!(path, asked);
+                let worst = apart(&picture, &truth, 0.0);
+                assert!(
+                    worst < 1.0,
+                    "{map:?}, {raster:?}, {bindings:?}: {worst}/255"
+                );
+            }
+        }
+    });
+}
+
+/// Depths that a buffer rounds: a splat may lie on a mesh's own step, and then counts as before it in every way of
+/// drawing.
+#[test]
+fn depths_in_few_bits_hide_the_same_splats_in_every_way_of_drawing() {
+    let world = World::new();
+    with_host(true, |host, device| {
+        for format in [
+            vk::Format::D16_UNORM,
+            vk::Format::X8_D24_UNORM_PACK32,
+            vk::Format::D24_UNORM_S8_UINT,
+            vk::Format::D32_SFLOAT_S8_UINT,
+        ] {
+            let needed = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT
+                | vk::FormatFeatureFlags::TRANSFER_SRC;
+            if !device.format_features(format).contains(needed) {
+                continue;
+            }
+            for map in [maps()[0], maps()[2]] {
+                let desc = canvas(&world, map, format);
+                let depth = depth_desc(&desc, map, true);
+                let canvas = Canvas::new(&host.lend(), device, desc);
+                let desc = RendererDesc::new(FLOATS)
+                    .depth(Some(depth))
+                    .bindings(Bindings::Bound);
+                let (quads, _) = draw(device, &canvas, &world, desc, Raster::Quad);
+                let (tiles, path) = draw(device, &canvas, &world, desc, Raster::Tiles);
+                assert_eq!(path, "tiles");
+                let worst = apart(&quads, &tiles, 0.0);
+                eprintln!("{format:?}, {map:?}: {worst}/255");
+                assert!(worst < 1.0, "{format:?}, {map:?}: {worst}/255");
+            }
+        }
+    });
+}
+
+/// A depth image that is not under the picture hides nothing, and nothing beside its copy is read.
+#[test]
+fn a_depth_image_beside_the_picture_hides_nothing() {
+    let world = World::new();
+    let mut headless = common::headless();
+    headless.load(&world.scene).expect("uploads");
+    let settings = Settings::default().raster(Raster::Tiles);
+    let drawn = headless.render(&world.camera, &world.clip, &settings);
+    drawn.expect("renders");
+    let truth = headless.picture().expect("reads back");
+    with_host(true, |host, device| {
+        for map in maps() {
+            let desc = canvas(&world, map, vk::Format::D32_SFLOAT);
+            let depth = depth_desc(&desc, map, true);
+            let canvas = Canvas::new(&host.lend(), device, desc);
+            let desc = RendererDesc::new(FLOATS)
+                .depth(Some(depth))
+                .bindings(Bindings::Bound);
+            let mut beside = canvas.depth_image(ORIGIN.0, ORIGIN.1);
+            beside.origin.x += 5_000;
+            let tiles = Raster::Tiles;
+            let (picture, _) = draw_behind(device, &canvas, &world, desc, tiles, Some(beside));
+            let worst = apart(&picture, &truth, 0.0);
+            assert!(worst < 1.0, "{map:?}: {worst}/255");
+        }
+    });
+}
+
+#[test]
+fn tiles_that_cannot_see_the_hosts_depth_are_quads() {
+    let world = World::new();
+    let truth = world.truth();
+    let map = maps()[1];
+    with_host(false, |host, device| {
+        let desc = canvas(&world, map, vk::Format::D32_SFLOAT);
+        let depth = depth_desc(&desc, map, false);
+        let canvas = Canvas::new(&host.lend(), device, desc);
+        let desc = RendererDesc::new(FLOATS).depth(Some(depth));
+        for raster in [Raster::Tiles, Raster::Auto] {
+            let (picture, path) = draw(device, &canvas, &world, desc, raster);
+            assert_eq!(path, "quad", "{raster:?}");
+            let worst = apart(&picture, &truth, 0.0);
+            assert!(worst < 1.0, "{raster:?}: {worst}/255");
+        }
+    });
+}

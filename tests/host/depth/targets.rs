@@ -1,0 +1,112 @@
+//! Classic render passes and targets of several samples show the same picture; impossible targets are refused.
+
+use super::*;
+use crate::canvas::with_host;
+use rara::gpu::{Bindings, Target};
+
+#[test]
+fn a_classic_render_pass_shows_the_same_picture() {
+    let world = World::new();
+    let map = maps()[1];
+    with_host(true, |host, device| {
+        let with_depth = [vk::Format::D32_SFLOAT, vk::Format::UNDEFINED];
+        for (format, raster) in with_depth.into_iter().flat_map(|format| {
+            common::rasters(device)
+                .into_iter()
+                .map(move |raster| (format, raster))
+        }) {
+            let [dynamic, classic] = [false, true].map(|render_pass| {
+                let mut desc = canvas(&world, map, format);
+                desc.render_pass = render_pass;
+                let tested = format != vk::Format::UNDEFINED;
+                let depth = tested.then(|| depth_desc(&desc, map, true));
+                let canvas = Canvas::new(&host.lend(), device, desc);
+                let target = if render_pass {
+                    // SAFETY: the canvas has the pass until its end.
+                    unsafe { Target::render_pass(canvas.render_pass(), 0) }
+                } else {
+                    Target::DYNAMIC
+                };
+                let desc = RendererDesc::new(FLOATS)
+                    .depth(depth)
+                    .target(target)
+                    .bindings(Bindings::Bound);
+                draw(device, &canvas, &world, desc, raster).0
+            });
+            assert!(dynamic.pixels.iter().any(|pixel| pixel[3] > 0.5));
+            assert!(dynamic == classic, "{format:?}, {raster:?}: the same bytes");
+        }
+    });
+}
+
+/// With several samples only a splat's outline, where its alpha is 1/255, differs.
+#[test]
+fn targets_of_several_samples_resolve_to_the_same_picture() {
+    let world = World::new();
+    let truth = world.truth();
+    let map = maps()[1];
+    let samples = vk::SampleCountFlags::TYPE_4;
+    with_host(true, |host, device| {
+        let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT;
+        if !device.sample_counts(FLOATS, usage).contains(samples) {
+            eprintln!("SKIPPED: no {FLOATS:?} of four samples on this device");
+            return;
+        }
+        let mut desc = canvas(&world, map, vk::Format::D32_SFLOAT);
+        desc.samples = samples;
+        let depth = depth_desc(&desc, map, false);
+        let canvas = Canvas::new(&host.lend(), device, desc);
+        let desc = RendererDesc::new(FLOATS)
+            .depth(Some(depth))
+            .samples(samples)
+            .bindings(Bindings::Bound);
+        for raster in common::rasters(device) {
+            let (picture, _) = draw(device, &canvas, &world, desc, raster);
+            let (worst, most) = (apart(&picture, &truth, 0.0), apart(&picture, &truth, 0.01));
+            eprintln!("{raster:?}: {worst}/255, {most}/255 for 99 %");
+            assert!(
+                worst < 8.0 && most < 1.0,
+                "{raster:?}: {worst}/255, {most}/255 for 99 %"
+            );
+        }
+    });
+}
+
+#[test]
+fn what_a_device_cannot_draw_into_is_refused_with_a_reason() {
+    with_host(true, |_, device| {
+        let refused = |desc: RendererDesc| {
+            let error = Renderer::new(device, desc).expect_err("refused");
+            error.to_string()
+        };
+        let samples = vk::SampleCountFlags::TYPE_64;
+        let usual = RendererDesc::new(vk::Format::R8G8B8A8_UNORM);
+        let text = refused(usual.samples(samples));
+        assert!(
+            text.contains("TYPE_64") && text.contains("one sample"),
+            "{text}"
+        );
+        let samples = vk::SampleCountFlags::TYPE_1 | vk::SampleCountFlags::TYPE_4;
+        let text = refused(usual.samples(samples));
+        assert!(text.contains("samples"), "{text}");
+        let depth = DepthDesc::new(vk::Format::R8G8B8A8_UNORM, maps()[0]);
+        let text = refused(usual.depth(Some(depth)));
+        assert!(text.contains("no depth"), "{text}");
+    });
+}
+
+#[test]
+fn a_promised_depth_that_is_not_given_is_refused() {
+    let headless = common::headless();
+    let device = headless.device();
+    let depth = DepthDesc::new(vk::Format::D32_SFLOAT, maps()[0]).readable(true);
+    let desc = RendererDesc::new(FLOATS).depth(Some(depth));
+    let world = World::new();
+    let format = rara::ShFormat::Float;
+    let scene = SceneBuffers::upload(device, &world.scene, format).expect("uploads");
+    let mut renderer = Renderer::new(device, desc).expect("a renderer");
+    // SAFETY: refused before anything is recorded.
+    let refused = unsafe { renderer.prepare(vk::CommandBuffer::null(), &scene) };
+    let text = refused.unwrap_err().to_string();
+    assert!(text.contains("prepare_behind takes it"), "{text}");
+}

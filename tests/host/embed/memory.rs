@@ -1,0 +1,63 @@
+//! The renderer's memory while frames are in flight: it grows, is freed, and a frame may have too little of it.
+
+use super::*;
+
+#[test]
+fn memory_that_a_frame_outgrows_is_freed_when_no_frame_can_use_it() {
+    let scene = scene();
+    let frames = frames(&scene);
+    let desc = in_flight(BYTES, Bindings::Address);
+    let host = host(BYTES, VIEW, true);
+    let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
+    let mut used = Vec::new();
+    // The first frame needs no room for cut splats, all after it do.
+    for index in [0, 1, 1, 1] {
+        engine.wait();
+        engine.configure(&frames[index]);
+        used.push(engine.device.device_bytes());
+        engine.record(vk::Offset2D::default());
+    }
+    assert!(
+        used[1] > used[2],
+        "the first frame was done before the third: {used:?}"
+    );
+    assert_eq!(used[2], used[3], "{used:?}");
+    engine.wait_for_all();
+    engine.close();
+}
+
+/// A first frame has no room for all of its pairs of tile and splat: it is drawn as quads, with the same picture, and the
+/// next frame after the host has waited for it has the room.
+#[test]
+fn a_frame_without_room_for_its_tiles_is_drawn_as_quads() {
+    let mut scene = generate(Kind::General, 1_000, 5);
+    let size = rara::scene::Bounds::of(&scene).radius() as f32;
+    for scale in scene.scales_mut() {
+        *scale = glam::Vec3::splat(size);
+    }
+    for opacity in scene.opacities_mut() {
+        *opacity = 0.02; // so that no pixel is saturated before the last
+    }
+    let (camera, clip, settings) = frames(&scene).swap_remove(1);
+    let truth = rara::reference::render::<f64>(&scene, &camera, &clip, &settings).picture;
+    let desc = in_flight(FLOATS, Bindings::Bound);
+    let host = host(FLOATS, VIEW, true);
+    let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
+    let expected = expected(&engine.host, &truth, 0);
+    let shown = (camera, clip, settings.raster(Raster::Tiles));
+    for frame in 0..2 * FRAMES {
+        if let Some(pixels) = engine.wait() {
+            assert!(
+                engine.renderer.fell_back(),
+                "frame {frame} reports one that had no room"
+            );
+            assert_shows(&format!("frame {frame}"), FLOATS, &pixels, &expected);
+        }
+        engine.configure(&shown);
+        engine.record(vk::Offset2D::default());
+    }
+    let pixels = engine.wait_for_all();
+    assert_shows("the last frame", FLOATS, &pixels, &expected);
+    assert!(!engine.renderer.fell_back());
+    engine.close();
+}

@@ -1,21 +1,24 @@
 //! A small engine that knows nothing of splats: its own instance, device, queue and targets, two frames in flight. It
 //! paints stripes of its own into its targets, so that what draws afterwards draws onto something.
 
+#[path = "slot.rs"]
+mod slot;
 #[path = "validation.rs"]
 pub(crate) mod validation;
 
 use rara::ash::{Device, Entry, Instance, vk};
 use rara::gpu::{self, AdoptDesc, Support};
 use rara::{Error, Result};
+use slot::Slot;
 use validation::{Messages, Messenger};
 
 /// Frames that the host records before it waits for the oldest.
 pub(crate) const FRAMES: usize = 2;
 
-/// What its instance is created for.
+/// The version of Vulkan that its instance is created for.
 const VERSION: u32 = vk::API_VERSION_1_3;
 
-/// What a host is created with.
+/// A description of a host.
 pub(crate) struct HostDesc<'a> {
     /// Part of the device's name; `None` is the first that can draw splats.
     pub(crate) device: Option<&'a str>,
@@ -47,25 +50,8 @@ pub(crate) struct Host {
     _entry: Entry,
 }
 
-/// The part of the host that each frame in flight has to itself.
-struct Slot {
-    pool: vk::CommandPool,
-    cmd: vk::CommandBuffer,
-    fence: vk::Fence,
-    image: vk::Image,
-    image_memory: vk::DeviceMemory,
-    view: vk::ImageView,
-    readback: vk::Buffer,
-    readback_memory: vk::DeviceMemory,
-}
-
-const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
-    aspect_mask: vk::ImageAspectFlags::COLOR,
-    base_mip_level: 0,
-    level_count: 1,
-    base_array_layer: 0,
-    layer_count: 1,
-};
+/// Width of the host's stripes, px.
+const STRIPE: u32 = 16;
 
 impl Host {
     pub(crate) fn new(desc: &HostDesc<'_>) -> Result<Self> {
@@ -77,23 +63,8 @@ impl Host {
             let (instance, messenger) =
                 validation::instance(&entry, VERSION, desc.validation, &messages)?;
 
-            // What rara needs of a device is known before there is one, and goes into the host's own creation.
-            let wanted = |physical: &vk::PhysicalDevice| {
-                let properties = instance.get_physical_device_properties(*physical);
-                let name = properties.device_name_as_c_str().unwrap_or(c"?");
-                let part = desc.device.unwrap_or_default().to_lowercase();
-                name.to_string_lossy().to_lowercase().contains(&part)
-            };
-            let devices = instance
-                .enumerate_physical_devices()
-                .map_err(Error::vulkan("vkEnumeratePhysicalDevices"))?;
-            let (physical_device, mut support) = devices
-                .into_iter()
-                .filter(wanted)
-                .find_map(|physical| {
-                    Some((physical, gpu::check(&instance, physical, VERSION).ok()?))
-                })
-                .ok_or_else(|| Error::Device("no device can draw splats".into()))?;
+            let (physical_device, mut support) =
+                choose(&instance, VERSION, desc.device.unwrap_or_default())?;
             support.mesh_shader &= desc.optional;
             support.push_descriptor &= desc.optional;
             let extensions: Vec<_> = support.extensions().iter().map(|e| e.as_ptr()).collect();
@@ -133,7 +104,7 @@ impl Host {
         }
     }
 
-    /// What [`rara::gpu::Device::adopt`] needs. The host must outlive whatever is made from it.
+    /// The handles that [`rara::gpu::Device::adopt`] needs. The host must outlive whatever is made from it.
     pub(crate) fn lend(&self) -> AdoptDesc {
         AdoptDesc::new(
             VERSION,
@@ -240,7 +211,7 @@ impl Host {
         }
     }
 
-    /// What the host itself paints into column `x`: opaque, and exact in 8 bits and in half precision.
+    /// The colour that the host itself paints into column `x`: opaque, and exact in 8 bits and in half precision.
     pub(crate) fn backdrop(&self, x: u32) -> [f32; 4] {
         let step = (x / STRIPE % 6) as f32;
         [0.2 * step, 1.0 - 0.2 * step, 0.4, 1.0].map(|v| (v * 255.0).round() / 255.0)
@@ -325,189 +296,33 @@ impl Host {
         }
         std::mem::take(&mut self.messages.lock().expect("no holder panics"))
     }
-
-    fn picture_of(&self, frame: usize) -> Result<Vec<[f32; 4]>> {
-        let slot = &self.slots[frame % FRAMES];
-        let bytes = self.readback_size() as usize;
-        // SAFETY: the fence belongs to the frame's submission, after which the mapped memory is complete; it is mapped
-        // nowhere else, and holds at least so many bytes.
-        let data = unsafe {
-            self.device
-                .wait_for_fences(&[slot.fence], true, u64::MAX)
-                .map_err(Error::vulkan("vkWaitForFences"))?;
-            let flags = vk::MemoryMapFlags::empty();
-            let at = self
-                .device
-                .map_memory(slot.readback_memory, 0, vk::WHOLE_SIZE, flags)
-                .map_err(Error::vulkan("vkMapMemory"))?;
-            let data = std::slice::from_raw_parts(at.cast::<u8>(), bytes).to_vec();
-            self.device.unmap_memory(slot.readback_memory);
-            data
-        };
-        let pixels = data.chunks_exact(self.pixel_size());
-        let channel = |pixel: &[u8], i: usize| match self.pixel_size() {
-            4 => f32::from(pixel[i]) / 255.0,
-            8 => half(u16::from_le_bytes([pixel[2 * i], pixel[2 * i + 1]])),
-            _ => f32::from_le_bytes(pixel[4 * i..][..4].try_into().expect("four bytes")),
-        };
-        Ok(pixels
-            .map(|pixel| [0, 1, 2, 3].map(|i| channel(pixel, i)))
-            .collect())
-    }
-
-    fn pixel_size(&self) -> usize {
-        match self.format {
-            vk::Format::R8G8B8A8_UNORM => 4,
-            vk::Format::R16G16B16A16_SFLOAT => 8,
-            vk::Format::R32G32B32A32_SFLOAT => 16,
-            other => panic!("this host has no targets of format {other:?}"),
-        }
-    }
-
-    fn readback_size(&self) -> u64 {
-        u64::from(self.extent.width) * u64::from(self.extent.height) * self.pixel_size() as u64
-    }
-
-    /// # Safety
-    /// The host's device is alive.
-    unsafe fn slot(&self) -> Result<Slot> {
-        let device = &self.device;
-        // SAFETY: the caller vouches for the device; everything else is made here.
-        unsafe {
-            let info =
-                vk::CommandPoolCreateInfo::default().queue_family_index(self.support.queue_family);
-            let pool = device
-                .create_command_pool(&info, None)
-                .map_err(Error::vulkan("vkCreateCommandPool"))?;
-            let info = vk::CommandBufferAllocateInfo::default()
-                .command_pool(pool)
-                .command_buffer_count(1);
-            let cmd = device
-                .allocate_command_buffers(&info)
-                .map_err(Error::vulkan("vkAllocateCommandBuffers"))?[0];
-            let fence = device
-                .create_fence(&vk::FenceCreateInfo::default(), None)
-                .map_err(Error::vulkan("vkCreateFence"))?;
-
-            let info = vk::ImageCreateInfo::default()
-                .image_type(vk::ImageType::TYPE_2D)
-                .format(self.format)
-                .extent(self.extent.into())
-                .mip_levels(1)
-                .array_layers(1)
-                .samples(vk::SampleCountFlags::TYPE_1)
-                .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC);
-            let image = device
-                .create_image(&info, None)
-                .map_err(Error::vulkan("vkCreateImage"))?;
-            let image_memory = self.memory(
-                device.get_image_memory_requirements(image),
-                vk::MemoryPropertyFlags::DEVICE_LOCAL,
-            )?;
-            device
-                .bind_image_memory(image, image_memory, 0)
-                .map_err(Error::vulkan("vkBindImageMemory"))?;
-            let info = vk::ImageViewCreateInfo::default()
-                .image(image)
-                .view_type(vk::ImageViewType::TYPE_2D)
-                .format(self.format)
-                .subresource_range(WHOLE);
-            let view = device
-                .create_image_view(&info, None)
-                .map_err(Error::vulkan("vkCreateImageView"))?;
-
-            let info = vk::BufferCreateInfo::default()
-                .size(self.readback_size())
-                .usage(vk::BufferUsageFlags::TRANSFER_DST);
-            let readback = device
-                .create_buffer(&info, None)
-                .map_err(Error::vulkan("vkCreateBuffer"))?;
-            let readback_memory = self.memory(
-                device.get_buffer_memory_requirements(readback),
-                vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT,
-            )?;
-            device
-                .bind_buffer_memory(readback, readback_memory, 0)
-                .map_err(Error::vulkan("vkBindBufferMemory"))?;
-            Ok(Slot {
-                pool,
-                cmd,
-                fence,
-                image,
-                image_memory,
-                view,
-                readback,
-                readback_memory,
-            })
-        }
-    }
-
-    /// # Safety
-    /// The host's device is alive.
-    unsafe fn memory(
-        &self,
-        needs: vk::MemoryRequirements,
-        wanted: vk::MemoryPropertyFlags,
-    ) -> Result<vk::DeviceMemory> {
-        // SAFETY: the caller vouches for the device, and the instance outlives it.
-        unsafe {
-            let offered = self
-                .instance
-                .get_physical_device_memory_properties(self.physical_device);
-            let fits = |(i, memory): (usize, &vk::MemoryType)| {
-                needs.memory_type_bits & (1 << i) != 0 && memory.property_flags.contains(wanted)
-            };
-            let index = offered
-                .memory_types_as_slice()
-                .iter()
-                .enumerate()
-                .position(fits);
-            let info = vk::MemoryAllocateInfo::default()
-                .allocation_size(needs.size)
-                .memory_type_index(index.expect("Vulkan promises such memory") as u32);
-            self.device
-                .allocate_memory(&info, None)
-                .map_err(Error::vulkan("vkAllocateMemory"))
-        }
-    }
-
-    /// Moves the slot's target from one layout and use to another.
-    fn layout(
-        &self,
-        slot: &Slot,
-        (old, before): (vk::ImageLayout, vk::AccessFlags2),
-        (new, after): (vk::ImageLayout, vk::AccessFlags2),
-    ) {
-        let stages = vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT
-            | vk::PipelineStageFlags2::ALL_TRANSFER;
-        let barrier = [vk::ImageMemoryBarrier2::default()
-            .src_stage_mask(stages)
-            .src_access_mask(before)
-            .dst_stage_mask(stages)
-            .dst_access_mask(after)
-            .old_layout(old)
-            .new_layout(new)
-            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .image(slot.image)
-            .subresource_range(WHOLE)];
-        let info = vk::DependencyInfo::default().image_memory_barriers(&barrier);
-        // SAFETY: the slot's command buffer is recording outside rendering.
-        unsafe { self.device.cmd_pipeline_barrier2(slot.cmd, &info) };
-    }
 }
 
-/// Width of the host's stripes, px.
-const STRIPE: u32 = 16;
-
-/// A half-precision number.
-fn half(bits: u16) -> f32 {
-    let sign = if bits >> 15 == 0 { 1.0 } else { -1.0 };
-    let (exponent, mantissa) = (i32::from(bits >> 10 & 31), f32::from(bits & 1023));
-    sign * match exponent {
-        0 => mantissa * 2.0_f32.powi(-24),
-        31 if mantissa == 0.0 => f32::INFINITY,
-        31 => f32::NAN,
-        _ => (1024.0 + mantissa) * 2.0_f32.powi(exponent - 25),
+/// The first device that can draw splats and has this in its name, and what rara needs of it: that is known before the
+/// device is opened, and goes into the host's own creation of it.
+///
+/// # Safety
+/// The instance is alive.
+pub(crate) unsafe fn choose(
+    instance: &Instance,
+    version: u32,
+    part: &str,
+) -> Result<(vk::PhysicalDevice, Support)> {
+    // SAFETY: the caller vouches for the instance, whose own the devices are.
+    unsafe {
+        let wanted = |physical: &vk::PhysicalDevice| {
+            let properties = instance.get_physical_device_properties(*physical);
+            let name = properties.device_name_as_c_str().unwrap_or(c"?");
+            let name = name.to_string_lossy().to_lowercase();
+            name.contains(&part.to_lowercase())
+        };
+        let devices = instance
+            .enumerate_physical_devices()
+            .map_err(Error::vulkan("vkEnumeratePhysicalDevices"))?;
+        devices
+            .into_iter()
+            .filter(wanted)
+            .find_map(|physical| Some((physical, gpu::check(instance, physical, version).ok()?)))
+            .ok_or_else(|| Error::Device("no device can draw splats".into()))
     }
 }

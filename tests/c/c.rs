@@ -13,3 +13,4 @@ mod calls;
 mod cpp_host;
 mod frames;
 mod header;
+mod results;

@@ -15,20 +15,28 @@ pub use frame::Frame;
 use image::Image;
 use pixels::decoded;
 
-/// Runs a test with a host and its device, under validation; `optional` enables the device's optional features.
-pub fn with_host(optional: bool, test: impl FnOnce(&Host, &Device)) {
+/// The example's host with the device under test, under validation; `optional` enables the device's optional features.
+pub fn open_host(format: vk::Format, extent: vk::Extent2D, optional: bool) -> Host {
     let device = std::env::var("RARA_TEST_DEVICE").ok();
     let host = Host::new(&HostDesc {
         device: device.as_deref(),
         validation: true,
         optional,
-        extent: vk::Extent2D {
-            width: 1,
-            height: 1,
-        },
-        format: vk::Format::R8G8B8A8_UNORM,
+        extent,
+        format,
     });
-    let host = host.expect("a Vulkan device and the validation layer (tools/test installs both)");
+    host.expect("a Vulkan device and the validation layer (tools/test installs both)")
+}
+
+/// The size of the targets of a host that draws nothing into them.
+pub const ONE_PIXEL: vk::Extent2D = vk::Extent2D {
+    width: 1,
+    height: 1,
+};
+
+/// Runs a test with a host and its device.
+pub fn with_host(optional: bool, test: impl FnOnce(&Host, &Device)) {
+    let host = open_host(vk::Format::R8G8B8A8_UNORM, ONE_PIXEL, optional);
     // SAFETY: the handles belong together; everything made from the device is dropped in `test`.
     let device = unsafe { Device::adopt(host.lend()) }.expect("the host's device draws splats");
     test(&host, &device);

@@ -25,7 +25,7 @@ fn frames_in_flight_show_the_headless_pictures_over_what_the_host_has_painted() 
         (BYTES, Bindings::Bound),
     ] {
         let desc = in_flight(format, bindings);
-        let host = host(format, VIEW, true);
+        let host = open_host(format, VIEW, true);
         let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
         let check = |host: &Host, pixels: &[[f32; 4]], frame: usize| {
             let expected = expected(host, &truth[frame].0, 0);
@@ -99,7 +99,7 @@ fn a_host_whose_frames_take_over_from_each_other_gets_the_same_pictures() {
         .flat_map(|raster| bindings.iter().map(|bindings| (*raster, *bindings)));
     for (raster, bindings) in ways {
         let desc = in_flight(FLOATS, bindings).reuse(true);
-        let host = host(FLOATS, VIEW, true);
+        let host = open_host(FLOATS, VIEW, true);
         let mut engine = Engine::new(host, &scene, ShFormat::Float, desc);
         let check = |host: &Host, pixels: &[[f32; 4]], frame: usize| {
             let what = format!("{raster:?}, {bindings:?}, frame {frame}");
@@ -129,7 +129,7 @@ fn settings_of_the_next_frame_leave_the_prepared_one_alone() {
     let scene = scene();
     let shown = frames(&scene).swap_remove(1);
     let desc = in_flight(FLOATS, Bindings::Bound);
-    let host = host(FLOATS, VIEW, true);
+    let host = open_host(FLOATS, VIEW, true);
     let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
     let moved = rara::Placement::new(glam::DVec3::X, glam::DQuat::IDENTITY, 2.0).expect("finite");
     let mut pictures = Vec::new();
@@ -161,7 +161,7 @@ fn an_empty_scene_records_nothing() {
     let scene = Gaussians::default();
     let frame = frames(&super::scene()).swap_remove(1);
     let desc = in_flight(BYTES, Bindings::Address);
-    let host = host(BYTES, VIEW, true);
+    let host = open_host(BYTES, VIEW, true);
     let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
     for _ in 0..3 {
         engine.wait();

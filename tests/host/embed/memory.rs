@@ -7,7 +7,7 @@ fn memory_that_a_frame_outgrows_is_freed_when_no_frame_can_use_it() {
     let scene = scene();
     let frames = frames(&scene);
     let desc = in_flight(BYTES, Bindings::Address);
-    let host = host(BYTES, VIEW, true);
+    let host = open_host(BYTES, VIEW, true);
     let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
     let mut used = Vec::new();
     // The first frame needs no room for cut splats, all after it do.
@@ -41,7 +41,7 @@ fn a_frame_without_room_for_its_tiles_is_drawn_as_quads() {
     let (camera, clip, settings) = frames(&scene).swap_remove(1);
     let truth = rara::reference::render::<f64>(&scene, &camera, &clip, &settings).picture;
     let desc = in_flight(FLOATS, Bindings::Bound);
-    let host = host(FLOATS, VIEW, true);
+    let host = open_host(FLOATS, VIEW, true);
     let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
     let expected = expected(&engine.host, &truth, 0);
     let shown = (camera, clip, settings.raster(Raster::Tiles));

@@ -6,8 +6,9 @@ mod memory;
 mod refused;
 mod viewport;
 
+use crate::canvas::open_host;
 use crate::common;
-use crate::host::{FRAMES, Host, HostDesc};
+use crate::host::{FRAMES, Host};
 use rara::ash::vk;
 use rara::gpu::{Bindings, Device};
 use rara::scene::{Kind, generate};
@@ -24,18 +25,6 @@ const VIEW: vk::Extent2D = vk::Extent2D {
     width: 189,
     height: 131,
 };
-
-fn host(format: vk::Format, extent: vk::Extent2D, optional: bool) -> Host {
-    let device = std::env::var("RARA_TEST_DEVICE").ok();
-    let host = Host::new(&HostDesc {
-        device: device.as_deref(),
-        validation: true,
-        optional,
-        extent,
-        format,
-    });
-    host.expect("a Vulkan device and the validation layer (tools/test installs both)")
-}
 
 fn adopt(host: &Host) -> Device {
     // SAFETY: the handles belong together; every test drops what it makes before it closes the host.

@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn what_there_cannot_be_is_refused_with_a_reason() {
-    let host = host(BYTES, VIEW, true);
+    let host = open_host(BYTES, VIEW, true);
     let device = adopt(&host);
     let depth = |format, stencil, readable| {
         let map = rara::DepthMap::ordinary(0.1, 10.0).expect("a map");

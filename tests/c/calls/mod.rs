@@ -1,40 +1,25 @@
 //! The functions of `rara.h` on a device: whatever a host does wrong there has a message, and so has a lost device.
-//! `tests/c/cpp_host.rs` and `tests/c/frames.rs` draw what a host does right.
+//! `tests/c/cpp_host.rs` and `tests/c/frames` draw what a host does right.
 
-use std::ffi::{CStr, c_char, c_void};
+mod layers;
+mod lost;
+
+use std::ffi::{CStr, c_void};
 use std::ptr::{null, null_mut};
-use std::sync::OnceLock;
 
-use crate::host::{Host, HostDesc};
+use crate::canvas::{ONE_PIXEL, open_host};
+use crate::host::Host;
+use crate::results::{assert_fails, assert_ok};
 use rara::ash::{Entry, vk};
 use rara_c::boundary::*;
 use rara_c::camera::*;
 use rara_c::clip::*;
 use rara_c::depth::*;
 use rara_c::device::*;
-use rara_c::layer::*;
 use rara_c::renderer::*;
 use rara_c::scene::*;
 use rara_c::stats::*;
 use rara_c::support::*;
-
-#[track_caller]
-fn assert_fails(result: RaraResult, code: RaraResult, part: &str) {
-    // SAFETY: a string of this thread, which is used before its next call.
-    let message = unsafe { CStr::from_ptr(rara_last_error_message()) };
-    let message = message.to_str().expect("UTF-8");
-    assert!(
-        result == code && message.contains(part),
-        "{result}: {message}"
-    );
-}
-
-#[track_caller]
-fn assert_ok(result: RaraResult) {
-    if result != RARA_OK {
-        assert_fails(result, RARA_OK, "");
-    }
-}
 
 const FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
@@ -47,20 +32,7 @@ property float rot_0\nproperty float rot_1\nproperty float rot_2\nproperty float
 0 0 0 1 1 1 2 -1 -1 -1 1 0 0 0\n";
 
 fn host() -> Host {
-    let name = std::env::var("RARA_TEST_DEVICE").ok();
-    let extent = vk::Extent2D {
-        width: 1,
-        height: 1,
-    };
-    let desc = HostDesc {
-        device: name.as_deref(),
-        validation: true,
-        optional: false,
-        extent,
-        format: FORMAT,
-    };
-    let host = Host::new(&desc);
-    host.expect("a Vulkan device and the validation layer (tools/test installs both)")
+    open_host(FORMAT, ONE_PIXEL, false)
 }
 
 #[test]
@@ -139,7 +111,7 @@ fn what_is_wrong_is_said() {
             rara_scene_buffers_upload(device, gaussians, RARA_SH_FORMAT_FLOAT, &mut scene);
         assert_ok(uploaded);
         assert!(rara_scene_buffers_bytes(scene) > 0);
-        what_is_wrong_with_layers_is_said(device, gaussians, scene);
+        layers::what_is_wrong_is_said(device, gaussians, scene);
         let mut camera: RaraCamera = std::mem::zeroed();
         let up = [0.0, -1.0, 0.0];
         assert_ok(rara_camera_frame(
@@ -220,185 +192,6 @@ fn what_is_wrong_is_said() {
         rara_renderer_destroy(second);
         rara_renderer_destroy(renderer);
         rara_scene_buffers_destroy(scene);
-        assert_eq!(
-            rara_device_bytes(device),
-            0,
-            "everything allocated was freed"
-        );
-        rara_device_destroy(device);
-    }
-    assert_eq!(host.close(), Vec::<String>::new());
-}
-
-/// # Safety
-/// The handles are alive, and nobody else uses them; the scene is of one layer.
-unsafe fn what_is_wrong_with_layers_is_said(
-    device: *mut RaraDevice,
-    gaussians: *mut RaraGaussians,
-    scene: *mut RaraSceneBuffers,
-) {
-    let format = RARA_SH_FORMAT_FLOAT;
-    // SAFETY: the caller's promises; every pointer below is alive, null, or to be overwritten.
-    unsafe {
-        let mut layer: RaraLayer = std::mem::zeroed();
-        let size = size_of_val(&layer);
-        let filled = rara_layer_default(&mut layer, size, c"mine".as_ptr(), gaussians);
-        assert_ok(filled);
-        let mut other = null_mut();
-        let mut upload = |layers: *const RaraLayer, count, format| {
-            let result =
-                rara_scene_buffers_upload_layers(device, layers, count, format, &mut other);
-            assert!(other.is_null());
-            result
-        };
-        let failed = upload(&layer, 0, format);
-        assert_fails(failed, RARA_ERROR_INVALID, "layer_count is 0");
-        let failed = upload(null(), 1, format);
-        assert_fails(failed, RARA_ERROR_INVALID, "layers is null");
-        let failed = upload(&layer, 1, 4);
-        assert_fails(failed, RARA_ERROR_INVALID, "sh_format 4");
-        let mut state: RaraLayerState = std::mem::zeroed();
-        let size = size_of_val(&state);
-        assert_ok(rara_layer_state_default(&mut state, size));
-        state.opacity = 1.1;
-        layer.state = &state;
-        let failed = upload(&layer, 1, format);
-        let says = "layers[0].state: the opacity of layer 'mine' is 1.1; give 0 to 1";
-        assert_fails(failed, RARA_ERROR_INVALID, says);
-
-        assert_eq!(rara_scene_buffers_layer_count(scene), 1);
-        let mut info: RaraLayerInfo = std::mem::zeroed();
-        let info_size = size_of_val(&info);
-        let result = rara_scene_buffers_layer_info(scene, 0, &mut info, info_size);
-        assert_ok(result);
-        assert_eq!((CStr::from_ptr(info.name), info.count), (c"scene", 1));
-        let beyond = "index is 1, and rara_scene_buffers_layer_count is 1: give less than that";
-        let failed = rara_scene_buffers_layer_info(scene, 1, &mut info, info_size);
-        assert_fails(failed, RARA_ERROR_INVALID, beyond);
-        let failed = rara_scene_buffers_layer_info(scene, 0, &mut info, 3);
-        assert_fails(failed, RARA_ERROR_INVALID, "sizeof(RaraLayerInfo)");
-        let failed = rara_scene_buffers_layer_state(scene, 1, &mut state, size);
-        assert_fails(failed, RARA_ERROR_INVALID, beyond);
-        let failed = rara_scene_buffers_layer_state(scene, 0, null_mut(), size);
-        assert_fails(failed, RARA_ERROR_INVALID, "state is null");
-
-        let set = |index, state: *const RaraLayerState| {
-            rara_scene_buffers_set_layer_state(scene, index, state)
-        };
-        let clip = RaraClip {
-            planes: null(),
-            plane_count: 33,
-            op: RARA_CLIP_OP_AND,
-        };
-        let failed = rara_scene_buffers_set_layer_clip(scene, 0, &clip);
-        assert_fails(failed, RARA_ERROR_INVALID, "clip->plane_count is 33");
-        let failed = rara_scene_buffers_set_layer_clip(scene, 1, null());
-        assert_fails(failed, RARA_ERROR_INVALID, beyond);
-        let failed = set(0, &state);
-        let says = "state: the opacity of layer 'scene' is 1.1; give 0 to 1";
-        assert_fails(failed, RARA_ERROR_INVALID, says);
-        let failed = set(0, null());
-        assert_fails(failed, RARA_ERROR_INVALID, "state is null");
-        state.opacity = 0.5;
-        let failed = set(1, &state);
-        assert_fails(failed, RARA_ERROR_INVALID, beyond);
-        state.placement.rotation = [0.0; 4];
-        let failed = set(0, &state);
-        assert_fails(failed, RARA_ERROR_INVALID, "a rotation that is not zero");
-        state.struct_size = 3;
-        let failed = set(0, &state);
-        assert_fails(failed, RARA_ERROR_INVALID, "state->struct_size is 3");
-        // The state is the one from before.
-        assert_ok(rara_scene_buffers_layer_state(scene, 0, &mut state, size));
-        assert_eq!(state, rara::LayerState::default().into());
-    }
-}
-
-/// The system's functions, which those that lose the device call.
-static REAL: OnceLock<(vk::PFN_vkGetInstanceProcAddr, vk::PFN_vkGetDeviceProcAddr)> =
-    OnceLock::new();
-
-/// # Safety
-/// As for vkGetInstanceProcAddr.
-unsafe extern "system" fn instance_function(
-    instance: vk::Instance,
-    name: *const c_char,
-) -> vk::PFN_vkVoidFunction {
-    let (real, _) = REAL.get().expect("set by the test");
-    // SAFETY: the caller's promise; a function's type is known by its name.
-    unsafe {
-        match CStr::from_ptr(name).to_bytes() {
-            b"vkGetDeviceProcAddr" => Some(std::mem::transmute::<
-                vk::PFN_vkGetDeviceProcAddr,
-                unsafe extern "system" fn(),
-            >(device_function)),
-            _ => real(instance, name),
-        }
-    }
-}
-
-/// # Safety
-/// As for vkGetDeviceProcAddr.
-unsafe extern "system" fn device_function(
-    device: vk::Device,
-    name: *const c_char,
-) -> vk::PFN_vkVoidFunction {
-    unsafe extern "system" fn lost(
-        _: vk::Queue,
-        _: u32,
-        _: *const vk::SubmitInfo2<'_>,
-        _: vk::Fence,
-    ) -> vk::Result {
-        vk::Result::ERROR_DEVICE_LOST
-    }
-    let (_, real) = REAL.get().expect("set by the test");
-    // SAFETY: as above.
-    unsafe {
-        match CStr::from_ptr(name).to_bytes() {
-            b"vkQueueSubmit2" | b"vkQueueSubmit2KHR" => Some(std::mem::transmute::<
-                vk::PFN_vkQueueSubmit2,
-                unsafe extern "system" fn(),
-            >(lost)),
-            _ => real(device, name),
-        }
-    }
-}
-
-#[test]
-fn a_lost_device_has_a_code_of_its_own() {
-    let host = host();
-    let ours = host.lend();
-    // SAFETY: the system's loader; every handle and pointer below is alive, or to be overwritten.
-    unsafe {
-        let entry = Entry::load().expect("a Vulkan loader");
-        let real = (
-            entry.static_fn().get_instance_proc_addr,
-            ours.instance.fp_v1_0().get_device_proc_addr,
-        );
-        REAL.set(real).expect("set once");
-        let mut desc: RaraAdoptDesc = std::mem::zeroed();
-        assert_ok(rara_adopt_desc_default(&mut desc, size_of_val(&desc)));
-        desc.get_instance_proc_addr = Some(instance_function);
-        (desc.instance, desc.physical_device) = (ours.instance.handle(), ours.physical_device);
-        (desc.device, desc.queue) = (ours.device.handle(), ours.queue);
-        desc.queue_family = ours.queue_family;
-        let (mut device, mut gaussians, mut scene) = (null_mut(), null_mut(), null_mut());
-        assert_ok(rara_device_adopt(&desc, &mut device));
-        let (data, size) = (SCENE.as_ptr(), SCENE.len());
-        assert_ok(rara_gaussians_load_from(
-            data,
-            size,
-            c"one".as_ptr(),
-            &mut gaussians,
-        ));
-        let lost = rara_scene_buffers_upload(device, gaussians, RARA_SH_FORMAT_HALF, &mut scene);
-        assert_fails(
-            lost,
-            RARA_ERROR_DEVICE_LOST,
-            "the device was lost (vkQueueSubmit2)",
-        );
-        assert!(scene.is_null());
-        rara_gaussians_destroy(gaussians);
         assert_eq!(
             rara_device_bytes(device),
             0,

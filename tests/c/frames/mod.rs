@@ -1,0 +1,79 @@
+//! Frames through the functions of `rara.h` on the example host's device are those of the Rust interface to the byte: splats
+//! behind what the host has drawn, expected depths, a scene placed in a world, a scene by the host's own staging memory,
+//! layers that are hidden, moved and faded.
+
+mod layers;
+mod ours;
+mod staged;
+mod world;
+
+use std::ptr::null_mut;
+
+use crate::canvas::{Canvas, with_host};
+use crate::folder::Folder;
+use crate::results::assert_ok;
+use ours::{Ours, saved};
+use rara::ash::{Entry, vk};
+use rara::glam::{DQuat, DVec3};
+use rara::gpu::{AdoptDesc, Device};
+use rara::scene::Kind;
+use rara::{Gaussians, Placement, Raster, Scene, SceneBuffers, ShFormat};
+use rara_c::device::*;
+use rara_c::scene::*;
+use world::World;
+
+type Pixels = Vec<[f32; 4]>;
+
+/// Draws with a scene of this many Gaussians, on the example host's device by both interfaces.
+fn with_both(count: usize, test: impl FnOnce(&Gaussians, &AdoptDesc, &Device, &Ours)) {
+    let folder = Folder::new(&format!("c-frames-{count}"));
+    let (path, scene) = saved(&folder, Kind::General, count);
+    with_host(true, |host, device| {
+        // SAFETY: the system's loader; the host outlives what is made here.
+        unsafe {
+            let entry = Entry::load().expect("a Vulkan loader");
+            let lent = host.lend();
+            let ours = Ours::new(&entry, &lent, &path);
+            test(&scene, &lent, device, &ours);
+            rara_gaussians_destroy(ours.gaussians);
+            let bytes = rara_device_bytes(ours.device);
+            assert_eq!(bytes, 0, "all that was allocated was freed");
+            rara_device_destroy(ours.device);
+        }
+    });
+}
+
+#[test]
+fn what_is_behind_a_mesh_and_expected_depths_are_the_same_bytes() {
+    with_both(3_000, |scene, lent, device, ours| {
+        let turn = DQuat::from_xyzw(0.1, -0.2, 0.05, 0.9);
+        let placed = Placement::new(DVec3::new(0.3, -0.1, 0.2), turn, 0.8).expect("possible");
+        let mut seen: Vec<Pixels> = Vec::new();
+        let uploaded = ours.uploaded();
+        for raster in [Raster::Tiles, Raster::Quad] {
+            for (placement, depths) in [
+                (Placement::IDENTITY, false),
+                (placed, false),
+                (placed, true),
+            ] {
+                let world = World {
+                    placement,
+                    depths,
+                    ..World::new(scene, raster)
+                };
+                let what = format!("{raster:?}, {placement:?}, depths: {depths}");
+                let canvas = world.canvas(lent, device);
+                let truth = world.drawn(device, &canvas);
+                // SAFETY: the handles are alive.
+                let drawn = unsafe { world.drawn_in_c(ours.device, &canvas, |_| uploaded) };
+                assert!(drawn == truth, "{what}");
+                let filled = drawn.iter().filter(|pixel| pixel[1] > 0.05).count();
+                assert!(filled > 1_000, "{what}: {filled} pixels");
+                seen.push(drawn);
+            }
+        }
+        assert!(seen[0] != seen[1] && seen[3] != seen[4], "placed elsewhere");
+        // SAFETY: all frames were waited for.
+        unsafe { rara_scene_buffers_destroy(uploaded) };
+    });
+}

@@ -1,0 +1,180 @@
+//! A frame by the Rust interface, and the same frame by `rara.h`.
+
+use super::*;
+use crate::canvas::{CanvasDesc, Frame};
+use rara::gpu::Bindings;
+use rara::scene::Bounds;
+use rara::{
+    Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, Plane, Renderer, RendererDesc,
+    Settings,
+};
+use rara_c::boundary::*;
+use rara_c::camera::*;
+use rara_c::clip::*;
+use rara_c::depth::*;
+use rara_c::placement::*;
+use rara_c::renderer::*;
+use rara_c::settings::*;
+
+const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+const DEPTHS: vk::Format = vk::Format::R32G32_SFLOAT;
+const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
+const VIEW: (u32, u32) = (121, 83);
+const MAP: RaraDepthMap = RaraDepthMap {
+    z_near: 0.05,
+    z_far: f64::INFINITY,
+    reversed: vk::TRUE,
+};
+
+/// A frame that both interfaces draw.
+pub(super) struct World<'a> {
+    /// The Gaussians that the camera looks at.
+    pub(super) scene: &'a Gaussians,
+    /// The layers that are drawn: the scene alone, unless a test adds more.
+    pub(super) layers: Scene<'a>,
+    pub(super) camera: Camera,
+    pub(super) plane: Plane,
+    pub(super) raster: Raster,
+    pub(super) placement: Placement,
+    /// Expected depths are drawn, not colours.
+    pub(super) depths: bool,
+}
+
+impl<'a> World<'a> {
+    pub(super) fn new(scene: &'a Gaussians, raster: Raster) -> Self {
+        let bounds = Bounds::of(scene);
+        let normal = DVec3::new(0.6, 0.0, 0.8);
+        Self {
+            scene,
+            layers: scene.into(),
+            camera: Camera::frame(&bounds, DVec3::NEG_Y, 50.0, VIEW).expect("a view"),
+            plane: Plane::new(normal, 0.1 - normal.dot(bounds.centre())).expect("a normal"),
+            raster,
+            placement: Placement::IDENTITY,
+            depths: false,
+        }
+    }
+
+    /// A canvas with a mesh amid the splats, in the middle of the picture.
+    pub(super) fn canvas(&self, lent: &AdoptDesc, device: &Device) -> Canvas {
+        let mut desc = CanvasDesc::new(VIEW, if self.depths { DEPTHS } else { FLOATS });
+        (desc.depth, desc.far) = (DEPTH, 0.0);
+        let centre = self.placement.to_world(Bounds::of(self.scene).centre());
+        let z = (self.camera.rotation * (centre - self.camera.eye)).z;
+        let rect = vk::Rect2D {
+            offset: vk::Offset2D { x: 41, y: 20 },
+            extent: vk::Extent2D {
+                width: 50,
+                height: 45,
+            },
+        };
+        desc.meshes = vec![(rect, map().at(z) as f32)];
+        Canvas::new(lent, device, desc)
+    }
+
+    /// Draws by the Rust interface.
+    pub(super) fn drawn(&self, device: &Device, canvas: &Canvas) -> Pixels {
+        let desc = RendererDesc::new(FLOATS)
+            .depth(Some(DepthDesc::new(DEPTH, map()).readable(true)))
+            .expected_depth(Some(ExpectedDepthDesc::new(DEPTHS)))
+            .bindings(Bindings::Bound);
+        let scene = SceneBuffers::upload(device, self.layers.clone(), ShFormat::Packed);
+        let scene = scene.expect("uploads");
+        let mut renderer = Renderer::new(device, desc).expect("a renderer");
+        renderer.set_placement(self.placement);
+        let settings = Settings::default().raster(self.raster);
+        let clip = Clip::of([self.plane], ClipOp::And);
+        let configured = renderer.configure(&scene, &self.camera, &clip, &settings);
+        configured.expect("configures");
+        let frame = Frame {
+            behind: Some(canvas.depth_image(0, 0)),
+            depths: self.depths,
+            ..Frame::new(VIEW)
+        };
+        canvas.draw_frame(&mut renderer, &scene, &frame)
+    }
+
+    /// Draws by rara.h the scene that `scene` returns, which may upload it in the frame's own commands.
+    ///
+    /// # Safety
+    /// The device and the scene are alive.
+    pub(super) unsafe fn drawn_in_c(
+        &self,
+        device: *mut RaraDevice,
+        canvas: &Canvas,
+        scene: impl Fn(vk::CommandBuffer) -> *mut RaraSceneBuffers,
+    ) -> Pixels {
+        // SAFETY: the caller's promises; everything below is alive, or to be overwritten.
+        unsafe {
+            let mut depth: RaraDepthDesc = std::mem::zeroed();
+            let size = size_of_val(&depth);
+            assert_ok(rara_depth_desc_default(&mut depth, size, DEPTH, MAP));
+            depth.readable = vk::TRUE;
+            let mut desc: RaraRendererDesc = std::mem::zeroed();
+            let size = size_of_val(&desc);
+            assert_ok(rara_renderer_desc_default(&mut desc, size, FLOATS));
+            (desc.depth, desc.expected_depth_format) = (&depth, DEPTHS);
+            desc.bindings = RARA_BINDINGS_BOUND;
+            let mut renderer = null_mut();
+            assert_ok(rara_renderer_create(device, &desc, &mut renderer));
+            let placement = RaraPlacement::from(self.placement);
+            assert_ok(rara_renderer_set_placement(renderer, &placement));
+            let nowhere = RaraPlacement {
+                scale: 0.0,
+                ..placement
+            };
+            let refused = rara_renderer_set_placement(renderer, &nowhere);
+            assert_eq!(refused, RARA_ERROR_INVALID); // the placement stays as it was
+
+            let mut settings: RaraSettings = std::mem::zeroed();
+            let size = size_of_val(&settings);
+            let preset = RARA_PRESET_BALANCED;
+            assert_ok(rara_settings_default(&mut settings, size, preset));
+            settings.raster = match self.raster {
+                Raster::Tiles => RARA_RASTER_TILES,
+                _ => RARA_RASTER_QUAD,
+            };
+            let plane = RaraPlane {
+                normal: self.plane.normal().into(),
+                offset: self.plane.offset(),
+            };
+            let clip = RaraClip {
+                planes: &plane,
+                plane_count: 1,
+                op: RARA_CLIP_OP_AND,
+            };
+            let camera = RaraCamera::from(self.camera);
+            let shown = canvas.depth_image(0, 0);
+            let shown = RaraDepthImage {
+                image: shown.image,
+                layout: shown.layout,
+                width: shown.extent.width,
+                height: shown.extent.height,
+                layer: shown.layer,
+                x: shown.origin.x,
+                y: shown.origin.y,
+            };
+            let before = |cmd| {
+                let scene = scene(cmd);
+                let configured =
+                    rara_renderer_configure(renderer, scene, &camera, &clip, &settings);
+                assert_ok(configured);
+                assert_ok(rara_renderer_prepare_behind(renderer, cmd, scene, &shown));
+            };
+            let inside = |cmd| {
+                canvas.viewport(cmd, 0, 0, VIEW);
+                assert_ok(match self.depths {
+                    true => rara_renderer_draw_depth(renderer, cmd, 0.0, 0.0),
+                    false => rara_renderer_draw(renderer, cmd, 0.0, 0.0),
+                });
+            };
+            let [pixels, _] = canvas.draw(before, inside);
+            rara_renderer_destroy(renderer);
+            pixels
+        }
+    }
+}
+
+fn map() -> DepthMap {
+    DepthMap::reversed(MAP.z_near, MAP.z_far).expect("0 < near < far")
+}

@@ -11,7 +11,7 @@ const FEATURES: [&str; 5] = ["json", "picture", "ply", "serde", "view"];
 
 pub(super) type List = Punctuated<Meta, Token![,]>;
 
-/// Whether a `cfg` holds where docs.rs builds the documentation.
+/// Says whether a `cfg` holds where docs.rs builds the documentation.
 pub(super) fn holds(meta: &Meta) -> bool {
     let inner = || match meta {
         Meta::List(list) => list.parse_args_with(List::parse_terminated).expect("cfg"),

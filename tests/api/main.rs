@@ -1,5 +1,5 @@
-//! What users of the library can name, read from its source and compared with `tests/api.txt`, so that no change goes
-//! unseen.
+//! The names that users of the library can use, read from its source and compared with `tests/api.txt`, so that no change
+//! goes unseen.
 //!
 //! After an intended change, `RARA_RENEW_API=1 cargo test --test api` writes the list anew; the change's description
 //! explains the difference. The features are those of docs.rs.
@@ -53,7 +53,7 @@ type Place = (String, String);
 struct Library {
     /// The items of each module, by its path.
     modules: BTreeMap<String, Vec<Item>>,
-    /// What each module imports: the name here and the path there, as written.
+    /// The imports of each module: the name here and the path there, as written.
     imports: HashMap<Place, Vec<String>>,
     /// The lines of what is implemented for each type.
     impls: HashMap<Place, Vec<String>>,
@@ -92,7 +92,7 @@ impl Library {
         self.modules.insert(path.to_owned(), kept);
     }
 
-    /// Where the definition is that a module means by `path`; `None` if it is outside of the library.
+    /// The place of the definition that a module means by `path`; `None` if it is outside of the library.
     fn place(&self, module: &str, path: &[String]) -> Option<Place> {
         let (first, rest) = path.split_first()?;
         let inner = |name: &str| format!("{module}::{name}");

@@ -46,7 +46,7 @@ fn compile(compiler: &str, out: PathBuf, library: &[&str]) -> PathBuf {
     out
 }
 
-/// What the host draws; it must report no problem.
+/// The picture that the host draws; it must report no problem.
 fn draw(host: &Path, device: &str, scene: &Path, what: &str) -> Vec<u8> {
     let picture = host.with_extension(format!("{what}.ppm"));
     let output = Command::new(host)

@@ -29,7 +29,7 @@ fn load(file: &Path) -> Value {
     serde_json::from_str(&text).expect("a trace is JSON")
 }
 
-/// What a sum of two times may be off, us.
+/// The error that a sum of two times may have, us.
 const ROUNDING: f64 = 1e-3;
 
 /// Asserts that spans are in order, and each within or after the ones before.

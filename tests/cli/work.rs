@@ -1,4 +1,4 @@
-//! What the commands make: scenes, pictures, documents.
+//! The commands' work: scenes, pictures, documents.
 
 use std::fs;
 

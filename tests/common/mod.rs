@@ -1,4 +1,4 @@
-//! What the tests share: scenes, views around them, planes through them, and a renderer under validation.
+//! Everything that the tests share: scenes, views around them, planes through them, and a renderer under validation.
 #![allow(dead_code, unreachable_pub, reason = "each test binary uses a part")]
 
 pub mod folder;
@@ -84,7 +84,7 @@ fn open(bindings: Bindings, validation: bool) -> Headless {
         .expect("a Vulkan device and the validation layer (tools/test installs both)")
 }
 
-/// Where tools/test has put the decoded scenes, if it found any.
+/// The folder in which tools/test has put the decoded scenes, if it found any.
 fn decoded_scenes() -> Option<PathBuf> {
     std::env::var_os("RARA_SCENES")
         .map(PathBuf::from)
@@ -242,7 +242,7 @@ pub fn assert_agrees(what: &str, ours: &Picture, truth: &Picture) {
     );
 }
 
-/// What 8 bits could show of a picture without rounding: colours beyond white become white.
+/// The picture as 8 bits could show it without rounding: colours beyond white become white.
 fn displayable(picture: &Picture) -> Picture {
     let pixels = picture
         .pixels

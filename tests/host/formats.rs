@@ -8,7 +8,7 @@ use rara::scene::{Kind, generate};
 use rara::{ClipOp, Raster, Renderer, RendererDesc, SceneBuffers, Settings};
 
 const SIZE: (u32, u32) = (189, 131);
-/// What the host has painted before.
+/// The colour that the host has painted before.
 const BACKDROP: [f32; 4] = [0.2, 0.6, 0.4, 1.0];
 
 /// By how much a format may be off, of 255, in the worst pixel and on average. Tiles blend once, which costs half a step;

@@ -7,7 +7,7 @@ use rara::reference::{self, Footprint, Side, View, classify, cutoff, splat};
 use rara::scene::{Kind, generate};
 use rara::{Camera, Clip, ClipOp, Decay, ExactForm, Gaussians, Mode, Plane, Settings, stress};
 
-/// What a pixel may change by when a splat outside the band is treated as cut: half of an 8-bit level.
+/// The most that a pixel may change when a splat outside the band is treated as cut: half of an 8-bit level.
 const HALF_LEVEL: f64 = 0.5 / 255.0;
 
 fn view_from(distance: f64) -> Camera {
@@ -116,7 +116,7 @@ fn needles(count: usize) -> (Gaussians, Camera, Plane) {
     (scene, view_from(12.0), plane)
 }
 
-/// Whether the plane separates points of the splat's contour at alpha = 1/255, found from points of it, without a
+/// Says whether the plane separates points of the splat's contour at alpha = 1/255, found from points of it, without a
 /// formula.
 fn truly_cut(scene: &Gaussians, index: usize, plane: &Plane, sphere: &[DVec3]) -> bool {
     let reach = (2.0 * (255.0 * f64::from(scene.opacities()[index])).max(1.0).ln()).sqrt();

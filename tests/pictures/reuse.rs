@@ -1,4 +1,4 @@
-//! What a frame takes over from the one before is what it would have computed: the bytes are the same, and it says which
+//! A frame takes over from the one before only what it would have computed: the bytes are the same, and it says which
 //! stages it skipped.
 
 use crate::common;

@@ -128,7 +128,7 @@ fn check(stages: &mut Stages, what: &str) -> [usize; 2] {
     [all, ties]
 }
 
-/// Whether each span of `inner` is within one of `outer`.
+/// Says whether each span of `inner` is within one of `outer`.
 fn holds(outer: &[Span], inner: &[Span]) -> bool {
     inner.iter().all(|inner| {
         outer.iter().any(|outer| {

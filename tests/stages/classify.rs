@@ -8,8 +8,8 @@ use rara::{Camera, Clip, ClipOp, Mode, Raster, Settings};
 use crate::frame::{self, SIZES, Stages};
 use crate::ties;
 
-/// What the stages find for each Gaussian, in the device's order; `None` for one of which they do not keep whether it is
-/// culled or invisible: a block only counts these.
+/// The side that the stages find for each Gaussian, in the device's order; `None` for one of which they do not keep
+/// whether it is culled or invisible: a block only counts these.
 pub fn sides(stages: &mut Stages) -> Vec<Option<Side>> {
     let of_blocks: Vec<u32> = stages.read("block_sides");
     let masks: Vec<[[u32; 8]; 2]> = stages.read("masks");

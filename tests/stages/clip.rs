@@ -10,7 +10,7 @@ use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings};
 use crate::frame::{self, SIZES, Stages};
 use crate::ties;
 
-/// What the stage finds for each Gaussian, in the device's order.
+/// The side that the stage finds for each Gaussian, in the device's order.
 pub fn sides(stages: &mut Stages) -> Vec<Side> {
     let of_blocks: Vec<u32> = stages.read("clip_sides");
     let masks: Vec<[[u32; 8]; 2]> = stages.read("clip_masks");

@@ -12,7 +12,7 @@ use rara::{
 use crate::frame::{self, SIZES};
 use crate::layers;
 
-/// What the stage has written of each survivor, and the survivor's number in the scene.
+/// The values that the stage has written of each survivor, and the survivor's number in the scene.
 fn depths<'a>(
     device: &Device,
     renderer: &mut Renderer,
@@ -88,8 +88,8 @@ fn renderer() -> (Device, Renderer) {
     (device, renderer)
 }
 
-/// Where layers are placed depths are in the scene's units: each layer's are those of the layer alone, times its unit, of
-/// powers of two, by which no number is rounded.
+/// Depths of placed layers are in the scene's units: each layer's are those of the layer alone, times its unit. Units
+/// are powers of two, by which no number is rounded.
 #[test]
 fn depths_of_layers_are_in_the_scenes_units() {
     let (device, mut renderer) = renderer();
@@ -157,7 +157,7 @@ fn mean_depths_are_the_twins() {
                 for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.5), (-1.2, -1.2)] {
                     let (dx, dy) = (u / k0, (v - k1 * u / k0) / k2);
                     let [ours, share] = mean(&ours, [dx, dy]);
-                    // Where nearly nothing is left its depth is a quotient of two roundings.
+                    // The depth of nearly nothing is a quotient of two roundings.
                     if share < 0.01 || deviation == 0.0 {
                         continue;
                     }

@@ -99,7 +99,7 @@ fn each_layers_splats_and_records_are_those_of_the_layer_alone() {
                     assert_eq!(record.is_empty(), its_record.is_empty());
                     cut += usize::from(!record.is_empty());
                     if let Some(&[.., flags]) = record.first() {
-                        // Where there are lines of sight or a curve, there is a header, and behind it a record for each
+                        // A record with lines of sight or a curve has a header, and behind it an entry for each
                         // surface.
                         let (flags, is_carried) = (flags as u32, flags as u32 & 0xff == 0);
                         let header = if is_carried { 3.. } else { 0.. };

@@ -1,5 +1,6 @@
-//! What each stage writes on the device is read back and compared with its twin in single precision in `src/reference`:
-//! integers exactly except for ties, which are counted, floats to stated units in the last place.
+//! The buffers that each stage writes on the device are read back and compared with the stage's twin in single
+//! precision in `src/reference`: integers exactly except for ties, which are counted, floats to stated units in the last
+//! place.
 
 #![allow(unreachable_pub, reason = "modules of one test share with each other")]
 

@@ -73,7 +73,7 @@ impl Display {
         this.can_be_drawn_to(folder).then_some(this)
     }
 
-    /// Whether the driver under test supports windows at all; SwiftShader as Chromium ships it does not.
+    /// Says whether the driver under test supports windows at all; SwiftShader as Chromium ships it does not.
     fn can_be_drawn_to(&self, folder: &Path) -> bool {
         if std::env::var_os("RARA_TEST_DEVICE").is_none() {
             return true;

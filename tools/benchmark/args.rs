@@ -29,7 +29,7 @@ each number, and grows with each run. What draws a wrong picture is not timed, a
 status is 1."
 )]
 pub(crate) struct Args {
-    /// What to measure [default: all]; `correct` comes first in any case
+    /// The sections to measure [default: all]; `correct` comes first in any case
     #[arg(value_name = "SECTION", value_enum)]
     sections: Vec<Section>,
     /// Tiny scenes and one round: only whether everything runs

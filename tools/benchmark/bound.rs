@@ -22,7 +22,7 @@ use crate::world::Source;
 /// Bytes that are copied in a measurement, and in a run that only shows that everything runs.
 const MOVED: [u64; 2] = [128 << 20, 1 << 20];
 
-/// What a frame cannot do without.
+/// The work that a frame cannot do without.
 const NEEDS: [&str; 3] = ["bytes moved", "fragments blended", "keys sorted"];
 
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {

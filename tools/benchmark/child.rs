@@ -17,7 +17,7 @@ use crate::args::Args;
 use crate::variant::{MODES, Variant};
 use crate::world::{Source, World};
 
-/// What the child process does.
+/// The work of the child process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Child {
     /// From nothing to the first picture; prints what each step took, milliseconds.

@@ -23,11 +23,11 @@ const FRAMES: [(u32, f64); 6] = [(0, 0.5), (0, 0.5), (0, 0.4), (1, 0.4), (2, 0.3
 #[derive(Debug, Default)]
 pub(crate) struct Wrong(Vec<String>);
 
-/// What is added to a mode's name for frames that make use of those before them.
+/// The word that is added to a mode's name for frames that make use of those before them.
 pub(crate) const KEPT: &str = "kept";
 
 impl Wrong {
-    /// Whether a variant may be timed; prints a note if it may not.
+    /// Says whether a variant may be timed; prints a note if it may not.
     pub(crate) fn allows(&self, name: &str) -> bool {
         let wrong = self.0.iter().any(|wrong| wrong == name);
         if wrong {

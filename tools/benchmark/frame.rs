@@ -7,7 +7,7 @@ use rara::{Camera, Clip, FrameStats, Headless, Result, Settings};
 
 use crate::statistics::Summary;
 
-/// What a frame may make use of.
+/// The results of earlier frames that a frame may make use of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Past {
     /// Whatever the renderer has kept of the frames before.

@@ -31,7 +31,7 @@ use rara::{Error, Headless, Result};
 use report::{Place, Report, say};
 use world::Source;
 
-/// What every section needs.
+/// The state that every section needs.
 struct Bench {
     args: Args,
     report: Report,

@@ -1,4 +1,4 @@
-//! Whether a scene fits. Linux promises memory that it does not have, and ends the process that takes it.
+//! The check that a scene fits. Linux promises memory that it does not have, and ends the process that takes it.
 
 use rara::{Error, Result};
 

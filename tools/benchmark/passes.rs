@@ -1,5 +1,5 @@
-//! What each stage of a frame takes: by Gaussians, picture size, mode and raster path; the camera moves, and every frame is
-//! computed from nothing.
+//! The time of each stage of a frame: by Gaussians, picture size, mode and raster path; the camera moves, and every
+//! frame is computed from nothing.
 
 use rara::{Clip, Error, Headless, Result, Settings};
 

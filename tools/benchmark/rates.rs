@@ -1,4 +1,4 @@
-//! What the device does in a second when it does nothing else: bytes moved, fragments blended.
+//! The work that the device does in a second when it does nothing else: bytes moved, fragments blended.
 
 use std::time::Instant;
 

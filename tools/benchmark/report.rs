@@ -1,4 +1,4 @@
-//! Where numbers go: lines of a CSV and tables on the terminal.
+//! Output of the numbers: lines of a CSV and tables on the terminal.
 
 use std::fs::{File, OpenOptions, create_dir_all};
 use std::io::Write as _;
@@ -13,7 +13,7 @@ use crate::statistics::Summary;
 const COLUMNS: &str =
     "date,commit,device,driver,section,scene,gaussians,size,variant,pass,unit,n,min,median,p90";
 
-/// What a number is about.
+/// The subject of a number.
 #[derive(Debug, Clone)]
 pub(crate) struct Place {
     pub(crate) section: Section,
@@ -99,7 +99,7 @@ fn open(folder: &Path) -> Result<(PathBuf, File)> {
     Ok((path, file))
 }
 
-/// What a command prints.
+/// The text that a command prints.
 fn said(command: &mut Command) -> String {
     let output = command
         .output()

@@ -19,7 +19,7 @@ use crate::table::{Table, spread};
 use crate::turns::in_turn;
 use crate::world::Source;
 
-/// Whether the driver finds shaders that it has compiled before.
+/// The two kinds of a start: the driver finds shaders that it has compiled before, or it finds none.
 const VARIANTS: [&str; 2] = ["known shaders", "new shaders"];
 /// The step that ends with the picture.
 const LAST: &str = "first picture";

@@ -36,7 +36,7 @@ impl Lane {
     }
 }
 
-/// What a frame of one lane takes, a value for each sweep, milliseconds.
+/// The times that a frame of one lane takes, a value for each sweep, milliseconds.
 struct Times {
     name: String,
     frame: Vec<f64>,

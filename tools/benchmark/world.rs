@@ -14,7 +14,7 @@ const DISTANCE: f64 = 2.2;
 const HEIGHT: f64 = 0.36;
 const FOV_Y: f64 = 50.0;
 
-/// Where a scene comes from.
+/// The origin of a scene.
 #[derive(Debug, Clone)]
 pub(crate) enum Source {
     Made(Kind, u32),
@@ -23,7 +23,7 @@ pub(crate) enum Source {
 }
 
 impl Source {
-    /// What the tables call it.
+    /// The name that the tables give it.
     pub(crate) fn name(&self) -> String {
         match self {
             Self::Made(Kind::General, _) => "general".into(),

@@ -147,7 +147,7 @@ int main(int count, char **arguments) {
     for (uint32_t i = 0; i < stats.pass_count; i++) printf(" %s %.2f", stats.passes[i].name, stats.passes[i].ms);
     printf("\n");
 
-    // What is rara's goes first; the host destroys its own.
+    // Everything of rara's goes first; the host destroys its own.
     rara_renderer_destroy(renderer);
     rara_scene_buffers_destroy(scene);
     check(rara_device_bytes(lent) == 0, "rara kept memory");

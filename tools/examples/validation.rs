@@ -10,7 +10,7 @@ use rara::{Error, Result};
 /// The layer's warnings and errors, without those that are allowed.
 pub(crate) type Messages = Mutex<Vec<String>>;
 
-/// What sends the messages, with its functions.
+/// The object that sends the messages, with its functions.
 pub(crate) type Messenger = (ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT);
 
 /// The messages that are allowed: part of the message's id, and the reason.

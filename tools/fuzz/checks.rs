@@ -1,4 +1,4 @@
-//! What the fuzz targets share: a limit on memory by the input's size, and what anything that loads must satisfy.
+//! Everything that the fuzz targets share: a limit on memory by the input's size, and the checks of whatever loads.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};

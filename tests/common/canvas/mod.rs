@@ -56,9 +56,9 @@ pub struct CanvasDesc {
     pub render_pass: bool,
     /// The colour before anything is drawn.
     pub clear: [f32; 4],
-    /// What the depth buffer holds where there is no mesh.
+    /// The value of the depth buffer where there is no mesh.
     pub far: f32,
-    /// Meshes that face the camera: their places, and what the depth buffer holds there.
+    /// Meshes that face the camera: their places, and the values of the depth buffer there.
     pub meshes: Vec<(vk::Rect2D, f32)>,
 }
 

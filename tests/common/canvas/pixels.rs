@@ -1,4 +1,4 @@
-//! What is read back from a canvas.
+//! Pixels that are read back from a canvas.
 
 use rara::ash::vk;
 

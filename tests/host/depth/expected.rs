@@ -76,7 +76,7 @@ fn expected_depths_are_the_references() {
     }
 }
 
-/// What is left of a big cut splat lies farther away than its centre, and a host's mesh hides depths like colours.
+/// The rest of a big cut splat lies farther away than its centre, and a host's mesh hides depths like colours.
 #[test]
 fn expected_depths_are_behind_the_cut_and_before_the_mesh() {
     let world = World::new();

@@ -123,7 +123,7 @@ fn a_host_whose_frames_take_over_from_each_other_gets_the_same_pictures() {
     }
 }
 
-/// What is set between a frame's preparation and its draw takes effect in the next frame.
+/// A setting that changes between a frame's preparation and its draw takes effect in the next frame.
 #[test]
 fn settings_of_the_next_frame_leave_the_prepared_one_alone() {
     let scene = scene();

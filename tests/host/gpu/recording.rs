@@ -1,4 +1,4 @@
-//! What is recorded: dispatches, barriers, labels and timers.
+//! Recorded commands: dispatches, barriers, labels and timers.
 
 use super::*;
 use rara::Error;

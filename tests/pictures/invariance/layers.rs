@@ -1,4 +1,4 @@
-//! What a clip keeps and what it cuts away, drawn as two layers.
+//! Two layers, one of all that a clip keeps and one of all that it cuts away.
 
 use std::cell::Cell;
 

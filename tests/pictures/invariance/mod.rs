@@ -1,5 +1,5 @@
-//! What must not change a picture, checked on the GPU and under validation: how a cut is given, how a scene is stored,
-//! where the world is.
+//! Properties that must not change a picture, checked on the GPU and under validation: how a cut is given, how a scene
+//! is stored, where the world is.
 
 mod cuts;
 mod layers;

@@ -1,4 +1,4 @@
-//! Where the world is and how large a unit is.
+//! The place of the world and the size of its unit.
 
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// What blending a fragment costs at best: splats that cover whole tiles and stay in the cache, no pixel saturated, nothing
+// The cost of blending a fragment at best: splats that cover whole tiles and stay in the cache, no pixel saturated, nothing
 // cut, nothing to look up. An invocation owns a column of pixels as in tiles.glsl.
 #include "limits.glsl"
 #include "buffers.glsl"

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// What moving bytes costs: 16 of them an invocation, read once and written once.
+// The cost of moving bytes: 16 of them an invocation, read once and written once.
 #include "buffers.glsl"
 
 layout(local_size_x = 64) in;

@@ -1,5 +1,5 @@
-//! The names that users of the library can use, read from its source and compared with `tests/api.txt`, so that no change
-//! goes unseen.
+//! The names that users of the library can use, read from its source and compared with `tests/api.txt`, so that no
+//! change goes unseen.
 //!
 //! After an intended change, `RARA_RENEW_API=1 cargo test --test api` writes the list anew; the change's description
 //! explains the difference. The features are those of docs.rs.

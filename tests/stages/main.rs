@@ -1,6 +1,6 @@
 //! The buffers that each stage writes on the device are read back and compared with the stage's twin in single
-//! precision in `src/reference`: integers exactly except for ties, which are counted, floats to stated units in the last
-//! place.
+//! precision in `src/reference`: integers exactly except for ties, which are counted, floats to stated units in the
+//! last place.
 
 #![allow(unreachable_pub, reason = "modules of one test share with each other")]
 

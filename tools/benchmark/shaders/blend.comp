@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The cost of blending a fragment at best: splats that cover whole tiles and stay in the cache, no pixel saturated, nothing
-// cut, nothing to look up. An invocation owns a column of pixels as in tiles.glsl.
+// The cost of blending a fragment at best: splats that cover whole tiles and stay in the cache, no pixel saturated,
+// nothing cut, nothing to look up. An invocation owns a column of pixels as in tiles.glsl.
 #include "limits.glsl"
 #include "buffers.glsl"
 

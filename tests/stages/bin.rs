@@ -7,7 +7,7 @@ use rara::reference::{Real, View, project, sort};
 use rara::types::Splat;
 use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings};
 
-use crate::frame::{self, SIZE, SIZES, Stages};
+use crate::frame::{self, SIZE, Stages};
 use crate::sort::places;
 
 /// How many deviations behind its plane a cut splat's weight counts as nothing.
@@ -141,25 +141,22 @@ fn holds(outer: &[Span], inner: &[Span]) -> bool {
 
 #[test]
 fn tiles_hold_the_splats_that_the_twin_puts_there() {
-    let mut stages = Stages::new();
     let [mut all, mut ties] = [0, 0];
-    for count in SIZES {
-        let scene = frame::scene(count);
-        stages.load(&scene);
+    frame::for_each_scene(|stages, scene| {
         for (view, mode) in [(0, Mode::None), (1, Mode::None), (0, Mode::Exact)] {
             let settings = Settings::default()
                 .mode(mode)
                 .raster(Raster::Tiles)
                 .form(ExactForm::Affine);
-            let clip = frame::clip(&scene, 1, ClipOp::And);
-            stages.draw(&frame::views(&scene)[view], &clip, &settings);
-            if count > 0 && !stages.survivors().is_empty() {
-                let [spans, apart] = check(&mut stages, &format!("{count}, {mode:?}"));
+            let clip = frame::clip(scene, 1, ClipOp::And);
+            stages.draw(&frame::views(scene)[view], &clip, &settings);
+            if !scene.is_empty() && !stages.survivors().is_empty() {
+                let [spans, apart] = check(stages, &format!("{}, {mode:?}", scene.len()));
                 all += spans;
                 ties += apart;
             }
         }
-    }
+    });
     println!("{all} spans, {ties} splats with others than the twin's");
     assert!(all > 50_000, "{all}");
     // One in twenty thousand; with another margin than the twin's it would be one in a few hundred.

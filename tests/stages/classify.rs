@@ -5,7 +5,7 @@ use rara::limits::BLOCK_SIZE;
 use rara::reference::{self, Side, View, classify};
 use rara::{Camera, Clip, ClipOp, Mode, Raster, Settings};
 
-use crate::frame::{self, SIZES, Stages};
+use crate::frame::{self, Stages};
 use crate::ties;
 
 /// The side that the stages find for each Gaussian, in the device's order; `None` for one of which they do not keep
@@ -34,11 +34,8 @@ pub fn sides(stages: &mut Stages) -> Vec<Option<Side>> {
 
 #[test]
 fn classes_are_the_twins() {
-    let mut stages = Stages::new();
-    for count in SIZES {
-        let scene = frame::scene(count);
-        stages.load(&scene);
-        for camera in frame::views(&scene) {
+    frame::for_each_scene(|stages, scene| {
+        for camera in frame::views(scene) {
             for (mode, planes, op) in [
                 (Mode::None, 0, ClipOp::And),
                 (Mode::Exact, 1, ClipOp::And),
@@ -46,16 +43,16 @@ fn classes_are_the_twins() {
                 (Mode::Exact, 3, ClipOp::Or),
             ] {
                 let settings = Settings::default().mode(mode).raster(Raster::Quad);
-                let planes = frame::clip(&scene, planes, op);
+                let planes = frame::clip(scene, planes, op);
                 let counts = stages.draw(&camera, &planes, &settings).counts;
-                if count == 0 {
+                if scene.is_empty() {
                     assert_eq!(counts, rara::Counts::default());
                 } else {
-                    check(&mut stages, &camera, &planes, &settings);
+                    check(stages, &camera, &planes, &settings);
                 }
             }
         }
-    }
+    });
 }
 
 fn check(stages: &mut Stages, camera: &Camera, planes: &Clip, settings: &Settings) {

@@ -7,7 +7,7 @@ use rara::reference::{Side, clip};
 use rara::types::Block;
 use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings};
 
-use crate::frame::{self, SIZES, Stages};
+use crate::frame::{self, Stages};
 use crate::ties;
 
 /// The side that the stage finds for each Gaussian, in the device's order.
@@ -34,22 +34,19 @@ pub fn sides(stages: &mut Stages) -> Vec<Side> {
 
 #[test]
 fn the_clips_sides_are_the_twins() {
-    let mut stages = Stages::new();
-    for count in SIZES {
-        let scene = frame::scene(count);
-        stages.load(&scene);
+    frame::for_each_scene(|stages, scene| {
         let mut cases = vec![(Mode::Exact, 1, ClipOp::And), (Mode::Rara, 3, ClipOp::Or)];
         cases.extend([(Mode::Hard, 2, ClipOp::And), (Mode::Exact, 3, ClipOp::Or)]);
         for (mode, planes, op) in cases {
             let settings = Settings::default().mode(mode).raster(Raster::Quad);
-            let planes = frame::clip(&scene, planes, op);
-            stages.draw(&frame::views(&scene)[0], &planes, &settings);
-            if count > 0 {
-                check(&mut stages, &planes, &settings);
-                check_blocks(&mut stages, &planes, &settings);
+            let planes = frame::clip(scene, planes, op);
+            stages.draw(&frame::views(scene)[0], &planes, &settings);
+            if !scene.is_empty() {
+                check(stages, &planes, &settings);
+                check_blocks(stages, &planes, &settings);
             }
         }
-    }
+    });
 }
 
 fn check(stages: &mut Stages, planes: &Clip, settings: &Settings) {

@@ -6,14 +6,11 @@ use rara::types::NOT_CUT;
 use rara::{ClipOp, Mode, Raster, Settings};
 
 use crate::classify;
-use crate::frame::{self, SIZES, Stages};
+use crate::frame;
 
 #[test]
 fn survivors_are_in_the_scenes_order() {
-    let mut stages = Stages::new();
-    for count in SIZES {
-        let scene = frame::scene(count);
-        stages.load(&scene);
+    frame::for_each_scene(|stages, scene| {
         for (view, mode, op) in [
             (0, Mode::None, ClipOp::And),
             (0, Mode::Exact, ClipOp::And),
@@ -21,19 +18,23 @@ fn survivors_are_in_the_scenes_order() {
             (1, Mode::Hard, ClipOp::And),
         ] {
             let settings = Settings::default().mode(mode).raster(Raster::Quad);
-            let planes = frame::clip(&scene, 2, op);
-            let stats = stages.draw(&frame::views(&scene)[view], &planes, &settings);
-            if count == 0 {
+            let planes = frame::clip(scene, 2, op);
+            let stats = stages.draw(&frame::views(scene)[view], &planes, &settings);
+            if scene.is_empty() {
                 assert_eq!(stats.counts, rara::Counts::default());
                 continue;
             }
-            let sides = classify::sides(&mut stages);
+            let sides = classify::sides(stages);
             let sides = sides.iter().map(|side| side.unwrap_or(Side::Culled));
             let sides: Vec<_> = sides.collect();
             let kept = compact::compact(&sides);
             let survivors = stages.survivors();
             let ours = survivors.iter().map(|&[index, _]| index);
-            assert!(ours.eq(kept.iter().copied()), "{count}, {settings:?}");
+            assert!(
+                ours.eq(kept.iter().copied()),
+                "{}, {settings:?}",
+                scene.len()
+            );
             // The cut ones are numbered in the same order.
             let mut cut = Vec::new();
             for &[index, number] in &survivors {
@@ -51,7 +52,7 @@ fn survivors_are_in_the_scenes_order() {
             assert_eq!(counts.visible, of(Side::Visible));
             assert_eq!(counts.cutoff, of(Side::Cutoff));
             let all = counts.visible + counts.cutoff + counts.invisible + counts.culled;
-            assert_eq!(all as usize, count);
+            assert_eq!(all as usize, scene.len());
             for (groups, count) in [
                 (counts.project_groups, kept.len()),
                 (counts.cutoff_groups, cut.len()),
@@ -63,5 +64,5 @@ fn survivors_are_in_the_scenes_order() {
             }
             assert_eq!(counts.draw, [4, kept.len() as u32, 0, 0]);
         }
-    }
+    });
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 use rara::reference::{Cut, Footprint, HalfSpace, Real, Vec3 as Vector, View, cutoff, vec3};
 use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings};
 
-use crate::frame::{self, SIZES, Stages};
+use crate::frame::{self, Stages};
 
 /// The flags of a record: the planes are on each pixel's line of sight; the splat reaches behind the eye; a plane's z is
 /// a polynomial; the planes are the complements of a union's.
@@ -33,12 +33,9 @@ struct Apart {
 
 #[test]
 fn records_are_the_twins() {
-    let mut stages = Stages::new();
     let mut worst = Apart::default();
-    for count in SIZES {
-        let scene = frame::scene(count);
-        stages.load(&scene);
-        for camera in frame::views(&scene) {
+    frame::for_each_scene(|stages, scene| {
+        for camera in frame::views(scene) {
             for (mode, form, planes, op) in [
                 (Mode::Exact, ExactForm::Affine, 1, ClipOp::And),
                 (Mode::Exact, ExactForm::Affine, 3, ClipOp::Or),
@@ -52,14 +49,14 @@ fn records_are_the_twins() {
                     .mode(mode)
                     .form(form)
                     .raster(Raster::Quad);
-                let clip = frame::clip(&scene, planes, op);
+                let clip = frame::clip(scene, planes, op);
                 let counts = stages.draw(&camera, &clip, &settings).counts;
                 if counts.cutoff > 0 {
-                    compare(&mut stages, &camera, &clip, &settings, &mut worst);
+                    compare(stages, &camera, &clip, &settings, &mut worst);
                 }
             }
         }
-    }
+    });
     println!("{worst:?}");
     // A ten-thousandth of a deviation is a hundredth of a level of 8 bits.
     assert!(worst.z <= 1e-4, "{worst:?}");

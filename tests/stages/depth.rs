@@ -9,7 +9,7 @@ use rara::{
     RendererDesc, Scene, SceneBuffers, Settings, ShFormat, TargetFormat,
 };
 
-use crate::frame::{self, SIZES};
+use crate::frame;
 use crate::layers;
 
 /// The values that the stage has written of each survivor, and the survivor's number in the scene.
@@ -134,8 +134,7 @@ fn depths_of_layers_are_in_the_scenes_units() {
 fn mean_depths_are_the_twins() {
     let (device, mut renderer) = renderer();
     let (mut worst, mut moved, mut compared) = (0.0_f64, 0.0_f64, 0);
-    for count in SIZES {
-        let scene = frame::scene(count);
+    for scene in frame::scenes() {
         for (view, planes, op) in [(0, 1, ClipOp::And), (1, 3, ClipOp::And), (0, 2, ClipOp::Or)] {
             let camera = frame::views(&scene)[view];
             let single = View::<f32>::new(&camera);

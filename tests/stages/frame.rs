@@ -9,7 +9,7 @@ use rara::{Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, Plane, Setting
 use crate::common;
 
 /// No Gaussian, one, numbers around a workgroup and a block, and enough for every path.
-pub const SIZES: [usize; 6] = [0, 1, 255, 256, 257, 50_000];
+const SIZES: [usize; 6] = [0, 1, 255, 256, 257, 50_000];
 /// Not a multiple of a tile.
 pub const SIZE: (u32, u32) = (253, 190);
 
@@ -124,6 +124,20 @@ pub fn scene(count: usize) -> Gaussians {
         }
     }
     scene
+}
+
+/// Such scenes of every size that a stage is tested with.
+pub fn scenes() -> impl Iterator<Item = Gaussians> {
+    SIZES.into_iter().map(scene)
+}
+
+/// Runs a test with each of these scenes, which is loaded.
+pub fn for_each_scene(mut test: impl FnMut(&mut Stages, &Gaussians)) {
+    let mut stages = Stages::new();
+    for scene in scenes() {
+        stages.load(&scene);
+        test(&mut stages, &scene);
+    }
 }
 
 /// A view from outside, and one from within the scene, where splats are large, beside the picture and behind the eye.

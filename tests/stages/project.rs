@@ -4,7 +4,7 @@ use glam::{DMat4, Quat, Vec3};
 use rara::reference::{View, harmonics, project, vec3};
 use rara::{Camera, Clip, Gaussians, Raster, Settings, ShFormat};
 
-use crate::frame::{self, SIZES, Stages};
+use crate::frame::{self, Stages};
 use crate::ties::{largest, ulps};
 
 /// How far apart device and twin are, each in units in the last place of what it was computed from.
@@ -18,18 +18,15 @@ struct Apart {
 
 #[test]
 fn splats_are_the_twins() {
-    let mut stages = Stages::new();
     let mut worst = Apart::default();
-    for count in SIZES {
-        let scene = frame::scene(count);
-        stages.load(&scene);
-        for camera in frame::views(&scene) {
+    frame::for_each_scene(|stages, scene| {
+        for camera in frame::views(scene) {
             stages.draw(&camera, &Clip::default(), &quads());
-            if count > 0 {
-                compare(&mut stages, &camera, &mut worst);
+            if !scene.is_empty() {
+                compare(stages, &camera, &mut worst);
             }
         }
-    }
+    });
     println!("{worst:?}");
     // Sums of three products, and what a division and a root add.
     assert!(worst.depth <= 4.0, "{worst:?}");

@@ -8,7 +8,7 @@ use rara::scene::{Kind, generate};
 use rara::types::FrameData;
 use rara::{Clip, Gaussians, Raster, Settings};
 
-use crate::frame::{self, SIZES, Stages};
+use crate::frame::{self, Stages};
 
 /// The splats' depths and their numbers in the scene.
 pub fn places(stages: &mut Stages) -> (Vec<f32>, Vec<u32>) {
@@ -46,19 +46,16 @@ fn sorted(stages: &mut Stages, count: usize) -> (Vec<u32>, Vec<u32>) {
 
 #[test]
 fn the_order_is_the_twins() {
-    let mut stages = Stages::new();
     let settings = Settings::default().raster(Raster::Quad);
     assert_eq!(settings.precision.key_bits, 32);
-    for count in SIZES {
-        let scene = frame::scene(count);
-        stages.load(&scene);
-        for camera in frame::views(&scene) {
+    frame::for_each_scene(|stages, scene| {
+        for camera in frame::views(scene) {
             stages.draw(&camera, &Clip::default(), &settings);
-            if count > 0 {
-                check(&mut stages, &format!("{count}"));
+            if !scene.is_empty() {
+                check(stages, &scene.len().to_string());
             }
         }
-    }
+    });
 }
 
 /// Splats of one depth are in the order of their numbers, however many they are.

@@ -4,7 +4,7 @@ use rara::reference::{Side, View, classify};
 use rara::types::{CUT_AWAY, NOT_CUT};
 use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings, Surface};
 
-use crate::frame::{self, SIZES, Stages};
+use crate::frame;
 use crate::ties;
 
 fn moved(clip: &Clip, by: f64) -> Clip {
@@ -18,11 +18,8 @@ fn moved(clip: &Clip, by: f64) -> Clip {
 
 #[test]
 fn a_moved_clip_changes_what_the_twin_says() {
-    let mut stages = Stages::new();
-    for count in SIZES {
-        let scene = frame::scene(count);
-        stages.load(&scene);
-        let camera = frame::views(&scene)[0];
+    frame::for_each_scene(|stages, scene| {
+        let camera = frame::views(scene)[0];
         let view = View::<f32>::new(&camera);
         for (mode, planes, op, raster) in [
             (Mode::Exact, 1, ClipOp::And, Raster::Tiles),
@@ -30,14 +27,14 @@ fn a_moved_clip_changes_what_the_twin_says() {
             (Mode::Hard, 1, ClipOp::And, Raster::Tiles),
         ] {
             let settings = Settings::default().mode(mode).raster(raster);
-            let clip = frame::clip(&scene, planes, op);
+            let clip = frame::clip(scene, planes, op);
             stages.headless.forget();
             stages.again(&camera, &clip, &settings);
             // The second frame begins the sweep, the third goes on with it.
             for by in [0.1, 0.2, -0.3] {
                 let clip = moved(&clip, by);
                 let swept = stages.again(&camera, &clip, &settings);
-                if count == 0 {
+                if scene.is_empty() {
                     continue;
                 }
                 assert_eq!(swept.skipped.contains(&"project"), by != 0.1, "{by}");
@@ -96,5 +93,5 @@ fn a_moved_clip_changes_what_the_twin_says() {
                 stages.again(&camera, &clip, &settings);
             }
         }
-    }
+    });
 }

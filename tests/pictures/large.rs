@@ -32,6 +32,26 @@ fn report(what: &str, headless: &Headless, stats: &FrameStats, begin: Instant) {
     );
 }
 
+/// Compares a small picture with the reference's.
+fn agrees(
+    what: &str,
+    headless: &mut Headless,
+    scene: &Gaussians,
+    clip: &Clip,
+    settings: &Settings,
+) -> FrameStats {
+    let begin = Instant::now();
+    let camera = common::views(scene, 1, SMALL)[0];
+    let stats = common::check(headless, what, scene, &camera, clip, settings);
+    report(
+        &format!("{what} and the reference"),
+        headless,
+        &stats,
+        begin,
+    );
+    stats
+}
+
 #[test]
 fn a_million_gaussians_render_and_agree() {
     let scene = generate(Kind::General, 1_000_000, 3);
@@ -53,17 +73,7 @@ fn a_million_gaussians_render_and_agree() {
     assert!(filled > picture.pixels.len() / 20, "{filled} opaque pixels");
     report("a million at 1024 x 1024", &headless, &stats, begin);
 
-    let begin = Instant::now();
-    let camera = common::views(&scene, 1, SMALL)[0];
-    let stats = common::check(
-        &mut headless,
-        "a million",
-        &scene,
-        &camera,
-        &clip,
-        &settings,
-    );
-    report("a million and the reference", &headless, &stats, begin);
+    agrees("a million", &mut headless, &scene, &clip, &settings);
 }
 
 /// Every Gaussian gets a record in the cutoff buffer, so that all buffers are used to their ends.
@@ -84,17 +94,7 @@ fn five_million_gaussians_exceed_bindings_and_rows_and_agree() {
     );
     let settings = Settings::default().trace_all(true);
 
-    let begin = Instant::now();
-    let camera = common::views(&scene, 1, SMALL)[0];
-    let stats = common::check(
-        &mut headless,
-        "five million",
-        &scene,
-        &camera,
-        &clip,
-        &settings,
-    );
-    report("five million and the reference", &headless, &stats, begin);
+    let stats = agrees("five million", &mut headless, &scene, &clip, &settings);
 
     // The scene really exceeds the limits that this test is for: in every large buffer the least that a device can bind,
     // as lavapipe does, and in every indirect dispatch the least that a row can hold. A record has a header, a plane and

@@ -3,11 +3,11 @@
 use crate::common;
 use glam::DVec3;
 use rara::measure::compare;
-use rara::{Clip, ClipOp, Miss, Mode, Plane, Settings};
+use rara::{Camera, Clip, ClipOp, Gaussians, Headless, Miss, Mode, Picture, Plane, Settings};
 
 const SIZE: (u32, u32) = (200, 150);
 
-fn far_plane(scene: &rara::Gaussians) -> Clip {
+fn far_plane(scene: &Gaussians) -> Clip {
     let bounds = rara::scene::Bounds::of(scene);
     let normal = DVec3::new(0.4, -0.5, 0.7).normalize();
     let offset = 1e6 * bounds.radius() - normal.dot(bounds.centre());
@@ -15,6 +15,16 @@ fn far_plane(scene: &rara::Gaussians) -> Clip {
         [Plane::new(normal, offset).expect("a proper plane")],
         ClipOp::And,
     )
+}
+
+/// Loads a scene; returns a view of it and its picture there.
+fn whole(headless: &mut Headless, scene: &Gaussians) -> (Camera, Picture) {
+    headless.load(scene).expect("uploads");
+    let camera = common::views(scene, 1, common::scaled(SIZE))[0];
+    let none = Settings::default().mode(Mode::None);
+    let drawn = headless.render(&camera, &Clip::default(), &none);
+    drawn.expect("renders");
+    (camera, headless.picture().expect("reads back"))
 }
 
 /// Trained scenes carry strays far outside their bounds, so that only generated ones are wholly in front of the plane.
@@ -25,16 +35,10 @@ fn a_plane_at_infinity_gives_the_bytes_of_none_in_every_mode() {
         .into_iter()
         .chain(common::trained_scenes())
     {
-        headless.load(&scene).expect("uploads");
-        let camera = common::views(&scene, 1, common::scaled(SIZE))[0];
-        let none = Settings::default().mode(Mode::None);
-        headless
-            .render(&camera, &Clip::default(), &none)
-            .expect("renders");
-        let plain = headless.picture().expect("reads back");
+        let (camera, plain) = whole(&mut headless, &scene);
         for mode in [Mode::Hard, Mode::Rara, Mode::Exact] {
             let stats = headless
-                .render(&camera, &far_plane(&scene), &none.mode(mode))
+                .render(&camera, &far_plane(&scene), &Settings::default().mode(mode))
                 .expect("renders");
             assert_eq!(stats.counts.cutoff, 0, "{name}, {mode:?}");
             assert!(
@@ -51,15 +55,9 @@ fn a_plane_at_infinity_gives_the_bytes_of_none_in_every_mode() {
 fn tracing_every_gaussian_degrades_the_picture_as_the_paper_reports() {
     let mut headless = common::headless();
     for (name, scene) in common::generated_scenes(3_000).into_iter().take(2) {
-        headless.load(&scene).expect("uploads");
-        let camera = common::views(&scene, 1, common::scaled(SIZE))[0];
-        let none = Settings::default().mode(Mode::None);
-        headless
-            .render(&camera, &Clip::default(), &none)
-            .expect("renders");
-        let plain = headless.picture().expect("reads back");
+        let (camera, plain) = whole(&mut headless, &scene);
         let mut error = |miss, sigma| {
-            let settings = none
+            let settings = Settings::default()
                 .mode(Mode::Rara)
                 .trace_all(true)
                 .miss(miss)

@@ -101,6 +101,13 @@ fn clean(test: impl FnOnce(&Device)) {
     assert_eq!(device.close(), Vec::<String>::new());
 }
 
+/// Asserts that one of the layer's messages has this part.
+#[track_caller]
+fn assert_reported(messages: &[String], part: &str) {
+    let reported = messages.iter().any(|message| message.contains(part));
+    assert!(reported, "{messages:?}");
+}
+
 fn buffer(device: &Device, name: &str, size: u64, location: Location) -> Buffer {
     device
         .create_buffer(&BufferDesc {

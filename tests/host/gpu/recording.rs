@@ -105,13 +105,7 @@ fn a_missing_barrier_is_seen() {
         Ok(())
     });
     done.unwrap();
-    let messages = device.validation_messages();
-    assert!(
-        messages
-            .iter()
-            .any(|message| message.contains("READ_AFTER_WRITE")),
-        "{messages:?}"
-    );
+    assert_reported(&device.validation_messages(), "READ_AFTER_WRITE");
 }
 
 #[test]

@@ -202,32 +202,19 @@ fn places_that_cannot_be_written_are_found_before_the_work() {
     fs::write(here.join("file"), "").unwrap();
     fs::create_dir(here.join("folder.png")).unwrap();
     // None of the scenes exists either; a message about the place shows that it was checked first.
-    refused(
-        &line(&here, "render none.ply -o @/no/such/a.png"),
-        1,
-        "does not exist",
-    );
-    refused(
-        &line(&here, "render none.ply -o @/file/a.png"),
-        1,
-        "not a folder",
-    );
-    refused(
-        &line(&here, "render none.ply -o @/folder.png"),
-        1,
-        "this is a folder",
-    );
-    refused(
-        &line(&here, "sweep none.ply --clip-normal 1,0,0 -o @/file"),
-        1,
-        "not a folder",
-    );
-    refused(&line(&here, "demo none.ply -o @/no/such"), 1, "no/such");
-    refused(
-        &line(&here, "generate general -o @/no/such/a.ply"),
-        1,
-        "does not exist",
-    );
+    for (words, what) in [
+        ("render none.ply -o @/no/such/a.png", "does not exist"),
+        ("render none.ply -o @/file/a.png", "not a folder"),
+        ("render none.ply -o @/folder.png", "this is a folder"),
+        (
+            "sweep none.ply --clip-normal 1,0,0 -o @/file",
+            "not a folder",
+        ),
+        ("demo none.ply -o @/no/such", "no/such"),
+        ("generate general -o @/no/such/a.ply", "does not exist"),
+    ] {
+        refused(&line(&here, words), 1, what);
+    }
 }
 
 #[test]

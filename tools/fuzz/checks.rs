@@ -1,8 +1,10 @@
 //! Everything that the fuzz targets share: a limit on memory by the input's size, and the checks of whatever loads.
 
 use std::alloc::{GlobalAlloc, Layout, System};
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use rara::camera_files::cameras_from_json;
 use rara::{Camera, Gaussians, Plane, Surface};
 
 /// The system's allocator, which ends the process when a run needs more than its share.
@@ -81,6 +83,22 @@ pub fn assert_camera(camera: &Camera) {
         "{camera:?}"
     );
     assert!(camera.rotation.determinant() > 0.0, "{camera:?}");
+}
+
+/// Loads a file of cameras, and asserts that all of them are cameras or that the error is for people.
+pub fn assert_cameras(json: &[u8]) {
+    // Unknown fields are kept until the object ends: "0," is a value of 32 bytes, and its list grows by doubling.
+    match within(64 << 10, 64, json, || {
+        cameras_from_json(json, Path::new("fuzz.json"))
+    }) {
+        Ok(cameras) => {
+            assert!(!cameras.is_empty());
+            cameras
+                .iter()
+                .for_each(|named| assert_camera(&named.camera));
+        }
+        Err(error) => assert_readable(&error),
+    }
 }
 
 /// Asserts a unit normal and a finite distance.

@@ -7,7 +7,7 @@ use crate::common;
 use rara::ash::vk;
 use rara::gpu::{Drawer, ImageDesc};
 use rara::scene::{Kind, generate};
-use rara::{ClipOp, Raster, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat};
+use rara::{ClipOp, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat};
 
 /// The system's allocator, which counts what this thread asks of it.
 struct Counting;

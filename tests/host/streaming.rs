@@ -1,6 +1,7 @@
 //! Scenes are replaced and clips edited while frames are in flight, with the host's own staging and without a submission
 //! or wait of ours, under the host's validation with synchronisation checks. The pictures are the headless ones.
 
+use crate::canvas::adopt;
 use crate::common;
 use crate::host::{FRAMES, Host, HostDesc};
 use rara::ash::vk;
@@ -28,8 +29,7 @@ fn open(validation: bool) -> (Host, Device) {
         format: FORMAT,
     });
     let host = host.expect("a Vulkan device and the validation layer (tools/test installs both)");
-    // SAFETY: the handles belong together; all that is made of them is dropped before the host is closed.
-    let device = unsafe { Device::adopt(host.lend()) }.expect("the host's device will do");
+    let device = adopt(&host);
     (host, device)
 }
 

@@ -28,6 +28,12 @@ pub fn open_host(format: vk::Format, extent: vk::Extent2D, optional: bool) -> Ho
     host.expect("a Vulkan device and the validation layer (tools/test installs both)")
 }
 
+/// The host's device as rara's.
+pub fn adopt(host: &Host) -> Device {
+    // SAFETY: the handles belong together; every test drops what it makes of the device before it closes the host.
+    unsafe { Device::adopt(host.lend()) }.expect("the host's device draws splats")
+}
+
 /// The size of the targets of a host that draws nothing into them.
 pub const ONE_PIXEL: vk::Extent2D = vk::Extent2D {
     width: 1,
@@ -37,8 +43,7 @@ pub const ONE_PIXEL: vk::Extent2D = vk::Extent2D {
 /// Runs a test with a host and its device.
 pub fn with_host(optional: bool, test: impl FnOnce(&Host, &Device)) {
     let host = open_host(vk::Format::R8G8B8A8_UNORM, ONE_PIXEL, optional);
-    // SAFETY: the handles belong together; everything made from the device is dropped in `test`.
-    let device = unsafe { Device::adopt(host.lend()) }.expect("the host's device draws splats");
+    let device = adopt(&host);
     test(&host, &device);
     assert_eq!(device.device_bytes(), 0, "everything allocated was freed");
     drop(device);

@@ -22,14 +22,8 @@ pub(super) unsafe fn image(
     // SAFETY: the caller vouches for the device; the rest is made here.
     unsafe {
         let image = device.create_image(&info, None).expect("an image");
-        let memory = allocator.allocate(&AllocationCreateDesc {
-            name: "host's target",
-            requirements: device.get_image_memory_requirements(image),
-            location: MemoryLocation::GpuOnly,
-            linear: false,
-            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-        });
-        let memory = memory.expect("memory");
+        let needs = device.get_image_memory_requirements(image);
+        let memory = memory(allocator, "host's target", needs, MemoryLocation::GpuOnly);
         let bound = device.bind_image_memory(image, memory.memory(), memory.offset());
         bound.expect("binds");
         let info = vk::ImageViewCreateInfo::default()
@@ -45,6 +39,23 @@ pub(super) unsafe fn image(
         let view = device.create_image_view(&info, None).expect("a view");
         (image, view, memory)
     }
+}
+
+/// Memory of the engine's own: an image's on the device, or a buffer's that is read back.
+fn memory(
+    allocator: &mut Allocator,
+    name: &str,
+    requirements: vk::MemoryRequirements,
+    location: MemoryLocation,
+) -> Allocation {
+    let memory = allocator.allocate(&AllocationCreateDesc {
+        name,
+        requirements,
+        location,
+        linear: location == MemoryLocation::GpuToCpu,
+        allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+    });
+    memory.expect("memory")
 }
 
 pub(super) fn readback_size() -> u64 {
@@ -63,14 +74,13 @@ pub(super) unsafe fn readback(
     // SAFETY: the caller vouches for the device; the rest is made here.
     unsafe {
         let buffer = device.create_buffer(&info, None).expect("a buffer");
-        let memory = allocator.allocate(&AllocationCreateDesc {
-            name: "host's readback",
-            requirements: device.get_buffer_memory_requirements(buffer),
-            location: MemoryLocation::GpuToCpu,
-            linear: true,
-            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-        });
-        let memory = memory.expect("memory");
+        let needs = device.get_buffer_memory_requirements(buffer);
+        let memory = memory(
+            allocator,
+            "host's readback",
+            needs,
+            MemoryLocation::GpuToCpu,
+        );
         let bound = device.bind_buffer_memory(buffer, memory.memory(), memory.offset());
         bound.expect("binds");
         (buffer, memory)

@@ -6,7 +6,7 @@ mod memory;
 mod refused;
 mod viewport;
 
-use crate::canvas::open_host;
+use crate::canvas::{adopt, open_host};
 use crate::common;
 use crate::host::{FRAMES, Host};
 use rara::ash::vk;
@@ -25,11 +25,6 @@ const VIEW: vk::Extent2D = vk::Extent2D {
     width: 189,
     height: 131,
 };
-
-fn adopt(host: &Host) -> Device {
-    // SAFETY: the handles belong together; every test drops what it makes before it closes the host.
-    unsafe { Device::adopt(host.lend()) }.expect("the host's device can draw splats")
-}
 
 fn in_flight(format: vk::Format, bindings: Bindings) -> RendererDesc {
     RendererDesc::new(format)

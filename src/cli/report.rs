@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use rara::gpu::NamedBytes;
+use rara::gpu::{DeviceShape, NamedBytes};
 use rara::{Counts, FrameStats};
 use serde::Serialize;
 
@@ -17,6 +17,7 @@ use super::session::Session;
 pub(super) struct Report {
     device: String,
     driver: String,
+    shape: ShapeReport,
     scene: SceneReport,
     size: [u32; 2],
     mode: String,
@@ -26,6 +27,14 @@ pub(super) struct Report {
     frames: Vec<FrameStats>,
     #[serde(skip_serializing_if = "Option::is_none")]
     mean: Option<FrameStats>,
+}
+
+/// The kind of machine that kernels were chosen for, and why that one.
+#[derive(Debug, Serialize)]
+struct ShapeReport {
+    #[serde(flatten)]
+    shape: DeviceShape,
+    reason: &'static str,
 }
 
 #[derive(Debug, Serialize)]
@@ -76,11 +85,13 @@ impl Report {
         frames: &[FrameStats],
     ) -> Self {
         let (device, driver, device_bytes) = session.about();
+        let (shape, reason) = session.shape();
         let scene_bytes = session.scene_bytes();
         let scene = loaded.scene();
         Self {
             device,
             driver,
+            shape: ShapeReport { shape, reason },
             scene: SceneReport {
                 gaussians: scene.gaussians(),
                 sh_degree: scene.sh_degree(),

@@ -1,5 +1,6 @@
 //! A device and the scene on it.
 
+use rara::gpu::DeviceShape;
 use rara::{
     Camera, Clip, FrameStats, Headless, HeadlessDesc, Picture, Result, Scene, Settings, ShFormat,
 };
@@ -90,6 +91,12 @@ impl Session {
     /// Device memory that the scene takes.
     pub(super) fn scene_bytes(&self) -> u64 {
         self.headless.scene_bytes()
+    }
+
+    /// The kind of machine that kernels were chosen for, and why that one.
+    pub(super) fn shape(&self) -> (DeviceShape, &'static str) {
+        let device = self.headless.device();
+        (device.shape(), device.shape_reason())
     }
 
     /// Device name, driver, and device memory in use.

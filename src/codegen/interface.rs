@@ -59,13 +59,14 @@ fn module(shaders: &[Source]) -> String {
         writeln!(
             out,
             "/// `glsl/{}`.\npub(crate) static {}: super::Shader = super::Shader {{ name: {name:?}, \
-             stage: ash::vk::ShaderStageFlags::{}, buffers: &[{}], address: &{:?}, bound: &{:?} }};",
+             stage: ash::vk::ShaderStageFlags::{}, buffers: &[{}], address: &{:?}, bound: &{:?}, subgroups: {} }};",
             shader.file,
             shader.names().1,
             shader.stage(),
             uses.collect::<String>(),
             shader.modules[0],
             shader.modules[1],
+            shader.declarations.subgroups,
         )
         .unwrap();
     }

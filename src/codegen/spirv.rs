@@ -10,6 +10,8 @@ pub(crate) struct Declarations {
     pub(crate) params: Vec<Param>,
     /// The specialisation constants, by ascending id.
     pub(crate) constants: Vec<Constant>,
+    /// Whether it has subgroup operations.
+    pub(crate) subgroups: bool,
 }
 
 /// A storage buffer.
@@ -96,6 +98,7 @@ pub(crate) fn declarations(words: &[u32]) -> Declarations {
     );
     let mut known = vec![Known::default(); words[3] as usize];
     let (mut variables, mut specs, mut composites) = (Vec::new(), Vec::new(), Vec::new());
+    let mut found = Declarations::default();
     let mut rest = &words[5..];
     while let Some(&head) = rest.first() {
         let (instruction, tail) = rest.split_at((head >> 16) as usize);
@@ -103,7 +106,8 @@ pub(crate) fn declarations(words: &[u32]) -> Declarations {
         let word = |index: usize| instruction[index];
         let id = |index: usize| instruction[index] as usize;
         match head & 0xffff {
-            5 => known[id(1)].name = text(&instruction[2..]), // OpName
+            17 if (61..=68).contains(&word(1)) => found.subgroups = true, // OpCapability GroupNonUniform...
+            5 => known[id(1)].name = text(&instruction[2..]),             // OpName
             6 => {
                 let name = (word(2), text(&instruction[3..])); // OpMemberName
                 known[id(1)].member_names.push(name);
@@ -145,7 +149,6 @@ pub(crate) fn declarations(words: &[u32]) -> Declarations {
         Some(Type::Pointer(to)) => to,
         _ => panic!("a variable's type is no pointer"),
     };
-    let mut found = Declarations::default();
     for &(variable, pointer, storage) in &variables {
         match storage {
             STORAGE_BUFFER => found

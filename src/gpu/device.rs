@@ -31,6 +31,7 @@ pub(super) struct Inner {
     physical: vk::PhysicalDevice,
     raw: ash::Device,
     shape: DeviceShape,
+    shape_reason: &'static str,
     info: DeviceInfo,
     support: Support,
     pub(super) queue: Mutex<vk::Queue>,
@@ -70,6 +71,7 @@ impl Device {
         support: Support,
         allocator: Arc<Mutex<Allocator>>,
         owned: Option<Arc<Instance>>,
+        (shape, shape_reason): (DeviceShape, &'static str),
     ) -> Self {
         let (instance, raw) = (desc.instance, desc.device);
         Self {
@@ -85,7 +87,8 @@ impl Device {
                     .debug_utils
                     .then(|| ext::debug_utils::Device::new(&instance, &raw)),
                 physical: desc.physical_device,
-                shape: DeviceShape::of(&info),
+                shape,
+                shape_reason,
                 info,
                 support,
                 queue: Mutex::new(desc.queue),
@@ -113,9 +116,15 @@ impl Device {
         &self.inner.info
     }
 
-    /// The kind of machine that it is, or that the environment variable `RARA_SHAPE` (`cpu` or `gpu`) says it is.
+    /// The kind of machine that kernels are chosen for. The environment variable `RARA_SHAPE` (`cpu`, `gpu`, or `gpu:N` with
+    /// subgroups of N) overrides what suits the device, and a device's description overrides both.
     pub fn shape(&self) -> DeviceShape {
         self.inner.shape
+    }
+
+    /// Why it is that shape, in a few words.
+    pub fn shape_reason(&self) -> &'static str {
+        self.inner.shape_reason
     }
 
     /// The features that it offers, without those that the host did not enable.

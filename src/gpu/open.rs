@@ -9,7 +9,7 @@ use gpu_allocator::{AllocationSizes, AllocatorDebugSettings};
 
 use super::failure::failed;
 use super::instance::Instance;
-use super::{Device, DeviceInfo, devices, requirements};
+use super::{Device, DeviceInfo, DeviceShape, devices, requirements};
 use crate::setters::setters;
 use crate::{Error, Result};
 
@@ -25,6 +25,8 @@ pub struct DeviceDesc {
     pub statistics: bool,
     /// The name that drivers and capture tools show.
     pub application_name: String,
+    /// The kind of machine that kernels are chosen for; `None` is what suits the device.
+    pub shape: Option<DeviceShape>,
 }
 
 setters!(DeviceDesc {
@@ -32,6 +34,7 @@ setters!(DeviceDesc {
     validation: bool,
     statistics: bool,
     application_name: String,
+    shape: Option<DeviceShape>,
 });
 
 impl Default for DeviceDesc {
@@ -41,6 +44,7 @@ impl Default for DeviceDesc {
             validation: false,
             statistics: false,
             application_name: "rara".into(),
+            shape: None,
         }
     }
 }
@@ -66,6 +70,8 @@ pub struct AdoptDesc {
     pub mesh_shader: bool,
     /// True when `VK_KHR_push_descriptor` was enabled.
     pub push_descriptor: bool,
+    /// True when `subgroupSizeControl` and `computeFullSubgroups` were enabled.
+    pub full_subgroups: bool,
     /// True when `VK_EXT_debug_utils` was enabled on the instance.
     pub debug_utils: bool,
     /// True when the feature `pipelineStatisticsQuery` was enabled.
@@ -76,15 +82,19 @@ pub struct AdoptDesc {
     /// rara's own. It is locked while a buffer or an image is made or destroyed, never by
     /// [`Renderer::prepare`](crate::Renderer::prepare) or a draw.
     pub allocator: Option<Arc<Mutex<Allocator>>>,
+    /// The kind of machine that kernels are chosen for; `None` is what suits the device.
+    pub shape: Option<DeviceShape>,
 }
 
 setters!(AdoptDesc {
     mesh_shader: bool,
     push_descriptor: bool,
+    full_subgroups: bool,
     debug_utils: bool,
     pipeline_statistics: bool,
     pipeline_cache: vk::PipelineCache,
     allocator: Option<Arc<Mutex<Allocator>>>,
+    shape: Option<DeviceShape>,
 });
 
 impl AdoptDesc {
@@ -105,10 +115,12 @@ impl AdoptDesc {
             queue_family,
             mesh_shader: false,
             push_descriptor: false,
+            full_subgroups: false,
             debug_utils: false,
             pipeline_statistics: false,
             pipeline_cache: vk::PipelineCache::null(),
             allocator: None,
+            shape: None,
         }
     }
 }
@@ -142,6 +154,7 @@ impl Device {
         let chosen = devices::choose(&infos, desc.selector.as_deref())?;
         let (physical, info) = (physical[chosen], infos[chosen].clone());
         let mut support = info.support.clone().map_err(Error::Device)?;
+        let shape = DeviceShape::of(&info, &support, desc.shape)?;
         support.pipeline_statistics &= desc.statistics;
 
         let family = support.queue_family;
@@ -180,10 +193,12 @@ impl Device {
             queue_family: family,
             mesh_shader: support.mesh_shader,
             push_descriptor: support.push_descriptor,
+            full_subgroups: support.full_subgroups[1] > 0,
             debug_utils: owned.debug_utils,
             pipeline_statistics: support.pipeline_statistics,
             pipeline_cache,
             allocator: None,
+            shape: desc.shape,
         };
         let allocator = allocator(&adopt).inspect_err(|_| {
             // SAFETY: nothing else was made from the device, and nobody else knows it.
@@ -192,7 +207,7 @@ impl Device {
                 raw.destroy_device(None);
             }
         })?;
-        let device = Self::new(adopt, info, support, allocator, Some(owned));
+        let device = Self::new(adopt, info, support, allocator, Some(owned), shape);
         device.set_name(pipeline_cache, "pipelines");
         device.set_name(queue, "queue");
         Ok(device)
@@ -235,17 +250,21 @@ impl Device {
         }
         support.mesh_shader &= desc.mesh_shader;
         support.push_descriptor &= desc.push_descriptor;
+        if !desc.full_subgroups {
+            support.full_subgroups = [0; 2];
+        }
         support.pipeline_statistics &= desc.pipeline_statistics;
         // The host does not say whether it was enabled, and only rara's own devices use it.
         support.calibrated_timestamps = None;
         // SAFETY: as above.
         let info =
             unsafe { devices::describe(&desc.instance, desc.physical_device, desc.api_version) };
+        let shape = DeviceShape::of(&info, &support, desc.shape)?;
         let allocator = match &desc.allocator {
             Some(lent) => lent.clone(),
             None => allocator(&desc)?,
         };
-        Ok(Self::new(desc, info, support, allocator, None))
+        Ok(Self::new(desc, info, support, allocator, None, shape))
     }
 }
 

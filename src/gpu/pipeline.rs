@@ -7,7 +7,7 @@ use ash::vk;
 
 use super::failure::failed;
 use super::layout::Layout;
-use super::{Access, Attachments, Bindings, BufferAccess, Device, Shader};
+use super::{Access, Attachments, Bindings, BufferAccess, Device, DeviceShape, Shader};
 use crate::{Error, Result};
 
 /// Entry point of every shader.
@@ -37,8 +37,16 @@ impl ComputePipeline {
         let constants = Constants::new(desc.constants);
         let specialization = constants.info();
         let module = Module::new(device, desc.shader, desc.bindings)?;
+        let mut stage = module.stage(&specialization);
+        let mut size = vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo::default();
+        if let Some(asked) = subgroup(device).filter(|_| desc.shader.subgroups) {
+            size = size.required_subgroup_size(asked);
+            stage = stage
+                .flags(vk::PipelineShaderStageCreateFlags::REQUIRE_FULL_SUBGROUPS)
+                .push_next(&mut size);
+        }
         let info = [vk::ComputePipelineCreateInfo::default()
-            .stage(module.stage(&specialization))
+            .stage(stage)
             .layout(layout.raw)];
         // SAFETY: module and layout are the device's and alive; the constants outlive the call.
         let made = unsafe {
@@ -75,6 +83,14 @@ impl ComputePipeline {
             };
             (buffer.binding as usize, access)
         })
+    }
+}
+
+/// The size of the whole subgroups that a device's compute shaders ask for, where they can.
+fn subgroup(device: &Device) -> Option<u32> {
+    match device.shape() {
+        DeviceShape::Gpu { subgroup } => Some(subgroup).filter(|&size| size > 0),
+        DeviceShape::Cpu => None,
     }
 }
 

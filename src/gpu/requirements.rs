@@ -6,7 +6,7 @@ use ash::{ext, khr, vk};
 
 use super::MAX_BUFFERS;
 use super::failure::failed;
-use crate::limits::BLOCK_SIZE;
+use crate::limits::{BLOCK_SIZE, RADIX_GROUP_SIZE};
 use crate::{Error, Result};
 
 /// The optional features of a physical device that meets the requirements.
@@ -29,6 +29,10 @@ pub struct Support {
     /// Invocations of a subgroup where compute shaders can vote and shuffle, else 0. The tile rasteriser uses subgroups on
     /// CPU drivers; there is nothing to enable.
     pub subgroup_size: u32,
+    /// The least and the greatest size of the whole subgroups that compute shaders with ballots and shuffles can be asked
+    /// for, invocations; 0 where they cannot: `subgroupSizeControl` and `computeFullSubgroups` (Vulkan 1.3 or
+    /// `VK_EXT_subgroup_size_control`).
+    pub full_subgroups: [u32; 2],
     /// Nanoseconds a timestamp tick; 0 where [`Support::queue_family`] has no timestamps.
     pub timestamp_period: f32,
     /// Valid bits of a timestamp in [`Support::queue_family`].
@@ -51,12 +55,17 @@ pub struct Support {
 }
 
 impl Support {
-    /// The device extensions to enable. A host may leave out `VK_EXT_mesh_shader` and `VK_KHR_push_descriptor`.
+    /// The device extensions to enable. A host may leave out `VK_EXT_mesh_shader`, `VK_KHR_push_descriptor` and
+    /// `VK_EXT_subgroup_size_control`.
     pub fn extensions(&self) -> Vec<&'static CStr> {
         let before_1_3 = self.api_version < vk::API_VERSION_1_3;
         let wanted = [
             (before_1_3, khr::synchronization2::NAME),
             (before_1_3, khr::dynamic_rendering::NAME),
+            (
+                before_1_3 && self.full_subgroups[1] > 0,
+                ext::subgroup_size_control::NAME,
+            ),
             (self.mesh_shader, ext::mesh_shader::NAME),
             (self.push_descriptor, khr::push_descriptor::NAME),
             (self.portability_subset, khr::portability_subset::NAME),
@@ -81,12 +90,17 @@ impl Support {
                     .mesh_shader(true)
                     .task_shader(true)
             }),
+            subgroup_size: (self.full_subgroups[1] > 0).then(|| {
+                vk::PhysicalDeviceSubgroupSizeControlFeatures::default()
+                    .subgroup_size_control(true)
+                    .compute_full_subgroups(true)
+            }),
         }
     }
 }
 
 /// The feature structs that a device is created with, in 1.2 as in 1.3. A host with structs of its own sets the same
-/// fields there; those of `VkPhysicalDeviceVulkan13Features` stand for the two single ones.
+/// fields there; those of `VkPhysicalDeviceVulkan13Features` stand for all but the first and the mesh shaders'.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Features {
@@ -98,6 +112,8 @@ pub struct Features {
     pub dynamic_rendering: vk::PhysicalDeviceDynamicRenderingFeatures<'static>,
     /// `meshShader` and `taskShader`, where supported.
     pub mesh: Option<vk::PhysicalDeviceMeshShaderFeaturesEXT<'static>>,
+    /// `subgroupSizeControl` and `computeFullSubgroups`, where supported.
+    pub subgroup_size: Option<vk::PhysicalDeviceSubgroupSizeControlFeatures<'static>>,
 }
 
 impl Features {
@@ -107,8 +123,12 @@ impl Features {
             .push_next(&mut self.vulkan12)
             .push_next(&mut self.synchronization2)
             .push_next(&mut self.dynamic_rendering);
-        match &mut self.mesh {
+        let info = match &mut self.mesh {
             Some(mesh) => info.push_next(mesh),
+            None => info,
+        };
+        match &mut self.subgroup_size {
+            Some(subgroup_size) => info.push_next(subgroup_size),
             None => info,
         }
     }
@@ -178,12 +198,17 @@ pub unsafe fn check(
     let mut synchronization2 = vk::PhysicalDeviceSynchronization2Features::default();
     let mut dynamic_rendering = vk::PhysicalDeviceDynamicRenderingFeatures::default();
     let mut mesh = vk::PhysicalDeviceMeshShaderFeaturesEXT::default();
+    let mut sizes = vk::PhysicalDeviceSubgroupSizeControlFeatures::default();
+    let has_sizes = has_1_3 || has(ext::subgroup_size_control::NAME);
     let mut features = vk::PhysicalDeviceFeatures2::default()
         .push_next(&mut v12)
         .push_next(&mut synchronization2)
         .push_next(&mut dynamic_rendering);
     if has_mesh {
         features = features.push_next(&mut mesh);
+    }
+    if has_sizes {
+        features = features.push_next(&mut sizes);
     }
     // SAFETY: as above; every struct in the chain is known to a device of this version and these extensions.
     unsafe { instance.get_physical_device_features2(physical, &mut features) };
@@ -207,7 +232,11 @@ pub unsafe fn check(
 
     let mut v11 = vk::PhysicalDeviceVulkan11Properties::default();
     let mut v13_limits = vk::PhysicalDeviceVulkan13Properties::default();
+    let mut size_limits = vk::PhysicalDeviceSubgroupSizeControlProperties::default();
     let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut v11);
+    if has_sizes {
+        properties = properties.push_next(&mut size_limits);
+    }
     if has_1_3 {
         properties = properties.push_next(&mut v13_limits);
     }
@@ -232,6 +261,14 @@ pub unsafe fn check(
         && v11
             .subgroup_supported_stages
             .contains(vk::ShaderStageFlags::COMPUTE);
+    let ballots = operations | vk::SubgroupFeatureFlags::BALLOT;
+    let asks_for_subgroups = has_subgroups
+        && v11.subgroup_supported_operations.contains(ballots)
+        && sizes.subgroup_size_control == vk::TRUE
+        && sizes.compute_full_subgroups == vk::TRUE
+        && size_limits
+            .required_subgroup_size_stages
+            .contains(vk::ShaderStageFlags::COMPUTE);
     let mesh_shader = mesh.mesh_shader == vk::TRUE && mesh.task_shader == vk::TRUE;
     Ok(Support {
         api_version: version.min(vk::API_VERSION_1_3),
@@ -239,6 +276,17 @@ pub unsafe fn check(
         mesh_shader,
         push_descriptor: binds && has(khr::push_descriptor::NAME),
         subgroup_size: if has_subgroups { v11.subgroup_size } else { 0 },
+        full_subgroups: if asks_for_subgroups {
+            // The largest workgroup has so many invocations; more, smaller subgroups than a workgroup may have are not asked
+            // for.
+            let least =
+                RADIX_GROUP_SIZE.div_ceil(size_limits.max_compute_workgroup_subgroups.max(1));
+            let least = size_limits.min_subgroup_size.max(least.next_power_of_two());
+            let most = size_limits.max_subgroup_size;
+            if least <= most { [least, most] } else { [0; 2] }
+        } else {
+            [0; 2]
+        },
         timestamp_period: if families[family].timestamp_valid_bits > 0 {
             limits.timestamp_period
         } else {

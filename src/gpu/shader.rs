@@ -38,6 +38,8 @@ pub struct Shader {
     pub bound: &'static [u32],
     /// The buffers, by ascending binding.
     pub buffers: &'static [BufferUse],
+    /// Whether it has subgroup operations. Where the device can be asked for whole subgroups of a size, it is.
+    pub subgroups: bool,
 }
 
 /// Buffers a pass can have: device addresses that fit in the guaranteed 128 bytes of push constants beside

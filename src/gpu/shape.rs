@@ -2,34 +2,130 @@
 
 use ash::vk;
 
-use super::DeviceInfo;
+use super::{DeviceInfo, Support};
+use crate::{Error, Result};
 
 /// The kind of machine that runs the stages. It decides which kernels are used and how finely their work is divided;
 /// pictures depend on it only by the rounding of sums.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum DeviceShape {
     /// A driver that runs shaders on the processor's cores: few invocations that each do much.
     Cpu,
     /// A graphics processor: many invocations, whose memory accesses are served together.
-    Gpu,
+    Gpu {
+        /// The invocations of a subgroup that kernels ask for, a power of two within [`Support::full_subgroups`]; 0 for
+        /// kernels without subgroup operations.
+        subgroup: u32,
+    },
 }
 
+/// The size that kernels were written with in mind. Drivers that offer several take it; the others have one.
+const USUAL_SUBGROUP: u32 = 32;
+
 impl DeviceShape {
-    /// The kind of a device, unless `RARA_SHAPE` says otherwise: tests run the kernels of either kind on any device.
-    pub(crate) fn of(info: &DeviceInfo) -> Self {
-        let is = match info.kind {
-            vk::PhysicalDeviceType::CPU => Self::Cpu,
-            _ => Self::Gpu,
+    /// The shape of a device, and why that one: what a host or `RARA_SHAPE` asks for, or else what suits its kind.
+    pub(crate) fn of(
+        info: &DeviceInfo,
+        support: &Support,
+        wanted: Option<Self>,
+    ) -> Result<(Self, &'static str)> {
+        if let Some(wanted) = wanted {
+            wanted.check(support)?;
+            return Ok((wanted, "asked for by the device's description"));
+        }
+        if let Ok(text) = std::env::var("RARA_SHAPE") {
+            let wanted = Self::named(&text, support)?;
+            wanted.check(support)?;
+            return Ok((wanted, "asked for by RARA_SHAPE"));
+        }
+        Ok(match info.kind {
+            vk::PhysicalDeviceType::CPU => (Self::Cpu, "a CPU driver"),
+            _ => (Self::gpu(support), "a GPU"),
+        })
+    }
+
+    /// A GPU's shape with the subgroups that suit a device.
+    fn gpu(support: &Support) -> Self {
+        let [least, most] = support.full_subgroups;
+        Self::Gpu {
+            subgroup: USUAL_SUBGROUP.clamp(least, most),
+        }
+    }
+
+    /// The shape that `RARA_SHAPE` names: `cpu`, `gpu`, or `gpu:N` for subgroups of N.
+    fn named(text: &str, support: &Support) -> Result<Self> {
+        let shape = match text.split_once(':') {
+            None if text == "cpu" => Some(Self::Cpu),
+            None if text == "gpu" => Some(Self::gpu(support)),
+            Some(("gpu", size)) => size.parse().ok().map(|subgroup| Self::Gpu { subgroup }),
+            _ => None,
         };
-        match std::env::var("RARA_SHAPE").as_deref() {
-            Ok("cpu") => Self::Cpu,
-            Ok("gpu") => Self::Gpu,
-            Ok(other) => {
-                log::warn!("RARA_SHAPE is {other:?}, neither cpu nor gpu: it is ignored");
-                is
+        shape.ok_or_else(|| {
+            Error::Invalid(format!(
+                "RARA_SHAPE is {text:?}; it can be cpu, gpu, or gpu:N with subgroups of N invocations"
+            ))
+        })
+    }
+
+    /// Refuses subgroups that the device cannot be asked for.
+    fn check(self, support: &Support) -> Result<()> {
+        let [least, most] = support.full_subgroups;
+        match self {
+            Self::Gpu { subgroup }
+                if subgroup != 0
+                    && !(subgroup.is_power_of_two() && (least..=most).contains(&subgroup)) =>
+            {
+                Err(Error::Invalid(format!(
+                    "whole subgroups of {subgroup} invocations cannot be had: this device has them from {least} to {most} \
+                     (0: none, or subgroupSizeControl and computeFullSubgroups are not enabled)"
+                )))
             }
-            Err(_) => is,
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_are_chosen_by_kind_unless_asked_for() {
+        let with = |full_subgroups| Support {
+            full_subgroups,
+            ..Support::default()
+        };
+        let of = |subgroup| DeviceShape::Gpu { subgroup };
+        for (sizes, chosen) in [
+            ([0, 0], 0),
+            ([8, 8], 8),
+            ([32, 64], 32),
+            ([64, 64], 64),
+            ([8, 16], 16),
+        ] {
+            assert_eq!(DeviceShape::gpu(&with(sizes)), of(chosen));
+            assert!(DeviceShape::gpu(&with(sizes)).check(&with(sizes)).is_ok());
+        }
+        let support = with([8, 32]);
+        let named = |text| DeviceShape::named(text, &support).ok();
+        assert_eq!(named("cpu"), Some(DeviceShape::Cpu));
+        assert_eq!(named("gpu"), Some(of(32)));
+        assert_eq!(named("gpu:0"), Some(of(0)));
+        for text in ["", "GPU", "gpu:", "gpu:-1", "cpu:8", "tpu"] {
+            assert_eq!(named(text), None);
+        }
+        for (subgroup, possible) in [
+            (0, true),
+            (4, false),
+            (8, true),
+            (12, false),
+            (32, true),
+            (64, false),
+        ] {
+            assert_eq!(of(subgroup).check(&support).is_ok(), possible);
         }
     }
 }

@@ -132,7 +132,7 @@ mod tests {
             (DeviceShape::Cpu, 8, true),
             (DeviceShape::Cpu, 16, false),
             (DeviceShape::Cpu, 0, false),
-            (DeviceShape::Gpu, 32, false),
+            (DeviceShape::Gpu { subgroup: 32 }, 32, false),
         ] {
             assert_eq!(
                 TileWork::suiting(shape, size).subgroups,

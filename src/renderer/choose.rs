@@ -49,6 +49,6 @@ pub(super) fn runs(shape: DeviceShape, gaussians: u32) -> u32 {
     match (shape, gaussians) {
         (DeviceShape::Cpu, ..32_768) => 128,
         (DeviceShape::Cpu, _) => 256,
-        (DeviceShape::Gpu, _) => 2048,
+        (DeviceShape::Gpu { .. }, _) => 2048,
     }
 }

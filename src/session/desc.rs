@@ -1,6 +1,6 @@
 //! The description from which a session is opened.
 
-use crate::gpu::{Bindings, Device, PipelineCache};
+use crate::gpu::{Bindings, Device, DeviceShape, PipelineCache};
 use crate::setters::setters;
 use crate::trace::Trace;
 
@@ -22,6 +22,8 @@ pub struct HeadlessDesc {
     pub trace: Option<Trace>,
     /// Count what the stages do, where the device can.
     pub statistics: bool,
+    /// The kind of machine that kernels are chosen for; `None` is what suits the device.
+    pub shape: Option<DeviceShape>,
 }
 
 setters!(HeadlessDesc {
@@ -31,6 +33,7 @@ setters!(HeadlessDesc {
     pipeline_cache: PipelineCache,
     trace: Option<Trace>,
     statistics: bool,
+    shape: Option<DeviceShape>,
 });
 
 impl HeadlessDesc {

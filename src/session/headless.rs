@@ -36,6 +36,7 @@ impl Headless {
                 validation: desc.validation,
                 statistics: desc.statistics,
                 application_name: "rara".into(),
+                shape: desc.shape,
             })
         };
         Self::on(trace::span(desc.trace.as_ref(), "open", open)?, desc)

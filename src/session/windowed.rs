@@ -59,6 +59,7 @@ impl Windowed {
             validation: desc.validation,
             application_name: "rara".into(),
             statistics: false,
+            shape: desc.shape,
         };
         let window: Arc<dyn Window> = window;
         let (device, surface) = Surface::open(&open, window)?;

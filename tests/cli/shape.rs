@@ -27,3 +27,27 @@ fn kernels_for_gpus_draw_the_picture_of_those_for_processors() {
         assert!(max < 0.01, "{name}: {difference}");
     }
 }
+
+/// The statistics say for what kind of machine kernels were chosen, and why; a kind that cannot be had is refused.
+#[test]
+fn the_shape_is_reported_with_its_reason() {
+    let here = folder("shape_reported");
+    scene(&here);
+    let words = "render @/scene.ply --size 32x32 --json";
+    let asked = document(line_with(&here, words, Some(("RARA_SHAPE", "gpu:0"))));
+    let shape =
+        serde_json::json!({"kind": "gpu", "subgroup": 0, "reason": "asked for by RARA_SHAPE"});
+    assert_eq!(asked["shape"], shape);
+    let own = document(line(&here, words));
+    assert!(
+        own["shape"]["reason"]
+            .as_str()
+            .is_some_and(|reason| !reason.is_empty())
+    );
+    for impossible in ["gpu:3", "gpu:1024", "apu"] {
+        let output = line_with(&here, words, Some(("RARA_SHAPE", impossible)));
+        assert!(!output.status.success(), "{impossible}");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(message.contains("subgroups"), "{impossible}: {message}");
+    }
+}

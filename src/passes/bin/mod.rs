@@ -21,6 +21,6 @@ pub(crate) const STAGE: Stage = Stage {
 /// The kernels that suit the plan's kind of device.
 fn kernels(plan: &Plan) -> &'static KernelSet {
     match plan.way.shape {
-        DeviceShape::Cpu | DeviceShape::Gpu => &spans::KERNELS,
+        DeviceShape::Cpu | DeviceShape::Gpu { .. } => &spans::KERNELS,
     }
 }

@@ -20,14 +20,14 @@ pub(crate) const STAGE: Stage = Stage::of_view(
 /// The kernels that suit the plan's kind of device.
 fn kernels(plan: &Plan) -> &'static KernelSet {
     match plan.way.shape {
-        DeviceShape::Cpu | DeviceShape::Gpu => &runs::KERNELS,
+        DeviceShape::Cpu | DeviceShape::Gpu { .. } => &runs::KERNELS,
     }
 }
 
 /// In which of the two pairs of `keys` and `order` those kernels leave the sorted ones.
 pub(super) fn result(plan: &Plan) -> usize {
     match plan.way.shape {
-        DeviceShape::Cpu | DeviceShape::Gpu => runs::result(plan),
+        DeviceShape::Cpu | DeviceShape::Gpu { .. } => runs::result(plan),
     }
 }
 

@@ -59,7 +59,9 @@ void main() {
         counts.at[0].project_groups = groups(survivors, SURVIVOR_GROUP_SIZE);
         counts.at[0].cutoff_groups = groups(place.y, SURVIVOR_GROUP_SIZE);
         // Even a single survivor is sorted: the passes carry it to the buffer that the draw reads.
-        counts.at[0].sort_groups = uvec4(survivors == 0u ? 0u : FRAME.order.sort_runs / SORT_GROUP_SIZE, 1u, 1u, 0u);
+        uint sort_groups = FRAME.order.sort_runs > 0u ? FRAME.order.sort_runs / SORT_GROUP_SIZE
+            : (survivors + RADIX_PARTITION - 1u) / RADIX_PARTITION;
+        counts.at[0].sort_groups = uvec4(survivors == 0u ? 0u : sort_groups, 1u, 1u, 0u);
         counts.at[0].draw = uvec4(4u, survivors, 0u, 0u);
         counts.at[0].mesh_groups = groups(survivors, MESH_GROUP_SIZE);
         // Where tiles are wanted, binning counts them.

@@ -49,6 +49,9 @@ const uint QUAD_TILES = 8u;
 const uint SORT_BITS = 8u;
 // Workgroup size of the sort; one invocation owns a run of consecutive keys, which makes the sort stable.
 const uint SORT_GROUP_SIZE = 64u;
+// Workgroup size of the sort for GPUs, and the consecutive keys of such a workgroup: its partition.
+const uint RADIX_GROUP_SIZE = 256u;
+const uint RADIX_PARTITION = 4096u;
 // Workgroup size of the spans of tiles, of which one invocation owns a run of consecutive splats.
 const uint SPAN_GROUP_SIZE = 64u;
 // Workgroup size where an invocation owns a row of tiles or a part of its spans: small, since rows hold unequal numbers.

@@ -13,6 +13,7 @@ layout(local_size_x = DIGITS) in;
 
 BUFFER(, 1, FrameCounts, counts)
 BUFFER(, 2, uint, histogram)
+#include "sort_passes.glsl"
 
 shared uint totals[DIGITS];
 shared uint least;
@@ -30,18 +31,8 @@ void decide(uint d) {
         atomicMax(greatest, histogram.at[range_place(run) + 1u]);
     }
     barrier();
-    if (d != 0u) {
-        return;
-    }
-    uint passes = push.params.passes;
-    uint base = least & ~(DIGITS - 1u);
-    // Even keys that are all alike take a pass, which carries them to their buffer.
-    uint digits = uint(max(findMSB(greatest - base), 0)) / SORT_BITS + 1u;
-    uint skipped = passes - min(digits, passes);
-    counts.at[0].sort_base = base;
-    counts.at[0].sort_skipped = skipped;
-    for (uint pass = 0u; pass < passes; pass++) {
-        counts.at[0].sort_pass_groups[pass] = pass < skipped ? uvec4(0u, 1u, 1u, 0u) : counts.at[0].sort_groups;
+    if (d == 0u) {
+        decide_passes(least, greatest, push.params.passes);
     }
 }
 

@@ -17,9 +17,8 @@ BUFFER(readonly, 5, Splat, splats)
 BUFFER(coherent, 6, uint, numbers)
 // The sort's, of which each invocation uses its own run's part.
 BUFFER(coherent, 7, uint, histogram)
+#include "ties.glsl"
 
-// Most that one invocation orders alone.
-const uint FEW = 24u;
 // Most that a workgroup merges. Beyond, the steps of the merges outweigh the histograms of the digits.
 const uint MANY = 4096u;
 
@@ -27,27 +26,6 @@ shared uvec2 ties[SORT_GROUP_SIZE]; // begin and end of equal keys that are too 
 shared uint tie_count;
 shared uint totals[DIGITS]; // of each digit, all runs together
 shared uint differing; // bits in which the numbers differ
-
-// A survivor's number in the scene.
-uint number(uint survivor) {
-    return floatBitsToUint(splats.at[survivor].middle.z);
-}
-
-void order_alone(uint begin, uint end) {
-    for (uint i = begin + 1u; i < end; i++) {
-        uint moved = order.at[i];
-        uint place = i;
-        uint its_number = number(moved);
-        for (; place > begin && number(order.at[place - 1u]) > its_number; place--) {
-            order.at[place] = order.at[place - 1u];
-        }
-        order.at[place] = moved;
-    }
-}
-
-uint at(bool second, uint i) {
-    return second ? scratch.at[i] : order.at[i];
-}
 
 // How many of the ordered [begin, end) have a number below the given one.
 uint rank_among(bool second, uint begin, uint end, uint its_number) {
@@ -62,20 +40,6 @@ uint rank_among(bool second, uint begin, uint end, uint its_number) {
         }
     }
     return low - begin;
-}
-
-void put(bool second, uint i, uint survivor) {
-    if (second) {
-        scratch.at[i] = survivor;
-    } else {
-        order.at[i] = survivor;
-    }
-}
-
-// All invocations see what the others have written.
-void publish() {
-    memoryBarrierBuffer();
-    barrier();
 }
 
 void copy_back(uint begin, uint end) {
@@ -197,7 +161,7 @@ void main() {
             while (end < count && keys.at[end] == key) {
                 end++;
             }
-            if (end - i > FEW) {
+            if (end - i > TIES_ALONE) {
                 tie = uvec2(i, end);
             } else if (end - i > 1u) {
                 order_alone(i, end);

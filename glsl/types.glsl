@@ -31,7 +31,7 @@ struct OrderData {
     uint key_near; // bits of the nearest depth a centre can have
     uint key_span; // by how much the farthest depth's bits exceed them
     uint key_shift; // low bits of the difference that the sort does without
-    uint sort_runs; // invocations of the sort
+    uint sort_runs; // invocations of the sort by runs; 0 for the sort by partitions
 };
 
 // The tiles of the picture.
@@ -165,7 +165,7 @@ struct FrameCounts {
     uvec4 project_groups; // indirect dispatch over the survivors
     uvec4 cutoff_groups; // indirect dispatch over the cutoff Gaussians
     uvec4 recut_groups; // indirect dispatch over the survivors that a moved clip changes; w: how many
-    uvec4 sort_groups; // indirect dispatch of the sort's runs
+    uvec4 sort_groups; // indirect dispatch of the sort's runs or partitions
     uvec4 sort_pass_groups[4]; // the same for each of its passes; none where the keys agree
     uvec4 draw; // indirect draw: vertices, instances, first vertex, first instance
     uvec4 mesh_groups; // indirect mesh tasks; w: survivors

@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::gpu::{Buffer, BufferDesc, Device, Location};
 use crate::limits;
 use crate::passes::plan::Plan;
+use crate::passes::sort;
 use crate::types::{self, FrameCounts, FrameData, LayerData, Splat, SplatDepth, SurfaceData};
 
 /// Everything the stages hand to each other. No stage reads a count on the CPU, so each array but the
@@ -82,7 +83,8 @@ struct Sizes {
     surfaces: u64,
     clip_blocks: u64,
     cut_bytes: u64,
-    sort_runs: u64,
+    /// Words.
+    histogram: u64,
     span_runs: u64,
     masks: u64,
     pairs: u64,
@@ -121,7 +123,7 @@ impl Sizes {
                 blocks
             },
             cut_bytes,
-            sort_runs: u64::from(plan.data.order.sort_runs),
+            histogram: sort::histogram_words(plan),
             span_runs: when_tiled(plan.data.tiles.span_runs.into()),
             masks: when_tiled(gaussians),
             pairs: when_tiled(plan.data.room.pair_capacity.into()),
@@ -176,8 +178,6 @@ impl Buffers {
         let mask_bytes = u64::from(limits::BLOCK_SIZE) / 4; // two bits a Gaussian
         let frame_bytes =
             size_of::<FrameData>() as u64 + sizes.layers * size_of::<LayerData>() as u64;
-        // The numbers of a run: its keys of each digit, and its least and greatest key.
-        let digits = (1_u64 << limits::SORT_BITS) + 2;
         Ok(Self {
             frame: gpu("frame", frame_bytes)?,
             surfaces: gpu("surfaces", sizes.surfaces * size_of::<SurfaceData>() as u64)?,
@@ -195,7 +195,7 @@ impl Buffers {
             splats: gpu("splats", n * size_of::<Splat>() as u64)?,
             keys: [gpu("keys", n * 4)?, gpu("sorted_keys", n * 4)?],
             order: [gpu("order", n * 4)?, gpu("sorted_order", n * 4)?],
-            histogram: gpu("histogram", digits * sizes.sort_runs * 4)?,
+            histogram: gpu("histogram", sizes.histogram * 4)?,
             tile_masks: gpu("tile_masks", sizes.masks * 16)?,
             tiles: if plan.is_tiled() {
                 Some(TileBuffers {
@@ -255,7 +255,7 @@ impl Buffers {
             && have.surfaces >= need.surfaces
             && have.clip_blocks >= need.clip_blocks
             && have.cut_bytes >= need.cut_bytes
-            && have.sort_runs == need.sort_runs
+            && have.histogram >= need.histogram
             && have.span_runs >= need.span_runs
             && have.masks >= need.masks
             && have.pairs >= need.pairs

@@ -68,8 +68,9 @@ pub(crate) struct SceneFacts<'a> {
     pub(crate) sh_format: ShFormat,
     /// For what kind of device kernels are chosen.
     pub(crate) shape: DeviceShape,
-    /// Invocations of the sort, and of the steps that find the splats' spans of tiles.
+    /// Invocations of the sort by runs, or 0 for that by partitions.
     pub(crate) sort_runs: u32,
+    /// Invocations of the steps that find the splats' spans of tiles.
     pub(crate) span_runs: u32,
     /// How splats become pixels; never `Auto`.
     pub(crate) raster: Raster,

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeSet;
 
+use glam::Vec3;
 use rara::limits::SORT_BITS;
 use rara::reference::sort;
 use rara::scene::{Kind, generate};
 use rara::types::FrameData;
-use rara::{Clip, Gaussians, Raster, Settings};
+use rara::{Clip, Raster, Settings};
 
 use crate::frame::{self, Stages};
 
@@ -63,7 +64,6 @@ fn the_order_is_the_twins() {
 fn equal_depths_are_in_the_files_order() {
     let mut stages = Stages::new();
     let (few, many) = (3_000, 70_000);
-    let settings = Settings::default().raster(Raster::Quad);
     for (count, layers) in [
         (few, 1),
         (few, 7),
@@ -74,20 +74,36 @@ fn equal_depths_are_in_the_files_order() {
         (many, 3),
         (many, 900),
     ] {
-        let scene = generate(Kind::General, count, 2);
-        let mut camera = frame::views(&scene)[0];
-        camera.rotation = glam::DMat3::IDENTITY;
-        camera.eye = glam::DVec3::new(0.0, 0.0, -40.0);
-        let mut flat: Gaussians = scene;
-        for (index, position) in flat.positions_mut().iter_mut().enumerate() {
-            *position *= 0.5;
-            position.z = (index * 7919 % layers) as f32 / 64.0;
-        }
-        stages.load(&flat);
-        let counts = stages.draw(&camera, &Clip::default(), &settings).counts;
-        assert!(counts.drawn > 1_000, "{counts:?}");
-        check(&mut stages, &format!("{count} in {layers} layers"));
+        check_layers(&mut stages, count, layers);
     }
+}
+
+/// Kernels that divide the keys into partitions of 4096 have a last one that is full, or misses or has a single key.
+#[test]
+fn partitions_of_every_length_are_sorted() {
+    let mut stages = Stages::new();
+    for count in [2, 4_095, 4_096, 4_097, 12_287, 12_288, 12_289] {
+        check_layers(&mut stages, count, count);
+        check_layers(&mut stages, count, 2);
+    }
+}
+
+/// Checks the order of Gaussians that stand in so many layers of one depth each, all of them in view.
+fn check_layers(stages: &mut Stages, count: usize, layers: usize) {
+    let mut scene = generate(Kind::General, count, 2);
+    let mut camera = frame::views(&scene)[0];
+    camera.rotation = glam::DMat3::IDENTITY;
+    camera.eye = glam::DVec3::new(0.0, 0.0, -40.0);
+    for (index, position) in scene.positions_mut().iter_mut().enumerate() {
+        *position = position.clamp(Vec3::NEG_ONE, Vec3::ONE);
+        position.z = (index * 7919 % layers) as f32 / 64.0;
+    }
+    scene.opacities_mut().fill(0.5);
+    stages.load(&scene);
+    let settings = Settings::default().raster(Raster::Quad);
+    let counts = stages.draw(&camera, &Clip::default(), &settings).counts;
+    assert_eq!(counts.drawn, count as u32, "all are in view");
+    check(stages, &format!("{count} in {layers} layers"));
 }
 
 /// With fewer bits only neighbours may change places.

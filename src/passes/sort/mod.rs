@@ -5,11 +5,16 @@
 //! which all later stages rely, and the others to the stages that follow ([`Sorted::spare`]). The plan says which kernels do
 //! it: each set has a file here, shaders and scratch of its own.
 
+mod radix;
 mod runs;
 
-use crate::gpu::{Buffer, DeviceShape};
+use std::mem::offset_of;
+
+use crate::gpu::{Buffer, DeviceShape, Groups};
+use crate::limits;
 use crate::passes::plan::Plan;
 use crate::passes::stage::{Frame, KernelSet, Stage};
+use crate::types::FrameCounts;
 
 pub(crate) const STAGE: Stage = Stage::of_view(
     "sort",
@@ -20,15 +25,33 @@ pub(crate) const STAGE: Stage = Stage::of_view(
 /// The kernels that suit the plan's kind of device.
 fn kernels(plan: &Plan) -> &'static KernelSet {
     match plan.way.shape {
-        DeviceShape::Cpu | DeviceShape::Gpu { .. } => &runs::KERNELS,
+        DeviceShape::Cpu => &runs::KERNELS,
+        DeviceShape::Gpu { .. } => &radix::KERNELS,
     }
 }
 
-/// In which of the two pairs of `keys` and `order` those kernels leave the sorted ones.
-pub(super) fn result(plan: &Plan) -> usize {
+/// Words of `histogram` that those kernels use.
+pub(super) fn histogram_words(plan: &Plan) -> u64 {
     match plan.way.shape {
-        DeviceShape::Cpu | DeviceShape::Gpu { .. } => runs::result(plan),
+        DeviceShape::Cpu => runs::histogram_words(plan.data.order.sort_runs.into()),
+        DeviceShape::Gpu { .. } => radix::histogram_words(plan.gaussians().into()),
     }
+}
+
+/// In which of the two pairs of `keys` and `order` they leave the sorted ones: each pass carries them to the other pair.
+pub(super) fn result(plan: &Plan) -> usize {
+    (plan.way.sort_passes % 2) as usize
+}
+
+// FrameCounts has indirect commands for four passes.
+const _: () = assert!(u32::BITS.div_ceil(limits::SORT_BITS) <= 4);
+
+/// The workgroups of a pass, none where the device skips it: of the passes that the scene's bounds ask for, the first ones, as
+/// many as there are leading digits in which the keys agree (glsl/sort.glsl).
+fn of_pass(counts: &Buffer, pass: u32) -> Groups<'_> {
+    let size = size_of::<[u32; 4]>();
+    let at = offset_of!(FrameCounts, sort_pass_groups) + pass as usize * size;
+    Groups::Indirect(counts, at as u64)
 }
 
 /// The buffers that the sort leaves.

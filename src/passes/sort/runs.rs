@@ -1,18 +1,13 @@
 //! A radix sort by runs of consecutive keys, each owned by one invocation. The runs are few and long, as suits processors.
 //! Its scratch is `histogram`.
 
-use std::mem::offset_of;
-
 use crate::gpu::{Groups, Recorder};
 use crate::limits;
 use crate::passes::buffers::{buffers, indirect};
-use crate::passes::plan::Plan;
 use crate::passes::shaders::{sort_count, sort_scan, sort_scatter, sort_ties};
+use crate::passes::sort::of_pass;
 use crate::passes::stage::{Frame, KernelSet, key};
 use crate::types::FrameCounts;
-
-// FrameCounts has indirect commands for four passes.
-const _: () = assert!(u32::BITS.div_ceil(limits::SORT_BITS) <= 4);
 
 pub(super) const KERNELS: KernelSet = KernelSet {
     pipelines: |plan, need| {
@@ -24,9 +19,9 @@ pub(super) const KERNELS: KernelSet = KernelSet {
     record,
 };
 
-/// Each pass carries keys and survivors to the other pair of buffers.
-pub(super) fn result(plan: &Plan) -> usize {
-    (plan.way.sort_passes % 2) as usize
+/// Words of the histogram for so many runs: for each its keys of each digit, and its least and greatest key.
+pub(super) fn histogram_words(runs: u64) -> u64 {
+    runs * ((1 << limits::SORT_BITS) + 2)
 }
 
 /// Sorts the survivors by their depths, and those of one depth by their number in the scene. Of the passes that the scene's
@@ -34,11 +29,6 @@ pub(super) fn result(plan: &Plan) -> usize {
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
     let passes = frame.plan.way.sort_passes;
-    let of_pass = |pass: u32| {
-        let size = size_of::<[u32; 4]>();
-        let at = offset_of!(FrameCounts, sort_pass_groups) + pass as usize * size;
-        Groups::Indirect(&b.counts, at as u64)
-    };
     let runs = indirect!(b.counts, FrameCounts, sort_groups);
     let pairs = [(&b.keys[0], &b.order[0]), (&b.keys[1], &b.order[1])];
     for pass in 0..passes {
@@ -49,7 +39,11 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
             keys,
         });
         // The first count always runs: it decides which passes are skipped.
-        let groups = if pass == 0 { runs } else { of_pass(pass - 1) };
+        let groups = if pass == 0 {
+            runs
+        } else {
+            of_pass(&b.counts, pass - 1)
+        };
         let params = sort_count::Params { pass };
         frame.dispatch(recorder, buffers, params, groups);
         let buffers = buffers!(sort_scan {
@@ -62,7 +56,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
             keys, order, sorted_keys, sorted_order,
         });
         let params = sort_scatter::Params { pass };
-        frame.dispatch(recorder, buffers, params, of_pass(pass));
+        frame.dispatch(recorder, buffers, params, of_pass(&b.counts, pass));
     }
     if frame.scene.reordered {
         let sorted = frame.plan.sorted();

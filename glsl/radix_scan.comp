@@ -1,0 +1,64 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The second step of a pass of the sort for GPUs: a workgroup a digit turns the partitions' counts of it into how many keys of
+// the digit stand in the partitions before. In the first pass the first workgroup decides which passes are skipped.
+struct Params {
+    uint pass; // of the sort, from 0
+    uint passes; // of the sort, if none is skipped
+};
+#define PARAMS Params
+#include "radix.glsl"
+#include "workgroup_sum.glsl"
+
+layout(local_size_x = RADIX_GROUP_SIZE) in;
+
+BUFFER(, 1, FrameCounts, counts)
+BUFFER(, 2, uint, histogram)
+#include "sort_passes.glsl"
+
+shared uint least;
+shared uint greatest;
+
+void decide() {
+    if (gl_LocalInvocationIndex == 0u) {
+        least = ~0u;
+        greatest = 0u;
+    }
+    barrier();
+    for (uint p = gl_LocalInvocationIndex; p < PARTITIONS; p += RADIX_GROUP_SIZE) {
+        // The least and the greatest do not depend on the order of the atomics.
+        atomicMin(least, histogram.at[LEAST_PLACE(p)]);
+        atomicMax(greatest, histogram.at[LEAST_PLACE(p) + 1u]);
+    }
+    barrier();
+    if (gl_LocalInvocationIndex == 0u) {
+        decide_passes(least, greatest, push.params.passes);
+    }
+}
+
+void main() {
+    uint d = gl_WorkGroupID.x;
+    uint partitions = PARTITIONS;
+    if (push.params.pass == 0u) {
+        if (d == 0u) {
+            decide();
+        }
+    } else if (push.params.pass <= counts.at[0].sort_skipped) {
+        return; // this pass is skipped
+    }
+    uint before = 0u;
+    for (uint first = 0u; first < partitions; first += RADIX_GROUP_SIZE) {
+        uint p = first + gl_LocalInvocationIndex;
+        uint place = COUNT_PLACE(d, p);
+        uint count = p < partitions ? histogram.at[place] : 0u;
+        uint total;
+        uint sum = exclusive_sum(count, total);
+        if (p < partitions) {
+            histogram.at[place] = before + sum;
+        }
+        before += total;
+    }
+    if (gl_LocalInvocationIndex == 0u) {
+        histogram.at[TOTAL_PLACE(d)] = before;
+    }
+}

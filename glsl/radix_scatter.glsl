@@ -1,0 +1,50 @@
+// The third step of a pass of the sort for GPUs: each partition carries its keys to their places. They are sorted by the digit
+// first, so that neighbouring invocations write to neighbouring places.
+#ifndef RARA_RADIX_SCATTER
+#define RARA_RADIX_SCATTER
+struct Params {
+    uint pass; // of the sort, from 0
+};
+#define PARAMS Params
+#include "radix_rank.glsl"
+
+layout(local_size_x = RADIX_GROUP_SIZE) in;
+
+BUFFER(readonly, 1, FrameCounts, counts)
+BUFFER(readonly, 2, uint, keys)
+BUFFER(readonly, 3, uint, order)
+BUFFER(readonly, 4, uint, histogram)
+BUFFER(writeonly, 5, uint, sorted_keys)
+BUFFER(writeonly, 6, uint, sorted_order)
+
+// Where a digit's keys of this partition go, less the place of the digit's first item.
+shared uint offsets[DIGITS];
+
+void main() {
+    uint local = gl_LocalInvocationIndex;
+    uint p = gl_WorkGroupID.x;
+    uint number = KEY_DIGIT;
+    uint base = KEY_BASE;
+    bool is_first = number == 0u; // the survivors are in their own order
+    uvec2 bounds = partition_bounds(p, KEY_COUNT);
+    uint total;
+    uint before = exclusive_sum(histogram.at[TOTAL_PLACE(local)], total);
+    uint digits[RADIX_KEYS];
+    for (uint k = 0u; k < RADIX_KEYS; k++) {
+        uint i = bounds.x + position_of(k);
+        // The positions beyond the last key take the last digit, and are left out below.
+        digits[k] = i < bounds.y ? digit(keys.at[i] - base, number) : DIGITS - 1u;
+    }
+    sort_positions(digits);
+    offsets[local] = before + histogram.at[COUNT_PLACE(local, p)] - digit_begins[local];
+    barrier();
+    for (uint i = local; i < bounds.y - bounds.x; i += RADIX_GROUP_SIZE) {
+        uint item = items[i];
+        uint place = offsets[item_digit(item)] + i;
+        uint source = bounds.x + item_position(item);
+        sorted_keys.at[place] = keys.at[source];
+        sorted_order.at[place] = is_first ? source : order.at[source];
+    }
+}
+
+#endif

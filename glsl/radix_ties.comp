@@ -1,0 +1,142 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// After the sort for GPUs, splats of one depth are in the order of the blocks; this puts them into that of their numbers. An
+// invocation orders a few alone. Where many have one depth, the workgroup of the first sorts them by the digits in which
+// their numbers differ, partition by partition.
+#include "radix_rank.glsl"
+
+layout(local_size_x = RADIX_GROUP_SIZE) in;
+
+BUFFER(readonly, 1, FrameCounts, counts)
+BUFFER(readonly, 2, uint, keys)
+BUFFER(coherent, 3, uint, order)
+BUFFER(coherent, 4, uint, scratch)
+BUFFER(readonly, 5, Splat, splats)
+// By survivor, the numbers of those that are sorted together.
+BUFFER(coherent, 6, uint, numbers)
+#include "ties.glsl"
+
+// The first of each many that begin in this partition.
+shared uint begins[RADIX_PARTITION / TIES_ALONE];
+shared uint begin_count;
+shared uint last; // of those that are sorted together, exclusive
+shared uint differing; // bits in which their numbers differ
+shared uint offsets[DIGITS]; // where their next of each digit goes
+
+// One past the last key that equals the one at `begin`.
+uint end_of(uint begin) {
+    uint count = KEY_COUNT;
+    uint key = keys.at[begin];
+    if (gl_LocalInvocationIndex == 0u) {
+        last = count;
+    }
+    for (uint first = begin; ; first += RADIX_GROUP_SIZE) {
+        barrier();
+        uint i = first + gl_LocalInvocationIndex;
+        if (i < count && keys.at[i] != key) {
+            atomicMin(last, i);
+        }
+        barrier();
+        if (last <= first + RADIX_GROUP_SIZE) {
+            return last;
+        }
+    }
+}
+
+// Carries the survivors of [begin, end) to the other buffer by a digit of their numbers.
+void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
+    uint local = gl_LocalInvocationIndex;
+    offsets[local] = 0u;
+    barrier();
+    for (uint i = begin + local; i < end; i += RADIX_GROUP_SIZE) {
+        atomicAdd(offsets[digit(numbers.at[at(second, i)], digit_number)], 1u);
+    }
+    barrier();
+    uint total;
+    uint before = exclusive_sum(offsets[local], total);
+    offsets[local] = begin + before;
+    for (uint first = begin; first < end; first += RADIX_PARTITION) {
+        uint count = min(end - first, RADIX_PARTITION);
+        uint digits[RADIX_KEYS];
+        for (uint k = 0u; k < RADIX_KEYS; k++) {
+            uint position = position_of(k);
+            digits[k] = position < count ? digit(numbers.at[at(second, first + position)], digit_number) : DIGITS - 1u;
+        }
+        sort_positions(digits);
+        for (uint i = local; i < count; i += RADIX_GROUP_SIZE) {
+            uint item = items[i];
+            uint d = item_digit(item);
+            put(!second, offsets[d] + i - digit_begins[d], at(second, first + item_position(item)));
+        }
+        barrier();
+        for (uint i = local; i < count; i += RADIX_GROUP_SIZE) {
+            uint d = item_digit(items[i]);
+            if (i + 1u == count || item_digit(items[i + 1u]) != d) {
+                offsets[d] += i + 1u - digit_begins[d];
+            }
+        }
+        barrier();
+    }
+    publish();
+}
+
+void sort_together(uint begin) {
+    uint local = gl_LocalInvocationIndex;
+    uint end = end_of(begin);
+    if (local == 0u) {
+        differing = 0u;
+    }
+    barrier();
+    uint first_number = number(order.at[begin]);
+    uint differs = 0u;
+    for (uint i = begin + local; i < end; i += RADIX_GROUP_SIZE) {
+        uint survivor = order.at[i];
+        uint its_number = number(survivor);
+        numbers.at[survivor] = its_number;
+        differs |= its_number ^ first_number;
+    }
+    atomicOr(differing, differs);
+    publish();
+    uint differing_bits = differing;
+    bool second = false;
+    for (uint digit_number = 0u; digit_number * SORT_BITS < 32u; digit_number++) {
+        if (digit(differing_bits, digit_number) != 0u) {
+            sort_by_digit(second, begin, end, digit_number);
+            second = !second;
+        }
+    }
+    if (second) {
+        for (uint i = begin + local; i < end; i += RADIX_GROUP_SIZE) {
+            order.at[i] = scratch.at[i];
+        }
+    }
+    publish();
+}
+
+void main() {
+    uint count = KEY_COUNT;
+    uvec2 bounds = partition_bounds(gl_WorkGroupID.x, count);
+    if (gl_LocalInvocationIndex == 0u) {
+        begin_count = 0u;
+    }
+    barrier();
+    for (uint i = bounds.x + gl_LocalInvocationIndex; i < bounds.y; i += RADIX_GROUP_SIZE) {
+        uint key = keys.at[i];
+        if (i + 1u >= count || keys.at[i + 1u] != key || (i > 0u && keys.at[i - 1u] == key)) {
+            continue; // no others have its depth, or they begin before it
+        }
+        uint end = i + 2u;
+        while (end < count && end - i <= TIES_ALONE && keys.at[end] == key) {
+            end++;
+        }
+        if (end - i <= TIES_ALONE) {
+            order_alone(i, end);
+        } else {
+            begins[atomicAdd(begin_count, 1u)] = i; // in any order: they are sorted each by itself
+        }
+    }
+    barrier();
+    for (uint tie = 0u; tie < begin_count; tie++) {
+        sort_together(begins[tie]);
+    }
+}

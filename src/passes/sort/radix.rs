@@ -1,0 +1,91 @@
+//! A radix sort by partitions of consecutive keys, each owned by a workgroup: reduce, then scan. All invocations of a workgroup
+//! read and write neighbouring memory, as suits graphics processors. Its scratch is `histogram`.
+
+use crate::gpu::{DeviceShape, Groups, Recorder};
+use crate::limits;
+use crate::passes::buffers::{buffers, indirect};
+use crate::passes::pipelines::Kernel;
+use crate::passes::plan::Plan;
+use crate::passes::shaders::{radix_count, radix_scan, radix_scatter, radix_ties};
+use crate::passes::sort::of_pass;
+use crate::passes::stage::{Frame, KernelSet, key};
+use crate::types::FrameCounts;
+
+pub(super) const KERNELS: KernelSet = KernelSet {
+    pipelines: |plan, need| {
+        need(key::<radix_count::Program>(plan));
+        need(key::<radix_scan::Program>(plan));
+        need(scatter(plan).key());
+        need(key::<radix_ties::Program>(plan));
+    },
+    record,
+};
+
+/// The least subgroup whose counts of the digits have room in a workgroup's shared memory.
+const LEAST_SUBGROUP: u32 = 8;
+
+/// The step that carries the keys: by ballots where the device can be asked for subgroups.
+fn scatter(plan: &Plan) -> Kernel<radix_scatter::Program> {
+    let shader = match plan.way.shape {
+        DeviceShape::Gpu { subgroup } if subgroup >= LEAST_SUBGROUP => {
+            &radix_scatter::SUBGROUP_COMP
+        }
+        _ => &radix_scatter::COMP,
+    };
+    Kernel::new(shader, ())
+}
+
+/// Words of the histogram for as many keys as there are Gaussians: for each partition its keys of each digit, and its least
+/// and greatest key; and the keys of each digit in all.
+pub(super) fn histogram_words(gaussians: u64) -> u64 {
+    let partitions = gaussians.div_ceil(limits::RADIX_PARTITION.into());
+    let digits = 1 << limits::SORT_BITS;
+    partitions * (digits + 2) + digits
+}
+
+/// Sorts as the other kernels do (`runs.rs`), pass by pass, and leaves out the same passes.
+fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
+    let b = frame.buffers;
+    let passes = frame.plan.way.sort_passes;
+    let partitions = indirect!(b.counts, FrameCounts, sort_groups);
+    for pass in 0..passes {
+        let [from, to] = [pass, pass + 1].map(|pair| (pair % 2) as usize);
+        let buffers = buffers!(radix_count {
+            b => [frame, counts, histogram];
+            keys: &b.keys[from],
+        });
+        // The first count always runs: it decides which passes are skipped.
+        let groups = match pass {
+            0 => partitions,
+            _ => of_pass(&b.counts, pass - 1),
+        };
+        frame.dispatch(recorder, buffers, radix_count::Params { pass }, groups);
+        let buffers = buffers!(radix_scan {
+            b => [frame, counts, histogram],
+        });
+        let params = radix_scan::Params { pass, passes };
+        let digits = Groups::Count(1 << limits::SORT_BITS);
+        frame.dispatch(recorder, buffers, params, digits);
+        let buffers = buffers!(radix_scatter {
+            b => [frame, counts, histogram];
+            keys: &b.keys[from],
+            order: &b.order[from],
+            sorted_keys: &b.keys[to],
+            sorted_order: &b.order[to],
+        });
+        let groups = of_pass(&b.counts, pass);
+        let params = radix_scatter::Params { pass };
+        scatter(frame.plan).dispatch(frame.pipelines, recorder, buffers, params, groups);
+    }
+    if frame.scene.reordered {
+        let sorted = frame.plan.sorted();
+        let buffers = buffers!(radix_ties {
+            b => [frame, counts, splats];
+            keys: &b.keys[sorted],
+            order: &b.order[sorted],
+            scratch: &b.order[sorted ^ 1],
+            numbers: &b.keys[sorted ^ 1],
+        });
+        frame.dispatch(recorder, buffers, (), partitions);
+    }
+}

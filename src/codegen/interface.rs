@@ -238,6 +238,7 @@ mod tests {
                 buffers: buffers.iter().map(buffer).collect(),
                 params: Vec::new(),
                 constants: constants.iter().map(constant).collect(),
+                subgroups: false,
             },
             modules: [vec![], vec![]],
         }

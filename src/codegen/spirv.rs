@@ -256,6 +256,17 @@ mod tests {
     }
 
     #[test]
+    fn subgroup_operations_are_seen_by_their_capabilities() {
+        for (file, has) in [
+            ("radix_scatter.comp.bound.spv", false),
+            ("radix_scatter.subgroup.comp.bound.spv", true),
+            ("tiles.subgroup.comp.address.spv", true),
+        ] {
+            assert_eq!(declarations(&module(file)).subgroups, has, "{file}");
+        }
+    }
+
+    #[test]
     fn a_compute_shader_declares_its_buffers_params_and_constants() {
         let found = declarations(&module("sort_scan.comp.bound.spv"));
         let buffers: Vec<_> = found

@@ -113,10 +113,12 @@ pub(crate) fn lent(host: &Device) -> AdoptDesc {
         queue_family: host.queue_family(),
         mesh_shader: host.support().mesh_shader,
         push_descriptor: host.support().push_descriptor,
+        full_subgroups: host.support().full_subgroups[1] > 0,
         debug_utils: true,
         pipeline_statistics: false,
         pipeline_cache: vk::PipelineCache::null(),
         allocator: None,
+        shape: None,
     }
 }
 

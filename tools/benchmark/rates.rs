@@ -139,5 +139,6 @@ fn shader(bytes: &[u8]) -> Result<&'static Shader> {
                 access: BufferAccess::Write,
             },
         ],
+        subgroups: false,
     })))
 }

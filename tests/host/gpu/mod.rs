@@ -51,6 +51,7 @@ const ADD: Shader = Shader {
         used("source", 0, BufferAccess::Read),
         used("target", 1, BufferAccess::Write),
     ],
+    subgroups: false,
 };
 const VERTEX: Shader = Shader {
     name: "square",
@@ -58,6 +59,7 @@ const VERTEX: Shader = Shader {
     address: spirv!("square.vert.address"),
     bound: spirv!("square.vert.bound"),
     buffers: &[used("corners", 0, BufferAccess::Read)],
+    subgroups: false,
 };
 const MESH: Shader = Shader {
     name: "square",
@@ -65,6 +67,7 @@ const MESH: Shader = Shader {
     address: spirv!("square.mesh.address"),
     bound: spirv!("square.mesh.bound"),
     buffers: &[used("corners", 0, BufferAccess::Read)],
+    subgroups: false,
 };
 const FRAGMENT: Shader = Shader {
     name: "square",
@@ -72,6 +75,7 @@ const FRAGMENT: Shader = Shader {
     address: spirv!("square.frag.address"),
     bound: spirv!("square.frag.bound"),
     buffers: &[used("paint", 1, BufferAccess::Read)],
+    subgroups: false,
 };
 
 /// The ways to reach buffers on this device.

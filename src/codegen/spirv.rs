@@ -260,7 +260,6 @@ mod tests {
         for (file, has) in [
             ("radix_scatter.comp.bound.spv", false),
             ("radix_scatter.subgroup.comp.bound.spv", true),
-            ("tiles.subgroup.comp.address.spv", true),
         ] {
             assert_eq!(declarations(&module(file)).subgroups, has, "{file}");
         }

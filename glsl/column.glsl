@@ -190,6 +190,37 @@ void exact_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, float a
     }
 }
 
+// `exact` with the camera inside the splat: front_weight of glsl/weight.glsl. `delta` and `pixel_centre` are the first
+// row's.
+void front_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, out float weight[ROWS]) {
+    uint count = flags >> CUT_COUNT_SHIFT;
+    vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
+    ColumnSight column = column_sight(base, delta + middle, pixel_centre + middle);
+    float front[ROWS];
+    beam_zs(column, cut_records.at[base + CUT_HEADER + count], front);
+    float far[ROWS];
+    float gone[ROWS];
+    for (uint row = 0u; row < ROWS; row++) {
+        far[row] = 1.0;
+        gone[row] = 0.0;
+    }
+    for (uint plane = 0u; plane < count; plane++) {
+        vec4 half_space = plane_of(base, plane);
+        float z[ROWS];
+        beam_zs(column, half_space, z);
+        vec2 along = vec2(dot(half_space.xyz, column.s.c), dot(half_space.xyz, column.c_step));
+        for (uint row = 0u; row < ROWS; row++) {
+            bool keeps = keeps_far(along.x + row_place(row) * along.y, half_space.xyz);
+            float share = tail_ratio(keeps ? z[row] : -z[row], front[row]);
+            far[row] = keeps ? min(far[row], share) : far[row];
+            gone[row] = keeps ? gone[row] : max(gone[row], share);
+        }
+    }
+    for (uint row = 0u; row < ROWS; row++) {
+        weight[row] = combined(flags, max(0.0, far[row] - gone[row]));
+    }
+}
+
 // `rara` with the camera outside the splat: chord_weight of glsl/weight.glsl. `delta` and `pixel_centre` are the first
 // row's.
 void chord_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, out float weight[ROWS]) {
@@ -251,7 +282,9 @@ void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 pixel_centre,
     uint flags = to_uint(cut_records.at[base].w);
     if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         curve_weights(base, uv.x, uv.y, v_step, alpha, weight);
-    } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) == 0u) {
+    } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) != 0u) {
+        front_weights(base, flags, delta, pixel_centre, weight);
+    } else if (CLIP_MODE == MODE_EXACT) {
         exact_weights(base, flags, delta, pixel_centre, alpha, weight);
     } else if (CLIP_MODE == MODE_RARA && (flags & CUT_FRONT) == 0u) {
         chord_weights(base, flags, delta, pixel_centre, weight);

@@ -35,6 +35,7 @@ BUFFER(writeonly, 5, vec4, picture)
 BUFFER(readonly, 6, uint, dirty)
 BUFFER(readonly, 7, uint, occluders)
 #include "column.glsl"
+#include "region/tile_side.glsl"
 #include "occluders.glsl"
 #include "weight_colour.glsl"
 
@@ -129,9 +130,9 @@ void blend(Seen splat, vec2 delta, float far) {
     }
 }
 
-// True when a splat is clipped away, which a reclipped frame's list still holds.
+// True when a splat is clipped away in the tile, which its list still holds.
 bool is_away(Seen splat, vec2 delta) {
-    return splat.linear.x == Z_CUT_AWAY || (CLIP_MODE == MODE_EXACT && abs(splat.linear.x) < Z_RANGE
+    return splat.linear.x == Z_CUT_AWAY || (RECLIPPED && CLIP_MODE == MODE_EXACT && abs(splat.linear.x) < Z_RANGE
         && is_carried_away(splat.linear, splat.curvature, delta));
 }
 
@@ -151,6 +152,7 @@ void main() {
     uvec2 size = uvec2(FRAME.view.size.xy);
     uvec2 pixel = tile_at * uvec2(TILE_WIDTH, TILE_HEIGHT) + gl_LocalInvocationID.xy * uvec2(1u, ROWS);
     pixel_centre = vec2(pixel) + 0.5;
+    vec2 tile_middle = (vec2(tile_at) + 0.5) * vec2(TILE_WIDTH, TILE_HEIGHT);
     // Pixels beyond the picture are done from the start.
     done = pixel.x >= size.x || pixel.y >= size.y;
     for (uint row = 0u; row < ROWS; row++) {
@@ -167,6 +169,14 @@ void main() {
         if (CLIP_MODE == MODE_EXACT && abs(my_conic_cut.z) < Z_RANGE) {
             my_curvature = splats.at[mine].curvature.xyz;
         }
+#ifdef RARA_SUBGROUP
+        // Each invocation asks for its own splat. Only where the cut's edge runs through the tile are pixels weighed.
+        if (CLIP_MODE >= MODE_RARA && !SHOW_WEIGHT && my_conic_cut.z < Z_RANGE) {
+            vec3 linear = vec3(my_conic_cut.zw, my_colour_cut.w);
+            uint side = tile_side(linear, my_curvature, my_centre_conic, my_conic_cut.x, tile_middle);
+            my_conic_cut.z = side == SIDE_VISIBLE ? Z_WHOLE : side == SIDE_INVISIBLE ? Z_CUT_AWAY : my_conic_cut.z;
+        }
+#endif
         float my_depth = DEPTH_FORM != DEPTH_NONE ? splats.at[mine].middle.w : 0.0;
         uint count = BATCH == 1u ? 1u : min(end - first, BATCH);
         for (uint i = 0u; i < count; i++) {
@@ -185,7 +195,7 @@ void main() {
             }
             float far = DEPTH_FORM != DEPTH_NONE ? farness(host_depth(OF(i, my_depth))) : 0.0;
             vec2 delta = pixel_centre - splat.centre_conic.xy;
-            if (!done && !(RECLIPPED && is_away(splat, delta))) {
+            if (!done && !((RECLIPPED || CLIP_MODE >= MODE_RARA) && is_away(splat, delta))) {
                 blend(splat, delta, far);
             }
         }

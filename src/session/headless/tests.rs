@@ -254,8 +254,14 @@ fn an_error_comes_behind_what_the_layer_has_said() {
 /// Tiles that end beyond the picture, in more than one strip; every way to weigh, and reclipped frames.
 #[test]
 fn subgroups_that_load_splats_together_change_nothing() {
-    let scene = generate(Kind::General, 3_000, 1);
-    let camera = Camera::frame(&Bounds::of(&scene), -DVec3::Y, 50.0, (27, 77)).expect("a view");
+    let mut scene = generate(Kind::General, 3_000, 1);
+    // Splats that cover many tiles are cut in few of them: each way decides by itself where to weigh pixels.
+    for scale in scene.scales_mut().iter_mut().step_by(7) {
+        *scale *= 8.0;
+    }
+    let outside = Camera::frame(&Bounds::of(&scene), -DVec3::Y, 50.0, (157, 77)).expect("a view");
+    let mut inside = outside;
+    inside.eye = scene.positions()[0].as_dvec3(); // of one of the large splats
     let draw = |pretence| {
         let device = faults::device(pretence).expect("a device");
         if pretence.is_some() {
@@ -269,19 +275,32 @@ fn subgroups_that_load_splats_together_change_nothing() {
             Headless::on(device.clone(), &HeadlessDesc::default()).expect("a renderer");
         headless.load(&scene).expect("uploads");
         let mut pictures = Vec::new();
-        for (mode, show, planes) in [
-            (Mode::None, Show::Colour, 1),
-            (Mode::Hard, Show::Colour, 1),
-            (Mode::Rara, Show::Colour, 2),
-            (Mode::Exact, Show::Colour, 1),
-            (Mode::Exact, Show::Weight, 2),
+        for (camera, mode, show, planes, op) in [
+            (&outside, Mode::None, Show::Colour, 1, ClipOp::And),
+            (&outside, Mode::Hard, Show::Colour, 1, ClipOp::And),
+            (&outside, Mode::Rara, Show::Colour, 1, ClipOp::And),
+            (&outside, Mode::Rara, Show::Colour, 3, ClipOp::Or),
+            (&outside, Mode::Exact, Show::Colour, 1, ClipOp::And),
+            (&outside, Mode::Exact, Show::Colour, 2, ClipOp::Or),
+            (&outside, Mode::Exact, Show::Colour, 4, ClipOp::And),
+            (&outside, Mode::Exact, Show::Weight, 2, ClipOp::And),
+            (&inside, Mode::Rara, Show::Colour, 1, ClipOp::And),
+            (&inside, Mode::Exact, Show::Colour, 1, ClipOp::And),
+            (&inside, Mode::Exact, Show::Colour, 3, ClipOp::Or),
         ] {
+            headless.forget();
+            // All but the first of each row take over what is in view.
             for d in [0.0, 0.1, 0.2] {
-                let normals = [DVec3::X, DVec3::new(0.3, 1.0, 0.2)];
+                let normals = [
+                    DVec3::X,
+                    DVec3::new(0.3, 1.0, 0.2),
+                    DVec3::new(-0.2, 0.1, 1.0),
+                    DVec3::new(-1.0, 0.2, 0.3),
+                ];
                 let planes = normals.iter().take(planes);
                 let clip = Clip::of(
                     planes.map(|&n| Plane::new(n, d).expect("a finite normal")),
-                    ClipOp::And,
+                    op,
                 );
                 let settings = Settings {
                     mode,
@@ -289,7 +308,7 @@ fn subgroups_that_load_splats_together_change_nothing() {
                     raster: Raster::Tiles,
                     ..Settings::default()
                 };
-                headless.render(&camera, &clip, &settings).expect("renders");
+                headless.render(camera, &clip, &settings).expect("renders");
                 pictures.push(headless.picture().expect("reads back"));
             }
         }
@@ -298,10 +317,15 @@ fn subgroups_that_load_splats_together_change_nothing() {
         pictures
     };
     let together = draw(None);
-    assert!(
-        together == draw(Some(faults::Pretence::WithoutSubgroups)),
-        "to the bit"
-    );
+    let apart = draw(Some(faults::Pretence::WithoutSubgroups));
+    let values = |pictures: &[Picture]| -> Vec<f32> {
+        let pixels = pictures.iter().flat_map(|picture| &picture.pixels);
+        pixels.flatten().copied().collect()
+    };
+    let pairs = values(&together).into_iter().zip(values(&apart));
+    let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    // Where the eye is in a splat, a tile takes shares of less than 3e-6 for none: all else is the same to the bit.
+    assert!(worst <= 1e-5, "{worst}");
     let last = together.last().expect("many");
     assert!(together[0] != *last, "pictures of different things");
 }

@@ -1,0 +1,184 @@
+// The side of a tile in a cut splat: visible where the splat's weight is 1 in all of the tile's pixels, invisible where it is
+// 0 in all of them. The answer is conservative: cutoff says that each pixel has to be weighed. Included after
+// glsl/weight.glsl. A test of Headless compares pictures with those of tiles that weigh every pixel.
+#ifndef RARA_REGION_TILE_SIDE
+#define RARA_REGION_TILE_SIDE
+#include "region/sides.glsl"
+
+// From a tile's middle to its outermost pixel centres, px.
+const vec2 TILE_REACH = 0.5 * vec2(TILE_WIDTH - 1u, TILE_HEIGHT - 1u);
+// Weights are taken for 0 and 1 this share beyond where they are, which covers the rounding of a pixel's z.
+const float TILE_MARGIN = 1.01;
+// From this difference of squares on, the ratio of two tails of the normal distribution is below 3e-6.
+const float NO_TAIL = 25.5;
+
+uint side_between(float low, float high, float certain) {
+    return low > certain ? SIDE_VISIBLE : high < -certain ? SIDE_INVISIBLE : SIDE_CUTOFF;
+}
+
+// A splat that carries its curve. `delta` is the tile's middle relative to the splat's centre.
+uint carried_side(vec3 linear, vec3 curvature, vec2 delta) {
+    vec3 squares = vec3(delta.x * delta.x, delta.x * delta.y, delta.y * delta.y);
+    float z = linear.x + dot(linear.yz, delta) + dot(curvature, squares);
+    vec2 slope = linear.yz + vec2(2.0 * curvature.x * delta.x + curvature.y * delta.y, curvature.y * delta.x + 2.0 * curvature.z * delta.y);
+    vec2 r = TILE_REACH;
+    float reach = dot(abs(slope), r) + dot(abs(curvature), vec3(r.x * r.x, r.x * r.y, r.y * r.y));
+    return side_between(z - reach, z + reach, TILE_MARGIN * PHI_ONE);
+}
+
+// A record that is a curve. `uv` are the tile's middle in the splat's own coordinates, and `uv_reach` is how far its pixels'
+// are from those.
+uint curve_side(uint base, vec2 uv, vec2 uv_reach) {
+    vec4 linear = cut_records.at[base];
+    vec4 bend = cut_records.at[base + 1u];
+    vec4 twist = cut_records.at[base + 2u];
+    vec4 wave = cut_records.at[base + CUT_HEADER];
+    float u = uv.x;
+    float v = uv.y;
+    float z = linear.x + u * (linear.y + u * (bend.x + u * (twist.x + u * wave.x)))
+        + v * (linear.z + u * (bend.y + u * (twist.y + u * wave.y))
+        + v * (bend.z + u * (twist.z + u * wave.z) + v * (twist.w + u * wave.w + v * bend.w)));
+    // The mean value theorem, with the largest slopes that the coordinates' magnitudes allow.
+    float U = abs(u) + uv_reach.x;
+    float V = abs(v) + uv_reach.y;
+    bend = abs(bend);
+    twist = abs(twist);
+    wave = abs(wave);
+    float along_u = abs(linear.y) + 2.0 * bend.x * U + bend.y * V + 3.0 * twist.x * U * U + 2.0 * twist.y * U * V
+        + twist.z * V * V + 4.0 * wave.x * U * U * U + 3.0 * wave.y * U * U * V + 2.0 * wave.z * U * V * V + wave.w * V * V * V;
+    float along_v = abs(linear.z) + bend.y * U + 2.0 * bend.z * V + twist.y * U * U + 2.0 * twist.z * U * V
+        + 3.0 * twist.w * V * V + wave.y * U * U * U + 2.0 * wave.z * U * U * V + 3.0 * wave.w * U * V * V
+        + 4.0 * bend.w * V * V * V;
+    float reach = along_u * uv_reach.x + along_v * uv_reach.y;
+    return side_between(z - reach, z + reach, TILE_MARGIN * PHI_ONE);
+}
+
+// The lines of sight of a tile's pixels: the middle one, and how far the others' terms are from its own. The gradients b1
+// and b2 are linear in the pixel, and so is c, their cross product, since both lean alike.
+struct TileSight {
+    Sight s; // in mode `rara`, whose chords know no low-pass, without it
+    vec2 delta_reach;
+    vec2 b_reach;
+    vec3 lean;
+    vec3 c_x, c_y; // by how much c changes to the outermost pixels along x and along y
+    float c_length, c_reach;
+    vec3 det; // in the middle, the least, the greatest
+};
+
+float determinant(float c_length, vec2 b, float low_pass) {
+    return c_length * c_length + low_pass * (dot(b, b) + low_pass);
+}
+
+TileSight tile_sight(uint base, vec2 delta, vec2 middle) {
+    TileSight tile;
+    tile.s = line_of_sight(base, delta, middle);
+    tile.s.low_pass = CLIP_MODE == MODE_RARA ? 0.0 : tile.s.low_pass;
+    tile.lean = cut_records.at[base + 2u].xyz;
+    tile.delta_reach = TILE_REACH * cut_records.at[base + 1u].w;
+    tile.b_reach = TILE_REACH * length(tile.lean);
+    tile.c_x = TILE_REACH.x * cross(tile.s.b2, tile.lean);
+    tile.c_y = TILE_REACH.y * cross(tile.lean, tile.s.b1);
+    tile.c_length = length(tile.s.c);
+    tile.c_reach = length(tile.c_x) + length(tile.c_y);
+    vec2 b = vec2(length(tile.s.b1), length(tile.s.b2));
+    tile.det.x = determinant(tile.c_length, b, tile.s.low_pass);
+    tile.det.y = determinant(max(tile.c_length - tile.c_reach, 0.0), max(b - tile.b_reach, 0.0), tile.s.low_pass);
+    tile.det.z = determinant(tile.c_length + tile.c_reach, b + tile.b_reach, tile.s.low_pass);
+    return tile;
+}
+
+// Bounds of a plane's z (beam_z of glsl/sight.glsl) over a tile: it is mean / sqrt(variance det), each a polynomial in the
+// pixel that is bounded by itself. In mode `rara` z is the plane's distance along the line in units of the chord.
+struct ZRange {
+    float low, high;
+    bool far, near; // which part the plane may keep
+};
+
+ZRange z_range(TileSight tile, vec4 half_space) {
+    Sight s = tile.s;
+    vec3 a = half_space.xyz;
+    vec3 a1 = cross(a, s.b1);
+    vec3 a2 = cross(a, s.b2);
+    float a_length = length(a);
+    vec2 across = vec2(length(a1), length(a2));
+    vec2 across_reach = TILE_REACH * length(cross(a, tile.lean));
+    float along = dot(a, s.c);
+    float along_reach = abs(dot(a, tile.c_x)) + abs(dot(a, tile.c_y));
+    float rest = s.low_pass * s.low_pass * a_length * a_length;
+    vec2 across_least = max(across - across_reach, 0.0);
+    vec2 across_most = across + across_reach;
+    float along_least = max(abs(along) - along_reach, 0.0);
+    float along_most = abs(along) + along_reach;
+    float variance_least = along_least * along_least + s.low_pass * dot(across_least, across_least) + rest;
+    float variance_most = along_most * along_most + s.low_pass * dot(across_most, across_most) + rest;
+    vec2 k = vec2(dot(s.c, a2) + s.low_pass * dot(a, s.b1), -dot(s.c, a1) + s.low_pass * dot(a, s.b2));
+    // The first component of k has a2 and b1, the second has a1 and b2.
+    vec2 k_reach = across.yx * tile.c_reach + (tile.c_length + tile.c_reach) * across_reach.yx
+        + s.low_pass * a_length * tile.b_reach;
+    float mean = half_space.w * tile.det.x + dot(k, s.delta);
+    float mean_reach = abs(half_space.w) * max(tile.det.z - tile.det.x, tile.det.x - tile.det.y)
+        + dot(abs(s.delta), k_reach) + dot(tile.delta_reach, abs(k) + k_reach);
+    float scale_least = inversesqrt(max(variance_most * tile.det.z, 1e-30));
+    float scale_most = inversesqrt(max(variance_least * tile.det.y, 1e-30));
+    float low = mean - mean_reach;
+    float high = mean + mean_reach;
+    low *= low > 0.0 ? scale_least : scale_most;
+    high *= high < 0.0 ? scale_least : scale_most;
+    return ZRange(low, high, along >= -along_reach, along <= along_reach);
+}
+
+// True when Phi(z) / Phi(front) is nearly 0, of both or of the one that is surely no greater.
+bool is_no_tail(float z, float front) {
+    return front >= 0.0 ? z < -TILE_MARGIN * PHI_ONE : z < front && z * z - front * front > NO_TAIL;
+}
+
+// A record of planes. `delta` is the tile's middle relative to the splat's centre, `middle` the same in the picture.
+uint planes_side(uint base, uint flags, vec2 delta, vec2 middle) {
+    float certain = TILE_MARGIN * (CLIP_MODE == MODE_RARA ? push.params.sigma : PHI_ONE);
+    bool from_inside = CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) != 0u;
+    TileSight tile = tile_sight(base, delta, middle);
+    uint count = flags >> CUT_COUNT_SHIFT;
+    ZRange front;
+    if (from_inside) {
+        front = z_range(tile, cut_records.at[base + CUT_HEADER + count]);
+    }
+    bool visible = true;
+    bool invisible = false;
+    for (uint plane = 0u; plane < count; plane++) {
+        ZRange z = z_range(tile, plane_of(base, plane));
+        bool keeps = z.low > certain;
+        bool drops = z.high < -certain;
+        if (from_inside) {
+            // What is behind the eye counts for nothing: front_weight of glsl/weight.glsl.
+            keeps = (!z.far || z.low > front.high) && (!z.near || is_no_tail(-z.low, front.low));
+            drops = (!z.far || is_no_tail(z.high, front.low)) && (!z.near || -z.high > front.high);
+        }
+        visible = visible && keeps;
+        invisible = invisible || drops;
+    }
+    if ((flags & CUT_UNION) != 0u) { // the planes are the complements
+        return invisible ? SIDE_VISIBLE : visible ? SIDE_INVISIBLE : SIDE_CUTOFF;
+    }
+    return visible ? SIDE_VISIBLE : invisible ? SIDE_INVISIBLE : SIDE_CUTOFF;
+}
+
+// The side of the tile with this middle, px, in a splat that is cut.
+uint tile_side(vec3 linear, vec3 curvature, vec4 centre_conic, float conic_z, vec2 middle) {
+    vec2 delta = middle - centre_conic.xy;
+    if (CLIP_MODE == MODE_EXACT && linear.x > -Z_RANGE) {
+        return carried_side(linear, curvature, delta);
+    }
+    uint base = record_number(linear) * push.params.cut_stride;
+    uint flags = to_uint(cut_records.at[base].w);
+    if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
+        vec2 uv = vec2(centre_conic.z * delta.x, centre_conic.w * delta.x + conic_z * delta.y);
+        vec2 reach = vec2(abs(centre_conic.z) * TILE_REACH.x, abs(centre_conic.w) * TILE_REACH.x + abs(conic_z) * TILE_REACH.y);
+        return curve_side(base, uv, reach);
+    }
+    if (CLIP_MODE == MODE_RARA && MISS != MISS_PEAK) {
+        return SIDE_CUTOFF; // lines of sight beside the ellipsoid are kept or dropped wherever they are
+    }
+    return planes_side(base, flags, delta, middle);
+}
+
+#endif

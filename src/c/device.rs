@@ -46,6 +46,8 @@ pub struct RaraAdoptDesc {
     pub pipeline_cache: vk::PipelineCache,
     /// VkApplicationInfo::apiVersion of the instance, 1.2 or later. Default: VK_API_VERSION_1_3.
     pub api_version: u32,
+    /// True when subgroupSizeControl and computeFullSubgroups were enabled. Default: false.
+    pub full_subgroups: vk::Bool32,
 }
 
 // SAFETY: repr(C), handles and numbers, the size first.
@@ -68,6 +70,7 @@ impl RaraAdoptDesc {
             debug_utils: vk::FALSE,
             pipeline_cache: vk::PipelineCache::null(),
             api_version: vk::API_VERSION_1_3,
+            full_subgroups: vk::FALSE,
         }
     }
 }
@@ -110,6 +113,7 @@ pub unsafe extern "C" fn rara_device_adopt(
             let adopt = AdoptDesc::new(version, instance, desc.physical_device, device, queue)
                 .mesh_shader(desc.mesh_shader != 0)
                 .push_descriptor(desc.push_descriptor != 0)
+                .full_subgroups(desc.full_subgroups != 0)
                 .debug_utils(desc.debug_utils != 0)
                 .pipeline_cache(desc.pipeline_cache);
             Device::adopt(adopt).map(RaraDevice)

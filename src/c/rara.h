@@ -154,6 +154,8 @@ typedef struct RaraSupport {
     uint32_t max_image_size;
     // The Vulkan version that rara uses: VK_API_VERSION_1_2 or VK_API_VERSION_1_3.
     uint32_t api_version;
+    // subgroupSizeControl and computeFullSubgroups. Optional: on GPUs the sort is faster with them.
+    VkBool32 full_subgroups;
 } RaraSupport;
 
 // A host's own Vulkan, for rara_device_adopt. All of it stays the host's.
@@ -183,6 +185,8 @@ typedef struct RaraAdoptDesc {
     VkPipelineCache pipeline_cache;
     // VkApplicationInfo::apiVersion of the instance, 1.2 or later. Default: VK_API_VERSION_1_3.
     uint32_t api_version;
+    // True when subgroupSizeControl and computeFullSubgroups were enabled. Default: false.
+    VkBool32 full_subgroups;
 } RaraAdoptDesc;
 
 // The placement of a scene in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1}
@@ -689,7 +693,8 @@ RaraResult rara_check(PFN_vkGetInstanceProcAddr get_instance_proc_addr,
 
 // Sets the features that rara needs in the host's own structs: those in the pNext chain of its VkDeviceCreateInfo,
 // whichever of Vulkan's structs they are in. No other field is touched. RARA_ERROR_INVALID names a feature for which the
-// chain has no struct; meshShader and taskShader may be missing, since a host can do without.
+// chain has no struct; those that are optional may be missing, since a host can do without: meshShader and taskShader,
+// subgroupSizeControl and computeFullSubgroups.
 //
 // # Safety
 // `support` was filled by rara_check; `p_next` is null, or a chain of structs that may be changed.

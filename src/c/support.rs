@@ -41,6 +41,8 @@ pub struct RaraSupport {
     pub max_image_size: u32,
     /// The Vulkan version that rara uses: VK_API_VERSION_1_2 or VK_API_VERSION_1_3.
     pub api_version: u32,
+    /// subgroupSizeControl and computeFullSubgroups. Optional: on GPUs the sort is faster with them.
+    pub full_subgroups: vk::Bool32,
 }
 
 // SAFETY: repr(C), plain numbers and pointers that are not followed, the size first.
@@ -67,6 +69,7 @@ impl RaraSupport {
             max_buffer_size: support.max_buffer_size,
             max_image_size: support.max_image_size,
             api_version: support.api_version,
+            full_subgroups: (support.full_subgroups[1] > 0).into(),
         }
     }
 }
@@ -101,7 +104,8 @@ pub unsafe extern "C" fn rara_check(
 
 /// Sets the features that rara needs in the host's own structs: those in the pNext chain of its VkDeviceCreateInfo,
 /// whichever of Vulkan's structs they are in. No other field is touched. RARA_ERROR_INVALID names a feature for which the
-/// chain has no struct; meshShader and taskShader may be missing, since a host can do without.
+/// chain has no struct; those that are optional may be missing, since a host can do without: meshShader and taskShader,
+/// subgroupSizeControl and computeFullSubgroups.
 ///
 /// # Safety
 /// `support` was filled by rara_check; `p_next` is null, or a chain of structs that may be changed.
@@ -114,13 +118,14 @@ pub unsafe extern "C" fn rara_support_features(
     guard(|| unsafe {
         let default = RaraSupport::of(&Support::default());
         let support = read(support, default, "support")?;
-        set_features(p_next, support.mesh_shader != 0)
+        let optional = [support.mesh_shader, support.full_subgroups];
+        set_features(p_next, optional.map(|offered| offered != 0))
     })
 }
 
 /// # Safety
 /// `next` is null, or a chain of Vulkan's structs that nobody else uses.
-unsafe fn set_features(next: *mut c_void, mesh_shader: bool) -> Result<()> {
+unsafe fn set_features(next: *mut c_void, [mesh_shader, full_subgroups]: [bool; 2]) -> Result<()> {
     use vk::StructureType as Type;
     let (mut address, mut synchronization, mut rendering) = (false, false, false);
     let mut next = next.cast::<vk::BaseOutStructure<'_>>();
@@ -142,6 +147,10 @@ unsafe fn set_features(next: *mut c_void, mesh_shader: bool) -> Result<()> {
                     let all = &mut *next.cast::<vk::PhysicalDeviceVulkan13Features<'_>>();
                     (all.synchronization2, all.dynamic_rendering) = (vk::TRUE, vk::TRUE);
                     (synchronization, rendering) = (true, true);
+                    if full_subgroups {
+                        (all.subgroup_size_control, all.compute_full_subgroups) =
+                            (vk::TRUE, vk::TRUE);
+                    }
                 }
                 Type::PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES => {
                     let one = next.cast::<vk::PhysicalDeviceSynchronization2Features<'_>>();
@@ -152,6 +161,11 @@ unsafe fn set_features(next: *mut c_void, mesh_shader: bool) -> Result<()> {
                     let one = next.cast::<vk::PhysicalDeviceDynamicRenderingFeatures<'_>>();
                     (*one).dynamic_rendering = vk::TRUE;
                     rendering = true;
+                }
+                Type::PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_FEATURES if full_subgroups => {
+                    let all = next.cast::<vk::PhysicalDeviceSubgroupSizeControlFeatures<'_>>();
+                    let all = &mut *all;
+                    (all.subgroup_size_control, all.compute_full_subgroups) = (vk::TRUE, vk::TRUE);
                 }
                 Type::PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT if mesh_shader => {
                     let all = &mut *next.cast::<vk::PhysicalDeviceMeshShaderFeaturesEXT<'_>>();

@@ -67,6 +67,7 @@ int main(int count, char **arguments) {
     adopt.instance = instance, adopt.physical_device = physical, adopt.device = device;
     adopt.queue = queue, adopt.queue_family = support.queue_family;
     adopt.mesh_shader = support.mesh_shader, adopt.push_descriptor = support.push_descriptor, adopt.debug_utils = validation;
+    adopt.full_subgroups = support.full_subgroups;
     RaraDevice *lent;
     RARA(rara_device_adopt(&adopt, &lent));
     RaraGaussians *gaussians;

@@ -115,6 +115,7 @@ impl Host {
         )
         .mesh_shader(self.support.mesh_shader)
         .push_descriptor(self.support.push_descriptor)
+        .full_subgroups(self.support.full_subgroups[1] > 0)
         .debug_utils(self.messenger.is_some())
         .pipeline_cache(self.pipeline_cache)
     }

@@ -72,6 +72,17 @@ fn what_is_wrong_is_said() {
         );
         assert_eq!(vulkan13.synchronization2 + vulkan13.dynamic_rendering, 2);
         assert_eq!(vulkan13.maintenance4, vk::FALSE, "not asked for");
+        let mut sizes = vk::PhysicalDeviceSubgroupSizeControlFeatures::default();
+        vulkan13.p_next = (&raw mut sizes).cast();
+        assert_ok(rara_support_features(&support, chain));
+        for of_sizes in [
+            vulkan13.subgroup_size_control,
+            vulkan13.compute_full_subgroups,
+            sizes.subgroup_size_control,
+            sizes.compute_full_subgroups,
+        ] {
+            assert_eq!(of_sizes, support.full_subgroups, "where they are offered");
+        }
 
         let mut desc: RaraAdoptDesc = std::mem::zeroed();
         assert_ok(rara_adopt_desc_default(&mut desc, size_of_val(&desc)));

@@ -29,6 +29,7 @@ impl Ours {
             desc.mesh_shader = host.mesh_shader.into();
             desc.push_descriptor = host.push_descriptor.into();
             desc.debug_utils = host.debug_utils.into();
+            desc.full_subgroups = host.full_subgroups.into();
             desc.api_version = host.api_version;
             assert_ok(rara_device_adopt(&desc, &mut device));
         }

@@ -120,6 +120,7 @@ impl Host {
         )
         .mesh_shader(self.support.mesh_shader)
         .push_descriptor(self.support.push_descriptor)
+        .full_subgroups(self.support.full_subgroups[1] > 0)
         .debug_utils(true)
         .pipeline_statistics(self.support.pipeline_statistics)
         .allocator(Some(self.allocator.clone()))

@@ -47,7 +47,7 @@ const uint STRIP_ROWS = 8u;
 const uint QUAD_TILES = 8u;
 // Bits a pass of the radix sort looks at.
 const uint SORT_BITS = 8u;
-// Workgroup size of the sort; one invocation owns a run of consecutive keys, which makes the sort stable.
+// Workgroup size of the sort by runs; one invocation owns a run of consecutive keys, which makes the sort stable.
 const uint SORT_GROUP_SIZE = 64u;
 // Workgroup size of the sort for GPUs, and the consecutive keys of such a workgroup: its partition.
 const uint RADIX_GROUP_SIZE = 256u;

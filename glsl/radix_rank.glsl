@@ -50,10 +50,10 @@ void sort_positions(uint digits[RADIX_KEYS]) {
         }
         uint first = subgroupBallotFindLSB(same);
         uint shift = d / HALF * 16u;
-        uint before = 0u;
-        if (gl_SubgroupInvocationID == first) {
-            before = atomicAdd(items[gl_SubgroupID * HALF + d % HALF], subgroupBallotBitCount(same) << shift);
-        }
+        // The first of a digit counts for all of them. The others add nothing, rather than leave it out: invocations that
+        // take different ways need not come together again before the next ballot.
+        uint added = gl_SubgroupInvocationID == first ? subgroupBallotBitCount(same) << shift : 0u;
+        uint before = atomicAdd(items[gl_SubgroupID * HALF + d % HALF], added);
         before = subgroupShuffle(before, first);
         ranks[k] = bitfieldExtract(before, int(shift), 16) + subgroupBallotBitCount(same & gl_SubgroupLtMask);
         subgroupMemoryBarrierShared();

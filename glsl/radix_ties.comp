@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // After the sort for GPUs, splats of one depth are in the order of the blocks; this puts them into that of their numbers. An
-// invocation orders a few alone. Where many have one depth, the workgroup of the first sorts them by the digits in which
-// their numbers differ, partition by partition.
+// invocation orders a few alone. Where more have one depth, the workgroup of the first ranks them, or sorts them by the digits
+// in which their numbers differ, partition by partition: a layer of one depth keeps one workgroup busy for a while.
 #include "radix_rank.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
@@ -80,9 +80,26 @@ void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
     publish();
 }
 
-void sort_together(uint begin) {
+// Orders as many as there are invocations: each counts those that belong before its own.
+void rank_together(uint begin, uint end) {
     uint local = gl_LocalInvocationIndex;
-    uint end = end_of(begin);
+    uint count = end - begin;
+    uint survivor = local < count ? order.at[begin + local] : 0u;
+    uint its_number = local < count ? number(survivor) : 0u;
+    items[local] = its_number;
+    barrier();
+    uint rank = 0u;
+    for (uint other = 0u; other < count; other++) {
+        rank += items[other] < its_number ? 1u : 0u;
+    }
+    if (local < count) {
+        order.at[begin + rank] = survivor;
+    }
+    publish();
+}
+
+void sort_together(uint begin, uint end) {
+    uint local = gl_LocalInvocationIndex;
     if (local == 0u) {
         differing = 0u;
     }
@@ -137,6 +154,12 @@ void main() {
     }
     barrier();
     for (uint tie = 0u; tie < begin_count; tie++) {
-        sort_together(begins[tie]);
+        uint begin = begins[tie];
+        uint end = end_of(begin);
+        if (end - begin <= RADIX_GROUP_SIZE) {
+            rank_together(begin, end);
+        } else {
+            sort_together(begin, end);
+        }
     }
 }

@@ -187,12 +187,12 @@ impl Default for Precision {
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum Preset {
-    /// Nothing is given up.
+    /// Nothing is approximated.
     Exact,
-    /// Approximations that no picture shows.
+    /// Only approximations that no picture shows.
     #[default]
     Balanced,
-    /// Approximations that pictures hardly show.
+    /// Only approximations that pictures hardly show.
     Fast,
 }
 

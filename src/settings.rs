@@ -115,7 +115,7 @@ pub struct Settings {
     pub raster: Raster,
     /// Colours, or a debug view.
     pub show: Show,
-    /// The precision that is given up for time.
+    /// How precise the frame is.
     pub precision: Precision,
 }
 

@@ -1,6 +1,6 @@
 // The side of a tile in a cut splat: visible where the splat's weight is 1 in all of the tile's pixels, invisible where it is
 // 0 in all of them. The answer is conservative: cutoff says that each pixel has to be weighed. Included after
-// glsl/weight.glsl. A test of Headless compares pictures with those of tiles that weigh every pixel.
+// glsl/weight.glsl. Twin: src/reference/region/tile_side.rs.
 #ifndef RARA_REGION_TILE_SIDE
 #define RARA_REGION_TILE_SIDE
 #include "region/sides.glsl"
@@ -9,7 +9,8 @@
 const vec2 TILE_REACH = 0.5 * vec2(TILE_WIDTH - 1u, TILE_HEIGHT - 1u);
 // Weights are taken for 0 and 1 this share beyond where they are, which covers the rounding of a pixel's z.
 const float TILE_MARGIN = 1.01;
-// From this difference of squares on, the ratio of two tails of the normal distribution is below 3e-6.
+// Shares below 6e-6 are taken for none: from this difference of squares on, the ratio of two tails of the normal distribution
+// is, and so is that of the tail beyond PHI_ONE to a half or more.
 const float NO_TAIL = 25.5;
 
 uint side_between(float low, float high, float certain) {
@@ -124,10 +125,12 @@ ZRange z_range(TileSight tile, vec4 half_space) {
     float high = mean + mean_reach;
     low *= low > 0.0 ? scale_least : scale_most;
     high *= high < 0.0 ? scale_least : scale_most;
-    return ZRange(low, high, along >= -along_reach, along <= along_reach);
+    // What is no number may keep either part, and then settles nothing.
+    return ZRange(low, high, !(along < -along_reach), !(along > along_reach));
 }
 
-// True when Phi(z) / Phi(front) is nearly 0, of both or of the one that is surely no greater.
+// True when Phi(z) / Phi(front) is nearly 0. It grows with z and falls with front, so it is asked of the greatest z and the
+// least front.
 bool is_no_tail(float z, float front) {
     return front >= 0.0 ? z < -TILE_MARGIN * PHI_ONE : z < front && z * z - front * front > NO_TAIL;
 }

@@ -46,7 +46,8 @@ pub struct RaraAdoptDesc {
     pub pipeline_cache: vk::PipelineCache,
     /// VkApplicationInfo::apiVersion of the instance, 1.2 or later. Default: VK_API_VERSION_1_3.
     pub api_version: u32,
-    /// True when subgroupSizeControl and computeFullSubgroups were enabled. Default: false.
+    /// True when subgroupSizeControl and computeFullSubgroups were enabled, for which the host's chain needs
+    /// VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceSubgroupSizeControlFeatures. Default: false.
     pub full_subgroups: vk::Bool32,
 }
 

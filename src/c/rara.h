@@ -154,7 +154,8 @@ typedef struct RaraSupport {
     uint32_t max_image_size;
     // The Vulkan version that rara uses: VK_API_VERSION_1_2 or VK_API_VERSION_1_3.
     uint32_t api_version;
-    // subgroupSizeControl and computeFullSubgroups. Optional: on GPUs the sort is faster with them.
+    // subgroupSizeControl and computeFullSubgroups, of Vulkan 1.3 or VK_EXT_subgroup_size_control. Optional: on GPUs the
+    // sort is faster with them.
     VkBool32 full_subgroups;
 } RaraSupport;
 
@@ -185,7 +186,8 @@ typedef struct RaraAdoptDesc {
     VkPipelineCache pipeline_cache;
     // VkApplicationInfo::apiVersion of the instance, 1.2 or later. Default: VK_API_VERSION_1_3.
     uint32_t api_version;
-    // True when subgroupSizeControl and computeFullSubgroups were enabled. Default: false.
+    // True when subgroupSizeControl and computeFullSubgroups were enabled, for which the host's chain needs
+    // VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceSubgroupSizeControlFeatures. Default: false.
     VkBool32 full_subgroups;
 } RaraAdoptDesc;
 
@@ -583,13 +585,13 @@ typedef struct RaraFrameStats {
 // 9.5e-3, two levels of 255.
 #define RARA_PHI_FORM_LOGISTIC 2
 
-// Nothing is given up. It goes with scenes in RARA_SH_FORMAT_FLOAT.
+// Nothing is approximated. It goes with scenes in RARA_SH_FORMAT_FLOAT.
 #define RARA_PRESET_EXACT 0
 
-// Approximations that no picture shows: the usual choice. It goes with scenes in RARA_SH_FORMAT_PACKED.
+// Only approximations that no picture shows: the usual choice. It goes with scenes in RARA_SH_FORMAT_PACKED.
 #define RARA_PRESET_BALANCED 1
 
-// Approximations that pictures hardly show. It goes with scenes in RARA_SH_FORMAT_PACKED.
+// Only approximations that pictures hardly show. It goes with scenes in RARA_SH_FORMAT_PACKED.
 #define RARA_PRESET_FAST 2
 
 #ifdef __cplusplus

@@ -154,7 +154,7 @@ unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<RendererDesc> {
         .frames_in_flight(desc.frames_in_flight))
 }
 
-/// Does something with a renderer.
+/// Calls a function with a renderer, or says that it is null.
 ///
 /// # Safety
 /// `renderer` is null, or alive and not used by another thread.

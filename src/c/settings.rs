@@ -75,11 +75,11 @@ pub const RARA_PHI_FORM_LOGISTIC: RaraPhiForm = 2;
 
 /// A choice of all settings that give up exactness for time: phi, key_bits, beam_switch and transmittance_min.
 pub type RaraPreset = u32;
-/// Nothing is given up. It goes with scenes in RARA_SH_FORMAT_FLOAT.
+/// Nothing is approximated. It goes with scenes in RARA_SH_FORMAT_FLOAT.
 pub const RARA_PRESET_EXACT: RaraPreset = 0;
-/// Approximations that no picture shows: the usual choice. It goes with scenes in RARA_SH_FORMAT_PACKED.
+/// Only approximations that no picture shows: the usual choice. It goes with scenes in RARA_SH_FORMAT_PACKED.
 pub const RARA_PRESET_BALANCED: RaraPreset = 1;
-/// Approximations that pictures hardly show. It goes with scenes in RARA_SH_FORMAT_PACKED.
+/// Only approximations that pictures hardly show. It goes with scenes in RARA_SH_FORMAT_PACKED.
 pub const RARA_PRESET_FAST: RaraPreset = 2;
 
 /// The options of a frame, apart from scene, camera and clip.

@@ -41,7 +41,8 @@ pub struct RaraSupport {
     pub max_image_size: u32,
     /// The Vulkan version that rara uses: VK_API_VERSION_1_2 or VK_API_VERSION_1_3.
     pub api_version: u32,
-    /// subgroupSizeControl and computeFullSubgroups. Optional: on GPUs the sort is faster with them.
+    /// subgroupSizeControl and computeFullSubgroups, of Vulkan 1.3 or VK_EXT_subgroup_size_control. Optional: on GPUs the
+    /// sort is faster with them.
     pub full_subgroups: vk::Bool32,
 }
 

@@ -29,7 +29,7 @@ pub(super) struct Report {
     mean: Option<FrameStats>,
 }
 
-/// The kind of machine that kernels were chosen for, and why that one.
+/// The kind of machine that kernels were chosen for, and the reason.
 #[derive(Debug, Serialize)]
 struct ShapeReport {
     #[serde(flatten)]

@@ -93,7 +93,7 @@ impl Session {
         self.headless.scene_bytes()
     }
 
-    /// The kind of machine that kernels were chosen for, and why that one.
+    /// The kind of machine that kernels were chosen for, and the reason.
     pub(super) fn shape(&self) -> (DeviceShape, &'static str) {
         let device = self.headless.device();
         (device.shape(), device.shape_reason())

@@ -10,7 +10,7 @@ pub(crate) struct Declarations {
     pub(crate) params: Vec<Param>,
     /// The specialisation constants, by ascending id.
     pub(crate) constants: Vec<Constant>,
-    /// Whether it has subgroup operations.
+    /// True when it has subgroup operations.
     pub(crate) subgroups: bool,
 }
 

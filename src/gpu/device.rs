@@ -122,7 +122,7 @@ impl Device {
         self.inner.shape
     }
 
-    /// Why it is that shape, in a few words.
+    /// The reason for that shape, in a few words.
     pub fn shape_reason(&self) -> &'static str {
         self.inner.shape_reason
     }

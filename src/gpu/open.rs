@@ -154,7 +154,8 @@ impl Device {
         let chosen = devices::choose(&infos, desc.selector.as_deref())?;
         let (physical, info) = (physical[chosen], infos[chosen].clone());
         let mut support = info.support.clone().map_err(Error::Device)?;
-        let shape = DeviceShape::of(&info, &support, desc.shape)?;
+        let shape = DeviceShape::from_environment(&support)?;
+        let shape = DeviceShape::of(&info, &support, desc.shape, shape)?;
         support.pipeline_statistics &= desc.statistics;
 
         let family = support.queue_family;
@@ -259,7 +260,12 @@ impl Device {
         // SAFETY: as above.
         let info =
             unsafe { devices::describe(&desc.instance, desc.physical_device, desc.api_version) };
-        let shape = DeviceShape::of(&info, &support, desc.shape)?;
+        // A host does not fail for a variable that it knows nothing of.
+        let shape = DeviceShape::from_environment(&support).unwrap_or_else(|error| {
+            log::warn!("{error}; it is ignored");
+            None
+        });
+        let shape = DeviceShape::of(&info, &support, desc.shape, shape)?;
         let allocator = match &desc.allocator {
             Some(lent) => lent.clone(),
             None => allocator(&desc)?,

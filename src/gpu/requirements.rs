@@ -6,6 +6,7 @@ use ash::{ext, khr, vk};
 
 use super::MAX_BUFFERS;
 use super::failure::failed;
+use super::shape::LEAST_SUBGROUP;
 use crate::limits::{BLOCK_SIZE, RADIX_GROUP_SIZE};
 use crate::{Error, Result};
 
@@ -30,9 +31,11 @@ pub struct Support {
     /// CPU drivers; there is nothing to enable.
     pub subgroup_size: u32,
     /// The least and the greatest size of the whole subgroups that compute shaders with ballots and shuffles can be asked
-    /// for, invocations; 0 where they cannot: `subgroupSizeControl` and `computeFullSubgroups` (Vulkan 1.3 or
+    /// for, invocations, at least 8; both 0 where they cannot: `subgroupSizeControl` and `computeFullSubgroups` (Vulkan 1.3 or
     /// `VK_EXT_subgroup_size_control`).
     pub full_subgroups: [u32; 2],
+    /// Bytes of shared memory that a compute workgroup can have.
+    pub max_shared_memory: u32,
     /// Nanoseconds a timestamp tick; 0 where [`Support::queue_family`] has no timestamps.
     pub timestamp_period: f32,
     /// Valid bits of a timestamp in [`Support::queue_family`].
@@ -246,10 +249,15 @@ pub unsafe fn check(
     let group = limits
         .max_compute_work_group_invocations
         .min(limits.max_compute_work_group_size[0]);
-    if group < BLOCK_SIZE {
+    const LARGEST_GROUP: u32 = if BLOCK_SIZE > RADIX_GROUP_SIZE {
+        BLOCK_SIZE
+    } else {
+        RADIX_GROUP_SIZE
+    };
+    if group < LARGEST_GROUP {
         return lacks(format!(
             "its compute workgroups have {group} invocations at most (maxComputeWorkGroupInvocations, \
-             maxComputeWorkGroupSize) and {BLOCK_SIZE} are needed"
+             maxComputeWorkGroupSize) and {LARGEST_GROUP} are needed"
         ));
     }
     let binds = limits
@@ -277,16 +285,17 @@ pub unsafe fn check(
         push_descriptor: binds && has(khr::push_descriptor::NAME),
         subgroup_size: if has_subgroups { v11.subgroup_size } else { 0 },
         full_subgroups: if asks_for_subgroups {
-            // The largest workgroup has so many invocations; more, smaller subgroups than a workgroup may have are not asked
-            // for.
+            // Subgroups so small that the largest workgroup would have more of them than the device allows are left out.
             let least =
                 RADIX_GROUP_SIZE.div_ceil(size_limits.max_compute_workgroup_subgroups.max(1));
-            let least = size_limits.min_subgroup_size.max(least.next_power_of_two());
+            let least = least.next_power_of_two().max(LEAST_SUBGROUP);
+            let least = size_limits.min_subgroup_size.max(least);
             let most = size_limits.max_subgroup_size;
             if least <= most { [least, most] } else { [0; 2] }
         } else {
             [0; 2]
         },
+        max_shared_memory: limits.max_compute_shared_memory_size,
         timestamp_period: if families[family].timestamp_valid_bits > 0 {
             limits.timestamp_period
         } else {

@@ -38,7 +38,7 @@ pub struct Shader {
     pub bound: &'static [u32],
     /// The buffers, by ascending binding.
     pub buffers: &'static [BufferUse],
-    /// Whether it has subgroup operations. Where the device can be asked for whole subgroups of a size, it is.
+    /// True when it has subgroup operations. Where the device can be asked for whole subgroups of a size, it is.
     pub subgroups: bool,
 }
 

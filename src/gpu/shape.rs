@@ -25,26 +25,42 @@ pub enum DeviceShape {
 /// The size that kernels were written with in mind. Drivers that offer several take it; the others have one.
 const USUAL_SUBGROUP: u32 = 32;
 
+/// The least size for which a workgroup of the sort has room to count the digits of each subgroup.
+pub(super) const LEAST_SUBGROUP: u32 = 8;
+
+/// The shared memory of a workgroup that kernels for GPUs take at most, bytes.
+const SHARED_MEMORY: u32 = 28 << 10;
+
 impl DeviceShape {
-    /// The shape of a device, and why that one: what a host or `RARA_SHAPE` asks for, or else what suits its kind.
+    /// The shape of a device and the reason for it: the one that is wanted, or else the one that suits its kind.
     pub(crate) fn of(
         info: &DeviceInfo,
         support: &Support,
         wanted: Option<Self>,
+        from_environment: Option<Self>,
     ) -> Result<(Self, &'static str)> {
-        if let Some(wanted) = wanted {
-            wanted.check(support)?;
-            return Ok((wanted, "asked for by the device's description"));
-        }
-        if let Ok(text) = std::env::var("RARA_SHAPE") {
-            let wanted = Self::named(&text, support)?;
-            wanted.check(support)?;
-            return Ok((wanted, "asked for by RARA_SHAPE"));
+        let asked = wanted.map(|shape| (shape, "asked for by the device's description"));
+        let asked = asked.or(from_environment.map(|shape| (shape, "asked for by RARA_SHAPE")));
+        if let Some((shape, reason)) = asked {
+            shape.check(support)?;
+            return Ok((shape, reason));
         }
         Ok(match info.kind {
             vk::PhysicalDeviceType::CPU => (Self::Cpu, "a CPU driver"),
+            _ if support.max_shared_memory < SHARED_MEMORY => {
+                (Self::Cpu, "a GPU with little shared memory")
+            }
             _ => (Self::gpu(support), "a GPU"),
         })
+    }
+
+    /// The shape that `RARA_SHAPE` asks for, if it is set.
+    pub(crate) fn from_environment(support: &Support) -> Result<Option<Self>> {
+        let Some(text) = std::env::var_os("RARA_SHAPE") else {
+            return Ok(None);
+        };
+        let shape = Self::named(&text.to_string_lossy(), support)?;
+        shape.check(support).map(|()| Some(shape))
     }
 
     /// A GPU's shape with the subgroups that suit a device.
@@ -74,6 +90,13 @@ impl DeviceShape {
     fn check(self, support: &Support) -> Result<()> {
         let [least, most] = support.full_subgroups;
         match self {
+            Self::Gpu { .. } if support.max_shared_memory < SHARED_MEMORY => {
+                Err(Error::Invalid(format!(
+                    "the kernels for GPUs need {SHARED_MEMORY} bytes of shared memory, and this device has {} \
+                     (maxComputeSharedMemorySize)",
+                    support.max_shared_memory
+                )))
+            }
             Self::Gpu { subgroup }
                 if subgroup != 0
                     && !(subgroup.is_power_of_two() && (least..=most).contains(&subgroup)) =>
@@ -96,6 +119,7 @@ mod tests {
     fn shapes_are_chosen_by_kind_unless_asked_for() {
         let with = |full_subgroups| Support {
             full_subgroups,
+            max_shared_memory: SHARED_MEMORY,
             ..Support::default()
         };
         let of = |subgroup| DeviceShape::Gpu { subgroup };

@@ -9,7 +9,7 @@ use crate::passes::plan::Plan;
 use crate::passes::shaders::blocks;
 use crate::passes::stage::{Frame, Stage, key};
 
-pub(crate) const STAGE: Stage = Stage::of_view(
+pub(crate) const STAGE: Stage = Stage::when_finding_view(
     "blocks",
     |plan, need| {
         need(key::<blocks::Program>(plan));

@@ -7,7 +7,7 @@ use crate::passes::shaders::classify;
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
 
-pub(crate) const STAGE: Stage = Stage::of_view(
+pub(crate) const STAGE: Stage = Stage::when_finding_view(
     "classify",
     |plan, need| need(key::<classify::Program>(plan)),
     record,

@@ -7,7 +7,7 @@ use crate::passes::shaders::{compact, compact_scan};
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
 
-pub(crate) const STAGE: Stage = Stage::of_view(
+pub(crate) const STAGE: Stage = Stage::when_finding_view(
     "compact",
     |plan, need| {
         need(key::<compact_scan::Program>(plan));

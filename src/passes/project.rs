@@ -8,7 +8,7 @@ use crate::passes::shaders::project;
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
 
-pub(crate) const STAGE: Stage = Stage::of_view(
+pub(crate) const STAGE: Stage = Stage::when_finding_view(
     "project",
     |plan, need| need(key::<project::Program>(plan)),
     record,

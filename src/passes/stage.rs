@@ -26,7 +26,7 @@ pub(crate) struct Stage {
 
 impl Stage {
     /// A stage of every frame that finds which Gaussians are in view.
-    pub(crate) const fn of_view(
+    pub(crate) const fn when_finding_view(
         name: &'static str,
         pipelines: fn(&Plan, &mut dyn FnMut(PipelineKey)),
         record: fn(&Frame<'_>, &mut Recorder<'_>),

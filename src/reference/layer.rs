@@ -13,7 +13,7 @@ pub struct SeenLayer<'a, T> {
     pub gaussians: Cow<'a, Gaussians>,
     /// Its view, from the camera in its own space.
     pub view: View<T>,
-    /// The clip of it, in its own space.
+    /// Its clip, in its own space.
     pub clip: Clip,
     /// The number of its first Gaussian in the scene.
     pub first: u32,

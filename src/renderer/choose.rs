@@ -50,8 +50,8 @@ pub(super) fn sort_runs(shape: DeviceShape, gaussians: u32) -> u32 {
     }
 }
 
-/// Runs of the steps that find the splats' spans of tiles. Each costs a histogram, so there are few where
-/// there is little to sort and on CPU drivers. But there are at least as many as all cores have lanes there, and on GPUs
+/// Runs of the steps that find the splats' spans of tiles. Each has a count for every row, so there are few where there is
+/// little to divide and on CPU drivers. But there are at least as many as all cores have lanes there, and on GPUs
 /// enough to hide the latency of their scattered writes.
 pub(super) fn span_runs(shape: DeviceShape, gaussians: u32) -> u32 {
     match (shape, gaussians) {

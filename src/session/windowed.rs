@@ -35,7 +35,7 @@ pub struct Windowed {
     broken: bool,
 }
 
-/// Tells whether a frame has to be shown once more.
+/// The need to show a frame once more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Redraw {
     /// It is shown, and all that can be known of it is known.

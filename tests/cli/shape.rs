@@ -2,7 +2,7 @@
 
 use super::{document, done, folder, line, line_with, scene};
 
-/// The kernels for GPUs divide the work more finely: other runs of the sort, one pixel in each invocation of the tiles.
+/// The kernels for GPUs are another sort, and tiles with a pixel in each invocation.
 /// The order of the splats is the same, so only the rounding of sums may differ.
 #[test]
 fn kernels_for_gpus_draw_the_picture_of_those_for_processors() {

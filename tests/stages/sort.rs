@@ -78,7 +78,7 @@ fn equal_depths_are_in_the_files_order() {
     }
 }
 
-/// Kernels that divide the keys into partitions of 4096 have a last one that is full, or misses or has a single key.
+/// Kernels that divide the keys into partitions of 4096 have a last one that is full, lacks one key, or holds a single one.
 #[test]
 fn partitions_of_every_length_are_sorted() {
     let mut stages = Stages::new();

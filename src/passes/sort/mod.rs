@@ -16,7 +16,7 @@ use crate::passes::plan::Plan;
 use crate::passes::stage::{Frame, KernelSet, Stage};
 use crate::types::FrameCounts;
 
-pub(crate) const STAGE: Stage = Stage::of_view(
+pub(crate) const STAGE: Stage = Stage::when_finding_view(
     "sort",
     |plan, need| (kernels(plan).pipelines)(plan, need),
     |frame, recorder| (kernels(frame.plan).record)(frame, recorder),

@@ -21,15 +21,20 @@ pub(super) const KERNELS: KernelSet = KernelSet {
     record,
 };
 
-/// The least subgroup whose counts of the digits have room in a workgroup's shared memory.
-const LEAST_SUBGROUP: u32 = 8;
+// What the shaders take for granted of these numbers: an invocation a digit, digits of two halves, counts of 16 bits, room for
+// the counts of the smallest subgroups, and whole subgroups of up to 128.
+const _: () = {
+    let digits = 1 << limits::SORT_BITS;
+    assert!(digits == limits::RADIX_GROUP_SIZE && limits::SORT_BITS.is_multiple_of(2));
+    assert!(limits::RADIX_PARTITION < 1 << 16);
+    assert!(limits::RADIX_GROUP_SIZE / 8 * digits / 2 <= limits::RADIX_PARTITION);
+    assert!(limits::RADIX_GROUP_SIZE.is_multiple_of(128));
+};
 
 /// The step that carries the keys: by ballots where the device can be asked for subgroups.
 fn scatter(plan: &Plan) -> Kernel<radix_scatter::Program> {
     let shader = match plan.way.shape {
-        DeviceShape::Gpu { subgroup } if subgroup >= LEAST_SUBGROUP => {
-            &radix_scatter::SUBGROUP_COMP
-        }
+        DeviceShape::Gpu { subgroup } if subgroup > 0 => &radix_scatter::SUBGROUP_COMP,
         _ => &radix_scatter::COMP,
     };
     Kernel::new(shader, ())

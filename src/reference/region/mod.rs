@@ -8,6 +8,8 @@ mod plane;
 mod share;
 mod sides;
 mod surface;
+#[cfg(test)]
+mod tile_side;
 
 pub use box_side::{Bounds, box_side};
 pub use gaussian_side::gaussian_side;

@@ -239,6 +239,7 @@ mod tests {
                 params: Vec::new(),
                 constants: constants.iter().map(constant).collect(),
                 subgroups: false,
+                workgroup: [0; 3],
             },
             modules: [vec![], vec![]],
         }

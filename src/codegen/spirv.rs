@@ -12,6 +12,8 @@ pub(crate) struct Declarations {
     pub(crate) constants: Vec<Constant>,
     /// True when it has subgroup operations.
     pub(crate) subgroups: bool,
+    /// The sides of its workgroups where no constant decides them; 0 of other shaders.
+    pub(crate) workgroup: [u32; 3],
 }
 
 /// A storage buffer.
@@ -107,7 +109,8 @@ pub(crate) fn declarations(words: &[u32]) -> Declarations {
         let id = |index: usize| instruction[index] as usize;
         match head & 0xffff {
             17 if (61..=68).contains(&word(1)) => found.subgroups = true, // OpCapability GroupNonUniform...
-            5 => known[id(1)].name = text(&instruction[2..]),             // OpName
+            16 if word(2) == 17 => found.workgroup = [word(3), word(4), word(5)], // OpExecutionMode, LocalSize
+            5 => known[id(1)].name = text(&instruction[2..]),                     // OpName
             6 => {
                 let name = (word(2), text(&instruction[3..])); // OpMemberName
                 known[id(1)].member_names.push(name);
@@ -291,6 +294,7 @@ mod tests {
             [("pass", Scalar::Uint, 1, 0), ("passes", Scalar::Uint, 1, 4)]
         );
         assert_eq!(found.constants, []);
+        assert_eq!(found.workgroup, [256, 1, 1]);
     }
 
     #[test]

@@ -51,6 +51,8 @@ pub(super) struct Inner {
     pub(super) idle: Mutex<Vec<OneOff>>,
     /// `None` for a host's device, which is never destroyed here. Shared with a window's surface.
     owned: Option<Arc<Instance>>,
+    #[cfg(feature = "lab")]
+    pub(super) inspector: std::sync::OnceLock<super::inspection::Inspector>,
 }
 
 /// A buffer's or an image's name, and the device memory that it takes.
@@ -100,6 +102,8 @@ impl Device {
                 allocated_by_name: Mutex::default(),
                 idle: Mutex::new(Vec::new()),
                 owned,
+                #[cfg(feature = "lab")]
+                inspector: std::sync::OnceLock::new(),
                 instance,
                 raw,
             }),

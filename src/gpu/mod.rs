@@ -26,6 +26,8 @@ pub(crate) mod faults;
 mod image;
 #[cfg(feature = "view")]
 mod in_flight;
+#[cfg(feature = "lab")]
+mod inspection;
 mod instance;
 mod label;
 mod layout;
@@ -81,6 +83,8 @@ mod inner {
     pub use super::clock::Calibration;
     pub use super::draw::Drawer;
     pub use super::image::{Image, ImageDesc};
+    #[cfg(feature = "lab")]
+    pub use super::inspection::{CompiledShader, Dispatched, DispatchedGroups, Recorded};
     pub use super::memory::{Buffer, BufferDesc, Location};
     pub use super::pipeline::{ComputeDesc, ComputePipeline, GraphicsDesc, GraphicsPipeline};
     #[cfg(feature = "lab")]

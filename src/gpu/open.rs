@@ -177,6 +177,14 @@ impl Device {
             .queue_create_infos(&queues)
             .enabled_extension_names(&extensions);
         let create = features.chain(create);
+        #[cfg(feature = "lab")]
+        let mut executables = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default()
+            .pipeline_executable_info(true);
+        #[cfg(feature = "lab")]
+        let create = match needed.contains(&ash::khr::pipeline_executable_properties::NAME) {
+            true => create.push_next(&mut executables),
+            false => create,
+        };
         // SAFETY: instance and physical device are alive, and the device offers all that `create` asks for.
         let raw = unsafe { owned.raw.create_device(physical, &create, None) }
             .map_err(failed("vkCreateDevice"))?;

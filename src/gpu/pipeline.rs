@@ -48,20 +48,24 @@ impl ComputePipeline {
         let info = [vk::ComputePipelineCreateInfo::default()
             .stage(stage)
             .layout(layout.raw)];
+        #[cfg(feature = "lab")]
+        let info = info.map(|info| info.flags(device.pipeline_flags()));
         // SAFETY: module and layout are the device's and alive; the constants outlive the call.
         let made = unsafe {
             device
                 .raw()
                 .create_compute_pipelines(device.pipeline_cache(), &info, None)
         };
-        Pipeline::new(
-            device,
-            desc.name,
-            layout,
-            made.map_err(|(_, result)| result),
-            "vkCreateComputePipelines",
-        )
-        .map(|pipeline| Self(Arc::new(pipeline)))
+        let made = made.map_err(|(_, result)| result);
+        let inner = Pipeline::new(device, desc.name, layout, made, "vkCreateComputePipelines")?;
+        #[cfg(feature = "lab")]
+        device.note_pipeline(
+            (desc.name, inner.raw),
+            &[desc.shader],
+            desc.constants,
+            size.required_subgroup_size,
+        )?;
+        Ok(Self(Arc::new(inner)))
     }
 
     /// Its name.
@@ -218,6 +222,8 @@ impl GraphicsPipeline {
                 .vertex_input_state(&vertex_input)
                 .input_assembly_state(&assembly);
         }
+        #[cfg(feature = "lab")]
+        let info = info.flags(device.pipeline_flags());
         // SAFETY: modules and layout are the device's and alive; everything pointed to outlives the call. Whoever named a
         // render pass vouched for it in `Target::render_pass`.
         let made = unsafe {
@@ -227,6 +233,13 @@ impl GraphicsPipeline {
         };
         let made = made.map_err(|(_, result)| result);
         let inner = Pipeline::new(device, desc.name, layout, made, "vkCreateGraphicsPipelines")?;
+        #[cfg(feature = "lab")]
+        device.note_pipeline(
+            (desc.name, inner.raw),
+            &[desc.front, desc.fragment],
+            desc.constants,
+            0,
+        )?;
         Ok(Self {
             inner: Arc::new(inner),
             mesh,

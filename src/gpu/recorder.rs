@@ -75,6 +75,8 @@ impl<'a> Recorder<'a> {
             tracker,
             timer,
         };
+        #[cfg(feature = "lab")]
+        device.note_recording();
         this.barrier(&this.tracker.opening());
         if let Some(timer) = &mut this.timer {
             // SAFETY: the caller vouches for `cmd`; the timer's earlier recordings go to the same queue.
@@ -142,6 +144,8 @@ impl<'a> Recorder<'a> {
             count += 1;
         }
         self.before(&uses[..count]);
+        #[cfg(feature = "lab")]
+        self.device.note_dispatch(pipeline.name(), groups);
         let raw = self.device.raw();
         // SAFETY: `begin`'s contract covers `cmd`, pipeline and buffers; the layout is the pipeline's, the grid is within
         // the limits and the arguments lie inside their buffer.
@@ -336,6 +340,8 @@ impl<'a> Recorder<'a> {
     }
 
     fn barrier(&self, barrier: &vk::MemoryBarrier2<'_>) {
+        #[cfg(feature = "lab")]
+        self.device.note_barrier();
         let info = vk::DependencyInfo::default().memory_barriers(std::slice::from_ref(barrier));
         // SAFETY: `begin`'s contract covers `cmd`; the masks come from the table of accesses, for this device's stages.
         unsafe { self.device.commands().pipeline_barrier(self.cmd, &info) };

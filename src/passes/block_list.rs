@@ -1,11 +1,21 @@
 //! Lists the blocks whose Gaussians differ, for one stage.
 
 use crate::gpu::{Buffer, Groups, Recorder};
+#[cfg(feature = "lab")]
+use crate::limits;
 use crate::passes::buffers::buffers;
+#[cfg(feature = "lab")]
+use crate::passes::cost::Cost;
 use crate::passes::shaders::block_list;
 use crate::passes::stage::Frame;
 
 pub(super) use block_list::Program;
+
+#[cfg(feature = "lab")]
+pub(super) const COSTS: &[Cost] = &[
+    // It goes through its run of blocks to count, and once more to list.
+    Cost::of::<Program>(|_| limits::BLOCK_SIZE.into(), |n| 1 + 2 * n.block_run()),
+];
 
 /// The stage that will look at the blocks of the list.
 #[derive(Debug, Clone, Copy)]

@@ -5,6 +5,8 @@ use crate::gpu::{Groups, Recorder};
 use crate::limits;
 use crate::passes::block_list::{self, ListFor};
 use crate::passes::buffers::buffers;
+#[cfg(feature = "lab")]
+use crate::passes::cost::Cost;
 use crate::passes::plan::Plan;
 use crate::passes::shaders::blocks;
 use crate::passes::stage::{Frame, Stage, key};
@@ -17,6 +19,12 @@ pub(crate) const STAGE: Stage = Stage::when_finding_view(
     },
     record,
 );
+
+#[cfg(feature = "lab")]
+pub(super) const COSTS: &[Cost] = &[Cost::of::<blocks::Program>(
+    |n| n.blocks,
+    |n| 1 + n.layer() + n.surfaces,
+)];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;

@@ -2,9 +2,13 @@
 //! blocks that are cut: the paper's three classes (section 3.2). The camera has no part in it.
 
 use crate::gpu::Recorder;
+#[cfg(feature = "lab")]
+use crate::limits;
 use crate::passes::block_list::{self, ListFor};
 use crate::passes::blocks::groups_of_blocks;
 use crate::passes::buffers::{buffers, indirect};
+#[cfg(feature = "lab")]
+use crate::passes::cost::Cost;
 use crate::passes::shaders::{clip, clip_blocks};
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
@@ -20,6 +24,16 @@ pub(crate) const STAGE: Stage = Stage {
     },
     record,
 };
+
+#[cfg(feature = "lab")]
+pub(super) const COSTS: &[Cost] = &[
+    Cost::of::<clip_blocks::Program>(|n| n.blocks, |n| 1 + n.layer() + n.surfaces),
+    // The number of its group's block, the block, its layer, its Gaussian.
+    Cost::of::<clip::Program>(
+        |n| n.clip_blocks * u64::from(limits::BLOCK_SIZE),
+        |n| 2 + n.layer() + 1 + n.surfaces,
+    ),
+];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (scene, b) = (frame.scene, frame.buffers);

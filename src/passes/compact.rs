@@ -2,7 +2,11 @@
 //! indirect commands of all later stages. No place in a list depends on the order of atomics.
 
 use crate::gpu::{Groups, Recorder};
+#[cfg(feature = "lab")]
+use crate::limits;
 use crate::passes::buffers::{buffers, indirect};
+#[cfg(feature = "lab")]
+use crate::passes::cost::Cost;
 use crate::passes::shaders::{compact, compact_scan};
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
@@ -15,6 +19,21 @@ pub(crate) const STAGE: Stage = Stage::when_finding_view(
     },
     record,
 );
+
+#[cfg(feature = "lab")]
+pub(super) const COSTS: &[Cost] = &[
+    // It goes through its run of blocks twice, each of which has a side and then totals, and a layer.
+    Cost::of::<compact_scan::Program>(
+        |_| limits::BLOCK_SIZE.into(),
+        |n| 1 + 2 * n.block_run() * n.layer().max(2),
+    ),
+    // The number of its group's block, the block, its layer, its side, its Gaussian's bits in the two masks; and the words of
+    // each mask.
+    Cost::of::<compact::Program>(
+        |n| n.kept_blocks * u64::from(limits::BLOCK_SIZE),
+        |n| 2 + n.layer() + 3 + 2 * u64::from(limits::BLOCK_SIZE / u32::BITS),
+    ),
+];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;

@@ -2,6 +2,8 @@
 
 use crate::gpu::Recorder;
 use crate::passes::buffers::{buffers, indirect};
+#[cfg(feature = "lab")]
+use crate::passes::cost::Cost;
 use crate::passes::shaders::cutoff;
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
@@ -21,6 +23,12 @@ pub(crate) const STAGE_OF_RECLIP: Stage = Stage {
     missed: |plan| plan.reclips(),
     ..STAGE
 };
+
+#[cfg(feature = "lab")]
+pub(super) const COSTS: &[Cost] = &[
+    // How many there are, its Gaussian's number, the layer; the Gaussian meanwhile.
+    Cost::of::<cutoff::Program>(|n| n.cut, |n| 2 + n.layer() + n.surfaces),
+];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;

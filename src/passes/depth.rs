@@ -6,6 +6,8 @@ use std::mem::offset_of;
 use crate::depth::DepthMap;
 use crate::gpu::{Attachments, Drawer, Recorder};
 use crate::passes::buffers::{Buffers, DepthBuffers, buffers, indirect};
+#[cfg(feature = "lab")]
+use crate::passes::cost::Cost;
 use crate::passes::pipelines::{Draw, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{depth, splat_depth};
@@ -22,6 +24,12 @@ pub(crate) const STAGE: Stage = Stage {
     pipelines: |plan, need| need(key::<depth::Program>(plan)),
     record,
 };
+
+#[cfg(feature = "lab")]
+pub(super) const COSTS: &[Cost] = &[Cost::of::<depth::Program>(
+    |n| n.survivors,
+    |n| 2 + n.layer() + n.surfaces,
+)];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (b, d) = (frame.buffers, frame.depths());

@@ -2,6 +2,8 @@
 
 use crate::gpu::Recorder;
 use crate::passes::buffers::{buffers, indirect};
+#[cfg(feature = "lab")]
+use crate::passes::cost::Cost;
 use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::shaders::project;
@@ -25,6 +27,13 @@ impl OfPlan for project::Constants {
         }
     }
 }
+
+#[cfg(feature = "lab")]
+pub(super) const COSTS: &[Cost] = &[
+    // How many there are, its Gaussian's number, the layer; the Gaussian meanwhile. Then the cutoff record's header and the
+    // rest of it, the colour's constant, its units and those of three degrees; the record once more for the tiles.
+    Cost::of::<project::Program>(|n| n.survivors, |n| 2 + n.layer() + 2 + 5 + 2),
+];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (scene, b) = (frame.scene, frame.buffers);

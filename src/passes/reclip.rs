@@ -3,9 +3,13 @@
 //! colours, order and tiles stay.
 
 use crate::gpu::{Groups, Recorder};
+#[cfg(feature = "lab")]
+use crate::limits;
 use crate::passes::block_list::{self, ListFor};
 use crate::passes::blocks::groups_of_blocks;
 use crate::passes::buffers::{buffers, indirect};
+#[cfg(feature = "lab")]
+use crate::passes::cost::Cost;
 use crate::passes::shaders::{reclip, reclip_blocks, reclip_compact, reclip_scan, recut};
 use crate::passes::stage::{Frame, Stage, key};
 use crate::passes::work::Work;
@@ -34,6 +38,27 @@ pub(crate) const RECUT: Stage = Stage {
     pipelines: |plan, need| need(key::<recut::Program>(plan)),
     record: record_recut,
 };
+
+#[cfg(feature = "lab")]
+pub(super) const COSTS: &[Cost] = &[
+    // The layer, the block's side in view, its totals.
+    Cost::of::<reclip_blocks::Program>(|n| n.blocks, |n| 1 + n.layer() + 2 + n.surfaces),
+    // The number of its group's block, the block, its layer, whether the Gaussian is in view, its side before, that of the
+    // block now, the Gaussian.
+    Cost::of::<reclip::Program>(
+        |n| n.clip_blocks * u64::from(limits::BLOCK_SIZE),
+        |n| 2 + n.layer() + 2 + 2 + 2 + n.surfaces,
+    ),
+    // It goes through its run of blocks twice, each of which says whether it is revisited and then has totals.
+    Cost::of::<reclip_scan::Program>(|_| limits::BLOCK_SIZE.into(), |n| 1 + 2 * n.block_run() * 2),
+    // The number of its group's block, the block, whether its Gaussian changes, its places; and the words of the masks.
+    Cost::of::<reclip_compact::Program>(
+        |n| n.clip_blocks * u64::from(limits::BLOCK_SIZE),
+        |_| 4 + u64::from(limits::BLOCK_SIZE / u32::BITS) + 1,
+    ),
+    // How many there are, which survivor, which Gaussian, its layer, the cutoff record, the mask and the splat.
+    Cost::of::<recut::Program>(|n| n.changed, |n| 3 + n.layer() + 2 + 2),
+];
 
 fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (scene, b, s) = (frame.scene, frame.buffers, frame.reclip());

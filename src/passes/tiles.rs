@@ -6,6 +6,8 @@ use std::mem::offset_of;
 use crate::gpu::{Attachments, DeviceShape, Drawer, Recorder};
 use crate::limits;
 use crate::passes::buffers::{Buffers, TileBuffers, buffers, indirect};
+#[cfg(feature = "lab")]
+use crate::passes::cost::Cost;
 use crate::passes::pipelines::{Draw, Kernel, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{composite, tiles};
@@ -70,6 +72,19 @@ fn kernel(plan: &Plan) -> Kernel<tiles::Program> {
     };
     Kernel::new(shader, constants)
 }
+
+#[cfg(feature = "lab")]
+pub(super) const COSTS: &[Cost] = &[
+    // All rows of a strip have invocations. The tile's bounds; and for each splat of a tile as full as the others its number,
+    // the splat and, if it is cut, the rest of it.
+    Cost::of::<tiles::Program>(
+        |n| {
+            let rows = n.tile_rows.next_multiple_of(limits::STRIP_ROWS.into());
+            n.tile_columns * rows * u64::from(limits::TILE_WIDTH * limits::TILE_HEIGHT)
+        },
+        |n| 2 + 3 * n.pairs.div_ceil(n.tile_columns * n.tile_rows),
+    ),
+];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (plan, b, t) = (frame.plan, frame.buffers, frame.tiles());

@@ -18,6 +18,10 @@ pub(crate) const STAGE: Stage = Stage {
     record: |frame, recorder| (kernels(frame.plan).record)(frame, recorder),
 };
 
+/// The costs of those for GPUs.
+#[cfg(feature = "lab")]
+pub(in crate::passes) use spans::COSTS;
+
 /// The kernels that suit the plan's kind of device.
 fn kernels(plan: &Plan) -> &'static KernelSet {
     match plan.way.shape {

@@ -3,6 +3,8 @@
 
 use crate::gpu::{Groups, Recorder};
 use crate::passes::buffers::{buffers, indirect};
+#[cfg(feature = "lab")]
+use crate::passes::cost::Cost;
 use crate::passes::shaders::{
     span_count, span_scan, span_scatter, tile_count, tile_scan, tile_scatter,
 };
@@ -21,6 +23,47 @@ pub(super) const KERNELS: KernelSet = KernelSet {
     },
     record,
 };
+
+#[cfg(feature = "lab")]
+pub(in crate::passes) const COSTS: &[Cost] = &[
+    // For each splat of its run its number, its mask, and the count of each span's row.
+    Cost::of::<span_count::Program>(
+        |n| n.span_runs,
+        |n| 1 + 2 * n.survivors.div_ceil(n.span_runs) + n.spans.div_ceil(n.span_runs),
+    ),
+    // The counts of a row of tiles in each run, to sum them and once more to place them.
+    Cost::of::<span_scan::Program>(
+        |_| ROWS_SCANNED,
+        |n| {
+            let rows = n.tile_rows.div_ceil(ROWS_SCANNED);
+            1 + n.span_runs.div_ceil(ROWS_SCANNED) + 2 * n.span_runs * rows
+        },
+    ),
+    // For each splat of its run its number and its mask, and the place of each span.
+    Cost::of::<span_scatter::Program>(
+        |n| n.span_runs,
+        |n| 1 + n.survivors.div_ceil(n.span_runs) + n.spans.div_ceil(n.span_runs),
+    ),
+    // For each span of its part the span and the counts of its columns; then the sums along the row.
+    Cost::of::<tile_count::Program>(
+        |n| n.parts(),
+        |n| 2 + 2 * n.spans.div_ceil(n.parts()) + n.tile_columns,
+    ),
+    // The pairs of the parts before its row; then the counts of the row's columns in each part.
+    Cost::of::<tile_scan::Program>(
+        |n| n.tile_rows,
+        |n| 1 + (n.tile_rows - 1) * n.row_parts + n.tile_columns * n.row_parts,
+    ),
+    // For each span of its part the span, and for each of its pairs the place.
+    Cost::of::<tile_scatter::Program>(
+        |n| n.parts(),
+        |n| 2 + n.spans.div_ceil(n.parts()) + n.pairs.div_ceil(n.parts()),
+    ),
+];
+
+/// Rows of tiles that the one workgroup of `span_scan` goes through together: its size.
+#[cfg(feature = "lab")]
+const ROWS_SCANNED: u64 = 256;
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (b, t) = (frame.buffers, frame.tiles());

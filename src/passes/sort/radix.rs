@@ -4,6 +4,8 @@
 use crate::gpu::{DeviceShape, Groups, Recorder};
 use crate::limits;
 use crate::passes::buffers::{buffers, indirect};
+#[cfg(feature = "lab")]
+use crate::passes::cost::{Cost, FrameNumbers};
 use crate::passes::pipelines::Kernel;
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{radix_count, radix_scan, radix_scatter, radix_ties};
@@ -30,6 +32,48 @@ const _: () = {
     assert!(limits::RADIX_GROUP_SIZE / 8 * digits / 2 <= limits::RADIX_PARTITION);
     assert!(limits::RADIX_GROUP_SIZE.is_multiple_of(128));
 };
+
+#[cfg(feature = "lab")]
+pub(in crate::passes) const COSTS: &[Cost] = &[
+    // How many keys there are; then its own.
+    Cost::of::<radix_count::Program>(workgroup_a_partition, |_| 1 + KEYS),
+    // The partitions' least and greatest keys, which decide about the passes; then their counts of the digit.
+    Cost::of::<radix_scan::Program>(
+        |_| (1 << limits::SORT_BITS) * u64::from(limits::RADIX_GROUP_SIZE),
+        |n| 2 + 2 * n.partitions().div_ceil(limits::RADIX_GROUP_SIZE.into()),
+    ),
+    // How many keys there are, the digits' totals, its own keys, the partition's counts; then the keys once more.
+    Cost::of::<radix_scatter::Program>(workgroup_a_partition, |_| 4 + KEYS),
+    // For each of its keys the key and those beside it; then those of one depth.
+    Cost::of::<radix_ties::Program>(workgroup_a_partition, |n| 1 + 2 * KEYS + ties(n.tied)),
+];
+
+/// Keys of an invocation.
+#[cfg(feature = "lab")]
+const KEYS: u64 = (limits::RADIX_PARTITION / limits::RADIX_GROUP_SIZE) as u64;
+
+#[cfg(feature = "lab")]
+fn workgroup_a_partition(numbers: &FrameNumbers) -> u64 {
+    numbers.partitions() * u64::from(limits::RADIX_GROUP_SIZE)
+}
+
+/// The loads that put so many survivors of one depth into order: alone by insertion, or as a workgroup by digits.
+#[cfg(feature = "lab")]
+fn ties(tied: u64) -> u64 {
+    /// `TIES_ALONE` of `glsl/ties.glsl`.
+    const ALONE: u64 = 24;
+    if tied <= ALONE {
+        // The end; then each survivor and its number, and those of each before it.
+        return tied + tied * tied.saturating_sub(1);
+    }
+    let turns = tied.div_ceil(limits::RADIX_GROUP_SIZE.into());
+    if turns == 1 {
+        return 3; // the end, the survivor and its number
+    }
+    let digits = u64::from(tied.ilog2() / limits::SORT_BITS + 1);
+    // The end; the numbers; for each digit a survivor and its number to count, to sort and to carry it; the copy back.
+    turns + 2 * turns + digits * (2 * turns + 2 * turns.div_ceil(KEYS) + turns) + turns
+}
 
 /// The step that carries the keys: by ballots where the device can be asked for subgroups.
 fn scatter(plan: &Plan) -> Kernel<radix_scatter::Program> {

@@ -1,0 +1,268 @@
+//! What pipelines are compiled to and which commands are recorded, for tests of what a frame costs. Only a device that was
+//! opened for it takes notes.
+
+use std::sync::{Mutex, PoisonError};
+
+use ash::{khr, vk};
+
+use super::failure::failed;
+use super::instance::Instance;
+use super::requirements::offers;
+use super::{Device, DeviceDesc, Groups, Shader};
+use crate::Result;
+
+/// A shader of a pipeline, as it was asked for and as the driver has compiled it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CompiledShader {
+    /// The pipeline's name.
+    pub name: &'static str,
+    /// The shader's file in `glsl/`.
+    pub file: String,
+    /// The pipeline's specialisation constants: id and value.
+    pub constants: Vec<(u32, u32)>,
+    /// Invocations of the whole subgroups that are asked for; 0 where the driver may choose.
+    pub asked_subgroup: u32,
+    /// Invocations of the subgroups that it is compiled for; 0 where the driver does not say.
+    pub subgroup: u32,
+    /// The driver's numbers by the driver's names; none where it has no `VK_KHR_pipeline_executable_properties`.
+    pub numbers: Vec<(String, u64)>,
+}
+
+/// The commands of a recording.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Recorded {
+    /// How many barriers there are.
+    pub barriers: u32,
+    /// The dispatches in order.
+    pub dispatches: Vec<Dispatched>,
+}
+
+/// A dispatch.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Dispatched {
+    /// The pipeline's name.
+    pub name: &'static str,
+    /// Its workgroups.
+    pub groups: DispatchedGroups,
+}
+
+/// The workgroups of a dispatch.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum DispatchedGroups {
+    /// So many.
+    Count(u32),
+    /// As many as a command says.
+    Indirect {
+        /// The debug name of the buffer that holds it.
+        buffer: String,
+        /// The command's place in it, bytes.
+        offset: u64,
+    },
+}
+
+/// The notes of a device.
+pub(super) struct Inspector {
+    /// Where the driver tells what it has compiled.
+    executables: Option<khr::pipeline_executable_properties::Device>,
+    compiled: Mutex<Vec<CompiledShader>>,
+    recorded: Mutex<Recorded>,
+}
+
+impl Device {
+    /// As [`headless`](Self::headless), but the device notes what its pipelines are compiled to and which commands are
+    /// recorded.
+    #[doc(hidden)]
+    pub fn headless_inspected(desc: &DeviceDesc) -> Result<Self> {
+        let extension = khr::pipeline_executable_properties::NAME;
+        let instance = Instance::new(&desc.application_name, desc.validation, &[])?;
+        let candidates = instance.devices()?;
+        let usable = candidates.iter().filter(|(_, info)| info.support.is_ok());
+        let explains = usable.map(|(physical, _)| {
+            // SAFETY: the instance is alive, and the device is its own.
+            unsafe {
+                instance
+                    .raw
+                    .enumerate_device_extension_properties(*physical)
+            }
+            .is_ok_and(|extensions| offers(&extensions, extension))
+        });
+        let needed = match explains.collect::<Vec<_>>() {
+            all if all.iter().all(|explains| *explains) => vec![extension],
+            _ => Vec::new(),
+        };
+        let device = Self::open(instance.into(), candidates, desc, &needed)?;
+        let executables = (!needed.is_empty()).then(|| {
+            khr::pipeline_executable_properties::Device::new(device.instance(), device.raw())
+        });
+        let inspector = Inspector {
+            executables,
+            compiled: Mutex::default(),
+            recorded: Mutex::default(),
+        };
+        let set = device.inner.inspector.set(inspector);
+        assert!(set.is_ok(), "a device that was just opened has none yet");
+        Ok(device)
+    }
+
+    /// The shaders of all pipelines so far.
+    #[doc(hidden)]
+    pub fn compiled_shaders(&self) -> Vec<CompiledShader> {
+        let compiled = self.inspector().map(|notes| notes.compiled.lock());
+        let compiled = compiled.map(|lock| lock.unwrap_or_else(PoisonError::into_inner).clone());
+        compiled.unwrap_or_default()
+    }
+
+    /// The commands of the recording that was begun last.
+    #[doc(hidden)]
+    pub fn recorded(&self) -> Recorded {
+        let mut found = Recorded::default();
+        self.note(|recorded| found = recorded.clone());
+        found
+    }
+
+    /// The flags that pipelines are created with.
+    pub(super) fn pipeline_flags(&self) -> vk::PipelineCreateFlags {
+        match self.inspector() {
+            Some(Inspector {
+                executables: Some(_),
+                ..
+            }) => vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR,
+            _ => vk::PipelineCreateFlags::empty(),
+        }
+    }
+
+    /// Notes a new pipeline of these shaders; `asked_subgroup` is 0 where no size was asked for.
+    pub(super) fn note_pipeline(
+        &self,
+        (name, pipeline): (&'static str, vk::Pipeline),
+        shaders: &[&Shader],
+        constants: &[(u32, u32)],
+        asked_subgroup: u32,
+    ) -> Result<()> {
+        let Some(notes) = self.inspector() else {
+            return Ok(());
+        };
+        let executables = notes.executables.as_ref();
+        let executables = executables.map(|calls| Executable::all(calls, pipeline));
+        let executables = executables.transpose()?.unwrap_or_default();
+        let compiled = shaders.iter().map(|shader| {
+            let own = executables.iter().find(|e| e.stages.contains(shader.stage));
+            CompiledShader {
+                name,
+                file: shader.file(),
+                constants: constants.to_vec(),
+                asked_subgroup,
+                subgroup: own.map_or(0, |executable| executable.subgroup),
+                numbers: own.map_or(Vec::new(), |executable| executable.numbers.clone()),
+            }
+        });
+        let mut all = notes
+            .compiled
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        all.extend(compiled);
+        Ok(())
+    }
+
+    /// Begins the notes of a recording.
+    pub(super) fn note_recording(&self) {
+        self.note(|recorded| *recorded = Recorded::default());
+    }
+
+    pub(super) fn note_barrier(&self) {
+        self.note(|recorded| recorded.barriers += 1);
+    }
+
+    pub(super) fn note_dispatch(&self, name: &'static str, groups: Groups<'_>) {
+        let groups = || match groups {
+            Groups::Count(count) => DispatchedGroups::Count(count),
+            Groups::Indirect(args, offset) => DispatchedGroups::Indirect {
+                buffer: args.name().to_owned(),
+                offset,
+            },
+        };
+        self.note(|recorded| {
+            let groups = groups();
+            recorded.dispatches.push(Dispatched { name, groups });
+        });
+    }
+
+    fn note(&self, change: impl FnOnce(&mut Recorded)) {
+        if let Some(notes) = self.inspector() {
+            change(
+                &mut notes
+                    .recorded
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner),
+            );
+        }
+    }
+
+    fn inspector(&self) -> Option<&Inspector> {
+        self.inner.inspector.get()
+    }
+}
+
+impl Shader {
+    /// Its file in `glsl/`: that with subgroup operations says so beside the one without.
+    fn file(&self) -> String {
+        let subgroup = if self.subgroups { ".subgroup" } else { "" };
+        let stage = match self.stage {
+            vk::ShaderStageFlags::COMPUTE => "comp",
+            vk::ShaderStageFlags::VERTEX => "vert",
+            vk::ShaderStageFlags::MESH_EXT => "mesh",
+            _ => "frag",
+        };
+        format!("{}{subgroup}.{stage}", self.name)
+    }
+}
+
+/// A part of a pipeline, as the driver has compiled it.
+struct Executable {
+    stages: vk::ShaderStageFlags,
+    subgroup: u32,
+    numbers: Vec<(String, u64)>,
+}
+
+impl Executable {
+    /// The parts of a pipeline that was created with [`Device::pipeline_flags`].
+    fn all(
+        calls: &khr::pipeline_executable_properties::Device,
+        pipeline: vk::Pipeline,
+    ) -> Result<Vec<Self>> {
+        let info = vk::PipelineInfoKHR::default().pipeline(pipeline);
+        // SAFETY: the pipeline is new and alive, and the feature was enabled where the functions were loaded.
+        let parts = unsafe { calls.get_pipeline_executable_properties(&info) }
+            .map_err(failed("vkGetPipelineExecutablePropertiesKHR"))?;
+        let parts = parts.iter().enumerate().map(|(index, part)| {
+            let info = vk::PipelineExecutableInfoKHR::default()
+                .pipeline(pipeline)
+                .executable_index(index as u32);
+            // SAFETY: as above; the pipeline was created to keep its statistics.
+            let numbers = unsafe { calls.get_pipeline_executable_statistics(&info) }
+                .map_err(failed("vkGetPipelineExecutableStatisticsKHR"))?;
+            Ok(Self {
+                stages: part.stages,
+                subgroup: part.subgroup_size,
+                numbers: numbers.iter().map(number).collect(),
+            })
+        });
+        parts.collect()
+    }
+}
+
+/// A driver's number and its name.
+fn number(statistic: &vk::PipelineExecutableStatisticKHR<'_>) -> (String, u64) {
+    use vk::PipelineExecutableStatisticFormatKHR as Format;
+    let name = statistic.name_as_c_str().unwrap_or(c"?").to_string_lossy();
+    // SAFETY: the format says which of the fields the driver has written.
+    let value = unsafe {
+        match statistic.format {
+            Format::BOOL32 => statistic.value.b32.into(),
+            Format::INT64 => statistic.value.i64.max(0) as u64,
+            Format::FLOAT64 => statistic.value.f64 as u64,
+            _ => statistic.value.u64,
+        }
+    };
+    (name.into_owned(), value)
+}

@@ -1,0 +1,115 @@
+//! What the compute passes of a GPU's frame cost it in latency, as functions of the frame's numbers: each pass declares how
+//! many invocations it has and how many loads one of them may have to wait for, one after the other. The declarations stand
+//! beside the passes; `tests/gpu_cost` holds them to the commands of real frames, and to ceilings.
+//!
+//! A load is a trip to device memory, not to a workgroup's shared memory. Loads that do not wait for each other count as one:
+//! those of a struct, and those of loops of a fixed length, which compilers unroll. In a loop whose length follows from data
+//! each turn counts, since compilers do not overlap them. The frame's constants are one load.
+
+use super::shaders::Interface;
+use super::{
+    bin, block_list, blocks, classify, clip, compact, cutoff, depth, project, reclip, sort, tiles,
+};
+use crate::limits;
+
+/// The numbers of a frame that the cost of its passes depends on.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct FrameNumbers {
+    /// Blocks of Gaussians.
+    pub blocks: u64,
+    /// Blocks that the clip may cut, or that a moved clip revisits.
+    pub clip_blocks: u64,
+    /// Blocks that neither view nor clip settles.
+    pub view_blocks: u64,
+    /// Blocks with survivors.
+    pub kept_blocks: u64,
+    /// Layers of the scene.
+    pub layers: u64,
+    /// Surfaces of a layer's region.
+    pub surfaces: u64,
+    /// Gaussians that are drawn.
+    pub survivors: u64,
+    /// Those of them that are cut.
+    pub cut: u64,
+    /// Those of them that a moved clip changes.
+    pub changed: u64,
+    /// The most of them that have one depth.
+    pub tied: u64,
+    /// Columns of tiles in the picture.
+    pub tile_columns: u64,
+    /// Rows of tiles in the picture.
+    pub tile_rows: u64,
+    /// Invocations that find the splats' spans of tiles.
+    pub span_runs: u64,
+    /// Parts of the spans of a row of tiles.
+    pub row_parts: u64,
+    /// Spans, which are the tiles of a row that a splat touches.
+    pub spans: u64,
+    /// Pairs of tile and splat.
+    pub pairs: u64,
+}
+
+impl FrameNumbers {
+    /// The loads that find a block's layer, and what is constant in it.
+    pub(super) fn layer(&self) -> u64 {
+        u64::from(self.layers.next_power_of_two().ilog2()) + 1
+    }
+
+    /// Blocks of each invocation of one workgroup that goes through all of them.
+    pub(super) fn block_run(&self) -> u64 {
+        self.blocks.div_ceil(limits::BLOCK_SIZE.into())
+    }
+
+    /// Partitions of the sort.
+    pub(super) fn partitions(&self) -> u64 {
+        self.survivors.div_ceil(limits::RADIX_PARTITION.into())
+    }
+
+    /// Parts of the rows of tiles.
+    pub(super) fn parts(&self) -> u64 {
+        self.tile_rows * self.row_parts
+    }
+}
+
+/// What one dispatch of a program costs.
+#[derive(Debug, Clone, Copy)]
+pub struct Cost {
+    /// The name of the program, and of its pipelines.
+    pub name: &'static str,
+    /// Its invocations, but for those that fill up the last workgroup.
+    pub invocations: fn(&FrameNumbers) -> u64,
+    /// The longest chain of loads of an invocation of which each waits for the one before.
+    pub loads: fn(&FrameNumbers) -> u64,
+}
+
+impl Cost {
+    pub(super) const fn of<P: Interface>(
+        invocations: fn(&FrameNumbers) -> u64,
+        loads: fn(&FrameNumbers) -> u64,
+    ) -> Self {
+        Self {
+            name: P::NAME,
+            invocations,
+            loads,
+        }
+    }
+}
+
+/// The costs of all passes of a GPU's frames.
+pub fn costs() -> impl Iterator<Item = &'static Cost> {
+    let all: [&[Cost]; 12] = [
+        clip::COSTS,
+        block_list::COSTS,
+        blocks::COSTS,
+        classify::COSTS,
+        compact::COSTS,
+        cutoff::COSTS,
+        project::COSTS,
+        sort::COSTS,
+        bin::COSTS,
+        reclip::COSTS,
+        tiles::COSTS,
+        depth::COSTS,
+    ];
+    all.into_iter().flatten()
+}

@@ -1,0 +1,257 @@
+//! The kinds of frame whose pipelines and commands are examined.
+
+use rara::ash::vk;
+use rara::gpu::{Device, DeviceDesc, DeviceShape, Recorded};
+use rara::scene::{Kind, generate};
+use rara::{
+    Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, Gaussians, Layer, Mode, Preset,
+    Raster, Renderer, RendererDesc, Scene, SceneBuffers, Settings, ShFormat,
+};
+
+use crate::common;
+
+const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+/// A picture in which each kind of work occurs. Not a multiple of a tile.
+pub const SMALL: (u32, u32) = (253, 190);
+
+/// The clips and modes: a name, the mode and how many planes.
+const CLIPS: [(&str, Mode, usize); 6] = [
+    ("no clip", Mode::None, 0),
+    ("hard", Mode::Hard, 1),
+    ("rara, one plane", Mode::Rara, 1),
+    ("rara, three planes", Mode::Rara, 3),
+    ("exact, one plane", Mode::Exact, 1),
+    ("exact, three planes", Mode::Exact, 3),
+];
+
+/// What of a host a frame has to do with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Host {
+    Plain,
+    /// Splats are tested against its depth, which tiles read before its scope.
+    HasDepth,
+    /// It asks for the splats' depths.
+    WantsDepth,
+}
+
+/// A kind of frame.
+#[derive(Debug, Clone)]
+pub struct Frame {
+    pub name: String,
+    pub raster: Raster,
+    mode: Mode,
+    pub planes: usize,
+    /// How often the clip has moved before a camera that stands still.
+    pub moves: u32,
+    layered: bool,
+    stored: ShFormat,
+    preset: Preset,
+    host: Host,
+}
+
+impl Frame {
+    /// True when its commands are in the budget: meshes have those of quads, and layers change none.
+    pub fn is_counted(&self) -> bool {
+        self.is_usual() && !self.layered && self.raster != Raster::Mesh
+    }
+
+    /// True of frames in whose commands the others do not differ: more planes and another mode, format or preset change none.
+    pub fn is_usual(&self) -> bool {
+        let stored = self.stored == ShFormat::Packed && self.preset == Preset::Balanced;
+        let clip = self.planes <= 1 && self.mode != Mode::Rara;
+        stored && clip && self.host != Host::HasDepth
+    }
+}
+
+/// What a drawn frame has left.
+pub struct Drawn {
+    pub recorded: Recorded,
+    renderer: Renderer,
+}
+
+impl Drawn {
+    /// The bytes of a working buffer.
+    pub fn buffer(&self, name: &str) -> Vec<u8> {
+        let bytes = self.renderer.working_buffer(name);
+        bytes.unwrap_or_else(|| panic!("there is no buffer {name}"))
+    }
+}
+
+/// A device, and all that frames are drawn of.
+pub struct Frames {
+    renderer: Renderer,
+    camera: Camera,
+    scene: Gaussians,
+    /// The same Gaussians as one layer, stored in each way, and as two.
+    stored: Vec<(ShFormat, SceneBuffers)>,
+    layered: SceneBuffers,
+    pub device: Device,
+}
+
+impl Frames {
+    /// On any device, with the kernels for GPUs, under validation.
+    pub fn on_a_gpus_kernels(size: (u32, u32)) -> Self {
+        let desc = DeviceDesc::default()
+            .selector(std::env::var("RARA_TEST_DEVICE").ok())
+            .validation(true);
+        let device = Device::headless(&desc).expect("a Vulkan device and the validation layer");
+        let [least, most] = device.support().full_subgroups;
+        let subgroup = 32.clamp(least, most);
+        drop(device);
+        Self::on(&desc.shape(Some(DeviceShape::Gpu { subgroup })), size)
+    }
+
+    /// On a device that takes notes.
+    pub fn on(desc: &DeviceDesc, size: (u32, u32)) -> Self {
+        let device = Device::headless_inspected(desc).expect("a Vulkan device");
+        let scene = generate(Kind::General, 2000, 5);
+        let upload = |format| SceneBuffers::upload(&device, &scene, format).expect("uploads");
+        let formats = [
+            ShFormat::Packed,
+            ShFormat::Float,
+            ShFormat::Half,
+            ShFormat::Byte,
+        ];
+        let layers = ["first", "second"].map(|name| Layer::new(name, &scene));
+        let layers = Scene::from_iter(layers);
+        let layered = SceneBuffers::upload(&device, &layers, ShFormat::Packed);
+        Self {
+            renderer: Renderer::new(&device, RendererDesc::new(FORMAT)).expect("a renderer"),
+            camera: common::views(&scene, 1, size)[0],
+            stored: formats.map(|format| (format, upload(format))).into(),
+            layered: layered.expect("uploads"),
+            scene,
+            device,
+        }
+    }
+
+    /// Every kind of frame that the device has.
+    pub fn all(&self) -> Vec<Frame> {
+        let rasters = common::rasters(&self.device);
+        rasters.into_iter().flat_map(frames).collect()
+    }
+
+    /// Draws a frame, from nothing but the frames that it is to take over from. Nothing is drawn of one for which the host has
+    /// to have a depth, only its pipelines are made.
+    pub fn draw(&self, frame: &Frame) -> Drawn {
+        let mut desc = RendererDesc::new(FORMAT).reuse(true);
+        match frame.host {
+            Host::Plain => {}
+            Host::HasDepth => {
+                let map = DepthMap::reversed(0.1, 100.0).expect("a map");
+                let depth = DepthDesc::new(vk::Format::D32_SFLOAT, map);
+                desc = desc.depth(Some(depth.readable(true)));
+            }
+            Host::WantsDepth => {
+                let expected = ExpectedDepthDesc::new(vk::Format::R32G32_SFLOAT);
+                desc = desc.expected_depth(Some(expected));
+            }
+        }
+        let mut renderer = self.renderer.sharing(desc).expect("a renderer");
+        let scene = match frame.layered {
+            true => &self.layered,
+            false => {
+                let stored = self
+                    .stored
+                    .iter()
+                    .find(|(format, _)| *format == frame.stored);
+                &stored.expect("a scene of each format").1
+            }
+        };
+        let settings = Settings::default()
+            .mode(frame.mode)
+            .raster(frame.raster)
+            .precision(frame.preset.precision());
+        let mut recorded = Recorded::default();
+        for moves in 0..=frame.moves {
+            let clip = self.clip(frame.planes, moves);
+            let configured = renderer.configure(scene, &self.camera, &clip, &settings);
+            configured.unwrap_or_else(|error| panic!("{}: {error}", frame.name));
+            if frame.host == Host::HasDepth {
+                continue;
+            }
+            let submitted = self.device.submit_and_wait(|cmd| {
+                // SAFETY: `cmd` is recording outside rendering, and all that is used outlives the wait.
+                unsafe { renderer.prepare(cmd, scene) }
+            });
+            submitted.unwrap_or_else(|error| panic!("{}: {error}", frame.name));
+            recorded = self.device.recorded();
+        }
+        Drawn { recorded, renderer }
+    }
+
+    fn clip(&self, planes: usize, moves: u32) -> Clip {
+        let clip = common::clip(&self.scene, planes, ClipOp::And);
+        match moves {
+            0 => clip,
+            moves => common::moved(clip, 0.05 * f64::from(moves)),
+        }
+    }
+
+    /// Frees everything; the validation layer must have nothing to say.
+    pub fn close(self) {
+        let device = self.device.clone();
+        drop(self);
+        assert_eq!(device.close(), Vec::<String>::new());
+    }
+}
+
+/// The kinds of frame of a way of drawing.
+fn frames(raster: Raster) -> Vec<Frame> {
+    let mut all = Vec::new();
+    let name = format!("{raster:?}").to_lowercase();
+    for (clip, mode, planes) in CLIPS {
+        let plain = Frame {
+            name: format!("{name}, {clip}"),
+            raster,
+            mode,
+            planes,
+            moves: 0,
+            layered: false,
+            stored: ShFormat::Packed,
+            preset: Preset::Balanced,
+            host: Host::Plain,
+        };
+        let more = |what: &str| Frame {
+            name: format!("{name}, {clip}, {what}"),
+            ..plain.clone()
+        };
+        let moved = [(1, "moved once"), (2, "moved twice")];
+        for (moves, what) in moved.into_iter().filter(|_| planes > 0) {
+            all.push(Frame {
+                moves,
+                ..more(what)
+            });
+            let layered = more(&format!("layered, {what}"));
+            all.push(Frame {
+                moves,
+                layered: true,
+                ..layered
+            });
+        }
+        all.push(Frame {
+            layered: true,
+            ..more("layered")
+        });
+        all.push(Frame {
+            host: Host::HasDepth,
+            ..more("behind the host's depth")
+        });
+        all.push(Frame {
+            host: Host::WantsDepth,
+            ..more("with expected depths")
+        });
+        all.push(Frame {
+            preset: Preset::Fast,
+            ..more("fast")
+        });
+        for stored in [ShFormat::Float, ShFormat::Half, ShFormat::Byte] {
+            all.push(Frame {
+                stored,
+                ..more(&format!("{stored:?}"))
+            });
+        }
+        all.push(plain);
+    }
+    all
+}

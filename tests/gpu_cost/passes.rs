@@ -1,0 +1,143 @@
+//! What the passes declare about their invocations and their loads, held to real frames and to ceilings.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rara::cost::{FrameNumbers, costs};
+use rara::gpu::{Dispatched, DispatchedGroups};
+use rara::types::{FrameCounts, FrameData};
+use rara::{Raster, limits};
+
+use crate::budget::{self, Rule, Table};
+use crate::frames::{Drawn, Frames, SMALL};
+use crate::pipelines::declarations;
+
+/// The fewest invocations that fill a large GPU, and the longest chain of loads that costs no more than a few hundredths of a
+/// millisecond.
+const FEWEST_INVOCATIONS: u64 = 16 << 10;
+const MOST_LOADS: u64 = 64;
+
+#[test]
+fn passes_are_wide_and_short_at_five_million_gaussians() {
+    let frames = Frames::on_a_gpus_kernels((1920, 1080));
+    let first = &frames.all()[0];
+    assert_eq!(first.raster, Raster::Tiles);
+    let numbers = heavy(numbers(&frames.draw(first)));
+    let mut debts = Table::new();
+    for cost in costs() {
+        let invocations = (cost.invocations)(&numbers);
+        let loads = (cost.loads)(&numbers);
+        if invocations < FEWEST_INVOCATIONS || loads > MOST_LOADS {
+            let has = vec![("invocations", invocations), ("loads", loads)];
+            debts.insert(cost.name.into(), has);
+        }
+    }
+    frames.close();
+    budget::check(BTreeMap::from([("passes".into(), debts)]), Rule::Debt);
+}
+
+/// The numbers of a frame of five million Gaussians that are all in view, none of whose blocks is settled as a whole. The
+/// picture's are those of another frame of its size.
+fn heavy(picture: FrameNumbers) -> FrameNumbers {
+    let gaussians = 5_000_000;
+    let blocks = u64::div_ceil(gaussians, limits::BLOCK_SIZE.into());
+    FrameNumbers {
+        blocks,
+        clip_blocks: blocks,
+        view_blocks: blocks,
+        kept_blocks: blocks,
+        layers: 1,
+        surfaces: 1,
+        survivors: gaussians,
+        cut: gaussians / 20,
+        changed: gaussians / 20,
+        tied: gaussians / 5, // a layer that is seen face on
+        spans: 2 * gaussians,
+        pairs: 3 * gaussians,
+        ..picture
+    }
+}
+
+#[test]
+fn passes_have_the_invocations_that_they_declare() {
+    let frames = Frames::on_a_gpus_kernels(SMALL);
+    let mut seen = BTreeSet::new();
+    let all = frames.all().into_iter();
+    for frame in all.filter(|frame| frame.is_usual() && frame.raster == Raster::Tiles) {
+        let drawn = frames.draw(&frame);
+        let numbers = numbers(&drawn);
+        for dispatch in &drawn.recorded.dispatches {
+            let cost = costs().find(|cost| cost.name == dispatch.name);
+            let cost = cost.unwrap_or_else(|| panic!("{}: no cost is declared", dispatch.name));
+            let declared = (cost.invocations)(&numbers);
+            let size = workgroup(&frames, dispatch.name);
+            let groups = groups(&drawn, dispatch);
+            // Passes of the sort that the keys do without have none.
+            if groups == 0 {
+                continue;
+            }
+            seen.insert(dispatch.name);
+            assert_eq!(
+                groups,
+                declared.div_ceil(size),
+                "{}: workgroups of {size} for {declared} invocations of {}: {numbers:?}",
+                frame.name,
+                dispatch.name
+            );
+        }
+    }
+    frames.close();
+    let declared: BTreeSet<_> = costs().map(|cost| cost.name).collect();
+    assert_eq!(seen, declared, "some are declared that no frame has");
+}
+
+/// What a frame's working memory says of its numbers.
+fn numbers(drawn: &Drawn) -> FrameNumbers {
+    let bytes = drawn.buffer("frame");
+    let data: FrameData = bytemuck::pod_read_unaligned(&bytes[..size_of::<FrameData>()]);
+    let counts: FrameCounts = bytemuck::pod_read_unaligned(&drawn.buffer("counts"));
+    let listed = |command: [u32; 4]| u64::from(command[3]);
+    FrameNumbers {
+        blocks: data.scene.block_count.into(),
+        clip_blocks: listed(counts.clip_groups),
+        view_blocks: listed(counts.classify_groups),
+        kept_blocks: listed(counts.compact_groups),
+        layers: data.scene.layer_count.into(),
+        survivors: listed(counts.mesh_groups),
+        cut: counts.cutoff.into(),
+        changed: listed(counts.recut_groups),
+        tile_columns: data.tiles.tile_columns.into(),
+        tile_rows: (data.tiles.tile_count / data.tiles.tile_columns).into(),
+        span_runs: data.tiles.span_runs.into(),
+        row_parts: data.tiles.row_parts.into(),
+        pairs: counts.pairs.into(),
+        ..FrameNumbers::default()
+    }
+}
+
+/// The workgroups of a dispatch, by the command that its frame has left.
+fn groups(drawn: &Drawn, dispatch: &Dispatched) -> u64 {
+    match &dispatch.groups {
+        DispatchedGroups::Count(count) => (*count).into(),
+        DispatchedGroups::Indirect { buffer, offset } => {
+            let command = &drawn.buffer(buffer)[*offset as usize..][..12];
+            let command: [u32; 3] = bytemuck::pod_read_unaligned(command);
+            command.into_iter().map(u64::from).product()
+        }
+    }
+}
+
+/// Invocations of a workgroup of the pipelines of a name.
+fn workgroup(frames: &Frames, name: &str) -> u64 {
+    let shaders = frames.device.compiled_shaders();
+    let shader = shaders.iter().find(|shader| shader.name == name);
+    let shader = shader.expect("the pipeline was made");
+    let declared = declarations(&shader.file);
+    let mut sides = declared.workgroup;
+    for (side, axis) in sides.iter_mut().zip(["x", "y", "z"]) {
+        let constant = format!("local_size_{axis}");
+        let constant = declared.constants.iter().find(|c| c.name == constant);
+        let value = constant.and_then(|c| shader.constants.iter().find(|(id, _)| *id == c.id));
+        *side = value.map_or(*side, |(_, value)| *value);
+    }
+    sides.into_iter().map(u64::from).product()
+}

@@ -128,8 +128,9 @@ fn statistics_are_there_when_asked_for() {
     let here = folder("statistics");
     scene(&here);
     for raster in ["tiles", "quad"] {
+        // On a background tiles are drawn too.
         let words = format!(
-            "render @/scene.ply --size 64x48 --clip plane:1,0,0,0 --raster {raster} --validation --json"
+            "render @/scene.ply --size 64x48 --clip plane:1,0,0,0 --background 0,0,0 --raster {raster} --validation --json"
         );
         assert!(document(line(&here, &words)).get("statistics").is_none());
         let output = done(line(&here, &format!("{words} --statistics")));

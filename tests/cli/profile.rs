@@ -166,7 +166,8 @@ fn statistics_are_there_when_asked_for() {
 fn memory_is_listed_by_what_it_is_for() {
     let here = folder("purposes");
     scene(&here);
-    let report = document(line(&here, "render @/scene.ply --size 64x48 --json"));
+    let words = "render @/scene.ply --size 64x48 --background 0,0,0 --json";
+    let report = document(line(&here, words));
     let memory = &report["memory"];
     let purposes = memory["purposes"].as_array().expect("purposes");
     let sum: u64 = purposes.iter().filter_map(|p| p["bytes"].as_u64()).sum();

@@ -31,12 +31,12 @@ BUFFER(readonly, 1, Splat, splats)
 BUFFER(readonly, 2, uint, tile_splats)
 BUFFER(readonly, 3, uint, tile_begins)
 BUFFER(readonly, 4, vec4, cut_records)
-BUFFER(writeonly, 5, vec4, picture)
 BUFFER(readonly, 6, uint, dirty)
 BUFFER(readonly, 7, uint, occluders)
 #include "column.glsl"
 #include "region/tile_side.glsl"
 #include "occluders.glsl"
+#include "pixels.glsl"
 #include "weight_colour.glsl"
 
 // A subgroup takes a batch of the splats at once: each invocation loads one, and all see them in turn. Without subgroup
@@ -202,7 +202,7 @@ void main() {
     }
     for (uint row = 0u; row < ROWS; row++) {
         if (pixel.x < size.x && pixel.y + row < size.y) {
-            picture.at[(pixel.y + row) * size.x + pixel.x] = vec4(sum[row], 1.0 - transmittance[row]);
+            write_pixel((pixel.y + row) * size.x + pixel.x, vec4(sum[row], 1.0 - transmittance[row]));
         }
     }
 }

@@ -210,6 +210,9 @@ const uint DEPTH_NONE = 0u;
 const uint DEPTH_FLOAT = 1u;
 const uint DEPTH_24 = 2u;
 const uint DEPTH_16 = 3u;
+// How the tiles' pixels are stored.
+const uint PIXELS_FLOAT = 0u;
+const uint PIXELS_BYTE = 1u;
 const uint NOT_CUT = 0xffffffffu;
 const uint CUT_AWAY = 0xfffffffeu;
 

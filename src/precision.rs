@@ -37,15 +37,14 @@ impl TargetFormat {
     }
 
     /// Pixels read back from an image of this format.
-    pub(crate) fn decode(self, bytes: &[u8]) -> Vec<[f32; 4]> {
-        let channel = |at: usize| match self {
+    pub(crate) fn decode(self, bytes: &[u8]) -> impl Iterator<Item = [f32; 4]> {
+        let channel = move |at: usize| match self {
             Self::Unorm8 => f32::from(bytes[at]) / 255.0,
             Self::Half => f16::from_le_bytes([bytes[2 * at], bytes[2 * at + 1]]).to_f32(),
             Self::Float => f32::from_le_bytes(std::array::from_fn(|byte| bytes[4 * at + byte])),
         };
         let pixels = bytes.len() / self.pixel_bytes() as usize;
-        let pixel = |at: usize| std::array::from_fn(|c| channel(4 * at + c));
-        (0..pixels).map(pixel).collect()
+        (0..pixels).map(move |at| std::array::from_fn(|c| channel(4 * at + c)))
     }
 
     /// Bytes of a pixel.

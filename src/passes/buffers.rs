@@ -1,8 +1,10 @@
 //! The frame's working memory: one buffer per array that a stage writes. Each has room for the worst that the scene can
 //! need, except the tiles' lists, whose worst nobody could afford.
 
+use std::sync::Arc;
+
 use crate::error::Result;
-use crate::gpu::{Buffer, BufferDesc, Device, Location};
+use crate::gpu::{Buffer, BufferDesc, Device, DeviceShape, Location};
 use crate::limits;
 use crate::passes::plan::Plan;
 use crate::passes::sort;
@@ -50,11 +52,18 @@ pub(crate) struct TileBuffers {
     pub(crate) span_splats: Buffer,
     pub(crate) span_columns: Buffer,
     pub(crate) column_counts: Buffer,
-    pub(crate) begins: Buffer,
     pub(crate) splats: Buffer,
-    pub(crate) picture: Buffer,
+    /// The picture that the tiles make. Where it is the frame's, somebody may want it longer than the rest.
+    pub(crate) picture: Arc<TilePicture>,
     /// The host's depth; empty where it hides nothing.
     pub(crate) occluders: Buffer,
+}
+
+/// The picture that tiles make. A tile that begins where the next one does holds nothing, and its pixels are not written.
+#[derive(Debug)]
+pub(crate) struct TilePicture {
+    pub(crate) begins: Buffer,
+    pub(crate) pixels: Buffer,
 }
 
 /// The further buffers of expected depths.
@@ -91,7 +100,7 @@ struct Sizes {
     tiles: u64,
     rows: u64,
     columns: u64,
-    pixels: u64,
+    picture_bytes: u64,
     occluders: u64,
     depths: u64,
 }
@@ -130,9 +139,20 @@ impl Sizes {
             tiles: when_tiled(plan.data.tiles.tile_count.into()),
             rows: when_tiled(rows),
             columns: when_tiled(rows * parts * (u64::from(plan.data.tiles.tile_columns) + 1)),
-            pixels: when_tiled(pixels),
+            picture_bytes: when_tiled(pixels * plan.way.tile_pixels.bytes()),
             depths: if plan.way.expects_depth { gaussians } else { 0 },
             occluders: plan.occluders.map_or(0, |_| when_tiled(pixels)),
+        }
+    }
+}
+
+impl Plan {
+    /// Who reaches the tiles' picture. On a processor the host may as well read it in place; what a GPU writes stays there
+    /// until it is wanted.
+    fn picture_location(&self) -> Location {
+        match self.way.shape {
+            DeviceShape::Cpu if !self.is_drawn => Location::Readback,
+            DeviceShape::Cpu | DeviceShape::Gpu { .. } => Location::GpuOnly,
         }
     }
 }
@@ -174,6 +194,14 @@ impl Buffers {
     pub(crate) fn new(device: &Device, plan: &Plan) -> Result<Self> {
         let sizes = Sizes::of(plan);
         let gpu = |name, size| gpu_only(device, name, size);
+        let location = plan.picture_location();
+        let picture = |name, size| {
+            device.create_buffer(&BufferDesc {
+                name,
+                size,
+                location,
+            })
+        };
         let (n, blocks) = (sizes.gaussians, sizes.blocks);
         let mask_bytes = u64::from(limits::BLOCK_SIZE) / 4; // two bits a Gaussian
         let frame_bytes =
@@ -205,9 +233,11 @@ impl Buffers {
                     span_splats: gpu("span_splats", sizes.pairs * 4)?,
                     span_columns: gpu("span_columns", sizes.pairs * 4)?,
                     column_counts: gpu("column_counts", sizes.columns * 4)?,
-                    begins: gpu("tile_begins", (sizes.tiles + 1) * 4)?,
                     splats: gpu("tile_splats", sizes.pairs * 4)?,
-                    picture: gpu("tile_picture", sizes.pixels * 16)?,
+                    picture: Arc::new(TilePicture {
+                        begins: picture("tile_begins", (sizes.tiles + 1) * 4)?,
+                        pixels: picture("tile_picture", sizes.picture_bytes)?,
+                    }),
                     occluders: gpu("occluders", sizes.occluders * 4)?,
                 })
             } else {
@@ -262,7 +292,7 @@ impl Buffers {
             && have.tiles >= need.tiles
             && have.rows >= need.rows
             && have.columns >= need.columns
-            && have.pixels >= need.pixels
+            && have.picture_bytes >= need.picture_bytes
             && have.depths >= need.depths
             && have.occluders >= need.occluders
     }
@@ -275,6 +305,6 @@ impl Buffers {
             .max(sizes.gaussians * size_of::<Splat>() as u64)
             .max(sizes.pairs * 4)
             .max(sizes.columns * 4)
-            .max(sizes.pixels * 16)
+            .max(sizes.picture_bytes)
     }
 }

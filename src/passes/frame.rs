@@ -40,7 +40,7 @@ pub(crate) const STAGES: [&Stage; 13] = [
     &depth::STAGE,
 ];
 
-/// The name of the draw, the last step.
+/// The name of the draw, the last step, which a frame does without where the tiles' picture is the picture.
 pub(crate) const DRAW: &str = "splat";
 
 /// Records everything up to the draw. `readback` gets a copy of the counts for the host.
@@ -59,7 +59,11 @@ pub(crate) fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>, readback: &
         recorder.pass(stage.name, |r| (stage.record)(frame, r));
     }
     if let Some(t) = b.tiles.as_ref().filter(|_| plan.is_tiled()) {
-        recorder.ready_to_draw(&[&t.picture, &t.begins]);
+        if plan.is_drawn {
+            recorder.ready_to_draw(&[&t.picture.pixels, &t.picture.begins]);
+        } else {
+            recorder.ready_for_host(&[&t.picture.pixels, &t.picture.begins]);
+        }
     }
     if let Some(d) = b.depth.as_ref().filter(|_| plan.way.expects_depth) {
         recorder.ready_to_draw(&[&d.depths, &d.draw]);
@@ -79,8 +83,10 @@ impl Plan {
         for stage in STAGES.iter().filter(|stage| (stage.needed)(self)) {
             (stage.pipelines)(self, need);
         }
-        need(splat::draw(self, targets.colour).key());
-        if self.is_tiled() {
+        if self.is_drawn {
+            need(splat::draw(self, targets.colour).key());
+        }
+        if self.is_drawn && self.is_tiled() {
             need(tiles::composite(targets.colour).key());
         }
         if let Some(attachments) = targets.expected_depth {
@@ -97,7 +103,7 @@ impl Plan {
             .filter(missed)
             .map(|stage| stage.name)
             .collect();
-        skipped.extend(is_empty.then_some(DRAW));
+        skipped.extend((is_empty || !self.is_drawn).then_some(DRAW));
         skipped
     }
 }

@@ -35,7 +35,7 @@ mod work;
 #[cfg(feature = "lab")]
 mod working;
 
-pub(crate) use buffers::Buffers;
+pub(crate) use buffers::{Buffers, TilePicture};
 pub(crate) use frame::{DRAW, record};
 pub(crate) use occluders::Occluders;
 pub(crate) use pipelines::Pipelines;
@@ -43,5 +43,5 @@ pub(crate) use plan::{Plan, SceneFacts};
 pub use scene_buffers::{SceneBuffers, Staging};
 pub use scene_layer::SceneLayer;
 pub(crate) use stage::{Frame, Targets};
-pub(crate) use tiles::TileWork;
+pub(crate) use tiles::{TilePixels, TileWork};
 pub(crate) use work::{Kept, Work};

@@ -11,7 +11,7 @@ use crate::passes::occluders::Occluders;
 use crate::passes::region::region_data;
 use crate::passes::scene_layer::SceneLayer;
 use crate::passes::sort;
-use crate::passes::tiles::TileWork;
+use crate::passes::tiles::{TilePixels, TileWork};
 use crate::passes::view::view_data;
 use crate::passes::weight::Laws;
 use crate::passes::work::Work;
@@ -30,6 +30,8 @@ pub(crate) struct Plan {
     /// How cut splats are weighted, besides what the constants say.
     pub(crate) laws: Laws,
     pub(crate) tile_work: TileWork,
+    /// True when a draw makes the picture, of splats or of the tiles' picture. Else the tiles' picture is the picture.
+    pub(crate) is_drawn: bool,
     /// The depth that hides splats of tiles.
     pub(crate) occluders: Option<Occluders>,
     /// The frame's constants.
@@ -55,6 +57,8 @@ pub(crate) struct Way {
     pub(crate) expects_depth: bool,
     /// Colours, or a debug view.
     pub(crate) show: Show,
+    /// How the pixels of the tiles' picture are stored.
+    pub(crate) tile_pixels: TilePixels,
 }
 
 /// The arguments of a plan besides camera, clip and settings.
@@ -75,6 +79,8 @@ pub(crate) struct SceneFacts<'a> {
     /// How splats become pixels; never `Auto`.
     pub(crate) raster: Raster,
     pub(crate) tile_work: TileWork,
+    /// The pixels with which the tiles' picture is the picture; `None` where that is drawn.
+    pub(crate) picture: Option<TilePixels>,
     /// The number of pairs of tile and splat that have room.
     pub(crate) pair_capacity: u32,
     /// True when a frame without room for its pairs is drawn once more, instead of as quads.
@@ -119,9 +125,11 @@ impl Plan {
                 sort_passes: keys.passes(),
                 expects_depth: scene.expects_depth,
                 show: settings.show,
+                tile_pixels: scene.picture.unwrap_or_default(),
             },
             laws: Laws::of(settings),
             tile_work: scene.tile_work,
+            is_drawn: scene.picture.is_none(),
             occluders: occluders.map(|occluders| Occluders { size, ..occluders }),
             data: FrameData {
                 scene: SceneData {
@@ -309,6 +317,7 @@ mod tests {
             span_runs: 128,
             raster: Raster::Tiles,
             tile_work: TileWork::suiting(DeviceShape::Cpu, 8),
+            picture: None,
             pair_capacity: 1000,
             redrawn: false,
             occluders: None,

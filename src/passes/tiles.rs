@@ -1,5 +1,6 @@
 //! Stage `tiles`, the tile rasteriser: a compute shader blends the splats of each tile of pixels, front to back, until the
-//! tile is saturated, and a draw blends its picture. A frame whose pairs have no room is drawn as quads instead.
+//! tile is saturated. A draw blends their picture onto what the host has drawn; where nothing lies below, theirs is the
+//! picture. A frame whose pairs have no room is drawn as quads instead.
 
 use std::mem::offset_of;
 
@@ -14,6 +15,7 @@ use crate::passes::shaders::{composite, tiles};
 use crate::passes::stage::{Frame, Stage};
 use crate::passes::weight::Weight;
 use crate::passes::work::Work;
+use crate::precision::TargetFormat;
 use crate::settings::Show;
 use crate::types::{self, FrameCounts};
 
@@ -50,6 +52,44 @@ impl TileWork {
     }
 }
 
+/// How the pixels of the tiles' picture are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum TilePixels {
+    /// As floats, which a draw can blend.
+    #[default]
+    Float,
+    /// As those of a target of 8 bits a channel.
+    Byte,
+}
+
+impl TilePixels {
+    /// The pixels with which the tiles' picture is a target's, to the byte. `None` for 16-bit floats, to which one driver
+    /// rounds in shaders and cuts off in blending.
+    pub(crate) fn of(target: TargetFormat) -> Option<Self> {
+        match target {
+            TargetFormat::Float => Some(Self::Float),
+            TargetFormat::Unorm8 => Some(Self::Byte),
+            TargetFormat::Half => None,
+        }
+    }
+
+    /// Bytes of a pixel.
+    pub(crate) const fn bytes(self) -> u64 {
+        match self {
+            Self::Float => TargetFormat::Float.pixel_bytes(),
+            Self::Byte => TargetFormat::Unorm8.pixel_bytes(),
+        }
+    }
+
+    /// The shaders' name of them, `PIXELS_*`.
+    const fn code(self) -> u32 {
+        match self {
+            Self::Float => types::PIXELS_FLOAT,
+            Self::Byte => types::PIXELS_BYTE,
+        }
+    }
+}
+
 fn kernel(plan: &Plan) -> Kernel<tiles::Program> {
     let weight = Weight::of(plan);
     let work = plan.tile_work;
@@ -64,6 +104,7 @@ fn kernel(plan: &Plan) -> Kernel<tiles::Program> {
         reclipped: plan.reclips(),
         depth_form: plan.occluders.map_or(types::DEPTH_NONE, |o| o.form),
         show_weight: plan.way.show == Show::Weight,
+        pixels: plan.way.tile_pixels.code(),
     };
     let shader = if work.subgroups {
         &tiles::SUBGROUP_COMP
@@ -89,10 +130,11 @@ pub(super) const COSTS: &[Cost] = &[
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (plan, b, t) = (frame.plan, frame.buffers, frame.tiles());
     let buffers = buffers!(tiles {
-        b => [frame, splats, cut_records],
-        t => [picture];
+        b => [frame, splats, cut_records];
+        picture: &t.picture.pixels,
+        picture_words: &t.picture.pixels,
         tile_splats: &t.splats,
-        tile_begins: &t.begins,
+        tile_begins: &t.picture.begins,
         // Only a reclipped frame reads which tiles are dirty.
         dirty: b.reclip.as_ref().map_or(&b.counts, |reclip| &reclip.dirty),
         occluders: plan.occluders.map_or(&b.counts, |_| &t.occluders),
@@ -127,9 +169,9 @@ pub(crate) fn record_composite(
     origin: [f32; 2],
 ) {
     let buffers = buffers!(composite {
-        b => [frame],
-        t => [picture];
-        tile_begins: &t.begins,
+        b => [frame];
+        picture: &t.picture.pixels,
+        tile_begins: &t.picture.begins,
     });
     let args = (&b.counts, offset_of!(FrameCounts, composite) as u64);
     let params = composite::Params { origin };

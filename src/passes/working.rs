@@ -37,9 +37,9 @@ impl Buffers {
                 &t.span_splats,
                 &t.span_columns,
                 &t.column_counts,
-                &t.begins,
+                &t.picture.begins,
                 &t.splats,
-                &t.picture,
+                &t.picture.pixels,
                 &t.occluders,
             ]);
         }

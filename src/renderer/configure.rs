@@ -9,7 +9,10 @@ use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::gpu::Bindings;
 use crate::limits;
-use crate::passes::{Kept, Occluders, Plan, SceneBuffers, SceneFacts, Targets, TileWork, Work};
+use crate::passes::{
+    Kept, Occluders, Plan, SceneBuffers, SceneFacts, Targets, TilePixels, TileWork, Work,
+};
+use crate::precision::TargetFormat;
 use crate::settings::{Raster, Settings};
 
 /// The picture that a frame is to show, and how the frame is submitted.
@@ -20,6 +23,9 @@ pub(crate) struct FrameRequest<'a> {
     pub(crate) clip: &'a Clip,
     pub(crate) settings: &'a Settings,
     pub(crate) submission: Submission,
+    /// The target's format, where nothing lies below, so that the tiles' picture may be the picture; `None` where it has to
+    /// be drawn.
+    pub(crate) picture: Option<TargetFormat>,
 }
 
 impl Renderer {
@@ -41,6 +47,7 @@ impl Renderer {
             clip,
             settings,
             submission: Submission::InFlight,
+            picture: None,
         })
     }
 
@@ -73,6 +80,12 @@ impl Renderer {
         let hidden = self.desc.depth.is_some_and(|depth| !depth.readable);
         let (raster, reason) =
             choose::raster(request.settings.raster, support, shape, tiles, hidden)?;
+        // Quads, which have to be drawn, take the tiles' place only in a frame that is not redrawn.
+        let leaves_picture = raster == Raster::Tiles && redrawn && scene.count > 0;
+        let picture = request
+            .picture
+            .filter(|_| leaves_picture)
+            .and_then(TilePixels::of);
         let depth_map = self
             .desc
             .depth
@@ -88,6 +101,7 @@ impl Renderer {
             span_runs: choose::span_runs(shape, scene.count),
             raster,
             tile_work: TileWork::suiting(shape, support.subgroup_size),
+            picture,
             pair_capacity: self.memory.pairs.room(),
             redrawn,
             occluders: self

@@ -1,12 +1,14 @@
 //! The renderer an engine embeds: it records into the host's command buffer and never submits or waits.
 //! `tools/examples/embed.rs` is a whole host.
 
+use std::sync::Arc;
+
 use ash::vk;
 
 use crate::depth::DepthMap;
 use crate::error::{Error, Result};
 use crate::gpu::Device;
-use crate::passes::Kept;
+use crate::passes::{Kept, TilePicture};
 use crate::placement::Placement;
 
 mod choose;
@@ -178,6 +180,13 @@ impl Renderer {
     pub(crate) fn changes_nothing(&self) -> bool {
         let configured = self.configured.as_ref();
         configured.is_some_and(Configured::changes_nothing)
+    }
+
+    /// The tiles' picture, if it is the configured frame's; `None` where that is drawn.
+    pub(crate) fn picture(&self) -> Option<&Arc<TilePicture>> {
+        let plan = &self.configured.as_ref()?.plan;
+        let tiles = self.memory.buffers().tiles.as_ref()?;
+        (!plan.is_drawn).then_some(&tiles.picture)
     }
 
     /// Leaves room for only so many pairs of tile and splat, as on a small device.

@@ -117,7 +117,7 @@ impl Renderer {
             return out_of_order("draw needs a successful configure() and prepare() before it");
         };
         let plan = &configured.plan;
-        if plan.gaussians() == 0 {
+        if plan.gaussians() == 0 || !plan.is_drawn {
             return Ok(());
         }
         let (bindings, attachments) = (configured.bindings, configured.targets.colour);

@@ -51,7 +51,7 @@ impl Headless {
         let session = Session::new(device, desc, renderer)?;
         let held_bytes = session.pipelines.as_ref().map(PipelineFile::held_bytes);
         Ok(Self {
-            target: Target::default(),
+            target: Target::of_tiles(),
             kept_pipeline_bytes: held_bytes.unwrap_or(0),
             session,
         })
@@ -168,3 +168,5 @@ mod working;
 mod faults;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tile_pictures;

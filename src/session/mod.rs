@@ -108,14 +108,21 @@ impl Session {
             clip,
             settings,
             submission: Submission::Awaited,
+            picture: target.of_tiles_on(settings.background),
         };
-        let configure = |renderer: &mut Renderer| {
-            trace::span(trace, "configure", || renderer.configure_frame(&request))
+        let configure = |renderer: &mut Renderer, target: &mut Target| {
+            trace::span(trace, "configure", || renderer.configure_frame(&request))?;
+            match renderer.picture() {
+                Some(_) => {
+                    target.free_image();
+                    Ok(())
+                }
+                None => target.make_image(&self.device, camera),
+            }
         };
-        configure(renderer)?;
-        target.set_size(&self.device, camera)?;
+        configure(renderer, target)?;
         let begin = Instant::now();
-        if renderer.changes_nothing() && target.holds(settings.background) {
+        if renderer.changes_nothing() && target.holds(renderer.picture(), settings.background) {
             return Ok(FrameStats {
                 wall_ms: ms_since(begin),
                 ..renderer.unchanged_stats()
@@ -128,10 +135,13 @@ impl Session {
             if renderer.outcome(frame) != Outcome::NeedsRoom {
                 break (ms_since(begin), frame.stats());
             }
-            configure(renderer)?;
+            configure(renderer, target)?;
         };
         self.check_validation()?;
-        target.set_held(settings.background);
+        match self.renderer.picture() {
+            Some(tiles) => target.set_tiles(tiles.clone(), camera),
+            None => target.set_held(settings.background),
+        }
         Ok(FrameStats { wall_ms, ..stats })
     }
 
@@ -176,10 +186,12 @@ fn submit(
         // format.
         unsafe {
             renderer.prepare(cmd, request.scene)?;
-            image.begin_rendering(cmd, clear);
-            Drawer::new(device, cmd, None).viewport(image.extent().into());
-            renderer.draw(cmd, [0.0, 0.0])?;
-            image.end_rendering(cmd);
+            if let Some(image) = image {
+                image.begin_rendering(cmd, clear);
+                Drawer::new(device, cmd, None).viewport(image.extent().into());
+                renderer.draw(cmd, [0.0, 0.0])?;
+                image.end_rendering(cmd);
+            }
         }
         recorded = Instant::now();
         Ok(())

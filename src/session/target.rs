@@ -1,17 +1,27 @@
-//! A picture beside any window: drawn into on the device, then read back.
+//! A picture beside any window: drawn into on the device, or made there by tiles, then read back.
+
+use std::borrow::Cow;
+use std::sync::Arc;
 
 use ash::vk;
 
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::gpu::{Buffer, BufferDesc, Device, Image, ImageDesc, Location};
+use crate::limits;
+use crate::passes::TilePicture;
 use crate::picture::Picture;
 use crate::precision::TargetFormat;
 
-/// An image for frames, replaced where a frame needs another size or format.
+/// A picture for frames, replaced where a frame needs another size or format: an image that is drawn into or, without one,
+/// what the renderer's tiles have made.
 #[derive(Debug, Default)]
 pub(super) struct Target {
+    /// True when the tiles' picture may be the picture.
+    takes_tiles: bool,
     format: TargetFormat,
+    /// The tiles' picture, if the last frame's is that, and its size.
+    tiles: Option<(Arc<TilePicture>, vk::Extent2D)>,
     image: Option<Image>,
     readback: Option<Buffer>,
     /// The bits of the background that the renderer's last frame was drawn on, if that is what the image shows.
@@ -19,21 +29,37 @@ pub(super) struct Target {
 }
 
 impl Target {
+    /// A target whose picture may be that of the renderer's tiles, as nothing else is drawn between two of its frames.
+    pub(super) fn of_tiles() -> Self {
+        Self {
+            takes_tiles: true,
+            ..Self::default()
+        }
+    }
+
     /// Sets the format of the next frame's pixels.
     pub(super) fn set_format(&mut self, device: &Device, format: TargetFormat) -> Result<()> {
-        if self.image.is_some() && self.format == format {
+        let is_made = self.image.is_some() || self.tiles.is_some();
+        if is_made && self.format == format {
             return Ok(());
         }
-        *self = Self::default();
+        *self = Self {
+            takes_tiles: self.takes_tiles,
+            ..Self::default()
+        };
         check_blending(device, format)?;
         self.format = format;
         Ok(())
     }
 
+    /// The format in which the tiles' picture may be the picture; `None` where that is drawn, as on a background.
+    pub(super) fn of_tiles_on(&self, background: Option<[f32; 3]>) -> Option<TargetFormat> {
+        (self.takes_tiles && background.is_none()).then_some(self.format)
+    }
+
     /// Makes an image of the camera's size, if there is none.
-    pub(super) fn set_size(&mut self, device: &Device, camera: &Camera) -> Result<()> {
-        let (width, height) = (camera.width, camera.height);
-        let extent = vk::Extent2D { width, height };
+    pub(super) fn make_image(&mut self, device: &Device, camera: &Camera) -> Result<()> {
+        let extent = extent(camera);
         if self
             .image
             .as_ref()
@@ -41,21 +67,25 @@ impl Target {
         {
             return Ok(());
         }
-        // Free first: both together may not fit.
-        (self.image, self.readback, self.held) = (None, None, None);
+        self.free_image(); // first: both together may not fit
         self.image = Some(device.create_image(&ImageDesc {
             name: "target",
-            width,
-            height,
+            width: extent.width,
+            height: extent.height,
             format: self.format.vulkan(),
         })?);
         Ok(())
     }
 
-    /// The image to be drawn into; what it shows is not known any more.
-    pub(super) fn drawn_into(&mut self) -> &Image {
-        self.held = None;
-        self.image.as_ref().expect("set_size() makes it")
+    /// Frees the image, which a frame does without whose picture is the tiles'.
+    pub(super) fn free_image(&mut self) {
+        (self.image, self.readback, self.held) = (None, None, None);
+    }
+
+    /// The image to be drawn into, unless the picture is the tiles'; what the target shows is not known any more.
+    pub(super) fn drawn_into(&mut self) -> Option<&Image> {
+        (self.tiles, self.held) = (None, None);
+        self.image.as_ref()
     }
 
     /// Notes that the image shows the renderer's last frame on this background.
@@ -63,9 +93,23 @@ impl Target {
         self.held = Some(bits(background));
     }
 
-    /// True when the image shows the renderer's last frame on this background.
-    pub(super) fn holds(&self, background: Option<[f32; 3]>) -> bool {
-        self.held == Some(bits(background))
+    /// Notes that the tiles' picture of the renderer's last frame is the picture.
+    pub(super) fn set_tiles(&mut self, tiles: Arc<TilePicture>, camera: &Camera) {
+        self.tiles = Some((tiles, extent(camera)));
+    }
+
+    /// True when the target shows the renderer's last frame: it is the tiles' picture or, without one, the image shows it on
+    /// this background.
+    pub(super) fn holds(
+        &self,
+        tiles: Option<&Arc<TilePicture>>,
+        background: Option<[f32; 3]>,
+    ) -> bool {
+        match (tiles, &self.tiles) {
+            (Some(tiles), Some((held, _))) => Arc::ptr_eq(tiles, held),
+            (Some(_), None) => false,
+            (None, _) => self.held == Some(bits(background)),
+        }
     }
 
     /// Notes that the renderer's next frame is another one.
@@ -73,13 +117,16 @@ impl Target {
         self.held = None;
     }
 
-    /// Reads the image back.
+    /// Reads the picture back.
     pub(super) fn read_back(&mut self, device: &Device) -> Result<Picture> {
+        if let Some((tiles, extent)) = &self.tiles {
+            return self.read_tiles(device, tiles, *extent);
+        }
         let Some(image) = &self.image else {
             return Err(Error::Invalid("nothing has been rendered yet".into()));
         };
-        let vk::Extent2D { width, height } = image.extent();
-        let size = u64::from(width) * u64::from(height) * self.format.pixel_bytes();
+        let extent = image.extent();
+        let size = self.bytes(extent);
         let readback = match self.readback.take() {
             Some(buffer) => buffer,
             None => device.create_buffer(&BufferDesc {
@@ -95,12 +142,71 @@ impl Target {
             Ok(())
         })?;
         let pixels = self.format.decode(&readback.mapped()[..size as usize]);
+        let pixels = pixels.collect();
         self.readback = Some(readback);
-        Ok(Picture {
-            width,
-            height,
-            pixels,
-        })
+        Ok(picture(extent, pixels))
+    }
+
+    /// Reads the tiles' picture back. Where a tile holds nothing, nothing has been written.
+    fn read_tiles(
+        &self,
+        device: &Device,
+        tiles: &TilePicture,
+        extent: vk::Extent2D,
+    ) -> Result<Picture> {
+        let [width, height] = [extent.width, extent.height].map(|side| side as usize);
+        let (tile_width, tile_height) = (limits::TILE_WIDTH as usize, limits::TILE_HEIGHT as usize);
+        let columns = width.div_ceil(tile_width);
+        let count = columns * height.div_ceil(tile_height);
+        let begins = read(device, &tiles.begins, (count as u64 + 1) * 4)?;
+        let begins: Vec<&[u8]> = begins.chunks_exact(4).collect();
+        let is_empty: Vec<bool> = begins.windows(2).map(|pair| pair[0] == pair[1]).collect();
+        let bytes = read(device, &tiles.pixels, self.bytes(extent))?;
+        let pixel_bytes = self.format.pixel_bytes() as usize;
+        let mut pixels = Vec::with_capacity(width * height);
+        for y in 0..height {
+            let row = &is_empty[y / tile_height * columns..][..columns];
+            let mut x = 0;
+            for alike in row.chunk_by(|a, b| a == b) {
+                let end = width.min(x + alike.len() * tile_width);
+                if alike[0] {
+                    pixels.resize(y * width + end, [0.0; 4]);
+                } else {
+                    let [first, last] = [x, end].map(|x| (y * width + x) * pixel_bytes);
+                    pixels.extend(self.format.decode(&bytes[first..last]));
+                }
+                x = end;
+            }
+        }
+        Ok(picture(extent, pixels))
+    }
+
+    /// The bytes of a picture.
+    fn bytes(&self, extent: vk::Extent2D) -> u64 {
+        u64::from(extent.width) * u64::from(extent.height) * self.format.pixel_bytes()
+    }
+}
+
+/// The first bytes of a buffer: in place, where the host can read them.
+fn read<'a>(device: &Device, buffer: &'a Buffer, size: u64) -> Result<Cow<'a, [u8]>> {
+    Ok(match buffer.location() {
+        Location::Readback => Cow::Borrowed(&buffer.mapped()[..size as usize]),
+        _ => Cow::Owned(device.download_range(buffer, 0, size)?),
+    })
+}
+
+fn picture(extent: vk::Extent2D, pixels: Vec<[f32; 4]>) -> Picture {
+    Picture {
+        width: extent.width,
+        height: extent.height,
+        pixels,
+    }
+}
+
+fn extent(camera: &Camera) -> vk::Extent2D {
+    vk::Extent2D {
+        width: camera.width,
+        height: camera.height,
     }
 }
 

@@ -48,12 +48,14 @@ fn show(session: &mut Session, camera: &Camera, settings: &Settings) -> Outcome 
         clip: &Clip::default(),
         settings,
         submission: Submission::InFlight,
+        picture: None,
     };
     renderer.configure_frame(&request).expect("configures");
     let mut target = Target::default();
     let format = settings.precision.target;
     target.set_format(&session.device, format).expect("blends");
-    target.set_size(&session.device, camera).expect("an image");
+    let made = target.make_image(&session.device, camera);
+    made.expect("an image");
     let submitted = submit(&session.device, renderer, &request, &mut target, None);
     submitted.expect("submits");
     let frame = renderer.newest().expect("just prepared");

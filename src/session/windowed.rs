@@ -138,6 +138,7 @@ impl Windowed {
             clip,
             settings,
             submission: Submission::InFlight,
+            picture: None,
         })?;
         let changes_nothing = renderer.changes_nothing();
         // SAFETY: the semaphore's last frame was waited for, and with it the wait for the semaphore.

@@ -128,8 +128,9 @@ fn statistics_are_there_when_asked_for() {
     let here = folder("statistics");
     scene(&here);
     for raster in ["tiles", "quad"] {
+        // On a background tiles are drawn too.
         let words = format!(
-            "render @/scene.ply --size 64x48 --clip plane:1,0,0,0 --raster {raster} --validation --json"
+            "render @/scene.ply --size 64x48 --clip plane:1,0,0,0 --background 0,0,0 --raster {raster} --validation --json"
         );
         assert!(document(line(&here, &words)).get("statistics").is_none());
         let output = done(line(&here, &format!("{words} --statistics")));
@@ -165,7 +166,8 @@ fn statistics_are_there_when_asked_for() {
 fn memory_is_listed_by_what_it_is_for() {
     let here = folder("purposes");
     scene(&here);
-    let report = document(line(&here, "render @/scene.ply --size 64x48 --json"));
+    let words = "render @/scene.ply --size 64x48 --background 0,0,0 --json";
+    let report = document(line(&here, words));
     let memory = &report["memory"];
     let purposes = memory["purposes"].as_array().expect("purposes");
     let sum: u64 = purposes.iter().filter_map(|p| p["bytes"].as_u64()).sum();

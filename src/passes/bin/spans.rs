@@ -101,7 +101,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let buffers = buffers!(tile_scan {
         b => [frame],
         t => [row_begins, column_counts];
-        tile_begins: &t.begins,
+        tile_begins: &t.picture.begins,
     });
     frame.dispatch(recorder, buffers, (), rows);
     let buffers = buffers!(tile_scatter {

@@ -8,8 +8,8 @@ use crate::gpu::{Buffer, BufferAccess, BufferUse, MAX_BUFFERS, Shader};
 /// The buffers of a program in the order of their bindings.
 pub(crate) type BufferList<'a> = SmallVec<[&'a Buffer; MAX_BUFFERS]>;
 
-/// Specialisation constants: id and value.
-pub(crate) type ConstantList = SmallVec<[(u32, u32); 10]>;
+/// Specialisation constants: id and value. No program has more, so that a list needs no memory of its own.
+pub(crate) type ConstantList = SmallVec<[(u32, u32); 12]>;
 
 /// The declarations of a program's shaders to the host.
 pub(crate) trait Interface {

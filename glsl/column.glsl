@@ -286,12 +286,12 @@ void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 pixel_centre,
         front_weights(base, flags, delta, pixel_centre, weight);
     } else if (CLIP_MODE == MODE_EXACT) {
         exact_weights(base, flags, delta, pixel_centre, alpha, weight);
-    } else if (CLIP_MODE == MODE_RARA && (flags & CUT_FRONT) == 0u) {
+    } else if ((flags & CUT_FRONT) == 0u) {
         chord_weights(base, flags, delta, pixel_centre, weight);
     } else {
         for (uint row = 0u; row < ROWS; row++) {
             vec2 below = vec2(0.0, float(row));
-            weight[row] = cut_weight(cut, delta + below, uv + v_step * below, pixel_centre + below);
+            weight[row] = chord_weight(base, flags, delta + below, pixel_centre + below);
         }
     }
 }

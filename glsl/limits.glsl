@@ -49,6 +49,8 @@ const uint QUAD_TILES = 8u;
 const uint SORT_BITS = 8u;
 // Workgroup size of the sort by runs; one invocation owns a run of consecutive keys, which makes the sort stable.
 const uint SORT_GROUP_SIZE = 64u;
+// Most splats of one depth that one invocation orders alone.
+const uint TIES_ALONE = 24u;
 // Workgroup size of the sort for GPUs, and the consecutive keys of such a workgroup: its partition.
 const uint RADIX_GROUP_SIZE = 256u;
 const uint RADIX_PARTITION = 4096u;

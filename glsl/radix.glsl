@@ -12,7 +12,8 @@ const uint RADIX_KEYS = RADIX_PARTITION / RADIX_GROUP_SIZE;
 #define PARTITIONS ((KEY_COUNT + RADIX_PARTITION - 1u) / RADIX_PARTITION)
 #define COUNT_PLACE(digit, p) ((digit) * PARTITIONS + (p))
 #define TOTAL_PLACE(digit) (DIGITS * PARTITIONS + (digit))
-#define LEAST_PLACE(p) (DIGITS * PARTITIONS + DIGITS + 2u * (p))
+#define RANGES PARTITIONS
+#define RANGE_PLACE(p) (DIGITS * PARTITIONS + DIGITS + 2u * (p))
 
 // First and last key (exclusive) of a partition.
 uvec2 partition_bounds(uint p, uint count) {

@@ -14,7 +14,7 @@ BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, uint, keys)
 BUFFER(writeonly, 3, uint, histogram)
 
-// What the invocations add to these does not depend on their order.
+// The results do not depend on the order in which invocations add to these.
 shared uint totals[DIGITS];
 shared uint least;
 shared uint greatest;
@@ -47,7 +47,7 @@ void main() {
     barrier();
     histogram.at[COUNT_PLACE(local, p)] = totals[local];
     if (is_first && local == 0u) {
-        histogram.at[LEAST_PLACE(p)] = least;
-        histogram.at[LEAST_PLACE(p) + 1u] = greatest;
+        histogram.at[RANGE_PLACE(p)] = least;
+        histogram.at[RANGE_PLACE(p) + 1u] = greatest;
     }
 }

@@ -16,32 +16,12 @@ BUFFER(, 1, FrameCounts, counts)
 BUFFER(, 2, uint, histogram)
 #include "sort_passes.glsl"
 
-shared uint least;
-shared uint greatest;
-
-void decide() {
-    if (gl_LocalInvocationIndex == 0u) {
-        least = ~0u;
-        greatest = 0u;
-    }
-    barrier();
-    for (uint p = gl_LocalInvocationIndex; p < PARTITIONS; p += RADIX_GROUP_SIZE) {
-        // The least and the greatest do not depend on the order of the atomics.
-        atomicMin(least, histogram.at[LEAST_PLACE(p)]);
-        atomicMax(greatest, histogram.at[LEAST_PLACE(p) + 1u]);
-    }
-    barrier();
-    if (gl_LocalInvocationIndex == 0u) {
-        decide_passes(least, greatest, push.params.passes);
-    }
-}
-
 void main() {
     uint d = gl_WorkGroupID.x;
     uint partitions = PARTITIONS;
     if (push.params.pass == 0u) {
         if (d == 0u) {
-            decide();
+            decide_passes(push.params.passes);
         }
     } else if (push.params.pass <= counts.at[0].sort_skipped) {
         return; // this pass is skipped

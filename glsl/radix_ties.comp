@@ -12,7 +12,7 @@ BUFFER(readonly, 2, uint, keys)
 BUFFER(coherent, 3, uint, order)
 BUFFER(coherent, 4, uint, scratch)
 BUFFER(readonly, 5, Splat, splats)
-// By survivor, the numbers of those that are sorted together.
+// The numbers of those that are sorted by digits, by survivor.
 BUFFER(coherent, 6, uint, numbers)
 #include "ties.glsl"
 
@@ -20,7 +20,6 @@ BUFFER(coherent, 6, uint, numbers)
 shared uint begins[RADIX_PARTITION / TIES_ALONE];
 shared uint begin_count;
 shared uint last; // of those that are sorted together, exclusive
-shared uint differing; // bits in which their numbers differ
 shared uint offsets[DIGITS]; // where their next of each digit goes
 
 // One past the last key that equals the one at `begin`.
@@ -43,7 +42,7 @@ uint end_of(uint begin) {
     }
 }
 
-// Carries the survivors of [begin, end) to the other buffer by a digit of their numbers.
+// Does so partition by partition, each as in a pass of the sort.
 void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
     uint local = gl_LocalInvocationIndex;
     offsets[local] = 0u;
@@ -94,38 +93,6 @@ void rank_together(uint begin, uint end) {
     }
     if (local < count) {
         order.at[begin + rank] = survivor;
-    }
-    publish();
-}
-
-void sort_together(uint begin, uint end) {
-    uint local = gl_LocalInvocationIndex;
-    if (local == 0u) {
-        differing = 0u;
-    }
-    barrier();
-    uint first_number = number(order.at[begin]);
-    uint differs = 0u;
-    for (uint i = begin + local; i < end; i += RADIX_GROUP_SIZE) {
-        uint survivor = order.at[i];
-        uint its_number = number(survivor);
-        numbers.at[survivor] = its_number;
-        differs |= its_number ^ first_number;
-    }
-    atomicOr(differing, differs);
-    publish();
-    uint differing_bits = differing;
-    bool second = false;
-    for (uint digit_number = 0u; digit_number * SORT_BITS < 32u; digit_number++) {
-        if (digit(differing_bits, digit_number) != 0u) {
-            sort_by_digit(second, begin, end, digit_number);
-            second = !second;
-        }
-    }
-    if (second) {
-        for (uint i = begin + local; i < end; i += RADIX_GROUP_SIZE) {
-            order.at[i] = scratch.at[i];
-        }
     }
     publish();
 }

@@ -20,9 +20,4 @@ uint digit(uint key, uint number) {
     return bitfieldExtract(key, int(number * SORT_BITS), int(SORT_BITS));
 }
 
-// The place of a run's least and greatest key in the histogram.
-uint range_place(uint run) {
-    return FRAME.order.sort_runs * DIGITS + 2u * run;
-}
-
 #endif

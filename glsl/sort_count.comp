@@ -6,7 +6,7 @@ struct Params {
     uint pass; // of the sort, from 0
 };
 #define PARAMS Params
-#include "sort.glsl"
+#include "sort_runs.glsl"
 
 layout(local_size_x = SORT_GROUP_SIZE) in;
 
@@ -30,6 +30,6 @@ void main() {
         least = min(least, key);
         greatest = max(greatest, key);
     }
-    histogram.at[range_place(run)] = least;
-    histogram.at[range_place(run) + 1u] = greatest;
+    histogram.at[RANGE_PLACE(run)] = least;
+    histogram.at[RANGE_PLACE(run) + 1u] = greatest;
 }

@@ -1,10 +1,30 @@
-// The passes of a sort that are skipped. Included by the scan of each kernel set, after the buffer `counts` is declared.
+// The passes of a sort that are skipped. Included by the scan of each kernel set, after the size of its workgroup and the
+// buffers `counts` and `histogram` are declared; RANGES says how many runs or partitions have noted their least and their
+// greatest key, and RANGE_PLACE where.
 #ifndef RARA_SORT_PASSES
 #define RARA_SORT_PASSES
 #include "sort.glsl"
 
-// Decides by the least and the greatest key which of the passes are skipped.
-void decide_passes(uint least, uint greatest, uint passes) {
+shared uint least;
+shared uint greatest;
+
+// One workgroup decides by the least and the greatest key which of the passes are skipped.
+void decide_passes(uint passes) {
+    uint local = gl_LocalInvocationIndex;
+    if (local == 0u) {
+        least = ~0u;
+        greatest = 0u;
+    }
+    barrier();
+    for (uint i = local; i < RANGES; i += gl_WorkGroupSize.x) {
+        // The least and the greatest do not depend on the order of the atomics.
+        atomicMin(least, histogram.at[RANGE_PLACE(i)]);
+        atomicMax(greatest, histogram.at[RANGE_PLACE(i) + 1u]);
+    }
+    barrier();
+    if (local != 0u) {
+        return;
+    }
     uint base = least & ~(DIGITS - 1u);
     // Even keys that are all alike take a pass, which carries them to their buffer.
     uint digits = uint(max(findMSB(greatest - base), 0)) / SORT_BITS + 1u;

@@ -7,7 +7,7 @@ struct Params {
     uint passes; // of the sort, if none is skipped
 };
 #define PARAMS Params
-#include "sort.glsl"
+#include "sort_runs.glsl"
 
 layout(local_size_x = DIGITS) in;
 
@@ -16,31 +16,12 @@ BUFFER(, 2, uint, histogram)
 #include "sort_passes.glsl"
 
 shared uint totals[DIGITS];
-shared uint least;
-shared uint greatest;
-
-void decide(uint d) {
-    if (d == 0u) {
-        least = ~0u;
-        greatest = 0u;
-    }
-    barrier();
-    for (uint run = d; run < FRAME.order.sort_runs; run += DIGITS) {
-        // The least and the greatest do not depend on the order of the atomics.
-        atomicMin(least, histogram.at[range_place(run)]);
-        atomicMax(greatest, histogram.at[range_place(run) + 1u]);
-    }
-    barrier();
-    if (d == 0u) {
-        decide_passes(least, greatest, push.params.passes);
-    }
-}
 
 void main() {
     uint pass = push.params.pass;
     uint d = gl_LocalInvocationIndex;
     if (pass == 0u) {
-        decide(d);
+        decide_passes(push.params.passes);
     } else if (pass <= counts.at[0].sort_skipped) {
         return; // this pass is skipped
     }

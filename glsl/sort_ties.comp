@@ -13,7 +13,7 @@ BUFFER(readonly, 2, uint, keys)
 BUFFER(coherent, 3, uint, order)
 BUFFER(coherent, 4, uint, scratch)
 BUFFER(readonly, 5, Splat, splats)
-// By survivor, the numbers of those that are sorted by digits.
+// The numbers of those that are sorted by digits, by survivor.
 BUFFER(coherent, 6, uint, numbers)
 // The sort's, of which each invocation uses its own run's part.
 BUFFER(coherent, 7, uint, histogram)
@@ -25,7 +25,6 @@ const uint MANY = 4096u;
 shared uvec2 ties[SORT_GROUP_SIZE]; // begin and end of equal keys that are too many for one
 shared uint tie_count;
 shared uint totals[DIGITS]; // of each digit, all runs together
-shared uint differing; // bits in which the numbers differ
 
 // How many of the ordered [begin, end) have a number below the given one.
 uint rank_among(bool second, uint begin, uint end, uint its_number) {
@@ -40,13 +39,6 @@ uint rank_among(bool second, uint begin, uint end, uint its_number) {
         }
     }
     return low - begin;
-}
-
-void copy_back(uint begin, uint end) {
-    for (uint i = begin + gl_LocalInvocationIndex; i < end; i += SORT_GROUP_SIZE) {
-        order.at[i] = scratch.at[i];
-    }
-    publish();
 }
 
 // The whole workgroup merges ever longer pieces, to and fro between the two buffers.
@@ -69,8 +61,7 @@ void merge_together(uint begin, uint end) {
     }
 }
 
-// The whole workgroup carries survivors to the other buffer by one digit of their numbers, as a pass of the sort does: each
-// invocation counts a run of its own, and carries it in order.
+// Does so as a pass of the sort: each invocation counts a run of its own, and carries it in order.
 void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
     uint local = gl_LocalInvocationIndex;
     uint first_slot = gl_WorkGroupID.x * SORT_GROUP_SIZE * DIGITS;
@@ -112,35 +103,6 @@ void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
         put(!second, place, survivor);
     }
     publish();
-}
-
-// The whole workgroup sorts by the digits in which the numbers differ.
-void sort_together(uint begin, uint end) {
-    if (gl_LocalInvocationIndex == 0u) {
-        differing = 0u;
-    }
-    barrier();
-    uint first_number = number(order.at[begin]);
-    uint differs = 0u;
-    for (uint i = begin + gl_LocalInvocationIndex; i < end; i += SORT_GROUP_SIZE) {
-        uint survivor = order.at[i];
-        uint its_number = number(survivor);
-        numbers.at[survivor] = its_number;
-        differs |= its_number ^ first_number;
-    }
-    atomicOr(differing, differs);
-    publish();
-    uint differing_bits = differing; // the next layer may reset it as soon as this one is sorted
-    bool second = false;
-    for (uint digit_number = 0u; digit_number * SORT_BITS < 32u; digit_number++) {
-        if (digit(differing_bits, digit_number) != 0u) {
-            sort_by_digit(second, begin, end, digit_number);
-            second = !second;
-        }
-    }
-    if (second) {
-        copy_back(begin, end);
-    }
 }
 
 void main() {

@@ -1,9 +1,7 @@
-// Splats of one depth, by their numbers. Included after the buffers `order`, `scratch` and `splats` are declared.
+// Puts splats of one depth into the order of their numbers. Included after the size of the workgroup and the buffers `order`,
+// `scratch`, `splats` and `numbers` are declared.
 #ifndef RARA_TIES
 #define RARA_TIES
-
-// Most that one invocation orders alone.
-const uint TIES_ALONE = 24u;
 
 // A survivor's number in the scene.
 uint number(uint survivor) {
@@ -38,6 +36,47 @@ void put(bool second, uint i, uint survivor) {
 void publish() {
     memoryBarrierBuffer();
     barrier();
+}
+
+// The whole workgroup carries survivors to the other buffer by one digit of their numbers. The includer says how.
+void sort_by_digit(bool second, uint begin, uint end, uint digit_number);
+
+void copy_back(uint begin, uint end) {
+    for (uint i = begin + gl_LocalInvocationIndex; i < end; i += gl_WorkGroupSize.x) {
+        order.at[i] = scratch.at[i];
+    }
+    publish();
+}
+
+shared uint differing; // bits in which the numbers differ
+
+// The whole workgroup sorts by the digits in which the numbers differ.
+void sort_together(uint begin, uint end) {
+    if (gl_LocalInvocationIndex == 0u) {
+        differing = 0u;
+    }
+    barrier();
+    uint first_number = number(order.at[begin]);
+    uint differs = 0u;
+    for (uint i = begin + gl_LocalInvocationIndex; i < end; i += gl_WorkGroupSize.x) {
+        uint survivor = order.at[i];
+        uint its_number = number(survivor);
+        numbers.at[survivor] = its_number;
+        differs |= its_number ^ first_number;
+    }
+    atomicOr(differing, differs);
+    publish();
+    uint differing_bits = differing; // the next layer may reset it as soon as this one is sorted
+    bool second = false;
+    for (uint digit_number = 0u; digit_number * SORT_BITS < 32u; digit_number++) {
+        if (digit(differing_bits, digit_number) != 0u) {
+            sort_by_digit(second, begin, end, digit_number);
+            second = !second;
+        }
+    }
+    if (second) {
+        copy_back(begin, end);
+    }
 }
 
 #endif

@@ -125,7 +125,7 @@ ZRange z_range(TileSight tile, vec4 half_space) {
     float high = mean + mean_reach;
     low *= low > 0.0 ? scale_least : scale_most;
     high *= high < 0.0 ? scale_least : scale_most;
-    // What is no number may keep either part, and then settles nothing.
+    // A plane whose `along` is no number may keep either part, and then settles nothing.
     return ZRange(low, high, !(along < -along_reach), !(along > along_reach));
 }
 
@@ -152,7 +152,7 @@ uint planes_side(uint base, uint flags, vec2 delta, vec2 middle) {
         bool keeps = z.low > certain;
         bool drops = z.high < -certain;
         if (from_inside) {
-            // What is behind the eye counts for nothing: front_weight of glsl/weight.glsl.
+            // Only the part in front of the eye counts: front_weight of glsl/weight.glsl.
             keeps = (!z.far || z.low > front.high) && (!z.near || is_no_tail(-z.low, front.low));
             drops = (!z.far || is_no_tail(z.high, front.low)) && (!z.near || -z.high > front.high);
         }

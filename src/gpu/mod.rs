@@ -62,6 +62,7 @@ pub use pipeline_file::PipelineCache;
 pub use recorder::DepthImage;
 pub use requirements::{Features, Support, check};
 pub use shape::DeviceShape;
+pub(crate) use shape::LEAST_SUBGROUP;
 pub use timer::PassSpan;
 
 #[cfg(not(feature = "lab"))]

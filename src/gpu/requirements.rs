@@ -249,15 +249,10 @@ pub unsafe fn check(
     let group = limits
         .max_compute_work_group_invocations
         .min(limits.max_compute_work_group_size[0]);
-    const LARGEST_GROUP: u32 = if BLOCK_SIZE > RADIX_GROUP_SIZE {
-        BLOCK_SIZE
-    } else {
-        RADIX_GROUP_SIZE
-    };
-    if group < LARGEST_GROUP {
+    if group < BLOCK_SIZE {
         return lacks(format!(
             "its compute workgroups have {group} invocations at most (maxComputeWorkGroupInvocations, \
-             maxComputeWorkGroupSize) and {LARGEST_GROUP} are needed"
+             maxComputeWorkGroupSize) and {BLOCK_SIZE} are needed"
         ));
     }
     let binds = limits

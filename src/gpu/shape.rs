@@ -26,7 +26,7 @@ pub enum DeviceShape {
 const USUAL_SUBGROUP: u32 = 32;
 
 /// The least size for which a workgroup of the sort has room to count the digits of each subgroup.
-pub(super) const LEAST_SUBGROUP: u32 = 8;
+pub(crate) const LEAST_SUBGROUP: u32 = 8;
 
 /// The shared memory of a workgroup that kernels for GPUs take at most, bytes.
 const SHARED_MEMORY: u32 = 28 << 10;
@@ -39,11 +39,12 @@ impl DeviceShape {
         wanted: Option<Self>,
         from_environment: Option<Self>,
     ) -> Result<(Self, &'static str)> {
-        let asked = wanted.map(|shape| (shape, "asked for by the device's description"));
-        let asked = asked.or(from_environment.map(|shape| (shape, "asked for by RARA_SHAPE")));
-        if let Some((shape, reason)) = asked {
+        if let Some(shape) = wanted {
             shape.check(support)?;
-            return Ok((shape, reason));
+            return Ok((shape, "asked for by the device's description"));
+        }
+        if let Some(shape) = from_environment {
+            return Ok((shape, "asked for by RARA_SHAPE"));
         }
         Ok(match info.kind {
             vk::PhysicalDeviceType::CPU => (Self::Cpu, "a CPU driver"),
@@ -54,7 +55,7 @@ impl DeviceShape {
         })
     }
 
-    /// The shape that `RARA_SHAPE` asks for, if it is set.
+    /// The shape that `RARA_SHAPE` asks for, if it is set; one that the device can have.
     pub(crate) fn from_environment(support: &Support) -> Result<Option<Self>> {
         let Some(text) = std::env::var_os("RARA_SHAPE") else {
             return Ok(None);

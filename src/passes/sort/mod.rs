@@ -12,6 +12,7 @@ use std::mem::offset_of;
 
 use crate::gpu::{Buffer, DeviceShape, Groups};
 use crate::limits;
+use crate::passes::buffers::indirect;
 use crate::passes::plan::Plan;
 use crate::passes::stage::{Frame, KernelSet, Stage};
 use crate::types::FrameCounts;
@@ -56,6 +57,14 @@ fn of_pass(counts: &Buffer, pass: u32) -> Groups<'_> {
     let size = size_of::<[u32; 4]>();
     let at = offset_of!(FrameCounts, sort_pass_groups) + pass as usize * size;
     Groups::Indirect(counts, at as u64)
+}
+
+/// The workgroups of the count of a pass. The first always runs: it decides which passes are skipped.
+fn of_count(counts: &Buffer, pass: u32) -> Groups<'_> {
+    match pass.checked_sub(1) {
+        None => indirect!(counts, FrameCounts, sort_groups),
+        Some(before) => of_pass(counts, before),
+    }
 }
 
 /// The buffers that the sort leaves.

@@ -1,7 +1,7 @@
 //! A radix sort by partitions of consecutive keys, each owned by a workgroup: reduce, then scan. All invocations of a workgroup
 //! read and write neighbouring memory, as suits graphics processors. Its scratch is `histogram`.
 
-use crate::gpu::{DeviceShape, Groups, Recorder};
+use crate::gpu::{DeviceShape, Groups, LEAST_SUBGROUP, Recorder};
 use crate::limits;
 use crate::passes::buffers::{buffers, indirect};
 #[cfg(feature = "lab")]
@@ -9,7 +9,7 @@ use crate::passes::cost::{Cost, FrameNumbers};
 use crate::passes::pipelines::Kernel;
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{radix_count, radix_scan, radix_scatter, radix_ties};
-use crate::passes::sort::of_pass;
+use crate::passes::sort::{of_count, of_pass};
 use crate::passes::stage::{Frame, KernelSet, key};
 use crate::types::FrameCounts;
 
@@ -23,13 +23,14 @@ pub(super) const KERNELS: KernelSet = KernelSet {
     record,
 };
 
-// What the shaders take for granted of these numbers: an invocation a digit, digits of two halves, counts of 16 bits, room for
-// the counts of the smallest subgroups, and whole subgroups of up to 128.
+// The shaders take for granted that every device has such workgroups, that they have an invocation a digit, whose halves are
+// alike, that counts have 16 bits, that those of the smallest subgroups have room, and that subgroups of up to 128 are whole.
 const _: () = {
     let digits = 1 << limits::SORT_BITS;
     assert!(digits == limits::RADIX_GROUP_SIZE && limits::SORT_BITS.is_multiple_of(2));
+    assert!(limits::RADIX_GROUP_SIZE <= limits::BLOCK_SIZE);
     assert!(limits::RADIX_PARTITION < 1 << 16);
-    assert!(limits::RADIX_GROUP_SIZE / 8 * digits / 2 <= limits::RADIX_PARTITION);
+    assert!(limits::RADIX_GROUP_SIZE / LEAST_SUBGROUP * digits / 2 <= limits::RADIX_PARTITION);
     assert!(limits::RADIX_GROUP_SIZE.is_multiple_of(128));
 };
 
@@ -60,9 +61,7 @@ fn workgroup_a_partition(numbers: &FrameNumbers) -> u64 {
 /// The loads that put so many survivors of one depth into order: alone by insertion, or as a workgroup by digits.
 #[cfg(feature = "lab")]
 fn ties(tied: u64) -> u64 {
-    /// `TIES_ALONE` of `glsl/ties.glsl`.
-    const ALONE: u64 = 24;
-    if tied <= ALONE {
+    if tied <= limits::TIES_ALONE.into() {
         // The end; then each survivor and its number, and those of each before it.
         return tied + tied * tied.saturating_sub(1);
     }
@@ -96,18 +95,13 @@ pub(super) fn histogram_words(gaussians: u64) -> u64 {
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
     let passes = frame.plan.way.sort_passes;
-    let partitions = indirect!(b.counts, FrameCounts, sort_groups);
     for pass in 0..passes {
         let [from, to] = [pass, pass + 1].map(|pair| (pair % 2) as usize);
         let buffers = buffers!(radix_count {
             b => [frame, counts, histogram];
             keys: &b.keys[from],
         });
-        // The first count always runs: it decides which passes are skipped.
-        let groups = match pass {
-            0 => partitions,
-            _ => of_pass(&b.counts, pass - 1),
-        };
+        let groups = of_count(&b.counts, pass);
         frame.dispatch(recorder, buffers, radix_count::Params { pass }, groups);
         let buffers = buffers!(radix_scan {
             b => [frame, counts, histogram],
@@ -135,6 +129,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
             scratch: &b.order[sorted ^ 1],
             numbers: &b.keys[sorted ^ 1],
         });
+        let partitions = indirect!(b.counts, FrameCounts, sort_groups);
         frame.dispatch(recorder, buffers, (), partitions);
     }
 }

@@ -5,7 +5,7 @@ use crate::gpu::{Groups, Recorder};
 use crate::limits;
 use crate::passes::buffers::{buffers, indirect};
 use crate::passes::shaders::{sort_count, sort_scan, sort_scatter, sort_ties};
-use crate::passes::sort::of_pass;
+use crate::passes::sort::{of_count, of_pass};
 use crate::passes::stage::{Frame, KernelSet, key};
 use crate::types::FrameCounts;
 
@@ -29,7 +29,6 @@ pub(super) fn histogram_words(runs: u64) -> u64 {
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
     let passes = frame.plan.way.sort_passes;
-    let runs = indirect!(b.counts, FrameCounts, sort_groups);
     let pairs = [(&b.keys[0], &b.order[0]), (&b.keys[1], &b.order[1])];
     for pass in 0..passes {
         let (keys, order) = pairs[(pass % 2) as usize];
@@ -38,12 +37,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
             b => [frame, counts, histogram];
             keys,
         });
-        // The first count always runs: it decides which passes are skipped.
-        let groups = if pass == 0 {
-            runs
-        } else {
-            of_pass(&b.counts, pass - 1)
-        };
+        let groups = of_count(&b.counts, pass);
         let params = sort_count::Params { pass };
         frame.dispatch(recorder, buffers, params, groups);
         let buffers = buffers!(sort_scan {
@@ -67,6 +61,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
             scratch: &b.order[sorted ^ 1],
             numbers: &b.keys[sorted ^ 1],
         });
+        let runs = indirect!(b.counts, FrameCounts, sort_groups);
         frame.dispatch(recorder, buffers, (), runs);
     }
 }

@@ -1,5 +1,5 @@
-//! What pipelines are compiled to and which commands are recorded, for tests of what a frame costs. Only a device that was
-//! opened for it takes notes.
+//! Notes of the code that pipelines are compiled to and of the commands that are recorded, for tests of what a frame costs.
+//! Only a device that was opened for it takes notes.
 
 use std::sync::{Mutex, PoisonError};
 

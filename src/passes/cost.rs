@@ -1,4 +1,4 @@
-//! What the compute passes of a GPU's frame cost it in latency, as functions of the frame's numbers: each pass declares how
+//! The latency that each compute pass costs a GPU's frame, as functions of the frame's numbers: each pass declares how
 //! many invocations it has and how many loads one of them may have to wait for, one after the other. The declarations stand
 //! beside the passes; `tests/gpu_cost` holds them to the commands of real frames, and to ceilings.
 //!
@@ -71,7 +71,7 @@ impl FrameNumbers {
     }
 }
 
-/// What one dispatch of a program costs.
+/// The cost of one dispatch of a program.
 #[derive(Debug, Clone, Copy)]
 pub struct Cost {
     /// The name of the program, and of its pipelines.

@@ -1,11 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup lists the blocks whose Gaussians differ, in order, and writes the indirect command over them.
+// Lists the blocks whose Gaussians differ, in order, and writes the indirect command over them.
 struct Params {
     uint stage; // which stage they are for: 0 clip, 1 classify
 };
 #define PARAMS Params
-#include "frame.glsl"
+#include "block_runs.glsl"
 #include "region/sides.glsl"
 #include "groups.glsl"
 
@@ -16,29 +16,23 @@ BUFFER(readonly, 1, uint, sides)
 BUFFER(writeonly, 2, uint, block_list)
 BUFFER(writeonly, 3, FrameCounts, counts)
 
-shared uint run_totals[BLOCK_SIZE];
+bool differs(uint block) {
+    return (sides.at[block] & 3u) == SIDE_CUTOFF;
+}
+
+uvec4 totals_of(uint block) {
+    return uvec4(differs(block) ? 1u : 0u, 0u, 0u, 0u);
+}
 
 void main() {
-    uint local = gl_LocalInvocationIndex;
-    uint run = (FRAME.scene.block_count + BLOCK_SIZE - 1u) / BLOCK_SIZE;
-    uint begin = min(local * run, FRAME.scene.block_count);
-    uint end = min(begin + run, FRAME.scene.block_count);
-    uint total = 0u;
-    for (uint block = begin; block < end; block++) {
-        total += (sides.at[block] & 3u) == SIDE_CUTOFF ? 1u : 0u;
-    }
-    run_totals[local] = total;
-    barrier();
-    uint place = 0u;
-    for (uint other = 0u; other < local; other++) {
-        place += run_totals[other];
-    }
-    for (uint block = begin; block < end; block++) {
-        if ((sides.at[block] & 3u) == SIDE_CUTOFF) {
+    BlockRun run = block_run();
+    uint place = run.before.x;
+    for (uint block = run.bounds.x; block < run.bounds.y; block++) {
+        if (differs(block)) {
             block_list.at[place++] = block;
         }
     }
-    if (local == BLOCK_SIZE - 1u) {
+    if (run.is_last) {
         if (push.params.stage == 0u) {
             counts.at[0].clip_groups = groups(place, 1u);
         } else {

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup turns the blocks' totals into each block's place in the lists, the frame's counts and the indirect
-// commands of all later stages. Each invocation owns a run of blocks, so the order is that of the scene.
+// Turns the blocks' totals into each block's place in the lists, the frame's counts and the indirect commands of all later
+// stages. Each invocation owns a run of blocks, so the order is that of the scene.
+#include "block_runs.glsl"
 #include "layer.glsl"
 #include "region/sides.glsl"
 #include "groups.glsl"
@@ -14,8 +15,6 @@ BUFFER(writeonly, 3, uvec2, block_offsets)
 BUFFER(writeonly, 4, uint, block_list)
 BUFFER(writeonly, 5, FrameCounts, counts)
 
-shared uvec4 run_totals[BLOCK_SIZE];
-
 // Visible, cut and invisible Gaussians of a block, and 1 where some survive.
 uvec4 totals_of(uint block) {
     enter_layer_of_block(block);
@@ -26,22 +25,9 @@ uvec4 totals_of(uint block) {
 }
 
 void main() {
-    uint local = gl_LocalInvocationIndex;
-    uint run = (FRAME.scene.block_count + BLOCK_SIZE - 1u) / BLOCK_SIZE;
-    uint begin = min(local * run, FRAME.scene.block_count);
-    uint end = min(begin + run, FRAME.scene.block_count);
-    uvec4 total = uvec4(0u);
-    for (uint block = begin; block < end; block++) {
-        total += totals_of(block);
-    }
-    run_totals[local] = total;
-    barrier();
-    uvec4 before = uvec4(0u);
-    for (uint other = 0u; other < local; other++) {
-        before += run_totals[other];
-    }
-    uvec4 place = before;
-    for (uint block = begin; block < end; block++) {
+    BlockRun run = block_run();
+    uvec4 place = run.before;
+    for (uint block = run.bounds.x; block < run.bounds.y; block++) {
         uvec4 here = totals_of(block);
         if (here.w != 0u) {
             block_offsets.at[block] = uvec2(place.x + place.y, place.y);
@@ -49,7 +35,7 @@ void main() {
         }
         place += here;
     }
-    if (local == BLOCK_SIZE - 1u) {
+    if (run.is_last) {
         uint survivors = place.x + place.y;
         counts.at[0].visible = place.x;
         counts.at[0].cutoff = place.y;
@@ -71,6 +57,9 @@ void main() {
         counts.at[0].span_groups = uvec4(0u);
         counts.at[0].part_groups = uvec4(0u);
         counts.at[0].row_groups = uvec4(0u);
+        counts.at[0].macro_pairs = 0u;
+        counts.at[0].pair_groups = uvec4(0u);
+        counts.at[0].batch_groups = uvec4(0u);
         counts.at[0].tile_groups = uvec4(0u);
         counts.at[0].composite = uvec4(0u);
     }

@@ -54,6 +54,13 @@ const uint TIES_ALONE = 24u;
 // Workgroup size of the sort for GPUs, and the consecutive keys of such a workgroup: its partition.
 const uint RADIX_GROUP_SIZE = 256u;
 const uint RADIX_PARTITION = 4096u;
+// Tiles across and down a macro-tile, in which kernels for GPUs collect splats before they list those of each tile: as many as
+// make a picture of 1920x1080 no more macro-tiles than a digit has values, and a row of them half a word.
+const uint MACRO_COLUMNS = 16u;
+const uint MACRO_ROWS = 8u;
+const uint MACRO_TILES = MACRO_COLUMNS * MACRO_ROWS;
+// Most splats of a macro-tile that a workgroup lists the tiles of: a batch.
+const uint BATCH_SPLATS = 512u;
 // Workgroup size of the spans of tiles, of which one invocation owns a run of consecutive splats.
 const uint SPAN_GROUP_SIZE = 64u;
 // Workgroup size where an invocation owns a row of tiles or a part of its spans: small, since rows hold unequal numbers.

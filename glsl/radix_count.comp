@@ -6,6 +6,7 @@ struct Params {
     uint pass; // of the sort, from 0
 };
 #define PARAMS Params
+#include "radix_keys.glsl"
 #include "radix.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
@@ -28,7 +29,7 @@ void main() {
         greatest = 0u;
     }
     barrier();
-    bool is_first = push.params.pass == 0u;
+    bool is_first = !PAIRS && push.params.pass == 0u;
     uint number = is_first ? 0u : KEY_DIGIT;
     uint base = number == 0u ? 0u : KEY_BASE;
     uvec2 bounds = partition_bounds(p, KEY_COUNT);

@@ -7,6 +7,7 @@ struct Params {
     uint passes; // of the sort, if none is skipped
 };
 #define PARAMS Params
+#include "radix_keys.glsl"
 #include "radix.glsl"
 #include "workgroup_sum.glsl"
 
@@ -19,7 +20,9 @@ BUFFER(, 2, uint, histogram)
 void main() {
     uint d = gl_WorkGroupID.x;
     uint partitions = PARTITIONS;
-    if (push.params.pass == 0u) {
+    if (PAIRS) {
+        // Every pass counts.
+    } else if (push.params.pass == 0u) {
         if (d == 0u) {
             decide_passes(push.params.passes);
         }

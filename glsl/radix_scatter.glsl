@@ -6,6 +6,7 @@ struct Params {
     uint pass; // of the sort, from 0
 };
 #define PARAMS Params
+#include "radix_keys.glsl"
 #include "radix_rank.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
@@ -25,7 +26,7 @@ void main() {
     uint p = gl_WorkGroupID.x;
     uint number = KEY_DIGIT;
     uint base = KEY_BASE;
-    bool is_first = number == 0u; // the survivors are in their own order
+    bool is_first = !PAIRS && number == 0u; // the survivors are in their own order
     uvec2 bounds = partition_bounds(p, KEY_COUNT);
     uint total;
     uint before = exclusive_sum(histogram.at[TOTAL_PLACE(local)], total);

@@ -10,11 +10,13 @@
 
 const uint DIGITS = 1u << SORT_BITS;
 
+#ifndef KEY_COUNT
 #define KEY_COUNT (counts.at[0].visible + counts.at[0].cutoff)
 // Keys are counted from this multiple of DIGITS, so that the first count need not know it.
 #define KEY_BASE (counts.at[0].sort_base)
 // The digit that the pass sorts by.
 #define KEY_DIGIT (push.params.pass - counts.at[0].sort_skipped)
+#endif
 
 uint digit(uint key, uint number) {
     return bitfieldExtract(key, int(number * SORT_BITS), int(SORT_BITS));

@@ -4,6 +4,7 @@
 // row begin, how many pairs of tile and splat there are, and whether there is room for them. If not, the frame's quads are
 // drawn instead.
 #include "bin.glsl"
+#include "capped_sum.glsl"
 #include "groups.glsl"
 
 const uint ROWS = 256u; // at a time
@@ -12,13 +13,9 @@ layout(local_size_x = ROWS) in;
 BUFFER(, 1, FrameCounts, counts)
 BUFFER(, 2, uint, span_counts)
 BUFFER(writeonly, 3, uint, row_begins)
+#include "room.glsl"
 
 shared uint totals[ROWS];
-
-// Sums that stay at the largest number instead of turning over.
-uint capped_sum(uint a, uint b) {
-    return a > ~0u - b ? ~0u : a + b;
-}
 
 void main() {
     uint local = gl_LocalInvocationIndex;
@@ -60,19 +57,10 @@ void main() {
         }
     }
     if (local == 0u) {
-        bool tiled = pairs <= FRAME.room.pair_capacity;
-        uint strips = (rows + STRIP_ROWS - 1u) / STRIP_ROWS;
-        uvec2 quads = (uvec2(FRAME.tiles.tile_columns, rows) + QUAD_TILES - 1u) / QUAD_TILES;
         row_begins.at[rows] = begin;
-        counts.at[0].pairs = pairs;
-        counts.at[0].tiled = tiled ? 1u : 0u;
+        bool tiled = decide_room(pairs);
         counts.at[0].span_groups = tiled ? groups(FRAME.tiles.span_runs, SPAN_GROUP_SIZE) : uvec4(0u);
         counts.at[0].part_groups = tiled ? groups(rows * FRAME.tiles.row_parts, ROW_GROUP_SIZE) : uvec4(0u);
         counts.at[0].row_groups = tiled ? groups(rows, ROW_GROUP_SIZE) : uvec4(0u);
-        counts.at[0].tile_groups = uvec4(tiled ? STRIP_ROWS * FRAME.tiles.tile_columns : 0u, strips, 1u, 0u);
-        counts.at[0].composite = uvec4(6u * quads.x * quads.y, tiled ? 1u : 0u, 0u, 0u);
-        if (tiled || FRAME.room.redrawn != 0u) {
-            counts.at[0].draw.y = 0u;
-        }
     }
 }

@@ -39,20 +39,6 @@ BUFFER(readonly, 7, uint, occluders)
 #include "pixels.glsl"
 #include "weight_colour.glsl"
 
-// A subgroup takes a batch of the splats at once: each invocation loads one, and all see them in turn. Without subgroup
-// operations a batch is one splat, which every invocation loads.
-#ifdef RARA_SUBGROUP
-#define BATCH gl_SubgroupSize
-#define IN_BATCH gl_SubgroupInvocationID
-#define OF(invocation, value) subgroupShuffle(value, invocation)
-#define EVERY(value) subgroupAll(value)
-#else
-#define BATCH 1u
-#define IN_BATCH 0u
-#define OF(invocation, value) (value)
-#define EVERY(value) (value)
-#endif
-
 // An invocation's pixels.
 vec2 pixel_centre; // the first one's
 vec3 sum[ROWS];
@@ -67,7 +53,9 @@ struct Seen {
     vec3 colour;
     vec3 linear;
     vec3 curvature;
+    float far; // farness of its depth
 };
+#include "tile_batch.glsl"
 
 // Applies a cut splat's weights to its alphas, and returns them in `weight`.
 void weigh(Seen splat, vec2 delta, vec2 uv, inout float alpha[ROWS], out float weight[ROWS]) {
@@ -97,7 +85,7 @@ bool hide(float far, inout float alpha[ROWS]) {
     return behind;
 }
 
-void blend(Seen splat, vec2 delta, float far) {
+void blend(Seen splat, vec2 delta) {
     float u = splat.centre_conic.z * delta.x;
     float v = splat.centre_conic.w * delta.x;
     float alpha[ROWS];
@@ -108,7 +96,7 @@ void blend(Seen splat, vec2 delta, float far) {
         alpha[row] = a >= ALPHA_MIN ? a : 0.0;
     }
     // Where the sort has compared whole depths, all that follows is hidden too.
-    done = DEPTH_FORM != DEPTH_NONE && hide(far, alpha) && FRAME.order.key_shift == 0u;
+    done = DEPTH_FORM != DEPTH_NONE && hide(splat.far, alpha) && FRAME.order.key_shift == 0u;
     if (!done) {
         float weight[ROWS];
         if (SHOW_WEIGHT) {
@@ -136,6 +124,27 @@ bool is_away(Seen splat, vec2 delta) {
         && is_carried_away(splat.linear, splat.curvature, delta));
 }
 
+// A splat as an invocation hands it to all. Where the cut's edge does not run through the tile it is whole, or away.
+Seen load(uint number, vec2 tile_middle) {
+    Seen splat;
+    vec4 conic_cut = splats.at[number].conic_cut;
+    vec4 colour_cut = splats.at[number].colour_cut;
+    splat.centre_conic = splats.at[number].centre_conic;
+    splat.conic_opacity = conic_cut.xy;
+    splat.colour = colour_cut.rgb;
+    splat.linear = vec3(conic_cut.zw, colour_cut.w);
+    splat.curvature = vec3(0.0);
+    if (CLIP_MODE == MODE_EXACT && abs(splat.linear.x) < Z_RANGE) {
+        splat.curvature = splats.at[number].curvature.xyz;
+    }
+    if (CLIP_MODE >= MODE_RARA && !SHOW_WEIGHT && splat.linear.x < Z_RANGE) {
+        uint side = tile_side(splat.linear, splat.curvature, splat.centre_conic, splat.conic_opacity.x, tile_middle);
+        splat.linear.x = side == SIDE_VISIBLE ? Z_WHOLE : side == SIDE_INVISIBLE ? Z_CUT_AWAY : splat.linear.x;
+    }
+    splat.far = DEPTH_FORM != DEPTH_NONE ? farness(host_depth(splats.at[number].middle.w)) : 0.0;
+    return splat;
+}
+
 void main() {
     // Tiles follow each other down the columns of a strip, not along the picture's rows: what a splat's next tile needs
     // of it is then still in the cache, whichever neighbour that is.
@@ -160,43 +169,16 @@ void main() {
         transmittance[row] = pixel.y + row < size.y ? 1.0 : 0.0;
         occluder[row] = DEPTH_FORM != DEPTH_NONE ? occluder_farness(pixel + uvec2(0u, row)) : 0.0;
     }
-    for (uint first = begin; first < end && !EVERY(done); first += BATCH) {
-        uint mine = tile_splats.at[min(first + IN_BATCH, end - 1u)];
-        vec4 my_centre_conic = splats.at[mine].centre_conic;
-        vec4 my_conic_cut = splats.at[mine].conic_cut;
-        vec4 my_colour_cut = splats.at[mine].colour_cut;
-        vec3 my_curvature = vec3(0.0);
-        if (CLIP_MODE == MODE_EXACT && abs(my_conic_cut.z) < Z_RANGE) {
-            my_curvature = splats.at[mine].curvature.xyz;
-        }
-#ifdef RARA_SUBGROUP
-        // Each invocation asks for its own splat. Only where the cut's edge runs through the tile are pixels weighed.
-        if (CLIP_MODE >= MODE_RARA && !SHOW_WEIGHT && my_conic_cut.z < Z_RANGE) {
-            vec3 linear = vec3(my_conic_cut.zw, my_colour_cut.w);
-            uint side = tile_side(linear, my_curvature, my_centre_conic, my_conic_cut.x, tile_middle);
-            my_conic_cut.z = side == SIDE_VISIBLE ? Z_WHOLE : side == SIDE_INVISIBLE ? Z_CUT_AWAY : my_conic_cut.z;
-        }
-#endif
-        float my_depth = DEPTH_FORM != DEPTH_NONE ? splats.at[mine].middle.w : 0.0;
-        uint count = BATCH == 1u ? 1u : min(end - first, BATCH);
+    for (uint first = begin; first < end && !all_done(); first += BATCH) {
+        uint number = tile_splats.at[min(first + IN_BATCH, end - 1u)];
+        hand_over(load(number, tile_middle));
+        uint count = min(end - first, BATCH);
         for (uint i = 0u; i < count; i++) {
             // All invocations run this, also those that are done: subgroup operations need every one.
-            Seen splat;
-            splat.centre_conic = OF(i, my_centre_conic);
-            splat.conic_opacity = OF(i, my_conic_cut.xy);
-            splat.colour = OF(i, my_colour_cut.rgb);
-            splat.linear = vec3(Z_WHOLE, 0.0, 0.0);
-            splat.curvature = vec3(0.0);
-            if (CLIP_MODE >= MODE_RARA || RECLIPPED) {
-                splat.linear = vec3(OF(i, my_conic_cut.zw), OF(i, my_colour_cut.w));
-            }
-            if (CLIP_MODE == MODE_EXACT) {
-                splat.curvature = OF(i, my_curvature);
-            }
-            float far = DEPTH_FORM != DEPTH_NONE ? farness(host_depth(OF(i, my_depth))) : 0.0;
+            Seen splat = taken_over(i);
             vec2 delta = pixel_centre - splat.centre_conic.xy;
             if (!done && !((RECLIPPED || CLIP_MODE >= MODE_RARA) && is_away(splat, delta))) {
-                blend(splat, delta, far);
+                blend(splat, delta);
             }
         }
     }

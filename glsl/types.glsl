@@ -38,7 +38,7 @@ struct OrderData {
 struct TilesData {
     uint tile_columns; // tiles across the picture
     uint tile_count; // tiles in the picture
-    uint span_runs; // invocations that find the splats' spans of tiles
+    uint span_runs; // invocations that find the splats' spans of tiles; 0 for the bin by macro-tiles
     uint row_parts; // parts of the spans of a row of tiles
     float transmittance_min; // below it a tile's pixel is saturated: what lies behind changes it by less
     uint pad[3]; // unused
@@ -173,12 +173,16 @@ struct FrameCounts {
     uvec4 span_groups; // indirect dispatch of the runs over the splats, which list their spans of tiles
     uvec4 part_groups; // indirect dispatch of the parts of the rows of tiles
     uvec4 row_groups; // indirect dispatch of the rows of tiles
+    uvec4 pair_groups; // indirect dispatch of the partitions of the pairs of macro-tile and splat
+    uvec4 batch_groups; // indirect dispatch of the batches of splats of a macro-tile
     uvec4 tile_groups; // indirect dispatch of the tiles
     uvec4 composite; // indirect draw of the tiles' picture
     uint pairs; // pairs of tile and splat
     uint tiled; // 1: the pairs have room, and tiles draw the splats
     uint sort_base; // what the sort counts the survivors' keys from
     uint sort_skipped; // passes of the sort, from the first, that their keys do without
+    uint macro_pairs; // pairs of macro-tile and splat that have room; some of them may hold no tile
+    uint pad[3]; // unused
 };
 
 const uint MODE_NONE = 0u;

@@ -2,6 +2,7 @@
 #ifndef RARA_WORKGROUP_SUM
 #define RARA_WORKGROUP_SUM
 #include "limits.glsl"
+#include "capped_sum.glsl"
 
 shared uint sums[RADIX_GROUP_SIZE];
 
@@ -20,6 +21,22 @@ uint exclusive_sum(uint value, out uint total) {
     uint sum = sums[local] - value;
     barrier();
     return sum;
+}
+
+// The capped sum of the values of all invocations.
+uint capped_total(uint value) {
+    uint local = gl_LocalInvocationIndex;
+    sums[local] = value;
+    barrier();
+    for (uint rest = RADIX_GROUP_SIZE / 2u; rest > 0u; rest /= 2u) {
+        if (local < rest) {
+            sums[local] = capped_sum(sums[local], sums[local + rest]);
+        }
+        barrier();
+    }
+    uint total = sums[0];
+    barrier();
+    return total;
 }
 
 #endif

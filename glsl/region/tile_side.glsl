@@ -181,6 +181,12 @@ uint tile_side(vec3 linear, vec3 curvature, vec4 centre_conic, float conic_z, ve
     if (CLIP_MODE == MODE_RARA && MISS != MISS_PEAK) {
         return SIDE_CUTOFF; // lines of sight beside the ellipsoid are kept or dropped wherever they are
     }
+#ifndef RARA_SUBGROUP
+    if (!SEVERAL) {
+        // On GPUs the question would take more registers than all the rest of a pipeline for one surface.
+        return SIDE_CUTOFF;
+    }
+#endif
     return planes_side(base, flags, delta, middle);
 }
 

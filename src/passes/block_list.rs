@@ -1,8 +1,9 @@
 //! Lists the blocks whose Gaussians differ, for one stage.
 
-use crate::gpu::{Buffer, Groups, Recorder};
+use crate::gpu::{Buffer, Recorder};
+use crate::passes::blocks::groups_of_list;
 #[cfg(feature = "lab")]
-use crate::limits;
+use crate::passes::blocks::loads_of_list;
 use crate::passes::buffers::buffers;
 #[cfg(feature = "lab")]
 use crate::passes::cost::Cost;
@@ -12,10 +13,7 @@ use crate::passes::stage::Frame;
 pub(super) use block_list::Program;
 
 #[cfg(feature = "lab")]
-pub(super) const COSTS: &[Cost] = &[
-    // It goes through its run of blocks to count, and once more to list.
-    Cost::of::<Program>(|_| limits::BLOCK_SIZE.into(), |n| 1 + 2 * n.block_run()),
-];
+pub(super) const COSTS: &[Cost] = &[Cost::of::<Program>(|n| n.blocks, |n| loads_of_list(n, 1))];
 
 /// The stage that will look at the blocks of the list.
 #[derive(Debug, Clone, Copy)]
@@ -39,5 +37,5 @@ pub(crate) fn record(
     let params = block_list::Params {
         stage: list_for as u32,
     };
-    frame.dispatch(recorder, buffers, params, Groups::Count(1));
+    frame.dispatch(recorder, buffers, params, groups_of_list(frame.plan));
 }

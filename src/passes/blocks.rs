@@ -1,12 +1,12 @@
 //! Stage `blocks`, one invocation a block of Gaussians, finds what view and clip say about all of them at once, and which
 //! blocks are left to look at.
 
-use crate::gpu::{Groups, Recorder};
+use crate::gpu::{DeviceShape, Groups, Recorder};
 use crate::limits;
 use crate::passes::block_list::{self, ListFor};
 use crate::passes::buffers::buffers;
 #[cfg(feature = "lab")]
-use crate::passes::cost::Cost;
+use crate::passes::cost::{Cost, FrameNumbers};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::blocks;
 use crate::passes::stage::{Frame, Stage, key};
@@ -35,6 +35,27 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let groups = groups_of_blocks(frame.plan);
     frame.dispatch(recorder, buffers, (), groups);
     block_list::record(frame, recorder, &b.block_sides, ListFor::Classify);
+}
+
+/// The workgroups of a list of blocks: a single one on CPU drivers, whose invocations have many blocks each, and an invocation
+/// a block on GPUs.
+pub(crate) fn groups_of_list(plan: &Plan) -> Groups<'static> {
+    Groups::Count(match plan.way.shape {
+        DeviceShape::Cpu => 1,
+        DeviceShape::Gpu { .. } => plan
+            .data
+            .scene
+            .block_count
+            .div_ceil(limits::BLOCK_SIZE)
+            .max(1),
+    })
+}
+
+/// The loads of an invocation of such a workgroup on a GPU, of which each block takes `loads`: those of the blocks before, four
+/// at once (glsl/block_runs.glsl), and its own, to count and to list it.
+#[cfg(feature = "lab")]
+pub(super) fn loads_of_list(numbers: &FrameNumbers, loads: u64) -> u64 {
+    1 + (numbers.blocks.div_ceil(4 * u64::from(limits::BLOCK_SIZE)) + 2) * loads
 }
 
 /// An invocation a block.

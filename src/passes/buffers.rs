@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::gpu::{Buffer, BufferDesc, Device, DeviceShape, Location};
 use crate::limits;
 use crate::passes::plan::Plan;
-use crate::passes::sort;
+use crate::passes::{bin, sort};
 use crate::types::{self, FrameCounts, FrameData, LayerData, Splat, SplatDepth, SurfaceData};
 
 /// Everything the stages hand to each other. No stage reads a count on the CPU, so each array but the
@@ -47,11 +47,8 @@ pub(crate) struct Buffers {
 /// The tile rasteriser's buffers.
 #[derive(Debug)]
 pub(crate) struct TileBuffers {
-    pub(crate) span_counts: Buffer,
-    pub(crate) row_begins: Buffer,
-    pub(crate) span_splats: Buffer,
-    pub(crate) span_columns: Buffer,
-    pub(crate) column_counts: Buffer,
+    pub(super) scratch: bin::Scratch,
+    /// The tiles' lists, one after the other.
     pub(crate) splats: Buffer,
     /// The picture that the tiles make. Where it is the frame's, somebody may want it longer than the rest.
     pub(crate) picture: Arc<TilePicture>,
@@ -94,12 +91,11 @@ struct Sizes {
     cut_bytes: u64,
     /// Words.
     histogram: u64,
-    span_runs: u64,
     masks: u64,
     pairs: u64,
     tiles: u64,
-    rows: u64,
-    columns: u64,
+    /// Words of the bin's scratch.
+    bin: bin::ScratchWords,
     picture_bytes: u64,
     occluders: u64,
     depths: u64,
@@ -116,8 +112,6 @@ impl Sizes {
         let when_tiled = |size: u64| {
             if plan.is_tiled() { size } else { 0 }
         };
-        let rows = u64::from(plan.data.tiles.tile_count / plan.data.tiles.tile_columns);
-        let parts = u64::from(plan.data.tiles.row_parts);
         let pixels = plan.data.view.size[0] as u64 * plan.data.view.size[1] as u64;
         let blocks = u64::from(plan.data.scene.block_count);
         Self {
@@ -133,12 +127,10 @@ impl Sizes {
             },
             cut_bytes,
             histogram: sort::histogram_words(plan),
-            span_runs: when_tiled(plan.data.tiles.span_runs.into()),
             masks: when_tiled(gaussians),
             pairs: when_tiled(plan.data.room.pair_capacity.into()),
             tiles: when_tiled(plan.data.tiles.tile_count.into()),
-            rows: when_tiled(rows),
-            columns: when_tiled(rows * parts * (u64::from(plan.data.tiles.tile_columns) + 1)),
+            bin: bin::Scratch::words(plan).map(when_tiled),
             picture_bytes: when_tiled(pixels * plan.way.tile_pixels.bytes()),
             depths: if plan.way.expects_depth { gaussians } else { 0 },
             occluders: plan.occluders.map_or(0, |_| when_tiled(pixels)),
@@ -227,12 +219,7 @@ impl Buffers {
             tile_masks: gpu("tile_masks", sizes.masks * 16)?,
             tiles: if plan.is_tiled() {
                 Some(TileBuffers {
-                    // A run has the number of its spans in each row of tiles, and of its pairs.
-                    span_counts: gpu("span_counts", (sizes.rows + 1) * sizes.span_runs * 4)?,
-                    row_begins: gpu("row_begins", (sizes.rows + 1) * 4)?,
-                    span_splats: gpu("span_splats", sizes.pairs * 4)?,
-                    span_columns: gpu("span_columns", sizes.pairs * 4)?,
-                    column_counts: gpu("column_counts", sizes.columns * 4)?,
+                    scratch: bin::Scratch::new(device, plan.way.shape, sizes.bin)?,
                     splats: gpu("tile_splats", sizes.pairs * 4)?,
                     picture: Arc::new(TilePicture {
                         begins: picture("tile_begins", (sizes.tiles + 1) * 4)?,
@@ -286,12 +273,14 @@ impl Buffers {
             && have.clip_blocks >= need.clip_blocks
             && have.cut_bytes >= need.cut_bytes
             && have.histogram >= need.histogram
-            && have.span_runs >= need.span_runs
             && have.masks >= need.masks
             && have.pairs >= need.pairs
             && have.tiles >= need.tiles
-            && have.rows >= need.rows
-            && have.columns >= need.columns
+            && have
+                .bin
+                .iter()
+                .zip(need.bin)
+                .all(|(have, need)| *have >= need)
             && have.picture_bytes >= need.picture_bytes
             && have.depths >= need.depths
             && have.occluders >= need.occluders
@@ -304,7 +293,7 @@ impl Buffers {
             .cut_bytes
             .max(sizes.gaussians * size_of::<Splat>() as u64)
             .max(sizes.pairs * 4)
-            .max(sizes.columns * 4)
+            .max(sizes.bin.into_iter().max().unwrap_or(0) * 4)
             .max(sizes.picture_bytes)
     }
 }

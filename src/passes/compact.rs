@@ -1,9 +1,12 @@
 //! Stage `compact` lists the survivors and the cutoff Gaussians in the order of the scene, and writes the counts and the
 //! indirect commands of all later stages. No place in a list depends on the order of atomics.
 
-use crate::gpu::{Groups, Recorder};
+use crate::gpu::Recorder;
 #[cfg(feature = "lab")]
 use crate::limits;
+use crate::passes::blocks::groups_of_list;
+#[cfg(feature = "lab")]
+use crate::passes::blocks::loads_of_list;
 use crate::passes::buffers::{buffers, indirect};
 #[cfg(feature = "lab")]
 use crate::passes::cost::Cost;
@@ -22,11 +25,8 @@ pub(crate) const STAGE: Stage = Stage::when_finding_view(
 
 #[cfg(feature = "lab")]
 pub(super) const COSTS: &[Cost] = &[
-    // It goes through its run of blocks twice, each of which has a side and then totals, and a layer.
-    Cost::of::<compact_scan::Program>(
-        |_| limits::BLOCK_SIZE.into(),
-        |n| 1 + 2 * n.block_run() * n.layer().max(2),
-    ),
+    // Each block has a side and then totals, and a layer.
+    Cost::of::<compact_scan::Program>(|n| n.blocks, |n| loads_of_list(n, n.layer().max(2))),
     // The number of its group's block, the block, its layer, its side, its Gaussian's bits in the two masks; and the words of
     // each mask.
     Cost::of::<compact::Program>(
@@ -40,7 +40,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let buffers = buffers!(compact_scan {
         b => [frame, block_sides, block_counts, block_offsets, block_list, counts],
     });
-    frame.dispatch(recorder, buffers, (), Groups::Count(1));
+    frame.dispatch(recorder, buffers, (), groups_of_list(frame.plan));
     let buffers = buffers!(compact {
         b => [frame, block_list, counts, block_sides, masks, block_offsets, survivors, cutoffs],
     });

@@ -39,12 +39,8 @@ pub struct FrameNumbers {
     pub tile_columns: u64,
     /// Rows of tiles in the picture.
     pub tile_rows: u64,
-    /// Invocations that find the splats' spans of tiles.
-    pub span_runs: u64,
-    /// Parts of the spans of a row of tiles.
-    pub row_parts: u64,
-    /// Spans, which are the tiles of a row that a splat touches.
-    pub spans: u64,
+    /// Pairs of macro-tile and splat.
+    pub macro_pairs: u64,
     /// Pairs of tile and splat.
     pub pairs: u64,
 }
@@ -55,19 +51,25 @@ impl FrameNumbers {
         u64::from(self.layers.next_power_of_two().ilog2()) + 1
     }
 
-    /// Blocks of each invocation of one workgroup that goes through all of them.
-    pub(super) fn block_run(&self) -> u64 {
-        self.blocks.div_ceil(limits::BLOCK_SIZE.into())
-    }
-
     /// Partitions of the sort.
     pub(super) fn partitions(&self) -> u64 {
         self.survivors.div_ceil(limits::RADIX_PARTITION.into())
     }
 
-    /// Parts of the rows of tiles.
-    pub(super) fn parts(&self) -> u64 {
-        self.tile_rows * self.row_parts
+    /// Partitions of the sort of the pairs of macro-tile and splat.
+    pub(super) fn pair_partitions(&self) -> u64 {
+        self.macro_pairs.div_ceil(limits::RADIX_PARTITION.into())
+    }
+
+    /// Macro-tiles of the picture.
+    pub(super) fn macro_tiles(&self) -> u64 {
+        let columns = self.tile_columns.div_ceil(limits::MACRO_COLUMNS.into());
+        columns * self.tile_rows.div_ceil(limits::MACRO_ROWS.into())
+    }
+
+    /// Workgroups for the batches of the macro-tiles' splats.
+    pub(super) fn batches(&self) -> u64 {
+        self.macro_pairs.div_ceil(limits::BATCH_SPLATS.into()) + self.macro_tiles()
     }
 }
 

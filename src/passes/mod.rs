@@ -19,6 +19,7 @@ mod occluders;
 mod pipelines;
 mod plan;
 mod project;
+mod radix;
 mod reclip;
 mod region;
 mod scene_buffers;

@@ -75,6 +75,12 @@ impl<P: Interface> Kernel<P> {
         }
     }
 
+    /// The same kernel by another name, where a program does the work of two stages.
+    pub(crate) fn named(mut self, name: &'static str) -> Self {
+        self.key.name = name;
+        self
+    }
+
     /// The pipeline that a plan makes of a program.
     pub(crate) fn of(plan: &Plan) -> Self
     where

@@ -74,7 +74,7 @@ pub(crate) struct SceneFacts<'a> {
     pub(crate) shape: DeviceShape,
     /// Invocations of the sort by runs, or 0 for that by partitions.
     pub(crate) sort_runs: u32,
-    /// Invocations of the steps that find the splats' spans of tiles.
+    /// Invocations of the steps that find the splats' spans of tiles, or 0 for the bin by macro-tiles.
     pub(crate) span_runs: u32,
     /// How splats become pixels; never `Auto`.
     pub(crate) raster: Raster,

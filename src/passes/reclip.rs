@@ -2,11 +2,13 @@
 //! new surface and change what the rasteriser holds of them. The survivors, which are all in view, and their centres,
 //! colours, order and tiles stay.
 
-use crate::gpu::{Groups, Recorder};
+use crate::gpu::Recorder;
 #[cfg(feature = "lab")]
 use crate::limits;
 use crate::passes::block_list::{self, ListFor};
-use crate::passes::blocks::groups_of_blocks;
+#[cfg(feature = "lab")]
+use crate::passes::blocks::loads_of_list;
+use crate::passes::blocks::{groups_of_blocks, groups_of_list};
 use crate::passes::buffers::{buffers, indirect};
 #[cfg(feature = "lab")]
 use crate::passes::cost::Cost;
@@ -49,8 +51,8 @@ pub(super) const COSTS: &[Cost] = &[
         |n| n.clip_blocks * u64::from(limits::BLOCK_SIZE),
         |n| 2 + n.layer() + 2 + 2 + 2 + n.surfaces,
     ),
-    // It goes through its run of blocks twice, each of which says whether it is revisited and then has totals.
-    Cost::of::<reclip_scan::Program>(|_| limits::BLOCK_SIZE.into(), |n| 1 + 2 * n.block_run() * 2),
+    // Each block says whether it is revisited and then has totals.
+    Cost::of::<reclip_scan::Program>(|n| n.blocks, |n| loads_of_list(n, 2)),
     // The number of its group's block, the block, whether its Gaussian changes, its places; and the words of the masks.
     Cost::of::<reclip_compact::Program>(
         |n| n.clip_blocks * u64::from(limits::BLOCK_SIZE),
@@ -86,7 +88,7 @@ fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         b => [frame, counts],
         s => [revisits, reclips],
     });
-    frame.dispatch(recorder, buffers, (), Groups::Count(1));
+    frame.dispatch(recorder, buffers, (), groups_of_list(frame.plan));
     let buffers = buffers!(reclip_compact {
         b => [frame, block_list, counts, block_sides, masks, block_offsets, cutoffs],
         s => [reclips, recuts],

@@ -116,14 +116,20 @@ fn kernel(plan: &Plan) -> Kernel<tiles::Program> {
 
 #[cfg(feature = "lab")]
 pub(super) const COSTS: &[Cost] = &[
-    // All rows of a strip have invocations. The tile's bounds; and for each splat of a tile as full as the others its number,
-    // the splat and, if it is cut, the rest of it.
+    // All rows of a strip have invocations. The tile's bounds; and for each batch of the splats of a tile as full as the others
+    // their numbers, the splats and, if they are cut, the rest of them.
     Cost::of::<tiles::Program>(
         |n| {
             let rows = n.tile_rows.next_multiple_of(limits::STRIP_ROWS.into());
             n.tile_columns * rows * u64::from(limits::TILE_WIDTH * limits::TILE_HEIGHT)
         },
-        |n| 2 + 3 * n.pairs.div_ceil(n.tile_columns * n.tile_rows),
+        |n| {
+            let batch = u64::from(limits::TILE_WIDTH * limits::TILE_HEIGHT);
+            2 + 3 * n
+                .pairs
+                .div_ceil(n.tile_columns * n.tile_rows)
+                .div_ceil(batch)
+        },
     ),
 ];
 

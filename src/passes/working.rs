@@ -31,12 +31,8 @@ impl Buffers {
         ];
         all.extend(self.keys.iter().chain(&self.order));
         if let Some(t) = &self.tiles {
+            all.extend(t.scratch.all());
             all.extend([
-                &t.span_counts,
-                &t.row_begins,
-                &t.span_splats,
-                &t.span_columns,
-                &t.column_counts,
                 &t.picture.begins,
                 &t.splats,
                 &t.picture.pixels,

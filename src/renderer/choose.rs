@@ -42,21 +42,12 @@ pub(super) fn raster(
 const TILE_BYTES: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64 * 16;
 const MOST_PICTURE: u64 = 1 << 30;
 
-/// Runs of the sort. That of GPUs has none: it divides the keys into partitions.
-pub(super) fn sort_runs(shape: DeviceShape, gaussians: u32) -> u32 {
-    match shape {
-        DeviceShape::Cpu => span_runs(shape, gaussians),
-        DeviceShape::Gpu { .. } => 0,
-    }
-}
-
-/// Runs of the steps that find the splats' spans of tiles. Each has a count for every row, so there are few where there is
-/// little to divide and on CPU drivers. But there are at least as many as all cores have lanes there, and on GPUs
-/// enough to hide the latency of their scattered writes.
-pub(super) fn span_runs(shape: DeviceShape, gaussians: u32) -> u32 {
+/// Runs of the sort and of the bin: on CPU drivers at least as many as all cores have lanes, but few, since each has counts of
+/// its own. The kernels for GPUs have none; they divide their work into partitions.
+pub(super) fn runs(shape: DeviceShape, gaussians: u32) -> u32 {
     match (shape, gaussians) {
         (DeviceShape::Cpu, ..32_768) => 128,
         (DeviceShape::Cpu, _) => 256,
-        (DeviceShape::Gpu { .. }, _) => 2048,
+        (DeviceShape::Gpu { .. }, _) => 0,
     }
 }

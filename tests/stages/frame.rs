@@ -1,7 +1,7 @@
 //! A frame whose stages are examined: the scene as it lies on the device, and what the stages have written.
 
 use glam::{DVec3, Quat, Vec3};
-use rara::gpu::Bindings;
+use rara::gpu::{Bindings, DeviceShape};
 use rara::scene::{Bounds, Kind, generate};
 use rara::types::{FrameCounts, Gaussian, Splat};
 use rara::{Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, Plane, Settings, ShFormat};
@@ -75,6 +75,11 @@ impl Stages {
         let bytes = bytes.unwrap_or_else(|| panic!("there is no buffer {name}"));
         let elements = bytes.chunks_exact(size_of::<T>());
         elements.map(bytemuck::pod_read_unaligned).collect()
+    }
+
+    /// True where the kernels are those for CPU drivers.
+    pub fn is_cpus(&self) -> bool {
+        self.headless.device().shape() == DeviceShape::Cpu
     }
 
     pub fn counts(&mut self) -> FrameCounts {

@@ -4,9 +4,13 @@
 //! lists and where they begin, and how many pairs of tile and splat there are. The plan says which kernels do it: each set
 //! has a file here, shaders and scratch of its own, and may use the buffers that the sort has left over.
 
+mod macro_tiles;
 mod spans;
 
-use crate::gpu::DeviceShape;
+use crate::error::Result;
+#[cfg(feature = "lab")]
+use crate::gpu::Buffer;
+use crate::gpu::{Device, DeviceShape};
 use crate::passes::plan::Plan;
 use crate::passes::stage::{KernelSet, Stage};
 
@@ -20,11 +24,69 @@ pub(crate) const STAGE: Stage = Stage {
 
 /// The costs of those for GPUs.
 #[cfg(feature = "lab")]
-pub(in crate::passes) use spans::COSTS;
+pub(in crate::passes) use macro_tiles::COSTS;
 
 /// The kernels that suit the plan's kind of device.
 fn kernels(plan: &Plan) -> &'static KernelSet {
     match plan.way.shape {
-        DeviceShape::Cpu | DeviceShape::Gpu { .. } => &spans::KERNELS,
+        DeviceShape::Cpu => &spans::KERNELS,
+        DeviceShape::Gpu { .. } => &macro_tiles::KERNELS,
+    }
+}
+
+/// The scratch of a set of kernels.
+#[derive(Debug)]
+pub(in crate::passes) enum Scratch {
+    Spans(Box<spans::Scratch>),
+    MacroTiles(Box<macro_tiles::Scratch>),
+}
+
+/// The words of each of a scratch's buffers; the rest is 0.
+pub(in crate::passes) type ScratchWords = [u64; 8];
+
+impl Scratch {
+    /// The words that a plan for tiles asks for.
+    pub(in crate::passes) fn words(plan: &Plan) -> ScratchWords {
+        match plan.way.shape {
+            DeviceShape::Cpu => spans::words(plan),
+            DeviceShape::Gpu { .. } => macro_tiles::words(plan),
+        }
+    }
+
+    /// Allocates that of the kernels for a kind of device.
+    pub(in crate::passes) fn new(
+        device: &Device,
+        shape: DeviceShape,
+        words: ScratchWords,
+    ) -> Result<Self> {
+        Ok(match shape {
+            DeviceShape::Cpu => Self::Spans(spans::Scratch::new(device, words)?.into()),
+            DeviceShape::Gpu { .. } => {
+                Self::MacroTiles(macro_tiles::Scratch::new(device, words)?.into())
+            }
+        })
+    }
+
+    /// Its buffers.
+    #[cfg(feature = "lab")]
+    pub(in crate::passes) fn all(&self) -> Vec<&Buffer> {
+        match self {
+            Self::Spans(scratch) => scratch.all().into(),
+            Self::MacroTiles(scratch) => scratch.all().into(),
+        }
+    }
+
+    fn spans(&self) -> &spans::Scratch {
+        match self {
+            Self::Spans(scratch) => scratch,
+            Self::MacroTiles(_) => unreachable!("a device keeps its shape"),
+        }
+    }
+
+    fn macro_tiles(&self) -> &macro_tiles::Scratch {
+        match self {
+            Self::MacroTiles(scratch) => scratch,
+            Self::Spans(_) => unreachable!("a device keeps its shape"),
+        }
     }
 }

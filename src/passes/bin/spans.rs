@@ -1,10 +1,11 @@
-//! Finds the spans of each row of tiles, by runs of consecutive splats, then their splats in each of the row's tiles. Its
-//! scratch is the counts and the spans of [`TileBuffers`](crate::passes::buffers::TileBuffers).
+//! Finds the spans of each row of tiles, by runs of consecutive splats, then their splats in each of the row's tiles. The runs
+//! are few and long, as suits processors.
 
-use crate::gpu::{Groups, Recorder};
-use crate::passes::buffers::{buffers, indirect};
-#[cfg(feature = "lab")]
-use crate::passes::cost::Cost;
+use crate::error::Result;
+use crate::gpu::{Buffer, Device, Groups, Recorder};
+use crate::passes::bin::ScratchWords;
+use crate::passes::buffers::{buffers, gpu_only, indirect};
+use crate::passes::plan::Plan;
 use crate::passes::shaders::{
     span_count, span_scan, span_scatter, tile_count, tile_scan, tile_scatter,
 };
@@ -24,49 +25,62 @@ pub(super) const KERNELS: KernelSet = KernelSet {
     record,
 };
 
-#[cfg(feature = "lab")]
-pub(in crate::passes) const COSTS: &[Cost] = &[
-    // For each splat of its run its number, its mask, and the count of each span's row.
-    Cost::of::<span_count::Program>(
-        |n| n.span_runs,
-        |n| 1 + 2 * n.survivors.div_ceil(n.span_runs) + n.spans.div_ceil(n.span_runs),
-    ),
-    // The counts of a row of tiles in each run, to sum them and once more to place them.
-    Cost::of::<span_scan::Program>(
-        |_| ROWS_SCANNED,
-        |n| {
-            let rows = n.tile_rows.div_ceil(ROWS_SCANNED);
-            1 + n.span_runs.div_ceil(ROWS_SCANNED) + 2 * n.span_runs * rows
-        },
-    ),
-    // For each splat of its run its number and its mask, and the place of each span.
-    Cost::of::<span_scatter::Program>(
-        |n| n.span_runs,
-        |n| 1 + n.survivors.div_ceil(n.span_runs) + n.spans.div_ceil(n.span_runs),
-    ),
-    // For each span of its part the span and the counts of its columns; then the sums along the row.
-    Cost::of::<tile_count::Program>(
-        |n| n.parts(),
-        |n| 2 + 2 * n.spans.div_ceil(n.parts()) + n.tile_columns,
-    ),
-    // The pairs of the parts before its row; then the counts of the row's columns in each part.
-    Cost::of::<tile_scan::Program>(
-        |n| n.tile_rows,
-        |n| 1 + (n.tile_rows - 1) * n.row_parts + n.tile_columns * n.row_parts,
-    ),
-    // For each span of its part the span, and for each of its pairs the place.
-    Cost::of::<tile_scatter::Program>(
-        |n| n.parts(),
-        |n| 2 + n.spans.div_ceil(n.parts()) + n.pairs.div_ceil(n.parts()),
-    ),
-];
+/// The counts and the spans.
+#[derive(Debug)]
+pub(in crate::passes) struct Scratch {
+    span_counts: Buffer,
+    row_begins: Buffer,
+    span_splats: Buffer,
+    span_columns: Buffer,
+    column_counts: Buffer,
+}
 
-/// Rows of tiles that the one workgroup of `span_scan` goes through together: its size.
-#[cfg(feature = "lab")]
-const ROWS_SCANNED: u64 = 256;
+pub(super) fn words(plan: &Plan) -> ScratchWords {
+    let tiles = &plan.data.tiles;
+    let rows = u64::from(tiles.tile_count / tiles.tile_columns);
+    let pairs = u64::from(plan.data.room.pair_capacity);
+    let parts = rows * u64::from(tiles.row_parts);
+    [
+        // A run has the number of its spans in each row of tiles, and of its pairs.
+        (rows + 1) * u64::from(tiles.span_runs),
+        rows + 1,
+        pairs,
+        pairs,
+        parts * (u64::from(tiles.tile_columns) + 1),
+        0,
+        0,
+        0,
+    ]
+}
+
+impl Scratch {
+    pub(super) fn new(device: &Device, words: ScratchWords) -> Result<Self> {
+        let [counts, begins, splats, columns, column_counts, ..] = words;
+        let gpu = |name, words| gpu_only(device, name, words * 4);
+        Ok(Self {
+            span_counts: gpu("span_counts", counts)?,
+            row_begins: gpu("row_begins", begins)?,
+            span_splats: gpu("span_splats", splats)?,
+            span_columns: gpu("span_columns", columns)?,
+            column_counts: gpu("column_counts", column_counts)?,
+        })
+    }
+
+    #[cfg(feature = "lab")]
+    pub(super) fn all(&self) -> [&Buffer; 5] {
+        [
+            &self.span_counts,
+            &self.row_begins,
+            &self.span_splats,
+            &self.span_columns,
+            &self.column_counts,
+        ]
+    }
+}
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (b, t) = (frame.buffers, frame.tiles());
+    let scratch = t.scratch.spans();
     // The buffers that the sort has left over have room for the masks in the order of depth.
     let sort::Sorted {
         order,
@@ -78,35 +92,35 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let rows = indirect!(b.counts, FrameCounts, row_groups);
     let buffers = buffers!(span_count {
         b => [frame, counts, splats, tile_masks],
-        t => [span_counts];
+        scratch => [span_counts];
         order, mask_origins, masks_above, masks_below,
     });
     frame.dispatch(recorder, buffers, (), runs);
     let buffers = buffers!(span_scan {
         b => [frame, counts],
-        t => [span_counts, row_begins],
+        scratch => [span_counts, row_begins],
     });
     frame.dispatch(recorder, buffers, (), Groups::Count(1));
     let buffers = buffers!(span_scatter {
         b => [frame, counts, splats],
-        t => [span_counts, span_splats, span_columns];
+        scratch => [span_counts, span_splats, span_columns];
         order, mask_origins, masks_above, masks_below,
     });
     frame.dispatch(recorder, buffers, (), runs_with_room);
     let buffers = buffers!(tile_count {
         b => [frame],
-        t => [row_begins, column_counts, span_columns],
+        scratch => [row_begins, column_counts, span_columns],
     });
     frame.dispatch(recorder, buffers, (), parts);
     let buffers = buffers!(tile_scan {
         b => [frame],
-        t => [row_begins, column_counts];
+        scratch => [row_begins, column_counts];
         tile_begins: &t.picture.begins,
     });
     frame.dispatch(recorder, buffers, (), rows);
     let buffers = buffers!(tile_scatter {
         b => [frame, counts],
-        t => [row_begins, column_counts, span_splats, span_columns];
+        scratch => [row_begins, column_counts, span_splats, span_columns];
         tile_splats: &t.splats,
     });
     frame.dispatch(recorder, buffers, (), parts);

@@ -39,7 +39,7 @@ fn kernels(plan: &Plan) -> &'static KernelSet {
 pub(super) fn histogram_words(plan: &Plan) -> u64 {
     match plan.way.shape {
         DeviceShape::Cpu => runs::histogram_words(plan.data.order.sort_runs.into()),
-        DeviceShape::Gpu { .. } => radix::histogram_words(plan.gaussians().into()),
+        DeviceShape::Gpu { .. } => radix::histogram_words(plan),
     }
 }
 

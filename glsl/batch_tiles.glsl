@@ -1,0 +1,52 @@
+// The tiles of a batch's splats: for each tile of the macro-tile, a bit for each splat of the batch. Included by workgroups of
+// RADIX_GROUP_SIZE, after their further buffers.
+#ifndef RARA_BATCH_TILES
+#define RARA_BATCH_TILES
+#include "batches.glsl"
+
+BUFFER(readonly, 2, FrameCounts, counts)
+BUFFER(readonly, 3, Splat, splats)
+BUFFER(readonly, 4, uvec4, tile_masks)
+BUFFER(readonly, 5, uint, macro_splats)
+
+const uint BATCH_WORDS = BATCH_SPLATS / 32u;
+// The words of a tile are this far apart, so that neither the words of one tile nor those of neighbours share a memory bank.
+const uint HELD_STRIDE = MACRO_TILES + 1u;
+
+shared uint held[BATCH_WORDS * HELD_STRIDE];
+shared uint batch_splats[BATCH_SPLATS];
+
+uint held_place(uint word, uint tile) {
+    return word * HELD_STRIDE + tile;
+}
+
+uvec4 tiles_of(uint splat, uvec2 corner) {
+    uvec4 tiles = tile_masks.at[splat];
+    if (tiles.y == 0u) {
+        return tiles_of_mask(tiles.x, tiles.zw, corner);
+    }
+    return tiles_of_outline(outline(splats.at[splat]), corner);
+}
+
+void find_held(Batch batch) {
+    uint local = gl_LocalInvocationIndex;
+    for (uint i = local; i < BATCH_WORDS * HELD_STRIDE; i += RADIX_GROUP_SIZE) {
+        held[i] = 0u;
+    }
+    barrier();
+    uvec2 corner = corner_of(batch.macro_tile);
+    for (uint i = local; i < batch.pairs.y - batch.pairs.x; i += RADIX_GROUP_SIZE) {
+        uint splat = macro_splats.at[batch.pairs.x + i];
+        batch_splats[i] = splat;
+        uvec4 tiles = tiles_of(splat, corner);
+        for (uint word = 0u; word < 4u; word++) {
+            for (uint bits = tiles[word]; bits != 0u; bits &= bits - 1u) {
+                // Bits may be set in any order.
+                atomicOr(held[held_place(i / 32u, word * 32u + uint(findLSB(bits)))], 1u << i % 32u);
+            }
+        }
+    }
+    barrier();
+}
+
+#endif

@@ -1,0 +1,53 @@
+// Runs of consecutive blocks, one for each invocation of the workgroups that a list of blocks is made by: a single one on CPU
+// drivers, and one for BLOCK_SIZE blocks on GPUs. Each workgroup adds up the blocks before its own by itself, so that none
+// waits for another. Included by workgroups of BLOCK_SIZE.
+#ifndef RARA_BLOCK_RUNS
+#define RARA_BLOCK_RUNS
+#include "frame.glsl"
+#include "runs.glsl"
+
+// The counts of a block that are added up. Whoever includes this defines it.
+uvec4 totals_of(uint block);
+
+struct BlockRun {
+    uvec2 bounds; // first and last block (exclusive)
+    uvec4 before; // the counts of all blocks before it
+    bool is_last;
+};
+
+// Blocks that an invocation looks at before it waits for their counts.
+const uint BLOCKS_AT_ONCE = 4u;
+
+shared uvec4 run_totals[BLOCK_SIZE];
+shared uvec4 earlier_totals[BLOCK_SIZE];
+
+BlockRun block_run() {
+    uint local = gl_LocalInvocationIndex;
+    uint runs = gl_NumWorkGroups.x * BLOCK_SIZE;
+    uint blocks = FRAME.scene.block_count;
+    uvec2 bounds = run_bounds(gl_GlobalInvocationID.x, runs, blocks);
+    uvec4 total = uvec4(0u);
+    for (uint block = bounds.x; block < bounds.y; block++) {
+        total += totals_of(block);
+    }
+    uint workgroup_begin = run_bounds(gl_WorkGroupID.x * BLOCK_SIZE, runs, blocks).x;
+    uvec4 earlier = uvec4(0u);
+    for (uint first = 0u; first < workgroup_begin; first += BLOCKS_AT_ONCE * BLOCK_SIZE) {
+        for (uint k = 0u; k < BLOCKS_AT_ONCE; k++) {
+            uint block = first + k * BLOCK_SIZE + local;
+            if (block < workgroup_begin) {
+                earlier += totals_of(block);
+            }
+        }
+    }
+    run_totals[local] = total;
+    earlier_totals[local] = earlier;
+    barrier();
+    uvec4 before = uvec4(0u);
+    for (uint other = 0u; other < BLOCK_SIZE; other++) {
+        before += earlier_totals[other] + (other < local ? run_totals[other] : uvec4(0u));
+    }
+    return BlockRun(bounds, before, gl_GlobalInvocationID.x == runs - 1u);
+}
+
+#endif

@@ -1,0 +1,44 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The first step of binning for GPUs finds the macro-tiles of each splat, in the order of depth, and how many pairs each
+// partition of the splats has.
+#include "macro_tiles.glsl"
+#include "radix.glsl"
+#include "workgroup_sum.glsl"
+
+layout(local_size_x = RADIX_GROUP_SIZE) in;
+
+BUFFER(readonly, 1, FrameCounts, counts)
+BUFFER(readonly, 2, Splat, splats)
+BUFFER(readonly, 3, uint, order)
+BUFFER(readonly, 4, uvec4, tile_masks)
+BUFFER(writeonly, 5, uint, pair_begins)
+// The first macro-tile of each splat's rectangle, its column in the lower half; and how many columns the rectangle has.
+BUFFER(writeonly, 6, uint, rect_firsts)
+BUFFER(writeonly, 7, uint, rect_columns)
+BUFFER(writeonly, 8, uint, pair_sums)
+
+void main() {
+    uvec2 bounds = partition_bounds(gl_WorkGroupID.x, KEY_COUNT);
+    uint pairs = 0u;
+    for (uint i = bounds.x + gl_LocalInvocationIndex; i < bounds.y; i += RADIX_GROUP_SIZE) {
+        uint splat = order.at[i];
+        uvec4 tiles = tile_masks.at[splat];
+        MacroRect rect;
+        if (tiles.y == 0u) {
+            rect = rect_of_mask(tiles.x, tiles.zw);
+        } else {
+            rect = rect_of_outline(outline(splats.at[splat]));
+        }
+        uint count = rect.size.x * rect.size.y;
+        pair_begins.at[i] = count;
+        rect_firsts.at[i] = rect.first.x | rect.first.y << 16;
+        rect_columns.at[i] = rect.size.x;
+        pairs += count;
+    }
+    uint total;
+    exclusive_sum(pairs, total);
+    if (gl_LocalInvocationIndex == 0u) {
+        pair_sums.at[gl_WorkGroupID.x] = total;
+    }
+}

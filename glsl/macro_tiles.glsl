@@ -1,0 +1,92 @@
+// Macro-tiles of MACRO_COLUMNS x MACRO_ROWS tiles, in which kernels for GPUs collect the splats before they list those of each
+// tile. A splat has a pair with each macro-tile of a rectangle around its tiles; a pair's mask says which of the macro-tile's
+// tiles they are, and may be empty.
+#ifndef RARA_MACRO_TILES
+#define RARA_MACRO_TILES
+#include "bin.glsl"
+
+uint macro_columns() {
+    return (FRAME.tiles.tile_columns + MACRO_COLUMNS - 1u) / MACRO_COLUMNS;
+}
+
+uint macro_tile_count() {
+    return macro_columns() * ((tile_rows() + MACRO_ROWS - 1u) / MACRO_ROWS);
+}
+
+// The macro-tiles of a rectangle.
+struct MacroRect {
+    uvec2 first; // column and row
+    uvec2 size; // columns and rows, 0 for none
+};
+
+MacroRect rect_between(uvec2 columns, uvec2 rows) {
+    if (columns.x >= columns.y || rows.x >= rows.y) {
+        return MacroRect(uvec2(0u), uvec2(0u));
+    }
+    uvec2 sides = uvec2(MACRO_COLUMNS, MACRO_ROWS);
+    uvec2 first = uvec2(columns.x, rows.x) / sides;
+    uvec2 last = uvec2(columns.y - 1u, rows.y - 1u) / sides;
+    return MacroRect(first, last - first + 1u);
+}
+
+// The rectangle around the tiles of a mask (tile_mask).
+MacroRect rect_of_mask(uint origin, uvec2 mask) {
+    uint both = mask.x | mask.y;
+    if (both == 0u) {
+        return MacroRect(uvec2(0u), uvec2(0u));
+    }
+    uint columns = both | both >> 16;
+    columns = (columns | columns >> 8) & 0xffu;
+    uint first_bit = mask.x != 0u ? uint(findLSB(mask.x)) : 32u + uint(findLSB(mask.y));
+    uint last_bit = mask.y != 0u ? 32u + uint(findMSB(mask.y)) : uint(findMSB(mask.x));
+    uvec2 first = uvec2(origin & 0xffffu, origin >> 16);
+    return rect_between(first.x + uvec2(findLSB(columns), findMSB(columns) + 1),
+        first.y + uvec2(first_bit / MASK_SIDE, last_bit / MASK_SIDE + 1u));
+}
+
+// That around the tiles of an outline, from the sides of its quad.
+MacroRect rect_of_outline(Outline o) {
+    return rect_between(tiles_between(o.sides.x, o.sides.y, FRAME.view.size.x, TILE_WIDTH), o.rows);
+}
+
+// The tiles of a macro-tile, a bit each, row by row: two rows a word.
+uvec4 put_row(uvec4 tiles, uint row, uint bits) {
+    tiles[row / 2u] |= bits << (row % 2u * MACRO_COLUMNS);
+    return tiles;
+}
+
+// Those that a mask holds. `corner` is the macro-tile's first column and row of tiles.
+uvec4 tiles_of_mask(uint origin, uvec2 mask, uvec2 corner) {
+    int right = int(origin & 0xffffu) - int(corner.x);
+    int down = int(origin >> 16) - int(corner.y);
+    uvec4 tiles = uvec4(0u);
+    for (uint row = 0u; row < MASK_SIDE; row++) {
+        uint bits = bitfieldExtract(row < 4u ? mask.x : mask.y, int(row % 4u * MASK_SIDE), int(MASK_SIDE));
+        bits = right >= 0 ? bits << min(right, int(MACRO_COLUMNS)) : bits >> min(-right, int(MASK_SIDE));
+        bits &= (1u << MACRO_COLUMNS) - 1u;
+        int at = int(row) + down;
+        if (at >= 0 && at < int(MACRO_ROWS)) {
+            tiles = put_row(tiles, uint(at), bits);
+        }
+    }
+    return tiles;
+}
+
+// Those that an outline reaches.
+uvec4 tiles_of_outline(Outline o, uvec2 corner) {
+    uvec4 tiles = uvec4(0u);
+    for (uint row = 0u; row < MACRO_ROWS; row++) {
+        if (corner.y + row < o.rows.x || corner.y + row >= o.rows.y) {
+            continue;
+        }
+        uvec2 columns = tiles_in_row(o, corner.y + row);
+        uint first = max(columns.x, corner.x) - corner.x;
+        uint last = min(max(columns.y, corner.x) - corner.x, MACRO_COLUMNS);
+        if (first < last) {
+            tiles = put_row(tiles, row, ((1u << (last - first)) - 1u) << first);
+        }
+    }
+    return tiles;
+}
+
+#endif

@@ -1,0 +1,76 @@
+// A batch of a tile's splats is loaded at once: each invocation loads one, hands it over, and all see them in turn. Included by
+// tiles.glsl, which declares what is handed over.
+#ifndef RARA_TILE_BATCH
+#define RARA_TILE_BATCH
+
+#ifdef RARA_SUBGROUP
+
+#define BATCH gl_SubgroupSize
+#define IN_BATCH gl_SubgroupInvocationID
+#define OF(invocation, value) subgroupShuffle(value, invocation)
+
+Seen mine;
+
+void hand_over(Seen splat) {
+    mine = splat;
+}
+
+Seen taken_over(uint i) {
+    Seen splat;
+    splat.centre_conic = OF(i, mine.centre_conic);
+    splat.conic_opacity = OF(i, mine.conic_opacity);
+    splat.colour = OF(i, mine.colour);
+    splat.linear = vec3(Z_WHOLE, 0.0, 0.0);
+    splat.curvature = vec3(0.0);
+    if (CLIP_MODE >= MODE_RARA || RECLIPPED) {
+        splat.linear = OF(i, mine.linear);
+    }
+    if (CLIP_MODE == MODE_EXACT) {
+        splat.curvature = OF(i, mine.curvature);
+    }
+    splat.far = DEPTH_FORM != DEPTH_NONE ? OF(i, mine.far) : 0.0;
+    return splat;
+}
+
+bool all_done() {
+    return subgroupAll(done);
+}
+
+#else
+
+#define BATCH (gl_WorkGroupSize.x * gl_WorkGroupSize.y)
+#define IN_BATCH gl_LocalInvocationIndex
+
+shared Seen batch[TILE_WIDTH * TILE_HEIGHT];
+shared uint at_work; // 1 when an invocation is not done
+
+void hand_over(Seen splat) {
+    batch[IN_BATCH] = splat;
+    barrier();
+}
+
+Seen taken_over(uint i) {
+    Seen splat = batch[i];
+    if (CLIP_MODE < MODE_RARA && !RECLIPPED) {
+        splat.linear = vec3(Z_WHOLE, 0.0, 0.0);
+    }
+    return splat;
+}
+
+// Also waits until all have seen the batch before.
+bool all_done() {
+    barrier();
+    if (IN_BATCH == 0u) {
+        at_work = 0u;
+    }
+    barrier();
+    if (!done) {
+        at_work = 1u;
+    }
+    barrier();
+    return at_work == 0u;
+}
+
+#endif
+
+#endif

@@ -1,0 +1,286 @@
+//! Bins at two scales: finds the macro-tiles of each splat, sorts these pairs by macro-tile with the radix sort for GPUs, and
+//! lists each tile's splats in batches of a macro-tile's. Pairs are written by whoever owns the place that they go to, so that
+//! a splat over the whole picture costs its tiles and nobody waits for it.
+
+use crate::error::Result;
+use crate::gpu::{Buffer, Device, Groups, Recorder};
+use crate::limits;
+use crate::passes::bin::ScratchWords;
+use crate::passes::buffers::{buffers, gpu_only, indirect};
+#[cfg(feature = "lab")]
+use crate::passes::cost::{Cost, FrameNumbers};
+use crate::passes::plan::Plan;
+use crate::passes::radix::{self, Kernels, Keys, Pass};
+use crate::passes::shaders::{
+    batch_count, batch_scan, batch_scatter, macro_count, macro_expand, macro_ranges, macro_scan,
+    row_scan,
+};
+use crate::passes::sort;
+use crate::passes::stage::{Frame, KernelSet, key};
+use crate::types::{FrameCounts, TilesData};
+
+pub(super) const KERNELS: KernelSet = KernelSet {
+    pipelines: |plan, need| {
+        need(key::<macro_count::Program>(plan));
+        need(key::<macro_scan::Program>(plan));
+        need(key::<macro_expand::Program>(plan));
+        Kernels::new(plan, Keys::Pairs).need(need);
+        need(key::<macro_ranges::Program>(plan));
+        need(key::<batch_count::Program>(plan));
+        need(key::<batch_scan::Program>(plan));
+        need(key::<row_scan::Program>(plan));
+        need(key::<batch_scatter::Program>(plan));
+    },
+    record,
+};
+
+/// The pairs of macro-tile and splat, and what is counted of them. The tiles' lists are the other half of the sort's keys,
+/// which nobody needs any more when they are written.
+#[derive(Debug)]
+pub(in crate::passes) struct Scratch {
+    pair_sums: Buffer,
+    macro_keys: Buffer,
+    macro_splats: [Buffer; 2],
+    macro_histogram: Buffer,
+    macro_begins: Buffer,
+    tile_counts: Buffer,
+    row_sums: Buffer,
+}
+
+/// Columns and rows of macro-tiles.
+fn macro_tiles(tiles: &TilesData) -> [u32; 2] {
+    let rows = tiles.tile_count / tiles.tile_columns;
+    [
+        tiles.tile_columns.div_ceil(limits::MACRO_COLUMNS),
+        rows.div_ceil(limits::MACRO_ROWS),
+    ]
+}
+
+/// Passes of the sort by macro-tile: one for pictures of 1920x1080.
+fn passes(plan: &Plan) -> u32 {
+    let [columns, rows] = macro_tiles(&plan.data.tiles);
+    let last = columns * rows - 1;
+    (u32::BITS - last.leading_zeros())
+        .div_ceil(limits::SORT_BITS)
+        .max(1)
+}
+
+pub(super) fn words(plan: &Plan) -> ScratchWords {
+    let tiles = &plan.data.tiles;
+    let [columns, rows] = macro_tiles(tiles).map(u64::from);
+    let tile_rows = u64::from(tiles.tile_count / tiles.tile_columns);
+    let pairs = u64::from(plan.data.room.pair_capacity);
+    let batches = pairs.div_ceil(limits::BATCH_SPLATS.into()) + columns * rows;
+    [
+        u64::from(plan.gaussians()).div_ceil(limits::RADIX_PARTITION.into()),
+        pairs,
+        pairs,
+        pairs,
+        radix::histogram_words(pairs),
+        columns * rows + 1,
+        batches * u64::from(limits::MACRO_TILES),
+        columns * tile_rows,
+    ]
+}
+
+impl Scratch {
+    pub(super) fn new(device: &Device, words: ScratchWords) -> Result<Self> {
+        let [sums, keys, splats, sorted, histogram, begins, counts, rows] = words;
+        let gpu = |name, words| gpu_only(device, name, words * 4);
+        Ok(Self {
+            pair_sums: gpu("pair_sums", sums)?,
+            macro_keys: gpu("macro_keys", keys)?,
+            macro_splats: [
+                gpu("macro_splats", splats)?,
+                gpu("sorted_macro_splats", sorted)?,
+            ],
+            macro_histogram: gpu("macro_histogram", histogram)?,
+            macro_begins: gpu("macro_begins", begins)?,
+            tile_counts: gpu("tile_counts", counts)?,
+            row_sums: gpu("row_sums", rows)?,
+        })
+    }
+
+    #[cfg(feature = "lab")]
+    pub(super) fn all(&self) -> [&Buffer; 8] {
+        [
+            &self.pair_sums,
+            &self.macro_keys,
+            &self.macro_splats[0],
+            &self.macro_splats[1],
+            &self.macro_histogram,
+            &self.macro_begins,
+            &self.tile_counts,
+            &self.row_sums,
+        ]
+    }
+}
+
+#[cfg(feature = "lab")]
+pub(in crate::passes) const COSTS: &[Cost] = &[
+    // How many splats there are; then each of its own, its mask and, if that cannot hold it, the splat.
+    Cost::of::<macro_count::Program>(partitions_of_splats, |_| 1 + 3 * OWN),
+    // The sums of all partitions; then its own counts.
+    Cost::of::<macro_scan::Program>(partitions_of_splats, |n| {
+        2 + n.partitions().div_ceil(limits::RADIX_GROUP_SIZE.into())
+    }),
+    // How many pairs there are; the search among all splats, for both ends together, then for each of its own pairs among
+    // those of a partition; and what is known of the splat.
+    Cost::of::<macro_expand::Program>(partitions_of_pairs, |n| {
+        let search = |among: u64| u64::from(among.next_power_of_two().ilog2());
+        1 + search(n.survivors) + search(limits::RADIX_PARTITION.into()) + OWN
+    }),
+    Cost {
+        name: radix::PAIR_COUNT,
+        invocations: partitions_of_pairs,
+        loads: |_| 1 + OWN,
+    },
+    Cost {
+        name: radix::PAIR_SCAN,
+        invocations: |_| (1 << limits::SORT_BITS) * u64::from(limits::RADIX_GROUP_SIZE),
+        loads: |n| {
+            1 + n
+                .pair_partitions()
+                .div_ceil(limits::RADIX_GROUP_SIZE.into())
+        },
+    },
+    Cost {
+        name: radix::PAIR_SCATTER,
+        invocations: partitions_of_pairs,
+        loads: |_| 4 + OWN,
+    },
+    // How many pairs there are; then its own.
+    Cost::of::<macro_ranges::Program>(partitions_of_pairs, |_| 1 + OWN),
+    // How many batches there are; the search for its own; then each of its splats, the mask and perhaps the splat.
+    Cost::of::<batch_count::Program>(batches, |n| 1 + batch(n)),
+    // The macro-tile's pairs; then the counts of its batches.
+    Cost::of::<batch_scan::Program>(
+        |n| n.macro_tiles() * u64::from(limits::MACRO_TILES),
+        |n| 2 + n.batches().div_ceil(n.macro_tiles()),
+    ),
+    // The sums of all rows; then the counts of its row's tiles.
+    Cost::of::<row_scan::Program>(
+        |n| n.tile_rows * u64::from(limits::RADIX_GROUP_SIZE),
+        |n| {
+            let columns = n.tile_columns.div_ceil(limits::MACRO_COLUMNS.into());
+            let turns = |words: u64| words.div_ceil(limits::RADIX_GROUP_SIZE.into());
+            turns(n.tile_rows * columns) + turns(n.tile_columns)
+        },
+    ),
+    // As batch_count; then where the tile begins.
+    Cost::of::<batch_scatter::Program>(batches, |n| 2 + batch(n)),
+];
+
+/// Pairs of an invocation.
+#[cfg(feature = "lab")]
+const OWN: u64 = (limits::RADIX_PARTITION / limits::RADIX_GROUP_SIZE) as u64;
+
+#[cfg(feature = "lab")]
+fn partitions_of_splats(numbers: &FrameNumbers) -> u64 {
+    numbers.partitions() * u64::from(limits::RADIX_GROUP_SIZE)
+}
+
+#[cfg(feature = "lab")]
+fn partitions_of_pairs(numbers: &FrameNumbers) -> u64 {
+    numbers.pair_partitions() * u64::from(limits::RADIX_GROUP_SIZE)
+}
+
+#[cfg(feature = "lab")]
+fn batches(numbers: &FrameNumbers) -> u64 {
+    numbers.batches() * u64::from(limits::RADIX_GROUP_SIZE)
+}
+
+/// The loads that find a batch and the tiles of its splats.
+#[cfg(feature = "lab")]
+fn batch(numbers: &FrameNumbers) -> u64 {
+    let search = u64::from(numbers.macro_tiles().next_power_of_two().ilog2());
+    search + 1 + 3 * u64::from(limits::BATCH_SPLATS / limits::RADIX_GROUP_SIZE)
+}
+
+fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
+    let (b, t) = (frame.buffers, frame.tiles());
+    let scratch = t.scratch.macro_tiles();
+    let sort::Sorted {
+        order,
+        spare: [pair_begins, rect_firsts, rect_columns],
+    } = sort::sorted(frame);
+    let partitions = indirect!(b.counts, FrameCounts, sort_groups);
+    let buffers = buffers!(macro_count {
+        b => [frame, counts, splats, tile_masks],
+        scratch => [pair_sums];
+        order, pair_begins, rect_firsts, rect_columns,
+    });
+    frame.dispatch(recorder, buffers, (), partitions);
+    let buffers = buffers!(macro_scan {
+        b => [frame, counts],
+        scratch => [pair_sums];
+        pair_begins,
+    });
+    frame.dispatch(recorder, buffers, (), partitions);
+
+    let keys = [&t.splats, &scratch.macro_keys];
+    let splats = [&scratch.macro_splats[0], &scratch.macro_splats[1]];
+    let pair_partitions = indirect!(b.counts, FrameCounts, pair_groups);
+    let buffers = buffers!(macro_expand {
+        b => [frame, counts];
+        order, pair_begins, rect_firsts, rect_columns,
+        macro_keys: keys[0],
+        macro_splats: splats[0],
+        histogram: &scratch.macro_histogram,
+    });
+    frame.dispatch(recorder, buffers, (), pair_partitions);
+    let kernels = Kernels::new(frame.plan, Keys::Pairs);
+    let passes = passes(frame.plan);
+    for number in 0..passes {
+        let pair = [number, number + 1].map(|pair| (pair % 2) as usize);
+        let pass = Pass {
+            number,
+            passes,
+            keys: pair.map(|pair| keys[pair]),
+            order: pair.map(|pair| splats[pair]),
+            histogram: &scratch.macro_histogram,
+        };
+        if number > 0 {
+            pass.count(&kernels, frame, recorder, pair_partitions);
+        }
+        pass.carry(&kernels, frame, recorder, pair_partitions);
+    }
+    let sorted = (passes % 2) as usize;
+    let buffers = buffers!(macro_ranges {
+        b => [frame, counts],
+        scratch => [macro_begins];
+        macro_keys: keys[sorted],
+    });
+    frame.dispatch(recorder, buffers, (), pair_partitions);
+
+    let batches = indirect!(b.counts, FrameCounts, batch_groups);
+    let buffers = buffers!(batch_count {
+        b => [frame, counts, splats, tile_masks],
+        scratch => [macro_begins, tile_counts];
+        macro_splats: splats[sorted],
+    });
+    frame.dispatch(recorder, buffers, (), batches);
+    let [columns, rows] = macro_tiles(&frame.plan.data.tiles);
+    let buffers = buffers!(batch_scan {
+        b => [frame, counts],
+        scratch => [macro_begins, tile_counts, row_sums];
+        tile_begins: &t.picture.begins,
+    });
+    frame.dispatch(recorder, buffers, (), Groups::Count(columns * rows));
+    let buffers = buffers!(row_scan {
+        b => [frame, counts],
+        scratch => [row_sums];
+        tile_begins: &t.picture.begins,
+    });
+    let tiles = &frame.plan.data.tiles;
+    let rows = Groups::Count(tiles.tile_count / tiles.tile_columns);
+    frame.dispatch(recorder, buffers, (), rows);
+    let buffers = buffers!(batch_scatter {
+        b => [frame, counts, splats, tile_masks],
+        scratch => [macro_begins, tile_counts];
+        macro_splats: splats[sorted],
+        tile_begins: &t.picture.begins,
+        tile_splats: &t.splats,
+    });
+    frame.dispatch(recorder, buffers, (), batches);
+}

@@ -1,0 +1,154 @@
+//! The passes of a radix sort for GPUs: reduce, then scan. A workgroup owns a partition of consecutive keys, so that all its
+//! invocations read and write neighbouring memory. Stage `sort` sorts the survivors with it, and stage `bin` the pairs of
+//! macro-tile and splat.
+
+use crate::gpu::{Buffer, DeviceShape, Groups, LEAST_SUBGROUP, Recorder};
+use crate::limits;
+use crate::passes::pipelines::{Kernel, PipelineKey};
+use crate::passes::plan::Plan;
+use crate::passes::shaders::{radix_count, radix_scan, radix_scatter};
+use crate::passes::stage::Frame;
+
+// The shaders take for granted that every device has such workgroups, that they have an invocation a digit, whose halves are
+// alike, that counts have 16 bits, that those of the smallest subgroups have room, and that subgroups of up to 128 are whole.
+const _: () = {
+    let digits = 1 << limits::SORT_BITS;
+    assert!(digits == limits::RADIX_GROUP_SIZE && limits::SORT_BITS.is_multiple_of(2));
+    assert!(limits::RADIX_GROUP_SIZE <= limits::BLOCK_SIZE);
+    assert!(limits::RADIX_PARTITION < 1 << 16);
+    assert!(limits::RADIX_GROUP_SIZE / LEAST_SUBGROUP * digits / 2 <= limits::RADIX_PARTITION);
+    assert!(limits::RADIX_GROUP_SIZE.is_multiple_of(128));
+};
+
+/// The names of the kernels that sort pairs.
+pub(super) const PAIR_COUNT: &str = "pair_radix_count";
+pub(super) const PAIR_SCAN: &str = "pair_radix_scan";
+pub(super) const PAIR_SCATTER: &str = "pair_radix_scatter";
+
+/// The keys that are sorted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Keys {
+    /// Those of the survivors, of which the device may skip passes.
+    Survivors,
+    /// The macro-tiles of pairs of macro-tile and splat.
+    Pairs,
+}
+
+/// The kernels of a pass.
+#[derive(Debug)]
+pub(super) struct Kernels {
+    count: Kernel<radix_count::Program>,
+    scan: Kernel<radix_scan::Program>,
+    scatter: Kernel<radix_scatter::Program>,
+}
+
+impl Kernels {
+    pub(super) fn new(plan: &Plan, keys: Keys) -> Self {
+        let pairs = keys == Keys::Pairs;
+        // By ballots where the device can be asked for subgroups.
+        let scatter = match plan.way.shape {
+            DeviceShape::Gpu { subgroup } if subgroup > 0 => &radix_scatter::SUBGROUP_COMP,
+            _ => &radix_scatter::COMP,
+        };
+        let count = Kernel::new(&radix_count::COMP, radix_count::Constants { pairs });
+        let scan = Kernel::new(&radix_scan::COMP, radix_scan::Constants { pairs });
+        let scatter = Kernel::new(scatter, radix_scatter::Constants { pairs });
+        match keys {
+            Keys::Survivors => Self {
+                count,
+                scan,
+                scatter,
+            },
+            Keys::Pairs => Self {
+                count: count.named(PAIR_COUNT),
+                scan: scan.named(PAIR_SCAN),
+                scatter: scatter.named(PAIR_SCATTER),
+            },
+        }
+    }
+
+    pub(super) fn need(self, need: &mut dyn FnMut(PipelineKey)) {
+        need(self.count.key());
+        need(self.scan.key());
+        need(self.scatter.key());
+    }
+}
+
+/// Words of the histogram for as many keys: for each partition its keys of each digit, and its least and greatest key; and
+/// the keys of each digit in all.
+pub(super) fn histogram_words(keys: u64) -> u64 {
+    let partitions = keys.div_ceil(limits::RADIX_PARTITION.into());
+    let digits = 1 << limits::SORT_BITS;
+    partitions * (digits + 2) + digits
+}
+
+/// A pass: the keys and what they order go from the first pair of buffers to the second.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pass<'a> {
+    /// Its number, from 0, and how many there are.
+    pub(super) number: u32,
+    pub(super) passes: u32,
+    pub(super) keys: [&'a Buffer; 2],
+    pub(super) order: [&'a Buffer; 2],
+    pub(super) histogram: &'a Buffer,
+}
+
+impl Pass<'_> {
+    /// Records the count of each partition's digits.
+    pub(super) fn count(
+        &self,
+        kernels: &Kernels,
+        frame: &Frame<'_>,
+        recorder: &mut Recorder<'_>,
+        groups: Groups<'_>,
+    ) {
+        let b = frame.buffers;
+        let buffers = radix_count::Buffers {
+            frame: &b.frame,
+            counts: &b.counts,
+            keys: self.keys[0],
+            histogram: self.histogram,
+        };
+        let params = radix_count::Params { pass: self.number };
+        kernels
+            .count
+            .dispatch(frame.pipelines, recorder, buffers, params, groups);
+    }
+
+    /// Records what follows the count: where each partition's keys of each digit go, and the way there.
+    pub(super) fn carry(
+        &self,
+        kernels: &Kernels,
+        frame: &Frame<'_>,
+        recorder: &mut Recorder<'_>,
+        groups: Groups<'_>,
+    ) {
+        let (b, pipelines) = (frame.buffers, frame.pipelines);
+        let buffers = radix_scan::Buffers {
+            frame: &b.frame,
+            counts: &b.counts,
+            histogram: self.histogram,
+        };
+        let params = radix_scan::Params {
+            pass: self.number,
+            passes: self.passes,
+        };
+        let digits = Groups::Count(1 << limits::SORT_BITS);
+        kernels
+            .scan
+            .dispatch(pipelines, recorder, buffers, params, digits);
+        let buffers = radix_scatter::Buffers {
+            frame: &b.frame,
+            counts: &b.counts,
+            histogram: self.histogram,
+            keys: self.keys[0],
+            order: self.order[0],
+            sorted_keys: self.keys[1],
+            sorted_order: self.order[1],
+        };
+        let params = radix_scatter::Params { pass: self.number };
+        kernels
+            .scatter
+            .dispatch(pipelines, recorder, buffers, params, groups);
+    }
+}

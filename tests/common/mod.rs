@@ -6,7 +6,7 @@ pub mod folder;
 use std::path::PathBuf;
 
 use glam::DVec3;
-use rara::gpu::{Bindings, Device};
+use rara::gpu::{Bindings, Device, DeviceShape};
 use rara::measure::compare;
 use rara::scene::{Bounds, Kind, generate, load};
 use rara::{
@@ -74,13 +74,25 @@ pub fn headless_unchecked(bindings: Bindings) -> Headless {
     open(bindings, false)
 }
 
+/// A renderer whose every validation message is an error, with the kernels for a kind of device.
+pub fn headless_shaped(bindings: Bindings, shape: DeviceShape) -> Headless {
+    opened(&desc(bindings, true).shape(Some(shape)))
+}
+
 fn open(bindings: Bindings, validation: bool) -> Headless {
-    let desc = HeadlessDesc::default()
+    opened(&desc(bindings, validation))
+}
+
+fn desc(bindings: Bindings, validation: bool) -> HeadlessDesc {
+    HeadlessDesc::default()
         .device(std::env::var("RARA_TEST_DEVICE").ok())
         .validation(validation)
         .bindings(Some(bindings))
-        .pipeline_cache(PipelineCache::Off);
-    Headless::new(&desc)
+        .pipeline_cache(PipelineCache::Off)
+}
+
+fn opened(desc: &HeadlessDesc) -> Headless {
+    Headless::new(desc)
         .expect("a Vulkan device and the validation layer (tools/test installs both)")
 }
 

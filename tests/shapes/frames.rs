@@ -1,0 +1,186 @@
+//! The same frame by several kinds of kernels, and all that they leave of it.
+
+use rara::gpu::{Bindings, DeviceShape};
+use rara::limits::SORT_BITS;
+use rara::types::{FrameCounts, FrameData};
+use rara::{Camera, Clip, Gaussians, Headless, Picture, Raster, Settings};
+
+use crate::common;
+
+/// The most that a channel may differ, of 255: the kernels for CPU drivers carry a weight down a tile's column.
+const APART: f32 = 0.01;
+
+/// What a frame leaves, whichever kernels have drawn it.
+struct Drawn {
+    counts: FrameCounts,
+    /// The parts of the working memory that every kind of kernel fills.
+    buffers: Vec<(&'static str, Vec<u8>)>,
+    picture: Picture,
+}
+
+/// A renderer for each kind of kernels, with one scene. The first one is for CPU drivers.
+pub struct Shapes {
+    renderers: Vec<(DeviceShape, Headless)>,
+}
+
+impl Shapes {
+    /// Kernels for CPU drivers, for GPUs with the device's own subgroups, and for GPUs that cannot be asked for any.
+    pub fn new() -> Self {
+        let cpu = common::headless_shaped(Bindings::Bound, DeviceShape::Cpu);
+        let [least, most] = cpu.device().support().full_subgroups;
+        let mut shapes = vec![DeviceShape::Gpu { subgroup: 0 }];
+        if most >= 8 {
+            let subgroup = least.max(8);
+            shapes.push(DeviceShape::Gpu { subgroup });
+        } else {
+            eprintln!("SKIPPED: this device has no subgroups of 8; kernels without are compared");
+        }
+        let others = shapes.into_iter().map(|shape| {
+            let renderer = common::headless_shaped(Bindings::Bound, shape);
+            assert_eq!(renderer.device().shape(), shape);
+            (shape, renderer)
+        });
+        Self {
+            renderers: std::iter::once((DeviceShape::Cpu, cpu))
+                .chain(others)
+                .collect(),
+        }
+    }
+
+    pub fn load(&mut self, scene: &Gaussians) {
+        for (_, renderer) in &mut self.renderers {
+            renderer.load(scene).expect("uploads");
+        }
+    }
+
+    /// Draws a whole frame with each, twice with those for GPUs, and compares them. Returns how many Gaussians are drawn.
+    pub fn check(&mut self, what: &str, camera: &Camera, clip: &Clip, settings: &Settings) -> u32 {
+        for (_, renderer) in &mut self.renderers {
+            renderer.forget();
+        }
+        let drawn = self.check_next(what, camera, clip, settings);
+        let (_, gpu) = self.renderers.last_mut().expect("several");
+        let once = draw(gpu, camera, clip, settings);
+        gpu.forget();
+        let twice = draw(gpu, camera, clip, settings);
+        assert!(once.buffers == twice.buffers, "{what}: another run differs");
+        assert!(
+            once.picture.pixels == twice.picture.pixels,
+            "{what}: another run's picture differs"
+        );
+        drawn
+    }
+
+    /// Draws a frame that may take over what the one before has found.
+    pub fn check_next(
+        &mut self,
+        what: &str,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> u32 {
+        let mut all = self.renderers.iter_mut().map(|(shape, renderer)| {
+            let drawn = draw(renderer, camera, clip, settings);
+            (*shape, drawn)
+        });
+        let (_, cpu) = all.next().expect("several");
+        for (shape, gpu) in all {
+            for ((name, ours), (_, theirs)) in cpu.buffers.iter().zip(&gpu.buffers) {
+                assert!(ours == theirs, "{what}: {name} of {shape:?} differs");
+            }
+            assert_eq!(cpu.buffers.len(), gpu.buffers.len(), "{what}");
+            let worst = apart(&cpu.picture, &gpu.picture);
+            assert!(
+                worst <= APART,
+                "{what}: the picture of {shape:?} differs by {worst} of 255"
+            );
+        }
+        cpu.counts.visible + cpu.counts.cutoff
+    }
+
+    /// Frees everything; the validation layer must have nothing to say.
+    pub fn close(self) {
+        for (shape, renderer) in self.renderers {
+            let messages = renderer.device().validation_messages();
+            assert_eq!(messages, Vec::<String>::new(), "{shape:?}");
+        }
+    }
+}
+
+fn draw(renderer: &mut Headless, camera: &Camera, clip: &Clip, settings: &Settings) -> Drawn {
+    renderer.render(camera, clip, settings).expect("renders");
+    let picture = renderer.picture().expect("reads back");
+    let mut read = |name: &str, bytes: usize| {
+        let content = renderer.working_buffer(name);
+        let mut content = content.unwrap_or_else(|| panic!("there is no buffer {name}"));
+        assert!(content.len() >= bytes, "{name}");
+        content.truncate(bytes);
+        content
+    };
+    let frame: FrameData = bytemuck::pod_read_unaligned(&read("frame", size_of::<FrameData>()));
+    let counts: FrameCounts =
+        bytemuck::pod_read_unaligned(&read("counts", size_of::<FrameCounts>()));
+    // Also those in view that a moved clip removes.
+    let listed = counts.mesh_groups[3] as usize;
+    let span = frame.order.key_span >> frame.order.key_shift;
+    let passes = (u32::BITS - span.leading_zeros())
+        .div_ceil(SORT_BITS)
+        .max(1);
+    let [keys, order] = [["keys", "order"], ["sorted_keys", "sorted_order"]][passes as usize % 2];
+    let records = counts.cutoff as usize * frame.weight.cut_stride as usize * 16;
+    let mut wanted = vec![
+        ("survivors", 8 * listed),
+        ("splats", size_of::<rara::types::Splat>() * listed),
+        ("cutoffs", 4 * counts.cutoff as usize),
+        ("cut_records", records),
+    ];
+    let tiled = settings.raster == Raster::Tiles && frame.scene.gaussian_count > 0;
+    // Where tiles are wanted the keys' buffers are used for more once the order is known.
+    wanted.push((order, 4 * listed));
+    if tiled {
+        let tiles = frame.tiles.tile_count as usize;
+        wanted.push(("tile_begins", 4 * (tiles + 1)));
+        wanted.push(("tile_splats", 4 * counts.pairs as usize));
+        assert_eq!(counts.tiled, 1, "there is room");
+    } else {
+        wanted.push((keys, 4 * listed));
+    }
+    let mut buffers: Vec<_> = wanted
+        .into_iter()
+        .map(|(name, bytes)| (name, read(name, bytes)))
+        .collect();
+    let records = buffers.iter_mut().find(|(name, _)| *name == "cut_records");
+    let stride = frame.weight.cut_stride as usize * 16;
+    if let Some((_, bytes)) = records.filter(|_| stride > 0) {
+        bytes.chunks_mut(stride).for_each(clear_unused);
+    }
+    Drawn {
+        counts,
+        buffers,
+        picture,
+    }
+}
+
+/// Clears those of a record's vec4s that its kind does not use (glsl/cut.glsl), which hold whatever was there before.
+fn clear_unused(record: &mut [u8]) {
+    const HEADER: usize = 3;
+    let flags: f32 = bytemuck::pod_read_unaligned(&record[12..16]);
+    let flags = flags as usize;
+    let [beam, front, curve] = [1, 2, 4].map(|flag| flags & flag != 0);
+    for (place, part) in record.chunks_mut(16).enumerate() {
+        let is_used = match (beam, curve) {
+            (true, _) => place < HEADER + (flags >> 8) + usize::from(front),
+            (false, true) => place <= HEADER,
+            (false, false) => [0, HEADER, HEADER + 1].contains(&place),
+        };
+        if !is_used {
+            part.fill(0);
+        }
+    }
+}
+
+/// Largest difference of a channel, of 255.
+fn apart(a: &Picture, b: &Picture) -> f32 {
+    let pairs = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
+    255.0 * pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}

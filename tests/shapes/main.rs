@@ -1,0 +1,145 @@
+//! The kernels for GPUs and those for CPU drivers, on whatever device there is: the same orders, lists and records to the bit,
+//! and the same pictures but for the rounding of a pixel's weight.
+
+#![allow(unreachable_pub, reason = "modules of one test share with each other")]
+
+#[path = "../common/mod.rs"]
+mod common;
+mod frames;
+
+use glam::{DMat3, DVec3, Vec3};
+use rara::scene::{Kind, generate};
+use rara::{Camera, Clip, ClipOp, Gaussians, Mode, Raster, Settings};
+
+use frames::Shapes;
+
+/// Not a multiple of a tile, nor of a macro-tile.
+const SIZE: (u32, u32) = (253, 190);
+
+/// The clips of the suite: a mode, how many planes, and how they combine.
+const CLIPS: [(Mode, usize, ClipOp); 7] = [
+    (Mode::None, 0, ClipOp::And),
+    (Mode::Hard, 1, ClipOp::And),
+    (Mode::Rara, 1, ClipOp::And),
+    (Mode::Rara, 2, ClipOp::Or),
+    (Mode::Exact, 1, ClipOp::And),
+    (Mode::Exact, 3, ClipOp::And),
+    (Mode::Exact, 2, ClipOp::Or),
+];
+
+#[test]
+fn generated_scenes_in_every_mode() {
+    let mut shapes = Shapes::new();
+    for (name, scene) in common::generated_scenes(50_000) {
+        check_modes(&mut shapes, &name, &scene);
+    }
+    shapes.close();
+}
+
+#[test]
+fn trained_scenes_in_every_mode() {
+    let mut shapes = Shapes::new();
+    for (name, scene) in common::trained_scenes() {
+        let step = scene.len().div_ceil(50_000);
+        let some = common::picked(&scene, (0..scene.len()).step_by(step));
+        check_modes(&mut shapes, &name, &some);
+    }
+    shapes.close();
+}
+
+fn check_modes(shapes: &mut Shapes, name: &str, scene: &Gaussians) {
+    shapes.load(scene);
+    let camera = common::views(scene, 3, common::scaled(SIZE))[1];
+    for (mode, planes, op) in CLIPS {
+        let clip = common::clip(scene, planes, op);
+        let what = format!("{name}, {mode:?}, {planes} planes {op:?}");
+        for raster in [Raster::Tiles, Raster::Quad] {
+            let settings = Settings::default().mode(mode).raster(raster);
+            shapes.check(&format!("{what}, {raster:?}"), &camera, &clip, &settings);
+        }
+    }
+}
+
+/// A clip that moves before a camera that stands still.
+#[test]
+fn a_moving_clip() {
+    let mut shapes = Shapes::new();
+    let (name, scene) = common::generated_scenes(50_000).remove(0);
+    shapes.load(&scene);
+    let camera = common::views(&scene, 3, SIZE)[0];
+    let settings = Settings::default().raster(Raster::Tiles);
+    for step in 0..4 {
+        let clip = common::moved(common::clip(&scene, 2, ClipOp::And), 0.05 * f64::from(step));
+        let what = format!("{name}, move {step}");
+        shapes.check_next(&what, &camera, &clip, &settings);
+    }
+    shapes.close();
+}
+
+/// No splat, one, and numbers around a partition of 4096, whose keys are all equal or all different.
+#[test]
+fn keys_and_counts_at_the_edges_of_partitions() {
+    let mut shapes = Shapes::new();
+    for count in [0, 1, 2, 255, 4_095, 4_096, 4_097, 12_289] {
+        for layers in [1, count.max(1)] {
+            let scene = in_layers(count, layers);
+            shapes.load(&scene);
+            let settings = Settings::default().raster(Raster::Tiles);
+            let what = format!("{count} in {layers} layers");
+            let drawn = shapes.check(&what, &facing(SIZE), &Clip::default(), &settings);
+            assert_eq!(drawn as usize, count, "{what}: all are in view");
+        }
+    }
+    shapes.close();
+}
+
+/// Splats over the whole picture and beyond what a mask of tiles holds, before, between and behind small ones; in pictures of
+/// one tile, of one macro-tile, at the edges of macro-tiles, and of so many that their sort takes two passes.
+#[test]
+fn splats_over_the_whole_picture() {
+    let mut shapes = Shapes::new();
+    for (count, large, size) in [
+        (5_000, 40, (8, 8)),
+        (5_000, 40, (128, 64)),
+        (5_000, 40, (129, 65)),
+        (5_000, 40, SIZE),
+        (50_000, 5, (1100, 700)),
+        (3_000, 30, (2600, 1500)),
+        (1, 1, SIZE),
+        (300, 300, SIZE),
+    ] {
+        let mut scene = in_layers(count, count);
+        for index in (0..count).step_by(count / large) {
+            scene.scales_mut()[index] = Vec3::new(60.0, 40.0, 20.0);
+            scene.opacities_mut()[index] = 0.1;
+        }
+        // Needles across many macro-tiles, of which they touch few.
+        for index in (0..count).skip(7).step_by(count.div_ceil(large)) {
+            scene.scales_mut()[index] = Vec3::new(9.0, 0.003, 0.003);
+        }
+        shapes.load(&scene);
+        let settings = Settings::default().raster(Raster::Tiles);
+        let what = format!("{large} large ones of {count}, {size:?}");
+        shapes.check(&what, &facing(size), &Clip::default(), &settings);
+    }
+    shapes.close();
+}
+
+/// Gaussians that stand in so many layers of one depth each, all of them in view of [`facing`].
+fn in_layers(count: usize, layers: usize) -> Gaussians {
+    let mut scene = generate(Kind::General, count, 2);
+    for (index, position) in scene.positions_mut().iter_mut().enumerate() {
+        *position = position.clamp(Vec3::NEG_ONE, Vec3::ONE);
+        position.z = (index * 7919 % layers) as f32 / 64.0;
+    }
+    scene.opacities_mut().fill(0.5);
+    scene
+}
+
+/// A camera before them that looks along z, so that those of a layer have one depth.
+fn facing(size: (u32, u32)) -> Camera {
+    let eye = DVec3::new(0.0, 0.0, -40.0);
+    let mut camera = Camera::look_at(eye, DVec3::ZERO, -DVec3::Y, 5.0, size).expect("a view");
+    camera.rotation = DMat3::IDENTITY;
+    camera
+}

@@ -1,11 +1,40 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Counts how many splats of each batch are in each tile of its macro-tile.
+// Counts how many splats of each batch are in each tile of its macro-tile, and marks the tiles in which several surfaces cut
+// one of them.
 #include "batch_tiles.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
+// Whether a splat may be cut by more than one surface.
+layout(constant_id = 0) const bool SEVERAL = false;
 
 BUFFER(writeonly, 6, uint, tile_counts)
+BUFFER(readonly, 7, vec4, cut_records)
+
+// A bit for each splat of the batch that several surfaces cut.
+shared uint several[BATCH_WORDS];
+
+bool is_cut_by_several(uint splat) {
+    vec3 linear = vec3(splats.at[splat].conic_cut.zw, splats.at[splat].colour_cut.w);
+    if (linear.x > -Z_RANGE) {
+        return false; // whole, or one surface that the splat carries
+    }
+    uint flags = to_uint(cut_records.at[record_number(linear) * FRAME.weight.cut_stride].w);
+    return flags >> CUT_COUNT_SHIFT > 1u;
+}
+
+void find_several(uint count) {
+    if (gl_LocalInvocationIndex < BATCH_WORDS) {
+        several[gl_LocalInvocationIndex] = 0u;
+    }
+    barrier();
+    for (uint i = gl_LocalInvocationIndex; i < count; i += RADIX_GROUP_SIZE) {
+        if (is_cut_by_several(batch_splats[i])) {
+            atomicOr(several[i / 32u], 1u << i % 32u);
+        }
+    }
+    barrier();
+}
 
 void main() {
     uint number = LINEAR_GROUP;
@@ -17,12 +46,18 @@ void main() {
         return;
     }
     find_held(batch);
+    if (SEVERAL) {
+        find_several(batch.pairs.y - batch.pairs.x);
+    }
     uint tile = gl_LocalInvocationIndex;
     if (tile < MACRO_TILES) {
         uint count = 0u;
+        uint mark = 0u;
         for (uint word = 0u; word < BATCH_WORDS; word++) {
-            count += bitCount(held[held_place(word, tile)]);
+            uint bits = held[held_place(word, tile)];
+            count += bitCount(bits);
+            mark |= SEVERAL && (bits & several[word]) != 0u ? SEVERAL_TILE : 0u;
         }
-        tile_counts.at[tile_count_place(number, tile)] = count;
+        tile_counts.at[tile_count_place(number, tile)] = count | mark;
     }
 }

@@ -5,6 +5,9 @@
 #define RARA_MACRO_TILES
 #include "bin.glsl"
 
+// Marks the count of a tile's splats where several surfaces cut one of them.
+const uint SEVERAL_TILE = 1u << 31u;
+
 uint macro_columns() {
     return (FRAME.tiles.tile_columns + MACRO_COLUMNS - 1u) / MACRO_COLUMNS;
 }

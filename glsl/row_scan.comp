@@ -1,43 +1,81 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A workgroup a row of tiles finds where the splats of each of its tiles begin. The first one finds whether all have room.
+// A workgroup a row of tiles finds where the splats of each of its tiles begin, and lists the tiles that hold any: first those
+// that need no code for several surfaces, and from the list's end on the others. The first workgroup finds whether all pairs
+// have room.
 #include "macro_tiles.glsl"
 #include "workgroup_sum.glsl"
+#include "groups.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
 
 BUFFER(, 1, FrameCounts, counts)
-BUFFER(readonly, 2, uint, row_sums)
+BUFFER(readonly, 2, uvec4, row_sums)
 BUFFER(, 3, uint, tile_begins)
+BUFFER(writeonly, 4, uint, tile_list)
 #include "room.glsl"
+
+// The sum over all invocations.
+uint total_of(uint value) {
+    uint total;
+    exclusive_sum(value, total);
+    return total;
+}
+
+// A tile in one of two counts that share a word: of the tiles that need no code for several surfaces, and of the others.
+uint kind_of(uint marked_count) {
+    return marked_count >= SEVERAL_TILE ? 1u << 16u : marked_count != 0u ? 1u : 0u;
+}
+
+void write_commands(uint pairs, uint filled, uint several) {
+    // Where the macro-tiles' pairs had no room, it is known already how many are needed.
+    bool tiled = decide_room(max(pairs, counts.at[0].pairs));
+    tile_begins.at[FRAME.tiles.tile_count] = pairs;
+    tile_list.at[FRAME.tiles.tile_count] = filled - several;
+    tile_list.at[FRAME.tiles.tile_count + 1u] = several;
+    counts.at[0].tile_groups = groups(tiled ? filled - several : 0u, 1u);
+    counts.at[0].several_tile_groups = groups(tiled ? several : 0u, 1u);
+}
 
 void main() {
     uint local = gl_LocalInvocationIndex;
     uint row = gl_WorkGroupID.x;
-    uint my_before = 0u;
-    uint my_all = 0u;
+    uvec3 my_before = uvec3(0u);
+    uvec3 my_all = uvec3(0u);
     for (uint i = local; i < tile_rows() * macro_columns(); i += RADIX_GROUP_SIZE) {
-        uint sum = row_sums.at[i];
-        my_before += i < row * macro_columns() ? sum : 0u;
-        my_all = capped_sum(my_all, sum);
+        uvec3 sum = row_sums.at[i].xyz;
+        my_before += i < row * macro_columns() ? sum : uvec3(0u);
+        my_all = uvec3(capped_sum(my_all.x, sum.x), my_all.yz + sum.yz);
     }
-    uint all = capped_total(my_all);
-    uint before;
-    exclusive_sum(my_before, before);
+    if (row == 0u) {
+        uvec3 all = uvec3(capped_total(my_all.x), total_of(my_all.y), total_of(my_all.z));
+        if (local == 0u) {
+            write_commands(all.x, all.y, all.z);
+        }
+    }
+    uint place = total_of(my_before.x);
+    uint several = total_of(my_before.z);
+    uint few = total_of(my_before.y) - several;
     for (uint first = 0u; first < FRAME.tiles.tile_columns; first += RADIX_GROUP_SIZE) {
         uint column = first + local;
+        uint tile = row * FRAME.tiles.tile_columns + column;
         bool is_tile = column < FRAME.tiles.tile_columns;
-        uint place = row * FRAME.tiles.tile_columns + column;
+        uint count = is_tile ? tile_begins.at[tile] : 0u;
+        uint kind = kind_of(count);
         uint total;
-        uint sum = exclusive_sum(is_tile ? tile_begins.at[place] : 0u, total);
+        uint kinds;
+        uint before = exclusive_sum(count & ~SEVERAL_TILE, total);
+        uint kinds_before = exclusive_sum(kind, kinds);
         if (is_tile) {
-            tile_begins.at[place] = before + sum;
+            tile_begins.at[tile] = place + before;
         }
-        before += total;
-    }
-    if (row == 0u && local == 0u) {
-        tile_begins.at[FRAME.tiles.tile_count] = all;
-        // Where the macro-tiles' pairs had no room, it is known already how many are needed.
-        decide_room(max(all, counts.at[0].pairs));
+        if (kind == 1u) {
+            tile_list.at[few + (kinds_before & 0xffffu)] = tile;
+        } else if (kind != 0u) {
+            tile_list.at[FRAME.tiles.tile_count - 1u - several - (kinds_before >> 16u)] = tile;
+        }
+        place += total;
+        few += kinds & 0xffffu;
+        several += kinds >> 16u;
     }
 }

@@ -11,6 +11,7 @@ struct Params {
     float depth_scale;
     ivec2 copy_origin; // where in the picture the copy of the host's depth begins, px
     uvec2 copy_size; // the copy's size, px
+    uint list; // which of the two lists of tiles is drawn
 };
 #define PARAMS Params
 #include "frame.glsl"
@@ -26,6 +27,9 @@ layout(constant_id = 7) const bool RECLIPPED = false;
 layout(constant_id = 8) const uint DEPTH_FORM = DEPTH_NONE;
 // The debug view.
 layout(constant_id = 9) const bool SHOW_WEIGHT = false;
+// True where the tiles that hold anything are listed: first those that need no code for several surfaces, then, from the end on,
+// the others, and behind all of them how many each list has.
+layout(constant_id = 11) const bool LISTED = false;
 
 BUFFER(readonly, 1, Splat, splats)
 BUFFER(readonly, 2, uint, tile_splats)
@@ -33,11 +37,14 @@ BUFFER(readonly, 3, uint, tile_begins)
 BUFFER(readonly, 4, vec4, cut_records)
 BUFFER(readonly, 6, uint, dirty)
 BUFFER(readonly, 7, uint, occluders)
+BUFFER(readonly, 9, uint, tile_list)
 #include "column.glsl"
 #include "region/tile_side.glsl"
 #include "occluders.glsl"
 #include "pixels.glsl"
 #include "weight_colour.glsl"
+
+const uint NO_TILE = ~0u;
 
 // An invocation's pixels.
 vec2 pixel_centre; // the first one's
@@ -145,14 +152,27 @@ Seen load(uint number, vec2 tile_middle) {
     return splat;
 }
 
-void main() {
+// The workgroup's tile, or NO_TILE.
+uint workgroup_tile() {
+    if (LISTED) {
+        uint place = LINEAR_GROUP;
+        if (place >= tile_list.at[FRAME.tiles.tile_count + push.params.list]) {
+            return NO_TILE;
+        }
+        return tile_list.at[push.params.list == 0u ? place : FRAME.tiles.tile_count - 1u - place];
+    }
     // Tiles follow each other down the columns of a strip, not along the picture's rows: what a splat's next tile needs
     // of it is then still in the cache, whichever neighbour that is.
-    uvec2 tile_at = uvec2(gl_WorkGroupID.x / STRIP_ROWS, gl_WorkGroupID.y * STRIP_ROWS + gl_WorkGroupID.x % STRIP_ROWS);
-    uint tile = tile_at.y * FRAME.tiles.tile_columns + tile_at.x;
+    uvec2 at = uvec2(gl_WorkGroupID.x / STRIP_ROWS, gl_WorkGroupID.y * STRIP_ROWS + gl_WorkGroupID.x % STRIP_ROWS);
+    return at.y * FRAME.tiles.tile_columns + at.x;
+}
+
+void main() {
+    uint tile = workgroup_tile();
     if (tile >= FRAME.tiles.tile_count || (RECLIPPED && dirty.at[tile] == 0u)) {
         return;
     }
+    uvec2 tile_at = uvec2(tile % FRAME.tiles.tile_columns, tile / FRAME.tiles.tile_columns);
     uint begin = tile_begins.at[tile];
     uint end = tile_begins.at[tile + 1u];
     if (begin == end) {

@@ -9,7 +9,7 @@ use crate::gpu::{Buffer, BufferAccess, BufferUse, MAX_BUFFERS, Shader};
 pub(crate) type BufferList<'a> = SmallVec<[&'a Buffer; MAX_BUFFERS]>;
 
 /// Specialisation constants: id and value. No program has more, so that a list needs no memory of its own.
-pub(crate) type ConstantList = SmallVec<[(u32, u32); 12]>;
+pub(crate) type ConstantList = SmallVec<[(u32, u32); 14]>;
 
 /// The declarations of a program's shaders to the host.
 pub(crate) trait Interface {

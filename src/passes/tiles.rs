@@ -8,7 +8,7 @@ use crate::gpu::{Attachments, DeviceShape, Drawer, Recorder};
 use crate::limits;
 use crate::passes::buffers::{Buffers, TileBuffers, buffers, indirect};
 #[cfg(feature = "lab")]
-use crate::passes::cost::Cost;
+use crate::passes::cost::{Cost, FrameNumbers};
 use crate::passes::pipelines::{Draw, Kernel, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{composite, tiles};
@@ -23,7 +23,11 @@ pub(crate) const STAGE: Stage = Stage {
     name: "tiles",
     needed: |plan| plan.is_tiled() && plan.work != Work::Draw,
     missed: |plan| plan.is_tiled() || plan.gaussians() == 0,
-    pipelines: |plan, need| need(kernel(plan).key()),
+    pipelines: |plan, need| {
+        lists(plan)
+            .iter()
+            .for_each(|list| need(kernel(plan, *list).key()))
+    },
     record,
 };
 
@@ -90,12 +94,41 @@ impl TilePixels {
     }
 }
 
-fn kernel(plan: &Plan) -> Kernel<tiles::Program> {
+/// The tiles that a dispatch draws: all, or with the kernels for GPUs one of the two lists of those that hold anything.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum List {
+    All,
+    /// Tiles that need no code for several surfaces, which takes most of a pipeline's registers.
+    Few,
+    /// Tiles in which several surfaces cut a splat.
+    Several,
+}
+
+/// True when tiles in which several surfaces cut a splat are told from the others.
+pub(super) fn has_several_kinds(plan: &Plan) -> bool {
     let weight = Weight::of(plan);
+    weight.several && weight.mode == types::MODE_EXACT
+}
+
+/// The lists that a frame draws.
+fn lists(plan: &Plan) -> &'static [List] {
+    match plan.way.shape {
+        DeviceShape::Cpu => &[List::All],
+        // A reclipped frame takes over the lists of a frame in which nothing was cut.
+        DeviceShape::Gpu { .. } if has_several_kinds(plan) && !plan.reclips() => {
+            &[List::Few, List::Several]
+        }
+        DeviceShape::Gpu { .. } => &[List::Few],
+    }
+}
+
+fn kernel(plan: &Plan, list: List) -> Kernel<tiles::Program> {
+    let weight = Weight::of(plan);
+    let is_one_of_two = list == List::Few && lists(plan).len() > 1;
     let work = plan.tile_work;
     let constants = tiles::Constants {
         clip_mode: weight.mode,
-        several: weight.several,
+        several: weight.several && !is_one_of_two,
         decay: weight.decay,
         miss: weight.miss,
         phi_form: weight.phi,
@@ -105,46 +138,46 @@ fn kernel(plan: &Plan) -> Kernel<tiles::Program> {
         depth_form: plan.occluders.map_or(types::DEPTH_NONE, |o| o.form),
         show_weight: plan.way.show == Show::Weight,
         pixels: plan.way.tile_pixels.code(),
+        listed: list != List::All,
     };
     let shader = if work.subgroups {
         &tiles::SUBGROUP_COMP
     } else {
         &tiles::COMP
     };
-    Kernel::new(shader, constants)
+    let kernel = Kernel::new(shader, constants);
+    match list {
+        List::All | List::Few => kernel,
+        List::Several => kernel.named(SEVERAL_TILES),
+    }
 }
+
+/// The name of the kernel that draws the tiles in which several surfaces cut a splat.
+const SEVERAL_TILES: &str = "several_tiles";
 
 #[cfg(feature = "lab")]
 pub(super) const COSTS: &[Cost] = &[
-    // All rows of a strip have invocations. The tile's bounds; and for each batch of the splats of a tile as full as the others
-    // their numbers, the splats and, if they are cut, the rest of them.
-    Cost::of::<tiles::Program>(
-        |n| {
-            let rows = n.tile_rows.next_multiple_of(limits::STRIP_ROWS.into());
-            n.tile_columns * rows * u64::from(limits::TILE_WIDTH * limits::TILE_HEIGHT)
-        },
-        |n| {
-            let batch = u64::from(limits::TILE_WIDTH * limits::TILE_HEIGHT);
-            2 + 3 * n
-                .pairs
-                .div_ceil(n.tile_columns * n.tile_rows)
-                .div_ceil(batch)
-        },
-    ),
+    // The tile, its bounds; and for each batch of the splats of a tile as full as the others their numbers, the splats and, if
+    // they are cut, the rest of them.
+    Cost::of::<tiles::Program>(|n| n.filled_tiles * TILE, batches),
+    Cost {
+        name: SEVERAL_TILES,
+        invocations: |n| n.several_tiles * TILE,
+        loads: batches,
+    },
 ];
+
+#[cfg(feature = "lab")]
+const TILE: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64;
+
+#[cfg(feature = "lab")]
+fn batches(numbers: &FrameNumbers) -> u64 {
+    let tiles = numbers.tile_columns * numbers.tile_rows;
+    3 + 3 * numbers.pairs.div_ceil(tiles).div_ceil(TILE)
+}
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (plan, b, t) = (frame.plan, frame.buffers, frame.tiles());
-    let buffers = buffers!(tiles {
-        b => [frame, splats, cut_records];
-        picture: &t.picture.pixels,
-        picture_words: &t.picture.pixels,
-        tile_splats: &t.splats,
-        tile_begins: &t.picture.begins,
-        // Only a reclipped frame reads which tiles are dirty.
-        dirty: b.reclip.as_ref().map_or(&b.counts, |reclip| &reclip.dirty),
-        occluders: plan.occluders.map_or(&b.counts, |_| &t.occluders),
-    });
     let [depth_offset, depth_scale] = plan.occluders.map_or([0.0; 2], |o| o.map.factors());
     let (at, size) = (frame.copied.offset, frame.copied.extent);
     let params = tiles::Params {
@@ -155,9 +188,30 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         depth_scale,
         copy_origin: [at.x, at.y],
         copy_size: [size.width, size.height],
+        list: 0,
     };
-    let groups = indirect!(b.counts, FrameCounts, tile_groups);
-    kernel(plan).dispatch(frame.pipelines, recorder, buffers, params, groups);
+    for &list in lists(plan) {
+        let buffers = buffers!(tiles {
+            b => [frame, splats, cut_records];
+            picture: &t.picture.pixels,
+            picture_words: &t.picture.pixels,
+            tile_splats: &t.splats,
+            tile_begins: &t.picture.begins,
+            // Only a reclipped frame reads which tiles are dirty.
+            dirty: b.reclip.as_ref().map_or(&b.counts, |reclip| &reclip.dirty),
+            occluders: plan.occluders.map_or(&b.counts, |_| &t.occluders),
+            tile_list: t.scratch.tile_list().unwrap_or(&b.counts),
+        });
+        let groups = match list {
+            List::All | List::Few => indirect!(b.counts, FrameCounts, tile_groups),
+            List::Several => indirect!(b.counts, FrameCounts, several_tile_groups),
+        };
+        let params = tiles::Params {
+            list: (list == List::Several).into(),
+            ..params
+        };
+        kernel(plan, list).dispatch(frame.pipelines, recorder, buffers, params, groups);
+    }
 }
 
 /// The draw of the tiles' picture.

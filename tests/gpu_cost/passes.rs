@@ -53,6 +53,8 @@ fn heavy(picture: FrameNumbers) -> FrameNumbers {
         tied: gaussians / 5, // a layer that is seen face on
         macro_pairs: 3 * gaussians / 2,
         pairs: 3 * gaussians,
+        filled_tiles: picture.tile_columns * picture.tile_rows,
+        several_tiles: picture.tile_columns * picture.tile_rows,
         ..picture
     }
 }
@@ -65,6 +67,12 @@ fn passes_have_the_invocations_that_they_declare() {
     for frame in all.filter(|frame| frame.is_usual() && frame.raster == Raster::Tiles) {
         seen.extend(check_invocations(&frames, &frame));
     }
+    let cut_by_several = frames
+        .all()
+        .into_iter()
+        .find(|frame| frame.name == "tiles, exact, three planes");
+    let cut_by_several = cut_by_several.expect("one of the kinds");
+    seen.extend(check_invocations(&frames, &cut_by_several));
     frames.close();
     // More macro-tiles than a digit has values: their sort takes a second pass.
     let frames = Frames::on_a_gpus_kernels((2600, 1500));
@@ -120,6 +128,8 @@ fn numbers(drawn: &Drawn) -> FrameNumbers {
         tile_rows: (data.tiles.tile_count / data.tiles.tile_columns).into(),
         macro_pairs: counts.macro_pairs.into(),
         pairs: counts.pairs.into(),
+        filled_tiles: listed(counts.tile_groups),
+        several_tiles: listed(counts.several_tile_groups),
         ..FrameNumbers::default()
     }
 }

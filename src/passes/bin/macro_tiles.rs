@@ -9,14 +9,15 @@ use crate::passes::bin::ScratchWords;
 use crate::passes::buffers::{buffers, gpu_only, indirect};
 #[cfg(feature = "lab")]
 use crate::passes::cost::{Cost, FrameNumbers};
+use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::radix::{self, Kernels, Keys, Pass};
 use crate::passes::shaders::{
     batch_count, batch_scan, batch_scatter, macro_count, macro_expand, macro_ranges, macro_scan,
     row_scan,
 };
-use crate::passes::sort;
 use crate::passes::stage::{Frame, KernelSet, key};
+use crate::passes::{sort, tiles};
 use crate::types::{FrameCounts, TilesData};
 
 pub(super) const KERNELS: KernelSet = KernelSet {
@@ -45,6 +46,15 @@ pub(in crate::passes) struct Scratch {
     macro_begins: Buffer,
     tile_counts: Buffer,
     row_sums: Buffer,
+    tile_list: Buffer,
+}
+
+impl OfPlan for batch_count::Constants {
+    fn of(plan: &Plan) -> Self {
+        Self {
+            several: tiles::has_several_kinds(plan),
+        }
+    }
 }
 
 /// Columns and rows of macro-tiles.
@@ -79,13 +89,24 @@ pub(super) fn words(plan: &Plan) -> ScratchWords {
         radix::histogram_words(pairs),
         columns * rows + 1,
         batches * u64::from(limits::MACRO_TILES),
-        columns * tile_rows,
+        columns * tile_rows * 4,
+        u64::from(tiles.tile_count) + 2, // and how many there are of each kind
     ]
 }
 
 impl Scratch {
     pub(super) fn new(device: &Device, words: ScratchWords) -> Result<Self> {
-        let [sums, keys, splats, sorted, histogram, begins, counts, rows] = words;
+        let [
+            sums,
+            keys,
+            splats,
+            sorted,
+            histogram,
+            begins,
+            counts,
+            rows,
+            list,
+        ] = words;
         let gpu = |name, words| gpu_only(device, name, words * 4);
         Ok(Self {
             pair_sums: gpu("pair_sums", sums)?,
@@ -98,11 +119,16 @@ impl Scratch {
             macro_begins: gpu("macro_begins", begins)?,
             tile_counts: gpu("tile_counts", counts)?,
             row_sums: gpu("row_sums", rows)?,
+            tile_list: gpu("tile_list", list)?,
         })
     }
 
+    pub(super) fn tile_list(&self) -> &Buffer {
+        &self.tile_list
+    }
+
     #[cfg(feature = "lab")]
-    pub(super) fn all(&self) -> [&Buffer; 8] {
+    pub(super) fn all(&self) -> [&Buffer; 9] {
         [
             &self.pair_sums,
             &self.macro_keys,
@@ -112,6 +138,7 @@ impl Scratch {
             &self.macro_begins,
             &self.tile_counts,
             &self.row_sums,
+            &self.tile_list,
         ]
     }
 }
@@ -255,7 +282,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
 
     let batches = indirect!(b.counts, FrameCounts, batch_groups);
     let buffers = buffers!(batch_count {
-        b => [frame, counts, splats, tile_masks],
+        b => [frame, counts, splats, tile_masks, cut_records],
         scratch => [macro_begins, tile_counts];
         macro_splats: splats[sorted],
     });
@@ -269,7 +296,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     frame.dispatch(recorder, buffers, (), Groups::Count(columns * rows));
     let buffers = buffers!(row_scan {
         b => [frame, counts],
-        scratch => [row_sums];
+        scratch => [row_sums, tile_list];
         tile_begins: &t.picture.begins,
     });
     let tiles = &frame.plan.data.tiles;

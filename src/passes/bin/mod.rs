@@ -8,9 +8,7 @@ mod macro_tiles;
 mod spans;
 
 use crate::error::Result;
-#[cfg(feature = "lab")]
-use crate::gpu::Buffer;
-use crate::gpu::{Device, DeviceShape};
+use crate::gpu::{Buffer, Device, DeviceShape};
 use crate::passes::plan::Plan;
 use crate::passes::stage::{KernelSet, Stage};
 
@@ -42,7 +40,7 @@ pub(in crate::passes) enum Scratch {
 }
 
 /// The words of each of a scratch's buffers; the rest is 0.
-pub(in crate::passes) type ScratchWords = [u64; 8];
+pub(in crate::passes) type ScratchWords = [u64; 9];
 
 impl Scratch {
     /// The words that a plan for tiles asks for.
@@ -65,6 +63,14 @@ impl Scratch {
                 Self::MacroTiles(macro_tiles::Scratch::new(device, words)?.into())
             }
         })
+    }
+
+    /// The lists of tiles that the kernels for GPUs make.
+    pub(in crate::passes) fn tile_list(&self) -> Option<&Buffer> {
+        match self {
+            Self::Spans(_) => None,
+            Self::MacroTiles(scratch) => Some(scratch.tile_list()),
+        }
     }
 
     /// Its buffers.

@@ -50,6 +50,7 @@ pub(super) fn words(plan: &Plan) -> ScratchWords {
         0,
         0,
         0,
+        0,
     ]
 }
 

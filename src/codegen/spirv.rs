@@ -87,6 +87,24 @@ struct Known {
     no_read: bool,
 }
 
+/// The instructions of a module: the code of each, and all its words, of which the first holds that code.
+///
+/// # Panics
+/// With a sentence where this is no module.
+pub(crate) fn instructions(words: &[u32]) -> impl Iterator<Item = (u32, &[u32])> {
+    assert!(
+        words.len() > 5 && words[0] == 0x0723_0203,
+        "this is no SPIR-V module"
+    );
+    let mut rest = &words[5..];
+    std::iter::from_fn(move || {
+        let head = *rest.first()?;
+        let (instruction, tail) = rest.split_at((head >> 16) as usize);
+        rest = tail;
+        Some((head & 0xffff, instruction))
+    })
+}
+
 /// Reads a module's declarations.
 ///
 /// # Panics
@@ -94,20 +112,14 @@ struct Known {
 pub(crate) fn declarations(words: &[u32]) -> Declarations {
     const STORAGE_BUFFER: u32 = 12;
     const PUSH_CONSTANT: u32 = 9;
-    assert!(
-        words.len() > 5 && words[0] == 0x0723_0203,
-        "this is no SPIR-V module"
-    );
+    let all = instructions(words);
     let mut known = vec![Known::default(); words[3] as usize];
     let (mut variables, mut specs, mut composites) = (Vec::new(), Vec::new(), Vec::new());
     let mut found = Declarations::default();
-    let mut rest = &words[5..];
-    while let Some(&head) = rest.first() {
-        let (instruction, tail) = rest.split_at((head >> 16) as usize);
-        rest = tail;
+    for (code, instruction) in all {
         let word = |index: usize| instruction[index];
         let id = |index: usize| instruction[index] as usize;
-        match head & 0xffff {
+        match code {
             17 if (61..=68).contains(&word(1)) => found.subgroups = true, // OpCapability GroupNonUniform...
             16 if word(2) == 17 => found.workgroup = [word(3), word(4), word(5)], // OpExecutionMode, LocalSize
             5 => known[id(1)].name = text(&instruction[2..]),                     // OpName
@@ -242,7 +254,8 @@ fn params(known: &[Known], block: usize) -> Vec<Param> {
     members.iter().enumerate().map(translate).collect()
 }
 
-fn text(words: &[u32]) -> String {
+/// The text of an instruction's last words.
+pub(crate) fn text(words: &[u32]) -> String {
     let bytes = words.iter().flat_map(|word| word.to_le_bytes());
     let bytes: Vec<u8> = bytes.take_while(|byte| *byte != 0).collect();
     String::from_utf8(bytes).expect("names are UTF-8")

@@ -5,38 +5,56 @@ use crate::gpu::{DeviceShape, Support};
 use crate::limits;
 use crate::settings::Raster;
 
-/// How splats become pixels on a device, and why in that way. `hidden` says that tiles cannot see the host's depth.
+/// The properties of a host's targets that decide whether tiles can draw into them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Targets {
+    /// Tiles of the picture.
+    pub(super) tiles: u32,
+    /// True when splats are tested against a depth that tiles cannot read.
+    pub(super) hidden: bool,
+    /// True when a pixel has several samples.
+    pub(super) multisampled: bool,
+}
+
+/// How splats become pixels on a device, and why in that way.
 pub(super) fn raster(
     wanted: Raster,
     support: &Support,
     shape: DeviceShape,
-    tiles: u32,
-    hidden: bool,
+    targets: Targets,
 ) -> Result<(Raster, &'static str)> {
-    let tiled = wanted == Raster::Tiles || (wanted == Raster::Auto && shape == DeviceShape::Cpu);
+    let draws = if support.mesh_shader && shape != DeviceShape::Cpu {
+        Raster::Mesh
+    } else {
+        Raster::Quad
+    };
     Ok(match wanted {
-        Raster::Auto | Raster::Tiles if hidden && tiled => {
-            let reason = "tiles need the host's depth before its scope (DepthDesc::readable)";
-            (Raster::Quad, reason)
-        }
-        Raster::Auto if u64::from(tiles) * TILE_BYTES > MOST_PICTURE => {
-            let reason = "the tiles' picture would take more than 1 GiB";
-            (Raster::Quad, reason)
-        }
-        // See the guide's measurements (src/guide/speed.md).
-        Raster::Auto if shape == DeviceShape::Cpu => {
-            (Raster::Tiles, "a CPU driver charges for each drawn splat")
-        }
-        Raster::Auto if support.mesh_shader => (Raster::Mesh, "a GPU with mesh shaders"),
-        Raster::Auto => (Raster::Quad, "a GPU without mesh shaders"),
         Raster::Mesh if !support.mesh_shader => {
             return Err(Error::Device(
                 "this device has no mesh shaders (VK_EXT_mesh_shader); use --raster quad".into(),
             ));
         }
+        Raster::Auto if targets.hidden => (draws, HIDDEN),
+        Raster::Tiles if targets.hidden => (Raster::Quad, HIDDEN),
+        Raster::Auto if u64::from(targets.tiles) * TILE_BYTES > MOST_PICTURE => {
+            (draws, "the tiles' picture would take more than 1 GiB")
+        }
+        // See the guide's measurements (src/guide/speed.md).
+        Raster::Auto if shape == DeviceShape::Cpu => {
+            (Raster::Tiles, "a CPU driver charges for each drawn splat")
+        }
+        Raster::Auto if targets.multisampled => {
+            (draws, "a GPU, and a target of several samples a pixel")
+        }
+        Raster::Auto => (
+            Raster::Tiles,
+            "a GPU, for which tiles are predicted to be faster",
+        ),
         chosen => (chosen, "asked for"),
     })
 }
+
+const HIDDEN: &str = "tiles need the host's depth before its scope (DepthDesc::readable)";
 
 /// The bytes of a tile's pixels, and the most that a picture of them may take: what every device can allocate at once.
 const TILE_BYTES: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64 * 16;
@@ -49,5 +67,61 @@ pub(super) fn runs(shape: DeviceShape, gaussians: u32) -> u32 {
         (DeviceShape::Cpu, ..32_768) => 128,
         (DeviceShape::Cpu, _) => 256,
         (DeviceShape::Gpu { .. }, _) => 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chosen(shape: DeviceShape, mesh_shader: bool, targets: Targets) -> Raster {
+        let support = Support {
+            mesh_shader,
+            ..Support::default()
+        };
+        let (raster, reason) = raster(Raster::Auto, &support, shape, targets).expect("a choice");
+        assert!(!reason.is_empty());
+        raster
+    }
+
+    #[test]
+    fn tiles_are_chosen_where_they_can_draw() {
+        let gpu = DeviceShape::Gpu { subgroup: 32 };
+        let usual = Targets {
+            tiles: 1000,
+            hidden: false,
+            multisampled: false,
+        };
+        let hidden = Targets {
+            hidden: true,
+            ..usual
+        };
+        let multisampled = Targets {
+            multisampled: true,
+            ..usual
+        };
+        let large = Targets {
+            tiles: 1 << 21,
+            ..usual
+        };
+        for mesh_shader in [false, true] {
+            assert_eq!(chosen(gpu, mesh_shader, usual), Raster::Tiles);
+            let draws = if mesh_shader {
+                Raster::Mesh
+            } else {
+                Raster::Quad
+            };
+            for targets in [hidden, multisampled, large] {
+                assert_eq!(chosen(gpu, mesh_shader, targets), draws, "{targets:?}");
+            }
+            assert_eq!(chosen(DeviceShape::Cpu, mesh_shader, usual), Raster::Tiles);
+            assert_eq!(
+                chosen(DeviceShape::Cpu, mesh_shader, multisampled),
+                Raster::Tiles
+            );
+            for targets in [hidden, large] {
+                assert_eq!(chosen(DeviceShape::Cpu, mesh_shader, targets), Raster::Quad);
+            }
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! Decides, allocates and compiles what a frame needs, before anything is recorded.
 
+use ash::vk;
+
 use super::Renderer;
 use super::choose;
 use super::frames::{Configured, RecordedFrame};
@@ -78,8 +80,12 @@ impl Renderer {
         let support = self.device.support();
         let shape = self.device.shape();
         let hidden = self.desc.depth.is_some_and(|depth| !depth.readable);
-        let (raster, reason) =
-            choose::raster(request.settings.raster, support, shape, tiles, hidden)?;
+        let targets = choose::Targets {
+            tiles,
+            hidden,
+            multisampled: self.desc.samples != vk::SampleCountFlags::TYPE_1,
+        };
+        let (raster, reason) = choose::raster(request.settings.raster, support, shape, targets)?;
         // Quads, which have to be drawn, take the tiles' place only in a frame that is not redrawn.
         let leaves_picture = raster == Raster::Tiles && redrawn && scene.count > 0;
         let picture = request

@@ -3,7 +3,7 @@
 use std::ffi::CStr;
 
 use rara::ash::{self, vk};
-use rara::gpu::{AdoptDesc, Device};
+use rara::gpu::{AdoptDesc, Device, DeviceShape};
 use rara::{Error, Result};
 
 use crate::boundary::{
@@ -16,6 +16,15 @@ pub type PFN_vkGetInstanceProcAddr = Option<vk::PFN_vkGetInstanceProcAddr>;
 
 /// A host's device as rara uses it. Several threads may use it at once.
 pub struct RaraDevice(pub(crate) Device);
+
+/// For what kind of machine kernels are chosen.
+pub type RaraShape = u32;
+/// The one that the device says it is. The default.
+pub const RARA_SHAPE_AUTO: RaraShape = 0;
+/// A driver that runs shaders on the processor's cores.
+pub const RARA_SHAPE_CPU: RaraShape = 1;
+/// A graphics processor.
+pub const RARA_SHAPE_GPU: RaraShape = 2;
 
 /// A host's own Vulkan, for rara_device_adopt. All of it stays the host's.
 #[repr(C)]
@@ -49,6 +58,12 @@ pub struct RaraAdoptDesc {
     /// True when subgroupSizeControl and computeFullSubgroups were enabled, for which the host's chain needs
     /// VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceSubgroupSizeControlFeatures. Default: false.
     pub full_subgroups: vk::Bool32,
+    /// For what kind of machine kernels are chosen. Pictures depend on it only by the rounding of sums. Default:
+    /// RARA_SHAPE_AUTO.
+    pub shape: RaraShape,
+    /// With RARA_SHAPE_GPU the invocations of a subgroup that kernels ask for, a power of two that the device can be asked
+    /// for; 0, the default, for kernels without subgroup operations. Otherwise ignored.
+    pub subgroup: u32,
 }
 
 // SAFETY: repr(C), handles and numbers, the size first.
@@ -72,6 +87,8 @@ impl RaraAdoptDesc {
             pipeline_cache: vk::PipelineCache::null(),
             api_version: vk::API_VERSION_1_3,
             full_subgroups: vk::FALSE,
+            shape: RARA_SHAPE_AUTO,
+            subgroup: 0,
         }
     }
 }
@@ -115,6 +132,7 @@ pub unsafe extern "C" fn rara_device_adopt(
                 .mesh_shader(desc.mesh_shader != 0)
                 .push_descriptor(desc.push_descriptor != 0)
                 .full_subgroups(desc.full_subgroups != 0)
+                .shape(shape(&desc)?)
                 .debug_utils(desc.debug_utils != 0)
                 .pipeline_cache(desc.pipeline_cache);
             Device::adopt(adopt).map(RaraDevice)
@@ -141,6 +159,17 @@ pub unsafe extern "C" fn rara_device_bytes(device: *const RaraDevice) -> u64 {
 pub unsafe extern "C" fn rara_device_destroy(device: *mut RaraDevice) {
     // SAFETY: the caller's promise.
     unsafe { destroy(device) };
+}
+
+fn shape(desc: &RaraAdoptDesc) -> Result<Option<DeviceShape>> {
+    Ok(match desc.shape {
+        RARA_SHAPE_AUTO => None,
+        RARA_SHAPE_CPU => Some(DeviceShape::Cpu),
+        RARA_SHAPE_GPU => Some(DeviceShape::Gpu {
+            subgroup: desc.subgroup,
+        }),
+        other => return invalid(format!("desc->shape is {other}, which no RaraShape is")),
+    })
 }
 
 /// The instance's functions. Those of Vulkan 1.1 must be there: ash would abort where one is missing.

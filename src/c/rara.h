@@ -159,6 +159,9 @@ typedef struct RaraSupport {
     VkBool32 full_subgroups;
 } RaraSupport;
 
+// For what kind of machine kernels are chosen.
+typedef uint32_t RaraShape;
+
 // A host's own Vulkan, for rara_device_adopt. All of it stays the host's.
 typedef struct RaraAdoptDesc {
     // Set by rara_adopt_desc_default.
@@ -189,6 +192,12 @@ typedef struct RaraAdoptDesc {
     // True when subgroupSizeControl and computeFullSubgroups were enabled, for which the host's chain needs
     // VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceSubgroupSizeControlFeatures. Default: false.
     VkBool32 full_subgroups;
+    // For what kind of machine kernels are chosen. Pictures depend on it only by the rounding of sums. Default:
+    // RARA_SHAPE_AUTO.
+    RaraShape shape;
+    // With RARA_SHAPE_GPU the invocations of a subgroup that kernels ask for, a power of two that the device can be asked
+    // for; 0, the default, for kernels without subgroup operations. Otherwise ignored.
+    uint32_t subgroup;
 } RaraAdoptDesc;
 
 // The placement of a scene in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1}
@@ -498,6 +507,15 @@ typedef struct RaraFrameStats {
 
 // Visible where any plane keeps it.
 #define RARA_CLIP_OP_OR 1
+
+// The one that the device says it is. The default.
+#define RARA_SHAPE_AUTO 0
+
+// A driver that runs shaders on the processor's cores.
+#define RARA_SHAPE_CPU 1
+
+// A graphics processor.
+#define RARA_SHAPE_GPU 2
 
 // By address, which is fast. The default.
 #define RARA_BINDINGS_ADDRESS 0

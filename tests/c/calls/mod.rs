@@ -107,8 +107,15 @@ fn what_is_wrong_is_said() {
         desc.queue_family = 99;
         let failed = rara_device_adopt(&desc, &mut device);
         assert_fails(failed, RARA_ERROR_INVALID, "no queue family 99");
-        assert!(device.is_null());
         desc.queue_family = ours.queue_family;
+        desc.shape = 3;
+        let failed = rara_device_adopt(&desc, &mut device);
+        assert_fails(failed, RARA_ERROR_INVALID, "desc->shape is 3");
+        (desc.shape, desc.subgroup) = (RARA_SHAPE_GPU, 3);
+        let failed = rara_device_adopt(&desc, &mut device);
+        assert_fails(failed, RARA_ERROR_INVALID, "subgroups of 3");
+        assert!(device.is_null());
+        (desc.shape, desc.subgroup) = (RARA_SHAPE_AUTO, 0);
         assert_eq!(desc.api_version, version);
         assert_ok(rara_device_adopt(&desc, &mut device));
 

@@ -15,7 +15,7 @@ use crate::results::assert_ok;
 use ours::{Ours, saved};
 use rara::ash::{Entry, vk};
 use rara::glam::{DQuat, DVec3};
-use rara::gpu::{AdoptDesc, Device};
+use rara::gpu::{AdoptDesc, Device, DeviceShape};
 use rara::scene::Kind;
 use rara::{Gaussians, Placement, Raster, Scene, SceneBuffers, ShFormat};
 use rara_c::device::*;
@@ -39,6 +39,33 @@ fn with_both(count: usize, test: impl FnOnce(&Gaussians, &AdoptDesc, &Device, &O
             let bytes = rara_device_bytes(ours.device);
             assert_eq!(bytes, 0, "all that was allocated was freed");
             rara_device_destroy(ours.device);
+        }
+    });
+}
+
+/// A host asks for the kernels of a kind of machine, which are here those for GPUs without subgroup operations.
+#[test]
+fn kernels_are_those_that_the_host_asks_for() {
+    let folder = Folder::new("c-frames-shape");
+    let (path, scene) = saved(&folder, Kind::General, 3_000);
+    with_host(true, |host, usual| {
+        // SAFETY: the system's loader; the host outlives what is made here.
+        unsafe {
+            let entry = Entry::load().expect("a Vulkan loader");
+            let shape = DeviceShape::Gpu { subgroup: 0 };
+            let device = Device::adopt(host.lend().shape(Some(shape))).expect("adopted");
+            let lent = host.lend();
+            let ours = Ours::shaped(&entry, &lent, &path, RARA_SHAPE_GPU);
+            let world = World::new(&scene, Raster::Tiles);
+            let uploaded = ours.uploaded();
+            let canvas = world.canvas(&lent, usual);
+            let drawn = world.drawn_in_c(ours.device, &canvas, |_| uploaded);
+            assert!(drawn == world.drawn(&device, &canvas), "as in Rust");
+            assert!(drawn != world.drawn(usual, &canvas), "sums round otherwise");
+            rara_scene_buffers_destroy(uploaded);
+            rara_gaussians_destroy(ours.gaussians);
+            rara_device_destroy(ours.device);
+            assert_eq!(device.close(), Vec::<String>::new());
         }
     });
 }

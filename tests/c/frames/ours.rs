@@ -16,6 +16,20 @@ impl Ours {
     /// # Safety
     /// The host and its loader outlive what is returned.
     pub(super) unsafe fn new(entry: &Entry, host: &AdoptDesc, path: &Path) -> Self {
+        // SAFETY: the caller's promise.
+        unsafe { Self::shaped(entry, host, path, RARA_SHAPE_AUTO) }
+    }
+
+    /// The same with kernels for a kind of machine.
+    ///
+    /// # Safety
+    /// As for `new`.
+    pub(super) unsafe fn shaped(
+        entry: &Entry,
+        host: &AdoptDesc,
+        path: &Path,
+        shape: RaraShape,
+    ) -> Self {
         let mut device = null_mut();
         // SAFETY: the caller's promise; the others are alive, or to be overwritten.
         unsafe {
@@ -31,6 +45,7 @@ impl Ours {
             desc.debug_utils = host.debug_utils.into();
             desc.full_subgroups = host.full_subgroups.into();
             desc.api_version = host.api_version;
+            desc.shape = shape;
             assert_ok(rara_device_adopt(&desc, &mut device));
         }
         let gaussians = loaded_in_c(path);

@@ -1,5 +1,7 @@
 //! The frame on one page: its stages in order, from its constants to the draw.
 
+use smallvec::SmallVec;
+
 use crate::gpu::{Buffer, Recorder};
 use crate::passes::pipelines::PipelineKey;
 use crate::passes::plan::Plan;
@@ -43,15 +45,19 @@ pub(crate) const STAGES: [&Stage; 13] = [
 /// The name of the draw, the last step, which a frame does without where the tiles' picture is the picture.
 pub(crate) const DRAW: &str = "splat";
 
+/// Bytes of the constants of a frame with few layers, for which recording takes no memory.
+const FEW_LAYERS: usize = 4096;
+
 /// Records everything up to the draw. `readback` gets a copy of the counts for the host.
 pub(crate) fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>, readback: &Buffer) {
     let (plan, b) = (frame.plan, frame.buffers);
     if plan.work != Work::Draw {
         recorder.label("frame", |r| {
             let (layers, surfaces) = (plan.layers.layers(), plan.layers.surfaces());
-            r.update(&b.frame, 0, bytemuck::bytes_of(&plan.data));
-            let behind = size_of_val(&plan.data) as u64;
-            r.update(&b.frame, behind, bytemuck::cast_slice(layers));
+            // By one command, since two into one buffer would wait for each other.
+            let mut constants = SmallVec::<[u8; FEW_LAYERS]>::from(bytemuck::bytes_of(&plan.data));
+            constants.extend_from_slice(bytemuck::cast_slice(layers));
+            r.update(&b.frame, 0, &constants);
             r.update(&b.surfaces, 0, bytemuck::cast_slice(surfaces));
         });
     }

@@ -5,7 +5,7 @@
 #include "batch_tiles.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
-// Whether a splat may be cut by more than one surface.
+// True where tiles have a pipeline without code for several surfaces: an exact cut by more than one.
 layout(constant_id = 0) const bool SEVERAL = false;
 
 BUFFER(writeonly, 6, uint, tile_counts)
@@ -16,11 +16,11 @@ shared uint several[BATCH_WORDS];
 
 bool is_cut_by_several(uint splat) {
     vec3 linear = vec3(splats.at[splat].conic_cut.zw, splats.at[splat].colour_cut.w);
-    if (linear.x > -Z_RANGE) {
+    if (!(linear.x < -Z_RANGE)) {
         return false; // whole, or one surface that the splat carries
     }
     uint flags = to_uint(cut_records.at[record_number(linear) * FRAME.weight.cut_stride].w);
-    return flags >> CUT_COUNT_SHIFT > 1u;
+    return flags >> CUT_COUNT_SHIFT != 1u; // none, where two stages disagree by rounding, is weighed as several are
 }
 
 void find_several(uint count) {

@@ -61,6 +61,7 @@ void main() {
         counts.at[0].pair_groups = uvec4(0u);
         counts.at[0].batch_groups = uvec4(0u);
         counts.at[0].tile_groups = uvec4(0u);
+        counts.at[0].several_tile_groups = uvec4(0u);
         counts.at[0].composite = uvec4(0u);
     }
 }

@@ -54,8 +54,8 @@ const uint TIES_ALONE = 24u;
 // Workgroup size of the sort for GPUs, and the consecutive keys of such a workgroup: its partition.
 const uint RADIX_GROUP_SIZE = 256u;
 const uint RADIX_PARTITION = 4096u;
-// Tiles across and down a macro-tile, in which kernels for GPUs collect splats before they list those of each tile: as many as
-// make a picture of 1920x1080 no more macro-tiles than a digit has values, and a row of them half a word.
+// Tiles across and down a macro-tile, in which kernels for GPUs collect splats before they list those of each tile. A picture
+// of 1920x1080 then has 255 macro-tiles, one fewer than a digit of the sort has values.
 const uint MACRO_COLUMNS = 16u;
 const uint MACRO_ROWS = 8u;
 const uint MACRO_TILES = MACRO_COLUMNS * MACRO_ROWS;

@@ -31,7 +31,8 @@ void main() {
         uint partitions = has_room ? (all + RADIX_PARTITION - 1u) / RADIX_PARTITION : 0u;
         counts.at[0].pair_groups = uvec4(partitions, 1u, 1u, 0u);
         uint batches = (all + BATCH_SPLATS - 1u) / BATCH_SPLATS + macro_tile_count();
-        counts.at[0].batch_groups = has_room ? groups(batches, 1u) : uvec4(0u, 1u, 1u, 0u);
+        // Without pairs no macro-tile's beginning is known.
+        counts.at[0].batch_groups = has_room && all > 0u ? groups(batches, 1u) : uvec4(0u, 1u, 1u, 0u);
     }
     if (!has_room) {
         return;

@@ -65,7 +65,7 @@ bool all_done() {
     }
     barrier();
     if (!done) {
-        at_work = 1u;
+        atomicOr(at_work, 1u);
     }
     barrier();
     return at_work == 0u;

@@ -175,10 +175,10 @@ struct FrameCounts {
     uvec4 row_groups; // indirect dispatch of the rows of tiles
     uvec4 pair_groups; // indirect dispatch of the partitions of the pairs of macro-tile and splat
     uvec4 batch_groups; // indirect dispatch of the batches of splats of a macro-tile
-    uvec4 tile_groups; // indirect dispatch of the tiles; with the kernels for GPUs of those without the next
+    uvec4 tile_groups; // indirect dispatch of the tiles; with the kernels for GPUs but for those of several_tile_groups
     uvec4 several_tile_groups; // indirect dispatch of the tiles in which several surfaces cut a splat
     uvec4 composite; // indirect draw of the tiles' picture
-    uint pairs; // pairs of tile and splat
+    uint pairs; // pairs of tile and splat; those of macro-tile and splat where already these have no room
     uint tiled; // 1: the pairs have room, and tiles draw the splats
     uint sort_base; // what the sort counts the survivors' keys from
     uint sort_skipped; // passes of the sort, from the first, that their keys do without

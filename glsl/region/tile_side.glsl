@@ -183,7 +183,7 @@ uint tile_side(vec3 linear, vec3 curvature, vec4 centre_conic, float conic_z, ve
     }
 #ifndef RARA_SUBGROUP
     if (!SEVERAL) {
-        // On GPUs the question would take more registers than all the rest of a pipeline for one surface.
+        // On GPUs the bounds of planes would take more registers than all the rest of a pipeline for one surface.
         return SIDE_CUTOFF;
     }
 #endif

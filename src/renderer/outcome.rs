@@ -7,7 +7,7 @@ pub(crate) enum Submission {
     /// picture, but slower.
     InFlight,
     /// It is submitted when all earlier ones are finished, and waited for itself. If its tiles' lists have no room, nothing
-    /// is drawn, and it is submitted once more, with more room or as quads.
+    /// is drawn, and it is submitted again, with more room or as quads.
     Awaited,
 }
 

@@ -5,7 +5,7 @@
 /// a tile, where they are few and large.
 const USUAL_PER_GAUSSIAN: u32 = 2;
 const USUAL_PER_TILE: u32 = 64;
-/// The most pairs, 1.5 GiB of lists, or 2.1 GiB with the kernels for GPUs: frames with more are drawn as quads.
+/// The most pairs, 1.5 GiB of lists, or 2.2 GiB with the kernels for GPUs: frames with more are drawn as quads.
 const MOST: u32 = 1 << 27;
 
 /// The room for pairs. It grows with the frames' needs, and does not shrink.

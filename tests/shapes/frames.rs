@@ -3,7 +3,7 @@
 use rara::gpu::{Bindings, DeviceShape};
 use rara::limits::SORT_BITS;
 use rara::types::{FrameCounts, FrameData};
-use rara::{Camera, Clip, Gaussians, Headless, Picture, Raster, Settings};
+use rara::{Camera, Clip, Headless, Picture, Raster, Scene, Settings};
 
 use crate::common;
 
@@ -47,13 +47,22 @@ impl Shapes {
         }
     }
 
-    pub fn load(&mut self, scene: &Gaussians) {
+    pub fn load<'a>(&mut self, scene: impl Into<Scene<'a>>) {
+        let scene = scene.into();
         for (_, renderer) in &mut self.renderers {
-            renderer.load(scene).expect("uploads");
+            renderer.load(&scene).expect("uploads");
         }
     }
 
-    /// Draws a whole frame with each, twice with those for GPUs, and compares them. Returns how many Gaussians are drawn.
+    /// What the frame before has counted with kernels for GPUs.
+    pub fn counts(&mut self) -> FrameCounts {
+        let (_, renderer) = self.renderers.last_mut().expect("several");
+        let bytes = renderer.working_buffer("counts").expect("the counts");
+        bytemuck::pod_read_unaligned(&bytes)
+    }
+
+    /// Draws a whole frame with each, twice more with the last for GPUs, and compares them. Returns how many Gaussians are
+    /// drawn.
     pub fn check(&mut self, what: &str, camera: &Camera, clip: &Clip, settings: &Settings) -> u32 {
         for (_, renderer) in &mut self.renderers {
             renderer.forget();

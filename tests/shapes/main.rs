@@ -7,9 +7,11 @@
 mod common;
 mod frames;
 
-use glam::{DMat3, DVec3, Vec3};
-use rara::scene::{Kind, generate};
-use rara::{Camera, Clip, ClipOp, Gaussians, Mode, Raster, Settings};
+use glam::{DMat3, DQuat, DVec3, Vec3};
+use rara::scene::{Bounds, Kind, generate};
+use rara::{
+    Camera, Clip, ClipOp, Gaussians, Layer, LayerState, Mode, Placement, Raster, Scene, Settings,
+};
 
 use frames::Shapes;
 
@@ -55,7 +57,25 @@ fn check_modes(shapes: &mut Shapes, name: &str, scene: &Gaussians) {
         let what = format!("{name}, {mode:?}, {planes} planes {op:?}");
         let settings = Settings::default().mode(mode).raster(Raster::Tiles);
         shapes.check(&what, &camera, &clip, &settings);
+        let counts = shapes.counts();
+        let [few, several] = [counts.tile_groups, counts.several_tile_groups].map(|list| list[3]);
+        let is_split = mode == Mode::Exact && planes > 1;
+        assert_eq!(several > 0, is_split, "{what}: {few}, {several}");
     }
+    // From within, where splats are cut by the image plane and cover the whole picture.
+    let bounds = Bounds::of(scene);
+    let ahead = bounds.centre() + DVec3::new(0.3, 0.1, 1.0);
+    let inside = Camera::look_at(
+        bounds.centre(),
+        ahead,
+        -DVec3::Y,
+        70.0,
+        common::scaled(SIZE),
+    );
+    let clip = common::clip(scene, 2, ClipOp::Or);
+    let settings = Settings::default().raster(Raster::Tiles);
+    let what = format!("{name}, from within");
+    shapes.check(&what, &inside.expect("a view"), &clip, &settings);
     // Quads show the sorted keys, whose buffers the bin uses for more; nothing else of theirs depends on the kernels.
     let settings = Settings::default().raster(Raster::Quad);
     let clip = common::clip(scene, 1, ClipOp::And);
@@ -74,6 +94,63 @@ fn a_moving_clip() {
         let clip = common::moved(common::clip(&scene, 2, ClipOp::And), 0.05 * f64::from(step));
         let what = format!("{name}, move {step}");
         shapes.check_next(&what, &camera, &clip, &settings);
+    }
+    shapes.close();
+}
+
+/// More blocks than a workgroup lists, in layers of which one is hidden, another placed and faded.
+#[test]
+fn many_blocks_in_layers() {
+    let mut shapes = Shapes::new();
+    let mut scene = generate(Kind::General, 140_000, 4);
+    scene
+        .scales_mut()
+        .iter_mut()
+        .for_each(|scale| *scale *= 0.3);
+    let parts = [0, 1, 2].map(|part| common::picked(&scene, (part..scene.len()).step_by(3)));
+    let hidden = LayerState::default().visible(false);
+    let turned = Placement::new(DVec3::ZERO, DQuat::from_rotation_y(0.3), 0.8).expect("possible");
+    let faded = LayerState::default().placement(turned).opacity(0.6);
+    let layers = Scene::from_iter([
+        Layer::new("hidden", &parts[0]).with(hidden),
+        Layer::new("faded", &parts[1]).with(faded),
+        Layer::new("whole", &parts[2]),
+    ]);
+    shapes.load(&layers);
+    let camera = common::views(&scene, 3, SIZE)[0];
+    let settings = Settings::default().raster(Raster::Tiles);
+    for step in 0..3 {
+        let clip = common::clip(&scene, 1, ClipOp::And);
+        let clip = common::moved(clip, 0.05 * f64::from(step));
+        shapes.check_next(&format!("move {step}"), &camera, &clip, &settings);
+    }
+    shapes.close();
+}
+
+/// Survivors that reach no pixel's centre have no pairs, and the frame before has left the counts of many.
+#[test]
+fn survivors_without_pixels() {
+    let mut shapes = Shapes::new();
+    let many = in_layers(5_000, 5_000);
+    let settings = Settings::default().raster(Raster::Tiles);
+    let mut one = in_layers(1, 1);
+    one.positions_mut()[0] = Vec3::ZERO;
+    one.scales_mut()[0] = Vec3::splat(0.03);
+    for size in [SIZE, (8, 8)] {
+        shapes.load(&many);
+        shapes.check("many", &facing(size), &Clip::default(), &settings);
+        shapes.load(&one);
+        let mut missed = 0;
+        for step in 0..16 {
+            // The picture's corner moves over the splat, whose rectangle has corners that its ellipse does not reach.
+            let mut camera = facing(size);
+            camera.cx = f64::from(step) * -0.4;
+            camera.cy = camera.cx;
+            let what = format!("one, {size:?}, step {step}");
+            let drawn = shapes.check_next(&what, &camera, &Clip::default(), &settings);
+            missed += usize::from(drawn == 1 && shapes.counts().pairs == 0);
+        }
+        assert!(missed > 0, "a survivor without pixels");
     }
     shapes.close();
 }

@@ -36,7 +36,7 @@ pub(super) const KERNELS: KernelSet = KernelSet {
 };
 
 /// The pairs of macro-tile and splat, and what is counted of them. The tiles' lists are the other half of the sort's keys,
-/// which nobody needs any more when they are written.
+/// which nobody needs any more when the lists are written.
 #[derive(Debug)]
 pub(in crate::passes) struct Scratch {
     pair_sums: Buffer,
@@ -151,11 +151,10 @@ pub(in crate::passes) const COSTS: &[Cost] = &[
     Cost::of::<macro_scan::Program>(partitions_of_splats, |n| {
         2 + n.partitions().div_ceil(limits::RADIX_GROUP_SIZE.into())
     }),
-    // How many pairs there are; the search among all splats, for both ends together, then for each of its own pairs among
-    // those of a partition; and what is known of the splat.
+    // How many pairs there are; the search among all splats, for both ends together; where the pairs of those in between begin;
+    // then what is known of the splat of each of its own pairs.
     Cost::of::<macro_expand::Program>(partitions_of_pairs, |n| {
-        let search = |among: u64| u64::from(among.next_power_of_two().ilog2());
-        1 + search(n.survivors) + search(limits::RADIX_PARTITION.into()) + OWN
+        2 + u64::from(n.survivors.next_power_of_two().ilog2()) + 1 + OWN
     }),
     Cost {
         name: radix::PAIR_COUNT,
@@ -178,9 +177,10 @@ pub(in crate::passes) const COSTS: &[Cost] = &[
     },
     // How many pairs there are; then its own.
     Cost::of::<macro_ranges::Program>(partitions_of_pairs, |_| 1 + OWN),
-    // How many batches there are; the search for its own; then each of its splats, the mask and perhaps the splat.
-    Cost::of::<batch_count::Program>(batches, |n| 1 + batch(n)),
-    // The macro-tile's pairs; then the counts of its batches.
+    // How many batches there are; the search for its own; then each of its splats, the mask and perhaps the splat, and once
+    // more the splat and its record.
+    Cost::of::<batch_count::Program>(batches, |n| 1 + batch(n) + 2 * BATCH_TURNS),
+    // The macro-tile's pairs; then the counts of its batches, as many as the others have.
     Cost::of::<batch_scan::Program>(
         |n| n.macro_tiles() * u64::from(limits::MACRO_TILES),
         |n| 2 + n.batches().div_ceil(n.macro_tiles()),
@@ -191,7 +191,7 @@ pub(in crate::passes) const COSTS: &[Cost] = &[
         |n| {
             let columns = n.tile_columns.div_ceil(limits::MACRO_COLUMNS.into());
             let turns = |words: u64| words.div_ceil(limits::RADIX_GROUP_SIZE.into());
-            turns(n.tile_rows * columns) + turns(n.tile_columns)
+            2 + turns(n.tile_rows * columns) + turns(n.tile_columns)
         },
     ),
     // As batch_count; then where the tile begins.
@@ -221,8 +221,12 @@ fn batches(numbers: &FrameNumbers) -> u64 {
 #[cfg(feature = "lab")]
 fn batch(numbers: &FrameNumbers) -> u64 {
     let search = u64::from(numbers.macro_tiles().next_power_of_two().ilog2());
-    search + 1 + 3 * u64::from(limits::BATCH_SPLATS / limits::RADIX_GROUP_SIZE)
+    search + 1 + 3 * BATCH_TURNS
 }
+
+/// Splats of a batch for each invocation.
+#[cfg(feature = "lab")]
+const BATCH_TURNS: u64 = (limits::BATCH_SPLATS / limits::RADIX_GROUP_SIZE) as u64;
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (b, t) = (frame.buffers, frame.tiles());

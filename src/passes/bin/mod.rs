@@ -1,7 +1,7 @@
 //! Stage `bin`: the splats of each tile, by depth.
 //!
 //! It is given the survivors' outlines, as masks or as splats, and their [order](super::sort::sorted); it leaves the tiles'
-//! lists and where they begin, and how many pairs of tile and splat there are. The plan says which kernels do it: each set
+//! lists and where they begin, how many pairs of tile and splat there are, and on GPUs lists of the tiles themselves. The plan says which kernels do it: each set
 //! has a file here, shaders and scratch of its own, and may use the buffers that the sort has left over.
 
 mod macro_tiles;

@@ -43,7 +43,7 @@ pub struct FrameNumbers {
     pub macro_pairs: u64,
     /// Pairs of tile and splat.
     pub pairs: u64,
-    /// Tiles that hold splats, but for those that follow.
+    /// Tiles that hold splats, of which several surfaces cut none.
     pub filled_tiles: u64,
     /// Tiles in which several surfaces cut a splat.
     pub several_tiles: u64,

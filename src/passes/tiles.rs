@@ -49,8 +49,8 @@ impl TileWork {
         Self {
             rows,
             // The shader counts on subgroups without gaps, which come together again after each branch. CPU drivers run
-            // them like that, as vectors under a mask; Vulkan does not promise it unless it is asked for. GPUs, whose
-            // loads serve all invocations at once, would not gain as much either.
+            // them like that, as vectors under a mask; Vulkan does not promise it unless it is asked for. On GPUs a batch goes
+            // through shared memory, which asks for nothing.
             subgroups: is_cpu && subgroup_size > 0 && invocations.is_multiple_of(subgroup_size),
         }
     }
@@ -97,12 +97,16 @@ impl TilePixels {
 /// The tiles that a dispatch draws: all, or with the kernels for GPUs one of the two lists of those that hold anything.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum List {
+    /// All tiles, strip by strip.
     All,
     /// Tiles that need no code for several surfaces, which takes most of a pipeline's registers.
     Few,
     /// Tiles in which several surfaces cut a splat.
     Several,
 }
+
+/// The name of the kernel that draws the tiles in which several surfaces cut a splat.
+const SEVERAL_TILES: &str = "several_tiles";
 
 /// True when tiles in which several surfaces cut a splat are told from the others.
 pub(super) fn has_several_kinds(plan: &Plan) -> bool {
@@ -152,13 +156,8 @@ fn kernel(plan: &Plan, list: List) -> Kernel<tiles::Program> {
     }
 }
 
-/// The name of the kernel that draws the tiles in which several surfaces cut a splat.
-const SEVERAL_TILES: &str = "several_tiles";
-
 #[cfg(feature = "lab")]
 pub(super) const COSTS: &[Cost] = &[
-    // The tile, its bounds; and for each batch of the splats of a tile as full as the others their numbers, the splats and, if
-    // they are cut, the rest of them.
     Cost::of::<tiles::Program>(|n| n.filled_tiles * TILE, batches),
     Cost {
         name: SEVERAL_TILES,
@@ -170,10 +169,15 @@ pub(super) const COSTS: &[Cost] = &[
 #[cfg(feature = "lab")]
 const TILE: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64;
 
+/// The tile, its bounds, the count of its list; and in a tile as full as the others, for each batch its splats' numbers, the
+/// splats and what else their side of the tile takes, and for each splat that is weighed its record's header and its planes.
 #[cfg(feature = "lab")]
 fn batches(numbers: &FrameNumbers) -> u64 {
-    let tiles = numbers.tile_columns * numbers.tile_rows;
-    3 + 3 * numbers.pairs.div_ceil(tiles).div_ceil(TILE)
+    let splats = numbers
+        .pairs
+        .div_ceil(numbers.tile_columns * numbers.tile_rows);
+    let weighed = splats * numbers.cut / numbers.survivors.max(1);
+    3 + 3 * splats.div_ceil(TILE) + 2 * weighed
 }
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {

@@ -55,10 +55,20 @@ impl Frame {
         self.is_usual() && !self.layered && self.raster != Raster::Mesh
     }
 
-    /// True of frames in whose commands the others do not differ: more planes and another mode, format or preset change none.
+    /// True when the host asks for the splats' depths.
+    pub fn wants_depth(&self) -> bool {
+        self.host == Host::WantsDepth
+    }
+
+    /// True of frames in whose commands the others do not differ: more planes in a mode that is not exact, another format or
+    /// another preset change none.
     pub fn is_usual(&self) -> bool {
         let stored = self.stored == ShFormat::Packed && self.preset == Preset::Balanced;
-        let clip = self.planes <= 1 && self.mode != Mode::Rara;
+        let clip = match self.mode {
+            Mode::Exact => true,
+            Mode::Rara => false,
+            _ => self.planes <= 1,
+        };
         stored && clip && self.host != Host::HasDepth
     }
 }

@@ -67,12 +67,6 @@ fn passes_have_the_invocations_that_they_declare() {
     for frame in all.filter(|frame| frame.is_usual() && frame.raster == Raster::Tiles) {
         seen.extend(check_invocations(&frames, &frame));
     }
-    let cut_by_several = frames
-        .all()
-        .into_iter()
-        .find(|frame| frame.name == "tiles, exact, three planes");
-    let cut_by_several = cut_by_several.expect("one of the kinds");
-    seen.extend(check_invocations(&frames, &cut_by_several));
     frames.close();
     // More macro-tiles than a digit has values: their sort takes a second pass.
     let frames = Frames::on_a_gpus_kernels((2600, 1500));

@@ -61,7 +61,9 @@ fn kernels_are_those_that_the_host_asks_for() {
             let canvas = world.canvas(&lent, usual);
             let drawn = world.drawn_in_c(ours.device, &canvas, |_| uploaded);
             assert!(drawn == world.drawn(&device, &canvas), "as in Rust");
-            assert!(drawn != world.drawn(usual, &canvas), "sums round otherwise");
+            if usual.shape() == DeviceShape::Cpu {
+                assert!(drawn != world.drawn(usual, &canvas), "sums round otherwise");
+            }
             rara_scene_buffers_destroy(uploaded);
             rara_gaussians_destroy(ours.gaussians);
             rara_device_destroy(ours.device);

@@ -44,7 +44,7 @@ pub(crate) fn record(
     map: Option<DepthMap>,
 ) {
     let buffers = buffers!(splat {
-        b => [frame, counts, splats, cut_records];
+        b => [frame, counts, splats, quads, cut_records];
         order: &b.order[plan.sorted()],
     });
     let [depth_offset, depth_scale] = map.map_or([0.0; 2], |map| map.factors());

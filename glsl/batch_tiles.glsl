@@ -25,7 +25,7 @@ uvec4 tiles_of(uint splat, uvec2 corner) {
     if (tiles.y == 0u) {
         return tiles_of_mask(tiles.x, tiles.zw, corner);
     }
-    return tiles_of_outline(outline(splats.at[splat]), corner);
+    return tiles_of_outline(bounded_outline(splats.at[splat], tiles.zw), corner);
 }
 
 void find_held(Batch batch) {

@@ -46,7 +46,8 @@ uvec2 tiles_between(float low, float high, float pixels, uint side) {
     return first <= last ? uvec2(to_uint(first) / side, to_uint(last) / side + 1u) : uvec2(0u);
 }
 
-Outline outline(Splat splat) {
+// All of a splat's outline but what its quad leaves.
+Outline contour(Splat splat) {
     precise Outline o;
     o.centre = splat.centre_conic.xy;
     o.conic = vec3(splat.centre_conic.zw, splat.conic_cut.x);
@@ -59,17 +60,37 @@ Outline outline(Splat splat) {
     // Near the contour's ends its chord is a root of a difference, which is off by the root of single precision.
     o.margin = 0.01 + 4e-4 * width + 1e-6 * largest(vec3(o.centre, 0.0));
     o.half_height = extent * sqrt(k) / (o.conic.x * o.conic.z) + o.margin;
-    vec2 middle = o.centre + splat.middle.xy;
-    vec2 half_sides = abs(splat.axes.xy) + abs(splat.axes.zw);
-    o.sides = middle.x + vec2(-half_sides.x, half_sides.x);
-    float top = max(middle.y - half_sides.y, o.centre.y - o.half_height);
-    float bottom = min(middle.y + half_sides.y, o.centre.y + o.half_height);
     o.line = NO_LINE;
     vec3 linear = vec3(splat.conic_cut.zw, splat.colour_cut.w);
     if (abs(linear.x) < Z_RANGE) {
-        o.line = cut_away_line(linear, splat.curvature.xyz, vec2(width, o.half_height));
+        o.line = cut_away_line(linear, splat.curvature_depth.xyz, vec2(width, o.half_height));
     }
+    return o;
+}
+
+Outline outline(Splat splat, Quad quad) {
+    precise Outline o = contour(splat);
+    vec2 middle = o.centre + quad.middle;
+    vec2 half_sides = abs(quad.first) + abs(quad.second);
+    o.sides = middle.x + vec2(-half_sides.x, half_sides.x);
+    float top = max(middle.y - half_sides.y, o.centre.y - o.half_height);
+    float bottom = min(middle.y + half_sides.y, o.centre.y + o.half_height);
     o.rows = tiles_between(top, bottom, FRAME.view.size.y, TILE_HEIGHT);
+    return o;
+}
+
+// What a quad leaves of an outline, in two words: first and last (exclusive) row of tiles, and those columns of pixels.
+uvec2 bounds(Outline o) {
+    float width = FRAME.view.size.x;
+    vec2 columns = clamp(vec2(ceil(o.sides.x - 0.5), floor(o.sides.y - 0.5) + 1.0), 0.0, width);
+    return uvec2(o.rows.x | o.rows.y << 16, to_uint(columns.x) | to_uint(columns.y) << 16);
+}
+
+// The outline that has these bounds. Its sides are those of the pixels, so that it reaches the same tiles.
+Outline bounded_outline(Splat splat, uvec2 bounds) {
+    precise Outline o = contour(splat);
+    o.rows = uvec2(bounds.x & 0xffffu, bounds.x >> 16);
+    o.sides = vec2(float(bounds.y & 0xffffu) + 0.5, float(bounds.y >> 16) - 0.5);
     return o;
 }
 
@@ -111,10 +132,11 @@ const uint MASK_SIDE = 8u;
 // Stands for a mask's first tile where the mask cannot hold all tiles. No tile has this number: its row would be 65535.
 const uint NO_MASK = ~0u;
 
-// x: first column and, in the upper half, first row; y: 1 where the tiles are more than the mask holds; zw: the mask.
+// x: first column and, in the upper half, first row; y: 1 where the tiles are more than the mask holds; zw: the mask, or in
+// its place the outline's bounds, from which the passes that need them find the tiles.
 uvec4 tile_mask(Outline o) {
     if (o.rows.y - o.rows.x > MASK_SIDE) {
-        return uvec4(0u, 1u, 0u, 0u);
+        return uvec4(0u, 1u, bounds(o));
     }
     uvec2 spans[MASK_SIDE];
     uint first = 0xffffu; // no column: a mask of nothing is one too, and not NO_MASK
@@ -126,7 +148,7 @@ uvec4 tile_mask(Outline o) {
         last = any ? max(last, spans[row].y) : last;
     }
     if (last > first + MASK_SIDE) {
-        return uvec4(0u, 1u, 0u, 0u);
+        return uvec4(0u, 1u, bounds(o));
     }
     uvec2 mask = uvec2(0u);
     for (uint row = 0u; row < MASK_SIDE; row++) {

@@ -1,4 +1,4 @@
-// The code that the two front ends of the splat pass share: the n-th splat, and its corners.
+// The code that the two front ends of the splat pass share: the n-th survivor from the back, and its corners.
 #ifndef RARA_CORNERS
 #define RARA_CORNERS
 #include "frame.glsl"
@@ -7,25 +7,22 @@
 BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, Splat, splats)
 BUFFER(readonly, 3, uint, order)
+BUFFER(readonly, 5, Quad, quads)
 
 // Splats are drawn back to front: the blend is the ordinary `over`, so that a host can draw them onto what it has drawn.
 uint number_at(uint number) {
     return order.at[counts.at[0].mesh_groups.w - 1u - number];
 }
 
-Splat splat_at(uint number) {
-    return splats.at[number_at(number)];
-}
-
 // True when splats have a depth in the host's buffer.
 layout(constant_id = 5) const bool DEPTH = false;
 
 // Corner 0 to 3 of a strip.
-vec4 corner(Splat splat, uint number) {
+vec4 corner(Splat splat, Quad quad, uint number) {
     float first = (number & 1u) == 0u ? -1.0 : 1.0;
     float second = (number & 2u) == 0u ? -1.0 : 1.0;
-    vec2 at = splat.centre_conic.xy + splat.middle.xy + first * splat.axes.xy + second * splat.axes.zw;
-    return vec4(2.0 * at * FRAME.view.size.zw - 1.0, DEPTH ? host_depth(splat.middle.w) : 0.0, 1.0);
+    vec2 at = splat.centre_conic.xy + quad.middle + first * quad.first + second * quad.second;
+    return vec4(2.0 * at * FRAME.view.size.zw - 1.0, DEPTH ? host_depth(splat.curvature_depth.w) : 0.0, 1.0);
 }
 
 // The centre in the coordinates of gl_FragCoord, and k0 k1.

@@ -28,7 +28,7 @@ void main() {
         if (tiles.y == 0u) {
             rect = rect_of_mask(tiles.x, tiles.zw);
         } else {
-            rect = rect_of_outline(outline(splats.at[splat]));
+            rect = rect_of_outline(bounded_outline(splats.at[splat], tiles.zw));
         }
         uint count = rect.size.x * rect.size.y;
         pair_begins.at[i] = count;

@@ -5,19 +5,22 @@
 #include "quad.glsl"
 #include "spherical_harmonics.glsl"
 #include "bin.glsl"
+#include "depth_keys.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 layout(constant_id = 0) const bool CUT = false;
 // True when tiles are wanted.
 layout(constant_id = 2) const bool TILES = false;
+// True when quads are drawn, or may have to be where the tiles' lists have no room.
+layout(constant_id = 3) const bool QUADS = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uint, sh)
 BUFFER(readonly, 3, uvec2, survivors)
 BUFFER(readonly, 4, FrameCounts, counts)
 BUFFER(writeonly, 5, Splat, splats)
-BUFFER(writeonly, 6, uint, keys)
-BUFFER(writeonly, 7, uint, same_keys)
+BUFFER(writeonly, 6, Quad, quads)
+BUFFER(writeonly, 7, uint, depth_keys)
 #include "sh_storage.glsl"
 BUFFER(readonly, 8, vec4, cut_records)
 BUFFER(writeonly, 9, uvec4, tile_masks)
@@ -66,15 +69,16 @@ void main() {
     vec3 conic = conic_of(f);
     Carried weight = CUT ? carried_weight(survivors.at[survivor].y) : whole_weight();
     Quad quad = quad_around(f, extent, weight);
+    if (QUADS) {
+        quads.at[survivor] = quad;
+    }
     splat.centre_conic = vec4(f.screen_centre, conic.xy);
     splat.conic_cut = vec4(conic.z, opacity, weight.linear.xy);
     splat.colour_cut = vec4(colour(index, normalize(f.relative / largest(f.relative))), weight.linear.z);
-    splat.axes = vec4(quad.first, quad.second);
-    splat.middle = vec4(quad.middle, gaussian.scale.w, f.view_centre.z);
-    splat.curvature = vec4(weight.curvature, 0.0);
+    splat.curvature_depth = vec4(weight.curvature, f.view_centre.z);
     splats.at[survivor] = splat;
     if (TILES) {
-        Outline o = outline(splat);
+        Outline o = outline(splat, quad);
         uint cut = survivors.at[survivor].y;
         if (CUT && cut != NOT_CUT) {
             o.line = cut_away_line_of_record(o.line, cut, weight, conic, extent);
@@ -84,7 +88,6 @@ void main() {
     // Positive floats order like their bits. Counted from the nearest depth that the scene's bounds allow they need
     // fewer bits, and the sort fewer passes; dropping low bits never reverses an order.
     uint depth = max(floatBitsToUint(f.view_centre.z), FRAME.order.key_near) - FRAME.order.key_near;
-    uint key = min(depth, FRAME.order.key_span) >> FRAME.order.key_shift;
-    keys.at[survivor] = key;
-    same_keys.at[survivor] = key; // for whichever pass of the sort is the first
+    depth_keys.at[survivor] = min(depth, FRAME.order.key_span) >> FRAME.order.key_shift;
+    depth_keys.at[number_place(survivor)] = floatBitsToUint(gaussian.scale.w);
 }

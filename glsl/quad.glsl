@@ -4,13 +4,6 @@
 #include "footprint.glsl"
 #include "cut.glsl"
 
-// Relative to the splat's centre, px: the points middle + s first + t second with s and t in [-1, 1].
-struct Quad {
-    vec2 middle;
-    vec2 first;
-    vec2 second;
-};
-
 // A little wider than exact: the fragment stage decides what is inside, and the quad must only not be too small.
 // Rasterisers may move its corners by half of the least precision that Vulkan allows them, 1/32 px.
 float widened(float half_side) {

@@ -17,6 +17,12 @@ BUFFER(readonly, 3, uint, order)
 BUFFER(readonly, 4, uint, histogram)
 BUFFER(writeonly, 5, uint, sorted_keys)
 BUFFER(writeonly, 6, uint, sorted_order)
+BUFFER(readonly, 7, uint, depth_keys)
+
+// The first pass of the survivors' keys carries them from where they were found.
+uint key_at(bool is_first, uint i) {
+    return is_first ? depth_keys.at[i] : keys.at[i];
+}
 
 // Where a digit's keys of this partition go, less the place of the digit's first item.
 shared uint offsets[DIGITS];
@@ -34,7 +40,7 @@ void main() {
     for (uint k = 0u; k < RADIX_KEYS; k++) {
         uint i = bounds.x + position_of(k);
         // The positions beyond the last key take the last digit, and are left out below.
-        digits[k] = i < bounds.y ? digit(keys.at[i] - base, number) : DIGITS - 1u;
+        digits[k] = i < bounds.y ? digit(key_at(is_first, i) - base, number) : DIGITS - 1u;
     }
     sort_positions(digits);
     offsets[local] = before + histogram.at[COUNT_PLACE(local, p)] - digit_begins[local];
@@ -43,7 +49,7 @@ void main() {
         uint item = items[i];
         uint place = offsets[item_digit(item)] + i;
         uint source = bounds.x + item_position(item);
-        sorted_keys.at[place] = keys.at[source];
+        sorted_keys.at[place] = key_at(is_first, source);
         sorted_order.at[place] = is_first ? source : order.at[source];
     }
 }

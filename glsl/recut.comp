@@ -9,6 +9,8 @@
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 // True when tiles are wanted.
 layout(constant_id = 0) const bool TILES = false;
+// True when quads are drawn.
+layout(constant_id = 1) const bool QUADS = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uvec2, survivors)
@@ -18,12 +20,13 @@ BUFFER(readonly, 5, vec4, cut_records)
 BUFFER(readonly, 6, uvec4, tile_masks)
 BUFFER(, 7, Splat, splats)
 BUFFER(writeonly, 8, uint, dirty)
+BUFFER(writeonly, 9, Quad, quads)
 #include "carried.glsl"
 
 // All that find a tile changed write the same value. The tiles are the whole splat's, as in the lists.
-void mark(uint survivor, Quad whole) {
+void mark(uint survivor) {
     uvec4 tiles = tile_masks.at[survivor];
-    for (uvec2 mask = tiles.zw; (mask.x | mask.y) != 0u;) {
+    for (uvec2 mask = tiles.y == 0u ? tiles.zw : uvec2(0u); (mask.x | mask.y) != 0u;) {
         Span span = next_span(tiles.x, mask);
         uvec2 columns = span.columns + span.row * FRAME.tiles.tile_columns;
         for (uint tile = columns.x; tile < columns.y; tile++) {
@@ -33,9 +36,7 @@ void mark(uint survivor, Quad whole) {
     if (tiles.y != 0u) {
         Splat splat = splats.at[survivor];
         splat.conic_cut.z = Z_WHOLE;
-        splat.axes = vec4(whole.first, whole.second);
-        splat.middle.xy = whole.middle;
-        Outline o = outline(splat);
+        Outline o = bounded_outline(splat, tiles.zw);
         for (uint row = o.rows.x; row < o.rows.y; row++) {
             uvec2 columns = tiles_in_row(o, row) + row * FRAME.tiles.tile_columns;
             for (uint tile = columns.x; tile < columns.y; tile++) {
@@ -60,19 +61,20 @@ void main() {
     if (cut < CUT_AWAY) {
         weight = carried_weight(cut);
     }
-    float extent = opacity_extent(opacity_in_layer(gaussian));
     if (TILES) {
-        mark(survivor, quad_around(f, extent, whole_weight()));
+        mark(survivor);
     }
-    Quad quad = quad_around(f, extent, weight);
+    Quad quad = Quad(vec2(0.0), vec2(0.0), vec2(0.0));
     if (cut == CUT_AWAY) {
         // The quad holds nothing to rasterise; tiles look at z.
         weight.linear.x = Z_CUT_AWAY;
-        quad = Quad(vec2(0.0), vec2(0.0), vec2(0.0));
+    } else if (QUADS) {
+        quad = quad_around(f, opacity_extent(opacity_in_layer(gaussian)), weight);
     }
     splats.at[survivor].conic_cut.zw = weight.linear.xy;
     splats.at[survivor].colour_cut.w = weight.linear.z;
-    splats.at[survivor].axes = vec4(quad.first, quad.second);
-    splats.at[survivor].middle.xy = quad.middle;
-    splats.at[survivor].curvature = vec4(weight.curvature, 0.0);
+    splats.at[survivor].curvature_depth.xyz = weight.curvature;
+    if (QUADS) {
+        quads.at[survivor] = quad;
+    }
 }

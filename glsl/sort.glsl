@@ -1,8 +1,8 @@
 // The parts that all kernels of the sort share: a stable radix sort from the least significant digit on.
 //
 // The first count finds the least and the greatest key. Counted from the least, the keys may differ in fewer digits than
-// the scene's bounds allow. The first passes are then skipped, so that the sorted keys end up in the same buffer. Project
-// writes the keys to both buffers, so that whichever pass is the first finds them.
+// the scene's bounds allow. The first passes are then skipped, so that the sorted keys end up in the same buffer. Whichever
+// pass is the first carries the keys from `depth_keys`, where project has left them, and the later ones from `keys`.
 #ifndef RARA_SORT
 #define RARA_SORT
 #include "frame.glsl"

@@ -15,6 +15,7 @@ BUFFER(readonly, 3, uint, order)
 BUFFER(, 4, uint, histogram)
 BUFFER(writeonly, 5, uint, sorted_keys)
 BUFFER(writeonly, 6, uint, sorted_order)
+BUFFER(readonly, 7, uint, depth_keys)
 
 void main() {
     uint run = gl_GlobalInvocationID.x;
@@ -23,7 +24,7 @@ void main() {
     bool is_first = number == 0u; // the survivors are in their own order
     uvec2 bounds = run_bounds(run, FRAME.order.sort_runs, KEY_COUNT);
     for (uint i = bounds.x; i < bounds.y; i++) {
-        uint key = keys.at[i];
+        uint key = is_first ? depth_keys.at[i] : keys.at[i];
         uint slot = run * DIGITS + digit(key - base, number);
         uint place = histogram.at[slot];
         histogram.at[slot] = place + 1u;

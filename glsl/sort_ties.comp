@@ -12,7 +12,7 @@ BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, uint, keys)
 BUFFER(coherent, 3, uint, order)
 BUFFER(coherent, 4, uint, scratch)
-BUFFER(readonly, 5, Splat, splats)
+BUFFER(readonly, 5, uint, depth_keys)
 // The numbers of those that are sorted by digits, by survivor.
 BUFFER(coherent, 6, uint, numbers)
 // The sort's, of which each invocation uses its own run's part.

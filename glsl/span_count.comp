@@ -12,7 +12,7 @@ BUFFER(readonly, 2, Splat, splats)
 BUFFER(readonly, 3, uint, order)
 BUFFER(, 4, uint, span_counts)
 BUFFER(readonly, 5, uvec4, tile_masks)
-// The masks once more, in the order of depth, for the third step, in a buffer that the sort no longer needs.
+// The masks or bounds once more, in the order of depth, for the third step, in buffers that the sort no longer needs.
 BUFFER(writeonly, 6, uint, mask_origins)
 BUFFER(writeonly, 7, uint, masks_above)
 BUFFER(writeonly, 8, uint, masks_below)
@@ -32,7 +32,7 @@ void main() {
         mask_origins.at[i] = tiles.y == 0u ? tiles.x : NO_MASK;
         masks_above.at[i] = tiles.z;
         masks_below.at[i] = tiles.w;
-        for (uvec2 mask = tiles.zw; (mask.x | mask.y) != 0u;) {
+        for (uvec2 mask = tiles.y == 0u ? tiles.zw : uvec2(0u); (mask.x | mask.y) != 0u;) {
             Span span = next_span(tiles.x, mask);
             span_counts.at[run * rows + span.row]++;
             found += span.columns.y - span.columns.x;
@@ -40,7 +40,7 @@ void main() {
         if (tiles.y == 0u) {
             continue;
         }
-        Outline o = outline(splats.at[splat]);
+        Outline o = bounded_outline(splats.at[splat], tiles.zw);
         for (uint row = o.rows.x; row < o.rows.y; row++) {
             uvec2 columns = tiles_in_row(o, row);
             span_counts.at[run * rows + row] += columns.x < columns.y ? 1u : 0u;

@@ -32,14 +32,15 @@ void main() {
     for (uint i = bounds.x; i < bounds.y; i++) {
         uint splat = order.at[i];
         uint origin = mask_origins.at[i];
-        for (uvec2 mask = uvec2(masks_above.at[i], masks_below.at[i]); (mask.x | mask.y) != 0u;) {
+        uvec2 words = uvec2(masks_above.at[i], masks_below.at[i]);
+        for (uvec2 mask = origin != NO_MASK ? words : uvec2(0u); (mask.x | mask.y) != 0u;) {
             Span span = next_span(origin, mask);
             put(run * rows + span.row, span.columns, splat);
         }
         if (origin != NO_MASK) {
             continue;
         }
-        Outline o = outline(splats.at[splat]);
+        Outline o = bounded_outline(splats.at[splat], words);
         for (uint row = o.rows.x; row < o.rows.y; row++) {
             uvec2 columns = tiles_in_row(o, row);
             if (columns.x < columns.y) {

@@ -10,10 +10,11 @@ layout(location = 2) flat out vec4 colour_cut;
 layout(location = 3) flat out vec3 curvature;
 
 void main() {
-    Splat splat = splat_at(gl_InstanceIndex);
-    gl_Position = corner(splat, gl_VertexIndex);
+    uint survivor = number_at(gl_InstanceIndex);
+    Splat splat = splats.at[survivor];
+    gl_Position = corner(splat, quads.at[survivor], gl_VertexIndex);
     centre_conic = fragment_centre(splat);
     conic_cut = splat.conic_cut;
     colour_cut = splat.colour_cut;
-    curvature = splat.curvature.xyz;
+    curvature = splat.curvature_depth.xyz;
 }

@@ -5,7 +5,7 @@
 #include "splat_params.glsl"
 #include "corners.glsl"
 
-BUFFER(readonly, 5, SplatDepth, depths)
+BUFFER(readonly, 6, SplatDepth, depths)
 
 layout(location = 0) flat out vec4 centre_conic;
 layout(location = 1) flat out vec4 conic_cut;
@@ -15,12 +15,13 @@ layout(location = 4) flat out vec4 far;
 layout(location = 5) flat out vec4 near;
 
 void main() {
-    Splat splat = splat_at(gl_InstanceIndex);
-    SplatDepth depth = depths.at[number_at(gl_InstanceIndex)];
-    gl_Position = corner(splat, gl_VertexIndex);
+    uint survivor = number_at(gl_InstanceIndex);
+    Splat splat = splats.at[survivor];
+    SplatDepth depth = depths.at[survivor];
+    gl_Position = corner(splat, quads.at[survivor], gl_VertexIndex);
     centre_conic = fragment_centre(splat);
     conic_cut = splat.conic_cut;
-    slope_curvature = vec4(splat.colour_cut.w, splat.curvature.xyz);
+    slope_curvature = vec4(splat.colour_cut.w, splat.curvature_depth.xyz);
     mean = depth.mean;
     far = depth.far;
     near = depth.near;

@@ -1,11 +1,12 @@
 // Puts splats of one depth into the order of their numbers. Included after the size of the workgroup and the buffers `order`,
-// `scratch`, `splats` and `numbers` are declared.
+// `scratch`, `depth_keys` and `numbers` are declared.
 #ifndef RARA_TIES
 #define RARA_TIES
+#include "depth_keys.glsl"
 
 // A survivor's number in the scene.
 uint number(uint survivor) {
-    return floatBitsToUint(splats.at[survivor].middle.z);
+    return depth_keys.at[number_place(survivor)];
 }
 
 void order_alone(uint begin, uint end) {

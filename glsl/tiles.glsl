@@ -142,13 +142,13 @@ Seen load(uint number, vec2 tile_middle) {
     splat.linear = vec3(conic_cut.zw, colour_cut.w);
     splat.curvature = vec3(0.0);
     if (CLIP_MODE == MODE_EXACT && abs(splat.linear.x) < Z_RANGE) {
-        splat.curvature = splats.at[number].curvature.xyz;
+        splat.curvature = splats.at[number].curvature_depth.xyz;
     }
     if (CLIP_MODE >= MODE_RARA && !SHOW_WEIGHT && splat.linear.x < Z_RANGE) {
         uint side = tile_side(splat.linear, splat.curvature, splat.centre_conic, splat.conic_opacity.x, tile_middle);
         splat.linear.x = side == SIDE_VISIBLE ? Z_WHOLE : side == SIDE_INVISIBLE ? Z_CUT_AWAY : splat.linear.x;
     }
-    splat.far = DEPTH_FORM != DEPTH_NONE ? farness(host_depth(splats.at[number].middle.w)) : 0.0;
+    splat.far = DEPTH_FORM != DEPTH_NONE ? farness(host_depth(splats.at[number].curvature_depth.w)) : 0.0;
     return splat;
 }
 

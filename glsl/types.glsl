@@ -136,14 +136,20 @@ struct Block {
     vec4 high_sigma; // greatest ones; largest standard deviation, negative where some may miss all pixels though in view
 };
 
-// A survivor on the screen: what the rasteriser needs.
+// A survivor on the screen: what each pixel that it covers needs of it, in a cache line's 64 bytes.
 struct Splat {
     vec4 centre_conic; // centre, px; k0 k1 of the inverse 2D covariance's Cholesky factor, 1/px
     vec4 conic_cut; // k2; opacity; the weight's z at the centre and dz/dx, as cut.glsl says
     vec4 colour_cut; // colour; dz/dy
-    vec4 axes; // the quad's two half axes, px
-    vec4 middle; // middle of the quad relative to the centre, px; the bits of its number in the scene; the centre's depth
-    vec4 curvature; // of the weight's z: the factors of dx^2, dx dy and dy^2; w unused
+    vec4 curvature_depth; // of the weight's z: the factors of dx^2, dx dy and dy^2; the centre's depth
+};
+
+// The parallelogram that a survivor is drawn with, where quads are drawn, relative to its centre, px: the points middle + s
+// first + t second with s and t in [-1, 1].
+struct Quad {
+    vec2 middle; // its middle
+    vec2 first; // half an axis
+    vec2 second; // half the other
 };
 
 // How deep a splat is in a pixel: the mean of what the clip leaves of it. Only the strictest plane of each kind counts.

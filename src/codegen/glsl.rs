@@ -46,15 +46,16 @@ pub(crate) fn structs(text: &str, numbers: &str) -> String {
         .filter_map(constant)
         .filter_map(|(_, name, value)| Some((name, value.parse().ok()?)))
         .collect();
-    let mut sizes: HashMap<String, usize> = HashMap::new();
+    let mut sizes: HashMap<String, [usize; 2]> = HashMap::new();
     let mut out = String::new();
-    let (mut doc, mut name, mut offset) = (String::new(), String::new(), 0_usize);
+    let (mut doc, mut name) = (String::new(), String::new());
+    let (mut offset, mut largest) = (0_usize, 4);
     for line in text.lines().map(str::trim) {
         if let Some(comment) = line.strip_prefix("//") {
             writeln!(doc, "///{comment}").unwrap();
         } else if let Some(rest) = line.strip_prefix("struct ") {
             name = rest.trim_end_matches(" {").into();
-            offset = 0;
+            (offset, largest) = (0, 4);
             let derives = "Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable";
             write!(
                 out,
@@ -64,26 +65,27 @@ pub(crate) fn structs(text: &str, numbers: &str) -> String {
             doc.clear();
         } else if line == "};" {
             assert!(
-                offset.is_multiple_of(16),
-                "{name}: pad it to a multiple of 16 bytes, or its array stride differs from Rust's"
+                offset.is_multiple_of(largest),
+                "{name}: pad it to a multiple of {largest} bytes, or its array stride differs from Rust's"
             );
             let size = format!("std::mem::size_of::<{name}>() == {offset}");
             writeln!(out, "}}\nconst _: () = assert!({size});\n").unwrap();
-            sizes.insert(std::mem::take(&mut name), offset);
+            sizes.insert(std::mem::take(&mut name), [offset, largest]);
         } else if let Some((field, comment)) = line.split_once(';').filter(|_| !name.is_empty()) {
             let (ty, field) = field.split_once(' ').expect("TYPE NAME;");
-            let (rust, size) = match ty {
-                "float" => ("f32", 4),
-                "uint" => ("u32", 4),
-                "vec4" => ("[f32; 4]", 16),
-                "uvec4" => ("[u32; 4]", 16),
+            let (rust, [size, align]) = match ty {
+                "float" => ("f32", [4, 4]),
+                "uint" => ("u32", [4, 4]),
+                "vec2" => ("[f32; 2]", [8, 8]),
+                "vec4" => ("[f32; 4]", [16, 16]),
+                "uvec4" => ("[u32; 4]", [16, 16]),
                 inner => match sizes.get(inner) {
                     Some(size) => (inner, *size),
                     None => panic!("{name}.{field}: {ty} is not translated to Rust"),
                 },
             };
             assert!(
-                offset.is_multiple_of(size.min(16)),
+                offset.is_multiple_of(align),
                 "{name}.{field} is not aligned: std430 would pad before it"
             );
             let (field, rust, count) = match field.trim_end_matches(']').split_once('[') {
@@ -99,6 +101,7 @@ pub(crate) fn structs(text: &str, numbers: &str) -> String {
                 None => (field, rust.to_string(), 1),
             };
             offset += size * count;
+            largest = largest.max(align);
             let comment = comment.trim().trim_start_matches("//").trim();
             writeln!(out, "{doc}    /// {comment}\n    pub {field}: {rust},").unwrap();
             doc.clear();
@@ -126,6 +129,7 @@ mod tests {
     #[test]
     fn structs_nest_and_array_lengths_may_be_constants() {
         let text = "// A pair.\nstruct Pair {\n    vec4 low; // least\n    uvec4 high;\n};\n\
+                    struct Triple {\n    vec2 all[3];\n};\n\
                     struct Whole {\n    Pair pairs[MOST];\n    float x;\n    uint pad[3];\n};\n";
         let rust = structs(text, "const uint MOST = 2u;\n");
         for expected in [
@@ -134,6 +138,8 @@ mod tests {
             "    pub pairs: [Pair; 2],\n",
             "    pub pad: [u32; 3],\n",
             "size_of::<Whole>() == 80",
+            "    pub all: [[f32; 2]; 3],\n",
+            "size_of::<Triple>() == 24",
         ] {
             assert!(rust.contains(expected), "{expected} is not in\n{rust}");
         }
@@ -148,7 +154,7 @@ mod tests {
     #[test]
     #[should_panic(expected = "multiple of 16")]
     fn a_struct_whose_stride_would_differ_is_refused() {
-        structs("struct A {\n    uint x;\n};\n", "");
+        structs("struct A {\n    vec4 x;\n    uint y;\n};\n", "");
     }
 
     #[test]

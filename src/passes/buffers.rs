@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, BufferDesc, Device, DeviceShape, Location};
 use crate::limits;
 use crate::passes::plan::Plan;
 use crate::passes::{bin, sort};
-use crate::types::{self, FrameCounts, FrameData, LayerData, Splat, SplatDepth, SurfaceData};
+use crate::types::{self, FrameCounts, FrameData, LayerData, Quad, Splat, SplatDepth, SurfaceData};
 
 /// Everything the stages hand to each other. No stage reads a count on the CPU, so each array but the
 /// tiles' lists has room for every Gaussian of the scene; drivers back untouched memory lazily.
@@ -30,6 +30,10 @@ pub(crate) struct Buffers {
     pub(crate) cutoffs: Buffer,
     pub(crate) cut_records: Buffer,
     pub(crate) splats: Buffer,
+    /// What the splats are drawn with; empty where no quads are.
+    pub(crate) quads: Buffer,
+    /// The keys of the survivors' depths, and then their numbers in the scene.
+    pub(crate) depth_keys: Buffer,
     pub(crate) keys: [Buffer; 2],
     pub(crate) order: [Buffer; 2],
     pub(crate) histogram: Buffer,
@@ -91,6 +95,7 @@ struct Sizes {
     cut_bytes: u64,
     /// Words.
     histogram: u64,
+    quads: u64,
     masks: u64,
     pairs: u64,
     tiles: u64,
@@ -127,6 +132,7 @@ impl Sizes {
             },
             cut_bytes,
             histogram: sort::histogram_words(plan),
+            quads: if plan.needs_quads() { gaussians } else { 0 },
             masks: when_tiled(gaussians),
             pairs: when_tiled(plan.data.room.pair_capacity.into()),
             tiles: when_tiled(plan.data.tiles.tile_count.into()),
@@ -213,6 +219,8 @@ impl Buffers {
             cutoffs: gpu("cutoffs", n * 4)?,
             cut_records: gpu("cut_records", sizes.cut_bytes)?,
             splats: gpu("splats", n * size_of::<Splat>() as u64)?,
+            quads: gpu("quads", sizes.quads * size_of::<Quad>() as u64)?,
+            depth_keys: gpu("depth_keys", n * 8)?,
             keys: [gpu("keys", n * 4)?, gpu("sorted_keys", n * 4)?],
             order: [gpu("order", n * 4)?, gpu("sorted_order", n * 4)?],
             histogram: gpu("histogram", sizes.histogram * 4)?,
@@ -273,6 +281,7 @@ impl Buffers {
             && have.clip_blocks >= need.clip_blocks
             && have.cut_bytes >= need.cut_bytes
             && have.histogram >= need.histogram
+            && have.quads >= need.quads
             && have.masks >= need.masks
             && have.pairs >= need.pairs
             && have.tiles >= need.tiles

@@ -79,7 +79,7 @@ pub(crate) fn record_draw(
     (map, unit): (Option<DepthMap>, f64),
 ) {
     let buffers = buffers!(splat_depth {
-        b => [frame, counts, splats, cut_records],
+        b => [frame, counts, splats, quads, cut_records],
         d => [depths];
         order: &b.order[plan.sorted()],
     });

@@ -80,7 +80,14 @@ pub(crate) fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>, readback: &
         r.ready_for_host(&[readback]);
     });
     let order = &b.order[plan.sorted()];
-    recorder.ready_to_draw(&[&b.frame, &b.counts, &b.splats, order, &b.cut_records]);
+    recorder.ready_to_draw(&[
+        &b.frame,
+        &b.counts,
+        &b.splats,
+        &b.quads,
+        order,
+        &b.cut_records,
+    ]);
 }
 
 impl Plan {

@@ -15,11 +15,11 @@ use crate::types::{self, LayerContent, LayerData, RegionData, SurfaceData};
 
 /// The constants of a program: whether there are several layers, and what else is named.
 macro_rules! layered {
-    ($program:ident $(, $constant:ident: $of:expr)?) => {
+    ($program:ident $(, $constant:ident: $of:expr)*) => {
         impl OfPlan for shaders::$program::Constants {
             fn of(plan: &Plan) -> Self {
                 Self {
-                    $($constant: $of(plan),)?
+                    $($constant: $of(plan),)*
                     layered: plan.way.layered,
                 }
             }
@@ -38,7 +38,7 @@ layered!(cutoff);
 layered!(depth);
 layered!(reclip_blocks);
 layered!(reclip);
-layered!(recut, tiles: Plan::is_tiled);
+layered!(recut, tiles: Plan::is_tiled, quads: Plan::needs_quads);
 
 /// The layers and their surfaces. A copy has the same ones.
 #[derive(Debug, Clone)]

@@ -55,6 +55,8 @@ pub(crate) struct Way {
     pub(crate) sort_passes: u32,
     /// True when the splats' depths are wanted.
     pub(crate) expects_depth: bool,
+    /// True when splats are drawn as quads, or may have to be where the tiles' lists have no room.
+    pub(crate) needs_quads: bool,
     /// Colours, or a debug view.
     pub(crate) show: Show,
     /// How the pixels of the tiles' picture are stored.
@@ -124,6 +126,7 @@ impl Plan {
                 layered: scene.layers.len() > 1,
                 sort_passes: keys.passes(),
                 expects_depth: scene.expects_depth,
+                needs_quads: !(is_tiled && scene.redrawn) || scene.expects_depth,
                 show: settings.show,
                 tile_pixels: scene.picture.unwrap_or_default(),
             },
@@ -187,6 +190,11 @@ impl Plan {
     /// True when splats become pixels by tiles.
     pub(crate) fn is_tiled(&self) -> bool {
         self.way.raster == Raster::Tiles
+    }
+
+    /// True when the quads of the splats have to be found.
+    pub(crate) fn needs_quads(&self) -> bool {
+        self.way.needs_quads
     }
 
     /// True when the clip's sides have to be found, of blocks and Gaussians whether in view or not.

@@ -24,6 +24,7 @@ impl OfPlan for project::Constants {
             layered: plan.way.layered,
             sh_format: plan.way.sh_format.code(),
             tiles: plan.is_tiled(),
+            quads: plan.needs_quads(),
         }
     }
 }
@@ -37,11 +38,9 @@ pub(super) const COSTS: &[Cost] = &[
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (scene, b) = (frame.scene, frame.buffers);
-    let [keys, same_keys] = &b.keys;
     let buffers = buffers!(project {
-        b => [frame, survivors, counts, splats, cut_records, tile_masks],
-        scene => [gaussians, sh];
-        keys, same_keys,
+        b => [frame, survivors, counts, splats, quads, depth_keys, cut_records, tile_masks],
+        scene => [gaussians, sh],
     });
     let groups = indirect!(b.counts, FrameCounts, project_groups);
     frame.dispatch(recorder, buffers, (), groups);

@@ -90,6 +90,8 @@ pub(super) struct Pass<'a> {
     pub(super) passes: u32,
     pub(super) keys: [&'a Buffer; 2],
     pub(super) order: [&'a Buffer; 2],
+    /// The keys for whichever pass is the first that the device does not skip.
+    pub(super) first_keys: &'a Buffer,
     pub(super) histogram: &'a Buffer,
 }
 
@@ -103,10 +105,15 @@ impl Pass<'_> {
         groups: Groups<'_>,
     ) {
         let b = frame.buffers;
+        let keys = if self.number == 0 {
+            self.first_keys
+        } else {
+            self.keys[0]
+        };
         let buffers = radix_count::Buffers {
             frame: &b.frame,
             counts: &b.counts,
-            keys: self.keys[0],
+            keys,
             histogram: self.histogram,
         };
         let params = radix_count::Params { pass: self.number };
@@ -145,6 +152,7 @@ impl Pass<'_> {
             order: self.order[0],
             sorted_keys: self.keys[1],
             sorted_order: self.order[1],
+            depth_keys: self.first_keys,
         };
         let params = radix_scatter::Params { pass: self.number };
         kernels

@@ -102,7 +102,7 @@ fn record_recut(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let all = frame.plan.finds_view();
     recorder.fill(&s.dirty, 0, s.dirty.size(), all.into());
     let buffers = buffers!(recut {
-        b => [frame, survivors, counts, cut_records, tile_masks, splats],
+        b => [frame, survivors, counts, cut_records, tile_masks, splats, quads],
         scene => [gaussians],
         s => [recuts, dirty],
     });

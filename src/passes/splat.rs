@@ -15,9 +15,9 @@ use crate::types::FrameCounts;
 
 /// The pipeline that a plan needs: without a clip the fragment shader holds no clip code.
 pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program> {
-    let front = match plan.way.raster {
-        Raster::Mesh => &splat::MESH,
-        _ => &splat::VERT,
+    let shaders = match plan.way.raster {
+        Raster::Mesh => [&splat::MESH, &splat::MESH_FRAG],
+        _ => [&splat::VERT, &splat::FRAG],
     };
     let depth = attachments.depth.is_some();
     let weight = Weight::of(plan);
@@ -30,7 +30,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program
         depth,
         show_weight: plan.way.show == Show::Weight,
     };
-    Draw::new([front, &splat::FRAG], constants, attachments, depth)
+    Draw::new(shaders, constants, attachments, depth)
 }
 
 /// Draws inside the host's rendering scope. `origin` is where its viewport begins, px; `map` says what the host's depth
@@ -44,7 +44,7 @@ pub(crate) fn record(
     map: Option<DepthMap>,
 ) {
     let buffers = buffers!(splat {
-        b => [frame, counts, splats, cut_records];
+        b => [frame, counts, splats, quads, cut_records];
         order: &b.order[plan.sorted()],
     });
     let [depth_offset, depth_scale] = map.map_or([0.0; 2], |map| map.factors());

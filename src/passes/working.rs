@@ -26,6 +26,8 @@ impl Buffers {
             &self.cutoffs,
             &self.cut_records,
             &self.splats,
+            &self.quads,
+            &self.depth_keys,
             &self.histogram,
             &self.tile_masks,
         ];

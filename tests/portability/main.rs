@@ -66,17 +66,20 @@ impl Module {
         all
     }
 
-    /// All but mesh shaders: spirv-cross writes what is none of those without a word, and quads draw the same.
+    /// All but mesh shaders and what is drawn behind them: spirv-cross writes what is none of those without a word, and quads
+    /// draw the same.
     fn without_meshes(variant: &str) -> Vec<Self> {
         let mut all = Self::all(variant);
+        let is_meshes = |module: &Self| module.is("mesh") || module.is("mesh.frag");
         let quads = |mesh: &str| {
-            let vertices = mesh.replace(".mesh", ".vert");
-            all.iter().any(|module| module.shader == vertices)
+            let fragments = mesh.replace(".mesh.frag", ".frag");
+            let sibling = fragments.replace(".mesh", ".vert");
+            all.iter().any(|module| module.shader == sibling)
         };
-        for module in all.iter().filter(|module| module.is("mesh")) {
+        for module in all.iter().filter(|module| is_meshes(module)) {
             assert!(quads(&module.shader), "{} has no quads", module.shader);
         }
-        all.retain(|module| !module.is("mesh"));
+        all.retain(|module| !is_meshes(module));
         all
     }
 

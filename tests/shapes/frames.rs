@@ -153,6 +153,7 @@ fn draw(renderer: &mut Headless, camera: &Camera, clip: &Clip, settings: &Settin
         assert_eq!(counts.tiled, 1, "there is room");
     } else {
         wanted.push((keys, 4 * listed));
+        wanted.push(("quads", size_of::<rara::types::Quad>() * listed));
     }
     let mut buffers: Vec<_> = wanted
         .into_iter()

@@ -4,7 +4,7 @@ use glam::{DMat4, Quat, Vec3};
 use rara::limits::{TILE_HEIGHT, TILE_WIDTH};
 use rara::reference::bin::{self, Outline, Span};
 use rara::reference::{Real, View, project, sort};
-use rara::types::Splat;
+use rara::types::{Quad, Splat};
 use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings};
 
 use crate::frame::{self, SIZE, Stages};
@@ -14,12 +14,11 @@ use crate::sort::places;
 const TRIM_DEVIATIONS: f32 = 4.55;
 
 /// The splat's outline, from which the stage works.
-fn outline<T: Real>(splat: &Splat) -> Outline<T> {
+fn outline<T: Real>(splat: &Splat, quad: &Quad) -> Outline<T> {
     let of = |x: f32| T::of(f64::from(x));
     let [cx, cy, k0, k1] = splat.centre_conic;
     let [k2, opacity, z, along] = splat.conic_cut;
-    let [ax, ay, bx, by] = splat.axes;
-    let [mx, my, ..] = splat.middle;
+    let ([ax, ay], [bx, by], [mx, my]) = (quad.first, quad.second, quad.middle);
     let side = |centre: f32, middle: f32, a: f32, b: f32| {
         let (middle, half) = (of(centre) + of(middle), of(a.abs()) + of(b.abs()));
         [middle - half, middle + half]
@@ -30,7 +29,11 @@ fn outline<T: Real>(splat: &Splat) -> Outline<T> {
         opacity: of(opacity),
         quad: [side(cx, mx, ax, bx), side(cy, my, ay, by)],
         line: (z.abs() < 1e30).then(|| {
-            assert_eq!(splat.curvature, [0.0; 4], "the affine form has none");
+            assert_eq!(
+                splat.curvature_depth[..3],
+                [0.0; 3],
+                "the affine form has none"
+            );
             [of(z + TRIM_DEVIATIONS), of(along), of(splat.colour_cut[3])]
         }),
     }
@@ -68,9 +71,9 @@ fn masked([origin, is_larger, above, below]: [u32; 4]) -> Option<Vec<Span>> {
     (is_larger == 0).then(|| (0..).zip(rows).filter_map(in_row).collect())
 }
 
-/// Checks a frame's lists; returns how many spans there are, and how many splats have other spans than the twin finds, at
+/// Checks the lists of a frame of tiles whose splats have these quads; returns how many spans there are, and how many splats have other spans than the twin finds, at
 /// a tie.
-fn check(stages: &mut Stages, what: &str) -> [usize; 2] {
+fn check(stages: &mut Stages, what: &str, quads: &[Quad]) -> [usize; 2] {
     let size = [SIZE.0, SIZE.1];
     let tiles = [size[0].div_ceil(TILE_WIDTH), size[1].div_ceil(TILE_HEIGHT)];
     let splats = stages.splats();
@@ -92,17 +95,18 @@ fn check(stages: &mut Stages, what: &str) -> [usize; 2] {
     // The spans are those of the splats' masks, and those of the twin except for ties.
     let masks: Vec<[u32; 4]> = stages.read("tile_masks");
     let (mut all, mut ties) = (0, 0);
-    for (index, splat) in splats.iter().enumerate() {
+    assert_eq!(quads.len(), splats.len(), "{what}");
+    for (index, (splat, quad)) in splats.iter().zip(quads).enumerate() {
         let ours = &found[index];
         if let Some(masked) = masked(masks[index]) {
             assert!(*ours == masked, "{what}: {ours:?} against {masked:?}");
         }
-        let single = outline::<f32>(splat);
+        let single = outline::<f32>(splat, quad);
         let twin = single.spans(size, single.margin());
         all += twin.len();
         if *ours != twin {
             // They hold at least what the contour reaches, and at most what twice the margin allows.
-            let truth = outline::<f64>(splat);
+            let truth = outline::<f64>(splat, quad);
             let least = truth.spans(size, 0.0);
             let most = truth.spans(size, 2.0 * truth.margin());
             assert!(
@@ -150,14 +154,16 @@ fn tiles_hold_the_splats_that_the_twin_puts_there() {
     let [mut all, mut ties] = [0, 0];
     frame::for_each_scene(|stages, scene| {
         for (view, mode) in [(0, Mode::None), (1, Mode::None), (0, Mode::Exact)] {
-            let settings = Settings::default()
-                .mode(mode)
-                .raster(Raster::Tiles)
-                .form(ExactForm::Affine);
+            let settings = Settings::default().mode(mode).form(ExactForm::Affine);
             let clip = frame::clip(scene, 1, ClipOp::And);
-            stages.draw(&frame::views(scene)[view], &clip, &settings);
-            if !scene.is_empty() && !stages.survivors().is_empty() {
-                let [spans, apart] = check(stages, &format!("{}, {mode:?}", scene.len()));
+            let camera = frame::views(scene)[view];
+            // Tiles that surely have room leave no quads, whose sides bound the outlines.
+            stages.draw(&camera, &clip, &settings.raster(Raster::Quad));
+            let count = stages.survivors().len();
+            let quads = stages.quads(count);
+            stages.draw(&camera, &clip, &settings.raster(Raster::Tiles));
+            if !scene.is_empty() && count > 0 {
+                let [spans, apart] = check(stages, &format!("{}, {mode:?}", scene.len()), &quads);
                 all += spans;
                 ties += apart;
             }

@@ -3,7 +3,7 @@
 use glam::{DVec3, Quat, Vec3};
 use rara::gpu::{Bindings, DeviceShape};
 use rara::scene::{Bounds, Kind, generate};
-use rara::types::{FrameCounts, Gaussian, Splat};
+use rara::types::{FrameCounts, FrameData, Gaussian, Quad, Splat};
 use rara::{Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, Plane, Settings, ShFormat};
 
 use crate::common;
@@ -110,9 +110,22 @@ impl Stages {
 
     pub fn splats(&mut self) -> Vec<Splat> {
         let count = self.survivors().len();
-        let mut splats = self.read("splats");
-        splats.truncate(count);
-        splats
+        self.splats_in_view(count)
+    }
+
+    /// What a frame draws the first so many survivors with, unless tiles surely draw it.
+    pub fn quads(&mut self, count: usize) -> Vec<Quad> {
+        let mut quads = self.read("quads");
+        quads.truncate(count);
+        quads
+    }
+
+    /// The numbers of the survivors in the scene, as the sort is given them.
+    pub fn numbers_in_view(&mut self, count: usize) -> Vec<u32> {
+        let frame: FrameData = self.read("frame")[0];
+        let first = frame.scene.gaussian_count as usize;
+        let both: Vec<u32> = self.read("depth_keys");
+        both[first..first + count].to_vec()
     }
 }
 

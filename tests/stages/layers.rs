@@ -22,13 +22,14 @@ fn survivors(stages: &mut Stages, stride: usize) -> Vec<(u32, Splat, Vec<[f32; 4
     let records: Vec<[f32; 4]> = stages.read("cut_records");
     let survivors = stages.survivors();
     let splats = stages.splats();
-    let both = survivors.iter().zip(splats);
-    both.map(|([_, cut], splat)| {
+    let numbers = stages.numbers_in_view(splats.len());
+    let both = survivors.iter().zip(numbers.into_iter().zip(splats));
+    both.map(|([_, cut], (number, splat))| {
         let record = match *cut as usize {
             cut if cut < records.len() => records[cut * stride..][..stride].to_vec(),
             _ => Vec::new(),
         };
-        (splat.middle[2].to_bits(), splat, record)
+        (number, splat, record)
     })
     .collect()
 }
@@ -79,16 +80,15 @@ fn each_layers_splats_and_records_are_those_of_the_layer_alone() {
                 let alone = survivors(&mut stages, stride);
                 let mut alone = alone.into_iter().filter(|(_, splat, _)| {
                     // The near cut is at a fifth of the scene's units, not of the layer's.
-                    unit * splat.middle[3] >= 0.2
+                    unit * splat.curvature_depth[3] >= 0.2
                 });
                 for (number, splat, record) in own {
-                    if splat.middle[3] / unit < 0.2 {
+                    if splat.curvature_depth[3] / unit < 0.2 {
                         continue;
                     }
                     let (its, mut as_alone, its_record) = alone.next().expect("as many survive");
                     assert_eq!(*number, first + its, "in the order of the scene");
-                    as_alone.middle[2] = splat.middle[2];
-                    as_alone.middle[3] *= unit;
+                    as_alone.curvature_depth[3] *= unit;
                     if splat.conic_cut[2] < -1e30 {
                         // This is the record's number, which counts the layers before.
                         as_alone.conic_cut[3] = splat.conic_cut[3];

@@ -42,12 +42,14 @@ fn quads() -> Settings {
 fn compare(stages: &mut Stages, camera: &Camera, worst: &mut Apart) {
     let view = View::<f32>::new(camera);
     let survivors = stages.survivors();
-    for (splat, [index, _]) in stages.splats().iter().zip(survivors) {
+    let numbers = stages.numbers_in_view(survivors.len());
+    let splats = stages.splats();
+    for ((splat, number), [index, _]) in splats.iter().zip(numbers).zip(survivors) {
         let index = index as usize;
         let Some(twin) = project::project(&stages.scene, index, &view, &quads()) else {
             continue; // a tie of stage classify
         };
-        assert_eq!(splat.middle[2].to_bits(), stages.numbers[index]);
+        assert_eq!(number, stages.numbers[index]);
         let [cx, cy, k0, k1] = splat.centre_conic;
         let [k2, opacity, z, _] = splat.conic_cut;
         assert_eq!(opacity, stages.scene.opacities()[index]);
@@ -56,7 +58,7 @@ fn compare(stages: &mut Stages, camera: &Camera, worst: &mut Apart) {
         let distance = f.relative.largest();
         worst.depth = worst
             .depth
-            .max(ulps(splat.middle[3], f.view_centre.z, distance));
+            .max(ulps(splat.curvature_depth[3], f.view_centre.z, distance));
         // A pixel's place follows from a slope, which is off by the centre's error over the depth.
         for (ours, axis) in [(cx, 0), (cy, 1)] {
             let slope = (f.screen_centre[axis] - view.principal[axis]) / view.focal[axis];
@@ -211,12 +213,14 @@ fn quads_are_the_contours_rectangles() {
     stages.load(&scene);
     for camera in frame::views(&scene) {
         stages.draw(&camera, &Clip::default(), &quads());
-        for splat in stages.splats() {
+        let splats = stages.splats();
+        for (splat, quad) in splats.iter().zip(stages.quads(splats.len())) {
             let [_, _, k0, k1] = splat.centre_conic.map(f64::from);
             let [k2, opacity, ..] = splat.conic_cut.map(f64::from);
             let extent = (2.0 * (255.0 * opacity).max(1.0).ln()).sqrt();
-            let [ax, ay, bx, by] = splat.axes.map(f64::from);
-            let [mx, my, ..] = splat.middle.map(f64::from);
+            let [ax, ay] = quad.first.map(f64::from);
+            let [bx, by] = quad.second.map(f64::from);
+            let [mx, my] = quad.middle.map(f64::from);
             let (a, b) = (ax.hypot(ay), bx.hypot(by));
             for step in 0..32 {
                 let turn = f64::from(step) / 32.0 * std::f64::consts::TAU;
@@ -225,7 +229,10 @@ fn quads_are_the_contours_rectangles() {
                 let dy = (extent * turn.sin() - k1 * dx) / k2;
                 let s = ((dx - mx) * ax + (dy - my) * ay) / (a * a);
                 let t = ((dx - mx) * bx + (dy - my) * by) / (b * b);
-                assert!(s.abs() <= 1.0 && t.abs() <= 1.0, "{s} {t}: {splat:?}");
+                assert!(
+                    s.abs() <= 1.0 && t.abs() <= 1.0,
+                    "{s} {t}: {splat:?} {quad:?}"
+                );
             }
             if mx == 0.0 && my == 0.0 {
                 // The area of the ellipse's rectangle is 4 K^2 over the factors' determinant.

@@ -14,9 +14,8 @@ use crate::frame::{self, Stages};
 /// The splats' depths and their numbers in the scene.
 pub fn places(stages: &mut Stages) -> (Vec<f32>, Vec<u32>) {
     let splats = stages.splats();
-    let depths = splats.iter().map(|splat| splat.middle[3]);
-    let numbers = splats.iter().map(|splat| splat.middle[2].to_bits());
-    (depths.collect(), numbers.collect())
+    let depths = splats.iter().map(|splat| splat.curvature_depth[3]);
+    (depths.collect(), stages.numbers_in_view(splats.len()))
 }
 
 fn check(stages: &mut Stages, what: &str) {

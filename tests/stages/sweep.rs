@@ -1,10 +1,11 @@
 //! Stages `reclip` and `recut`: what a moved clip changes while the camera stands still.
 
+use bytemuck::Zeroable;
 use rara::reference::{Side, View, classify};
-use rara::types::{CUT_AWAY, NOT_CUT};
+use rara::types::{CUT_AWAY, NOT_CUT, Quad, Splat};
 use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings, Surface};
 
-use crate::frame;
+use crate::frame::{self, Stages};
 use crate::ties;
 
 fn moved(clip: &Clip, by: f64) -> Clip {
@@ -14,6 +15,20 @@ fn moved(clip: &Clip, by: f64) -> Clip {
         planes.map(|plane| moved(plane).expect("a finite normal")),
         clip.op,
     )
+}
+
+/// What the rasteriser holds of the first so many survivors, by their numbers in the scene: splats, and quads to draw.
+fn held(stages: &mut Stages, count: usize, raster: Raster) -> Vec<(u32, (Splat, Option<Quad>))> {
+    let splats = stages.splats_in_view(count);
+    let quads: Vec<_> = match raster {
+        Raster::Tiles => vec![None; count],
+        _ => stages.quads(count).into_iter().map(Some).collect(),
+    };
+    let numbers = stages.numbers_in_view(count);
+    numbers
+        .into_iter()
+        .zip(splats.into_iter().zip(quads))
+        .collect()
 }
 
 #[test]
@@ -64,17 +79,17 @@ fn a_moved_clip_changes_what_the_twin_says() {
                 }
                 assert_eq!(cuts, swept.counts.cutoff);
                 // The rasteriser then holds for each what a whole frame computes.
-                let swept_splats = stages.splats_in_view(survivors.len());
+                let swept_splats = held(stages, survivors.len(), raster);
                 let mut whole = std::collections::HashMap::new();
                 let counts = stages.draw(&camera, &clip, &settings).counts;
                 assert_eq!(counts, swept.counts);
-                for splat in stages.splats() {
-                    whole.insert(splat.middle[2].to_bits(), splat);
-                }
+                let drawn = stages.survivors().len();
+                whole.extend(held(stages, drawn, raster));
                 let mut gone = 0;
-                for mut splat in swept_splats {
-                    let Some(truth) = whole.get(&splat.middle[2].to_bits()) else {
+                for (number, (mut splat, quad)) in swept_splats {
+                    let Some((truth, its_quad)) = whole.get(&number) else {
                         assert_eq!(splat.conic_cut[2], 4e30, "clipped away");
+                        assert!(quad.is_none_or(|quad| quad == Zeroable::zeroed()));
                         gone += 1;
                         continue;
                     };
@@ -85,6 +100,7 @@ fn a_moved_clip_changes_what_the_twin_says() {
                         splat.colour_cut[3] = truth.colour_cut[3];
                     }
                     assert!(splat == *truth, "{splat:?}, in a whole frame {truth:?}");
+                    assert_eq!(quad, *its_quad);
                 }
                 assert_eq!(gone, counts.invisible);
                 // The next frame of the sweep goes on from this one.

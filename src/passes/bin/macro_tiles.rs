@@ -269,6 +269,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
             passes,
             keys: pair.map(|pair| keys[pair]),
             order: pair.map(|pair| splats[pair]),
+            first_keys: keys[0],
             histogram: &scratch.macro_histogram,
         };
         if number > 0 {

@@ -1,9 +1,9 @@
 //! Stage `sort`: a stable sort of the survivors by linear view depth, ties by their number in the scene.
 //!
-//! It is given as many keys as there are survivors, in both `keys`. `order` holds nothing yet: the survivors are numbered
-//! like their keys, from 0. It leaves the sorted keys and their survivors in the pair of buffers that [`result`] names, on
-//! which all later stages rely, and the others to the stages that follow ([`Sorted::spare`]). The plan says which kernels do
-//! it: each set has a file here, shaders and scratch of its own.
+//! It is given as many keys as there are survivors, in `depth_keys`, and behind them the numbers. `order` holds nothing yet:
+//! the survivors are numbered like their keys, from 0. It leaves the sorted keys and their survivors in the pair of `keys`
+//! and `order` that [`result`] names, on which all later stages rely, and the others to the stages that follow
+//! ([`Sorted::spare`]). The plan says which kernels do it: each set has a file here, shaders and scratch of its own.
 
 mod radix;
 mod runs;

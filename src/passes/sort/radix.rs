@@ -81,6 +81,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
             passes,
             keys: pair.map(|pair| &b.keys[pair]),
             order: pair.map(|pair| &b.order[pair]),
+            first_keys: &b.depth_keys,
             histogram: &b.histogram,
         };
         pass.count(&kernels, frame, recorder, of_count(&b.counts, number));
@@ -89,7 +90,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     if frame.scene.reordered {
         let sorted = frame.plan.sorted();
         let buffers = buffers!(radix_ties {
-            b => [frame, counts, splats];
+            b => [frame, counts, depth_keys];
             keys: &b.keys[sorted],
             order: &b.order[sorted],
             scratch: &b.order[sorted ^ 1],

@@ -35,7 +35,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         let (sorted_keys, sorted_order) = pairs[(pass % 2) as usize ^ 1];
         let buffers = buffers!(sort_count {
             b => [frame, counts, histogram];
-            keys,
+            keys: if pass == 0 { &b.depth_keys } else { keys },
         });
         let groups = of_count(&b.counts, pass);
         let params = sort_count::Params { pass };
@@ -46,7 +46,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         let params = sort_scan::Params { pass, passes };
         frame.dispatch(recorder, buffers, params, Groups::Count(1));
         let buffers = buffers!(sort_scatter {
-            b => [frame, counts, histogram];
+            b => [frame, counts, histogram, depth_keys];
             keys, order, sorted_keys, sorted_order,
         });
         let params = sort_scatter::Params { pass };
@@ -55,7 +55,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     if frame.scene.reordered {
         let sorted = frame.plan.sorted();
         let buffers = buffers!(sort_ties {
-            b => [frame, counts, splats, histogram];
+            b => [frame, counts, depth_keys, histogram];
             keys: &b.keys[sorted],
             order: &b.order[sorted],
             scratch: &b.order[sorted ^ 1],

@@ -8,7 +8,7 @@ use crate::gpu::{Attachments, DeviceShape, Drawer, Recorder};
 use crate::limits;
 use crate::passes::buffers::{Buffers, TileBuffers, buffers, indirect};
 #[cfg(feature = "lab")]
-use crate::passes::cost::Cost;
+use crate::passes::cost::{self, Cost};
 use crate::passes::pipelines::{Draw, Kernel, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{composite, tiles};
@@ -117,7 +117,9 @@ fn kernel(plan: &Plan) -> Kernel<tiles::Program> {
 #[cfg(feature = "lab")]
 pub(super) const COSTS: &[Cost] = &[
     // All rows of a strip have invocations. The tile's bounds; and for each batch of the splats of a tile as full as the others
-    // their numbers, the splats and, if they are cut, the rest of them.
+    // their numbers, the splats and, if they are cut, the rest of them. It reads the tiles' lists as far as they are loaded, and
+    // the first half of each splat and its curvature once for the tiles of a macro-tile, which are drawn one after the other;
+    // and it writes the pixels.
     Cost::of::<tiles::Program>(
         |n| {
             let rows = n.tile_rows.next_multiple_of(limits::STRIP_ROWS.into());
@@ -130,7 +132,21 @@ pub(super) const COSTS: &[Cost] = &[
                 .div_ceil(n.tile_columns * n.tile_rows)
                 .div_ceil(batch)
         },
-    ),
+        |n| {
+            let splat = cost::SPLAT / 2;
+            let curvature = cost::gathered(4 * cost::WORD);
+            let lists = (n.tiles() + n.loaded) * cost::WORD;
+            let share = n.loaded as f64 / n.pairs.max(1) as f64;
+            let cut = n.cut as f64 / n.survivors.max(1) as f64;
+            let splats = n.macro_pairs as f64
+                * share
+                * (cost::gathered(splat) as f64 + cut * curvature as f64);
+            let pixels = n.tiles() * u64::from(limits::TILE_WIDTH * limits::TILE_HEIGHT);
+            lists + splats as u64 + pixels * TilePixels::Float.bytes()
+        },
+    )
+    // A turn a splat, of a loop in a loop.
+    .turning(|n| n.loaded as f64 / n.tiles().max(1) as f64 / 32.0),
 ];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {

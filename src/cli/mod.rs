@@ -16,6 +16,7 @@ mod frame;
 mod generate;
 mod info;
 mod ink;
+mod model;
 mod output;
 mod precision;
 mod profile;
@@ -67,6 +68,7 @@ enum Command {
     Sweep(sweep::Sweep),
     Ablate(ablate::Ablate),
     Bench(bench::Bench),
+    Model(model::Model),
     Demo(demo::Demo),
     Compare(compare::Compare),
     Generate(generate::Generate),
@@ -84,6 +86,7 @@ impl Command {
             Self::Sweep(command) => command.run(),
             Self::Ablate(command) => command.run(),
             Self::Bench(command) => command.run(),
+            Self::Model(command) => command.run(),
             Self::Demo(command) => command.run(),
             Self::Compare(command) => command.run(),
             Self::Generate(command) => command.run(),

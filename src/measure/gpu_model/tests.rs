@@ -54,6 +54,39 @@ fn memory_twice_as_fast_helps_what_waits_for_memory_alone() {
 }
 
 #[test]
+fn the_guide_and_the_front_page_say_what_is_predicted() {
+    let guide = include_str!("../../guide/gpu.md");
+    let front = include_str!("../../../README.md");
+    // Two digits.
+    let told = |ms: f64| format!("{ms:.*}", if ms < 1.0 { 2 } else { 1 });
+    for frame in frames() {
+        let sum = |gpu: &Gpu| predict(gpu, &frame).iter().map(|p| p.ms).sum::<f64>();
+        let sums = GPUS.each_ref().map(sum).map(told);
+        let cut = if frame.is_cut {
+            ", cut in half exactly"
+        } else {
+            ""
+        };
+        let millions = frame.gaussians / 1_000_000;
+        let row = format!("| {millions} M{cut} | {} |", sums.join(" | "));
+        assert!(guide.contains(&row), "src/guide/gpu.md should say {row}");
+        let said = front.contains(&format!("{} ms for {millions} M", sums[0]));
+        assert!(frame.is_cut || said, "README.md should say {} ms", sums[0]);
+    }
+    for gpu in &GPUS {
+        let Gpu {
+            name,
+            bandwidth,
+            lanes,
+            clock,
+            latency,
+        } = gpu;
+        let row = format!("| {name} | {bandwidth} | {lanes} | {clock} | {latency} |");
+        assert!(guide.contains(&row), "src/guide/gpu.md should say {row}");
+    }
+}
+
+#[test]
 fn devices_are_known_by_their_names() {
     assert_eq!(named("NVIDIA GeForce RTX 4090").unwrap().name, "RTX 4090");
     assert_eq!(

@@ -1,7 +1,7 @@
 //! The command line: one file a command, and the pieces they share.
 //!
 //! Each command goes from the text of the flags (clap's structs) to what they mean (the library's types, checked once) to
-//! the work. Only [`output::json`] writes to stdout; everything for people goes to stderr.
+//! the work. Only [`output::answer`] writes to stdout what a command was asked for; everything else goes to stderr.
 
 mod ablate;
 mod bench;
@@ -16,6 +16,7 @@ mod frame;
 mod generate;
 mod info;
 mod ink;
+mod model;
 mod output;
 mod precision;
 mod profile;
@@ -67,6 +68,7 @@ enum Command {
     Sweep(sweep::Sweep),
     Ablate(ablate::Ablate),
     Bench(bench::Bench),
+    Model(model::Model),
     Demo(demo::Demo),
     Compare(compare::Compare),
     Generate(generate::Generate),
@@ -84,6 +86,7 @@ impl Command {
             Self::Sweep(command) => command.run(),
             Self::Ablate(command) => command.run(),
             Self::Bench(command) => command.run(),
+            Self::Model(command) => command.run(),
             Self::Demo(command) => command.run(),
             Self::Compare(command) => command.run(),
             Self::Generate(command) => command.run(),

@@ -1,4 +1,5 @@
-//! Output of the program: lines for people on stderr, one JSON document on stdout, pictures, and a progress bar.
+//! Output of the program: lines for people on stderr, the table or JSON document that was asked for on stdout, pictures, and a
+//! progress bar.
 
 use std::fmt::Display;
 use std::fs;
@@ -15,11 +16,14 @@ pub(super) fn say(line: impl Display) {
     let _ = writeln!(io::stderr(), "{line}");
 }
 
-/// Prints the document that `--json` promises. A reader that stops reading is no failure.
+/// Prints the document that `--json` promises.
 pub(super) fn json(document: &impl Serialize) -> Result<()> {
-    let mut text =
-        serde_json::to_string_pretty(document).expect("the documents have string keys only");
-    text.push('\n');
+    answer(&serde_json::to_string_pretty(document).expect("the documents have string keys only"))
+}
+
+/// Prints what a command was asked for, with a line break behind. A reader that stops reading is no failure.
+pub(super) fn answer(text: &str) -> Result<()> {
+    let text = format!("{}\n", text.trim_end());
     let mut stdout = io::stdout().lock();
     match stdout
         .write_all(text.as_bytes())

@@ -31,6 +31,7 @@ chapters! {
     embedding,
     frame,
     glossary,
+    gpu,
     library,
     modes,
     paper,

@@ -1,7 +1,8 @@
-//! How far apart two pictures are.
+//! Measures: how far apart two pictures are, and what a GPU would take for a frame.
 
 #![forbid(unsafe_code)]
 
+pub mod gpu_model;
 mod pareto;
 mod popping;
 mod processor;

@@ -6,7 +6,7 @@ use crate::limits;
 use crate::passes::block_list::{self, ListFor};
 use crate::passes::buffers::buffers;
 #[cfg(feature = "lab")]
-use crate::passes::cost::{Cost, FrameNumbers};
+use crate::passes::cost::{self, Cost, FrameNumbers};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::blocks;
 use crate::passes::stage::{Frame, Stage, key};
@@ -24,6 +24,8 @@ pub(crate) const STAGE: Stage = Stage::when_finding_view(
 pub(super) const COSTS: &[Cost] = &[Cost::of::<blocks::Program>(
     |n| n.blocks,
     |n| 1 + n.layer() + n.surfaces,
+    // It reads the bounds and their side of the clip, and writes their side.
+    |n| n.blocks * (cost::BOUNDS + 2 * cost::WORD),
 )];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {

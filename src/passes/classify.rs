@@ -6,7 +6,7 @@ use crate::gpu::Recorder;
 use crate::limits;
 use crate::passes::buffers::{buffers, indirect};
 #[cfg(feature = "lab")]
-use crate::passes::cost::Cost;
+use crate::passes::cost::{self, Cost};
 use crate::passes::shaders::classify;
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
@@ -19,10 +19,15 @@ pub(crate) const STAGE: Stage = Stage::when_finding_view(
 
 #[cfg(feature = "lab")]
 pub(super) const COSTS: &[Cost] = &[
-    // As clip; where the surfaces are not asked, two loads of what stage clip has found.
+    // As clip; where the surfaces are not asked, two loads of what stage clip has found. It reads the Gaussians and, if there
+    // is a clip, its side and its masks, and writes masks and totals.
     Cost::of::<classify::Program>(
         |n| n.view_blocks * u64::from(limits::BLOCK_SIZE),
         |n| 2 + n.layer() + 1 + n.surfaces.max(2),
+        |n| {
+            let clip = n.surfaces.min(1) * (cost::WORD + cost::MASKS);
+            n.view_blocks * (cost::WORD + cost::BLOCK + clip + cost::MASKS + cost::TOTALS)
+        },
     ),
 ];
 

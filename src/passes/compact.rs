@@ -9,7 +9,7 @@ use crate::passes::blocks::groups_of_list;
 use crate::passes::blocks::loads_of_list;
 use crate::passes::buffers::{buffers, indirect};
 #[cfg(feature = "lab")]
-use crate::passes::cost::Cost;
+use crate::passes::cost::{self, Cost};
 use crate::passes::shaders::{compact, compact_scan};
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
@@ -25,13 +25,21 @@ pub(crate) const STAGE: Stage = Stage::when_finding_view(
 
 #[cfg(feature = "lab")]
 pub(super) const COSTS: &[Cost] = &[
-    // Each block has a side and then totals, and a layer.
-    Cost::of::<compact_scan::Program>(|n| n.blocks, |n| loads_of_list(n, n.layer().max(2))),
+    // Each block has a side and then totals, and a layer. It writes the block's places, and the list.
+    Cost::of::<compact_scan::Program>(
+        |n| n.blocks,
+        |n| loads_of_list(n, n.layer().max(2)),
+        |n| n.blocks * (cost::WORD + cost::TOTALS + 2 * cost::WORD + cost::WORD),
+    ),
     // The number of its group's block, the block, its layer, its side, its Gaussian's bits in the two masks; and the words of
-    // each mask.
+    // each mask. It writes the survivors, and the numbers of those that are cut.
     Cost::of::<compact::Program>(
         |n| n.kept_blocks * u64::from(limits::BLOCK_SIZE),
         |n| 2 + n.layer() + 3 + 2 * u64::from(limits::BLOCK_SIZE / u32::BITS),
+        |n| {
+            let block = 4 * cost::WORD + cost::MASKS;
+            n.kept_blocks * block + n.survivors * cost::SURVIVOR + n.cut * cost::WORD
+        },
     ),
 ];
 

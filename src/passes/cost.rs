@@ -1,16 +1,23 @@
-//! The latency that each compute pass costs a GPU's frame, as functions of the frame's numbers: each pass declares how
-//! many invocations it has and how many loads one of them may have to wait for, one after the other. The declarations stand
-//! beside the passes; `tests/gpu_cost` holds them to the commands of real frames, and to ceilings.
+//! The work that each compute pass costs a GPU's frame, as functions of the frame's numbers: each pass declares how many
+//! invocations it has, how many loads one of them may have to wait for, one after the other, and how many bytes of device
+//! memory all of them together read and write. The declarations stand beside the passes; `tests/gpu_cost` holds them to the
+//! commands of real frames, and to ceilings. `measure::gpu_model` predicts times from them.
 //!
 //! A load is a trip to device memory, not to a workgroup's shared memory. Loads that do not wait for each other count as one:
 //! those of a struct, and those of loops of a fixed length, which compilers unroll. In a loop whose length follows from data
 //! each turn counts, since compilers do not overlap them. The frame's constants are one load.
+//!
+//! Bytes are those that a pass moves if caches keep everything while one workgroup, or neighbouring ones, use it, and nothing
+//! from one pass to the next. So what neighbours share counts once, what many workgroups read over and over (a sum of all
+//! partitions, the frame's constants) counts once, and a single element that is read out of order counts as whole sectors of
+//! memory (`gathered`). Elements that are written out of order in short runs count as they are, although their sectors' rests
+//! may be moved too.
 
 use super::shaders::Interface;
 use super::{
     bin, block_list, blocks, classify, clip, compact, cutoff, depth, project, reclip, sort, tiles,
 };
-use crate::limits;
+use crate::{limits, types};
 
 /// The numbers of a frame that the cost of its passes depends on.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -47,9 +54,40 @@ pub struct FrameNumbers {
     pub filled_tiles: u64,
     /// Tiles in which several surfaces cut a splat.
     pub several_tiles: u64,
+    /// Pairs of tile and splat that tiles load before all of their pixels are saturated.
+    pub loaded: u64,
+    /// Bytes of a Gaussian's spherical harmonics.
+    pub sh_bytes: u64,
+    /// Bytes of a cutoff record.
+    pub record_bytes: u64,
 }
 
 impl FrameNumbers {
+    /// The numbers by their names.
+    pub fn named(&mut self) -> [(&'static str, &mut u64); 19] {
+        [
+            ("blocks", &mut self.blocks),
+            ("clip_blocks", &mut self.clip_blocks),
+            ("view_blocks", &mut self.view_blocks),
+            ("kept_blocks", &mut self.kept_blocks),
+            ("layers", &mut self.layers),
+            ("surfaces", &mut self.surfaces),
+            ("survivors", &mut self.survivors),
+            ("cut", &mut self.cut),
+            ("changed", &mut self.changed),
+            ("tied", &mut self.tied),
+            ("tile_columns", &mut self.tile_columns),
+            ("tile_rows", &mut self.tile_rows),
+            ("macro_pairs", &mut self.macro_pairs),
+            ("pairs", &mut self.pairs),
+            ("filled_tiles", &mut self.filled_tiles),
+            ("several_tiles", &mut self.several_tiles),
+            ("loaded", &mut self.loaded),
+            ("sh_bytes", &mut self.sh_bytes),
+            ("record_bytes", &mut self.record_bytes),
+        ]
+    }
+
     /// The loads that find a block's layer, and what is constant in it.
     pub(super) fn layer(&self) -> u64 {
         u64::from(self.layers.next_power_of_two().ilog2()) + 1
@@ -71,10 +109,60 @@ impl FrameNumbers {
         columns * self.tile_rows.div_ceil(limits::MACRO_ROWS.into())
     }
 
+    /// Bytes of the histogram of the sort of the pairs of macro-tile and splat.
+    pub(super) fn pair_histogram(&self) -> u64 {
+        histogram_bytes(self.pair_partitions())
+    }
+
+    /// Bytes of the sort's histogram.
+    pub(super) fn histogram(&self) -> u64 {
+        histogram_bytes(self.partitions())
+    }
+
+    /// Tiles of the picture.
+    pub(super) fn tiles(&self) -> u64 {
+        self.tile_columns * self.tile_rows
+    }
+
     /// Workgroups for the batches of the macro-tiles' splats.
     pub(super) fn batches(&self) -> u64 {
         self.macro_pairs.div_ceil(limits::BATCH_SPLATS.into()) + self.macro_tiles()
     }
+}
+
+// Bytes of what passes read and write.
+/// A word.
+pub(super) const WORD: u64 = size_of::<u32>() as u64;
+/// A Gaussian without its colour.
+pub(super) const GAUSSIAN: u64 = size_of::<types::Gaussian>() as u64;
+/// The bounds of a block.
+pub(super) const BOUNDS: u64 = size_of::<types::Block>() as u64;
+/// A splat.
+pub(super) const SPLAT: u64 = size_of::<types::Splat>() as u64;
+/// A splat's quad.
+pub(super) const QUAD: u64 = size_of::<types::Quad>() as u64;
+/// A survivor: its Gaussian, and its place among those that are cut.
+pub(super) const SURVIVOR: u64 = 2 * WORD;
+/// A splat's mask of tiles.
+pub(super) const TILE_MASK: u64 = 4 * WORD;
+/// The Gaussians of a block.
+pub(super) const BLOCK: u64 = limits::BLOCK_SIZE as u64 * GAUSSIAN;
+/// The two masks of a block, a bit a Gaussian in each.
+pub(super) const MASKS: u64 = 2 * limits::BLOCK_SIZE as u64 / 8;
+/// The totals of a block.
+pub(super) const TOTALS: u64 = 4 * WORD;
+
+/// Bytes of the least piece of memory that a GPU reads: of NVIDIA's and Intel's caches a sector; those of AMD read more.
+const SECTOR: u64 = 32;
+
+/// The bytes that are moved for so many bytes that are read alone.
+pub(super) const fn gathered(bytes: u64) -> u64 {
+    bytes.next_multiple_of(SECTOR)
+}
+
+/// Bytes of the counts of the digits of so many partitions.
+fn histogram_bytes(partitions: u64) -> u64 {
+    (partitions << limits::SORT_BITS) * WORD
 }
 
 /// The cost of one dispatch of a program.
@@ -86,18 +174,42 @@ pub struct Cost {
     pub invocations: fn(&FrameNumbers) -> u64,
     /// The longest chain of loads of an invocation of which each waits for the one before.
     pub loads: fn(&FrameNumbers) -> u64,
+    /// Bytes of device memory that all invocations together read and write.
+    pub bytes: fn(&FrameNumbers) -> u64,
+    /// The turns of its loops, as a multiple of those that a compiler takes for granted, which knows no data: Mesa's for AMD's
+    /// GPUs takes a loop for 8 turns, and one inside it for 4.
+    pub turns: fn(&FrameNumbers) -> f64,
 }
 
 impl Cost {
+    /// The cost of a pass whose code has no loops that matter, or none but unrolled ones.
     pub(super) const fn of<P: Interface>(
         invocations: fn(&FrameNumbers) -> u64,
         loads: fn(&FrameNumbers) -> u64,
+        bytes: fn(&FrameNumbers) -> u64,
+    ) -> Self {
+        Self::named(P::NAME, invocations, loads, bytes)
+    }
+
+    /// The same of pipelines that have a name of their own.
+    pub(super) const fn named(
+        name: &'static str,
+        invocations: fn(&FrameNumbers) -> u64,
+        loads: fn(&FrameNumbers) -> u64,
+        bytes: fn(&FrameNumbers) -> u64,
     ) -> Self {
         Self {
-            name: P::NAME,
+            name,
             invocations,
             loads,
+            bytes,
+            turns: |_| 1.0,
         }
+    }
+
+    /// The same with the turns of its loops.
+    pub(super) const fn turning(self, turns: fn(&FrameNumbers) -> f64) -> Self {
+        Self { turns, ..self }
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::gpu::Recorder;
 use crate::passes::buffers::{buffers, indirect};
 #[cfg(feature = "lab")]
-use crate::passes::cost::Cost;
+use crate::passes::cost::{self, Cost};
 use crate::passes::shaders::cutoff;
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
@@ -26,8 +26,12 @@ pub(crate) const STAGE_OF_RECLIP: Stage = Stage {
 
 #[cfg(feature = "lab")]
 pub(super) const COSTS: &[Cost] = &[
-    // How many there are, its Gaussian's number, the layer; the Gaussian meanwhile.
-    Cost::of::<cutoff::Program>(|n| n.cut, |n| 2 + n.layer() + n.surfaces),
+    // How many there are, its Gaussian's number, the layer; the Gaussian meanwhile. It writes the record.
+    Cost::of::<cutoff::Program>(
+        |n| n.cut,
+        |n| 2 + n.layer() + n.surfaces,
+        |n| n.cut * (cost::WORD + cost::gathered(cost::GAUSSIAN) + n.record_bytes),
+    ),
 ];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {

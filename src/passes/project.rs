@@ -3,7 +3,7 @@
 use crate::gpu::Recorder;
 use crate::passes::buffers::{buffers, indirect};
 #[cfg(feature = "lab")]
-use crate::passes::cost::Cost;
+use crate::passes::cost::{self, Cost};
 use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::shaders::project;
@@ -33,7 +33,17 @@ impl OfPlan for project::Constants {
 pub(super) const COSTS: &[Cost] = &[
     // How many there are, its Gaussian's number, the layer; the Gaussian meanwhile. Then the cutoff record's header and the
     // rest of it, the colour's constant, its units and those of three degrees; the record once more for the tiles.
-    Cost::of::<project::Program>(|n| n.survivors, |n| 2 + n.layer() + 2 + 5 + 2),
+    // It reads the survivor, the Gaussian, its colour and the record, and writes the splat, its quad in case that the tiles'
+    // lists have no room, its mask, its key and its number.
+    Cost::of::<project::Program>(
+        |n| n.survivors,
+        |n| 2 + n.layer() + 2 + 5 + 2,
+        |n| {
+            let read = cost::SURVIVOR + cost::GAUSSIAN + n.sh_bytes;
+            let written = cost::SPLAT + cost::QUAD + cost::TILE_MASK + 2 * cost::WORD;
+            n.survivors * (read + written) + n.cut * n.record_bytes
+        },
+    ),
 ];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {

@@ -8,7 +8,7 @@ use crate::gpu::{Attachments, DeviceShape, Drawer, Recorder};
 use crate::limits;
 use crate::passes::buffers::{Buffers, TileBuffers, buffers, indirect};
 #[cfg(feature = "lab")]
-use crate::passes::cost::{Cost, FrameNumbers};
+use crate::passes::cost::{self, Cost, FrameNumbers};
 use crate::passes::pipelines::{Draw, Kernel, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{composite, tiles};
@@ -158,13 +158,37 @@ fn kernel(plan: &Plan, list: List) -> Kernel<tiles::Program> {
 
 #[cfg(feature = "lab")]
 pub(super) const COSTS: &[Cost] = &[
-    Cost::of::<tiles::Program>(|n| n.filled_tiles * TILE, batches),
-    Cost {
-        name: SEVERAL_TILES,
-        invocations: |n| n.several_tiles * TILE,
-        loads: batches,
-    },
+    Cost::of::<tiles::Program>(
+        |n| n.filled_tiles * TILE,
+        batches,
+        |n| bytes(n, n.filled_tiles),
+    )
+    .turning(splats_of_tile),
+    Cost::named(
+        SEVERAL_TILES,
+        |n| n.several_tiles * TILE,
+        batches,
+        |n| bytes(n, n.several_tiles),
+    )
+    .turning(splats_of_tile),
 ];
+
+/// Bytes of the lists of so many tiles and of their splats, as far as they are loaded, each once for a macro-tile; and of the
+/// pixels.
+#[cfg(feature = "lab")]
+fn bytes(numbers: &FrameNumbers, tiles: u64) -> u64 {
+    let share = tiles as f64 / numbers.tiles().max(1) as f64;
+    let loaded = numbers.loaded as f64 / numbers.pairs.max(1) as f64;
+    let splats = numbers.macro_pairs as f64 * loaded * cost::SPLAT as f64;
+    let lists = (numbers.loaded * cost::WORD) as f64;
+    (share * (lists + splats)) as u64 + tiles * (cost::WORD + TILE * TilePixels::Float.bytes())
+}
+
+/// The turns of the loop over a tile's splats, which stands in that over its batches.
+#[cfg(feature = "lab")]
+fn splats_of_tile(numbers: &FrameNumbers) -> f64 {
+    numbers.loaded as f64 / numbers.tiles().max(1) as f64 / 32.0
+}
 
 #[cfg(feature = "lab")]
 const TILE: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64;

@@ -321,3 +321,34 @@ fn a_bench_measures_every_choice_and_writes_its_tables() {
     }
     assert!(rara::Picture::load(folder.join("out/pareto.png")).is_ok());
 }
+
+/// The model needs no device; what it predicts for a GPU is the sum of its passes, and there are tables to read.
+#[test]
+fn the_model_of_gpus_is_printed_without_one() {
+    let here = folder("model");
+    let json = document(line(&here, "model --most 1000000 --json -o @/model"));
+    let frames = json["frames"].as_array().expect("frames");
+    assert_eq!(frames.len(), 2, "whole and cut");
+    for frame in frames {
+        let gpus = frame["predicted"].as_array().expect("a list a GPU");
+        assert_eq!(gpus.len(), json["gpus"].as_array().expect("GPUs").len());
+        let passes = gpus[0].as_array().expect("passes");
+        assert!(passes.iter().any(|pass| pass["pass"] == "tiles"));
+        assert!(passes.iter().all(|pass| pass["ms"].as_f64() > Some(0.0)));
+    }
+    for (file, what) in [
+        ("model.md", "predictions, not measurements"),
+        ("model.csv", "predicted,"),
+    ] {
+        let text = fs::read_to_string(here.join("model").join(file)).expect("it was written");
+        assert!(text.contains(what), "{file}: {text}");
+    }
+    let printed = line(&here, "model --most 1000000").stdout;
+    let text = fs::read_to_string(here.join("model/model.md")).expect("it was written");
+    assert_eq!(
+        String::from_utf8_lossy(&printed).trim_end(),
+        text.trim_end()
+    );
+    let none = line(&here, "model --most 10");
+    assert_eq!(none.status.code(), Some(2));
+}

@@ -3,7 +3,7 @@
 
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
-use std::{fs, process};
+use std::{env, fs, process};
 
 /// An empty folder that nothing else writes to, not even a second run of the same test. It is removed with the value,
 /// unless the test fails: then its content shows why.
@@ -12,7 +12,10 @@ pub struct Folder(PathBuf);
 impl Folder {
     pub fn new(test: &str) -> Self {
         let name = format!("{test}-{}", process::id());
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        // Where the tests were built is not where they run, if they were carried to another machine.
+        let here = env::var_os("RARA_TEST_FOLDER").map(PathBuf::from);
+        let here = here.unwrap_or_else(|| env!("CARGO_TARGET_TMPDIR").into());
+        let path = here.join(name);
         let _ = fs::remove_dir_all(&path); // left by a process that had this number before
         fs::create_dir_all(&path).expect("the target folder is writable");
         Self(path)

@@ -41,6 +41,11 @@ const HEADER: &str = "\
 fn explained(table: &str) -> &'static str {
     match table {
         "frames" => "\n# The commands of a frame with the kernels for GPUs.\n",
+        "bytes" => {
+            "\n\
+# Bytes of device memory that each pass reads and writes for a thousand of five million Gaussians at 1920x1080, as declared\n\
+# beside the passes.\n"
+        }
         "passes" => {
             "\n\
 # Debts: passes with fewer than 16384 invocations, or with more than 64 loads of which each waits for the one before, at five\n\

@@ -80,6 +80,10 @@ pub struct Drawn {
 }
 
 impl Drawn {
+    pub fn new(recorded: Recorded, renderer: Renderer) -> Self {
+        Self { recorded, renderer }
+    }
+
     /// The bytes of a working buffer.
     pub fn buffer(&self, name: &str) -> Vec<u8> {
         let bytes = self.renderer.working_buffer(name);

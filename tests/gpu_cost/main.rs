@@ -18,6 +18,7 @@ mod spirv;
 
 mod budget;
 mod frames;
+mod model;
 mod passes;
 mod pipelines;
 

@@ -17,7 +17,7 @@ use crate::spirv;
 const GPUS: [&str; 3] = ["navi21", "navi31", "vega10"];
 
 /// Where a child process writes what it has found.
-const OUT: &str = "RARA_GPU_COST_OUT";
+pub const OUT: &str = "RARA_GPU_COST_OUT";
 
 /// Our names of numbers, and the driver's names of those that are added up.
 const NUMBERS: [(&str, &[&str]); 5] = [
@@ -40,7 +40,8 @@ fn pipelines_take_no_more_of_a_gpu_than_budgeted() {
         }
     };
     let folder = Folder::new("gpu_cost");
-    let children = GPUS.map(|gpu| (gpu, driver.start(gpu, &folder.join(gpu))));
+    let test = "pipelines::of_the_device_that_is_pretended";
+    let children = GPUS.map(|gpu| (gpu, driver.start(gpu, test, &folder.join(gpu))));
     let mut found = BTreeMap::new();
     for (gpu, child) in children {
         let output = child.wait_with_output().expect("the child process ends");
@@ -59,14 +60,14 @@ fn pipelines_take_no_more_of_a_gpu_than_budgeted() {
 }
 
 /// The driver, and the library that pretends there is a GPU.
-struct Driver {
+pub struct Driver {
     shim: PathBuf,
     description: PathBuf,
 }
 
 impl Driver {
     /// Where Debian puts them.
-    fn find() -> Result<Self, String> {
+    pub fn find() -> Result<Self, String> {
         let libraries = format!("/usr/lib/{}-linux-gnu", env::consts::ARCH);
         let shim = Path::new(&libraries).join("libamdgpu_noop_drm_shim.so");
         if !shim.exists() {
@@ -88,9 +89,8 @@ impl Driver {
         Ok(Self { shim, description })
     }
 
-    /// Starts this executable once more, on a device of that kind.
-    fn start(&self, gpu: &str, out: &Path) -> Child {
-        let test = "pipelines::of_the_device_that_is_pretended";
+    /// Starts a test of this executable once more, on a device of that kind.
+    pub fn start(&self, gpu: &str, test: &str, out: &Path) -> Child {
         let mut command = Command::new(env::current_exe().expect("this executable"));
         command
             .args(["--exact", test, "--ignored", "--nocapture"])

@@ -8,7 +8,7 @@ use crate::limits;
 use crate::passes::bin::ScratchWords;
 use crate::passes::buffers::{buffers, gpu_only, indirect};
 #[cfg(feature = "lab")]
-use crate::passes::cost::{Cost, FrameNumbers};
+use crate::passes::cost::{self, Cost, FrameNumbers};
 use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::radix::{self, Kernels, Keys, Pass};
@@ -145,47 +145,77 @@ impl Scratch {
 
 #[cfg(feature = "lab")]
 pub(in crate::passes) const COSTS: &[Cost] = &[
-    // How many splats there are; then each of its own, its mask and, if that cannot hold it, the splat.
-    Cost::of::<macro_count::Program>(partitions_of_splats, |_| 1 + 3 * OWN),
-    // The sums of all partitions; then its own counts.
-    Cost::of::<macro_scan::Program>(partitions_of_splats, |n| {
-        2 + n.partitions().div_ceil(limits::RADIX_GROUP_SIZE.into())
-    }),
+    // How many splats there are; then each of its own, its mask and, if that cannot hold it, the splat, of which few read much.
+    // It writes how many pairs each splat has, and its rectangle of macro-tiles.
+    Cost::of::<macro_count::Program>(
+        partitions_of_splats,
+        |_| 1 + 3 * OWN,
+        |n| n.survivors * (cost::WORD + cost::gathered(cost::TILE_MASK) + 3 * cost::WORD),
+    )
+    .turning(|_| OWN as f64 / 8.0),
+    // The sums of all partitions; then its own counts, which it reads and writes.
+    Cost::of::<macro_scan::Program>(
+        partitions_of_splats,
+        |n| 2 + n.partitions().div_ceil(limits::RADIX_GROUP_SIZE.into()),
+        |n| (n.partitions() + 2 * n.survivors) * cost::WORD,
+    ),
     // How many pairs there are; the search among all splats, for both ends together; where the pairs of those in between begin;
-    // then what is known of the splat of each of its own pairs.
-    Cost::of::<macro_expand::Program>(partitions_of_pairs, |n| {
-        2 + u64::from(n.survivors.next_power_of_two().ilog2()) + 1 + OWN
-    }),
-    Cost {
-        name: radix::PAIR_COUNT,
-        invocations: partitions_of_pairs,
-        loads: |_| 1 + OWN,
-    },
-    Cost {
-        name: radix::PAIR_SCAN,
-        invocations: |_| (1 << limits::SORT_BITS) * u64::from(limits::RADIX_GROUP_SIZE),
-        loads: |n| {
+    // then what is known of the splat of each of its own pairs. It writes the pairs, and counts them for their sort.
+    Cost::of::<macro_expand::Program>(
+        partitions_of_pairs,
+        |n| 2 + u64::from(n.survivors.next_power_of_two().ilog2()) + 1 + OWN,
+        |n| (n.survivors * 4 + n.macro_pairs * 2) * cost::WORD + n.pair_histogram(),
+    )
+    // The search for each of its pairs is a loop in a loop.
+    .turning(|_| (OWN * u64::from(limits::RADIX_PARTITION.ilog2())) as f64 / 32.0),
+    // These are as in the sort of the survivors.
+    Cost::named(
+        radix::PAIR_COUNT,
+        partitions_of_pairs,
+        |_| 1 + OWN,
+        |n| n.macro_pairs * cost::WORD + n.pair_histogram(),
+    )
+    .turning(|_| OWN as f64 / 8.0),
+    Cost::named(
+        radix::PAIR_SCAN,
+        |_| (1 << limits::SORT_BITS) * u64::from(limits::RADIX_GROUP_SIZE),
+        |n| {
             1 + n
                 .pair_partitions()
                 .div_ceil(limits::RADIX_GROUP_SIZE.into())
         },
-    },
-    Cost {
-        name: radix::PAIR_SCATTER,
-        invocations: partitions_of_pairs,
-        loads: |_| 4 + OWN,
-    },
-    // How many pairs there are; then its own.
-    Cost::of::<macro_ranges::Program>(partitions_of_pairs, |_| 1 + OWN),
+        |n| 2 * n.pair_histogram(),
+    )
+    .turning(|n| {
+        n.pair_partitions()
+            .div_ceil(limits::RADIX_GROUP_SIZE.into()) as f64
+            / 8.0
+    }),
+    Cost::named(
+        radix::PAIR_SCATTER,
+        partitions_of_pairs,
+        |_| 4 + OWN,
+        |n| n.macro_pairs * 4 * cost::WORD + n.pair_histogram(),
+    ),
+    // How many pairs there are; then its own. It writes where each macro-tile's begin.
+    Cost::of::<macro_ranges::Program>(
+        partitions_of_pairs,
+        |_| 1 + OWN,
+        |n| (n.macro_pairs + n.macro_tiles()) * cost::WORD,
+    )
+    .turning(|_| OWN as f64 / 8.0),
     // How many batches there are; the search for its own; then each of its splats, the mask and perhaps the splat, and once
-    // more the splat and its record.
-    Cost::of::<batch_count::Program>(batches, |n| 1 + batch(n) + 2 * BATCH_TURNS),
-    // The macro-tile's pairs; then the counts of its batches, as many as the others have.
+    // more the splat and its record. It writes how many splats of the batch each tile has.
+    Cost::of::<batch_count::Program>(batches, |n| 1 + batch(n) + 2 * BATCH_TURNS, batch_bytes)
+        .turning(batch_turns),
+    // The macro-tile's pairs; then the counts of its batches, which it reads and writes. It writes the sums of tiles and rows.
     Cost::of::<batch_scan::Program>(
         |n| n.macro_tiles() * u64::from(limits::MACRO_TILES),
         |n| 2 + n.batches().div_ceil(n.macro_tiles()),
-    ),
-    // The sums of all rows; then the counts of its row's tiles.
+        |n| 2 * batch_counts(n) + n.tiles() * cost::WORD + row_sums(n),
+    )
+    .turning(|n| n.batches() as f64 / n.macro_tiles().max(1) as f64 / 8.0),
+    // The sums of all rows; then the counts of its row's tiles, in place of which it writes where they begin.
     Cost::of::<row_scan::Program>(
         |n| n.tile_rows * u64::from(limits::RADIX_GROUP_SIZE),
         |n| {
@@ -193,10 +223,42 @@ pub(in crate::passes) const COSTS: &[Cost] = &[
             let turns = |words: u64| words.div_ceil(limits::RADIX_GROUP_SIZE.into());
             2 + turns(n.tile_rows * columns) + turns(n.tile_columns)
         },
+        |n| row_sums(n) + 2 * n.tiles() * cost::WORD,
     ),
-    // As batch_count; then where the tile begins.
-    Cost::of::<batch_scatter::Program>(batches, |n| 2 + batch(n)),
+    // As batch_count, but that it reads the counts; then where the tile begins. It writes the tiles' lists.
+    Cost::of::<batch_scatter::Program>(
+        batches,
+        |n| 2 + batch(n),
+        |n| batch_bytes(n) + (n.tiles() + n.pairs) * cost::WORD,
+    )
+    .turning(batch_turns),
 ];
+
+/// Bytes of the counts of all batches, a tile of a macro-tile each.
+#[cfg(feature = "lab")]
+fn batch_counts(numbers: &FrameNumbers) -> u64 {
+    numbers.batches() * u64::from(limits::MACRO_TILES) * cost::WORD
+}
+
+/// Bytes of the pairs of all batches with the splats' masks, which neighbours in a list do not share, and of the counts.
+#[cfg(feature = "lab")]
+fn batch_bytes(numbers: &FrameNumbers) -> u64 {
+    let pair = cost::WORD + cost::gathered(cost::TILE_MASK);
+    numbers.macro_pairs * pair + batch_counts(numbers)
+}
+
+/// Bytes of the sums of the rows of tiles of macro-tiles.
+#[cfg(feature = "lab")]
+fn row_sums(numbers: &FrameNumbers) -> u64 {
+    let columns = numbers.tile_columns.div_ceil(limits::MACRO_COLUMNS.into());
+    numbers.tile_rows * columns * cost::WORD
+}
+
+/// The turns of the loop over an invocation's splats of a batch.
+#[cfg(feature = "lab")]
+fn batch_turns(_: &FrameNumbers) -> f64 {
+    f64::from(limits::BATCH_SPLATS / limits::RADIX_GROUP_SIZE) / 8.0
+}
 
 /// Pairs of an invocation.
 #[cfg(feature = "lab")]

@@ -6,7 +6,7 @@ use crate::gpu::Recorder;
 use crate::limits;
 use crate::passes::buffers::{buffers, indirect};
 #[cfg(feature = "lab")]
-use crate::passes::cost::{Cost, FrameNumbers};
+use crate::passes::cost::{self, Cost, FrameNumbers};
 use crate::passes::plan::Plan;
 use crate::passes::radix::{self, Kernels, Keys, Pass};
 use crate::passes::shaders::radix_ties;
@@ -26,17 +26,39 @@ pub(super) const KERNELS: KernelSet = KernelSet {
 
 #[cfg(feature = "lab")]
 pub(in crate::passes) const COSTS: &[Cost] = &[
-    // How many keys there are; then its own.
-    Cost::of::<radix_count::Program>(workgroup_a_partition, |_| 1 + KEYS),
-    // The partitions' least and greatest keys, which decide about the passes; then their counts of the digit.
+    // How many keys there are; then its own. It reads the keys, and writes the partitions' counts.
+    Cost::of::<radix_count::Program>(
+        workgroup_a_partition,
+        |_| 1 + KEYS,
+        |n| n.survivors * cost::WORD + n.histogram(),
+    )
+    .turning(|_| KEYS as f64 / 8.0),
+    // The partitions' least and greatest keys, which decide about the passes; then their counts of the digit, which it reads
+    // and writes.
     Cost::of::<radix_scan::Program>(
         |_| (1 << limits::SORT_BITS) * u64::from(limits::RADIX_GROUP_SIZE),
         |n| 2 + 2 * n.partitions().div_ceil(limits::RADIX_GROUP_SIZE.into()),
-    ),
+        |n| 2 * n.histogram(),
+    )
+    .turning(|n| n.partitions().div_ceil(limits::RADIX_GROUP_SIZE.into()) as f64 / 8.0),
     // How many keys there are, the digits' totals, its own keys, the partition's counts; then the keys once more.
-    Cost::of::<radix_scatter::Program>(workgroup_a_partition, |_| 4 + KEYS),
-    // For each of its keys the key and those beside it; then those of one depth.
-    Cost::of::<radix_ties::Program>(workgroup_a_partition, |n| 1 + 2 * KEYS + ties(n.tied)),
+    // It reads and writes the keys and the survivors' numbers, and reads the counts.
+    Cost::of::<radix_scatter::Program>(
+        workgroup_a_partition,
+        |_| 4 + KEYS,
+        |n| n.survivors * 4 * cost::WORD + n.histogram(),
+    ),
+    // For each of its keys the key and those beside it; then those of one depth. It reads the keys; for those of one depth it
+    // reads the splats' numbers and, for each of four digits, reads and writes the survivors.
+    Cost::of::<radix_ties::Program>(
+        workgroup_a_partition,
+        |n| 1 + 2 * KEYS + ties(n.tied),
+        |n| {
+            let tied = cost::gathered(cost::WORD) + 4 * 4 * cost::WORD;
+            n.survivors * cost::WORD + n.tied * tied
+        },
+    )
+    .turning(ties_turns),
 ];
 
 /// Keys of an invocation.
@@ -62,6 +84,14 @@ fn ties(tied: u64) -> u64 {
     let digits = u64::from(tied.ilog2() / limits::SORT_BITS + 1);
     // The end; the numbers; for each digit a survivor and its number to count, to sort and to carry it; the copy back.
     turns + 2 * turns + digits * (2 * turns + 2 * turns.div_ceil(KEYS) + turns) + turns
+}
+
+/// The turns of the loops, nearly all of which sort those of one depth: four inside each other, which a compiler takes for
+/// granted. What is left is the loop over an invocation's keys, whose 16 turns are a hundredth of that estimate. Where many have
+/// one depth, their chain of loads is what lasts.
+#[cfg(feature = "lab")]
+fn ties_turns(_: &FrameNumbers) -> f64 {
+    0.01
 }
 
 /// Words of the histogram for as many keys as there are Gaussians.

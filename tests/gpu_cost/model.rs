@@ -1,0 +1,266 @@
+//! What the model of GPUs (`rara::measure::gpu_model`) is fed with: the numbers of frames, counted on whatever device there is,
+//! and the estimates of a GPU's compiler.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::{env, fs};
+
+use rara::ash::vk;
+use rara::cost::{FrameNumbers, costs};
+use rara::gpu::{Device, DeviceDesc, DeviceShape};
+use rara::measure::gpu_model::{
+    self, CountedFrame, FRAMES_FILE, KERNELS_FILE, Kernel, frames, kernels,
+};
+use rara::types::{FrameData, Splat};
+use rara::{
+    Gaussians, Mode, Raster, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat, limits,
+};
+
+use crate::common::folder::Folder;
+use crate::frames::Drawn;
+use crate::passes::{groups, numbers};
+use crate::pipelines::{Driver, OUT};
+
+/// The GPU whose compiler's estimates the model takes.
+const GPU: &str = "navi31";
+/// The scenes' sizes.
+const GAUSSIANS: [usize; 2] = [1_000_000, 5_000_000];
+
+/// Draws a scene as `rara render --raster tiles` would, with a clip or without, and with room for all pairs.
+fn draw(device: &Device, scene: &Gaussians, is_cut: bool) -> Drawn {
+    let camera = gpu_model::camera(scene).expect("a camera");
+    let clip = gpu_model::clip(is_cut).expect("a clip");
+    let buffers = SceneBuffers::upload(device, scene, ShFormat::Packed).expect("uploads");
+    let desc = RendererDesc::new(vk::Format::R32G32B32A32_SFLOAT);
+    let mut renderer = Renderer::new(device, desc).expect("a renderer");
+    let settings = Settings::default().mode(Mode::Exact).raster(Raster::Tiles);
+    // The first frames learn how many pairs there are.
+    for _ in 0..3 {
+        renderer.forget();
+        renderer
+            .configure(&buffers, &camera, &clip, &settings)
+            .expect("it can be drawn");
+        let submitted = device.submit_and_wait(|cmd| {
+            // SAFETY: `cmd` is recording outside rendering, and all that is used outlives the wait.
+            unsafe { renderer.prepare(cmd, &buffers) }
+        });
+        submitted.expect("it is drawn");
+    }
+    Drawn::new(device.recorded(), renderer)
+}
+
+/// Takes minutes, and gigabytes of memory.
+#[test]
+#[ignore = "its results are the same on every device: RARA_RENEW_BUDGET=1 writes them anew, else they are compared"]
+fn the_models_frames_are_counted() {
+    let desc = DeviceDesc::default().selector(env::var("RARA_TEST_DEVICE").ok());
+    let device = Device::headless_inspected(&desc).expect("a Vulkan device");
+    let [least, most] = device.support().full_subgroups;
+    drop(device);
+    let shape = DeviceShape::Gpu {
+        subgroup: 32.clamp(least, most),
+    };
+    let device = Device::headless_inspected(&desc.shape(Some(shape))).expect("a Vulkan device");
+    let mut found = Vec::new();
+    for gaussians in GAUSSIANS {
+        let scene = gpu_model::scene(gaussians);
+        for is_cut in [false, true] {
+            let drawn = draw(&device, &scene, is_cut);
+            found.push(counted(gaussians, &drawn, is_cut));
+        }
+    }
+    if env::var_os("RARA_RENEW_BUDGET").is_none() {
+        assert_eq!(frames(), found);
+        return;
+    }
+    let head = "\
+# Frames of generated scenes at 1920x1080, drawn by tiles with the kernels for GPUs, as they were counted by
+#     RARA_RENEW_BUDGET=1 cargo test --release --test gpu_cost -- --ignored the_models_frames_are_counted
+";
+    let frames: String = found.iter().map(CountedFrame::text).collect();
+    write(FRAMES_FILE, &format!("{head}{frames}"));
+}
+
+fn write(file: &str, text: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+    fs::write(path, text).expect("src/ is writable");
+}
+
+fn counted(gaussians: usize, drawn: &Drawn, is_cut: bool) -> CountedFrame {
+    let dispatches = drawn.recorded.dispatches.iter();
+    let names = dispatches.filter(|dispatch| groups(drawn, dispatch) > 0);
+    let data: FrameData =
+        bytemuck::pod_read_unaligned(&drawn.buffer("frame")[..size_of::<FrameData>()]);
+    let found = numbers(drawn);
+    let mut numbers = FrameNumbers {
+        surfaces: is_cut.into(),
+        // Without their stages nobody writes how many there are.
+        clip_blocks: if is_cut { found.clip_blocks } else { 0 },
+        changed: 0,
+        ..found
+    };
+    assert!(numbers.pairs > 0, "the pairs have room");
+    let splats: Vec<Splat> = bytemuck::pod_collect_to_vec(&drawn.buffer("splats"));
+    let splats = &splats[..numbers.survivors as usize];
+    numbers.tied = tied(splats, &data);
+    numbers.loaded = loaded(splats, drawn, &data);
+    CountedFrame {
+        gaussians,
+        is_cut,
+        numbers,
+        dispatches: names.map(|dispatch| dispatch.name.to_owned()).collect(),
+    }
+}
+
+/// The most splats that have one key.
+fn tied(splats: &[Splat], data: &FrameData) -> u64 {
+    let order = &data.order;
+    let key = |splat: &Splat| {
+        let depth = splat.curvature_depth[3].to_bits().max(order.key_near) - order.key_near;
+        depth.min(order.key_span) >> order.key_shift
+    };
+    let mut keys: Vec<u32> = splats.iter().map(key).collect();
+    keys.sort_unstable();
+    let same = keys.chunk_by(|a, b| a == b).map(<[u32]>::len);
+    same.max().unwrap_or(0) as u64
+}
+
+/// The splats that tiles load, a batch at a time, before all of their pixels are saturated; as if none were cut.
+fn loaded(splats: &[Splat], drawn: &Drawn, data: &FrameData) -> u64 {
+    let lists: Vec<u32> = bytemuck::pod_collect_to_vec(&drawn.buffer("tile_splats"));
+    let begins: Vec<u32> = bytemuck::pod_collect_to_vec(&drawn.buffer("tile_begins"));
+    let tiles = &data.tiles;
+    let [width, height] = [limits::TILE_WIDTH, limits::TILE_HEIGHT];
+    let [columns, rows] = [data.view.size[0], data.view.size[1]];
+    let mut sum = 0;
+    for tile in 0..tiles.tile_count {
+        let corner = [
+            tile % tiles.tile_columns * width,
+            tile / tiles.tile_columns * height,
+        ];
+        let list = &lists[begins[tile as usize] as usize..begins[tile as usize + 1] as usize];
+        let pixels = (0..width * height).map(|i| [corner[0] + i % width, corner[1] + i / width]);
+        let mut pixels: Vec<([f32; 2], f32)> = pixels
+            .map(|at| at.map(|at| at as f32 + 0.5))
+            .filter(|at| at[0] < columns && at[1] < rows)
+            .map(|at| (at, 1.0))
+            .collect();
+        for batch in list.chunks((width * height) as usize) {
+            sum += batch.len() as u64;
+            for &splat in batch {
+                let splat = &splats[splat as usize];
+                for (at, transmittance) in &mut pixels {
+                    *transmittance *= 1.0 - alpha(splat, *at);
+                }
+            }
+            pixels.retain(|(_, transmittance)| *transmittance >= tiles.transmittance_min);
+            if pixels.is_empty() {
+                break;
+            }
+        }
+    }
+    sum
+}
+
+/// The alpha of a splat in a pixel, as tiles compute it.
+fn alpha(splat: &Splat, at: [f32; 2]) -> f32 {
+    let [x, y, k0, k1] = splat.centre_conic;
+    let [k2, opacity, ..] = splat.conic_cut;
+    let (u, v) = (k0 * (at[0] - x), k1 * (at[0] - x));
+    let w = v + k2 * (at[1] - y);
+    let alpha = limits::ALPHA_MAX.min(opacity * (-0.5 * (u * u + w * w)).exp());
+    if alpha >= limits::ALPHA_MIN {
+        alpha
+    } else {
+        0.0
+    }
+}
+
+#[test]
+fn the_models_kernels_are_as_a_gpus_compiler_estimates_them() {
+    let driver = match Driver::find() {
+        Ok(driver) => driver,
+        Err(reason) => {
+            eprintln!("SKIPPED: NO GPU'S COMPILER SAW THE MODEL'S KERNELS: {reason}");
+            return;
+        }
+    };
+    let folder = Folder::new("gpu_model");
+    let out = folder.join("kernels");
+    let child = driver.start(GPU, "model::kernels_of_the_device_that_is_pretended", &out);
+    let output = child.wait_with_output().expect("the child process ends");
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{error}");
+    let found = fs::read_to_string(out).expect("what the child has found");
+    if env::var_os("RARA_RENEW_BUDGET").is_some() {
+        let head = "\
+# RADV's estimates of the kernels of these frames on a Navi 31, in cycles: frame, pass, latency, inverse throughput. It is
+# written with tests/gpu_cost/budget.toml.
+";
+        write(KERNELS_FILE, &format!("{head}{found}"));
+        return;
+    }
+    let committed: Vec<String> = kernels().iter().map(Kernel::text).collect();
+    let found: Vec<&str> = found.lines().collect();
+    assert_eq!(
+        committed.len(),
+        found.len(),
+        "RARA_RENEW_BUDGET=1 writes them anew"
+    );
+    for (committed, found) in committed.iter().zip(found) {
+        let words = |line: &str| {
+            line.split_whitespace()
+                .map(str::to_owned)
+                .collect::<Vec<_>>()
+        };
+        let (committed, found) = (words(committed), words(found));
+        assert_eq!(committed[..2], found[..2]);
+        // Versions of the compiler differ.
+        for (committed, found) in committed[2..].iter().zip(&found[2..]) {
+            let [before, now] = [committed, found].map(|n| n.parse::<f64>().expect("a number"));
+            assert!(
+                (0.8..1.25).contains(&(now / before)),
+                "{found}: {before} cycles were {now}; RARA_RENEW_BUDGET=1 writes that down"
+            );
+        }
+    }
+}
+
+/// Makes the pipelines of the model's frames on whatever device there is, and writes what they are estimated at.
+#[test]
+#[ignore = "another test starts this one for the GPU that is pretended"]
+fn kernels_of_the_device_that_is_pretended() {
+    let out = env::var_os(OUT).expect("the test that starts this one names a file");
+    let scene = gpu_model::scene(2000);
+    let mut lines = String::new();
+    for is_cut in [false, true] {
+        // A device of its own, so that it has made no other frame's pipelines.
+        let device = Device::headless_inspected(&DeviceDesc::default()).expect("a device");
+        let drawn = draw(&device, &scene, is_cut);
+        let recorded: BTreeSet<_> = drawn.recorded.dispatches.iter().map(|d| d.name).collect();
+        for pass in recorded {
+            assert!(costs().any(|cost| cost.name == pass), "{pass} has no cost");
+            let shaders = device.compiled_shaders();
+            let mut of_pass = shaders.iter().filter(|shader| shader.name == pass);
+            let shader = of_pass.next().expect("it was compiled");
+            assert!(
+                of_pass.all(|other| other.constants == shader.constants),
+                "{pass}"
+            );
+            let number = |name| shader.numbers.iter().find(|(known, _)| known == name);
+            let [latency, cycles] = ["Latency", "Inverse Throughput"].map(|name| {
+                number(name)
+                    .unwrap_or_else(|| panic!("{pass}: no {name}"))
+                    .1
+            });
+            let kernel = Kernel {
+                pass: pass.into(),
+                is_cut,
+                latency,
+                cycles,
+            };
+            lines += &kernel.text();
+        }
+    }
+    fs::write(out, lines).expect("the file is writable");
+}

@@ -8,8 +8,8 @@ layout(local_size_x = RADIX_GROUP_SIZE) in;
 // True where tiles have a pipeline without code for several surfaces: an exact cut by more than one.
 layout(constant_id = 0) const bool SEVERAL = false;
 
-BUFFER(writeonly, 6, uint, tile_counts)
-BUFFER(readonly, 7, vec4, cut_records)
+BUFFER(writeonly, 7, uint, tile_counts)
+BUFFER(readonly, 8, vec4, cut_records)
 
 // A bit for each splat of the batch that several surfaces cut.
 shared uint several[BATCH_WORDS];

@@ -5,9 +5,9 @@
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
 
-BUFFER(readonly, 6, uint, tile_counts)
-BUFFER(readonly, 7, uint, tile_begins)
-BUFFER(writeonly, 8, uint, tile_splats)
+BUFFER(readonly, 7, uint, tile_counts)
+BUFFER(readonly, 8, uint, tile_begins)
+BUFFER(writeonly, 9, uint, tile_splats)
 
 // Where the first splat of each word goes.
 shared uint places[BATCH_WORDS * HELD_STRIDE];

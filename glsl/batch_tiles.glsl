@@ -8,6 +8,7 @@ BUFFER(readonly, 2, FrameCounts, counts)
 BUFFER(readonly, 3, Splat, splats)
 BUFFER(readonly, 4, uvec4, tile_masks)
 BUFFER(readonly, 5, uint, macro_splats)
+BUFFER(readonly, 6, uint, macro_keys)
 
 const uint BATCH_WORDS = BATCH_SPLATS / 32u;
 // The words of a tile are this far apart, so that neither the words of one tile nor those of neighbours share a memory bank.
@@ -20,7 +21,10 @@ uint held_place(uint word, uint tile) {
     return word * HELD_STRIDE + tile;
 }
 
-uvec4 tiles_of(uint splat, uvec2 corner) {
+uvec4 tiles_of(uint key, uint splat, uvec2 corner) {
+    if (key < PAIR_MASKED) {
+        return tiles_of_rect(key);
+    }
     uvec4 tiles = tile_masks.at[splat];
     if (tiles.y == 0u) {
         return tiles_of_mask(tiles.x, tiles.zw, corner);
@@ -38,7 +42,7 @@ void find_held(Batch batch) {
     for (uint i = local; i < batch.pairs.y - batch.pairs.x; i += RADIX_GROUP_SIZE) {
         uint splat = macro_splats.at[batch.pairs.x + i];
         batch_splats[i] = splat;
-        uvec4 tiles = tiles_of(splat, corner);
+        uvec4 tiles = tiles_of(macro_keys.at[batch.pairs.x + i], splat, corner);
         for (uint word = 0u; word < 4u; word++) {
             for (uint bits = tiles[word]; bits != 0u; bits &= bits - 1u) {
                 // Bits may be set in any order.

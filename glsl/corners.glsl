@@ -3,6 +3,9 @@
 #define RARA_CORNERS
 #include "frame.glsl"
 #include "host_depth.glsl"
+#include "cut.glsl"
+#include "extent.glsl"
+#include "widened.glsl"
 
 BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, Splat, splats)
@@ -16,6 +19,30 @@ uint number_at(uint number) {
 
 // True when splats have a depth in the host's buffer.
 layout(constant_id = 5) const bool DEPTH = false;
+
+// True where nobody has found the quads: those of tiles whose lists had no room.
+layout(constant_id = 7) const bool BOXES = false;
+
+// The box around a splat's contour, as far as it is in the picture. It covers more pixels than the quad, all of which the
+// fragment stage finds empty.
+Quad box(Splat splat) {
+    if (splat.conic_cut.z == Z_CUT_AWAY) {
+        return Quad(vec2(0.0), vec2(0.0), vec2(0.0));
+    }
+    vec2 centre = splat.centre_conic.xy;
+    vec3 conic = vec3(splat.centre_conic.zw, splat.conic_cut.x);
+    float extent = opacity_extent(splat.conic_cut.y);
+    vec2 half_sides = extent / conic.x * vec2(1.0, length(conic.xy) / conic.z);
+    half_sides = vec2(widened(half_sides.x), widened(half_sides.y)) + 1e-6 * abs(centre);
+    vec2 low = max(centre - half_sides, vec2(-1.0));
+    vec2 high = max(low, min(centre + half_sides, FRAME.view.size.xy + 1.0));
+    vec2 half_size = 0.5 * (high - low);
+    return Quad(0.5 * (low + high) - centre, vec2(half_size.x, 0.0), vec2(0.0, half_size.y));
+}
+
+Quad quad_of(uint survivor, Splat splat) {
+    return BOXES ? box(splat) : quads.at[survivor];
+}
 
 // Corner 0 to 3 of a strip.
 vec4 corner(Splat splat, Quad quad, uint number) {

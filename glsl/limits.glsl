@@ -58,6 +58,8 @@ const uint RADIX_PARTITION = 4096u;
 // of 1920x1080 then has 255 macro-tiles, one fewer than a digit of the sort has values.
 const uint MACRO_COLUMNS = 16u;
 const uint MACRO_ROWS = 8u;
+// Bits of a macro-tile's number in the key of a pair of macro-tile and splat, enough for pictures of 32768x32768.
+const uint PAIR_BITS = 17u;
 const uint MACRO_TILES = MACRO_COLUMNS * MACRO_ROWS;
 // Most splats of a macro-tile that a workgroup lists the tiles of: a batch.
 const uint BATCH_SPLATS = 512u;

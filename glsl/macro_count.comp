@@ -13,9 +13,10 @@ BUFFER(readonly, 2, Splat, splats)
 BUFFER(readonly, 3, uint, order)
 BUFFER(readonly, 4, uvec4, tile_masks)
 BUFFER(writeonly, 5, uint, pair_begins)
-// The first macro-tile of each splat's rectangle, its column in the lower half; and how many columns the rectangle has.
+// The first tile of each splat's rectangle, its column in the lower half; and how many columns and rows of tiles it has,
+// marked where the splat does not touch all of them.
 BUFFER(writeonly, 6, uint, rect_firsts)
-BUFFER(writeonly, 7, uint, rect_columns)
+BUFFER(writeonly, 7, uint, rect_sizes)
 BUFFER(writeonly, 8, uint, pair_sums)
 
 void main() {
@@ -24,16 +25,22 @@ void main() {
     for (uint i = bounds.x + gl_LocalInvocationIndex; i < bounds.y; i += RADIX_GROUP_SIZE) {
         uint splat = order.at[i];
         uvec4 tiles = tile_masks.at[splat];
-        MacroRect rect;
+        Rect rect;
+        bool masked = true;
         if (tiles.y == 0u) {
             rect = rect_of_mask(tiles.x, tiles.zw);
+            masked = uint(bitCount(tiles.z) + bitCount(tiles.w)) != rect.size.x * rect.size.y;
         } else {
             rect = rect_of_outline(bounded_outline(splats.at[splat], tiles.zw));
         }
-        uint count = rect.size.x * rect.size.y;
+        uint count = 0u;
+        if (rect.size.x != 0u) {
+            uvec2 size = macro_rect(rect).size;
+            count = size.x * size.y;
+        }
         pair_begins.at[i] = count;
         rect_firsts.at[i] = rect.first.x | rect.first.y << 16;
-        rect_columns.at[i] = rect.size.x;
+        rect_sizes.at[i] = rect.size.x | rect.size.y << 16 | (masked ? PAIR_MASKED : 0u);
         pairs += count;
     }
     uint total;

@@ -1,10 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The third step of binning for GPUs writes the pairs of macro-tile and splat, front to back. Each invocation finds the
-// splats of its pairs, so that nobody waits for a splat over the whole picture. This is also the first count of the pairs' sort.
+// The third step of binning for GPUs writes the pairs of macro-tile and splat, front to back. A workgroup owns a partition of
+// the pairs and finds whose they are, so that nobody waits for a splat over the whole picture. This is also the first count of
+// the pairs' sort.
 #include "macro_tiles.glsl"
 #define KEY_COUNT counts.at[0].macro_pairs
 #include "radix.glsl"
+#include "workgroup_max.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
 
@@ -12,13 +14,15 @@ BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, uint, order)
 BUFFER(readonly, 3, uint, pair_begins)
 BUFFER(readonly, 4, uint, rect_firsts)
-BUFFER(readonly, 5, uint, rect_columns)
+BUFFER(readonly, 5, uint, rect_sizes)
 BUFFER(writeonly, 6, uint, macro_keys)
 BUFFER(writeonly, 7, uint, macro_splats)
 BUFFER(writeonly, 8, uint, histogram)
 
 shared uint ends[2]; // the splats of the partition's first and last pair
-shared uint begins[RADIX_PARTITION]; // where the pairs of the splats in between begin, a window of them at a time
+// At the first pair of each splat the splat, counted from 1 and the partition's first; elsewhere 0, or at last the same as
+// before. An invocation's pairs are followed by a gap, so that neighbours use different memory banks.
+shared uint owners[RADIX_PARTITION + RADIX_GROUP_SIZE];
 shared uint totals[DIGITS];
 
 // The splat that a pair is one of: the last one whose pairs do not begin behind it.
@@ -36,29 +40,46 @@ uint owner(uint pair) {
     return first;
 }
 
-// The same among the first `count` of a window.
-uint owner_in_window(uint pair, uint count) {
-    uint first = 0u;
-    uint end = count;
-    while (first + 1u < end) {
-        uint middle = (first + end) / 2u;
-        if (begins[middle] <= pair) {
-            first = middle;
-        } else {
-            end = middle;
-        }
-    }
-    return first;
+// The place of one of the partition's pairs.
+uint owner_place(uint pair) {
+    return pair + pair / RADIX_KEYS;
 }
 
-void write_pair(uint pair, uint number, uint splat) {
+void mark_first_pairs(uvec2 bounds) {
+    for (uint splat = ends[0] + gl_LocalInvocationIndex; splat <= ends[1]; splat += RADIX_GROUP_SIZE) {
+        uint begin = max(pair_begins.at[splat], bounds.x);
+        // One without pairs begins where the next one does.
+        if (begin < bounds.y && bitfieldExtract(rect_sizes.at[splat], 0, 16) != 0u) {
+            owners[owner_place(begin - bounds.x)] = splat - ends[0] + 1u;
+        }
+    }
+}
+
+// Hands each mark on to the pairs behind it.
+void fill_owners() {
+    uint first = gl_LocalInvocationIndex * RADIX_KEYS;
+    uint own = 0u;
+    for (uint k = 0u; k < RADIX_KEYS; k++) {
+        own = max(own, owners[owner_place(first + k)]);
+    }
+    uint last = exclusive_max(own);
+    for (uint k = 0u; k < RADIX_KEYS; k++) {
+        last = max(last, owners[owner_place(first + k)]);
+        owners[owner_place(first + k)] = last;
+    }
+}
+
+void write_pair(uint pair, uint splat) {
     uint first = rect_firsts.at[splat];
-    uint columns = rect_columns.at[splat];
-    uvec2 at = uvec2(first & 0xffffu, first >> 16) + uvec2(number % columns, number / columns);
-    uint key = at.y * macro_columns() + at.x;
+    uint size = rect_sizes.at[splat];
+    Rect tiles = Rect(uvec2(first & 0xffffu, first >> 16), uvec2(size & 0xffffu, bitfieldExtract(size, 16, 15)));
+    Rect rect = macro_rect(tiles);
+    uint number = pair - pair_begins.at[splat];
+    uvec2 at = rect.first + uvec2(number % rect.size.x, number / rect.size.x);
+    uint key = pair_key(at, tiles, (size & PAIR_MASKED) != 0u);
     macro_keys.at[pair] = key;
     macro_splats.at[pair] = order.at[splat];
-    atomicAdd(totals[digit(key, 0u)], 1u); // the sums do not depend on the order
+    atomicAdd(totals[digit(pair_macro_tile(key), 0u)], 1u); // the sums do not depend on the order
 }
 
 void main() {
@@ -66,28 +87,21 @@ void main() {
     uint p = gl_WorkGroupID.x;
     uvec2 bounds = partition_bounds(p, KEY_COUNT);
     totals[local] = 0u;
+    for (uint k = 0u; k < RADIX_KEYS; k++) {
+        owners[owner_place(k * RADIX_GROUP_SIZE + local)] = 0u;
+    }
     if (local < 2u) {
         ends[local] = owner(local == 0u ? bounds.x : bounds.y - 1u);
     }
     barrier();
-    uint last = ends[1];
-    // There is one window, unless splats without pairs stand between the others.
-    for (uint window = ends[0]; window <= last; window += RADIX_PARTITION) {
-        uint count = min(last + 1u - window, RADIX_PARTITION);
-        barrier();
-        for (uint k = 0u; k < RADIX_KEYS; k++) {
-            uint i = k * RADIX_GROUP_SIZE + local;
-            if (i < count) {
-                begins[i] = pair_begins.at[window + i];
-            }
-        }
-        uint next = window + count <= last ? pair_begins.at[window + count] : bounds.y;
-        barrier();
-        for (uint pair = bounds.x + local; pair < bounds.y; pair += RADIX_GROUP_SIZE) {
-            if (pair >= begins[0] && pair < next) {
-                uint i = owner_in_window(pair, count);
-                write_pair(pair, pair - begins[i], window + i);
-            }
+    mark_first_pairs(bounds);
+    barrier();
+    fill_owners();
+    barrier();
+    for (uint k = 0u; k < RADIX_KEYS; k++) {
+        uint pair = k * RADIX_GROUP_SIZE + local;
+        if (bounds.x + pair < bounds.y) {
+            write_pair(bounds.x + pair, ends[0] + owners[owner_place(pair)] - 1u);
         }
     }
     barrier();

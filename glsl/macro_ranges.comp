@@ -16,8 +16,8 @@ void main() {
     uint count = KEY_COUNT;
     uvec2 bounds = partition_bounds(gl_WorkGroupID.x, count);
     for (uint i = bounds.x + gl_LocalInvocationIndex; i < bounds.y; i += RADIX_GROUP_SIZE) {
-        uint key = macro_keys.at[i];
-        uint first = i == 0u ? 0u : macro_keys.at[i - 1u] + 1u;
+        uint key = pair_macro_tile(macro_keys.at[i]);
+        uint first = i == 0u ? 0u : pair_macro_tile(macro_keys.at[i - 1u]) + 1u;
         for (uint macro_tile = first; macro_tile <= key; macro_tile++) {
             macro_begins.at[macro_tile] = i;
         }

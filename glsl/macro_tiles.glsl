@@ -1,6 +1,5 @@
 // Macro-tiles of MACRO_COLUMNS x MACRO_ROWS tiles, in which kernels for GPUs collect the splats before they list those of each
-// tile. A splat has a pair with each macro-tile of a rectangle around its tiles; a pair's mask says which of the macro-tile's
-// tiles they are, and may be empty.
+// tile. A splat has a pair with each macro-tile of a rectangle around its tiles, and may touch none of the macro-tile's.
 #ifndef RARA_MACRO_TILES
 #define RARA_MACRO_TILES
 #include "bin.glsl"
@@ -16,27 +15,26 @@ uint macro_tile_count() {
     return macro_columns() * ((tile_rows() + MACRO_ROWS - 1u) / MACRO_ROWS);
 }
 
-// The macro-tiles of a rectangle.
-struct MacroRect {
+// A rectangle of tiles.
+struct Rect {
     uvec2 first; // column and row
     uvec2 size; // columns and rows, 0 for none
 };
 
-MacroRect rect_between(uvec2 columns, uvec2 rows) {
+const Rect NO_RECT = Rect(uvec2(0u), uvec2(0u));
+
+Rect rect_between(uvec2 columns, uvec2 rows) {
     if (columns.x >= columns.y || rows.x >= rows.y) {
-        return MacroRect(uvec2(0u), uvec2(0u));
+        return NO_RECT;
     }
-    uvec2 sides = uvec2(MACRO_COLUMNS, MACRO_ROWS);
-    uvec2 first = uvec2(columns.x, rows.x) / sides;
-    uvec2 last = uvec2(columns.y - 1u, rows.y - 1u) / sides;
-    return MacroRect(first, last - first + 1u);
+    return Rect(uvec2(columns.x, rows.x), uvec2(columns.y - columns.x, rows.y - rows.x));
 }
 
 // The rectangle around the tiles of a mask (tile_mask).
-MacroRect rect_of_mask(uint origin, uvec2 mask) {
+Rect rect_of_mask(uint origin, uvec2 mask) {
     uint both = mask.x | mask.y;
     if (both == 0u) {
-        return MacroRect(uvec2(0u), uvec2(0u));
+        return NO_RECT;
     }
     uint columns = both | both >> 16;
     columns = (columns | columns >> 8) & 0xffu;
@@ -48,13 +46,57 @@ MacroRect rect_of_mask(uint origin, uvec2 mask) {
 }
 
 // That around the tiles of an outline, from the sides of its quad.
-MacroRect rect_of_outline(Outline o) {
+Rect rect_of_outline(Outline o) {
     return rect_between(tiles_between(o.sides.x, o.sides.y, FRAME.view.size.x, TILE_WIDTH), o.rows);
+}
+
+// The macro-tiles that a rectangle of tiles, which is not empty, touches.
+Rect macro_rect(Rect tiles) {
+    uvec2 sides = uvec2(MACRO_COLUMNS, MACRO_ROWS);
+    uvec2 first = tiles.first / sides;
+    return Rect(first, (tiles.first + tiles.size - 1u) / sides - first + 1u);
+}
+
+// A pair's key is the number of its macro-tile, by which the pairs are sorted; above it is the rectangle of the tiles in the
+// macro-tile, which spares most pairs a look at the splat's mask: first column and row, one less than columns and rows.
+const uint PAIR_COLUMN_BITS = 4u;
+const uint PAIR_ROW_BITS = 3u;
+// Marks splats that do not touch all tiles of their rectangle.
+const uint PAIR_MASKED = 1u << 31u;
+
+uint pair_key(uvec2 macro_tile, Rect tiles, bool masked) {
+    uvec2 corner = macro_tile * uvec2(MACRO_COLUMNS, MACRO_ROWS);
+    uvec2 first = max(tiles.first, corner) - corner;
+    uvec2 last = min(tiles.first + tiles.size - corner, uvec2(MACRO_COLUMNS, MACRO_ROWS)) - 1u;
+    uint place = first.x | first.y << PAIR_COLUMN_BITS;
+    uint size = (last.x - first.x) | (last.y - first.y) << PAIR_COLUMN_BITS;
+    uint rect = place | size << (PAIR_COLUMN_BITS + PAIR_ROW_BITS);
+    return macro_tile.y * macro_columns() + macro_tile.x | rect << PAIR_BITS | (masked ? PAIR_MASKED : 0u);
+}
+
+uint pair_macro_tile(uint key) {
+    return bitfieldExtract(key, 0, int(PAIR_BITS));
 }
 
 // The tiles of a macro-tile, a bit each, row by row: two rows a word.
 uvec4 put_row(uvec4 tiles, uint row, uint bits) {
     tiles[row / 2u] |= bits << (row % 2u * MACRO_COLUMNS);
+    return tiles;
+}
+
+// Those of a pair's rectangle.
+uvec4 tiles_of_rect(uint key) {
+    uint rect = key >> PAIR_BITS;
+    uint column = bitfieldExtract(rect, 0, int(PAIR_COLUMN_BITS));
+    uint row = bitfieldExtract(rect, int(PAIR_COLUMN_BITS), int(PAIR_ROW_BITS));
+    uint size = rect >> (PAIR_COLUMN_BITS + PAIR_ROW_BITS);
+    uint columns = bitfieldExtract(size, 0, int(PAIR_COLUMN_BITS)) + 1u;
+    uint rows = bitfieldExtract(size, int(PAIR_COLUMN_BITS), int(PAIR_ROW_BITS)) + 1u;
+    uint bits = ((1u << columns) - 1u) << column;
+    uvec4 tiles = uvec4(0u);
+    for (uint at = 0u; at < MACRO_ROWS; at++) {
+        tiles = put_row(tiles, at, at >= row && at < row + rows ? bits : 0u);
+    }
     return tiles;
 }
 

@@ -11,7 +11,7 @@ layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 layout(constant_id = 0) const bool CUT = false;
 // True when tiles are wanted.
 layout(constant_id = 2) const bool TILES = false;
-// True when quads are drawn, or may have to be where the tiles' lists have no room.
+// True when quads are drawn.
 layout(constant_id = 3) const bool QUADS = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)

@@ -37,7 +37,7 @@ void main() {
     uint my_greatest = 0u;
     for (uint i = bounds.x + local; i < bounds.y; i += RADIX_GROUP_SIZE) {
         uint key = keys.at[i];
-        atomicAdd(totals[digit(key - base, number)], 1u);
+        atomicAdd(totals[digit(SORTED_BITS(key) - base, number)], 1u);
         my_least = min(my_least, key);
         my_greatest = max(my_greatest, key);
     }

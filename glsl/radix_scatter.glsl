@@ -40,7 +40,7 @@ void main() {
     for (uint k = 0u; k < RADIX_KEYS; k++) {
         uint i = bounds.x + position_of(k);
         // The positions beyond the last key take the last digit, and are left out below.
-        digits[k] = i < bounds.y ? digit(key_at(is_first, i) - base, number) : DIGITS - 1u;
+        digits[k] = i < bounds.y ? digit(SORTED_BITS(key_at(is_first, i)) - base, number) : DIGITS - 1u;
     }
     sort_positions(digits);
     offsets[local] = before + histogram.at[COUNT_PLACE(local, p)] - digit_begins[local];

@@ -12,7 +12,7 @@ layout(location = 3) flat out vec3 curvature;
 void main() {
     uint survivor = number_at(gl_InstanceIndex);
     Splat splat = splats.at[survivor];
-    gl_Position = corner(splat, quads.at[survivor], gl_VertexIndex);
+    gl_Position = corner(splat, quad_of(survivor, splat), gl_VertexIndex);
     centre_conic = fragment_centre(splat);
     conic_cut = splat.conic_cut;
     colour_cut = splat.colour_cut;

@@ -48,6 +48,8 @@ pub struct FrameNumbers {
     pub tile_rows: u64,
     /// Pairs of macro-tile and splat.
     pub macro_pairs: u64,
+    /// Those of them whose tiles only the splat's mask tells.
+    pub masked_pairs: u64,
     /// Pairs of tile and splat.
     pub pairs: u64,
     /// Tiles that hold splats, of which several surfaces cut none.
@@ -64,7 +66,7 @@ pub struct FrameNumbers {
 
 impl FrameNumbers {
     /// The numbers by their names.
-    pub fn named(&mut self) -> [(&'static str, &mut u64); 19] {
+    pub fn named(&mut self) -> [(&'static str, &mut u64); 20] {
         [
             ("blocks", &mut self.blocks),
             ("clip_blocks", &mut self.clip_blocks),
@@ -79,6 +81,7 @@ impl FrameNumbers {
             ("tile_columns", &mut self.tile_columns),
             ("tile_rows", &mut self.tile_rows),
             ("macro_pairs", &mut self.macro_pairs),
+            ("masked_pairs", &mut self.masked_pairs),
             ("pairs", &mut self.pairs),
             ("filled_tiles", &mut self.filled_tiles),
             ("several_tiles", &mut self.several_tiles),
@@ -139,8 +142,6 @@ pub(super) const GAUSSIAN: u64 = size_of::<types::Gaussian>() as u64;
 pub(super) const BOUNDS: u64 = size_of::<types::Block>() as u64;
 /// A splat.
 pub(super) const SPLAT: u64 = size_of::<types::Splat>() as u64;
-/// A splat's quad.
-pub(super) const QUAD: u64 = size_of::<types::Quad>() as u64;
 /// A survivor: its Gaussian, and its place among those that are cut.
 pub(super) const SURVIVOR: u64 = 2 * WORD;
 /// A splat's mask of tiles.

@@ -61,6 +61,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat_depth::P
     let depth = attachments.depth.is_some();
     let weight = Weight::of(plan);
     let constants = splat_depth::Constants {
+        boxes: false,
         clip_mode: weight.mode,
         several: weight.several,
         decay: weight.decay,

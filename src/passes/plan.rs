@@ -55,7 +55,7 @@ pub(crate) struct Way {
     pub(crate) sort_passes: u32,
     /// True when the splats' depths are wanted.
     pub(crate) expects_depth: bool,
-    /// True when splats are drawn as quads, or may have to be where the tiles' lists have no room.
+    /// True when splats are drawn as quads. Where tiles' lists have no room, boxes take the tiles' place.
     pub(crate) needs_quads: bool,
     /// Colours, or a debug view.
     pub(crate) show: Show,
@@ -126,7 +126,7 @@ impl Plan {
                 layered: scene.layers.len() > 1,
                 sort_passes: keys.passes(),
                 expects_depth: scene.expects_depth,
-                needs_quads: !(is_tiled && scene.redrawn) || scene.expects_depth,
+                needs_quads: !is_tiled || scene.expects_depth,
                 show: settings.show,
                 tile_pixels: scene.picture.unwrap_or_default(),
             },

@@ -33,14 +33,13 @@ impl OfPlan for project::Constants {
 pub(super) const COSTS: &[Cost] = &[
     // How many there are, its Gaussian's number, the layer; the Gaussian meanwhile. Then the cutoff record's header and the
     // rest of it, the colour's constant, its units and those of three degrees; the record once more for the tiles.
-    // It reads the survivor, the Gaussian, its colour and the record, and writes the splat, its quad in case that the tiles'
-    // lists have no room, its mask, its key and its number.
+    // It reads the survivor, the Gaussian, its colour and the record, and writes the splat, its mask, its key and its number.
     Cost::of::<project::Program>(
         |n| n.survivors,
         |n| 2 + n.layer() + 2 + 5 + 2,
         |n| {
             let read = cost::SURVIVOR + cost::GAUSSIAN + n.sh_bytes;
-            let written = cost::SPLAT + cost::QUAD + cost::TILE_MASK + 2 * cost::WORD;
+            let written = cost::SPLAT + cost::TILE_MASK + 2 * cost::WORD;
             n.survivors * (read + written) + n.cut * n.record_bytes
         },
     ),

@@ -28,6 +28,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program
         miss: weight.miss,
         phi_form: weight.phi,
         depth,
+        boxes: !plan.needs_quads(),
         show_weight: plan.way.show == Show::Weight,
     };
     Draw::new(shaders, constants, attachments, depth)

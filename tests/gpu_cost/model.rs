@@ -103,6 +103,7 @@ fn counted(gaussians: usize, drawn: &Drawn, is_cut: bool) -> CountedFrame {
     let splats: Vec<Splat> = bytemuck::pod_collect_to_vec(&drawn.buffer("splats"));
     let splats = &splats[..numbers.survivors as usize];
     numbers.tied = tied(splats, &data);
+    numbers.masked_pairs = masked(drawn, numbers.macro_pairs);
     numbers.loaded = loaded(splats, drawn, &data);
     CountedFrame {
         gaussians,
@@ -123,6 +124,15 @@ fn tied(splats: &[Splat], data: &FrameData) -> u64 {
     keys.sort_unstable();
     let same = keys.chunk_by(|a, b| a == b).map(<[u32]>::len);
     same.max().unwrap_or(0) as u64
+}
+
+/// The pairs of macro-tile and splat whose keys are marked as those that need the splat's mask (glsl/macro_tiles.glsl).
+fn masked(drawn: &Drawn, pairs: u64) -> u64 {
+    let keys: Vec<u32> = bytemuck::pod_collect_to_vec(&drawn.buffer("macro_keys"));
+    keys[..pairs as usize]
+        .iter()
+        .filter(|key| *key >> 31 == 1)
+        .count() as u64
 }
 
 /// The splats that tiles load, a batch at a time, before all of their pixels are saturated; as if none were cut.

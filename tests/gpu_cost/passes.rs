@@ -59,6 +59,7 @@ fn heavy(picture: FrameNumbers) -> FrameNumbers {
         changed: gaussians / 20,
         tied: gaussians / 5, // a layer that is seen face on
         macro_pairs: 3 * gaussians / 2,
+        masked_pairs: gaussians / 2,
         pairs: 3 * gaussians,
         filled_tiles: picture.tile_columns * picture.tile_rows,
         several_tiles: picture.tile_columns * picture.tile_rows,

@@ -146,7 +146,7 @@ impl Scratch {
 #[cfg(feature = "lab")]
 pub(in crate::passes) const COSTS: &[Cost] = &[
     // How many splats there are; then each of its own, its mask and, if that cannot hold it, the splat, of which few read much.
-    // It writes how many pairs each splat has, and its rectangle of macro-tiles.
+    // It writes how many pairs each splat has, and its rectangle of tiles.
     Cost::of::<macro_count::Program>(
         partitions_of_splats,
         |_| 1 + 3 * OWN,
@@ -163,11 +163,9 @@ pub(in crate::passes) const COSTS: &[Cost] = &[
     // then what is known of the splat of each of its own pairs. It writes the pairs, and counts them for their sort.
     Cost::of::<macro_expand::Program>(
         partitions_of_pairs,
-        |n| 2 + u64::from(n.survivors.next_power_of_two().ilog2()) + 1 + OWN,
+        |n| 1 + u64::from(n.survivors.next_power_of_two().ilog2()) + OWN + 1,
         |n| (n.survivors * 4 + n.macro_pairs * 2) * cost::WORD + n.pair_histogram(),
-    )
-    // The search for each of its pairs is a loop in a loop.
-    .turning(|_| (OWN * u64::from(limits::RADIX_PARTITION.ilog2())) as f64 / 32.0),
+    ),
     // These are as in the sort of the survivors.
     Cost::named(
         radix::PAIR_COUNT,
@@ -240,11 +238,12 @@ fn batch_counts(numbers: &FrameNumbers) -> u64 {
     numbers.batches() * u64::from(limits::MACRO_TILES) * cost::WORD
 }
 
-/// Bytes of the pairs of all batches with the splats' masks, which neighbours in a list do not share, and of the counts.
+/// Bytes of the pairs of all batches, of the masks of those that need one, which neighbours in a list do not share, and of the
+/// counts.
 #[cfg(feature = "lab")]
 fn batch_bytes(numbers: &FrameNumbers) -> u64 {
-    let pair = cost::WORD + cost::gathered(cost::TILE_MASK);
-    numbers.macro_pairs * pair + batch_counts(numbers)
+    let masks = numbers.masked_pairs * cost::gathered(cost::TILE_MASK);
+    numbers.macro_pairs * 2 * cost::WORD + masks + batch_counts(numbers)
 }
 
 /// Bytes of the sums of the rows of tiles of macro-tiles.
@@ -295,13 +294,13 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let scratch = t.scratch.macro_tiles();
     let sort::Sorted {
         order,
-        spare: [pair_begins, rect_firsts, rect_columns],
+        spare: [pair_begins, rect_firsts, rect_sizes],
     } = sort::sorted(frame);
     let partitions = indirect!(b.counts, FrameCounts, sort_groups);
     let buffers = buffers!(macro_count {
         b => [frame, counts, splats, tile_masks],
         scratch => [pair_sums];
-        order, pair_begins, rect_firsts, rect_columns,
+        order, pair_begins, rect_firsts, rect_sizes,
     });
     frame.dispatch(recorder, buffers, (), partitions);
     let buffers = buffers!(macro_scan {
@@ -311,19 +310,23 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     });
     frame.dispatch(recorder, buffers, (), partitions);
 
-    let keys = [&t.splats, &scratch.macro_keys];
+    // The last pass leaves them in their own buffer: the tiles' lists take the other one's place.
+    let passes = passes(frame.plan);
+    let mut keys = [&scratch.macro_keys, &t.splats];
+    if passes % 2 == 1 {
+        keys.reverse();
+    }
     let splats = [&scratch.macro_splats[0], &scratch.macro_splats[1]];
     let pair_partitions = indirect!(b.counts, FrameCounts, pair_groups);
     let buffers = buffers!(macro_expand {
         b => [frame, counts];
-        order, pair_begins, rect_firsts, rect_columns,
+        order, pair_begins, rect_firsts, rect_sizes,
         macro_keys: keys[0],
         macro_splats: splats[0],
         histogram: &scratch.macro_histogram,
     });
     frame.dispatch(recorder, buffers, (), pair_partitions);
     let kernels = Kernels::new(frame.plan, Keys::Pairs);
-    let passes = passes(frame.plan);
     for number in 0..passes {
         let pair = [number, number + 1].map(|pair| (pair % 2) as usize);
         let pass = Pass {
@@ -343,14 +346,14 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let buffers = buffers!(macro_ranges {
         b => [frame, counts],
         scratch => [macro_begins];
-        macro_keys: keys[sorted],
+        macro_keys: &scratch.macro_keys,
     });
     frame.dispatch(recorder, buffers, (), pair_partitions);
 
     let batches = indirect!(b.counts, FrameCounts, batch_groups);
     let buffers = buffers!(batch_count {
         b => [frame, counts, splats, tile_masks, cut_records],
-        scratch => [macro_begins, tile_counts];
+        scratch => [macro_begins, macro_keys, tile_counts];
         macro_splats: splats[sorted],
     });
     frame.dispatch(recorder, buffers, (), batches);
@@ -371,7 +374,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     frame.dispatch(recorder, buffers, (), rows);
     let buffers = buffers!(batch_scatter {
         b => [frame, counts, splats, tile_masks],
-        scratch => [macro_begins, tile_counts];
+        scratch => [macro_begins, macro_keys, tile_counts];
         macro_splats: splats[sorted],
         tile_begins: &t.picture.begins,
         tile_splats: &t.splats,

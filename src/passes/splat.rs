@@ -3,6 +3,8 @@
 
 use std::mem::offset_of;
 
+use ash::vk;
+
 use crate::depth::DepthMap;
 use crate::gpu::{Attachments, Drawer};
 use crate::passes::buffers::{Buffers, buffers};
@@ -15,8 +17,10 @@ use crate::types::FrameCounts;
 
 /// The pipeline that a plan needs: without a clip the fragment shader holds no clip code.
 pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program> {
+    let one_sample = attachments.samples == vk::SampleCountFlags::TYPE_1;
     let shaders = match plan.way.raster {
-        Raster::Mesh => [&splat::MESH, &splat::MESH_FRAG],
+        Raster::Mesh if one_sample => [&splat::MESH, &splat::MESH_FRAG],
+        Raster::Mesh => [&splat::FLAT_MESH, &splat::FRAG],
         _ => [&splat::VERT, &splat::FRAG],
     };
     let depth = attachments.depth.is_some();

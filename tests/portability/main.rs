@@ -72,9 +72,10 @@ impl Module {
         let mut all = Self::all(variant);
         let is_meshes = |module: &Self| module.is("mesh") || module.is("mesh.frag");
         let quads = |mesh: &str| {
-            let fragments = mesh.replace(".mesh.frag", ".frag");
-            let sibling = fragments.replace(".mesh", ".vert");
-            all.iter().any(|module| module.shader == sibling)
+            let program = mesh.split('.').next().expect("a name");
+            let sibling = |stage| format!("{program}.{stage}");
+            let has = |file: String| all.iter().any(|module| module.shader == file);
+            has(sibling("vert")) && has(sibling("frag"))
         };
         for module in all.iter().filter(|module| is_meshes(module)) {
             assert!(quads(&module.shader), "{} has no quads", module.shader);

@@ -48,7 +48,12 @@ fn what_tiles_never_have_room_for_is_drawn_as_quads() {
             "drawn again"
         );
         headless.forget();
-        assert!(picture == draw(&mut headless, Raster::Quad).1, "{offset}");
+        // Boxes cover pixels that quads leave out, since next to nothing is left there of the splat.
+        let quads = draw(&mut headless, Raster::Quad).1;
+        let channels = |picture: &Picture| picture.pixels.concat();
+        let pairs = channels(&picture).into_iter().zip(channels(&quads));
+        let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(worst <= 1e-5, "{offset}: {worst}");
         headless.forget();
         draw(&mut headless, Raster::Tiles);
     }

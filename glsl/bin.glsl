@@ -86,11 +86,20 @@ uvec2 bounds(Outline o) {
     return uvec2(o.rows.x | o.rows.y << 16, to_uint(columns.x) | to_uint(columns.y) << 16);
 }
 
-// The outline that has these bounds. Its sides are those of the pixels, so that it reaches the same tiles.
+uvec2 rows_of(uvec2 bounds) {
+    return uvec2(bounds.x & 0xffffu, bounds.x >> 16);
+}
+
+// Those of the pixels, so that they reach the same tiles.
+vec2 sides_of(uvec2 bounds) {
+    return vec2(float(bounds.y & 0xffffu) + 0.5, float(bounds.y >> 16) - 0.5);
+}
+
+// The outline that has these bounds.
 Outline bounded_outline(Splat splat, uvec2 bounds) {
     precise Outline o = contour(splat);
-    o.rows = uvec2(bounds.x & 0xffffu, bounds.x >> 16);
-    o.sides = vec2(float(bounds.y & 0xffffu) + 0.5, float(bounds.y >> 16) - 0.5);
+    o.rows = rows_of(bounds);
+    o.sides = sides_of(bounds);
     return o;
 }
 

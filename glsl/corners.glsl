@@ -13,7 +13,7 @@ BUFFER(readonly, 3, uint, order)
 BUFFER(readonly, 5, Quad, quads)
 
 // Splats are drawn back to front: the blend is the ordinary `over`, so that a host can draw them onto what it has drawn.
-uint number_at(uint number) {
+uint survivor_at(uint number) {
     return order.at[counts.at[0].mesh_groups.w - 1u - number];
 }
 
@@ -23,8 +23,8 @@ layout(constant_id = 5) const bool DEPTH = false;
 // True where nobody has found the quads: those of tiles whose lists had no room.
 layout(constant_id = 7) const bool BOXES = false;
 
-// The box around a splat's contour, as far as it is in the picture. It covers more pixels than the quad, all of which the
-// fragment stage finds empty.
+// The box around a splat's contour, as far as it is in the picture. It covers more pixels than the quad: of most of them the
+// fragment stage finds nothing, and next to nothing (TRIM_DEVIATIONS) of those behind a cut.
 Quad box(Splat splat) {
     if (splat.conic_cut.z == Z_CUT_AWAY) {
         return Quad(vec2(0.0), vec2(0.0), vec2(0.0));
@@ -32,11 +32,12 @@ Quad box(Splat splat) {
     vec2 centre = splat.centre_conic.xy;
     vec3 conic = vec3(splat.centre_conic.zw, splat.conic_cut.x);
     float extent = opacity_extent(splat.conic_cut.y);
-    vec2 half_sides = extent / conic.x * vec2(1.0, length(conic.xy) / conic.z);
-    half_sides = vec2(widened(half_sides.x), widened(half_sides.y)) + 1e-6 * abs(centre);
-    vec2 low = max(centre - half_sides, vec2(-1.0));
-    vec2 high = max(low, min(centre + half_sides, FRAME.view.size.xy + 1.0));
-    vec2 half_size = 0.5 * (high - low);
+    // By the ratio, since the square of what is left of a huge splat's conic is 0.
+    vec2 half_sides = extent * vec2(1.0 / conic.x, length(vec2(1.0, conic.y / conic.x)) / conic.z);
+    vec2 low = max(centre - vec2(widened(half_sides.x), widened(half_sides.y)), vec2(0.0));
+    vec2 high = max(low, min(centre + vec2(widened(half_sides.x), widened(half_sides.y)), FRAME.view.size.xy));
+    // Corners are sums with the centre, which far outside the picture is known to a few units in its last place.
+    vec2 half_size = 0.5 * (high - low) + 1.0 + 1e-6 * abs(centre);
     return Quad(0.5 * (low + high) - centre, vec2(half_size.x, 0.0), vec2(0.0, half_size.y));
 }
 

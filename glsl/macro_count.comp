@@ -9,29 +9,27 @@
 layout(local_size_x = RADIX_GROUP_SIZE) in;
 
 BUFFER(readonly, 1, FrameCounts, counts)
-BUFFER(readonly, 2, Splat, splats)
-BUFFER(readonly, 3, uint, order)
-BUFFER(readonly, 4, uvec4, tile_masks)
-BUFFER(writeonly, 5, uint, pair_begins)
+BUFFER(readonly, 2, uint, order)
+BUFFER(readonly, 3, uvec4, tile_masks)
+BUFFER(writeonly, 4, uint, pair_begins)
 // The first tile of each splat's rectangle, its column in the lower half; and how many columns and rows of tiles it has,
 // marked where the splat does not touch all of them.
-BUFFER(writeonly, 6, uint, rect_firsts)
-BUFFER(writeonly, 7, uint, rect_sizes)
-BUFFER(writeonly, 8, uint, pair_sums)
+BUFFER(writeonly, 5, uint, rect_firsts)
+BUFFER(writeonly, 6, uint, rect_sizes)
+BUFFER(writeonly, 7, uint, pair_sums)
 
 void main() {
     uvec2 bounds = partition_bounds(gl_WorkGroupID.x, KEY_COUNT);
     uint pairs = 0u;
     for (uint i = bounds.x + gl_LocalInvocationIndex; i < bounds.y; i += RADIX_GROUP_SIZE) {
-        uint splat = order.at[i];
-        uvec4 tiles = tile_masks.at[splat];
+        uvec4 tiles = tile_masks.at[order.at[i]];
         Rect rect;
         bool masked = true;
         if (tiles.y == 0u) {
             rect = rect_of_mask(tiles.x, tiles.zw);
             masked = uint(bitCount(tiles.z) + bitCount(tiles.w)) != rect.size.x * rect.size.y;
         } else {
-            rect = rect_of_outline(bounded_outline(splats.at[splat], tiles.zw));
+            rect = rect_of_bounds(tiles.zw);
         }
         uint count = 0u;
         if (rect.size.x != 0u) {

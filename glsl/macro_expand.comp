@@ -48,8 +48,9 @@ uint owner_place(uint pair) {
 void mark_first_pairs(uvec2 bounds) {
     for (uint splat = ends[0] + gl_LocalInvocationIndex; splat <= ends[1]; splat += RADIX_GROUP_SIZE) {
         uint begin = max(pair_begins.at[splat], bounds.x);
+        uint columns = bitfieldExtract(rect_sizes.at[splat], 0, 16);
         // One without pairs begins where the next one does.
-        if (begin < bounds.y && bitfieldExtract(rect_sizes.at[splat], 0, 16) != 0u) {
+        if (begin < bounds.y && columns != 0u) {
             owners[owner_place(begin - bounds.x)] = splat - ends[0] + 1u;
         }
     }

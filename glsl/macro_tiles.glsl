@@ -45,9 +45,10 @@ Rect rect_of_mask(uint origin, uvec2 mask) {
         first.y + uvec2(first_bit / MASK_SIDE, last_bit / MASK_SIDE + 1u));
 }
 
-// That around the tiles of an outline, from the sides of its quad.
-Rect rect_of_outline(Outline o) {
-    return rect_between(tiles_between(o.sides.x, o.sides.y, FRAME.view.size.x, TILE_WIDTH), o.rows);
+// That around the tiles of an outline, from its bounds.
+Rect rect_of_bounds(uvec2 bounds) {
+    vec2 sides = sides_of(bounds);
+    return rect_between(tiles_between(sides.x, sides.y, FRAME.view.size.x, TILE_WIDTH), rows_of(bounds));
 }
 
 // The macro-tiles that a rectangle of tiles, which is not empty, touches.

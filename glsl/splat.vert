@@ -10,7 +10,7 @@ layout(location = 2) flat out vec4 colour_cut;
 layout(location = 3) flat out vec3 curvature;
 
 void main() {
-    uint survivor = number_at(gl_InstanceIndex);
+    uint survivor = survivor_at(gl_InstanceIndex);
     Splat splat = splats.at[survivor];
     gl_Position = corner(splat, quad_of(survivor, splat), gl_VertexIndex);
     centre_conic = fragment_centre(splat);

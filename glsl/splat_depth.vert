@@ -15,7 +15,7 @@ layout(location = 4) flat out vec4 far;
 layout(location = 5) flat out vec4 near;
 
 void main() {
-    uint survivor = number_at(gl_InstanceIndex);
+    uint survivor = survivor_at(gl_InstanceIndex);
     Splat splat = splats.at[survivor];
     SplatDepth depth = depths.at[survivor];
     gl_Position = corner(splat, quads.at[survivor], gl_VertexIndex);

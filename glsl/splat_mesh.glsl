@@ -23,7 +23,7 @@ void main() {
     if (local >= here) {
         return;
     }
-    uint survivor = number_at(begin + local);
+    uint survivor = survivor_at(begin + local);
     Splat splat = splats.at[survivor];
     Quad quad = quad_of(survivor, splat);
     for (uint i = 0u; i < 4u; i++) {

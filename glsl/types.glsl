@@ -47,7 +47,7 @@ struct TilesData {
 // How much there is room for, and what happens where that is too little. No pixel depends on it.
 struct RoomData {
     uint pair_capacity; // pairs of tile and splat that there is room for
-    uint redrawn; // 1: a frame whose pairs have no room is drawn once more, so that nothing is drawn of it
+    uint redrawn; // 1: a frame whose pairs have no room is drawn again, so that nothing is drawn of it
     uint pad[2]; // unused
 };
 

@@ -55,7 +55,8 @@ pub(crate) struct Way {
     pub(crate) sort_passes: u32,
     /// True when the splats' depths are wanted.
     pub(crate) expects_depth: bool,
-    /// True when splats are drawn as quads. Where tiles' lists have no room, boxes take the tiles' place.
+    /// True when splats are drawn as quads. Where tiles' lists have no room, the quads are boxes that
+    /// nobody has to find before.
     pub(crate) needs_quads: bool,
     /// Colours, or a debug view.
     pub(crate) show: Show,
@@ -85,7 +86,7 @@ pub(crate) struct SceneFacts<'a> {
     pub(crate) picture: Option<TilePixels>,
     /// The number of pairs of tile and splat that have room.
     pub(crate) pair_capacity: u32,
-    /// True when a frame without room for its pairs is drawn once more, instead of as quads.
+    /// True when a frame without room for its pairs is drawn again, instead of as quads.
     pub(crate) redrawn: bool,
     /// The depth that hides splats of tiles, if they are wanted.
     pub(crate) occluders: Option<Occluders>,

@@ -71,8 +71,8 @@ fn masked([origin, is_larger, above, below]: [u32; 4]) -> Option<Vec<Span>> {
     (is_larger == 0).then(|| (0..).zip(rows).filter_map(in_row).collect())
 }
 
-/// Checks the lists of a frame of tiles whose splats have these quads; returns how many spans there are, and how many splats have other spans than the twin finds, at
-/// a tie.
+/// Checks the lists of a frame of tiles whose splats have these quads; returns how many spans there are, and how many splats
+/// have other spans than the twin finds, at a tie.
 fn check(stages: &mut Stages, what: &str, quads: &[Quad]) -> [usize; 2] {
     let size = [SIZE.0, SIZE.1];
     let tiles = [size[0].div_ceil(TILE_WIDTH), size[1].div_ceil(TILE_HEIGHT)];
@@ -157,7 +157,7 @@ fn tiles_hold_the_splats_that_the_twin_puts_there() {
             let settings = Settings::default().mode(mode).form(ExactForm::Affine);
             let clip = frame::clip(scene, 1, ClipOp::And);
             let camera = frame::views(scene)[view];
-            // Tiles that surely have room leave no quads, whose sides bound the outlines.
+            // Frames of tiles leave no quads, whose sides bound the outlines.
             stages.draw(&camera, &clip, &settings.raster(Raster::Quad));
             let count = stages.survivors().len();
             let quads = stages.quads(count);

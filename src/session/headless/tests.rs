@@ -50,13 +50,48 @@ fn what_tiles_never_have_room_for_is_drawn_as_quads() {
         headless.forget();
         // Boxes cover pixels that quads leave out, since next to nothing is left there of the splat.
         let quads = draw(&mut headless, Raster::Quad).1;
-        let channels = |picture: &Picture| picture.pixels.concat();
-        let pairs = channels(&picture).into_iter().zip(channels(&quads));
-        let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        let worst = apart(&picture, &quads);
         assert!(worst <= 1e-5, "{offset}: {worst}");
         headless.forget();
         draw(&mut headless, Raster::Tiles);
     }
+}
+
+/// What stands in for tiles without room, of splats as large as single precision has, and through a lens that puts centres far
+/// outside the picture.
+#[test]
+fn boxes_cover_what_quads_cover_however_large() {
+    let mut headless = headless();
+    let mut scene = generate(Kind::General, 3_000, 1);
+    for index in (0..scene.len()).step_by(300) {
+        scene.scales_mut()[index] = match index / 300 {
+            0..4 => Vec3::new(40.0, 0.01, 3.0),
+            4..7 => Vec3::splat(1e9),
+            _ => Vec3::splat(1e20),
+        };
+        scene.opacities_mut()[index] = 0.05;
+    }
+    headless.load(&scene).expect("uploads");
+    headless.session.renderer.limit_pairs(1);
+    for fov in [60.0, 0.5, 1e-5] {
+        let camera = Camera::look_at(DVec3::splat(4.0), DVec3::ZERO, -DVec3::Y, fov, (200, 150));
+        let camera = camera.expect("a view");
+        let [tiles, quads] = [Raster::Tiles, Raster::Quad].map(|raster| {
+            headless.forget();
+            let settings = Settings::default().raster(raster);
+            let stats = headless.render(&camera, &Clip::default(), &settings);
+            assert_eq!(stats.expect("renders").raster.path, "quad");
+            headless.picture().expect("reads back")
+        });
+        assert!(quads.pixels.iter().any(|pixel| pixel[3] > 0.01), "{fov}");
+        assert!(apart(&tiles, &quads) <= 1e-5, "{fov}");
+    }
+}
+
+/// The most that a channel differs.
+fn apart(a: &Picture, b: &Picture) -> f32 {
+    let pairs = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
 }
 
 /// Scenes of many blocks: neighbours alike, ones that leave their block to be looked at, and blocks whose Gaussians are

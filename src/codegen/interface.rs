@@ -1,7 +1,7 @@
 //! Makes the Rust interface of each program from what its shaders declare: a struct of its buffers, one of its parameters
 //! and one of its specialisation constants, all by name.
 //!
-//! A program is all shaders of one name in `glsl/`: `sort_scan.comp`, or `splat.vert`, `splat.mesh` and `splat.frag`. Its
+//! A program is all shaders of one name in `glsl/`: `sort_scan.comp`, or `splat.vert`, `splat.mesh` and three more. Its
 //! shaders may each declare a part of the interface; where they declare the same thing, they agree on it.
 
 use std::fmt::Write;
@@ -58,10 +58,11 @@ fn module(shaders: &[Source]) -> String {
         });
         writeln!(
             out,
-            "/// `glsl/{}`.\npub(crate) static {}: super::Shader = super::Shader {{ name: {name:?}, \
+            "/// `glsl/{}`.\npub(crate) static {}: super::Shader = super::Shader {{ name: {name:?}, file: {:?}, \
              stage: ash::vk::ShaderStageFlags::{}, buffers: &[{}], address: &{:?}, bound: &{:?}, subgroups: {} }};",
             shader.file,
             shader.names().1,
+            shader.file,
             shader.stage(),
             uses.collect::<String>(),
             shader.modules[0],

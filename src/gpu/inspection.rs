@@ -149,7 +149,7 @@ impl Device {
             let own = executables.iter().find(|e| e.stages.contains(shader.stage));
             CompiledShader {
                 name,
-                file: shader.file(),
+                file: shader.file.into(),
                 constants: constants.to_vec(),
                 asked_subgroup,
                 subgroup: own.map_or(0, |executable| executable.subgroup),
@@ -200,20 +200,6 @@ impl Device {
 
     fn inspector(&self) -> Option<&Inspector> {
         self.inner.inspector.get()
-    }
-}
-
-impl Shader {
-    /// Its file in `glsl/`: that with subgroup operations says so beside the one without.
-    fn file(&self) -> String {
-        let subgroup = if self.subgroups { ".subgroup" } else { "" };
-        let stage = match self.stage {
-            vk::ShaderStageFlags::COMPUTE => "comp",
-            vk::ShaderStageFlags::VERTEX => "vert",
-            vk::ShaderStageFlags::MESH_EXT => "mesh",
-            _ => "frag",
-        };
-        format!("{}{subgroup}.{stage}", self.name)
     }
 }
 

@@ -30,6 +30,8 @@ pub struct BufferUse {
 pub struct Shader {
     /// File name without its stage's ending: `classify` for `glsl/classify.comp`.
     pub name: &'static str,
+    /// The file.
+    pub file: &'static str,
     /// The stage.
     pub stage: vk::ShaderStageFlags,
     /// SPIR-V that reaches its buffers through the addresses in the push constants.

@@ -124,6 +124,7 @@ fn shader(bytes: &[u8]) -> Result<&'static Shader> {
     let words = read_spv(&mut std::io::Cursor::new(bytes)).map_err(Error::io("shaders"))?;
     Ok(Box::leak(Box::new(Shader {
         name: "rate",
+        file: "rate.comp",
         stage: vk::ShaderStageFlags::COMPUTE,
         address: words.leak(),
         bound: &[],

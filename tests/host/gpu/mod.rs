@@ -44,6 +44,7 @@ const fn used(name: &'static str, binding: u32, access: BufferAccess) -> BufferU
 /// `target[i] = FACTOR * source[i] + param[1]` for i below `param[0]`, 64 a workgroup.
 const ADD: Shader = Shader {
     name: "add",
+    file: "add.comp",
     stage: vk::ShaderStageFlags::COMPUTE,
     address: spirv!("add.comp.address"),
     bound: spirv!("add.comp.bound"),
@@ -55,6 +56,7 @@ const ADD: Shader = Shader {
 };
 const VERTEX: Shader = Shader {
     name: "square",
+    file: "square.vert",
     stage: vk::ShaderStageFlags::VERTEX,
     address: spirv!("square.vert.address"),
     bound: spirv!("square.vert.bound"),
@@ -63,6 +65,7 @@ const VERTEX: Shader = Shader {
 };
 const MESH: Shader = Shader {
     name: "square",
+    file: "square.mesh",
     stage: vk::ShaderStageFlags::MESH_EXT,
     address: spirv!("square.mesh.address"),
     bound: spirv!("square.mesh.bound"),
@@ -71,6 +74,7 @@ const MESH: Shader = Shader {
 };
 const FRAGMENT: Shader = Shader {
     name: "square",
+    file: "square.frag",
     stage: vk::ShaderStageFlags::FRAGMENT,
     address: spirv!("square.frag.address"),
     bound: spirv!("square.frag.bound"),

@@ -127,6 +127,11 @@ impl FrameNumbers {
         self.tile_columns * self.tile_rows
     }
 
+    /// Tiles that hold splats.
+    pub(super) fn filled(&self) -> u64 {
+        self.filled_tiles + self.several_tiles
+    }
+
     /// Workgroups for the batches of the macro-tiles' splats.
     pub(super) fn batches(&self) -> u64 {
         self.macro_pairs.div_ceil(limits::BATCH_SPLATS.into()) + self.macro_tiles()

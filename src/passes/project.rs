@@ -1,4 +1,5 @@
-//! Stage `project`, one invocation a survivor, computes conic, quad, colour and depth key.
+//! Stage `project`, one invocation a survivor, computes conic, colour and depth key, the mask of tiles and, where it is
+//! drawn as one, the quad.
 
 use crate::gpu::Recorder;
 use crate::passes::buffers::{buffers, indirect};
@@ -33,7 +34,8 @@ impl OfPlan for project::Constants {
 pub(super) const COSTS: &[Cost] = &[
     // How many there are, its Gaussian's number, the layer; the Gaussian meanwhile. Then the cutoff record's header and the
     // rest of it, the colour's constant, its units and those of three degrees; the record once more for the tiles.
-    // It reads the survivor, the Gaussian, its colour and the record, and writes the splat, its mask, its key and its number.
+    // It reads the survivor, the Gaussian, its colour and the record, and writes the splat, its mask, its key and its number;
+    // quads are left out, which frames of tiles do without.
     Cost::of::<project::Program>(
         |n| n.survivors,
         |n| 2 + n.layer() + 2 + 5 + 2,

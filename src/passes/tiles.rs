@@ -177,7 +177,7 @@ pub(super) const COSTS: &[Cost] = &[
 /// pixels.
 #[cfg(feature = "lab")]
 fn bytes(numbers: &FrameNumbers, tiles: u64) -> u64 {
-    let share = tiles as f64 / numbers.tiles().max(1) as f64;
+    let share = tiles as f64 / numbers.filled().max(1) as f64;
     let loaded = numbers.loaded as f64 / numbers.pairs.max(1) as f64;
     let splats = numbers.macro_pairs as f64 * loaded * cost::SPLAT as f64;
     let lists = (numbers.loaded * cost::WORD) as f64;
@@ -187,7 +187,7 @@ fn bytes(numbers: &FrameNumbers, tiles: u64) -> u64 {
 /// The turns of the loop over a tile's splats, which stands in that over its batches.
 #[cfg(feature = "lab")]
 fn splats_of_tile(numbers: &FrameNumbers) -> f64 {
-    numbers.loaded as f64 / numbers.tiles().max(1) as f64 / 32.0
+    numbers.loaded as f64 / numbers.filled().max(1) as f64 / 32.0
 }
 
 #[cfg(feature = "lab")]
@@ -197,9 +197,7 @@ const TILE: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64;
 /// splats and what else their side of the tile takes, and for each splat that is weighed its record's header and its planes.
 #[cfg(feature = "lab")]
 fn batches(numbers: &FrameNumbers) -> u64 {
-    let splats = numbers
-        .pairs
-        .div_ceil(numbers.tile_columns * numbers.tile_rows);
+    let splats = numbers.loaded.div_ceil(numbers.filled().max(1));
     let weighed = splats * numbers.cut / numbers.survivors.max(1);
     3 + 3 * splats.div_ceil(TILE) + 2 * weighed
 }

@@ -61,8 +61,8 @@ fn heavy(picture: FrameNumbers) -> FrameNumbers {
         macro_pairs: 3 * gaussians / 2,
         masked_pairs: gaussians / 2,
         pairs: 3 * gaussians,
-        filled_tiles: picture.tile_columns * picture.tile_rows,
-        several_tiles: picture.tile_columns * picture.tile_rows,
+        filled_tiles: picture.tile_columns * picture.tile_rows / 2,
+        several_tiles: picture.tile_columns * picture.tile_rows / 2,
         loaded: 3 * gaussians,
         ..picture
     }

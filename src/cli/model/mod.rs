@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 use rara::gpu::DeviceShape;
 use rara::measure::gpu_model::{self, CountedFrame, GPUS, Gpu, PassPrediction};
-use rara::{Camera, Clip, FrameStats, Mode, Raster, Scene, Settings, ShFormat};
+use rara::{Camera, Clip, Error, FrameStats, Mode, Raster, Scene, Settings, ShFormat};
 use serde::Serialize;
 
 use super::failure::Failure;
@@ -118,7 +118,10 @@ impl Model {
     /// Draws the frames, each in every way that the device has.
     fn measure(&self, report: &mut Report) -> Result<(), Failure> {
         let mut progress = Progress::new("measuring");
-        let total = report.frames.len() as u64;
+        let total = report
+            .frames
+            .chunk_by(|a, b| a.gaussians == b.gaussians)
+            .count() as u64;
         let mut session: Option<Session> = None;
         let scenes = report
             .frames
@@ -174,7 +177,7 @@ impl Model {
             match drawn {
                 Ok(stats) => ways.push(measured(name, &stats)),
                 // A device may have no mesh shaders.
-                Err(_) if raster == Raster::Mesh => {}
+                Err(Error::Device(_)) if raster == Raster::Mesh => {}
                 Err(error) => return Err(error.into()),
             }
         }

@@ -190,6 +190,7 @@ fn stage_of(pass: &'static str, before: &'static str) -> &'static str {
     match pass {
         "block_list" => before,
         "clip_blocks" => "clip",
+        "several_tiles" => "tiles",
         "compact_scan" => "compact",
         pass if pass.starts_with("radix_") => "sort",
         pass if ["pair_", "macro_", "batch_", "row_"]

@@ -145,11 +145,11 @@ impl Scratch {
 
 #[cfg(feature = "lab")]
 pub(in crate::passes) const COSTS: &[Cost] = &[
-    // How many splats there are; then each of its own, its mask and, if that cannot hold it, the splat, of which few read much.
-    // It writes how many pairs each splat has, and its rectangle of tiles.
+    // How many splats there are; then each of its own and its mask. It writes how many pairs each splat has, and its rectangle of
+    // tiles.
     Cost::of::<macro_count::Program>(
         partitions_of_splats,
-        |_| 1 + 3 * OWN,
+        |_| 1 + 2 * OWN,
         |n| n.survivors * (cost::WORD + cost::gathered(cost::TILE_MASK) + 3 * cost::WORD),
     )
     .turning(|_| OWN as f64 / 8.0),
@@ -203,7 +203,7 @@ pub(in crate::passes) const COSTS: &[Cost] = &[
     )
     .turning(|_| OWN as f64 / 8.0),
     // How many batches there are; the search for its own; then each of its splats, the mask and perhaps the splat, and once
-    // more the splat and its record. It writes how many splats of the batch each tile has.
+    // more the splat and its record. It writes how many splats of the batch each tile has. The bytes are those of one surface.
     Cost::of::<batch_count::Program>(batches, |n| 1 + batch(n) + 2 * BATCH_TURNS, batch_bytes)
         .turning(batch_turns),
     // The macro-tile's pairs; then the counts of its batches, which it reads and writes. It writes the sums of tiles and rows.
@@ -221,7 +221,7 @@ pub(in crate::passes) const COSTS: &[Cost] = &[
             let turns = |words: u64| words.div_ceil(limits::RADIX_GROUP_SIZE.into());
             2 + turns(n.tile_rows * columns) + turns(n.tile_columns)
         },
-        |n| row_sums(n) + 2 * n.tiles() * cost::WORD,
+        |n| row_sums(n) + (2 * n.tiles() + n.filled()) * cost::WORD,
     ),
     // As batch_count, but that it reads the counts; then where the tile begins. It writes the tiles' lists.
     Cost::of::<batch_scatter::Program>(
@@ -238,6 +238,11 @@ fn batch_counts(numbers: &FrameNumbers) -> u64 {
     numbers.batches() * u64::from(limits::MACRO_TILES) * cost::WORD
 }
 
+/// A pair's key holds a macro-tile's number, column, row, columns and rows of a rectangle in it, and a mark.
+const _: () = assert!(
+    limits::PAIR_BITS + 2 * (limits::MACRO_COLUMNS * limits::MACRO_ROWS).ilog2() + 1 == u32::BITS
+);
+
 /// Bytes of the pairs of all batches, of the masks of those that need one, which neighbours in a list do not share, and of the
 /// counts.
 #[cfg(feature = "lab")]
@@ -250,7 +255,7 @@ fn batch_bytes(numbers: &FrameNumbers) -> u64 {
 #[cfg(feature = "lab")]
 fn row_sums(numbers: &FrameNumbers) -> u64 {
     let columns = numbers.tile_columns.div_ceil(limits::MACRO_COLUMNS.into());
-    numbers.tile_rows * columns * cost::WORD
+    numbers.tile_rows * columns * 4 * cost::WORD
 }
 
 /// The turns of the loop over an invocation's splats of a batch.
@@ -298,7 +303,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     } = sort::sorted(frame);
     let partitions = indirect!(b.counts, FrameCounts, sort_groups);
     let buffers = buffers!(macro_count {
-        b => [frame, counts, splats, tile_masks],
+        b => [frame, counts, tile_masks],
         scratch => [pair_sums];
         order, pair_begins, rect_firsts, rect_sizes,
     });

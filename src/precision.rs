@@ -20,7 +20,7 @@ pub enum TargetFormat {
     /// 16-bit floats.
     #[cfg_attr(feature = "cli", value(name = "16f"))]
     Half,
-    /// 32-bit floats: thousands of thin layers stay exact.
+    /// 32-bit floats: thousands of thin layers stay exact. A device that cannot blend them gets 16-bit ones, with a warning.
     #[default]
     #[cfg_attr(feature = "cli", value(name = "32f"))]
     Float,

@@ -1,6 +1,6 @@
 //! Turns scenes into pictures without a window.
 
-use super::target::Target;
+use super::target::{Target, blendable_on};
 use super::{HeadlessDesc, Session};
 use crate::camera::Camera;
 use crate::clip::Clip;
@@ -44,9 +44,10 @@ impl Headless {
 
     /// Makes it on a device that is open.
     fn on(device: Device, desc: &HeadlessDesc) -> Result<Self> {
+        let format = blendable_on(&device, TargetFormat::default())?;
         let renderer = RendererDesc {
             statistics: desc.statistics,
-            ..RendererDesc::new(TargetFormat::default().vulkan())
+            ..RendererDesc::new(format.vulkan())
         };
         let session = Session::new(device, desc, renderer)?;
         let held_bytes = session.pipelines.as_ref().map(PipelineFile::held_bytes);

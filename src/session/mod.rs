@@ -100,8 +100,8 @@ impl Session {
         let trace = self.trace.as_ref();
         let renderer = &mut self.renderer;
         let scene = loaded(&self.scene, "render")?;
-        target.set_format(&self.device, settings.precision.target)?;
-        renderer.set_color_format(settings.precision.target.vulkan());
+        let format = target.set_format(&self.device, settings.precision.target)?;
+        renderer.set_color_format(format.vulkan());
         let request = FrameRequest {
             scene,
             camera,

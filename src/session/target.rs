@@ -37,19 +37,30 @@ impl Target {
         }
     }
 
-    /// Sets the format of the next frame's pixels.
-    pub(super) fn set_format(&mut self, device: &Device, format: TargetFormat) -> Result<()> {
+    /// Sets the format of the next frame's pixels, and returns it: what is wanted, or what takes its place on this device.
+    pub(super) fn set_format(
+        &mut self,
+        device: &Device,
+        wanted: TargetFormat,
+    ) -> Result<TargetFormat> {
+        let format = blendable_on(device, wanted)?;
         let is_made = self.image.is_some() || self.tiles.is_some();
         if is_made && self.format == format {
-            return Ok(());
+            return Ok(format);
         }
         *self = Self {
             takes_tiles: self.takes_tiles,
             ..Self::default()
         };
-        check_blending(device, format)?;
+        if format != wanted {
+            log::warn!(
+                "this device cannot blend into pictures of {} bits a channel: they have {}, and round at each blend",
+                bits_of(wanted),
+                bits_of(format)
+            );
+        }
         self.format = format;
-        Ok(())
+        Ok(format)
     }
 
     /// The format in which the tiles' picture may be the picture; `None` where that is drawn, as on a background.
@@ -215,15 +226,47 @@ fn bits(background: Option<[f32; 3]>) -> Option<[u32; 3]> {
     background.map(|rgb| rgb.map(f32::to_bits))
 }
 
-/// Vulkan promises blending into every format here but 32-bit floats.
-fn check_blending(device: &Device, format: TargetFormat) -> Result<()> {
-    let features = device.format_features(format.vulkan());
-    let blends = vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
-    if features.contains(blends) {
-        return Ok(());
+/// The format that takes a wanted one's place on a device: itself, or 16-bit floats, into which every device blends, where the
+/// device cannot blend into 32-bit ones. Where it can they stay: GPUs may write them at half the rate, but dozens of blends into
+/// 16-bit ones are off by 0.6 to 5 of 255 (the guide's chapter on testing), which is more than all else in a picture.
+pub(super) fn blendable_on(device: &Device, wanted: TargetFormat) -> Result<TargetFormat> {
+    let blends = |format: TargetFormat| {
+        let features = device.format_features(format.vulkan());
+        features.contains(vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND)
+    };
+    blendable(wanted, blends).ok_or_else(|| {
+        Error::Device(format!(
+            "this device cannot blend into pictures of {} bits a channel; choose another target format",
+            bits_of(wanted)
+        ))
+    })
+}
+
+fn blendable(wanted: TargetFormat, blends: impl Fn(TargetFormat) -> bool) -> Option<TargetFormat> {
+    let others: &[TargetFormat] = match wanted {
+        TargetFormat::Float => &[TargetFormat::Half],
+        _ => &[],
+    };
+    let mut candidates = [wanted].into_iter().chain(others.iter().copied());
+    candidates.find(|format| blends(*format))
+}
+
+fn bits_of(format: TargetFormat) -> u64 {
+    2 * format.pixel_bytes()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sixteen_bits_take_the_place_of_those_that_cannot_be_blended() {
+        use TargetFormat::{Float, Half, Unorm8};
+        let all = |_| true;
+        let no_floats = |format| format != Float;
+        assert_eq!(blendable(Float, all), Some(Float));
+        assert_eq!(blendable(Float, no_floats), Some(Half));
+        assert_eq!(blendable(Unorm8, no_floats), Some(Unorm8));
+        assert_eq!(blendable(Half, |format| format == Unorm8), None);
     }
-    Err(Error::Device(format!(
-        "this device cannot blend into pictures of {} bits a channel; choose another target format",
-        2 * format.pixel_bytes()
-    )))
 }

@@ -4,10 +4,10 @@
 #include "footprint.glsl"
 
 // True when the exact form of a splat follows each pixel's true ray. `sigma` is its largest deviation, the layer's
-// units.
+// units. Where lines of sight are parallel the affine form is that already.
 bool is_beam(Footprint f, float sigma) {
-    return FRAME.weight.form == FORM_BEAM
-        || (FRAME.weight.form == FORM_AUTO && (f.clamped || LAYER.view.unit * sigma > FRAME.weight.beam_switch * f.view_centre.z));
+    bool is_large = f.clamped || LAYER.view.unit * sigma > FRAME.weight.beam_switch * f.view_centre.z;
+    return !is_orthographic() && (FRAME.weight.form == FORM_BEAM || (FRAME.weight.form == FORM_AUTO && is_large));
 }
 
 // How far the band of a splat reaches whose weight follows each pixel's true ray. A pixel at delta sees the point u with
@@ -54,6 +54,11 @@ float band(float extent) {
 // The same with what perspective adds to it.
 float band_in_view(Footprint f, float sigma, float extent) {
     return FRAME.region.mode == MODE_EXACT && is_beam(f, sigma) ? beam_band(f, extent) : band(extent);
+}
+
+// True when the eye's plane reaches into the splat, whose part behind it must not count.
+bool holds_the_eye(Footprint f, float extent) {
+    return !is_orthographic() && f.view_centre.z < band(extent) * length(f.m3);
 }
 
 #endif

@@ -25,22 +25,34 @@ uint block_clip_side(Block block, float widening) {
     return box_side(block_middle(block), block_half(block), reach, abs(block.high_sigma.w));
 }
 
-// A linear function a x + b z of the camera's frame over the box: its middle and by how much it can differ from that, the
-// scene's units.
-vec2 range_over(vec3 relative, vec3 half_box, vec3 row, float a, float b) {
-    vec3 gradient = a * row + b * LAYER.view.rotation_z.xyz;
+// A linear function of the camera's frame over the box, whose gradient is the sum of rows times factors that add up to
+// `size`: its middle and by how much it can differ from that, the scene's units.
+vec2 range_along(vec3 relative, vec3 half_box, vec3 gradient, float size) {
     float spread = dot(abs(gradient), half_box);
     // The eye's rows and the differences are rounded.
-    float slack = LAYER.view.unit * 4e-6 * (abs(a) + abs(b)) * (length(relative) + length(half_box));
+    float slack = LAYER.view.unit * 4e-6 * size * (length(relative) + length(half_box));
     return vec2(dot(gradient, relative), spread + slack);
 }
 
+vec2 depth_range(vec3 relative, vec3 half_box) {
+    return range_along(relative, half_box, LAYER.view.rotation_z.xyz, 1.0);
+}
+
+// The same of a x + b w, with the homogeneous coordinate w.
+vec2 range_over(vec3 relative, vec3 half_box, vec3 row, float a, float b) {
+    if (is_orthographic()) {
+        vec2 range = range_along(relative, half_box, a * row, abs(a));
+        return vec2(range.x + b, range.y + 4e-6 * abs(b));
+    }
+    return range_along(relative, half_box, a * row + b * LAYER.view.rotation_z.xyz, abs(a) + abs(b));
+}
+
 // The side along one axis of the picture: SIDE_CULLED where no splat reaches it, SIDE_VISIBLE where all centres are half a
-// pixel inside, else SIDE_CUTOFF. A splat at x, z spans f x/z + c +- K (f sigma/z sqrt(1 + s^2) + 0.55), with s the slope
-// of its Jacobian; times z all of this is linear.
+// pixel inside, else SIDE_CUTOFF. A splat at x, w spans f x/w + c +- K (f sigma/w sqrt(1 + s^2) + 0.55), with s the slope
+// of its Jacobian, which an orthographic view has none of; times w all of this is linear.
 uint axis_side(vec3 relative, vec3 half_box, vec3 row, float focal, float centre, float size, vec2 slopes, float reach) {
     float steepest = max(abs(slopes.x), abs(slopes.y));
-    float span = 1.001 * focal * reach * sqrt(1.0 + steepest * steepest);
+    float span = 1.001 * focal * reach * (is_orthographic() ? 1.0 : sqrt(1.0 + steepest * steepest));
     float edge = EXTENT_MAX * LOW_PASS_DEVIATION + 1.0;
     vec2 before = range_over(relative, half_box, row, focal, centre + edge);
     vec2 behind = range_over(relative, half_box, row, focal, centre - size - edge);
@@ -61,7 +73,7 @@ uint block_view_side(Block block) {
     }
     vec3 relative = eye_relative(block_middle(block));
     vec3 half_box = block_half(block);
-    vec2 depth = range_over(relative, half_box, vec3(0.0), 0.0, 1.0);
+    vec2 depth = depth_range(relative, half_box);
     float farthest = depth.x + depth.y;
     float nearest = depth.x - depth.y;
     if (farthest < NEAR_Z) {
@@ -75,19 +87,19 @@ uint block_view_side(Block block) {
     }
     // A layer's opacity may leave some of them fainter than the block knows.
     bool drawable = sigma >= 0.0 && LAYER.content.opacity == 1.0 && nearest > 1.0001 * NEAR_Z
-        && 4.0 * sigma * max(focal.x, focal.y) < DRAWABLE_DEVIATION * nearest;
+        && 4.0 * sigma * max(focal.x, focal.y) < DRAWABLE_DEVIATION * homogeneous(nearest);
     return x == SIDE_VISIBLE && y == SIDE_VISIBLE && drawable ? SIDE_VISIBLE : SIDE_CUTOFF;
 }
 
 // Least depth of a centre, the scene's units.
 float block_nearest(Block block) {
-    vec2 depth = range_over(eye_relative(block_middle(block)), block_half(block), vec3(0.0), 0.0, 1.0);
+    vec2 depth = depth_range(eye_relative(block_middle(block)), block_half(block));
     return depth.x - depth.y;
 }
 
 // True when the exact form of some splat may follow true rays, because the splat is large or its slope is clamped.
 bool may_be_beam(Block block) {
-    if (FRAME.region.mode != MODE_EXACT || FRAME.weight.form == FORM_AFFINE) {
+    if (FRAME.region.mode != MODE_EXACT || FRAME.weight.form == FORM_AFFINE || is_orthographic()) {
         return false;
     }
     vec3 relative = eye_relative(block_middle(block));

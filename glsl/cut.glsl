@@ -3,7 +3,8 @@
 //   0      fx / Z m1, the screen gradient along x for a pixel on the principal axis, times scale; the sum of
 //          CUT_BEAM, CUT_FRONT, CUT_UNION and 256 times the number of planes
 //   1      fy / Z m2, the same along y, times scale; scale
-//   2      the lean m3 / Z, how the gradients change with the pixel, times scale; low-pass times scale^2
+//   2      the lean m3 / Z, how the gradients change with the pixel, times scale; low-pass times scale^2. In an
+//          orthographic view 0 and 1 are fx m1 and fy m2, and there is no lean
 //   3...   a plane each: normal in unit space, and the centre's distance, both divided by the normal's largest component
 //   last   with CUT_FRONT: the plane through the eye across the view axis, in the same form
 // Several planes in the affine form are such a record with the footprint's gradients and no lean. Without CUT_BEAM there is

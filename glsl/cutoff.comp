@@ -54,7 +54,7 @@ void main() {
     float sigma = largest(gaussian.scale.xyz);
     float deviations = band_in_view(f, sigma, extent);
 
-    bool front = f.view_centre.z < band(extent) * length(f.m3);
+    bool front = holds_the_eye(f, extent);
     bool beam = FRAME.region.mode == MODE_RARA || is_beam(f, sigma) || (FRAME.weight.form == FORM_AUTO && front);
     front = front && beam;
 
@@ -92,9 +92,9 @@ void main() {
     }
 
     // The weight follows true rays. The gradients at a pixel are these less the pixel's position times `lean`.
-    vec3 b1 = FRAME.view.focal.x / f.view_centre.z * f.m1;
-    vec3 b2 = FRAME.view.focal.y / f.view_centre.z * f.m2;
-    vec3 lean = f.m3 / f.view_centre.z;
+    vec3 b1 = FRAME.view.focal.x / f.w * f.m1;
+    vec3 b2 = FRAME.view.focal.y / f.w * f.m2;
+    vec3 lean = f.w_gradient / f.w;
     // They grow with the distance from the principal point, so the scale is the farthest pixel's.
     vec2 far = max(abs(FRAME.view.focal.zw), abs(FRAME.view.size.xy - FRAME.view.focal.zw));
     float size = max(largest(b1) + far.x * largest(lean), largest(b2) + far.y * largest(lean));

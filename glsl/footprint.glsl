@@ -3,6 +3,9 @@
 // own unit space is b1 = fx/Z (m1 - X/Z m3), b2 = fy/Z (m2 - Y/Z m3); the 2D covariance is
 // [b1.b1 + L, b1.b2; b1.b2, b2.b2 + L] with the low-pass L, and its determinant |b1 x b2|^2 + L(|b1|^2+|b2|^2) + L^2
 // is a sum of non-negative terms where the textbook subtracts.
+//
+// A pixel is fx X/w + cx, with the homogeneous coordinate w: Z in perspective, and 1 in an orthographic view. With the
+// gradient of w, m3 or nothing, b1 = fx/w (m1 - X/w dw) holds for both.
 #ifndef RARA_FOOTPRINT
 #define RARA_FOOTPRINT
 #include "extent.glsl"
@@ -14,8 +17,10 @@ struct Footprint {
     vec3 relative; // the centre relative to the eye, the layer's axes and units
     mat3 axes; // the half axes in the layer, one standard deviation long: the columns of M
     vec3 m1, m2, m3; // the rows of M in camera axes
-    vec3 b1, b2; // the gradients, times scale
-    vec2 slope; // x/z and y/z at which they were evaluated
+    float w; // the centre's homogeneous coordinate
+    vec3 w_gradient; // its gradient in unit space
+    vec3 b1, b2; // the gradients on the screen, times scale
+    vec2 slope; // x/w and y/w at which they were evaluated
     float scale; // 1 / max(1, |b|): keeps every product below in range
     float low_pass; // LOW_PASS scale^2
     float xx, xy, yy, det; // 2D covariance and determinant, times scale^2 and scale^4
@@ -57,10 +62,15 @@ vec3 view_position(vec3 position, vec3 relative) {
                 two_float_view(LAYER.view.rotation_z.xyz, LAYER.view.rotation_low[2].xyz, position, high, low));
 }
 
+// The homogeneous coordinate of what is as deep as this.
+float homogeneous(float depth) {
+    return is_orthographic() ? 1.0 : depth;
+}
+
 // Screen gradients at a slope, unscaled.
 void screen_gradients(Footprint f, vec2 slope, out vec3 b1, out vec3 b2) {
-    b1 = FRAME.view.focal.x / f.view_centre.z * (f.m1 - slope.x * f.m3);
-    b2 = FRAME.view.focal.y / f.view_centre.z * (f.m2 - slope.y * f.m3);
+    b1 = FRAME.view.focal.x / f.w * (f.m1 - slope.x * f.w_gradient);
+    b2 = FRAME.view.focal.y / f.w * (f.m2 - slope.y * f.w_gradient);
 }
 
 mat3 half_axes(Gaussian gaussian) {
@@ -76,7 +86,9 @@ Footprint footprint(Gaussian gaussian) {
     f.m1 = LAYER.view.rotation_x.xyz * f.axes;
     f.m2 = LAYER.view.rotation_y.xyz * f.axes;
     f.m3 = LAYER.view.rotation_z.xyz * f.axes;
-    vec2 slope = f.view_centre.xy / f.view_centre.z;
+    f.w = homogeneous(f.view_centre.z);
+    f.w_gradient = is_orthographic() ? vec3(0.0) : f.m3;
+    vec2 slope = f.view_centre.xy / f.w;
     f.screen_centre = FRAME.view.focal.xy * slope + FRAME.view.focal.zw;
     f.slope = clamp(slope, FRAME.view.slope_bounds.xz, FRAME.view.slope_bounds.yw);
     f.clamped = f.slope != slope;

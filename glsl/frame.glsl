@@ -8,6 +8,11 @@
 BUFFER_OF(readonly, 0, frame, FrameData constants; LayerData layers[])
 #define FRAME frame.constants
 
+// True when lines of sight are parallel to the view axis, and have no eye.
+bool is_orthographic() {
+    return FRAME.view.projection == PROJECTION_ORTHOGRAPHIC;
+}
+
 uint tile_rows() {
     return FRAME.tiles.tile_count / FRAME.tiles.tile_columns;
 }

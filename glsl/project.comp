@@ -74,7 +74,8 @@ void main() {
     }
     splat.centre_conic = vec4(f.screen_centre, conic.xy);
     splat.conic_cut = vec4(conic.z, opacity, weight.linear.xy);
-    splat.colour_cut = vec4(colour(index, normalize(f.relative / largest(f.relative))), weight.linear.z);
+    vec3 direction = is_orthographic() ? LAYER.view.rotation_z.xyz : f.relative;
+    splat.colour_cut = vec4(colour(index, normalize(direction / largest(direction))), weight.linear.z);
     splat.curvature_depth = vec4(weight.curvature, f.view_centre.z);
     splats.at[survivor] = splat;
     if (TILES) {

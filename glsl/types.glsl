@@ -18,12 +18,13 @@ struct SceneData {
 
 // The camera's picture. Where the camera stands is in each layer's view, in the layer's own space.
 struct ViewData {
-    vec4 focal; // fx, fy, cx, cy, px
+    vec4 focal; // fx, fy, px, or px a unit of the scene in an orthographic view; cx, cy, px
     vec4 slope_bounds; // lowest and highest x/z, lowest and highest y/z at which the Jacobian is evaluated
     vec4 size; // width, height, px; reciprocals
     uint precise_view; // 1: positions in the camera's frame are computed in two floats
     uint sh_degree; // highest degree to evaluate
-    uint pad[2]; // unused
+    uint projection; // PROJECTION_*
+    uint pad; // unused
 };
 
 // The order of the survivors.
@@ -192,6 +193,8 @@ struct FrameCounts {
     uint pad[3]; // unused
 };
 
+const uint PROJECTION_PERSPECTIVE = 0u;
+const uint PROJECTION_ORTHOGRAPHIC = 1u;
 const uint MODE_NONE = 0u;
 const uint MODE_HARD = 1u;
 const uint MODE_RARA = 2u;

@@ -1,11 +1,23 @@
-//! A pinhole camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers.
+//! A camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers.
 
 use glam::{DMat3, DMat4, DVec3};
 
 use crate::error::{Error, Result};
 use crate::setters::setters;
 
-/// A pinhole camera and the size of its picture. All in f64: the GPU gets single-precision values derived from it.
+/// How a camera takes points in its own axes, X right, Y down and Z forward, to pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+pub enum Projection {
+    /// A pinhole: lines of sight pass through the eye, and a point is seen at `(fx X / Z + cx, fy Y / Z + cy)`.
+    #[default]
+    Perspective,
+    /// Lines of sight run along the view axis, and a point is seen at `(fx X + cx, fy Y + cy)`, as large at every
+    /// depth. The footprint of a Gaussian is exact then, whatever its size, and so is its share in mode `exact`.
+    Orthographic,
+}
+
+/// A camera and the size of its picture. All in f64: the GPU gets single-precision values derived from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Camera {
@@ -13,18 +25,22 @@ pub struct Camera {
     pub width: u32,
     /// Picture height, pixels.
     pub height: u32,
-    /// Focal length along x, pixels.
+    /// Focal length along x, pixels; of an orthographic camera the pixels of a world unit.
     pub fx: f64,
-    /// Focal length along y, pixels.
+    /// Focal length along y, pixels; of an orthographic camera the pixels of a world unit.
     pub fy: f64,
     /// Principal point, pixels from the picture's left edge (`width / 2` is the middle).
     pub cx: f64,
     /// Principal point, pixels from the picture's top edge (`height / 2` is the middle).
     pub cy: f64,
-    /// The eye's position, world units.
+    /// The eye's position, world units. An orthographic camera sees the same from every point of a line along its view
+    /// axis, but for what is nearer than 0.2, which no camera sees. Depths count from the eye here too, in single precision:
+    /// an eye not much farther away than the scene is large keeps what lies close together in order.
     pub eye: DVec3,
     /// World to camera rotation (rows are the camera's right, down and forward axes in the world).
     pub rotation: DMat3,
+    /// How points become pixels.
+    pub projection: Projection,
 }
 
 setters!(Camera {
@@ -36,6 +52,7 @@ setters!(Camera {
     cy: f64,
     eye: DVec3,
     rotation: DMat3,
+    projection: Projection,
 });
 
 impl Camera {
@@ -51,30 +68,52 @@ impl Camera {
         fov_y: f64,
         (width, height): (u32, u32),
     ) -> Result<Self> {
-        if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
-            return Err(Error::Invalid(
-                "the camera's eye, target and up must be finite numbers".into(),
-            ));
-        }
+        let rotation = facing(eye, target, up)?;
         if !(fov_y > 0.0 && fov_y < 180.0) {
             return Err(Error::Invalid(format!(
                 "a field of view of {fov_y} degrees is not between 0 and 180"
             )));
         }
-        let forward = (target - eye).try_normalize();
-        let forward = forward.ok_or_else(|| {
-            Error::Invalid("the camera's eye and target are the same point".into())
-        })?;
-        let right = forward
-            .cross(up)
-            .try_normalize()
-            .filter(|_| forward.cross(up).length() > 1e-12 * up.length());
-        let right = right.ok_or_else(|| {
-            Error::Invalid("the camera looks along its own up vector; give another --up".into())
-        })?;
-        let down = forward.cross(right);
         let focal = f64::from(height) / 2.0 / (fov_y.to_radians() / 2.0).tan();
-        let camera = Self {
+        Self::centred(eye, rotation, focal, (width, height)).checked()
+    }
+
+    /// An orthographic camera at `eye` that looks at `target`, whose picture is `height` world units high. `up` is as for
+    /// [`look_at`](Self::look_at).
+    ///
+    /// ```
+    /// use rara::{Camera, Projection, glam::DVec3};
+    ///
+    /// let camera = Camera::orthographic(DVec3::NEG_Z, DVec3::ZERO, DVec3::NEG_Y, 2.5, (640, 500))?;
+    /// assert_eq!((camera.fx, camera.projection), (200.0, Projection::Orthographic));
+    /// # Ok::<(), rara::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a height that is not above zero, for numbers that are not finite, a `target` that is the eye,
+    /// an `up` along the view axis, and an impossible size of picture.
+    pub fn orthographic(
+        eye: DVec3,
+        target: DVec3,
+        up: DVec3,
+        height: f64,
+        size: (u32, u32),
+    ) -> Result<Self> {
+        let rotation = facing(eye, target, up)?;
+        if !(height.is_finite() && height > 0.0) {
+            return Err(Error::Invalid(format!(
+                "an orthographic picture {height} world units high is not possible; give a height above zero"
+            )));
+        }
+        let scale = f64::from(size.1) / height;
+        Self::centred(eye, rotation, scale, size)
+            .projection(Projection::Orthographic)
+            .checked()
+    }
+
+    /// A camera whose principal point is the picture's middle and whose pixels are square.
+    fn centred(eye: DVec3, rotation: DMat3, focal: f64, (width, height): (u32, u32)) -> Self {
+        Self {
             width,
             height,
             fx: focal,
@@ -82,9 +121,9 @@ impl Camera {
             cx: f64::from(width) / 2.0,
             cy: f64::from(height) / 2.0,
             eye,
-            rotation: DMat3::from_cols(right, down, forward).transpose(),
-        };
-        camera.checked()
+            rotation,
+            projection: Projection::Perspective,
+        }
     }
 
     /// A camera from a rigid world-to-camera matrix. The rotation part is made orthonormal when it is nearly so
@@ -115,6 +154,7 @@ impl Camera {
             cy,
             eye,
             rotation,
+            projection: Projection::Perspective,
         }
         .checked()
     }
@@ -164,4 +204,24 @@ impl Camera {
     pub fn world_to_camera(&self) -> DMat4 {
         DMat4::from_mat3_translation(self.rotation, -(self.rotation * self.eye))
     }
+}
+
+/// The world to camera rotation of a camera at `eye` that looks at `target` and has `up` upwards in its picture.
+fn facing(eye: DVec3, target: DVec3, up: DVec3) -> Result<DMat3> {
+    if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
+        return Err(Error::Invalid(
+            "the camera's eye, target and up must be finite numbers".into(),
+        ));
+    }
+    let forward = (target - eye).try_normalize();
+    let forward = forward
+        .ok_or_else(|| Error::Invalid("the camera's eye and target are the same point".into()))?;
+    let right = forward
+        .cross(up)
+        .try_normalize()
+        .filter(|_| forward.cross(up).length() > 1e-12 * up.length());
+    let right = right.ok_or_else(|| {
+        Error::Invalid("the camera looks along its own up vector; give another --up".into())
+    })?;
+    Ok(DMat3::from_cols(right, forward.cross(right), forward).transpose())
 }

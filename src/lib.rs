@@ -56,7 +56,7 @@ mod types;
 /// The versions that this crate's interface is made of.
 pub use {ash, glam, gpu_allocator};
 
-pub use camera::Camera;
+pub use camera::{Camera, Projection};
 #[doc(inline)]
 pub use clip::{Clip, ClipOp, Plane, Shape, Surface};
 pub use depth::DepthMap;

@@ -4,7 +4,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::camera::Camera;
+use crate::camera::{Camera, Projection};
 use crate::clip::{Clip, Plane, Surface};
 use crate::error::{Error, Result};
 
@@ -84,7 +84,14 @@ impl Camera {
         if *placement == Placement::IDENTITY {
             return *self; // to the bit
         }
+        // In perspective only directions count; the pixels of a unit depend on how large it is.
+        let unit = match self.projection {
+            Projection::Perspective => 1.0,
+            Projection::Orthographic => placement.scale,
+        };
         Self {
+            fx: self.fx * unit,
+            fy: self.fy * unit,
             eye: placement.to_scene(self.eye),
             rotation: self.rotation * DMat3::from_quat(placement.rotation),
             ..*self
@@ -140,6 +147,8 @@ mod tests {
         let eye = DVec3::new(-3.0, -2.0, 9.0);
         let camera = Camera::look_at(eye, DVec3::ONE, DVec3::NEG_Y, 40.0, (90, 60));
         let camera = camera.expect("a view");
+        let flat = camera.projection(Projection::Orthographic);
+        assert_eq!(flat.in_scene(&placement).fx, camera.fx * placement.scale());
         let (inside, near) = (camera.in_scene(&placement), plane.in_scene(&placement));
         for point in [DVec3::ZERO, DVec3::new(1.5, -0.3, 0.8), DVec3::splat(-2.0)] {
             let world = placement.to_world(point);

@@ -39,6 +39,11 @@ impl DepthKeys {
         })
     }
 
+    /// No centre is deeper than this, the scene's units.
+    pub(super) fn farthest(self) -> f64 {
+        f32::from_bits(self.near + self.span).into()
+    }
+
     /// Passes of the sort that see every bit of a key.
     pub(super) fn passes(self) -> u32 {
         width(self.span >> self.shift)

@@ -142,7 +142,7 @@ impl Plan {
                     sh_coefficients: (scene.sh_degree + 1) * (scene.sh_degree + 1),
                     layer_count: scene.layers.len() as u32,
                 },
-                view: view_data(camera, degree.min(scene.sh_degree)),
+                view: view_data(camera, keys.farthest(), degree.min(scene.sh_degree)),
                 order: OrderData {
                     key_near: keys.near,
                     key_span: keys.span,

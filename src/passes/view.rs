@@ -2,29 +2,41 @@
 
 use glam::DVec3;
 
-use crate::camera::Camera;
+use crate::camera::{Camera, Projection};
 use crate::limits;
-use crate::types::{LayerView, ViewData};
+use crate::types::{self, LayerView, ViewData};
 
-/// The picture of a camera, and the degree up to which colours are evaluated.
-pub(super) fn view_data(camera: &Camera, sh_degree: u32) -> ViewData {
+/// The picture of a camera, and the degree up to which colours are evaluated. No centre is deeper than `farthest`, the
+/// scene's units.
+pub(super) fn view_data(camera: &Camera, farthest: f64, sh_degree: u32) -> ViewData {
     let (width, height) = (f64::from(camera.width), f64::from(camera.height));
     let margin = f64::from(limits::CLAMP_MARGIN);
-    let bounds = |size: f64, centre: f64, focal: f64| {
-        (
+    let bounds = |size: f64, centre: f64, focal: f64| match camera.projection {
+        Projection::Perspective => (
             (-margin * size - centre) / focal,
             ((1.0 + margin) * size - centre) / focal,
-        )
+        ),
+        // The Jacobian is the same everywhere, so that there is nothing to clamp.
+        Projection::Orthographic => (f64::from(f32::MIN), f64::from(f32::MAX)),
     };
     let (x_low, x_high) = bounds(width, camera.cx, camera.fx);
     let (y_low, y_high) = bounds(height, camera.cy, camera.fy);
+    let longest_focal = match camera.projection {
+        Projection::Perspective => camera.fx.max(camera.fy),
+        // Of the perspective camera that shows what is deepest at this scale.
+        Projection::Orthographic => camera.fx.max(camera.fy) * farthest,
+    };
     ViewData {
         focal: [camera.fx, camera.fy, camera.cx, camera.cy].map(|x| x as f32),
         slope_bounds: [x_low, x_high, y_low, y_high].map(|x| x as f32),
         size: [width, height, 1.0 / width, 1.0 / height].map(|x| x as f32),
-        precise_view: (camera.fx.max(camera.fy) > f64::from(limits::PRECISE_FOCAL)).into(),
+        precise_view: (longest_focal > f64::from(limits::PRECISE_FOCAL)).into(),
         sh_degree,
-        pad: [0; 2],
+        projection: match camera.projection {
+            Projection::Perspective => types::PROJECTION_PERSPECTIVE,
+            Projection::Orthographic => types::PROJECTION_ORTHOGRAPHIC,
+        },
+        pad: 0,
     }
 }
 

@@ -15,10 +15,10 @@ use crate::{ClipOp, Miss};
 pub struct Chord<T> {
     /// Image derivatives at the centre's true direction, pixels.
     pub gradients: [Vec3<T>; 2],
-    /// Rows of M in camera axes: only m3 is used, for the ray and for what is in front of the eye.
-    pub rows: [Vec3<T>; 3],
-    /// Depth Z of the centre, the scene's units.
-    pub depth: T,
+    /// The lean e: zero in an orthographic view.
+    pub lean: Vec3<T>,
+    /// The half-space in front of the eye; none in an orthographic view.
+    pub front: Option<HalfSpace<T>>,
     /// The half-spaces that the surfaces keep of the splat that they cut.
     pub half_spaces: Vec<HalfSpace<T>>,
     /// How they combine.
@@ -38,8 +38,8 @@ struct OnRay<T> {
 impl<T: Real> Chord<T> {
     /// The visible share of the chord at an offset from the splat's centre, pixels.
     pub fn weight(&self, dx: T, dy: T) -> T {
-        let lean = self.rows[2] * (T::one() / self.depth);
-        let (b1, b2) = (self.gradients[0] - lean * dx, self.gradients[1] - lean * dy);
+        let [b1, b2] = self.gradients;
+        let (b1, b2) = (b1 - self.lean * dx, b2 - self.lean * dy);
         let largest = b1.largest().max(b2.largest());
         let factor = if largest > T::zero() {
             T::one() / largest
@@ -66,11 +66,9 @@ impl<T: Real> Chord<T> {
             at_peak: half_space.distance(peak),
             slope: half_space.normal.dot(direction),
         };
-        let front = HalfSpace {
-            normal: self.rows[2],
-            offset: self.depth,
-        };
-        let (start, end) = on_ray(&front).visible((-half, half));
+        let chord = (-half, half);
+        let front = self.front.as_ref().map(on_ray);
+        let (start, end) = front.map_or(chord, |front| front.visible(chord));
         let whole = end - start;
         if whole <= T::zero() {
             return self.missed(peak);

@@ -5,9 +5,9 @@ use super::classify::{cutting, side};
 use super::exact::{AffinePlane, Beam};
 use super::footprint::Footprint;
 use super::real::Real;
-use super::region::{self, Side};
+use super::region::{self, HalfSpace, Side};
 use super::view::View;
-use crate::{Clip, ClipOp, ExactForm, Gaussians, Mode, Settings};
+use crate::{Clip, ClipOp, ExactForm, Gaussians, Mode, Projection, Settings};
 
 /// The record of a cut splat: everything that its weight in a pixel depends on.
 #[derive(Debug, Clone)]
@@ -54,8 +54,11 @@ pub fn cutoff<T: Real>(
     Some(match settings.mode {
         Mode::Rara => Cut::Chord(Chord {
             gradients: footprint.true_gradients(view),
-            rows: footprint.rows,
-            depth: footprint.view_centre.z,
+            lean: footprint.lean(),
+            front: (footprint.projection == Projection::Perspective).then_some(HalfSpace {
+                normal: footprint.rows[2],
+                offset: footprint.view_centre.z,
+            }),
             half_spaces,
             op: clip.op,
             sigma: T::of(f64::from(settings.sigma)),
@@ -75,13 +78,16 @@ pub fn cutoff<T: Real>(
 }
 
 /// True when a splat is too large or too far off the axis for the affine form. An eye within the splat makes it too
-/// large: its depth is then less than K < 3.4 deviations.
+/// large: its depth is then less than K < 3.4 deviations. In an orthographic view the affine form is exact for all splats.
 pub(super) fn is_beam<T: Real>(
     scene: &Gaussians,
     index: usize,
     footprint: &Footprint<T>,
     settings: &Settings,
 ) -> bool {
+    if footprint.projection == Projection::Orthographic {
+        return false;
+    }
     match settings.form {
         ExactForm::Beam => true,
         ExactForm::Affine => false,

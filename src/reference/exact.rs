@@ -122,12 +122,13 @@ impl<T: Real> AffinePlane<T> {
 /// A pixel's ray is the intersection of two planes through the eye: `fx (X + m1 . u) = px (Z + m3 . u)` with px
 /// counted from the principal point, and the same for y. Divided by Z these read `(b1 - dx e) . u = dx` and
 /// `(b2 - dy e) . u = dy` with `e = m3 / Z`. So the affine form becomes exact for every size of splat by taking those
-/// derivatives, per pixel, with b1 and b2 at the centre's true direction.
+/// derivatives, per pixel, with b1 and b2 at the centre's true direction. In an orthographic view e is zero, and the affine
+/// form is exact itself.
 #[derive(Debug, Clone)]
 pub struct Beam<T> {
     /// Image derivatives at the centre's true direction, pixels.
     pub gradients: [Vec3<T>; 2],
-    /// `e = m3 / Z`.
+    /// The lean `e = m3 / Z`.
     pub lean: Vec3<T>,
     /// The half-spaces that the surfaces keep of the splat that they cut.
     pub half_spaces: Vec<HalfSpace<T>>,
@@ -145,15 +146,14 @@ impl<T: Real> Beam<T> {
         half_spaces: Vec<HalfSpace<T>>,
         op: ClipOp,
     ) -> Self {
-        let (m3, depth) = (footprint.rows[2], footprint.view_centre.z);
         Self {
             gradients: footprint.true_gradients(view),
-            lean: m3 * (T::one() / depth),
+            lean: footprint.lean(),
             half_spaces,
             op,
-            front: holds_the_eye(footprint).then_some(HalfSpace {
-                normal: m3,
-                offset: depth,
+            front: footprint.holds_the_eye().then_some(HalfSpace {
+                normal: footprint.rows[2],
+                offset: footprint.view_centre.z,
             }),
         }
     }
@@ -170,11 +170,6 @@ impl<T: Real> Beam<T> {
             None => share(self.op, thresholds),
         }
     }
-}
-
-/// True when the eye's plane reaches into the splat, whose part behind it must not count.
-pub fn holds_the_eye<T: Real>(footprint: &Footprint<T>) -> bool {
-    footprint.view_centre.z < footprint.extent * footprint.rows[2].length()
 }
 
 /// The [`share`] where the eye is within the splat: of the part in front of the eye, beyond `front` on the ray, how much

@@ -4,13 +4,16 @@
 //! from the unit sphere to the ellipsoid). To first order, u moves the point's image by `(b1 . u, b2 . u)` pixels,
 //! where b1 and b2 are the rows of J W M in the paper's equation 9. 3DGS widens that image by a Gaussian of
 //! [`LOW_PASS`] px^2, so the footprint's covariance is `B B^T + LOW_PASS I`.
+//!
+//! Pixels are `f X / w + c`, with the homogeneous coordinate w: the depth Z in perspective, and 1 in an orthographic view.
+//! By u, w changes by m3 or not at all, and `b = f / w (m - X / w dw/du)` holds for both.
 
 use glam::{Quat, Vec3 as Point};
 
 use super::real::{Real, Vec3, vec3};
 use super::view::View;
-use crate::Gaussians;
 use crate::limits::{ALPHA_MIN_INVERSE, LOW_PASS, NEAR_Z};
+use crate::{Gaussians, Projection};
 
 /// A Gaussian in view, from which every later stage computes.
 #[derive(Debug, Clone, Copy)]
@@ -25,6 +28,8 @@ pub struct Footprint<T> {
     pub view_centre: Vec3<T>,
     /// Units of the scene in one of the layer's.
     pub unit: T,
+    /// How points become pixels.
+    pub projection: Projection,
     /// Image derivatives b1, b2 of the footprint, evaluated at the clamped direction, pixels.
     pub gradients: [Vec3<T>; 2],
     /// True when that direction was clamped.
@@ -60,14 +65,15 @@ impl<T: Real> Footprint<T> {
         let rows = view
             .rows
             .map(|row| vec3(row.dot(axes[0]), row.dot(axes[1]), row.dot(axes[2])));
-        let slopes = [view_centre.x / view_centre.z, view_centre.y / view_centre.z];
+        let seen = Seen::new(view.projection, &rows, view_centre);
+        let slopes = seen.slopes;
         let clamp = |axis: usize| {
             slopes[axis]
                 .max(view.slope_min[axis])
                 .min(view.slope_max[axis])
         };
         let clamped = [clamp(0), clamp(1)];
-        let gradients = image_gradients(&rows, view.focal, clamped, view_centre.z);
+        let gradients = seen.gradients(view.focal, clamped);
         let (conic, deviations) = factorise(gradients);
 
         let extent = (T::of(2.0) * brightness.ln()).sqrt();
@@ -77,13 +83,13 @@ impl<T: Real> Footprint<T> {
             relative,
             view_centre,
             unit: view.unit,
+            projection: view.projection,
             gradients,
             clamped: clamped != slopes,
             stretch: if clamped == slopes {
                 T::one()
             } else {
-                let unclamped = image_gradients(&rows, view.focal, slopes, view_centre.z);
-                stretch(gradients, unclamped)
+                stretch(gradients, seen.gradients(view.focal, slopes))
             },
             screen_centre: [0, 1]
                 .map(|axis| view.focal[axis] * slopes[axis] + view.principal[axis]),
@@ -100,11 +106,27 @@ impl<T: Real> Footprint<T> {
 
     /// Image derivatives at the centre's true direction, for computations along true rays.
     pub fn true_gradients(&self, view: &View<T>) -> [Vec3<T>; 2] {
-        let slopes = [
-            self.view_centre.x / self.view_centre.z,
-            self.view_centre.y / self.view_centre.z,
-        ];
-        image_gradients(&self.rows, view.focal, slopes, self.view_centre.z)
+        let seen = self.seen();
+        seen.gradients(view.focal, seen.slopes)
+    }
+
+    /// The lean e, by how much the lines of sight of a pixel to the right and of a pixel below lean against the
+    /// splat's own: `(b1 - dx e) . u = dx` and `(b2 - dy e) . u = dy` are those of the pixel at (dx, dy). It is
+    /// `m3 / Z` in perspective and zero where all are parallel.
+    pub fn lean(&self) -> Vec3<T> {
+        let seen = self.seen();
+        seen.w_gradient * (T::one() / seen.w)
+    }
+
+    /// True when the eye's plane reaches into the splat, whose part behind it must not count. Parallel lines of sight
+    /// have no eye.
+    pub fn holds_the_eye(&self) -> bool {
+        self.projection == Projection::Perspective
+            && self.view_centre.z < self.extent * self.rows[2].length()
+    }
+
+    fn seen(&self) -> Seen<T> {
+        Seen::new(self.projection, &self.rows, self.view_centre)
     }
 
     /// The exponent q of the footprint `exp(-q / 2)` at an offset from its centre, pixels. It is a sum of two squares:
@@ -171,14 +193,36 @@ pub(super) fn half_axes<T: Real>(scale: Point, rotation: Quat) -> [Vec3<T>; 3] {
     ]
 }
 
-/// Derivatives of the pixel position `f X / Z` by u: `f / Z (m - slope m3)`.
-fn image_gradients<T: Real>(
-    rows: &[Vec3<T>; 3],
-    focal: [T; 2],
+/// A centre in homogeneous coordinates, and how they change by u.
+struct Seen<T> {
+    /// X / w and Y / w.
     slopes: [T; 2],
-    depth: T,
-) -> [Vec3<T>; 2] {
-    [0, 1].map(|axis| (rows[axis] - rows[2] * slopes[axis]) * (focal[axis] / depth))
+    w: T,
+    /// m1 and m2.
+    rows: [Vec3<T>; 2],
+    w_gradient: Vec3<T>,
+}
+
+impl<T: Real> Seen<T> {
+    fn new(projection: Projection, &[m1, m2, m3]: &[Vec3<T>; 3], centre: Vec3<T>) -> Self {
+        let (w, w_gradient) = match projection {
+            Projection::Perspective => (centre.z, m3),
+            Projection::Orthographic => (T::one(), Vec3::zero()),
+        };
+        Self {
+            slopes: [centre.x / w, centre.y / w],
+            w,
+            rows: [m1, m2],
+            w_gradient,
+        }
+    }
+
+    /// Derivatives of the pixel position `f X / w` by u: `f / w (m - slope dw/du)`. In an orthographic view
+    /// they are `f m`, whatever the slope.
+    fn gradients(&self, focal: [T; 2], slopes: [T; 2]) -> [Vec3<T>; 2] {
+        [0, 1]
+            .map(|axis| (self.rows[axis] - self.w_gradient * slopes[axis]) * (focal[axis] / self.w))
+    }
 }
 
 /// Scales image derivatives and low-pass together so that their products stay in single precision's range; returns

@@ -4,7 +4,7 @@ use super::real::{Real, Vec3};
 use crate::limits::MAX_SH_COEFFICIENTS;
 use crate::scene::sh_coefficients;
 
-/// Colour of a Gaussian seen along `direction` (from the eye to its centre, any length): the harmonics' sum plus 0.5,
+/// Colour of a Gaussian seen along `direction` (from the eye to its centre or, in an orthographic view, along the view axis; of any length): the harmonics' sum plus 0.5,
 /// clamped below at 0. `coefficients` is `[coefficient][r, g, b]`.
 pub fn colour<T: Real>(coefficients: &[f32], degree: u32, direction: Vec3<T>) -> [T; 3] {
     let basis = basis(direction * (T::one() / direction.length()));

@@ -34,7 +34,11 @@ pub fn project<T: Real>(
         .min(scene.sh_degree());
     Some(Splat {
         index: u32::try_from(index).expect("scenes have fewer than 2^32 Gaussians"),
-        colour: harmonics::colour(scene.sh_of(index), degree, footprint.relative),
+        colour: harmonics::colour(
+            scene.sh_of(index),
+            degree,
+            view.direction(footprint.relative),
+        ),
         footprint,
         cut: None,
     })

@@ -5,12 +5,14 @@
 //! `|M^-1 (x - mu)|^2`), along rays that start at the eye and only in front of it. 3DGS's low-pass means
 //! that a pixel sees a bundle of rays, weighted by a Gaussian of [`LOW_PASS`] px^2. There are two readings of that
 //! bundle, see [`Bundle`]; they differ by what the low-pass does at depths other than the splat's own.
+//!
+//! Orthographic rays run along the view axis. They start nowhere, and both readings are the same.
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use super::region::{keeps, surface_crossings};
 use crate::limits::LOW_PASS;
-use crate::{Camera, Clip, Gaussians, Placement};
+use crate::{Camera, Clip, Gaussians, Placement, Projection};
 
 /// Which rays a pixel's low-pass gathers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -117,7 +119,8 @@ struct Pixel {
     /// The centre in camera axes.
     view: DVec3,
     focal: DVec2,
-    /// x/z and y/z of the pixel's own ray.
+    projection: Projection,
+    /// x/z and y/z of the pixel's own ray; of an orthographic one its x and y.
     slope: DVec2,
     bundle: Bundle,
 }
@@ -158,6 +161,7 @@ impl Pixel {
             turn: camera.rotation.transpose(),
             view,
             focal,
+            projection: camera.projection,
             slope: (position - DVec2::new(camera.cx, camera.cy)) / focal,
             bundle,
         }
@@ -166,9 +170,10 @@ impl Pixel {
     /// The ray of the bundle at an offset in pixels.
     fn ray(&self, offset: DVec2) -> Ray {
         let aside = offset / self.focal;
-        let (slope, from) = match self.bundle {
-            Bundle::Parallel => (self.slope, aside * self.depth),
-            Bundle::Diverging => (self.slope + aside, DVec2::ZERO),
+        let (slope, from) = match (self.projection, self.bundle) {
+            (Projection::Perspective, Bundle::Parallel) => (self.slope, aside * self.depth),
+            (Projection::Perspective, Bundle::Diverging) => (self.slope + aside, DVec2::ZERO),
+            (Projection::Orthographic, _) => (DVec2::ZERO, self.slope + aside),
         };
         let start = self.turn * ((from + slope * self.depth).extend(self.depth) - self.view);
         let step = self.turn * slope.extend(1.0);
@@ -240,8 +245,12 @@ impl Pixel {
     ) -> [f64; 3] {
         let ray = self.ray(offset);
         let (middle, half) = (ray.densest(), EXTENT / ray.unit_step.length());
-        // Only the part in front of the eye counts.
-        let (start, end) = ((middle - half).max(-self.depth), middle + half);
+        // Only the part in front of the eye counts, where there is one.
+        let first = match self.projection {
+            Projection::Perspective => -self.depth,
+            Projection::Orthographic => f64::NEG_INFINITY,
+        };
+        let (start, end) = ((middle - half).max(first), middle + half);
         if start >= end {
             return [0.0; 3];
         }

@@ -5,7 +5,7 @@ use glam::{DMat3, DQuat, DVec3, Quat};
 use super::Case;
 use crate::reference::{Footprint, View};
 use crate::scene::Random;
-use crate::{Camera, Clip, ClipOp, Gaussians, Plane};
+use crate::{Camera, Clip, ClipOp, Gaussians, Plane, Projection};
 
 /// The viewing geometry of a case.
 #[derive(Debug, Clone, Copy)]
@@ -14,7 +14,9 @@ pub(super) struct Setup {
     pub(super) centre: DVec3,
     /// How far it stands from there.
     pub(super) distance: f64,
-    /// Focal length, px.
+    /// How points become pixels.
+    pub(super) projection: Projection,
+    /// Focal length of the view in perspective, px; an orthographic one shows the plane through the centre at the same scale.
     pub(super) focal: f64,
     /// Picture size, px.
     pub(super) size: (u32, u32),
@@ -24,6 +26,7 @@ pub(super) struct Setup {
 pub(super) const PLAIN: Setup = Setup {
     centre: DVec3::ZERO,
     distance: 5.0,
+    projection: Projection::Perspective,
     focal: 300.0,
     size: (192, 192),
 };
@@ -34,8 +37,15 @@ impl Setup {
         let eye = self.centre - random.direction() * self.distance;
         let fov = 2.0 * (f64::from(self.size.1) / 2.0 / self.focal).atan();
         let up = random.direction();
-        Camera::look_at(eye, self.centre, up, fov.to_degrees(), self.size)
-            .expect("two random directions are not parallel")
+        let camera = Camera::look_at(eye, self.centre, up, fov.to_degrees(), self.size)
+            .expect("two random directions are not parallel");
+        match self.projection {
+            Projection::Perspective => camera,
+            Projection::Orthographic => {
+                let scale = self.focal / self.distance;
+                camera.projection(self.projection).fx(scale).fy(scale)
+            }
+        }
     }
 
     /// Radius of the picture at that distance, world units.
@@ -130,7 +140,11 @@ pub(super) fn on_plane(
         }
         let (u, v) = (random.range(-1.0, 1.0), random.range(-1.0, 1.0));
         let on_plane = stage.centre + (across * u + along * v) * stage.radius();
-        let pixel = (camera.rotation * (on_plane - camera.eye)).z.max(1e-3) / camera.fx;
+        let depth = (camera.rotation * (on_plane - camera.eye)).z.max(1e-3);
+        let pixel = match camera.projection {
+            Projection::Perspective => depth / camera.fx,
+            Projection::Orthographic => 1.0 / camera.fx,
+        };
         let rotation = orientation(random);
         let scales = shape(random, pixel);
         // The standard deviation along the normal: the plane passes within two of them from the centre.

@@ -6,6 +6,7 @@ use super::make::{
     PLAIN, Setup, any_normal, axes, between, cases, orientation, push, set_colour, strewn,
 };
 use super::{Case, Regime};
+use crate::Projection;
 use crate::scene::Random;
 
 /// Cameras and worlds at extreme places.
@@ -38,6 +39,33 @@ pub fn regimes() -> Vec<Regime> {
                 })
             };
             (100..106).flat_map(inside).collect()
+        }),
+        Regime::new("orthographic", || {
+            mixed(Setup {
+                projection: Projection::Orthographic,
+                ..PLAIN
+            })
+        }),
+        // Depths, which order splats, count from the eye: a hundred times as far away single precision has too few of them.
+        Regime::new("orthographic, 1e3 away", || {
+            mixed(Setup {
+                projection: Projection::Orthographic,
+                distance: 1e3,
+                focal: 3e5,
+                ..PLAIN
+            })
+        }),
+        Regime::new("orthographic, splats to behind the eye", || {
+            let flat = Setup {
+                projection: Projection::Orthographic,
+                ..PLAIN
+            };
+            let around = |seed: u64| {
+                cases(seed, flat, &any_normal, &|r, _| {
+                    DVec3::from_array([(); 3].map(|()| PLAIN.distance * between(r, 0.1, 20.0)))
+                })
+            };
+            (100..103).flat_map(around).collect()
         }),
         Regime::new("straddling the near plane", || {
             let near = Setup {

@@ -11,7 +11,7 @@ use rara::measure::compare;
 use rara::scene::{Bounds, Kind, generate, load};
 use rara::{
     Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, HeadlessDesc, Picture, PipelineCache,
-    Plane, Raster, Settings, reference,
+    Plane, Projection, Raster, Settings, reference,
 };
 
 /// The scale of generated scenes and pictures against the usual size, `RARA_TEST_SCALE`, for slow drivers. The tests'
@@ -195,6 +195,15 @@ pub fn views(scene: &Gaussians, count: usize, size: (u32, u32)) -> Vec<Camera> {
         Camera::look_at(eye, centre, -DVec3::Y, 50.0, size).expect("a view from outside")
     };
     (0..count).map(view).collect()
+}
+
+/// The orthographic camera in the place of one in perspective, which shows the middle of a scene at the scale that it has
+/// from outside.
+pub fn flattened(camera: &Camera, scene: &Gaussians) -> Camera {
+    let scale = camera.fy / (2.2 * Bounds::of(scene).radius());
+    let scale = if scale > 0.0 { scale } else { camera.fy };
+    let flat = camera.projection(Projection::Orthographic);
+    flat.fx(scale).fy(scale)
 }
 
 /// `count` oblique planes through the middle of a scene that together leave a part of it.

@@ -13,6 +13,7 @@ mod invariance;
 mod large;
 mod layers;
 mod memory;
+mod orthographic;
 mod paper;
 mod pipeline_cache;
 mod precision;

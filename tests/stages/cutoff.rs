@@ -122,7 +122,7 @@ fn compare(
                 }
             }
             (Cut::Chord(chord), BEAM) => {
-                let lean = chord.rows[2] * (1.0 / chord.depth);
+                let lean = chord.lean;
                 compare_rays(record, chord.gradients, lean, aside, worst);
                 compare_planes(&record[3..], (count, is_union), &chord.half_spaces, worst);
             }

@@ -134,7 +134,12 @@ fn mean_depths_are_the_twins() {
     let (device, mut renderer) = renderer();
     let (mut worst, mut moved, mut compared) = (0.0_f64, 0.0_f64, 0);
     for scene in frame::scenes() {
-        for (view, planes, op) in [(0, 1, ClipOp::And), (1, 3, ClipOp::And), (0, 2, ClipOp::Or)] {
+        for (view, planes, op) in [
+            (0, 1, ClipOp::And),
+            (1, 3, ClipOp::And),
+            (0, 2, ClipOp::Or),
+            (2, 1, ClipOp::And),
+        ] {
             let camera = frame::views(&scene)[view];
             let single = View::<f32>::new(&camera);
             let clip = frame::clip(&scene, planes, op);

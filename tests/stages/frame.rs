@@ -158,8 +158,9 @@ pub fn for_each_scene(mut test: impl FnMut(&mut Stages, &Gaussians)) {
     }
 }
 
-/// A view from outside, and one from within the scene, where splats are large, beside the picture and behind the eye.
-pub fn views(scene: &Gaussians) -> [Camera; 2] {
+/// A view from outside, one from within the scene, where splats are large, beside the picture and behind the eye, and an
+/// orthographic one from there.
+pub fn views(scene: &Gaussians) -> [Camera; 3] {
     let outside = if scene.is_empty() {
         let eye = DVec3::new(0.0, 1.0, -4.0);
         Camera::look_at(eye, DVec3::ZERO, -DVec3::Y, 50.0, SIZE).expect("a view")
@@ -171,7 +172,7 @@ pub fn views(scene: &Gaussians) -> [Camera; 2] {
     if !within.eye.is_finite() {
         within = outside;
     }
-    [outside, within]
+    [outside, within, common::flattened(&within, scene)]
 }
 
 /// Oblique planes through the middle of a scene, in the order in which the renderer has them.

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, Quat, Vec3};
 use rara::reference::{View, harmonics, project, vec3};
-use rara::{Camera, Clip, Gaussians, Raster, Settings, ShFormat};
+use rara::{Camera, Clip, Gaussians, Projection, Raster, Settings, ShFormat};
 
 use crate::frame::{self, Stages};
 use crate::ties::{largest, ulps};
@@ -62,7 +62,10 @@ fn compare(stages: &mut Stages, camera: &Camera, worst: &mut Apart) {
         // A pixel's place follows from a slope, which is off by the centre's error over the depth.
         for (ours, axis) in [(cx, 0), (cy, 1)] {
             let slope = (f.screen_centre[axis] - view.principal[axis]) / view.focal[axis];
-            let size = view.focal[axis] * distance / f.view_centre.z * (1.0 + slope.abs());
+            let size = match view.projection {
+                Projection::Orthographic => view.focal[axis] * distance,
+                _ => view.focal[axis] * distance / f.view_centre.z * (1.0 + slope.abs()),
+            };
             worst.centre = worst.centre.max(ulps(ours, f.screen_centre[axis], size));
         }
         // The factors' rounding, against the cancellation that the twin in double precision finds.
@@ -72,7 +75,7 @@ fn compare(stages: &mut Stages, camera: &Camera, worst: &mut Apart) {
         let of = |ours, theirs, size| ulps(ours, theirs, size) / condition;
         let shape = of(k0, t0, 0.0).max(of(k1, t1, size)).max(of(k2, t2, 0.0));
         worst.shape = worst.shape.max(shape);
-        let basis = basis_at(f.relative);
+        let basis = basis_at(view.direction(f.relative));
         for channel in 0..3 {
             let terms = stages.scene.sh_of(index).iter().skip(channel).step_by(3);
             let sizes = terms.zip(basis).map(|(c, basis)| (c * basis).abs());

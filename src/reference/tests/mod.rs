@@ -3,6 +3,7 @@
 mod depths;
 mod invariance;
 mod laws;
+mod orthographic;
 mod pictures;
 mod properties;
 mod shares;
@@ -13,7 +14,7 @@ mod weights;
 use glam::{DMat3, DVec3, Quat, Vec3 as Point};
 
 use super::*;
-use crate::{ClipOp, Gaussians, Mode, Plane};
+use crate::{ClipOp, Gaussians, Mode, Plane, Projection};
 
 /// Y_00, the constant of the harmonics' first band.
 const Y00: f64 = 0.282_094_791_773_878_14;
@@ -39,6 +40,7 @@ fn camera(width: u32, height: u32, focal: f64) -> Camera {
         cy: f64::from(height) / 2.0,
         eye: DVec3::ZERO,
         rotation: DMat3::IDENTITY,
+        projection: Projection::Perspective,
     }
 }
 

@@ -15,6 +15,7 @@ struct Regime {
     eye: DVec3,
     /// Largest |cosine| between the plane's normal and the ray to the centre.
     steepest: f64,
+    projection: Projection,
 }
 
 const NORMAL: Regime = Regime {
@@ -24,6 +25,7 @@ const NORMAL: Regime = Regime {
     depth: [2.0, 6.0],
     eye: DVec3::ZERO,
     steepest: 1.0,
+    projection: Projection::Perspective,
 };
 
 fn regimes() -> Vec<Regime> {
@@ -94,10 +96,12 @@ fn regimes() -> Vec<Regime> {
 /// Largest and mean alpha |w32 - w64|, weighted by alpha.
 fn loss(regime: &Regime, settings: &Settings, count: usize) -> (f64, f64) {
     let mut dice = Dice(99);
-    let camera = Camera {
-        eye: regime.eye,
-        ..camera(640, 480, 500.0)
+    let camera = match regime.projection {
+        Projection::Perspective => camera(640, 480, 500.0),
+        // The picture is as wide as it is in perspective at this depth.
+        Projection::Orthographic => camera(640, 480, 500.0 / regime.depth[0].max(2.0)),
     };
+    let camera = camera.projection(regime.projection).eye(regime.eye);
     let (wide, single) = (View::<f64>::new(&camera), View::<f32>::new(&camera));
     let (mut max, mut sum, mut mass) = (0.0_f64, 0.0, 0.0);
     for _ in 0..count {
@@ -153,7 +157,11 @@ fn loss(regime: &Regime, settings: &Settings, count: usize) -> (f64, f64) {
 }
 
 fn table(count: usize, check: impl Fn(&str, &str, f64, f64)) {
-    for regime in regimes() {
+    let parallel = regimes().into_iter().map(|regime| Regime {
+        projection: Projection::Orthographic,
+        ..regime
+    });
+    for regime in regimes().into_iter().chain(parallel) {
         for form in [ExactForm::Affine, ExactForm::Beam] {
             let settings = Settings {
                 form,

@@ -44,6 +44,7 @@ struct Study {
     op: ClipOp,
     form: ExactForm,
     bundle: Bundle,
+    projection: Projection,
     /// X/Z of the splat's centre, if it is not to be in the picture.
     aside: Option<[f64; 2]>,
     /// Depth of the splat's centre in deviations of its depth, for an eye within it.
@@ -59,6 +60,7 @@ const STUDY: Study = Study {
     op: ClipOp::And,
     form: ExactForm::Beam,
     bundle: Bundle::Parallel,
+    projection: Projection::Perspective,
     aside: None,
     inside: None,
     cases: 60,
@@ -68,16 +70,23 @@ const STUDY: Study = Study {
 impl Study {
     fn run(&self) -> Errors {
         let mut dice = Dice(77);
-        let camera = camera(640, 480, 500.0);
+        // Splats are three to six units deep, so that either picture shows about as much of the world.
+        let focal = match self.projection {
+            Projection::Perspective => 500.0,
+            Projection::Orthographic => 100.0,
+        };
+        let camera = camera(640, 480, focal).projection(self.projection);
         let view = View::<f64>::new(&camera);
         let mut errors = Errors::default();
         let mut mass = 0.0;
         while errors.count < self.cases {
             let pixels = self.pixels[0] * (self.pixels[1] / self.pixels[0]).powf(dice.next());
             let mut one = dice.one(1.0, self.aspect);
-            let size = pixels * f64::from(one.position[2])
-                / 500.0
-                / f64::from(one.scale.into_iter().fold(0.0, f32::max));
+            let units = match self.projection {
+                Projection::Perspective => f64::from(one.position[2]) / focal,
+                Projection::Orthographic => 1.0 / focal,
+            };
+            let size = pixels * units / f64::from(one.scale.into_iter().fold(0.0, f32::max));
             one.scale = one.scale.map(|s| (f64::from(s) * size) as f32);
             if let Some([low, high]) = self.aside {
                 one.position[0] = (dice.between(low, high) * f64::from(one.position[2])) as f32;
@@ -358,4 +367,65 @@ fn a_centre_far_outside_the_picture_gets_the_perspective_form() {
     .run();
     errors.assert_partial(15);
     errors.assert_within(1e-4, 1e-3, "");
+}
+
+/// Where lines of sight are parallel, the affine form is the integral for splats of every size, and has no eye.
+#[test]
+fn orthographic_shares_are_the_integral_for_splats_of_every_size() {
+    for (pixels, aspect) in [
+        ([0.02, 0.2], 10.0),
+        ([0.2, 5.0], 1000.0),
+        ([5.0, 100.0], 30.0),
+        ([100.0, 3000.0], 30.0),
+    ] {
+        for form in [ExactForm::Auto, ExactForm::Beam] {
+            let errors = Study {
+                pixels,
+                aspect,
+                form,
+                projection: Projection::Orthographic,
+                steps: 128,
+                ..STUDY
+            }
+            .run();
+            errors.assert_partial(15);
+            errors.assert_within(1e-4, 5e-4, format_args!("{form:?} {pixels:?}"));
+        }
+    }
+}
+
+#[test]
+fn orthographic_shares_of_several_planes_are_as_exact_as_of_one() {
+    for op in [ClipOp::And, ClipOp::Or] {
+        for planes in [2, 3] {
+            for pixels in [[0.02, 0.2], [1.0, 5.0], [30.0, 300.0]] {
+                let errors = Study {
+                    pixels,
+                    planes,
+                    op,
+                    projection: Projection::Orthographic,
+                    steps: 112,
+                    ..STUDY
+                }
+                .run();
+                assert!(errors.mean < 1e-4, "{op:?} {planes} {pixels:?}: {errors:?}");
+            }
+        }
+    }
+}
+
+/// A splat around the point that depths count from is seen as a whole, also the part of it behind that point.
+#[test]
+fn an_orthographic_splat_around_the_eye_is_seen_as_a_whole() {
+    for inside in [[0.1, 1.0], [1.0, 2.5]] {
+        let errors = Study {
+            pixels: [300.0, 3000.0],
+            inside: Some(inside),
+            projection: Projection::Orthographic,
+            ..STUDY
+        }
+        .run();
+        errors.assert_partial(10);
+        errors.assert_within(1e-4, 1e-3, format_args!("{inside:?}"));
+    }
 }

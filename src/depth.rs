@@ -4,14 +4,17 @@
 
 use glam::DMat4;
 
+use crate::camera::Projection;
 use crate::error::{Error, Result};
 use crate::placement::Placement;
 
-/// The value that a depth buffer holds at a depth `z` along the view axis, world units: `offset + scale / z`, with
-/// viewports whose depths go from 0 to 1. That is every perspective projection; nearer is more ("reversed") where
-/// `scale` is positive.
+/// The value that a depth buffer holds at a depth `z` along the view axis, world units, with viewports whose depths go from
+/// 0 to 1: `offset + scale / z`, which is every perspective projection, or, of an [orthographic](Self::orthographic) one,
+/// `offset - scale z`. Nearer is more ("reversed") where `scale` is positive. The camera of a frame has the same
+/// projection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DepthMap {
+    projection: Projection,
     offset: f64,
     scale: f64,
 }
@@ -26,6 +29,7 @@ impl DepthMap {
         Ok(Self {
             offset: 1.0 - reversed.offset,
             scale: -reversed.scale,
+            ..reversed
         })
     }
 
@@ -41,15 +45,36 @@ impl DepthMap {
         }
         let share = near / far; // zero where far is infinite
         Ok(Self {
+            projection: Projection::Perspective,
             offset: -share / (1.0 - share),
             scale: near / (1.0 - share),
+        })
+    }
+
+    /// Of an orthographic camera: 0 at the depth `zero`, 1 at the depth `one`, and linear between them. Nearer is more where
+    /// `one` is the nearer one.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] unless both are finite and differ.
+    pub fn orthographic(zero: f64, one: f64) -> Result<Self> {
+        let scale = 1.0 / (zero - one);
+        if !(zero.is_finite() && scale.is_finite() && scale != 0.0) {
+            return Err(Error::Invalid(format!(
+                "a depth buffer from {zero} to {one} is not possible; give two depths that are finite and differ"
+            )));
+        }
+        Ok(Self {
+            projection: Projection::Orthographic,
+            offset: scale * zero,
+            scale,
         })
     }
 
     /// The map of a projection matrix for column vectors and clip depths from 0 to w, whose view looks along +z or -z.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if it is no perspective projection: then depths are not of this form.
+    /// [`Error::Invalid`] if it is no perspective projection. The matrix of an orthographic one does not say which way its
+    /// view looks: [`orthographic`](Self::orthographic) takes the depths instead.
     pub fn of_projection(projection: &DMat4) -> Result<Self> {
         let (z, w) = (projection.row(2), projection.row(3));
         let forward = w.z; // 1 where the view looks along +z, -1 along -z
@@ -60,11 +85,12 @@ impl DepthMap {
             && z.z.is_finite();
         if !is_perspective {
             return Err(Error::Invalid(
-                "only perspective projections, with 1 or -1 in the last row's third place, have depths that splats can be tested against"
+                "only the matrix of a perspective projection, with 1 or -1 in the last row's third place, says what depths mean; for an orthographic one give the two depths that become 0 and 1"
                     .into(),
             ));
         }
         Ok(Self {
+            projection: Projection::Perspective,
             offset: z.z * forward,
             scale: z.w,
         })
@@ -74,10 +100,11 @@ impl DepthMap {
     /// [`Camera::in_scene`](crate::Camera::in_scene).
     #[must_use]
     pub fn in_scene(self, placement: &Placement) -> Self {
-        Self {
-            scale: self.scale / placement.scale(),
-            ..self
-        }
+        let scale = match self.projection {
+            Projection::Perspective => self.scale / placement.scale(),
+            Projection::Orthographic => self.scale * placement.scale(),
+        };
+        Self { scale, ..self }
     }
 
     /// True when nearer is more.
@@ -87,7 +114,22 @@ impl DepthMap {
 
     /// The buffer's value for a depth along the view axis, kept within 0 to 1.
     pub fn at(&self, depth: f64) -> f64 {
-        (self.offset + self.scale / depth).clamp(0.0, 1.0)
+        let falling = match self.projection {
+            Projection::Perspective => self.scale / depth,
+            Projection::Orthographic => -self.scale * depth,
+        };
+        (self.offset + falling).clamp(0.0, 1.0)
+    }
+
+    /// Fails unless a camera's depths are of this form.
+    pub(crate) fn check(&self, projection: Projection) -> Result<()> {
+        match self.projection == projection {
+            true => Ok(()),
+            false => Err(Error::Invalid(format!(
+                "the camera is {projection:?} and the depth map {:?}; give set_depth_map the map of the camera's projection first",
+                self.projection
+            ))),
+        }
     }
 
     /// Offset and scale, as parameters of the shaders.
@@ -116,6 +158,21 @@ mod tests {
         }
         for (near, far) in [(0.0, 1.0), (1.0, 1.0), (-1.0, 1.0), (f64::NAN, 1.0)] {
             assert!(DepthMap::ordinary(near, far).is_err(), "{near} {far}");
+        }
+    }
+
+    #[test]
+    fn orthographic_depths_are_linear_between_their_ends() {
+        for (zero, one) in [(-2.0, 6.0), (6.0, -2.0)] {
+            let map = DepthMap::orthographic(zero, one).expect("two depths");
+            let values = [zero, one, 2.0, 2.0 * zero - one].map(|z| map.at(z));
+            assert_eq!(values, [0.0, 1.0, 0.5, 0.0], "kept within the buffer");
+            assert_eq!(map.is_reversed(), one < zero);
+            assert!(map.check(Projection::Orthographic).is_ok());
+            assert!(map.check(Projection::Perspective).is_err());
+        }
+        for (zero, one) in [(1.0, 1.0), (0.0, f64::INFINITY), (f64::NAN, 1.0)] {
+            assert!(DepthMap::orthographic(zero, one).is_err(), "{zero} {one}");
         }
     }
 
@@ -149,5 +206,7 @@ mod tests {
         let placement = Placement::new(glam::DVec3::ONE, glam::DQuat::IDENTITY, 4.0);
         let placement = placement.expect("a scale");
         assert_eq!(map.in_scene(&placement).at(2.0), map.at(8.0));
+        let flat = DepthMap::orthographic(-3.0, 13.0).expect("two depths");
+        assert_eq!(flat.in_scene(&placement).at(2.0), flat.at(8.0));
     }
 }

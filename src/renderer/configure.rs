@@ -96,6 +96,9 @@ impl Renderer {
             .desc
             .depth
             .map(|depth| depth.map.in_scene(&self.placement));
+        if let Some(map) = &depth_map {
+            map.check(request.camera.projection)?;
+        }
         let facts = SceneFacts {
             layers: scene.layers(),
             gaussians: scene.count,

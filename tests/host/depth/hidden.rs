@@ -6,11 +6,21 @@ use rara::gpu::Bindings;
 
 #[test]
 fn meshes_hide_the_splats_behind_them_on_ordinary_and_reversed_depth() {
-    let world = World::new();
+    hides(&World::new(), maps());
+}
+
+#[test]
+fn meshes_hide_the_splats_behind_them_from_an_orthographic_camera() {
+    let linear = |zero, one| DepthMap::orthographic(zero, one).expect("two depths");
+    hides(&World::flat(), [linear(-1.0, 30.0), linear(30.0, 0.0)]);
+}
+
+/// Checks that every way of drawing leaves out what is behind the meshes.
+fn hides(world: &World, maps: impl IntoIterator<Item = DepthMap>) {
     let truth = world.truth();
     with_host(true, |host, device| {
-        for map in maps() {
-            let desc = canvas(&world, map, vk::Format::D32_SFLOAT);
+        for map in maps {
+            let desc = canvas(world, map, vk::Format::D32_SFLOAT);
             let depth = depth_desc(&desc, map, true);
             let canvas = Canvas::new(&host.lend(), device, desc);
             for (raster, bindings) in common::rasters(device)
@@ -20,7 +30,7 @@ fn meshes_hide_the_splats_behind_them_on_ordinary_and_reversed_depth() {
                 let desc = RendererDesc::new(FLOATS)
                     .depth(Some(depth))
                     .bindings(bindings);
-                let (picture, path) = draw(device, &canvas, &world, desc, raster);
+                let (picture, path) = draw(device, &canvas, world, desc, raster);
                 let asked = match raster {
                     Raster::Tiles => "tiles",
                     Raster::Mesh => "mesh",

@@ -34,6 +34,17 @@ impl World {
     fn new() -> Self {
         let scene = generate(Kind::General, 3_000, 5);
         let camera = common::views(&scene, 3, VIEW)[1];
+        Self::of(scene, camera)
+    }
+
+    /// The same world before an orthographic camera.
+    fn flat() -> Self {
+        let Self { scene, camera, .. } = Self::new();
+        let camera = common::flattened(&camera, &scene);
+        Self::of(scene, camera)
+    }
+
+    fn of(scene: Gaussians, camera: Camera) -> Self {
         let clip = common::clip(&scene, 1, ClipOp::And);
         let mut depths: Vec<_> = (0..scene.len())
             .map(|i| depth(&scene, &camera, i))

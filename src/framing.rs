@@ -5,6 +5,7 @@
 use glam::DVec3;
 
 use crate::camera::Camera;
+use crate::clip::Plane;
 use crate::error::{Error, Result};
 use crate::scene::Bounds;
 
@@ -25,21 +26,7 @@ impl Camera {
     /// # Errors
     /// [`Error::Invalid`] for a zero `up`, an impossible field of view or picture size.
     pub fn frame(bounds: &Bounds, up: DVec3, fov_y: f64, size: (u32, u32)) -> Result<Self> {
-        let up = up
-            .try_normalize()
-            .ok_or_else(|| Error::Invalid("the up vector must be finite and not zero".into()))?;
-        // For a world with z up, the front is the side of -y.
-        let front = if up.z.abs() < 0.9 {
-            -DVec3::Z
-        } else {
-            -DVec3::Y
-        };
-        let front = (front - up * front.dot(up)).normalize();
-        let side = up.cross(front);
-        let (azimuth, elevation) = (AZIMUTH.to_radians(), ELEVATION.to_radians());
-        let towards_eye =
-            elevation.cos() * (azimuth.cos() * front + azimuth.sin() * side) + elevation.sin() * up;
-
+        let towards_eye = three_quarter(up)?;
         let centre = bounds.centre();
         // The camera is turned first, and moved into place once the distance is known.
         let camera = Self::look_at(towards_eye, DVec3::ZERO, up, fov_y, size)?;
@@ -54,6 +41,83 @@ impl Camera {
             ..camera
         })
     }
+
+    /// An orthographic camera that looks at the middle of `bounds` from the side from which [`frame`](Self::frame) does, at
+    /// the largest scale at which all of them are in the picture.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a zero `up` and an impossible picture size.
+    pub fn frame_orthographic(bounds: &Bounds, up: DVec3, size: (u32, u32)) -> Result<Self> {
+        let target = bounds.centre();
+        let eye = target + three_quarter(up)? * standoff(bounds);
+        Self::orthographic(eye, target, up, 1.0, size)?.fitted(bounds)
+    }
+
+    /// An orthographic camera that faces a plane square on, from the side that the plane cuts away, so that a clip by
+    /// the plane shows the cut. The middle of `bounds` is the picture's, and all of them are in it, wherever along its normal
+    /// the plane is: parallel planes have pictures of one scale.
+    ///
+    /// ```
+    /// use rara::{Bounds, Camera, Plane, glam::DVec3};
+    ///
+    /// let bounds = Bounds { min: DVec3::NEG_ONE, max: DVec3::ONE };
+    /// let camera = Camera::facing(&Plane::new(DVec3::Z, -0.5)?, &bounds, DVec3::NEG_Y, (90, 90))?;
+    /// assert_eq!(camera.rotation.row(2), DVec3::Z); // looks along the normal, at what is kept
+    /// assert!(camera.eye.z < 0.5 && (camera.fx - 40.5).abs() < 1e-9);
+    /// # Ok::<(), rara::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for an `up` along the plane's normal and an impossible picture size.
+    pub fn facing(plane: &Plane, bounds: &Bounds, up: DVec3, size: (u32, u32)) -> Result<Self> {
+        let (normal, middle) = (plane.normal(), bounds.centre());
+        // Splats that the plane cuts may have their centres before it, and are seen all the same.
+        let target = middle - normal * plane.distance(middle);
+        let eye = target - normal * standoff(bounds);
+        Self::orthographic(eye, target, up, 1.0, size)?.fitted(bounds)
+    }
+
+    /// The orthographic camera at the largest scale at which the bounds are in its picture.
+    fn fitted(self, bounds: &Bounds) -> Result<Self> {
+        let scale = bounds
+            .corners()
+            .iter()
+            .fold(f64::INFINITY, |scale, corner| {
+                let p = self.rotation * (*corner - bounds.centre());
+                scale
+                    .min(FILL * self.cx / p.x.abs())
+                    .min(FILL * self.cy / p.y.abs())
+            });
+        match scale.is_finite() && scale > 0.0 {
+            true => Ok(self.fx(scale).fy(scale)),
+            false => Err(Error::Invalid(
+                "the scene's bounds have no extent that a picture could show; give a camera".into(),
+            )),
+        }
+    }
+}
+
+/// The direction to the eye of a three-quarter view.
+fn three_quarter(up: DVec3) -> Result<DVec3> {
+    let up = up
+        .try_normalize()
+        .ok_or_else(|| Error::Invalid("the up vector must be finite and not zero".into()))?;
+    // For a world with z up, the front is the side of -y.
+    let front = if up.z.abs() < 0.9 {
+        -DVec3::Z
+    } else {
+        -DVec3::Y
+    };
+    let front = (front - up * front.dot(up)).normalize();
+    let side = up.cross(front);
+    let (azimuth, elevation) = (AZIMUTH.to_radians(), ELEVATION.to_radians());
+    Ok(elevation.cos() * (azimuth.cos() * front + azimuth.sin() * side) + elevation.sin() * up)
+}
+
+/// How far from the middle an orthographic eye stands: beyond the bounds, and as far again for what the percentiles left
+/// out.
+fn standoff(bounds: &Bounds) -> f64 {
+    2.0 * bounds.radius() + NEAREST
 }
 
 #[cfg(test)]
@@ -92,6 +156,36 @@ mod tests {
                     assert!(filled > 0.5, "{filled}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn orthographic_frames_hold_every_corner_and_one_is_near_an_edge() {
+        let bounds = Bounds {
+            min: DVec3::new(5.0, -3.0, 100.0),
+            max: DVec3::new(9.0, -2.5, 101.0),
+        };
+        let up = DVec3::new(0.1, -1.0, 0.3);
+        let mut cameras = Vec::new();
+        for size in [(1024, 1024), (1920, 1080), (300, 900)] {
+            cameras.push(Camera::frame_orthographic(&bounds, up, size).unwrap());
+            for (normal, share) in [(DVec3::X, 0.1), (-DVec3::Z, 0.5), (DVec3::ONE, 0.9)] {
+                let at = bounds.min.lerp(bounds.max, share);
+                let plane = Plane::new(normal, -normal.dot(at)).unwrap();
+                let camera = Camera::facing(&plane, &bounds, up, size).unwrap();
+                assert!(camera.rotation.row(2).distance(normal.normalize()) < 1e-12);
+                assert!(plane.distance(camera.eye) < -bounds.radius());
+                cameras.push(camera);
+            }
+        }
+        for camera in cameras {
+            let filled = bounds.corners().iter().fold(0.0_f64, |filled, corner| {
+                let p = camera.rotation * (*corner - camera.eye);
+                let at = [camera.fx * p.x / camera.cx, camera.fy * p.y / camera.cy];
+                assert!(p.z > 0.2);
+                filled.max(at[0].abs()).max(at[1].abs())
+            });
+            assert!((filled - 0.9).abs() < 1e-9, "{filled}");
         }
     }
 

@@ -106,7 +106,8 @@ fn not_empty(cameras: Vec<NamedCamera>, path: &Path) -> Result<Vec<NamedCamera>>
 }
 
 /// Loads a single camera: JSON `{"width", "height", "fx", "fy", "cx", "cy", "world_to_camera": [16 numbers,
-/// row-major]}`; without `cx` or `cy` the principal point is the middle.
+/// row-major]}`; without `cx` or `cy` the principal point is the middle. With `"projection": "orthographic"` `fx` and `fy`
+/// are the pixels of a world unit.
 ///
 /// # Errors
 /// [`Error::Io`] if the file can't be read, [`Error::Format`] if it has no usable camera.

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec4};
 use serde::Deserialize;
 
 use super::{Parts, Pose};
-use crate::camera::Camera;
+use crate::camera::{Camera, Projection};
 use crate::json;
 
 #[derive(Deserialize)]
@@ -17,6 +17,16 @@ struct Single {
     cy: Option<f64>,
     /// Row by row.
     world_to_camera: [f64; 16],
+    #[serde(default)]
+    projection: Name,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "lowercase")]
+enum Name {
+    #[default]
+    Perspective,
+    Orthographic,
 }
 
 pub(super) fn parse(json: &[u8]) -> Result<Camera, String> {
@@ -34,5 +44,9 @@ pub(super) fn parse(json: &[u8]) -> Result<Camera, String> {
         centre: (single.cx, single.cy),
         pose: Pose::WorldToCamera(matrix),
     };
-    parts.camera("the camera")
+    let projection = match single.projection {
+        Name::Perspective => Projection::Perspective,
+        Name::Orthographic => Projection::Orthographic,
+    };
+    Ok(parts.camera("the camera")?.projection(projection))
 }

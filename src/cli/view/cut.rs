@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::{DQuat, DVec2, DVec3};
-use rara::{Camera, Clip, ClipOp, Plane, Surface};
+use rara::{Camera, Clip, ClipOp, Plane, Projection, Surface};
 
 /// The planes, which of them is held, whether they cut at all, and the other surfaces of the clip.
 #[derive(Debug, Clone)]
@@ -91,9 +91,14 @@ impl Cut {
         // A point behind the eye has no place in the picture.
         at.z = at.z.max(1e-2 * at.length()).max(f64::MIN_POSITIVE);
         let focal = DVec2::new(camera.fx, camera.fy);
-        // How the foot moves in the picture, per unit along the normal.
-        let across = focal * (normal.truncate() - at.truncate() / at.z * normal.z) / at.z;
-        let unit = camera.fy / at.z;
+        // How the foot moves in the picture, per unit along the normal, and how long a unit is there.
+        let (across, unit) = match camera.projection {
+            Projection::Orthographic => (focal * normal.truncate(), camera.fy),
+            _ => (
+                focal * (normal.truncate() - at.truncate() / at.z * normal.z) / at.z,
+                camera.fy / at.z,
+            ),
+        };
         let by = if across.length() > (1.0 - FRAC_1_SQRT_2) * unit {
             pixels.dot(across) / across.length_squared()
         } else {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use rara::{Camera, Error, Picture, Result};
+use rara::{Camera, Error, Picture, Projection, Result};
 use serde_json::json;
 
 use crate::cli::output;
@@ -61,6 +61,10 @@ pub(super) fn save(picture: &Picture, camera: &Camera, path: &Path) -> Result<()
         "width": camera.width, "height": camera.height,
         "fx": camera.fx, "fy": camera.fy, "cx": camera.cx, "cy": camera.cy,
         "world_to_camera": matrix,
+        "projection": match camera.projection {
+            Projection::Orthographic => "orthographic",
+            _ => "perspective",
+        },
     });
     output::text(&beside(path), &format!("{file:#}\n"))
 }

@@ -21,19 +21,23 @@ pub(super) struct CameraArgs {
     /// The point that it looks at
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true, requires = "eye")]
     target: Option<DVec3>,
-    /// The direction that is up in the picture
+    /// The direction that is up in the picture [default: 0,-1,0; a section's may be another]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
-    #[arg(default_value = "0,-1,0", conflicts_with_all = ["cameras", "camera"])]
-    up: DVec3,
+    #[arg(conflicts_with_all = ["cameras", "camera"])]
+    up: Option<DVec3>,
     /// Vertical field of view, degrees
     #[arg(
         long,
         value_name = "DEG",
-        default_value_t = 50.0,
+        default_value_t = FOV_Y,
         allow_hyphen_values = true
     )]
     #[arg(conflicts_with_all = ["cameras", "camera"])]
     fov_y: f64,
+    /// Orthographic, without perspective: the picture's height in world units, or `fit` for all of the scene, without --eye
+    #[arg(long, value_name = "HEIGHT|fit", value_parser = ortho, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["cameras", "camera", "fov_y"])]
+    ortho: Option<Ortho>,
     /// Cameras of a 3DGS cameras.json, a nerfstudio transforms.json or a COLMAP sparse folder
     #[arg(long, value_name = "FILE", conflicts_with = "camera")]
     cameras: Option<PathBuf>,
@@ -45,7 +49,8 @@ pub(super) struct CameraArgs {
         requires = "cameras"
     )]
     view: String,
-    /// One camera: JSON with width, height, fx, fy, cx, cy, world_to_camera (16 numbers, row-major)
+    /// One camera: JSON with width, height, fx, fy, cx, cy, world_to_camera (16 numbers, row-major), and perhaps
+    /// "projection": "orthographic"; fx and fy are then the pixels of a world unit
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
     /// Picture size [default: 1024x1024, or the camera file's own; a window's: 1280x720]
@@ -53,8 +58,53 @@ pub(super) struct CameraArgs {
     size: Option<(u32, u32)>,
 }
 
+/// The scale of an orthographic picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Ortho {
+    /// World units that it is high.
+    Height(f64),
+    /// As many as hold the scene.
+    Fit,
+}
+
+fn ortho(text: &str) -> Result<Ortho, String> {
+    match text.parse::<f64>() {
+        _ if text == "fit" => Ok(Ortho::Fit),
+        Ok(height) if height > 0.0 && height.is_finite() => Ok(Ortho::Height(height)),
+        _ => Err("expected the picture's height in world units, above zero, or `fit`".into()),
+    }
+}
+
+/// The projection of a camera that frames the scene.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Lens {
+    /// Degrees of its vertical field of view.
+    Perspective(f64),
+    /// World units that its picture is high; `None` for as many as hold the scene.
+    Orthographic(Option<f64>),
+}
+
+impl Lens {
+    fn frame(self, bounds: &Bounds, up: DVec3, size: (u32, u32)) -> rara::Result<Camera> {
+        match self {
+            Self::Perspective(fov_y) => Camera::frame(bounds, up, fov_y, size),
+            Self::Orthographic(height) => {
+                let camera = Camera::frame_orthographic(bounds, up, size)?;
+                Ok(height.map_or(camera, |height| {
+                    let scale = f64::from(size.1) / height;
+                    camera.fx(scale).fy(scale)
+                }))
+            }
+        }
+    }
+}
+
+/// The direction that is up in the world where nothing else is said.
+const UP: DVec3 = DVec3::NEG_Y;
 /// Picture size where neither a flag nor a file gives one.
 const DEFAULT_SIZE: (u32, u32) = (1024, 1024);
+/// Degrees.
+const FOV_Y: f64 = 50.0;
 
 /// A camera and what its file calls it.
 #[derive(Debug, Clone)]
@@ -73,7 +123,7 @@ pub(super) enum Views {
     /// A camera that the scene's bounds will place.
     Framed {
         up: DVec3,
-        fov_y: f64,
+        lens: Lens,
         size: (u32, u32),
     },
 }
@@ -119,15 +169,40 @@ impl CameraArgs {
     #[cfg(feature = "view")]
     pub(super) fn up(&self) -> Option<DVec3> {
         let from_file = self.camera.is_some() || self.cameras.is_some();
-        (!from_file).then_some(self.up)
+        (!from_file).then_some(self.up.unwrap_or(UP))
+    }
+
+    /// True when a flag places the camera or chooses its lens.
+    pub(super) fn places(&self) -> bool {
+        let from_file = self.camera.is_some() || self.cameras.is_some();
+        from_file || self.eye.is_some() || self.ortho.is_some() || self.fov_y != FOV_Y
+    }
+
+    /// The direction that is up in the picture, if a flag says it.
+    pub(super) fn chosen_up(&self) -> Option<DVec3> {
+        self.up
+    }
+
+    /// The size of a picture whose camera no file gives.
+    pub(super) fn chosen_size(&self) -> (u32, u32) {
+        self.size.unwrap_or(DEFAULT_SIZE)
     }
 
     /// The cameras that the flags mean; reads their files.
     pub(super) fn meant(&self) -> Result<Views, Failure> {
-        let size = self.size.unwrap_or(DEFAULT_SIZE);
+        let size = self.chosen_size();
+        let up = self.up.unwrap_or(UP);
         if let (Some(eye), Some(target)) = (self.eye, self.target) {
-            let camera =
-                Camera::look_at(eye, target, self.up, self.fov_y, size).map_err(Failure::usage)?;
+            let camera = match self.ortho {
+                None => Camera::look_at(eye, target, up, self.fov_y, size),
+                Some(Ortho::Height(height)) => Camera::orthographic(eye, target, up, height, size),
+                Some(Ortho::Fit) => {
+                    return Err(Failure::Usage(
+                        "--ortho fit places the camera itself: give a height with --eye and --target".into(),
+                    ));
+                }
+            };
+            let camera = camera.map_err(Failure::usage)?;
             return Ok(Views::Given(vec![View {
                 number: 0,
                 name: "camera".into(),
@@ -143,11 +218,15 @@ impl CameraArgs {
             }]));
         }
         let Some(path) = &self.cameras else {
-            let (up, fov_y) = (self.up, self.fov_y);
+            let lens = match self.ortho {
+                None => Lens::Perspective(self.fov_y),
+                Some(Ortho::Height(height)) => Lens::Orthographic(Some(height)),
+                Some(Ortho::Fit) => Lens::Orthographic(None),
+            };
             // Errors that do not depend on the scene are found before it is read.
-            Camera::frame(&Bounds::of(&Gaussians::default()), up, fov_y, size)
+            lens.frame(&Bounds::of(&Gaussians::default()), up, size)
                 .map_err(Failure::usage)?;
-            return Ok(Views::Framed { up, fov_y, size });
+            return Ok(Views::Framed { up, lens, size });
         };
         let loaded = camera_files::load_cameras(path)?.into_iter().enumerate();
         let mut views: Vec<View> = loaded
@@ -178,8 +257,8 @@ impl Views {
     pub(super) fn of(self, scene: &Scene<'_>) -> Result<Vec<View>, Failure> {
         match self {
             Self::Given(views) => Ok(views),
-            Self::Framed { up, fov_y, size } => {
-                let camera = Camera::frame(&Bounds::of(scene), up, fov_y, size)?;
+            Self::Framed { up, lens, size } => {
+                let camera = lens.frame(&Bounds::of(scene), up, size)?;
                 Ok(vec![View {
                     number: 0,
                     name: "framing".into(),

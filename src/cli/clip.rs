@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use clap::Args;
-use rara::clip::load_planes;
+use rara::clip::{NamedPlane, load_planes};
 use rara::{Clip, ClipOp, Shape};
 
 use super::failure::Failure;
@@ -39,6 +39,18 @@ impl ClipArgs {
             shapes.extend(from_file(text)?);
         }
         Ok(shapes)
+    }
+
+    /// The shapes that were typed.
+    pub(super) fn typed(&self) -> Vec<Shape> {
+        self.clip.clone()
+    }
+
+    /// All planes of the files, with their names.
+    pub(super) fn planes(&self) -> Result<Vec<NamedPlane>, Failure> {
+        let loaded = self.clip_file.iter().map(|file| load_planes(file.as_ref()));
+        let loaded: rara::Result<Vec<_>> = loaded.collect();
+        Ok(loaded?.concat())
     }
 
     /// How they combine.

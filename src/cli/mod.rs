@@ -23,6 +23,7 @@ mod profile;
 mod render;
 mod report;
 mod scenes;
+mod section;
 mod session;
 mod settings;
 mod sheet;

@@ -3,15 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::{Clip, Settings};
+use rara::{Clip, Scene, Settings};
 
-use super::camera::Views;
+use super::camera::{View, Views};
 use super::failure::Failure;
 use super::frame::FrameArgs;
 use super::output::{self, Progress};
 use super::profile::{Profile, ProfileArgs};
 use super::report::Report;
 use super::scenes::SceneArgs;
+use super::section::{SectionArgs, Sections};
 use super::settings::name;
 use super::values;
 
@@ -25,13 +26,16 @@ Examples:
   rara render scene.ply -o cut.png --clip-file planes.json:axial
   rara render body.ply organ.ply -o both.png --background 1,1,1
   rara render scene.ply -o view_{}.png --cameras cameras.json --view all
+  rara render scene.ply -o flat.png --ortho fit
+  rara render scene.ply -o axial.png --section axial=0.4
+  rara render scene.ply -o slab_{}.png --section coronal=0.1..0.9:9 --section-thickness 2
   rara render scene.ply --repeat 20 --json
 
 Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premultiplied.")]
 pub(super) struct Render {
     #[command(flatten)]
     scenes: SceneArgs,
-    /// The picture's file, .png or .exr; {} becomes the camera's number. May be left out with --json
+    /// The picture's file, .png or .exr; {} becomes the number of the camera or section. May be left out with --json
     #[arg(short, long, value_name = "OUT", value_parser = values::picture_path, required_unless_present = "json")]
     output: Option<PathBuf>,
     /// Render N times, nothing carried over between them, and report the medians
@@ -41,42 +45,81 @@ pub(super) struct Render {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
+    section: SectionArgs,
+    #[command(flatten)]
     frame: FrameArgs,
     #[command(flatten)]
     profile: ProfileArgs,
 }
 
+/// The pictures that are asked for.
+enum Pictures {
+    /// Of cameras, under one clip.
+    Views(Views, Clip),
+    Sections(Sections),
+}
+
+impl Pictures {
+    /// Their numbers.
+    fn numbers(&self) -> Vec<usize> {
+        match self {
+            Self::Views(views, _) => views.numbers().collect(),
+            Self::Sections(sections) => sections.numbers().collect(),
+        }
+    }
+
+    /// Each picture's camera and clip, once the scene is known.
+    fn of(self, scene: &Scene<'_>) -> Result<Vec<(View, Clip)>, Failure> {
+        Ok(match self {
+            Self::Views(views, clip) => {
+                let views = views.of(scene)?.into_iter();
+                views.map(|view| (view, clip.clone())).collect()
+            }
+            Self::Sections(sections) => {
+                let sections = sections.of(scene)?.into_iter();
+                sections.map(|one| (one.view, one.clip)).collect()
+            }
+        })
+    }
+}
+
 impl Render {
     pub(super) fn run(self) -> Result<(), Failure> {
         let settings = self.frame.settings.meant()?;
-        let clip = self.frame.clip.meant()?;
-        let views = self.frame.camera.meant()?;
-        self.check_output(&views)?;
+        let sections = self.section.meant(&self.frame.camera, &self.frame.clip)?;
+        let pictures = match sections {
+            Some(sections) => Pictures::Sections(sections),
+            None => {
+                let clip = self.frame.clip.meant()?;
+                Pictures::Views(self.frame.camera.meant()?, clip)
+            }
+        };
+        let numbers = pictures.numbers();
+        let several = self.frame.camera.all() || numbers.len() > 1;
+        self.check_output(&numbers, several)?;
 
-        let pictures = views.numbers().map(|n| self.picture_file(n));
-        let profile = self
-            .profile
-            .begin(&pictures.flatten().collect::<Vec<_>>())?;
-        let done = self.draw(&profile, views, &clip, &settings);
+        let files = numbers.iter().map(|n| self.picture_file(*n));
+        let profile = self.profile.begin(&files.flatten().collect::<Vec<_>>())?;
+        let done = self.draw(&profile, pictures, several, &settings);
         profile.end_after(done)
     }
 
     fn draw(
         &self,
         profile: &Profile,
-        views: Views,
-        clip: &Clip,
+        pictures: Pictures,
+        several: bool,
         settings: &Settings,
     ) -> Result<(), Failure> {
         let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
-        let views = views.of(&scene)?;
+        let views = pictures.of(&scene)?;
         let device = self.frame.device.meant();
         let mut session = profile.open(device, &scene, settings.precision.sh)?;
         let mut frames = Vec::new();
         let mut written = Vec::new();
         let mut progress = Progress::new("rendering");
-        for (done, view) in views.iter().enumerate() {
+        for (done, (view, clip)) in views.iter().enumerate() {
             progress.update(done as u64, views.len() as u64);
             frames.push(session.frame(&view.camera, clip, settings, self.repeat)?);
             if let Some(path) = self.picture_file(view.number) {
@@ -88,9 +131,9 @@ impl Render {
 
         let size = views
             .first()
-            .map_or((0, 0), |v| (v.camera.width, v.camera.height));
+            .map_or((0, 0), |(v, _)| (v.camera.width, v.camera.height));
         let report = Report::new(&session, &loaded, size, name(settings.mode), &frames);
-        let report = if self.frame.camera.all() {
+        let report = if several {
             report.with_frames(frames)
         } else {
             report
@@ -105,15 +148,20 @@ impl Render {
     }
 
     /// Checks `-o` before any work is done.
-    fn check_output(&self, views: &Views) -> Result<(), Failure> {
+    fn check_output(&self, numbers: &[usize], several: bool) -> Result<(), Failure> {
         let Some(pattern) = &self.output else {
             return Ok(());
         };
-        let first = views.numbers().next().unwrap_or(0);
-        if self.frame.camera.all() && numbered(pattern, 0) == numbered(pattern, 1) {
-            return Err(Failure::Usage(
-                "--view all makes several pictures: put {} where their number goes, as in -o view_{}.png".into(),
-            ));
+        let first = numbers.first().copied().unwrap_or(0);
+        if several && numbered(pattern, 0) == numbered(pattern, 1) {
+            let what = if self.frame.camera.all() {
+                "--view all makes"
+            } else {
+                "these sections are"
+            };
+            return Err(Failure::Usage(format!(
+                "{what} several pictures: put {{}} where their number goes, as in -o view_{{}}.png"
+            )));
         }
         Ok(output::check_file(&numbered(pattern, first))?)
     }

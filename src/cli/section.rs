@@ -1,0 +1,342 @@
+//! `--section`: planes that the camera faces square on, and what it sees of the scene behind them.
+
+use clap::Args;
+use glam::DVec3;
+use rara::{Bounds, Camera, Clip, ClipOp, Gaussians, Plane, Scene, Shape};
+
+use super::camera::{CameraArgs, View};
+use super::clip::ClipArgs;
+use super::failure::Failure;
+use super::values;
+
+/// The sections to draw. Each is a picture of its own.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Sections")]
+pub(super) struct SectionArgs {
+    /// Cut the scene and face the cut, without perspective (repeatable): AXIS=SHARE is across an axis, at a share of the
+    /// scene's robust bounds from 0 to 1; AXIS=FROM..TO:COUNT is so many of them. Axes: z or axial, y or coronal, x or
+    /// sagittal; a leading ! looks from the other side. NAME is a plane of a --clip-file, which then clips nothing else
+    #[arg(long, value_name = "AXIS=SHARE|NAME", value_parser = wanted, allow_hyphen_values = true)]
+    section: Vec<Wanted>,
+    /// Keep a slab of this thickness behind each section, world units, instead of all that lies behind it
+    #[arg(long, value_name = "T", value_parser = values::positive, requires = "section", allow_hyphen_values = true)]
+    section_thickness: Option<f32>,
+    /// World units of a pixel [default: as many as show all of the scene]
+    #[arg(long, value_name = "S", value_parser = values::positive, requires = "section", allow_hyphen_values = true)]
+    section_scale: Option<f32>,
+}
+
+/// What a `--section` asks for.
+#[derive(Debug, Clone, PartialEq)]
+enum Wanted {
+    Across { axis: Axis, shares: Shares },
+    Named(String),
+}
+
+/// An axis of the scene, and how a section across it is seen. The sides are those from which a radiologist looks at a patient
+/// in DICOM's coordinates, whose x points to the patient's left, y to the back and z to the head.
+#[derive(Debug, Clone, PartialEq)]
+struct Axis {
+    /// As it was typed.
+    name: String,
+    /// Shares grow along it.
+    along: DVec3,
+    /// The view's direction, along the axis or against it.
+    forward: DVec3,
+    up: DVec3,
+}
+
+/// Shares of the bounds, in equal steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Shares {
+    from: f64,
+    to: f64,
+    count: u32,
+}
+
+/// The most sections of one flag.
+const MOST: u32 = 100_000;
+
+impl Axis {
+    fn of(typed: &str) -> Option<Self> {
+        let (axis, sign) = match typed.strip_prefix('!') {
+            Some(axis) => (axis, -1.0),
+            None => (typed, 1.0),
+        };
+        let (along, forward, up) = match axis {
+            "x" | "sagittal" => (DVec3::X, DVec3::NEG_X, DVec3::Z),
+            "y" | "coronal" => (DVec3::Y, DVec3::Y, DVec3::Z),
+            "z" | "axial" => (DVec3::Z, DVec3::Z, DVec3::NEG_Y),
+            _ => return None,
+        };
+        Some(Self {
+            name: typed.into(),
+            along,
+            forward: sign * forward,
+            up,
+        })
+    }
+}
+
+impl Shares {
+    fn parse(text: &str) -> Result<Self, String> {
+        let number = |text: &str| match text.trim().parse::<f64>() {
+            Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
+            _ => Err(format!("'{text}' is no share of the scene from 0 to 1")),
+        };
+        let Some((from, rest)) = text.split_once("..") else {
+            let share = number(text)?;
+            return Ok(Self {
+                from: share,
+                to: share,
+                count: 1,
+            });
+        };
+        let (to, count) = rest.split_once(':').ok_or_else(|| {
+            format!(
+                "'{text}' does not say how many sections: write FROM..TO:COUNT, as in 0.1..0.9:9"
+            )
+        })?;
+        match count.trim().parse() {
+            Ok(count) if (1..=MOST).contains(&count) => Ok(Self {
+                from: number(from)?,
+                to: number(to)?,
+                count,
+            }),
+            _ => Err(format!(
+                "'{count}' is no number of sections from 1 to {MOST}"
+            )),
+        }
+    }
+
+    /// Both ends included; the middle where there is one.
+    fn all(self) -> impl Iterator<Item = f64> {
+        let last = f64::from(self.count - 1);
+        (0..self.count).map(move |index| match self.count {
+            1 => (self.from + self.to) / 2.0,
+            _ => self.from + (self.to - self.from) * f64::from(index) / last,
+        })
+    }
+}
+
+fn wanted(text: &str) -> Result<Wanted, String> {
+    let Some((name, shares)) = text.split_once('=') else {
+        return match text {
+            "" => Err("expected an axis and a share, as axial=0.5, or the name of a plane".into()),
+            name if Axis::of(name).is_some() => Err(format!(
+                "{name} needs a share of the scene, as in {name}=0.5"
+            )),
+            name => Ok(Wanted::Named(name.into())),
+        };
+    };
+    let axis = Axis::of(name).ok_or_else(|| {
+        format!("'{name}' is no axis; there are axial (z), coronal (y) and sagittal (x), each with a leading ! or without")
+    })?;
+    let shares = Shares::parse(shares)?;
+    Ok(Wanted::Across { axis, shares })
+}
+
+/// Sections whose flags have been checked, before the scene is known.
+#[derive(Debug)]
+pub(super) struct Sections {
+    planned: Vec<Planned>,
+    /// What else clips.
+    shapes: Vec<Shape>,
+    thickness: Option<f64>,
+    scale: Option<f64>,
+    up: Option<DVec3>,
+    size: (u32, u32),
+}
+
+#[derive(Debug)]
+enum Planned {
+    /// Across an axis, at a share of the bounds along it.
+    Across(Axis, f64),
+    /// A plane by its name.
+    Plane(String, Plane),
+}
+
+/// A section, ready to be drawn.
+#[derive(Debug)]
+pub(super) struct Section {
+    pub(super) view: View,
+    pub(super) clip: Clip,
+}
+
+impl SectionArgs {
+    /// The sections that the flags mean, if any; reads the files of planes.
+    pub(super) fn meant(
+        &self,
+        camera: &CameraArgs,
+        clip: &ClipArgs,
+    ) -> Result<Option<Sections>, Failure> {
+        if self.section.is_empty() {
+            return Ok(None);
+        }
+        if camera.places() {
+            return Err(Failure::Usage(
+                "--section places the camera itself: leave out --eye, --target, --fov-y, --ortho, --camera and --cameras; \
+                 --up, --size and --section-scale change what it shows"
+                    .into(),
+            ));
+        }
+        if clip.op() != ClipOp::And {
+            return Err(Failure::Usage(
+                "a section keeps what is behind it and kept by every --clip: leave out --clip-op or".into(),
+            ));
+        }
+        let is_named = self.section.iter().any(|s| matches!(s, Wanted::Named(_)));
+        let (shapes, planes) = if is_named {
+            (clip.typed(), clip.planes()?)
+        } else {
+            (clip.shapes()?, Vec::new())
+        };
+        let mut planned = Vec::new();
+        for wanted in &self.section {
+            match wanted {
+                Wanted::Across { axis, shares } => {
+                    planned.extend(
+                        shares
+                            .all()
+                            .map(|share| Planned::Across(axis.clone(), share)),
+                    );
+                }
+                Wanted::Named(name) => {
+                    let before = planned.len();
+                    let found = planes.iter().filter(|plane| plane.name == *name);
+                    planned.extend(found.map(|p| Planned::Plane(name.clone(), p.plane)));
+                    if planned.len() == before {
+                        return Err(unknown(
+                            name,
+                            planes.iter().map(|plane| plane.name.as_str()),
+                        ));
+                    }
+                }
+            }
+        }
+        let sections = Sections {
+            planned,
+            shapes,
+            thickness: self.section_thickness.map(f64::from),
+            scale: self.section_scale.map(f64::from),
+            up: camera.chosen_up(),
+            size: camera.chosen_size(),
+        };
+        // Errors that do not depend on the scene are found before it is read.
+        let nothing = Gaussians::default();
+        sections.of(&(&nothing).into()).map_err(Failure::usage)?;
+        Ok(Some(sections))
+    }
+}
+
+fn unknown<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> Failure {
+    let names: Vec<_> = names.collect();
+    let there = match names.is_empty() {
+        true => "there is no --clip-file to take it from; across an axis a section is written as axial=0.5".into(),
+        false => format!("the planes of --clip-file are {}", names.join(", ")),
+    };
+    Failure::Usage(format!(
+        "--section {name}: there is no plane of that name: {there}"
+    ))
+}
+
+impl Sections {
+    /// Their numbers.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = usize> + use<> {
+        0..self.planned.len()
+    }
+
+    /// The sections, once the scene is known.
+    pub(super) fn of(&self, scene: &Scene<'_>) -> rara::Result<Vec<Section>> {
+        let bounds = Bounds::of(scene.clone());
+        let section = |(number, planned): (usize, &Planned)| {
+            let (name, plane, up) = match planned {
+                Planned::Across(axis, share) => {
+                    let at = bounds.min.lerp(bounds.max, *share).dot(axis.along);
+                    let offset = -axis.forward.dot(axis.along) * at;
+                    let name = format!("{}={share}", axis.name);
+                    (name, Plane::new(axis.forward, offset)?, axis.up)
+                }
+                Planned::Plane(name, plane) => (name.clone(), *plane, up_across(plane)),
+            };
+            let up = self.up.unwrap_or(up);
+            let mut camera = Camera::facing(&plane, &bounds, up, self.size)?;
+            if let Some(scale) = self.scale {
+                camera = camera.fx(1.0 / scale).fy(1.0 / scale);
+            }
+            let mut shapes = self.shapes.clone();
+            shapes.push(plane.into());
+            if let Some(thickness) = self.thickness {
+                let far = Plane::new(-plane.normal(), thickness - plane.offset())?;
+                shapes.push(far.into());
+            }
+            Ok(Section {
+                view: View {
+                    number,
+                    name,
+                    camera,
+                },
+                clip: Clip::of_shapes(&shapes, ClipOp::And)?,
+            })
+        };
+        self.planned.iter().enumerate().map(section).collect()
+    }
+}
+
+/// The direction that is up where a plane is seen that no axis is across: the world's, unless the plane lies level.
+fn up_across(plane: &Plane) -> DVec3 {
+    match plane.normal().y.abs() < 0.99 {
+        true => DVec3::NEG_Y,
+        false => DVec3::Z,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_one_or_equal_steps() {
+        let shares = |text| Shares::parse(text).map(|shares| shares.all().collect::<Vec<_>>());
+        assert_eq!(shares("0.4"), Ok(vec![0.4]));
+        assert_eq!(shares("0..1:5"), Ok(vec![0.0, 0.25, 0.5, 0.75, 1.0]));
+        assert_eq!(shares("0.9..0.1:2"), Ok(vec![0.9, 0.1]));
+        assert_eq!(shares("0.2..0.4:1"), Ok(vec![0.30000000000000004]));
+        for text in [
+            "", "1.1", "-0.1", "nan", "0.1..0.9", "0..1:0", "0..2:3", "0..1:1e3", "..:1",
+        ] {
+            assert!(shares(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn axes_have_two_names_and_two_sides() {
+        for (one, other) in [("x", "sagittal"), ("y", "coronal"), ("z", "axial")] {
+            let [one, other] = [one, other].map(|name| Axis::of(name).expect("an axis"));
+            assert_eq!(
+                (one.along, one.forward, one.up),
+                (other.along, other.forward, other.up)
+            );
+            let turned = Axis::of(&format!("!{}", one.name)).expect("its other side");
+            assert_eq!((turned.along, turned.forward), (one.along, -one.forward));
+            assert_eq!(one.forward.dot(one.up), 0.0);
+        }
+        assert!(Axis::of("w").is_none() && Axis::of("!!x").is_none());
+    }
+
+    #[test]
+    fn what_is_no_section_is_refused_with_what_would_be() {
+        for (text, says) in [
+            ("", "axial=0.5"),
+            ("axial", "axial=0.5"),
+            ("w=0.5", "sagittal"),
+            ("z=2", "from 0 to 1"),
+            ("z=0.1..0.9", "FROM..TO:COUNT"),
+            ("z=0.1..0.9:x", "number of sections"),
+        ] {
+            let error = wanted(text).expect_err(text);
+            assert!(error.contains(says), "{text}: {error}");
+        }
+        assert_eq!(wanted("skin"), Ok(Wanted::Named("skin".into())));
+    }
+}

@@ -114,7 +114,10 @@ impl Shares {
         let last = f64::from(self.count - 1);
         (0..self.count).map(move |index| match self.count {
             1 => (self.from + self.to) / 2.0,
-            _ => self.from + (self.to - self.from) * f64::from(index) / last,
+            _ => {
+                let step = f64::from(index) / last;
+                self.from * (1.0 - step) + self.to * step
+            }
         })
     }
 }

@@ -4,6 +4,7 @@
 mod folder;
 mod profile;
 mod refusals;
+mod sections;
 mod shape;
 mod work;
 

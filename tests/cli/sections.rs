@@ -1,0 +1,165 @@
+//! Orthographic pictures, and sections.
+
+use std::fs;
+use std::path::Path;
+
+use super::{document, done, folder, line, refused, scene};
+
+const SIZE: &str = "--size 96x64";
+
+/// The bytes of the picture of `scene.ply` with these flags.
+fn drawn(here: &Path, flags: &str) -> Vec<u8> {
+    let words = format!("render @/scene.ply -o @/drawn.exr {SIZE} {flags}");
+    done(line(here, &words));
+    fs::read(here.join("drawn.exr")).expect("a picture")
+}
+
+/// The robust bounds of `scene.ply`, least and greatest coordinates.
+fn bounds(here: &Path) -> [[f64; 3]; 2] {
+    let info = document(line(here, "info @/scene.ply --json"));
+    let bounds = &info["robust_bounds"];
+    ["min", "max"].map(|end| [0, 1, 2].map(|axis| bounds[end][axis].as_f64().expect("a number")))
+}
+
+#[test]
+fn a_camera_file_says_what_the_flags_say() {
+    let here = folder("ortho");
+    scene(&here);
+    // Looks along +z from z = -8, with y down, 16 pixels a unit.
+    let flags = "--eye 0.5,0.25,-8 --target 0.5,0.25,0 --ortho 4 --clip plane:1,0,1,0";
+    let file = r#"{"width": 96, "height": 64, "fx": 16, "fy": 16, "projection": "orthographic",
+        "world_to_camera": [1,0,0,-0.5, 0,1,0,-0.25, 0,0,1,8, 0,0,0,1]}"#;
+    fs::write(here.join("flat.json"), file).unwrap();
+    let flat = drawn(&here, flags);
+    assert!(flat == drawn(&here, "--camera @/flat.json --clip plane:1,0,1,0"));
+    assert!(flat == drawn(&here, "--cameras @/flat.json --clip plane:1,0,1,0"));
+    assert!(
+        flat != drawn(&here, &flags.replace("--ortho 4", "")),
+        "in perspective"
+    );
+    let nearer = flags.replace("-8", "-6");
+    let words = format!("render @/scene.ply -o @/nearer.exr {SIZE} {nearer}");
+    done(line(&here, &words));
+    drawn(&here, flags);
+    let apart = document(line(&here, "compare @/drawn.exr @/nearer.exr --json"));
+    assert!(
+        apart["max"].as_f64().unwrap() < 0.1,
+        "{apart}: no perspective"
+    );
+
+    fs::write(
+        here.join("flat.json"),
+        file.replace("orthographic", "fisheye"),
+    )
+    .unwrap();
+    let output = line(&here, "render @/scene.ply -o @/x.png --camera @/flat.json");
+    refused(&output, 1, "`perspective` or `orthographic`");
+    assert!(drawn(&here, "--ortho fit") != drawn(&here, ""));
+    assert!(drawn(&here, "--ortho fit") != drawn(&here, "--ortho 1.5"));
+}
+
+/// A section across an axis is what a camera and a plane draw that are placed by hand.
+#[test]
+fn a_section_faces_its_plane() {
+    let here = folder("section");
+    scene(&here);
+    let [min, max] = bounds(&here);
+    let at = |axis: usize, share: f64| min[axis] + (max[axis] - min[axis]) * share;
+    let radius = (0..3)
+        .map(|i| (max[i] - min[i]).powi(2))
+        .sum::<f64>()
+        .sqrt()
+        / 2.0;
+    for (names, axis, sign, up) in [
+        (["sagittal", "x"], 0, -1.0, "0,0,1"),
+        (["coronal", "y"], 1, 1.0, "0,0,1"),
+        (["axial", "z"], 2, 1.0, "0,-1,0"),
+    ] {
+        for (flip, sign) in [("", sign), ("!", -sign)] {
+            let mut target = [0, 1, 2].map(|axis| at(axis, 0.5));
+            target[axis] = at(axis, 0.4);
+            let (mut eye, mut normal) = (target, [0.0; 3]);
+            eye[axis] -= sign * (2.0 * radius + 0.25);
+            normal[axis] = sign;
+            let text = |v: [f64; 3]| v.map(|v| v.to_string()).join(",");
+            let plane = |d: f64| format!("--clip plane:{},{d}", text(normal));
+            let d = -sign * target[axis];
+            let camera = format!(
+                "--eye {} --target {} --up {up} --ortho {}",
+                text(eye),
+                text(target),
+                64.0 * 0.0625
+            );
+            let section = format!("--section {flip}{}=0.4 --section-scale 0.0625", names[0]);
+            let half = drawn(&here, &section);
+            assert!(half == drawn(&here, &section.replace(names[0], names[1])));
+            assert!(
+                half == drawn(&here, &format!("{camera} {}", plane(d))),
+                "{names:?} {flip}"
+            );
+            let slab = drawn(&here, &format!("{section} --section-thickness 0.5"));
+            let far = normal.map(|v| -v);
+            let far = format!("--clip plane:{},{}", text(far), 0.5 - d);
+            let placed = drawn(&here, &format!("{camera} {} {far}", plane(d)));
+            assert!(slab == placed && slab != half, "{names:?} {flip}");
+        }
+    }
+    let turned = drawn(&here, "--section z=0.4 --up 1,0,0");
+    assert!(turned != drawn(&here, "--section z=0.4"));
+}
+
+#[test]
+fn several_sections_are_numbered_pictures() {
+    let here = folder("sections");
+    scene(&here);
+    let words = format!("render @/scene.ply -o @/all_{{}}.exr {SIZE} --json");
+    let report = document(line(
+        &here,
+        &format!("{words} --section y=0.2..0.8:3 --section x=0.5"),
+    ));
+    assert_eq!(report["frames"].as_array().map(Vec::len), Some(4));
+    for (number, section) in ["y=0.2", "y=0.5", "y=0.8", "x=0.5"].iter().enumerate() {
+        let numbered = fs::read(here.join(format!("all_{number}.exr"))).expect("a picture");
+        assert!(
+            numbered == drawn(&here, &format!("--section {section}")),
+            "{section}"
+        );
+    }
+    assert!(!here.join("all_4.exr").exists());
+    // One section is one picture, with a number in its name or without.
+    done(line(
+        &here,
+        &format!("render @/scene.ply -o @/one_{{}}.exr {SIZE} --section x=0.5"),
+    ));
+    assert_eq!(
+        fs::read(here.join("one_0.exr")).unwrap(),
+        fs::read(here.join("all_3.exr")).unwrap()
+    );
+}
+
+#[test]
+fn a_section_has_the_plane_of_a_file() {
+    let here = folder("section_file");
+    scene(&here);
+    let [min, max] = bounds(&here);
+    let middle = (min[2] + max[2]) / 2.0;
+    let planes = format!(
+        r#"[{{"name": "mid", "normal": [0, 0, 2], "d": {}}}, {{"name": "other", "normal": [1, 0, 0], "d": 0}}]"#,
+        -2.0 * middle
+    );
+    fs::write(here.join("planes.json"), planes).unwrap();
+    // The file's other plane clips nothing, and what --clip says does.
+    let of_file = "--clip-file @/planes.json --section mid";
+    assert!(drawn(&here, of_file) == drawn(&here, "--section z=0.5"));
+    let more = "--clip plane:0,1,0,0";
+    let both = drawn(&here, &format!("{of_file} {more}"));
+    assert!(both == drawn(&here, &format!("--section z=0.5 {more}")));
+    let clipped = "--section z=0.5 --clip-file @/planes.json:other";
+    let typed = drawn(&here, "--section z=0.5 --clip plane:1,0,0,0");
+    assert!(typed == drawn(&here, clipped));
+    let output = line(
+        &here,
+        "render @/scene.ply -o @/x.png --clip-file @/planes.json --section skin",
+    );
+    refused(&output, 2, "mid, other");
+}

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::ValueEnum;
 use glam::{DVec2, DVec3};
-use rara::{Mode, Plane};
+use rara::{Mode, Plane, Projection};
 
 use super::viewpoint::Walk;
 use crate::cli::values;
@@ -23,6 +23,8 @@ pub(super) enum Action {
     Go(DVec3),
     Walk(Walk),
     OtherWalk,
+    Projection(Projection),
+    OtherProjection,
     /// Go back to the start.
     Reset,
     /// Take the next camera of the file.
@@ -89,11 +91,13 @@ impl FromStr for Action {
             "camera" => match rest {
                 "orbit" => Self::Walk(Walk::Orbit),
                 "fly" => Self::Walk(Walk::Fly),
+                "perspective" => Self::Projection(Projection::Perspective),
+                "orthographic" => Self::Projection(Projection::Orthographic),
                 "reset" => Self::Reset,
                 "next" => Self::NextView,
                 other => {
                     return Err(format!(
-                        "camera {other}: orbit, fly, reset or next is possible"
+                        "camera {other}: orbit, fly, perspective, orthographic, reset or next is possible"
                     ));
                 }
             },

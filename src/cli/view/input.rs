@@ -22,6 +22,7 @@ Keys:
   W A S D Q E                  forward, left, back, right, down, up (Shift: slowly)
   arrows                       turn the view; with Shift tilt the clip plane
   + -                          nearer, farther
+  O                            orthographic, or in perspective
   R, N                         back to the start; the next camera of --view all
   0 1 2 3                      mode none, hard, rara, exact
   P, I                         clip planes on or off; the other side of the plane
@@ -189,6 +190,7 @@ fn letter(text: &str) -> Option<Action> {
         "x" => plane(PlaneAction::Align(DVec3::X)),
         "y" => plane(PlaneAction::Align(DVec3::Y)),
         "z" => plane(PlaneAction::Align(DVec3::Z)),
+        "o" => Action::OtherProjection,
         "r" => Action::Reset,
         "n" => Action::NextView,
         "c" => Action::Screenshot(None),

@@ -42,8 +42,9 @@ Scripts, a line an action, # begins a comment; each is on the screen before the 
   zoom STEPS                              plane +0.1, -0.1     along its normal, world units
   move X,Y,Z             world units      plane NX,NY,NZ,D
   camera orbit, fly, reset, next          drag DX,DY           pixels
-  mode none, hard, rara, exact            tilt DX,DY           degrees
-  screenshot [FILE]                       resize WxH
+  camera perspective, orthographic        tilt DX,DY           degrees
+  mode none, hard, rara, exact            resize WxH
+  screenshot [FILE]
   timings                                 minimise, restore
   repeat N ACTION                         quit
 

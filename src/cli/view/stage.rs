@@ -162,6 +162,8 @@ impl Viewer {
                     Walk::Fly => Walk::Orbit,
                 }));
             }
+            Action::Projection(projection) => self.viewpoint.projection = projection,
+            Action::OtherProjection => self.viewpoint.other_projection(),
             Action::Reset => self.viewpoint.reset(),
             Action::NextView => {
                 let walk = self.viewpoint.walk;

@@ -1,7 +1,7 @@
 //! The viewer's position, and how it moves: about a point (orbit) or about itself (fly).
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
-use rara::Camera;
+use rara::{Camera, Projection};
 
 /// The pivot of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,12 +16,15 @@ pub(super) enum Walk {
 #[derive(Debug, Clone)]
 pub(super) struct Viewpoint {
     pub(super) walk: Walk,
+    pub(super) projection: Projection,
     pose: Pose,
     /// The world's up direction: turning sideways goes about it.
     up: DVec3,
-    /// The camera at the start, for its focal lengths and principal point.
+    /// The camera at the start, for its focal lengths, in perspective, and its principal point.
     lens: Camera,
-    home: Pose,
+    home: (Pose, Projection),
+    /// The scene's middle and radius.
+    scene: (DVec3, f64),
     /// The least distance from the pivot, in this scene.
     least: f64,
 }
@@ -52,12 +55,19 @@ impl Viewpoint {
             axes,
             distance: (centre - camera.eye).dot(axes.z_axis).max(0.1 * radius),
         };
+        // Both projections show the pivot at one scale.
+        let focal = match camera.projection {
+            Projection::Orthographic => pose.distance,
+            _ => 1.0,
+        };
         Self {
             walk: Walk::Orbit,
+            projection: camera.projection,
             pose,
             up: up.normalize(),
-            lens: *camera,
-            home: pose,
+            lens: camera.fx(camera.fx * focal).fy(camera.fy * focal),
+            home: (pose, camera.projection),
+            scene: (centre, radius),
             least: 1e-3 * radius,
         }
     }
@@ -67,7 +77,8 @@ impl Viewpoint {
         let lens = &self.lens;
         let scale = f64::from(height) / f64::from(lens.height);
         let beside = lens.cx - f64::from(lens.width) / 2.0;
-        lens.width(width)
+        let camera = lens
+            .width(width)
             .height(height)
             .fx(lens.fx * scale)
             .fy(lens.fy * scale)
@@ -75,6 +86,25 @@ impl Viewpoint {
             .cy(lens.cy * scale)
             .eye(self.pose.eye)
             .rotation(self.pose.axes.transpose())
+            .projection(self.projection);
+        if self.projection != Projection::Orthographic {
+            return camera;
+        }
+        let ((centre, radius), forward) = (self.scene, self.pose.axes.z_axis);
+        // The scene is seen as a whole, also the part of it that a near pivot has behind the eye.
+        let back = 2.0 * radius - (centre - camera.eye).dot(forward);
+        camera
+            .fx(camera.fx / self.pose.distance)
+            .fy(camera.fy / self.pose.distance)
+            .eye(camera.eye - forward * back.max(0.0))
+    }
+
+    /// Changes between perspective and an orthographic view, which show the pivot at one scale.
+    pub(super) fn other_projection(&mut self) {
+        self.projection = match self.projection {
+            Projection::Orthographic => Projection::Perspective,
+            _ => Projection::Orthographic,
+        };
     }
 
     /// Turns so that what is in front goes right and down by so many degrees.
@@ -123,7 +153,7 @@ impl Viewpoint {
 
     /// Goes back to the start.
     pub(super) fn reset(&mut self) {
-        self.pose = self.home;
+        (self.pose, self.projection) = self.home;
     }
 
     fn place(&mut self, pose: Pose) {
@@ -244,6 +274,30 @@ mod tests {
         assert!(view.camera(SIZE).eye.z < 0.0);
         view.reset();
         assert_eq!(view.camera(SIZE).eye.z, -4.0);
+    }
+
+    #[test]
+    fn an_orthographic_view_shows_the_pivot_at_the_scale_of_perspective_and_zooms() {
+        let mut view = start();
+        let aside = DVec3::new(0.5, -0.2, 0.0);
+        let before = pixel(&view, aside);
+        view.other_projection();
+        let flat = |view: &Viewpoint, point: DVec3| {
+            let c = view.camera(SIZE);
+            let p = c.rotation * (point - c.eye);
+            assert!(p.z > 0.2 && c.projection == Projection::Orthographic);
+            DVec2::new(c.fx * p.x + c.cx, c.fy * p.y + c.cy)
+        };
+        assert!(flat(&view, aside).distance(before) < 1e-9);
+        assert!(flat(&view, aside + DVec3::Z).distance(before) < 1e-9);
+        let again = Viewpoint::new(&view.camera(SIZE), DVec3::NEG_Y, view.scene.0, view.scene.1);
+        assert!(flat(&again, aside).distance(before) < 1e-9);
+        view.zoom(20.0);
+        let middle = DVec2::new(400.0, 300.0);
+        let nearer = (flat(&view, aside) - middle).length() / (before - middle).length();
+        assert!((nearer - 0.9_f64.powi(-20)).abs() < 1e-9, "{nearer}");
+        view.reset();
+        assert_eq!(view.camera(SIZE).projection, Projection::Perspective);
     }
 
     #[test]

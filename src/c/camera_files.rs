@@ -3,6 +3,7 @@
 use std::ffi::c_char;
 
 use rara::camera_files::load_cameras;
+use rara::{Error, Projection};
 
 use crate::boundary::{RaraResult, exclusive, fixed, guard, path};
 use crate::camera::RaraCamera;
@@ -22,7 +23,7 @@ pub struct RaraNamedCamera {
 
 /// Loads the cameras of a 3DGS cameras.json, a nerfstudio transforms.json, a COLMAP sparse folder, or a single one from
 /// JSON with width, height, fx, fy, cx, cy and world_to_camera. JSON files keep their order, COLMAP's cameras are
-/// sorted by name. Cameras with lens distortion are RARA_ERROR_FORMAT.
+/// sorted by name. Cameras with lens distortion, and orthographic ones, are RARA_ERROR_FORMAT.
 ///
 /// On entry `*count` is how many cameras there is room for at `cameras`; it becomes how many the file has. No more are
 /// written than there is room for; with `cameras` null the call only counts. `path` is as for rara_gaussians_load.
@@ -38,7 +39,18 @@ pub unsafe extern "C" fn rara_cameras_load(
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         let count = exclusive(count, "count")?;
-        let loaded = load_cameras(&self::path(path, "path")?)?;
+        let path = self::path(path, "path")?;
+        let loaded = load_cameras(&path)?;
+        if let Some(flat) = loaded
+            .iter()
+            .find(|n| n.camera.projection != Projection::Perspective)
+        {
+            let message = format!(
+                "camera `{}` is orthographic, which no RaraCamera can be",
+                flat.name
+            );
+            return Err(Error::format(path, message));
+        }
         let room = if cameras.is_null() { 0 } else { *count };
         for (i, named) in loaded.iter().take(room).enumerate() {
             cameras.add(i).write(RaraNamedCamera {

@@ -40,11 +40,9 @@ vec2 depth_range(vec3 relative, vec3 half_box) {
 
 // The same of a x + b w, with the homogeneous coordinate w.
 vec2 range_over(vec3 relative, vec3 half_box, vec3 row, float a, float b) {
-    if (is_orthographic()) {
-        vec2 range = range_along(relative, half_box, a * row, abs(a));
-        return vec2(range.x + b, range.y + 4e-6 * abs(b));
-    }
-    return range_along(relative, half_box, a * row + b * LAYER.view.rotation_z.xyz, abs(a) + abs(b));
+    float along = is_orthographic() ? 0.0 : b;
+    vec2 range = range_along(relative, half_box, a * row + along * LAYER.view.rotation_z.xyz, abs(a) + abs(along));
+    return is_orthographic() ? vec2(range.x + b, range.y + 4e-6 * abs(b)) : range;
 }
 
 // The side along one axis of the picture: SIDE_CULLED where no splat reaches it, SIDE_VISIBLE where all centres are half a

@@ -677,7 +677,7 @@ RaraResult rara_camera_frame(const struct RaraGaussians *gaussians,
 
 // Loads the cameras of a 3DGS cameras.json, a nerfstudio transforms.json, a COLMAP sparse folder, or a single one from
 // JSON with width, height, fx, fy, cx, cy and world_to_camera. JSON files keep their order, COLMAP's cameras are
-// sorted by name. Cameras with lens distortion are RARA_ERROR_FORMAT.
+// sorted by name. Cameras with lens distortion, and orthographic ones, are RARA_ERROR_FORMAT.
 //
 // On entry `*count` is how many cameras there is room for at `cameras`; it becomes how many the file has. No more are
 // written than there is room for; with `cameras` null the call only counts. `path` is as for rara_gaussians_load.

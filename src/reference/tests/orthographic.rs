@@ -1,5 +1,6 @@
 //! Orthographic views: lines of sight along the view axis, by closed forms and as the limit of perspective.
 
+use super::truth::{STUDY, Study};
 use super::*;
 use crate::{ExactForm, Settings};
 
@@ -180,5 +181,66 @@ fn nothing_depends_on_where_along_the_axis_the_eye_stands() {
         for (a, b) in pixels {
             assert!((0..4).all(|i| (a[i] - b[i]).abs() < 1e-6), "{a:?} {b:?}");
         }
+    }
+}
+
+/// Where lines of sight are parallel, the affine form is the integral for splats of every size, and has no eye.
+#[test]
+fn orthographic_shares_are_the_integral_for_splats_of_every_size() {
+    for (pixels, aspect) in [
+        ([0.02, 0.2], 10.0),
+        ([0.2, 5.0], 1000.0),
+        ([5.0, 100.0], 30.0),
+        ([100.0, 3000.0], 30.0),
+    ] {
+        for form in [ExactForm::Auto, ExactForm::Beam] {
+            let errors = Study {
+                pixels,
+                aspect,
+                form,
+                projection: Projection::Orthographic,
+                steps: 128,
+                ..STUDY
+            }
+            .run();
+            errors.assert_partial(15);
+            errors.assert_within(1e-4, 5e-4, format_args!("{form:?} {pixels:?}"));
+        }
+    }
+}
+
+#[test]
+fn orthographic_shares_of_several_planes_are_as_exact_as_of_one() {
+    for op in [ClipOp::And, ClipOp::Or] {
+        for planes in [2, 3] {
+            for pixels in [[0.02, 0.2], [1.0, 5.0], [30.0, 300.0]] {
+                let errors = Study {
+                    pixels,
+                    planes,
+                    op,
+                    projection: Projection::Orthographic,
+                    steps: 112,
+                    ..STUDY
+                }
+                .run();
+                assert!(errors.mean < 1e-4, "{op:?} {planes} {pixels:?}: {errors:?}");
+            }
+        }
+    }
+}
+
+/// A splat around the point that depths count from is seen as a whole, also the part of it behind that point.
+#[test]
+fn an_orthographic_splat_around_the_eye_is_seen_as_a_whole() {
+    for inside in [[0.1, 1.0], [1.0, 2.5]] {
+        let errors = Study {
+            pixels: [300.0, 3000.0],
+            inside: Some(inside),
+            projection: Projection::Orthographic,
+            ..STUDY
+        }
+        .run();
+        errors.assert_partial(10);
+        errors.assert_within(1e-4, 1e-3, format_args!("{inside:?}"));
     }
 }

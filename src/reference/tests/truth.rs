@@ -7,21 +7,21 @@ use glam::DVec2;
 
 /// The result of a comparison of many pixels.
 #[derive(Debug, Default)]
-struct Errors {
+pub(super) struct Errors {
     /// Sum of alpha |w - truth| over the sum of alpha.
-    mean: f64,
+    pub(super) mean: f64,
     /// Largest alpha |w - truth|.
-    max: f64,
+    pub(super) max: f64,
     /// Pixels compared.
-    count: usize,
+    pub(super) count: usize,
     /// Pixels of which the truth is between 1 and 99 percent.
-    partial: usize,
+    pub(super) partial: usize,
 }
 
 impl Errors {
     /// Fails unless more than so many pixels are cut partly, since the test would say nothing otherwise.
     #[track_caller]
-    fn assert_partial(&self, pixels: usize) {
+    pub(super) fn assert_partial(&self, pixels: usize) {
         assert!(
             self.partial > pixels,
             "the test would say nothing: {self:?}"
@@ -30,30 +30,30 @@ impl Errors {
 
     /// Fails unless the mean and the largest error are below these; `about` names the case.
     #[track_caller]
-    fn assert_within(&self, mean: f64, max: f64, about: impl std::fmt::Display) {
+    pub(super) fn assert_within(&self, mean: f64, max: f64, about: impl std::fmt::Display) {
         assert!(self.mean < mean && self.max < max, "{about}: {self:?}");
     }
 }
 
 /// The splats and pixels to be compared.
-struct Study {
+pub(super) struct Study {
     /// Largest deviation of the splats, pixels: from and to.
-    pixels: [f64; 2],
-    aspect: f64,
-    planes: usize,
-    op: ClipOp,
-    form: ExactForm,
-    bundle: Bundle,
-    projection: Projection,
+    pub(super) pixels: [f64; 2],
+    pub(super) aspect: f64,
+    pub(super) planes: usize,
+    pub(super) op: ClipOp,
+    pub(super) form: ExactForm,
+    pub(super) bundle: Bundle,
+    pub(super) projection: Projection,
     /// X/Z of the splat's centre, if it is not to be in the picture.
-    aside: Option<[f64; 2]>,
+    pub(super) aside: Option<[f64; 2]>,
     /// Depth of the splat's centre in deviations of its depth, for an eye within it.
-    inside: Option<[f64; 2]>,
-    cases: usize,
-    steps: u32,
+    pub(super) inside: Option<[f64; 2]>,
+    pub(super) cases: usize,
+    pub(super) steps: u32,
 }
 
-const STUDY: Study = Study {
+pub(super) const STUDY: Study = Study {
     pixels: [0.02, 0.2],
     aspect: 10.0,
     planes: 1,
@@ -68,7 +68,7 @@ const STUDY: Study = Study {
 };
 
 impl Study {
-    fn run(&self) -> Errors {
+    pub(super) fn run(&self) -> Errors {
         let mut dice = Dice(77);
         // Splats are three to six units deep, so that either picture shows about as much of the world.
         let focal = match self.projection {
@@ -367,65 +367,4 @@ fn a_centre_far_outside_the_picture_gets_the_perspective_form() {
     .run();
     errors.assert_partial(15);
     errors.assert_within(1e-4, 1e-3, "");
-}
-
-/// Where lines of sight are parallel, the affine form is the integral for splats of every size, and has no eye.
-#[test]
-fn orthographic_shares_are_the_integral_for_splats_of_every_size() {
-    for (pixels, aspect) in [
-        ([0.02, 0.2], 10.0),
-        ([0.2, 5.0], 1000.0),
-        ([5.0, 100.0], 30.0),
-        ([100.0, 3000.0], 30.0),
-    ] {
-        for form in [ExactForm::Auto, ExactForm::Beam] {
-            let errors = Study {
-                pixels,
-                aspect,
-                form,
-                projection: Projection::Orthographic,
-                steps: 128,
-                ..STUDY
-            }
-            .run();
-            errors.assert_partial(15);
-            errors.assert_within(1e-4, 5e-4, format_args!("{form:?} {pixels:?}"));
-        }
-    }
-}
-
-#[test]
-fn orthographic_shares_of_several_planes_are_as_exact_as_of_one() {
-    for op in [ClipOp::And, ClipOp::Or] {
-        for planes in [2, 3] {
-            for pixels in [[0.02, 0.2], [1.0, 5.0], [30.0, 300.0]] {
-                let errors = Study {
-                    pixels,
-                    planes,
-                    op,
-                    projection: Projection::Orthographic,
-                    steps: 112,
-                    ..STUDY
-                }
-                .run();
-                assert!(errors.mean < 1e-4, "{op:?} {planes} {pixels:?}: {errors:?}");
-            }
-        }
-    }
-}
-
-/// A splat around the point that depths count from is seen as a whole, also the part of it behind that point.
-#[test]
-fn an_orthographic_splat_around_the_eye_is_seen_as_a_whole() {
-    for inside in [[0.1, 1.0], [1.0, 2.5]] {
-        let errors = Study {
-            pixels: [300.0, 3000.0],
-            inside: Some(inside),
-            projection: Projection::Orthographic,
-            ..STUDY
-        }
-        .run();
-        errors.assert_partial(10);
-        errors.assert_within(1e-4, 1e-3, format_args!("{inside:?}"));
-    }
 }

@@ -8,7 +8,8 @@ use rara::scene::Bounds;
 use crate::boundary::{RaraResult, exclusive, guard, list, shared};
 use crate::scene::RaraGaussians;
 
-/// A pinhole camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers.
+/// A camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers. It is a pinhole, unless
+/// rara_renderer_configure_orthographic takes it.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraCamera {
@@ -16,9 +17,9 @@ pub struct RaraCamera {
     pub width: u32,
     /// Picture height, pixels.
     pub height: u32,
-    /// Focal length along x, pixels.
+    /// Focal length along x, pixels; without perspective the pixels of a world unit.
     pub fx: f64,
-    /// Focal length along y, pixels.
+    /// Focal length along y, pixels; without perspective the pixels of a world unit.
     pub fy: f64,
     /// Principal point, pixels from the picture's left edge; width / 2 is the middle.
     pub cx: f64,
@@ -58,8 +59,8 @@ impl RaraCamera {
     }
 }
 
-/// A camera at `eye` that looks at `target`; each is three numbers in world units. `up` points up in the picture; in the
-/// usual world, where y is down, it is 0, -1, 0. `fov_y` is the full vertical field of view in degrees.
+/// A camera in perspective at `eye` that looks at `target`; each is three numbers in world units. `up` points up in the
+/// picture; in the usual world, where y is down, it is 0, -1, 0. `fov_y` is the full vertical field of view in degrees.
 ///
 /// # Safety
 /// `eye`, `target` and `up` point to three numbers each; `camera` may be overwritten.
@@ -138,7 +139,10 @@ pub unsafe extern "C" fn rara_camera_frame(
 ///
 /// # Safety
 /// `camera` is null or may be overwritten.
-unsafe fn make(camera: *mut RaraCamera, made: impl FnOnce() -> Result<Camera>) -> RaraResult {
+pub(crate) unsafe fn make(
+    camera: *mut RaraCamera,
+    made: impl FnOnce() -> Result<Camera>,
+) -> RaraResult {
     guard(|| {
         // SAFETY: the caller's promise.
         let camera = unsafe { exclusive(camera, "camera") }?;
@@ -149,7 +153,7 @@ unsafe fn make(camera: *mut RaraCamera, made: impl FnOnce() -> Result<Camera>) -
 
 /// # Safety
 /// `numbers` is null or points to three of them.
-unsafe fn vector(numbers: *const f64, name: &str) -> Result<DVec3> {
+pub(crate) unsafe fn vector(numbers: *const f64, name: &str) -> Result<DVec3> {
     // SAFETY: the caller's promise.
     Ok(DVec3::from_slice(unsafe { list(numbers, 3, name) }?))
 }

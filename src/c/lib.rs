@@ -17,6 +17,7 @@ pub mod layer;
 pub mod logging;
 #[cfg(test)]
 mod nulls;
+pub mod orthographic;
 pub mod placement;
 pub mod renderer;
 pub mod scene;

@@ -12,6 +12,7 @@ use crate::depth::*;
 use crate::device::*;
 use crate::layer::*;
 use crate::logging::*;
+use crate::orthographic::*;
 use crate::placement::*;
 use crate::renderer::*;
 use crate::scene::*;
@@ -165,6 +166,18 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
     );
     call!(
         rara_renderer_set_placement(null_mut(), null()),
+        "renderer is null"
+    );
+    call!(
+        rara_camera_orthographic(null(), null(), null(), 1.0, 8, 8, null_mut()),
+        "camera is null"
+    );
+    call!(
+        rara_renderer_set_orthographic_depth_map(null_mut(), 1.0, 2.0),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_configure_orthographic(null_mut(), null(), null(), null(), null()),
         "renderer is null"
     );
     call!(

@@ -73,15 +73,16 @@ typedef uint32_t RaraLogLevel;
 // call nothing of rara's and throw nothing.
 typedef void (*RaraLog)(RaraLogLevel level, const char *text, void *user);
 
-// A pinhole camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers.
+// A camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers. It is a pinhole, unless
+// rara_renderer_configure_orthographic takes it.
 typedef struct RaraCamera {
     // Picture width, pixels.
     uint32_t width;
     // Picture height, pixels.
     uint32_t height;
-    // Focal length along x, pixels.
+    // Focal length along x, pixels; without perspective the pixels of a world unit.
     double fx;
-    // Focal length along y, pixels.
+    // Focal length along y, pixels; without perspective the pixels of a world unit.
     double fy;
     // Principal point, pixels from the picture's left edge; width / 2 is the middle.
     double cx;
@@ -636,8 +637,8 @@ const char *rara_last_error_message(void);
 RaraResult rara_set_log(RaraLog log,
                         void *user);
 
-// A camera at `eye` that looks at `target`; each is three numbers in world units. `up` points up in the picture; in the
-// usual world, where y is down, it is 0, -1, 0. `fov_y` is the full vertical field of view in degrees.
+// A camera in perspective at `eye` that looks at `target`; each is three numbers in world units. `up` points up in the
+// picture; in the usual world, where y is down, it is 0, -1, 0. `fov_y` is the full vertical field of view in degrees.
 //
 // # Safety
 // `eye`, `target` and `up` point to three numbers each; `camera` may be overwritten.
@@ -862,6 +863,40 @@ RaraResult rara_renderer_forget(struct RaraRenderer *renderer);
 // # Safety
 // `renderer` is null, or alive and not used any more, not even by the device.
 void rara_renderer_destroy(struct RaraRenderer *renderer);
+
+// A camera for rara_renderer_configure_orthographic at `eye` that looks at `target`, whose picture of `width` x `height`
+// pixels is `view_height` world units high. `eye`, `target` and `up` are as for rara_camera_look_at; nothing nearer to the eye
+// than 0.2 along the view axis is drawn.
+//
+// # Safety
+// `eye`, `target` and `up` point to three numbers each; `camera` may be overwritten.
+RaraResult rara_camera_orthographic(const double *eye,
+                                    const double *target,
+                                    const double *up,
+                                    double view_height,
+                                    uint32_t width,
+                                    uint32_t height,
+                                    struct RaraCamera *camera);
+
+// As rara_renderer_configure, for a frame without perspective: lines of sight run along the view axis, and the camera's `fx`
+// and `fy` are the pixels of a world unit. A renderer with a depth attachment needs
+// rara_renderer_set_orthographic_depth_map before.
+//
+// # Safety
+// As for rara_renderer_configure.
+RaraResult rara_renderer_configure_orthographic(struct RaraRenderer *renderer,
+                                                const struct RaraSceneBuffers *scene,
+                                                const struct RaraCamera *camera,
+                                                const struct RaraClip *clip,
+                                                const struct RaraSettings *settings);
+
+// Changes what the host's depth buffer holds for a depth, from the next rara_renderer_configure_orthographic on: 0 at
+// `z_zero` along the view axis, 1 at `z_one`, world units, and linear between them. Nearer is more where `z_one` is the
+// nearer one.
+//
+// # Safety
+// `renderer` is alive, was created with a depth attachment, and is not used by another thread.
+RaraResult rara_renderer_set_orthographic_depth_map(struct RaraRenderer *renderer, double z_zero, double z_one);
 
 // Loads a 3DGS .ply file: ascii or binary, spherical harmonics of degree 0 to 3.
 //

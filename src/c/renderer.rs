@@ -2,7 +2,7 @@
 
 use rara::ash::vk;
 use rara::gpu::{Bindings, Target};
-use rara::{ExpectedDepthDesc, Renderer, RendererDesc, Result};
+use rara::{ExpectedDepthDesc, Projection, Renderer, RendererDesc, Result};
 
 use crate::boundary::{
     RaraResult, Versioned, create, destroy, exclusive, guard, invalid, read, recording, shared,
@@ -158,7 +158,7 @@ unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<RendererDesc> {
 ///
 /// # Safety
 /// `renderer` is null, or alive and not used by another thread.
-unsafe fn with(
+pub(crate) unsafe fn with(
     renderer: *mut RaraRenderer,
     act: impl FnOnce(&mut Renderer) -> Result<()>,
 ) -> RaraResult {
@@ -257,11 +257,25 @@ pub unsafe extern "C" fn rara_renderer_configure(
     clip: *const RaraClip,
     settings: *const RaraSettings,
 ) -> RaraResult {
+    let projection = Projection::Perspective;
+    // SAFETY: the caller's promises.
+    unsafe { configure(renderer, scene, camera, projection, (clip, settings)) }
+}
+
+/// # Safety
+/// As for [`rara_renderer_configure`].
+pub(crate) unsafe fn configure(
+    renderer: *mut RaraRenderer,
+    scene: *const RaraSceneBuffers,
+    camera: *const RaraCamera,
+    projection: Projection,
+    (clip, settings): (*const RaraClip, *const RaraSettings),
+) -> RaraResult {
     // SAFETY: the caller's promises.
     unsafe {
         with(renderer, |renderer| {
             let scene = shared(scene, "scene")?;
-            let camera = shared(camera, "camera")?.camera()?;
+            let camera = shared(camera, "camera")?.camera()?.projection(projection);
             let (clip, settings) = (clip::clip(clip)?, settings::settings(settings)?);
             renderer.configure(&scene.buffers, &camera, &clip, &settings)
         })

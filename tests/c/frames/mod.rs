@@ -80,15 +80,16 @@ fn what_is_behind_a_mesh_and_expected_depths_are_the_same_bytes() {
         let mut seen: Vec<Pixels> = Vec::new();
         let uploaded = ours.uploaded();
         for raster in [Raster::Tiles, Raster::Quad] {
-            for (placement, depths) in [
-                (Placement::IDENTITY, false),
-                (placed, false),
-                (placed, true),
+            for (made, placement, depths) in [
+                (World::new(scene, raster), Placement::IDENTITY, false),
+                (World::new(scene, raster), placed, false),
+                (World::new(scene, raster), placed, true),
+                (World::flat(scene, raster), placed, false),
             ] {
                 let world = World {
                     placement,
                     depths,
-                    ..World::new(scene, raster)
+                    ..made
                 };
                 let what = format!("{raster:?}, {placement:?}, depths: {depths}");
                 let canvas = world.canvas(lent, device);
@@ -101,7 +102,11 @@ fn what_is_behind_a_mesh_and_expected_depths_are_the_same_bytes() {
                 seen.push(drawn);
             }
         }
-        assert!(seen[0] != seen[1] && seen[3] != seen[4], "placed elsewhere");
+        assert!(seen[0] != seen[1] && seen[4] != seen[5], "placed elsewhere");
+        assert!(
+            seen[1] != seen[3] && seen[5] != seen[7],
+            "without perspective"
+        );
         // SAFETY: all frames were waited for.
         unsafe { rara_scene_buffers_destroy(uploaded) };
     });

@@ -5,13 +5,14 @@ use crate::canvas::{CanvasDesc, Frame};
 use rara::gpu::Bindings;
 use rara::scene::Bounds;
 use rara::{
-    Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, Plane, Renderer, RendererDesc,
-    Settings,
+    Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, Plane, Projection, Renderer,
+    RendererDesc, Settings,
 };
 use rara_c::boundary::*;
 use rara_c::camera::*;
 use rara_c::clip::*;
 use rara_c::depth::*;
+use rara_c::orthographic::*;
 use rara_c::placement::*;
 use rara_c::renderer::*;
 use rara_c::settings::*;
@@ -25,6 +26,9 @@ const MAP: RaraDepthMap = RaraDepthMap {
     z_far: f64::INFINITY,
     reversed: vk::TRUE,
 };
+
+/// The depths that become 0 and 1 without perspective.
+const FLAT: [f64; 2] = [40.0, 0.0];
 
 /// A frame that both interfaces draw.
 pub(super) struct World<'a> {
@@ -55,6 +59,23 @@ impl<'a> World<'a> {
         }
     }
 
+    /// The same seen without perspective.
+    pub(super) fn flat(scene: &'a Gaussians, raster: Raster) -> Self {
+        let camera = Camera::frame_orthographic(&Bounds::of(scene), DVec3::NEG_Y, VIEW);
+        Self {
+            camera: camera.expect("a view"),
+            ..Self::new(scene, raster)
+        }
+    }
+
+    fn map(&self) -> DepthMap {
+        let map = match self.camera.projection {
+            Projection::Orthographic => DepthMap::orthographic(FLAT[0], FLAT[1]),
+            _ => DepthMap::reversed(MAP.z_near, MAP.z_far),
+        };
+        map.expect("proper depths")
+    }
+
     /// A canvas with a mesh amid the splats, in the middle of the picture.
     pub(super) fn canvas(&self, lent: &AdoptDesc, device: &Device) -> Canvas {
         let mut desc = CanvasDesc::new(VIEW, if self.depths { DEPTHS } else { FLOATS });
@@ -68,14 +89,14 @@ impl<'a> World<'a> {
                 height: 45,
             },
         };
-        desc.meshes = vec![(rect, map().at(z) as f32)];
+        desc.meshes = vec![(rect, self.map().at(z) as f32)];
         Canvas::new(lent, device, desc)
     }
 
     /// Draws by the Rust interface.
     pub(super) fn drawn(&self, device: &Device, canvas: &Canvas) -> Pixels {
         let desc = RendererDesc::new(FLOATS)
-            .depth(Some(DepthDesc::new(DEPTH, map()).readable(true)))
+            .depth(Some(DepthDesc::new(DEPTH, self.map()).readable(true)))
             .expected_depth(Some(ExpectedDepthDesc::new(DEPTHS)))
             .bindings(Bindings::Bound);
         let scene = SceneBuffers::upload(device, self.layers.clone(), ShFormat::Packed);
@@ -154,11 +175,20 @@ impl<'a> World<'a> {
                 x: shown.origin.x,
                 y: shown.origin.y,
             };
+            let is_flat = self.camera.projection == Projection::Orthographic;
+            if is_flat {
+                let [zero, one] = FLAT;
+                assert_ok(rara_renderer_set_orthographic_depth_map(
+                    renderer, zero, one,
+                ));
+            }
+            let configure = match is_flat {
+                true => rara_renderer_configure_orthographic,
+                false => rara_renderer_configure,
+            };
             let before = |cmd| {
                 let scene = scene(cmd);
-                let configured =
-                    rara_renderer_configure(renderer, scene, &camera, &clip, &settings);
-                assert_ok(configured);
+                assert_ok(configure(renderer, scene, &camera, &clip, &settings));
                 assert_ok(rara_renderer_prepare_behind(renderer, cmd, scene, &shown));
             };
             let inside = |cmd| {
@@ -173,8 +203,4 @@ impl<'a> World<'a> {
             pixels
         }
     }
-}
-
-fn map() -> DepthMap {
-    DepthMap::reversed(MAP.z_near, MAP.z_far).expect("0 < near < far")
 }

@@ -148,7 +148,7 @@ proptest! {
     ) {
         let (step, eye) = (on_grid(step.into()), on_grid(pose.2.into()));
         let to_camera = DMat3::from_axis_angle(pose.0, pose.1);
-        let home = Camera { eye, rotation: to_camera, ..camera(640, 480, 500.0) };
+        let home = Camera { eye, rotation: to_camera, ..case.camera(1.0) };
         let position = on_grid(eye + to_camera.transpose() * Point::from(case.one.position).as_dvec3());
         let still = One { position: position.as_vec3().to_array(), rotation: Quat::IDENTITY, ..case.one };
         let quaternion = Quat::from_mat3(&turn.as_mat3());
@@ -193,8 +193,11 @@ proptest! {
         let other = Case { one, ..case.clone() };
         let near = f64::from(crate::limits::NEAR_Z);
         if f64::from(one.position[2]) >= near && f64::from(case.one.position[2]) >= near {
-            prop_assert_eq!(case.weight::<f64>(&scaled(1.0)), other.weight::<f64>(&scaled(factor)));
-            prop_assert_eq!(case.weight::<f32>(&scaled(1.0)), other.weight::<f32>(&scaled(factor)));
+            let camera = other.camera(factor);
+            let double = other.seen::<f64>(&View::new(&camera), &scaled(factor));
+            let single = other.seen::<f32>(&View::new(&camera), &scaled(factor));
+            prop_assert_eq!(case.weight::<f64>(&scaled(1.0)), double.map(|(weight, _)| weight));
+            prop_assert_eq!(case.weight::<f32>(&scaled(1.0)), single.map(|(weight, _)| weight));
         }
     }
 

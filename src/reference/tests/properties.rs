@@ -12,6 +12,7 @@ pub(super) struct Case {
     pub(super) planes: Vec<(DVec3, f64)>,
     pub(super) op: ClipOp,
     pub(super) settings: Settings,
+    pub(super) projection: Projection,
     /// The pixel's offset from the centre, deviations of the footprint.
     pub(super) offset: [f64; 2],
 }
@@ -73,15 +74,17 @@ pub(super) fn cases(planes: impl Into<prop::collection::SizeRange>) -> impl Stra
     let planes = prop::collection::vec((directions(), -4.0..4.0_f64), planes);
     let op = prop::sample::select(vec![ClipOp::And, ClipOp::Or]);
     let offset = [-3.0..3.0_f64, -3.0..3.0_f64];
-    (splats(), planes, op, settings(), offset).prop_map(|(one, planes, op, settings, offset)| {
-        Case {
+    let projection = prop::sample::select(vec![Projection::Perspective, Projection::Orthographic]);
+    (splats(), planes, op, settings(), projection, offset).prop_map(
+        |(one, planes, op, settings, projection, offset)| Case {
             one,
             planes,
             op,
             settings,
+            projection,
             offset,
-        }
-    })
+        },
+    )
 }
 
 impl Case {
@@ -121,7 +124,16 @@ impl Case {
     }
 
     pub(super) fn view<T: Real>(&self) -> View<T> {
-        View::new(&camera(640, 480, 500.0))
+        View::new(&self.camera(1.0))
+    }
+
+    /// The camera of a world whose unit is so many times as large.
+    pub(super) fn camera(&self, unit: f64) -> Camera {
+        let focal = match self.projection {
+            Projection::Perspective => 500.0,
+            Projection::Orthographic => 30.0 / unit,
+        };
+        camera(640, 480, focal).projection(self.projection)
     }
 
     /// The pixel's offset from the centre in pixels.

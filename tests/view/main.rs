@@ -50,6 +50,9 @@ fn a_plane_is_moved_and_what_is_seen_is_what_render_draws() {
     viewer.say("plane 0,0,1,0.2\ncamera fly\nturn 3,3\nmove 0.1,0,0.2");
     let flown = viewer.screenshot("flown");
     viewer.shows("from elsewhere", &flown);
+    viewer.say("camera orbit\ncamera orthographic\nzoom -1\nturn -5,2");
+    let flat = viewer.screenshot("flat");
+    viewer.shows("without perspective", &flat);
     viewer.say("plane off\ntimings");
     let whole = viewer.screenshot("whole");
     viewer.shows("nothing cut", &whole);
@@ -59,7 +62,7 @@ fn a_plane_is_moved_and_what_is_seen_is_what_render_draws() {
         "{printed}"
     );
 
-    for name in ["first", "moved", "hard", "turned", "flown", "whole"] {
+    for name in ["first", "moved", "hard", "turned", "flown", "flat", "whole"] {
         draws_again(&folder, name, &printed);
     }
 }

@@ -5,7 +5,9 @@
 use glam::{DMat4, DQuat, DVec3, Quat, Vec3, Vec4};
 use libfuzzer_sys::fuzz_target;
 use rara::reference::{Footprint, Real, View, cutoff, project, splat};
-use rara::{Camera, Clip, ClipOp, ExactForm, Gaussians, Miss, Mode, Plane, Settings};
+use rara::{
+    Camera, Clip, ClipOp, ExactForm, Gaussians, Miss, Mode, Plane, Projection, Settings,
+};
 
 /// Numbers from the input, and zeros once it is used up.
 struct Numbers<'a>(&'a [u8]);
@@ -110,6 +112,10 @@ fuzz_target!(|bytes: &[u8]| {
     let Some(camera) = camera(&mut numbers) else {
         return;
     };
+    let camera = camera.projection(match choice & 128 {
+        0 => Projection::Perspective,
+        _ => Projection::Orthographic,
+    });
     let mut planes = Vec::new();
     while planes.len() < 4 && !numbers.0.is_empty() {
         let (normal, offset): (DVec3, f64) = (numbers.vec3().as_dvec3(), numbers.f32().into());

@@ -280,7 +280,13 @@ void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 pixel_centre,
                  out float weight[ROWS]) {
     uint base = cut * push.params.cut_stride;
     uint flags = to_uint(cut_records.at[base].w);
-    if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
+    if (COMBINED && (flags & CUT_COMBINED) != 0u) {
+        for (uint row = 0u; row < ROWS; row++) {
+            vec2 below = vec2(0.0, float(row));
+            Sight s = line_of_sight(base, delta + below, pixel_centre + below);
+            weight[row] = alpha[row] > 0.0 ? combined_weight(s, base, flags, push.params.sigma) : 1.0;
+        }
+    } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         curve_weights(base, uv.x, uv.y, v_step, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) != 0u) {
         front_weights(base, flags, delta, pixel_centre, weight);

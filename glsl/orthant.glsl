@@ -4,10 +4,9 @@
 #ifndef RARA_ORTHANT
 #define RARA_ORTHANT
 #include "phi.glsl"
+#include "region/crossing.glsl"
 #include "sight.glsl"
 
-// Beyond this Phi is taken for 0 or 1, which is off by less than 4e-6, a fifth of the best approximation's error.
-const float PHI_ONE = 4.5;
 // Up to this correlation the integral starts at independence; beyond it, at dependence. Either way four nodes leave 2e-5.
 const float RHO_NEAR = 0.8;
 // Gauss's nodes and weights on [0, 1].

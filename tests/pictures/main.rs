@@ -17,4 +17,5 @@ mod paper;
 mod pipeline_cache;
 mod precision;
 mod reuse;
+mod shapes;
 mod stress;

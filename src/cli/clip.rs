@@ -1,12 +1,13 @@
 //! `--clip`, `--clip-file` and `--clip-op`: from their text to surfaces.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::clip::{Expression, load_planes};
+use rara::clip::{Expression, NamedClip, clips_to_json, load_clips};
 use rara::{Clip, ClipOp, Shape};
 
 use super::failure::Failure;
+use super::output;
 
 /// The clip: the parts to cut away.
 #[derive(Debug, Args)]
@@ -23,10 +24,14 @@ pub(super) struct ClipArgs {
     /// not(...) what its operand does not, as in 'all(box:0,0,0,1,1,1, not(sphere:1,0,0,.5))'
     #[arg(long, value_name = "EXPRESSION", value_parser = expression, allow_hyphen_values = true)]
     clip_expr: Vec<Expression>,
-    /// The planes of a JSON file (repeatable): a list of {"normal":[x,y,z],"d":d}, each with a "name" or without.
-    /// :NAME takes only those of that name, or the one of that number (from 0)
+    /// The clips of a JSON file (repeatable): a list of planes, {"normal":[x,y,z],"d":d}, or of expressions as trees,
+    /// {"clip":{"all":[...]}}, as --save-clip writes them, each with a "name" or without. :NAME takes only those of that
+    /// name, or the one of that number (from 0)
     #[arg(long, value_name = "FILE[:NAME]")]
     clip_file: Vec<String>,
+    /// Write the clip that the flags make to a JSON file, which --clip-file reads
+    #[arg(long, value_name = "FILE")]
+    save_clip: Option<PathBuf>,
     /// How several shapes combine: visible in all of them, or in any
     #[arg(long, value_name = "OP", default_value = "and")]
     clip_op: ClipOp,
@@ -36,6 +41,9 @@ impl ClipArgs {
     /// The clip that the flags mean; reads its files.
     pub(super) fn meant(&self) -> Result<Clip, Failure> {
         let expressions = self.expressions()?;
+        if let Some(path) = &self.save_clip {
+            self.save(path, &expressions)?;
+        }
         Ok(match &expressions[..] {
             [] => Clip::default(),
             all => Clip::joined(all.iter().map(Expression::clip), self.op()),
@@ -46,10 +54,33 @@ impl ClipArgs {
     pub(super) fn expressions(&self) -> Result<Vec<Expression>, Failure> {
         let mut expressions: Vec<_> = self.clip.iter().copied().map(Expression::Shape).collect();
         for text in &self.clip_file {
-            expressions.extend(from_file(text)?.into_iter().map(Expression::Shape));
+            expressions.extend(from_file(text)?);
         }
         expressions.extend(self.clip_expr.iter().cloned());
         Ok(expressions)
+    }
+
+    /// Writes the clip to a file as one expression.
+    fn save(&self, path: &Path, expressions: &[Expression]) -> Result<(), Failure> {
+        let clip = match (expressions, self.op()) {
+            ([], _) => {
+                return Err(Failure::Usage(
+                    "--save-clip: there is no clip to save; give one by --clip, --clip-expr or --clip-file".into(),
+                ));
+            }
+            ([only], _) => only.clone(),
+            (all, ClipOp::And) => Expression::All(all.into()),
+            (all, ClipOp::Or) => Expression::Any(all.into()),
+        };
+        let name = path
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into();
+        Ok(output::text(
+            path,
+            &clips_to_json(&[NamedClip { name, clip }]),
+        )?)
     }
 
     /// How they combine.
@@ -66,8 +97,8 @@ fn expression(text: &str) -> Result<Expression, String> {
     text.parse().map_err(|error: rara::Error| error.to_string())
 }
 
-/// The planes of `FILE` or `FILE:NAME`. Names and paths may hold colons: a file that exists goes before a name.
-fn from_file(text: &str) -> Result<Vec<Shape>, Failure> {
+/// The clips of `FILE` or `FILE:NAME`. Names and paths may hold colons: a file that exists goes before a name.
+fn from_file(text: &str) -> Result<Vec<Expression>, Failure> {
     let is_file = |at: usize| Path::new(&text[..at]).is_file();
     let named = if is_file(text.len()) {
         None
@@ -79,24 +110,31 @@ fn from_file(text: &str) -> Result<Vec<Shape>, Failure> {
         Some(at) => (Path::new(&text[..at]), Some(&text[at + 1..])),
         None => (Path::new(text), None),
     };
-    let planes = load_planes(path)?;
+    let clips = load_clips(path)?;
     let Some(name) = name else {
-        return Ok(planes.into_iter().map(|p| p.plane.into()).collect());
+        return Ok(clips.into_iter().map(|named| named.clip).collect());
     };
-    let mut found: Vec<Shape> = planes
-        .iter()
-        .filter(|p| p.name == name)
-        .map(|p| p.plane.into())
-        .collect();
+    let of_name = clips.iter().filter(|named| named.name == name);
+    let mut found: Vec<Expression> = of_name.map(|named| named.clip.clone()).collect();
     if found.is_empty() {
-        let numbered = name.parse().ok().and_then(|n: usize| planes.get(n));
-        found.extend(numbered.map(|p| Shape::from(p.plane)));
+        let numbered = name.parse().ok().and_then(|n: usize| clips.get(n));
+        found.extend(numbered.map(|named| named.clip.clone()));
     }
     if found.is_empty() {
+        let near = clips.iter().map(|named| {
+            let likeness = strsim::jaro_winkler(&named.name.to_lowercase(), &name.to_lowercase());
+            (likeness, &named.name)
+        });
+        let nearest = near
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .filter(|(likeness, _)| *likeness > 0.7);
+        let meant = nearest.map_or(String::new(), |(_, name)| {
+            format!("; did you mean '{name}'?")
+        });
         return Err(Failure::Usage(format!(
-            "--clip-file {text}: {} has {} planes, and none of that name or number (from 0)",
+            "--clip-file {text}: {} has {} clips, and none of that name or number (from 0){meant}",
             path.display(),
-            planes.len()
+            clips.len()
         )));
     }
     Ok(found)
@@ -114,6 +152,7 @@ mod tests {
             clip,
             clip_expr: Vec::new(),
             clip_file,
+            save_clip: None,
             clip_op,
         }
         .meant()

@@ -2,6 +2,8 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "json")]
+mod clip_file;
 mod expression;
 #[cfg(feature = "json")]
 mod file;
@@ -12,6 +14,8 @@ mod shape;
 mod shape_text;
 mod surface;
 
+#[cfg(feature = "json")]
+pub use clip_file::{NamedClip, clips_from_json, clips_to_json, load_clips};
 pub use expression::Expression;
 #[cfg(feature = "json")]
 pub use file::{NamedPlane, load_planes, planes_from_json};

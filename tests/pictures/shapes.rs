@@ -2,7 +2,8 @@
 
 use crate::common;
 use rara::clip::Expression;
-use rara::{Mode, Raster, Settings, scene};
+use rara::measure::compare;
+use rara::{Clip, Layer, Mode, Raster, Scene, Settings, scene};
 
 /// Every shape, and regions of several, through the middle of a generated scene of radius 1.
 const EXPRESSIONS: [&str; 14] = [
@@ -54,4 +55,79 @@ fn rara_and_hard_shapes_are_the_references() {
 fn quads_and_meshes_draw_shapes_like_tiles() {
     let modes = [Mode::Rara, Mode::Exact];
     check(&modes, &[Raster::Quad, Raster::Mesh], &EXPRESSIONS[8..11]);
+}
+
+#[test]
+fn a_huge_sphere_is_its_tangent_plane() {
+    let gaussians = scene::generate(scene::Kind::General, 3_000, 3);
+    let mut headless = common::headless();
+    headless.load(&gaussians).expect("uploads");
+    let camera = common::views(&gaussians, 1, common::scaled((253, 190))).remove(0);
+    let mut picture = |text: &str| {
+        let clip = text.parse::<Expression>().expect("a shape").clip();
+        let settings = Settings::default();
+        headless.render(&camera, &clip, &settings).expect("renders");
+        headless.picture().expect("reads back")
+    };
+    let plane = picture("plane:0.6,0,0.8,0.1");
+    let sphere = picture("sphere:599999.94,0,799999.92,1000000");
+    let outside = picture("!sphere:-600000.06,0,-800000.08,1000000");
+    for curved in [sphere, outside] {
+        let difference = compare(&curved, &plane).expect("the same size");
+        assert!(difference.max < 0.3, "{difference:?}, in 1/255");
+    }
+}
+
+#[test]
+fn a_region_and_its_complement_rebuild_the_whole() {
+    let gaussians = scene::generate(scene::Kind::General, 3_000, 3);
+    let mut headless = common::headless();
+    headless.load(&gaussians).expect("uploads");
+    let camera = common::views(&gaussians, 1, common::scaled((253, 190))).remove(0);
+    let settings = Settings::default();
+    headless
+        .render(&camera, &Clip::default(), &settings)
+        .expect("renders");
+    let whole = headless.picture().expect("reads back");
+    for text in EXPRESSIONS {
+        let clip = text.parse::<Expression>().expect("an expression").clip();
+        // Equal depths are drawn one after the other: what one layer keeps of a splat, then what the other does.
+        let halves = Scene::from_iter([
+            Layer::new("in", &gaussians).clipped(clip.clone()),
+            Layer::new("out", &gaussians).clipped(clip.complement()),
+        ]);
+        headless.load(&halves).expect("uploads");
+        headless
+            .render(&camera, &Clip::default(), &settings)
+            .expect("renders");
+        let rebuilt = headless.picture().expect("reads back");
+        let difference = compare(&rebuilt, &whole).expect("the same size");
+        assert!(difference.max < 0.5, "{text}: {difference:?}, in 1/255");
+    }
+}
+
+#[test]
+fn a_shape_that_touches_nothing_changes_no_byte() {
+    let gaussians = scene::generate(scene::Kind::General, 3_000, 3);
+    let mut headless = common::headless();
+    headless.load(&gaussians).expect("uploads");
+    let camera = common::views(&gaussians, 1, common::scaled((253, 190))).remove(0);
+    let mut picture = |text: &str| {
+        let clip = text
+            .parse::<Expression>()
+            .map(|e| e.clip())
+            .unwrap_or_default();
+        headless
+            .render(&camera, &clip, &Settings::default())
+            .expect("renders");
+        headless.picture().expect("reads back")
+    };
+    let whole = picture("");
+    for text in [
+        "sphere:0,0,0,50",
+        "!capsule:40,0,0,50,0,0,3",
+        "all(cone:0,0,-90,0,0,90,400, !box:30,0,0,1,1,1)",
+    ] {
+        assert_eq!(picture(text), whole, "{text}");
+    }
 }

@@ -138,3 +138,74 @@ fn print_errors_of_shapes() {
         }
     }
 }
+
+#[test]
+fn single_shapes_keep_what_integration_finds() {
+    for (pixels, mean, largest) in [
+        ([0.02, 0.2], 4e-3, 0.05),
+        ([0.2, 1.0], 3e-3, 0.04),
+        ([1.0, 5.0], 1e-3, 0.02),
+        ([5.0, 30.0], 4e-4, 0.01),
+        ([30.0, 100.0], 1e-4, 2e-3),
+    ] {
+        let errors = study(pixels, 1, [3.0, 100.0], 60, 48);
+        assert!(
+            errors.partial > 15,
+            "the test would say nothing: {errors:?}"
+        );
+        assert!(
+            errors.mean < mean && errors.largest < largest,
+            "{pixels:?} px: {errors:?}"
+        );
+    }
+}
+
+#[test]
+fn combinations_keep_what_integration_finds() {
+    for (count, pixels, mean, largest) in [
+        (2, [0.2, 1.0], 0.012, 0.1),
+        (2, [5.0, 100.0], 2e-3, 0.02),
+        (3, [0.2, 1.0], 0.02, 0.12),
+        (3, [5.0, 100.0], 2e-3, 0.02),
+    ] {
+        let errors = study(pixels, count, [3.0, 100.0], 60, 48);
+        assert!(
+            errors.partial > 15,
+            "the test would say nothing: {errors:?}"
+        );
+        assert!(
+            errors.mean < mean && errors.largest < largest,
+            "{count}, {pixels:?} px: {errors:?}"
+        );
+    }
+}
+
+#[test]
+fn a_region_and_its_complement_keep_the_whole() {
+    let mut dice = Dice(5);
+    let camera = camera(640, 480, 500.0);
+    let view = View::<f64>::new(&camera);
+    let mut partial = 0;
+    for round in 0..200 {
+        let one = dice.one(0.02 * 3_f64.powi(round % 5), 10.0);
+        let scene = scene(&[one]);
+        let Some(footprint) = Footprint::new(&scene, 0, &view) else {
+            continue;
+        };
+        let clip = expression(&mut dice, &one, 4.0, 1 + round as usize % 4).clip();
+        for mode in [mode(Mode::Exact), mode(Mode::Rara)] {
+            let record = |clip: &Clip| cutoff::cutoff(&scene, 0, &footprint, &view, clip, &mode);
+            let (Some(kept), Some(rest)) = (record(&clip), record(&clip.complement())) else {
+                continue;
+            };
+            let (dx, dy) = (dice.normal() / footprint.conic[0], dice.normal());
+            let (kept, rest) = (kept.weight(dx, dy), rest.weight(dx, dy));
+            assert!(
+                (kept + rest - 1.0).abs() < 1e-9,
+                "{kept} + {rest}: {clip:?}"
+            );
+            partial += usize::from((0.01..0.99).contains(&kept));
+        }
+    }
+    assert!(partial > 60, "{partial}");
+}

@@ -60,14 +60,10 @@ float bent_share(Line line, UnitSurface surface) {
     float value = value_at(surface, line.mean) + trace_of(line, surface) - a - g;
     bool by_line = slope * slope + 2.0 * a * a >= lateral * lateral + 2.0 * g * g;
     vec4 terms = by_line ? vec4(slope, a, lateral, g) : vec4(lateral, g, slope, a); // steep, bend, flat, its bend
-    float share = BEND_WEIGHT.x * interval_share(value, terms.x, terms.y);
-    for (uint i = 1u; i < 4u; i++) {
-        for (float x = -BEND_NODE[i]; ; x = -x) {
-            share += BEND_WEIGHT[i] * interval_share(value + x * (terms.z + x * terms.w), terms.x + e * x, terms.y);
-            if (x > 0.0) {
-                break;
-            }
-        }
+    float share = 0.0;
+    for (int i = -3; i <= 3; i++) {
+        float x = sign(float(i)) * BEND_NODE[abs(i)];
+        share += BEND_WEIGHT[abs(i)] * interval_share(value + x * (terms.z + x * terms.w), terms.x + e * x, terms.y);
     }
     return share;
 }
@@ -108,25 +104,21 @@ float measure_to(uint measure, float t, float front) {
 // The measure of what the surfaces keep of a line from `start` to `end`, one stretch between crossings after the other.
 float measured(Line line, uint base, uint count, float start, float end, uint measure, float front) {
     float total = 0.0;
+    float before = measure_to(measure, start, front);
     for (float t = start; t < end;) {
         float next = end;
+        uint stack = 0u;
         for (uint i = 0u; i < count; i++) {
             Stretch stretch = stretch_of(line, entry_of(base, i));
             next = stretch.start > t ? min(next, stretch.start) : next;
             next = stretch.end > t ? min(next, stretch.end) : next;
-        }
-        bool is_first = t <= -NO_CROSSING;
-        bool is_last = next >= NO_CROSSING;
-        float middle = is_first ? (is_last ? 0.0 : next - 1.0) : is_last ? t + 1.0 : 0.5 * (t + next);
-        uint stack = 0u;
-        for (uint i = 0u; i < count; i++) {
-            Stretch stretch = stretch_of(line, entry_of(base, i));
-            bool keeps = (middle >= stretch.start && middle <= stretch.end) == stretch.between;
+            // The side of what comes next on the line.
+            bool keeps = (t >= stretch.start && t < stretch.end) == stretch.between;
             stack = answered(stack, keeps, joins_of(base, i));
         }
-        if ((stack & 1u) != 0u) {
-            total += measure_to(measure, next, front) - measure_to(measure, t, front);
-        }
+        float here = measure_to(measure, next, front);
+        total += (stack & 1u) != 0u ? here - before : 0.0;
+        before = here;
         t = next;
     }
     return total;
@@ -146,24 +138,26 @@ float across(Line line, vec3 v, out vec3 deviation) {
     return variance > 0.0 ? variance : 1.0;
 }
 
-// The share that is kept of a line of sight and of lines beside it, however many crossings are open.
-float measured_share(Line line, uint base, uint count) {
+// The same of a line and of lines beside it, which stand for the variance across it.
+float measured_widely(Line line, uint base, uint count, float start, float end, uint measure, float front) {
+    bool is_wide = measure == MEASURE_MASS;
     vec3 p = dot(line.s.b1, line.s.b1) < dot(line.s.b2, line.s.b2) ? line.s.b2 : line.s.b1;
     p /= max(length(p), 1e-30);
     vec3 q = cross(direction_of(line), p);
     vec3 first;
     float variance = across(line, p, first);
-    q -= p * (dot(q, first) * sqrt(variance) / variance);
+    q -= p * (dot(q, first) * inversesqrt(variance));
     vec3 second;
     across(line, q, second);
-    Line beside = line;
-    beside.lateral = 1.0 - BY_NODES;
+    vec3 middle = line.mean;
+    line.lateral = is_wide ? 1.0 - BY_NODES : 1.0;
     float share = 0.0;
-    for (int node = 0; node < 9; node++) {
-        vec2 at = BESIDE * vec2(node / 3 - 1, node % 3 - 1);
-        beside.mean = line.mean + at.x * first + at.y * second;
+    int nodes = is_wide ? 9 : 1;
+    for (int node = 0; node < nodes; node++) {
+        vec2 at = is_wide ? BESIDE * vec2(node / 3 - 1, node % 3 - 1) : vec2(0.0);
+        line.mean = middle + at.x * first + at.y * second;
         float weight = (at.x == 0.0 ? 2.0 / 3.0 : 1.0 / 6.0) * (at.y == 0.0 ? 2.0 / 3.0 : 1.0 / 6.0);
-        share += weight * measured(beside, base, count, -NO_CROSSING, NO_CROSSING, MEASURE_MASS, 0.0);
+        share += (is_wide ? weight : 1.0) * measured(line, base, count, start, end, measure, front);
     }
     return share;
 }
@@ -186,40 +180,34 @@ float bit_of(uint answers, uint sides) {
     return float(answers >> sides & 1u);
 }
 
-// The share by mode `exact`.
-float combined_share(Line line, uint base, uint count) {
-    float moved;
-    if (count == 1u) {
-        UnitSurface surface = entry_of(base, 0u);
-        Crossed crossing = crossed(line, surface, moved);
-        if (moved > 0.0) {
-            return bent_share(line, surface);
-        }
-        float share = phi(crossing.z);
-        if (crossing.other == NO_CROSSING) {
-            return share;
-        }
-        return crossing.between ? max(share - phi(-crossing.other), 0.0) : min(share + phi(crossing.other), 1.0);
-    }
-    uint open = 0u;
+// The share by mode `exact`, by the sides of at most three open crossings. `open` is how many there are.
+float share_of_sides(Line line, uint base, uint count, out uint open) {
+    open = 0u;
     uvec2 stack = uvec2(0u);
     Threshold t0;
     Threshold t1;
     Threshold t2;
     for (uint i = 0u; i < count; i++) {
-        Crossed crossing = crossed(line, entry_of(base, i), moved);
+        UnitSurface surface = entry_of(base, i);
+        float moved;
+        Crossed crossing = crossed(line, surface, moved);
+        if (count == 1u && moved > 0.0) {
+            return bent_share(line, surface);
+        }
         uint pattern = 0u;
-        for (uint side = 0u; side < 2u; side++) {
+        for (uint side = 0u; side < (crossing.other == NO_CROSSING ? 1u : 2u); side++) {
             float z = side == 0u ? crossing.z : crossing.other;
-            if (side == 1u && z == NO_CROSSING) {
-                break;
-            }
             uint here = z > 0.0 ? 0xffu : 0u;
             if (abs(z) < PHI_ONE) {
                 vec3 a = side == 0u ? crossing.gradient : crossing.other_gradient;
-                t2 = open == 2u ? Threshold(z, keeps_far(dot(a, line.s.c), a), direction(line.s, a)) : t2;
-                t1 = open == 1u ? Threshold(z, keeps_far(dot(a, line.s.c), a), direction(line.s, a)) : t1;
-                t0 = open == 0u ? Threshold(z, keeps_far(dot(a, line.s.c), a), direction(line.s, a)) : t0;
+                Threshold t = Threshold(z, keeps_far(dot(a, line.s.c), a), direction(line.s, a));
+                if (open == 0u) {
+                    t0 = t;
+                } else if (open == 1u) {
+                    t1 = t;
+                } else {
+                    t2 = t;
+                }
                 here = SIDE_PATTERN[min(open, 2u)];
                 open++;
             }
@@ -228,30 +216,26 @@ float combined_share(Line line, uint base, uint count) {
         stack = bytes_answered(stack, pattern, joins_of(base, i));
     }
     uint answers = stack.x & 0xffu;
-    if (open == 0u) {
+    if (open == 0u || open > 3u) {
         return bit_of(answers, 0u);
     }
     float p = phi(t0.z);
-    if (open == 1u) {
-        return bit_of(answers, 0u) * (1.0 - p) + bit_of(answers, 1u) * p;
-    }
-    if (open > 3u) {
-        return measured_share(line, base, count);
-    }
-    float q = phi(t1.z);
-    float pq = both_positive(t0, t1);
+    float q = 0.0;
+    float r = 0.0;
+    vec3 pairs = vec3(0.0); // of the first two, of the first and the third, of the last two
+    float all = 0.0;
     if (open == 2u) {
-        return bit_of(answers, 3u) * pq + bit_of(answers, 1u) * (p - pq) + bit_of(answers, 2u) * (q - pq)
-            + bit_of(answers, 0u) * (1.0 - p - q + pq);
+        q = phi(t1.z);
+        pairs.x = both_positive(t0, t1);
+    } else if (open == 3u) {
+        q = phi(t1.z);
+        r = phi(t2.z);
+        all = three_positive(t0, t1, t2, pairs);
     }
-    float r = phi(t2.z);
-    float pr = both_positive(t0, t2);
-    float qr = both_positive(t1, t2);
-    float all = three_positive(t0, t1, t2);
-    return bit_of(answers, 7u) * all + bit_of(answers, 3u) * (pq - all) + bit_of(answers, 5u) * (pr - all)
-        + bit_of(answers, 6u) * (qr - all) + bit_of(answers, 1u) * (p - pq - pr + all)
-        + bit_of(answers, 2u) * (q - pq - qr + all) + bit_of(answers, 4u) * (r - pr - qr + all)
-        + bit_of(answers, 0u) * (1.0 - p - q - r + pq + pr + qr - all);
+    return bit_of(answers, 7u) * all + bit_of(answers, 3u) * (pairs.x - all) + bit_of(answers, 5u) * (pairs.y - all)
+        + bit_of(answers, 6u) * (pairs.z - all) + bit_of(answers, 1u) * (p - pairs.x - pairs.y + all)
+        + bit_of(answers, 2u) * (q - pairs.x - pairs.z + all) + bit_of(answers, 4u) * (r - pairs.y - pairs.z + all)
+        + bit_of(answers, 0u) * (1.0 - p - q - r + pairs.x + pairs.y + pairs.z - all);
 }
 
 // True when the surfaces keep a point of the unit space.
@@ -263,43 +247,51 @@ bool combined_keeps(uint base, uint count, vec3 point) {
     return (stack & 1u) != 0u;
 }
 
-// The share of the chord by mode `rara` (the paper, section 3.4).
-float combined_chord(Sight s, uint base, uint flags, uint count, float sigma) {
-    s.low_pass = 0.0;
-    bool is_line = dot(s.c, s.c) > 0.0;
-    Line line = line_through(s);
-    vec3 peak = is_line ? line.mean : vec3(0.0);
-    float square = is_line ? sigma * sigma - dot(peak, peak) : -1.0;
-    float end = sqrt(max(square, 0.0));
-    float start = -end;
-    if (is_line && (flags & CUT_FRONT) != 0u) {
-        vec4 front = cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * count];
-        float slope = max(dot(front.xyz, s.c) * inversesqrt(dot(s.c, s.c)), 1e-30);
-        start = max(start, -(front.w + dot(front.xyz, peak)) / slope);
-    }
-    if (!(square > 0.0) || !(end > start)) {
-        return MISS == MISS_KEEP ? 1.0 : MISS == MISS_DROP ? 0.0 : combined_keeps(base, count, peak) ? 1.0 : 0.0;
-    }
-    return measured(line, base, count, start, end, MEASURE_LENGTH, 0.0) / (end - start);
-}
-
-// The weight of a splat with a combined record, by the frame's mode.
+// The weight of a splat with a combined record, by the frame's mode: in mode `rara` the share of the chord that is kept (the
+// paper, section 3.4), else the share of the splat.
 float combined_weight(Sight s, uint base, uint flags, float sigma) {
     uint count = flags >> CUT_COUNT_SHIFT;
-    float share;
-    if (CLIP_MODE == MODE_RARA) {
-        share = combined_chord(s, base, flags, count, sigma);
+    bool is_chord = CLIP_MODE == MODE_RARA;
+    s.low_pass = is_chord ? 0.0 : s.low_pass;
+    Line line = line_through(s);
+    vec4 front = vec4(0.0);
+    bool has_front = (flags & CUT_FRONT) != 0u;
+    if (has_front) {
+        front = cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * count];
+    }
+    float start = -NO_CROSSING;
+    float end = NO_CROSSING;
+    uint measure = MEASURE_MASS;
+    float whole = 1.0;
+    float front_z = 0.0;
+    if (is_chord) {
+        bool is_line = dot(s.c, s.c) > 0.0;
+        vec3 peak = is_line ? line.mean : vec3(0.0);
+        float square = is_line ? sigma * sigma - dot(peak, peak) : -1.0;
+        end = sqrt(max(square, 0.0));
+        start = -end;
+        if (is_line && has_front) {
+            float slope = max(dot(front.xyz, direction_of(line)), 1e-30);
+            start = max(start, -(front.w + dot(front.xyz, peak)) / slope);
+        }
+        whole = end - start;
+        measure = MEASURE_LENGTH;
+        if (!(square > 0.0) || !(whole > 0.0)) {
+            return MISS == MISS_KEEP ? 1.0 : MISS == MISS_DROP ? 0.0 : combined_keeps(base, count, peak) ? 1.0 : 0.0;
+        }
+    } else if (has_front) {
+        bool far;
+        front_z = beam_z(s, line.det, front, far);
+        start = -front_z;
+        measure = MEASURE_FRONT;
     } else {
-        Line line = line_through(s);
-        if ((flags & CUT_FRONT) != 0u) {
-            bool far;
-            float front = beam_z(s, line.det, cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * count], far);
-            share = measured(line, base, count, -front, NO_CROSSING, MEASURE_FRONT, front);
-        } else {
-            share = combined_share(line, base, count);
+        uint open;
+        float share = share_of_sides(line, base, count, open);
+        if (open <= 3u) {
+            return clamp(share, 0.0, 1.0);
         }
     }
-    return clamp(share, 0.0, 1.0);
+    return clamp(measured_widely(line, base, count, start, end, measure, front_z) / whole, 0.0, 1.0);
 }
 
 #endif

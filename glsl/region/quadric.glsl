@@ -81,8 +81,9 @@ uint quadric_gaussian_side(uint surface, mat3 axes, vec3 position, float deviati
             return sign > 0.0 ? SIDE_VISIBLE : SIDE_INVISIBLE;
         }
         float next = shift + reach * reach * (reach - deviations) / (deviations * max(bend_along(inverse, nearest), 1e-30));
+        next = max(next, 0.0);
         UnitSurface unused;
-        shift = inverse_shifted(s, sign, next, unused) ? next : 0.5 * (shift + max(next, 0.0));
+        shift = inverse_shifted(s, sign, next, unused) ? next : 0.5 * (shift + next);
     }
     return SIDE_CUTOFF;
 }

@@ -173,7 +173,7 @@ const STEPS: usize = 4;
 /// The side of a Gaussian whose band reaches `deviations` standard deviations: that of the ball of this radius.
 ///
 /// The least value of a quadratic function over a ball is that of its dual, the greatest `g - s K^2 - a . (Q + s I)^-1 a / 4`
-/// over all s for which the matrix is positive definite. Each such s gives a bound, so that the answer is conservative
+/// over all s >= 0 for which the matrix is positive definite. Each such s gives a bound, so that the answer is conservative
 /// wherever the search for the best one ends.
 pub(super) fn gaussian_side<T: Real>(surface: &UnitSurface<T>, deviations: T) -> Side {
     let UnitSurface { half_space, bend } = surface;
@@ -212,10 +212,10 @@ pub(super) fn gaussian_side<T: Real>(surface: &UnitSurface<T>, deviations: T) ->
         // Newton's step for 1/|u| = 1/K.
         let step = length * length * (length - deviations)
             / (deviations * inverse.form(nearest).max(T::of(1e-30)));
-        let next = shift + step;
+        let next = (shift + step).max(T::zero());
         shift = match bend.inverse_shifted(next) {
             Some(_) => next,
-            None => T::of(0.5) * (shift + next.max(T::zero())),
+            None => T::of(0.5) * (shift + next),
         };
     }
     Side::Cutoff

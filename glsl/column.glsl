@@ -280,7 +280,23 @@ void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 pixel_centre,
                  out float weight[ROWS]) {
     uint base = cut * push.params.cut_stride;
     uint flags = to_uint(cut_records.at[base].w);
-    if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
+    if (COMBINED && (flags & CUT_COMBINED) != 0u) {
+        uint rows = 0u;
+        for (uint row = 0u; row < ROWS; row++) {
+            weight[row] = 1.0;
+            rows |= alpha[row] > 0.0 ? 1u << row : 0u;
+        }
+        // A loop over all rows would be unrolled, with the body once for each.
+        for (; rows != 0u; rows &= rows - 1u) {
+            uint at = uint(findLSB(rows));
+            vec2 below = vec2(0.0, float(at));
+            Sight s = line_of_sight(base, delta + below, pixel_centre + below);
+            float share = combined_weight(s, base, flags, push.params.sigma);
+            for (uint row = 0u; row < ROWS; row++) {
+                weight[row] = row == at ? share : weight[row];
+            }
+        }
+    } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         curve_weights(base, uv.x, uv.y, v_step, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) != 0u) {
         front_weights(base, flags, delta, pixel_centre, weight);

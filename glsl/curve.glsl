@@ -4,7 +4,7 @@
 #ifndef RARA_CURVE
 #define RARA_CURVE
 #include "quad.glsl"
-#include "sight.glsl"
+#include "region/crossing.glsl"
 
 // A point d of a splat has the coordinates u = k0 dx and v = k1 dx + k2 dy, with the conic's k0 k1 k2. Alpha is
 // opacity exp(-(u^2 + v^2) / 2), so that no pixel that counts is far from 0, and no power of a coordinate is large.
@@ -26,14 +26,23 @@ const float CURVE_TOLERANCE = 1.5e-4;
 struct CurveSource {
     vec4 h0, h1, h2; // header of the cutoff record
     vec4 half_space; // in the beam form
+    bool bends; // whether the surface is this one instead
+    UnitSurface surface;
     vec2 centre; // relative to the principal point, px
     vec3 conic; // Cholesky factor, 1/px
 };
 
-float exact_z(CurveSource source, vec2 uv) {
+// `is_one` is made false where no single z is the weight's: the surface is crossed twice, or bends too much.
+float exact_z(CurveSource source, vec2 uv, inout bool is_one) {
     float dx = uv.x / source.conic.x;
     vec2 delta = vec2(dx, (uv.y - source.conic.y * dx) / source.conic.z);
     Sight sight = sight_through(source.h0, source.h1, source.h2, source.centre + delta, delta);
+    if (COMBINED && source.bends) {
+        float moved;
+        Crossed crossing = crossed(line_through(sight), source.surface, moved);
+        is_one = is_one && moved == 0.0 && crossing.other == NO_CROSSING;
+        return crossing.z;
+    }
     bool far;
     return beam_z(sight, determinant(sight), source.half_space, far);
 }
@@ -60,14 +69,16 @@ vec2 curve_direction(uint ring, uint step) {
 struct CurveSamples {
     float centre;
     float at[CURVE_SAMPLES];
+    bool is_one; // whether a single z is the weight's at each of them
 };
 
 CurveSamples sampled(CurveSource source, float extent) {
     CurveSamples z;
-    z.centre = exact_z(source, vec2(0.0));
+    z.is_one = true;
+    z.centre = exact_z(source, vec2(0.0), z.is_one);
     for (uint ring = 0u; ring < CURVE_RINGS; ring++) {
         for (uint step = 0u; step < CURVE_STEPS; step++) {
-            z.at[ring * CURVE_STEPS + step] = exact_z(source, curve_radius(ring, extent) * curve_direction(ring, step));
+            z.at[ring * CURVE_STEPS + step] = exact_z(source, curve_radius(ring, extent) * curve_direction(ring, step), z.is_one);
         }
     }
     return z;
@@ -157,6 +168,9 @@ float exact_change(CurveSamples z, uint outwards, uint step) {
 
 // True when no pixel's alpha differs by more than CURVE_TOLERANCE from the exact form's.
 bool is_good(Curve curve, CurveSamples z, float opacity, float extent) {
+    if (!z.is_one) {
+        return false;
+    }
     for (uint outwards = 0u; outwards < CURVE_RINGS; outwards++) {
         uint ring = CURVE_OUTWARDS[outwards];
         float r = curve_radius(ring, extent);

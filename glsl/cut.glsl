@@ -9,7 +9,8 @@
 //   last   with CUT_FRONT: the plane through the eye across the view axis, in the same form
 // Several planes in the affine form are such a record with the footprint's gradients and no lean. Without CUT_BEAM there is
 // one plane, which the rasteriser carries: 3 holds z at the centre, dz/dx and dz/dy, 4 its curvature, the factors of dx^2,
-// dx dy and dy^2. With CUT_CURVE, in the coordinates of curve.glsl, 0 holds z at the centre and its slopes, 1 the factors
+// dx dy and dy^2. With CUT_COMBINED each surface has ENTRY_VECTORS vec4s: normal and distance; the bend's xx, yy, zz and the
+// joins of SurfaceData; xy, xz, yz. With CUT_CURVE, in the coordinates of curve.glsl, 0 holds z at the centre and its slopes, 1 the factors
 // of u^2, u v, v^2 and v^4, 2 those of u^3, u^2 v, u v^2 and v^3, 3 those of u^4, u^3 v, u^2 v^2 and u v^3.
 #ifndef RARA_CUT
 #define RARA_CUT
@@ -24,6 +25,8 @@ const uint CUT_CURVE = 4u;
 // The splat is cut by a union: the record holds the planes' complements, and what it keeps is the rest of what these keep
 // together. A plane alone is a union only where it is weighed as several are: in mode `rara`, and with CUT_FRONT.
 const uint CUT_UNION = 8u;
+// The surfaces may bend, and combine by their joins.
+const uint CUT_COMBINED = 16u;
 const uint CUT_COUNT_SHIFT = 8u;
 
 // The rasteriser carries z at a splat's centre, dz/dx, dz/dy and the curvature, so that the usual case, one plane, needs

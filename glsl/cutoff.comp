@@ -5,13 +5,15 @@
 #include "region/gaussian_side.glsl"
 #include "cut.glsl"
 #include "curve.glsl"
+#include "region/carried_bend.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 
 BUFFER(readonly, 2, Gaussian, gaussians)
 BUFFER(readonly, 3, uint, cutoffs)
 BUFFER(readonly, 4, FrameCounts, counts)
-BUFFER(writeonly, 5, vec4, cut_records)
+BUFFER(, 5, vec4, cut_records)
+#include "region/reduced.glsl"
 
 // A half-space in the beam form. Dividing by the largest component keeps the squares of sigmas of 1e5 and 1e-7 in range.
 vec4 beam_plane(vec4 half_space) {
@@ -39,6 +41,85 @@ vec4 affine_plane(Footprint f, vec4 half_space) {
     return vec4(clamp(half_space.w * inverse, -1e20, 1e20), slope * (f.scale / f.det * inverse), 0.0);
 }
 
+// The weight of one surface that the rasteriser carries.
+void write_carried(uint base, vec3 linear, vec3 curvature) {
+    cut_records.at[base] = vec4(vec3(0.0), float(1u << CUT_COUNT_SHIFT));
+    cut_records.at[base + CUT_HEADER] = vec4(linear, 0.0);
+    cut_records.at[base + CUT_HEADER + 1u] = vec4(curvature, 0.0);
+}
+
+// Writes the weight of one surface as a polynomial, if one is as good as the exact form.
+bool write_curve(uint base, CurveSource source, float opacity, float extent) {
+    CurveSamples samples = sampled(source, extent);
+    Curve square;
+    Curve quartic;
+    fitted(samples, square, quartic);
+    if (is_good(square, samples, opacity, extent)) {
+        vec3 linear;
+        vec3 curvature;
+        in_pixels(square, source.conic, linear, curvature);
+        write_carried(base, linear, curvature);
+        return true;
+    }
+    if (is_good(quartic, samples, opacity, extent)) {
+        cut_records.at[base] = vec4(quartic.at, quartic.slope, float(1u << CUT_COUNT_SHIFT | CUT_CURVE));
+        cut_records.at[base + 1u] = vec4(quartic.bend, quartic.ripple);
+        cut_records.at[base + 2u] = quartic.twist;
+        cut_records.at[base + CUT_HEADER] = quartic.wave;
+        return true;
+    }
+    return false;
+}
+
+// A splat of which all or nothing is kept.
+void write_decided(uint base, bool is_kept) {
+    float side = is_kept ? 1.0 : -1.0;
+    if (FRAME.region.mode == MODE_EXACT) {
+        write_carried(base, vec3(40.0 * side, 0.0, 0.0), vec3(0.0));
+        return;
+    }
+    cut_records.at[base] = vec4(1.0, 0.0, 0.0, float(1u << CUT_COUNT_SHIFT | CUT_BEAM));
+    cut_records.at[base + 1u] = vec4(0.0, 1.0, 0.0, 1.0);
+    cut_records.at[base + 2u] = vec4(0.0);
+    cut_records.at[base + CUT_HEADER] = vec4(vec3(0.0), side);
+}
+
+UnitSurface first_entry(uint base) {
+    uint at = base + CUT_HEADER;
+    return UnitSurface(cut_records.at[at], cut_records.at[at + 1u].xyz, cut_records.at[at + 2u].xyz);
+}
+
+// True when a record's surfaces are planes that all combine alike, as a list of planes does.
+bool are_planes(uint base, uint entries, out bool is_union) {
+    bool has_and = false;
+    bool bends = false;
+    is_union = false;
+    for (uint i = 0u; i < entries; i++) {
+        uint at = base + CUT_HEADER + ENTRY_VECTORS * i;
+        vec4 diagonal = cut_records.at[at + 1u];
+        bends = bends || diagonal.xyz != vec3(0.0) || cut_records.at[at + 2u].xyz != vec3(0.0);
+        uint joins = to_uint(diagonal.w);
+        uint count = join_count(joins);
+        uint ors = uint(bitCount(joins >> JOIN_SHIFT));
+        is_union = is_union || ors > 0u;
+        has_and = has_and || ors < count;
+    }
+    return !bends && !(has_and && is_union);
+}
+
+// The footprint's own gradients, which are the same in all pixels.
+CurveSource source_of_footprint(Footprint f) {
+    CurveSource source;
+    source.h0 = vec4(f.b1, 0.0);
+    source.h1 = vec4(f.b2, f.scale);
+    source.h2 = vec4(vec3(0.0), f.low_pass);
+    source.half_space = vec4(0.0);
+    source.bends = true;
+    source.centre = f.screen_centre - FRAME.view.focal.zw;
+    source.conic = conic_of(f);
+    return source;
+}
+
 void main() {
     uint cut = LINEAR_GROUP * SURVIVOR_GROUP_SIZE + gl_LocalInvocationIndex;
     if (cut >= counts.at[0].cutoff) {
@@ -60,9 +141,29 @@ void main() {
 
     uint base = cut * FRAME.weight.cut_stride;
     uint at = base + CUT_HEADER;
-    bool is_union = LAYER.region.op == OP_OR && LAYER.region.surface_count > 1u;
+    bool is_combined = COMBINED && LAYER.region.combined != 0u;
+    bool is_union = !is_combined && LAYER.region.op == OP_OR && LAYER.region.surface_count > 1u;
     vec4 half_space;
-    for (uint i = 0u; i < LAYER.region.surface_count; i++) {
+    if (is_combined) {
+        uint entries;
+        uint decided = write_reduced(base, f, position, deviations, entries);
+        if (decided < 2u) {
+            // The rest of the region's expression has an answer that its parts' sides do not show.
+            write_decided(base, decided == 1u);
+            return;
+        }
+        is_combined = !are_planes(base, entries, is_union);
+        if (is_combined) {
+            at += ENTRY_VECTORS * entries;
+            half_space = cut_records.at[base + CUT_HEADER];
+        } else {
+            for (uint i = 0u; i < entries; i++) {
+                half_space = beam_plane(cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * i]);
+                cut_records.at[at++] = is_union ? -half_space : half_space;
+            }
+        }
+    }
+    for (uint i = 0u; i < LAYER.region.surface_count && (!COMBINED || LAYER.region.combined == 0u); i++) {
         uint surface = LAYER.region.first_surface + i;
         // A surface that keeps the whole splat changes no intersection, and one that drops it changes no union.
         if (surface_gaussian_side(surface, f.axes, position, deviations) != side_undecided()) {
@@ -70,18 +171,34 @@ void main() {
             cut_records.at[at++] = is_union ? -half_space : half_space;
         }
     }
-    uint count = at - base - CUT_HEADER;
-    uint flags = count << CUT_COUNT_SHIFT;
+    uint count = (at - base - CUT_HEADER) / (is_combined ? ENTRY_VECTORS : 1u);
+    uint flags = count << CUT_COUNT_SHIFT | (is_combined ? CUT_COMBINED : 0u);
     if (is_union && count == 1u && !front && FRAME.region.mode == MODE_EXACT) {
         cut_records.at[at - 1u] = half_space; // not its complement: without CUT_UNION a record holds what is kept
     } else if (is_union) {
         flags |= CUT_UNION;
     }
-    if (!beam && count == 1u) {
+    if (!beam && count == 1u && !is_combined) {
         cut_records.at[base] = vec4(vec3(0.0), float(flags));
         cut_records.at[at - 1u] = affine_plane(f, half_space);
         cut_records.at[at] = vec4(0.0);
         return;
+    }
+    if (COMBINED && is_combined && !beam && count == 1u && FRAME.weight.form == FORM_AUTO) {
+        UnitSurface surface = first_entry(base);
+        CurveSource source = source_of_footprint(f);
+        source.surface = surface;
+        vec3 linear;
+        vec3 curvature;
+        if (bends_little(surface)) {
+            Sight sight = sight_through(source.h0, source.h1, source.h2, vec2(0.0), vec2(0.0));
+            carried_bend(sight, surface, f.scale, linear, curvature);
+            write_carried(base, linear, curvature);
+            return;
+        }
+        if (write_curve(base, source, opacity, extent)) {
+            return;
+        }
     }
     if (!beam) {
         // Several planes take the footprint's own gradients, which are the same in all pixels.
@@ -108,26 +225,13 @@ void main() {
     // A switch of zero asks for the exact form itself.
     if (FRAME.region.mode == MODE_EXACT && FRAME.weight.form == FORM_AUTO && FRAME.weight.beam_switch > 0.0 && count == 1u && !front) {
         source.half_space = half_space;
+        source.bends = is_combined;
+        if (COMBINED && is_combined) {
+            source.surface = first_entry(base);
+        }
         source.centre = f.screen_centre - FRAME.view.focal.zw;
         source.conic = conic_of(f);
-        CurveSamples samples = sampled(source, extent);
-        Curve square;
-        Curve quartic;
-        fitted(samples, square, quartic);
-        if (is_good(square, samples, opacity, extent)) {
-            vec3 linear;
-            vec3 curvature;
-            in_pixels(square, source.conic, linear, curvature);
-            cut_records.at[base] = vec4(vec3(0.0), float(flags));
-            cut_records.at[at - 1u] = vec4(linear, 0.0);
-            cut_records.at[at] = vec4(curvature, 0.0);
-            return;
-        }
-        if (is_good(quartic, samples, opacity, extent)) {
-            cut_records.at[base] = vec4(quartic.at, quartic.slope, float(flags | CUT_CURVE));
-            cut_records.at[base + 1u] = vec4(quartic.bend, quartic.ripple);
-            cut_records.at[base + 2u] = quartic.twist;
-            cut_records.at[base + CUT_HEADER] = quartic.wave;
+        if (write_curve(base, source, opacity, extent)) {
             return;
         }
     }

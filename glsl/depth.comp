@@ -35,12 +35,24 @@ void main() {
     Footprint f = footprint(gaussian);
     vec3 c = cross(f.b1, f.b2);
     SplatDepth depth;
+    bool has_parts = COMBINED && LAYER.region.op == OP_PARTS;
     bool is_union = LAYER.region.op == OP_OR;
     depth.mean = vec4(f.view_centre.z, slope_of(f, c, f.m3), is_union ? 1.0 : 0.0);
     depth.far = vec4(8.0, 0.0, 0.0, 0.0);
     depth.near = depth.far;
-    for (uint i = 0u; i < LAYER.region.surface_count && FRAME.region.mode >= MODE_RARA; i++) {
-        vec3 position = gaussian.position_opacity.xyz;
+    vec3 position = gaussian.position_opacity.xyz;
+    uint surface_count = FRAME.region.mode >= MODE_RARA ? LAYER.region.surface_count : 0u;
+    float deviations = 0.0;
+    if (has_parts) {
+        // What cuts a splat of a region with parts is taken for an intersection.
+        deviations = band_in_view(f, largest(gaussian.scale.xyz), opacity_extent(opacity_in_layer(gaussian)));
+        bool is_cut = gaussian_side(f.axes, position, deviations) == SIDE_CUTOFF;
+        surface_count = is_cut ? surface_count : 0u;
+    }
+    for (uint i = 0u; i < surface_count; i++) {
+        if (has_parts && surface_gaussian_side(LAYER.region.first_surface + i, f.axes, position, deviations) != SIDE_CUTOFF) {
+            continue;
+        }
         vec4 half_space = surface_half_space(LAYER.region.first_surface + i, f.axes, position);
         half_space = is_union ? -half_space : half_space;
         float size = max(largest(half_space.xyz), 1e-30);

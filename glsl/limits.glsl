@@ -51,6 +51,9 @@ const uint SORT_BITS = 8u;
 const uint SORT_GROUP_SIZE = 64u;
 // Most splats of one depth that one invocation orders alone.
 const uint TIES_ALONE = 24u;
+// Surfaces that a splat is weighed by where regions have parts or bend, those that cut it nearest its centre. Of the others
+// it is on the side of its centre. A region that is a flat list of planes has no such limit.
+const uint MAX_CUTTING = 8u;
 // Workgroup size of the sort for GPUs, and the consecutive keys of such a workgroup: its partition.
 const uint RADIX_GROUP_SIZE = 256u;
 const uint RADIX_PARTITION = 4096u;

@@ -4,10 +4,9 @@
 #ifndef RARA_ORTHANT
 #define RARA_ORTHANT
 #include "phi.glsl"
+#include "region/crossing.glsl"
 #include "sight.glsl"
 
-// Beyond this Phi is taken for 0 or 1, which is off by less than 4e-6, a fifth of the best approximation's error.
-const float PHI_ONE = 4.5;
 // Up to this correlation the integral starts at independence; beyond it, at dependence. Either way four nodes leave 2e-5.
 const float RHO_NEAR = 0.8;
 // Gauss's nodes and weights on [0, 1].
@@ -115,7 +114,7 @@ float path_density(float h, float k, float third, float r, float s, float q) {
 
 // The chance that three variables are positive. The path starts with the first one independent of the others, which are the
 // two that depend most on each other.
-float three_positive(Threshold t, Threshold u, Threshold v) {
+float three_positive(Threshold t, Threshold u, Threshold v, out vec3 pairs) {
     vec2 tu = correlation(t.direction, u.direction);
     vec2 tv = correlation(t.direction, v.direction);
     vec2 uv = correlation(u.direction, v.direction);
@@ -125,6 +124,7 @@ float three_positive(Threshold t, Threshold u, Threshold v) {
     float with_u = both_positive(t.z, u.z, p, q, tu);
     float with_v = both_positive(t.z, v.z, p, r, tv);
     float others = both_positive(u.z, v.z, q, r, uv);
+    pairs = vec3(with_u, with_v, others);
     // The pairs bound the chance; where correlations are full the bounds meet.
     float high = min(with_u, min(with_v, others));
     float low = max(with_u + with_v - p, max(with_u + others - q, with_v + others - r));

@@ -13,4 +13,15 @@ float tail_phi(float z) {
     return z < 0.0 ? tail : 1.0 - tail;
 }
 
+// Phi(z) / Phi(front), at most 1, with a relative error of 4e-5 however little of the normal distribution is left.
+float tail_ratio(float z, float front) {
+    if (z >= front) {
+        return 1.0;
+    }
+    if (front < 0.0) {
+        return exp(0.5 * (front - z) * (front + z)) * mills(-z) / mills(-front);
+    }
+    return tail_phi(z) / tail_phi(front);
+}
+
 #endif

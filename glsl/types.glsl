@@ -105,7 +105,7 @@ struct LayerRegion {
     uint op; // OP_*: how its surfaces combine
     uint first_surface; // its first one
     uint surface_count; // how many it has
-    uint pad; // unused
+    uint combined; // 1: splats are weighed as combinations of surfaces that may bend
 };
 
 // A layer of the scene in a frame: a struct for each reason to change, as above.
@@ -117,10 +117,15 @@ struct LayerData {
 
 // A surface of a region, in the units of the layer that it cuts.
 struct SurfaceData {
-    vec4 high; // SURFACE_PLANE: unit normal and distance, rounded to single precision
-    vec4 low; // SURFACE_PLANE: what the rounding lost
+    vec4 high; // SURFACE_PLANE: unit normal and distance; SURFACE_QUADRIC: gradient and value at the anchor
+    vec4 low; // what rounding them to single precision lost
+    vec4 anchor; // SURFACE_QUADRIC: the point that its numbers are relative to; w unused
+    vec4 anchor_low; // what the rounding lost
+    vec4 diagonal; // SURFACE_QUADRIC: the factors of the coordinates' squares; w unused
+    vec4 across; // SURFACE_QUADRIC: half the factors of x y, x z and y z; w unused
     uint kind; // SURFACE_*
-    uint pad[3]; // unused
+    uint joins; // how many answers on a stack it joins with those below, and from JOIN_SHIFT on a bit each: 1 for or
+    uint pad[2]; // unused
 };
 
 // A Gaussian without its colour.
@@ -200,8 +205,12 @@ const uint MODE_HARD = 1u;
 const uint MODE_RARA = 2u;
 const uint MODE_EXACT = 3u;
 const uint SURFACE_PLANE = 0u;
+const uint SURFACE_QUADRIC = 1u;
 const uint OP_AND = 0u;
 const uint OP_OR = 1u;
+// By their joins.
+const uint OP_PARTS = 2u;
+const uint JOIN_SHIFT = 5u;
 const uint DECAY_LINEAR = 0u;
 const uint DECAY_DEPTH = 1u;
 const uint MISS_KEEP = 0u;
@@ -227,6 +236,8 @@ const uint DEPTH_16 = 3u;
 // How the tiles' pixels are stored.
 const uint PIXELS_FLOAT = 0u;
 const uint PIXELS_BYTE = 1u;
+// vec4s of a surface in a combined cutoff record.
+const uint ENTRY_VECTORS = 3u;
 const uint NOT_CUT = 0xffffffffu;
 const uint CUT_AWAY = 0xfffffffeu;
 

@@ -5,6 +5,7 @@
 #define RARA_WEIGHT
 #include "region/share.glsl"
 #include "tail.glsl"
+#include "region/combination.glsl"
 
 vec2 principal_point() {
     return push.params.principal_point;
@@ -13,17 +14,6 @@ vec2 principal_point() {
 Sight line_of_sight(uint base, vec2 delta, vec2 pixel_centre) {
     vec2 pixel = pixel_centre - principal_point();
     return sight_through(cut_records.at[base], cut_records.at[base + 1u], cut_records.at[base + 2u], pixel, delta);
-}
-
-// Phi(z) / Phi(front), at most 1, with a relative error of 4e-5 however little of the normal distribution is left.
-float tail_ratio(float z, float front) {
-    if (z >= front) {
-        return 1.0;
-    }
-    if (front < 0.0) {
-        return exp(0.5 * (front - z) * (front + z)) * mills(-z) / mills(-front);
-    }
-    return tail_phi(z) / tail_phi(front);
 }
 
 // The weight of mode `exact`, from the planes of a record.
@@ -109,6 +99,9 @@ float chord_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
 float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 pixel_centre) {
     uint base = cut * push.params.cut_stride;
     uint flags = to_uint(cut_records.at[base].w);
+    if (COMBINED && (flags & CUT_COMBINED) != 0u) {
+        return combined_weight(line_of_sight(base, delta, pixel_centre), base, flags, push.params.sigma);
+    }
     if (CLIP_MODE == MODE_RARA) {
         return chord_weight(base, flags, delta, pixel_centre);
     }

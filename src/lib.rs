@@ -58,7 +58,7 @@ pub use {ash, glam, gpu_allocator};
 
 pub use camera::{Camera, Projection};
 #[doc(inline)]
-pub use clip::{Clip, ClipOp, Plane, Shape, Surface};
+pub use clip::{Clip, ClipOp, Plane, Quadric, Shape, Surface};
 pub use depth::DepthMap;
 pub use error::{Error, Result};
 #[doc(inline)]

@@ -5,7 +5,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::camera::{Camera, Projection};
-use crate::clip::{Clip, Plane, Surface};
+use crate::clip::{Clip, Plane, Quadric, Surface};
 use crate::error::{Error, Result};
 
 /// The placement of a scene in a world, or of a [layer](crate::Layer) in its scene: points are scaled, then turned,
@@ -112,12 +112,24 @@ impl Plane {
     }
 }
 
+impl Quadric {
+    /// The same quadric as a scene with this placement sees it.
+    #[must_use]
+    pub fn in_scene(&self, placement: &Placement) -> Self {
+        if *placement == Placement::IDENTITY {
+            return *self; // to the bit
+        }
+        self.seen_from(placement.position, placement.rotation, placement.scale)
+    }
+}
+
 impl Surface {
     /// The same surface as a scene with this placement sees it.
     #[must_use]
     pub fn in_scene(&self, placement: &Placement) -> Self {
         match self {
             Self::Plane(plane) => plane.in_scene(placement).into(),
+            Self::Quadric(quadric) => quadric.in_scene(placement).into(),
         }
     }
 }
@@ -126,8 +138,7 @@ impl Clip {
     /// The same region as a scene with this placement sees it.
     #[must_use]
     pub fn in_scene(&self, placement: &Placement) -> Self {
-        let surfaces = self.surfaces.iter();
-        Self::of(surfaces.map(|s| s.in_scene(placement)), self.op)
+        self.map(&|surface| surface.in_scene(placement))
     }
 }
 
@@ -155,6 +166,10 @@ mod tests {
             assert!(placement.to_scene(world).distance(point) < 1e-13);
             let distance = plane.distance(world) / placement.scale();
             assert!((near.distance(point) - distance).abs() < 1e-13);
+            let (sphere, scale) = (Quadric::sphere(DVec3::ONE, 2.5), placement.scale());
+            let sphere = sphere.expect("a radius");
+            let distance = sphere.distance(world) / scale;
+            assert!((sphere.in_scene(&placement).distance(point) - distance).abs() < 1e-12);
             let seen = camera.world_to_camera().transform_point3(world) / placement.scale();
             assert!(
                 inside

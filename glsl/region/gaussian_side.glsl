@@ -4,9 +4,18 @@
 // (band.glsl). Twin: src/reference/region/gaussian_side.rs.
 #ifndef RARA_REGION_GAUSSIAN_SIDE
 #define RARA_REGION_GAUSSIAN_SIDE
+#include "region/answers.glsl"
 #include "region/surface.glsl"
 
 uint gaussian_side(mat3 axes, vec3 position, float deviations) {
+    if (COMBINED && LAYER.region.op == OP_PARTS) {
+        Answers answers = Answers(0u, 0u);
+        for (uint i = 0u; i < LAYER.region.surface_count; i++) {
+            uint surface = LAYER.region.first_surface + i;
+            answer(answers, surface_gaussian_side(surface, axes, position, deviations), surfaces.at[surface].joins);
+        }
+        return side_answered(answers);
+    }
     uint side = side_undecided();
     for (uint i = 0u; i < LAYER.region.surface_count && side != side_that_decides(); i++) {
         side = combined_side(side, surface_gaussian_side(LAYER.region.first_surface + i, axes, position, deviations));

@@ -94,7 +94,8 @@ float several_weight(Sight s, float det, uint base, uint count) {
     }
     Threshold t = threshold_of(s, det, base, open.y);
     Threshold u = threshold_of(s, det, base, open.z);
-    return opens == 2u ? both_positive(t, u) : three_positive(threshold_of(s, det, base, open.x), t, u);
+    vec3 pairs;
+    return opens == 2u ? both_positive(t, u) : three_positive(threshold_of(s, det, base, open.x), t, u, pairs);
 }
 
 #endif

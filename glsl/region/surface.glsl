@@ -7,11 +7,17 @@
 
 BUFFER(readonly, 1, SurfaceData, surfaces)
 
+// True when a region has parts or a surface that bends: without, there is no code for either.
+layout(constant_id = 8) const bool COMBINED = false;
+
 #include "region/plane.glsl"
+#include "region/quadric.glsl"
 
 // How far a point is from a surface, in the layer's units: positive where the surface keeps the point.
 float surface_distance(uint surface, vec3 position) {
     switch (surfaces.at[surface].kind) {
+    case SURFACE_QUADRIC:
+        return COMBINED ? quadric_distance(surface, position) : 0.0;
     default: // SURFACE_PLANE
         return plane_distance(surface, position);
     }
@@ -27,6 +33,8 @@ uint surface_gaussian_side(uint surface, mat3 axes, vec3 position, float deviati
         return SIDE_CUTOFF;
     }
     switch (surfaces.at[surface].kind) {
+    case SURFACE_QUADRIC:
+        return COMBINED ? quadric_gaussian_side(surface, axes, position, deviations) : SIDE_CUTOFF;
     default: // SURFACE_PLANE
         return plane_gaussian_side(surface, axes, position, deviations);
     }
@@ -35,15 +43,27 @@ uint surface_gaussian_side(uint surface, mat3 axes, vec3 position, float deviati
 // On which side all Gaussians are whose centres lie in a box and that reach at most `support` from them, the layer's units.
 uint surface_box_side(uint surface, vec3 middle, vec3 half_size, float support) {
     switch (surfaces.at[surface].kind) {
+    case SURFACE_QUADRIC:
+        return COMBINED ? quadric_box_side(surface, middle, half_size, support) : SIDE_CUTOFF;
     default: // SURFACE_PLANE
         return plane_box_side(surface, middle, half_size, support);
     }
 }
 
-// The half-space that a surface keeps of a Gaussian that it cuts: its normal in the Gaussian's unit space, and the centre's
-// distance, the layer's units.
+// A surface in the unit space of a Gaussian that it cuts.
+UnitSurface unit_surface(uint surface, mat3 axes, vec3 position) {
+    if (surfaces.at[surface].kind == SURFACE_QUADRIC) {
+        return quadric_unit_surface(surface, axes, position);
+    }
+    return UnitSurface(plane_half_space(surface, axes, position), vec3(0.0), vec3(0.0));
+}
+
+// The half-space that a surface keeps of a Gaussian that it cuts, to first order about its centre: its normal in the
+// Gaussian's unit space, and the centre's distance, the layer's units.
 vec4 surface_half_space(uint surface, mat3 axes, vec3 position) {
     switch (surfaces.at[surface].kind) {
+    case SURFACE_QUADRIC:
+        return COMBINED ? quadric_unit_surface(surface, axes, position).half_space : vec4(0.0);
     default: // SURFACE_PLANE
         return plane_half_space(surface, axes, position);
     }

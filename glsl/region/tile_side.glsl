@@ -173,6 +173,9 @@ uint tile_side(vec3 linear, vec3 curvature, vec4 centre_conic, float conic_z, ve
     }
     uint base = record_number(linear) * push.params.cut_stride;
     uint flags = to_uint(cut_records.at[base].w);
+    if (COMBINED && (flags & CUT_COMBINED) != 0u) {
+        return SIDE_CUTOFF;
+    }
     if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         vec2 uv = vec2(centre_conic.z * delta.x, centre_conic.w * delta.x + conic_z * delta.y);
         vec2 reach = vec2(abs(centre_conic.z) * TILE_REACH.x, abs(centre_conic.w) * TILE_REACH.x + abs(conic_z) * TILE_REACH.y);

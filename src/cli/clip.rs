@@ -1,44 +1,86 @@
 //! `--clip`, `--clip-file` and `--clip-op`: from their text to surfaces.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::clip::{NamedPlane, load_planes};
+use rara::clip::{Expression, NamedClip, NamedPlane, clips_to_json, load_clips, load_planes};
 use rara::{Clip, ClipOp, Shape};
 
 use super::failure::Failure;
+use super::output;
 
 /// The clip: the parts to cut away.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Clip")]
 pub(super) struct ClipArgs {
-    /// A shape whose inside stays visible (repeatable): plane:nx,ny,nz,d keeps n.x + d >= 0;
-    /// box:cx,cy,cz,hx,hy,hz[,qw,qx,qy,qz] has a centre, half sizes and a rotation. A leading ! keeps the outside
+    /// A shape whose inside stays visible (repeatable): plane:nx,ny,nz,d keeps n.x + d >= 0; slab:nx,ny,nz,d,thickness
+    /// begins at such a plane; box:cx,cy,cz,hx,hy,hz[,qw,qx,qy,qz] has a centre, half sizes and a rotation;
+    /// sphere:cx,cy,cz,r; ellipsoid:cx,cy,cz,rx,ry,rz[,qw,qx,qy,qz]; cylinder:ax,ay,az,bx,by,bz,r lies between two discs;
+    /// capsule:ax,ay,az,bx,by,bz,r is within r of a stretch of a line; cone:ax,ay,az,bx,by,bz,r has its tip at a and a disc
+    /// around b. A leading ! keeps the outside
     #[arg(long, value_name = "SHAPE", value_parser = shape, allow_hyphen_values = true)]
     clip: Vec<Shape>,
-    /// The planes of a JSON file (repeatable): a list of {"normal":[x,y,z],"d":d}, each with a "name" or without.
-    /// :NAME takes only those of that name, or the one of that number (from 0)
+    /// An expression of shapes (repeatable): all(...) keeps what all of its operands keep, any(...) what any of them does,
+    /// not(...) what its operand does not, as in 'all(box:0,0,0,1,1,1, not(sphere:1,0,0,.5))'
+    #[arg(long, value_name = "EXPRESSION", value_parser = expression, allow_hyphen_values = true)]
+    clip_expr: Vec<Expression>,
+    /// The clips of a JSON file (repeatable): a list of planes, {"normal":[x,y,z],"d":d}, or of expressions as trees,
+    /// {"clip":{"all":[...]}}, as --save-clip writes them, each with a "name" or without. :NAME takes only those of that
+    /// name, or the one of that number (from 0)
     #[arg(long, value_name = "FILE[:NAME]")]
     clip_file: Vec<String>,
+    /// Write the clip that the flags make to a JSON file, which --clip-file reads
+    #[arg(long, value_name = "FILE")]
+    save_clip: Option<PathBuf>,
     /// How several shapes combine: visible in all of them, or in any
     #[arg(long, value_name = "OP", default_value = "and")]
     clip_op: ClipOp,
 }
 
 impl ClipArgs {
-    /// The clip that the flags mean; reads its files. All shapes have to fit one list of surfaces that one operation
-    /// joins.
+    /// The clip that the flags mean; reads its files.
     pub(super) fn meant(&self) -> Result<Clip, Failure> {
-        Clip::of_shapes(&self.shapes()?, self.op()).map_err(Failure::usage)
+        let expressions = self.expressions()?;
+        if let Some(path) = &self.save_clip {
+            self.save(path, &expressions)?;
+        }
+        Ok(match &expressions[..] {
+            [] => Clip::default(),
+            all => Clip::joined(all.iter().map(Expression::clip), self.op()),
+        })
     }
 
-    /// The shapes that the flags mean; reads their files.
-    pub(super) fn shapes(&self) -> Result<Vec<Shape>, Failure> {
-        let mut shapes = self.clip.clone();
+    /// The shapes and expressions that the flags mean; reads their files.
+    pub(super) fn expressions(&self) -> Result<Vec<Expression>, Failure> {
+        let mut expressions: Vec<_> = self.clip.iter().copied().map(Expression::Shape).collect();
         for text in &self.clip_file {
-            shapes.extend(from_file(text)?);
+            expressions.extend(from_file(text)?);
         }
-        Ok(shapes)
+        expressions.extend(self.clip_expr.iter().cloned());
+        Ok(expressions)
+    }
+
+    /// Writes the clip to a file as one expression.
+    fn save(&self, path: &Path, expressions: &[Expression]) -> Result<(), Failure> {
+        let clip = match (expressions, self.op()) {
+            ([], _) => {
+                return Err(Failure::Usage(
+                    "--save-clip: there is no clip to save; give one by --clip, --clip-expr or --clip-file".into(),
+                ));
+            }
+            ([only], _) => only.clone(),
+            (all, ClipOp::And) => Expression::All(all.into()),
+            (all, ClipOp::Or) => Expression::Any(all.into()),
+        };
+        let name = path
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into();
+        Ok(output::text(
+            path,
+            &clips_to_json(&[NamedClip { name, clip }]),
+        )?)
     }
 
     /// The shapes that were typed.
@@ -63,8 +105,12 @@ fn shape(text: &str) -> Result<Shape, String> {
     text.parse().map_err(|error: rara::Error| error.to_string())
 }
 
-/// The planes of `FILE` or `FILE:NAME`. Names and paths may hold colons: a file that exists goes before a name.
-fn from_file(text: &str) -> Result<Vec<Shape>, Failure> {
+fn expression(text: &str) -> Result<Expression, String> {
+    text.parse().map_err(|error: rara::Error| error.to_string())
+}
+
+/// The clips of `FILE` or `FILE:NAME`. Names and paths may hold colons: a file that exists goes before a name.
+fn from_file(text: &str) -> Result<Vec<Expression>, Failure> {
     let is_file = |at: usize| Path::new(&text[..at]).is_file();
     let named = if is_file(text.len()) {
         None
@@ -76,24 +122,31 @@ fn from_file(text: &str) -> Result<Vec<Shape>, Failure> {
         Some(at) => (Path::new(&text[..at]), Some(&text[at + 1..])),
         None => (Path::new(text), None),
     };
-    let planes = load_planes(path)?;
+    let clips = load_clips(path)?;
     let Some(name) = name else {
-        return Ok(planes.into_iter().map(|p| p.plane.into()).collect());
+        return Ok(clips.into_iter().map(|named| named.clip).collect());
     };
-    let mut found: Vec<Shape> = planes
-        .iter()
-        .filter(|p| p.name == name)
-        .map(|p| p.plane.into())
-        .collect();
+    let of_name = clips.iter().filter(|named| named.name == name);
+    let mut found: Vec<Expression> = of_name.map(|named| named.clip.clone()).collect();
     if found.is_empty() {
-        let numbered = name.parse().ok().and_then(|n: usize| planes.get(n));
-        found.extend(numbered.map(|p| p.plane.into()));
+        let numbered = name.parse().ok().and_then(|n: usize| clips.get(n));
+        found.extend(numbered.map(|named| named.clip.clone()));
     }
     if found.is_empty() {
+        let near = clips.iter().map(|named| {
+            let likeness = strsim::jaro_winkler(&named.name.to_lowercase(), &name.to_lowercase());
+            (likeness, &named.name)
+        });
+        let nearest = near
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .filter(|(likeness, _)| *likeness > 0.7);
+        let meant = nearest.map_or(String::new(), |(_, name)| {
+            format!("; did you mean '{name}'?")
+        });
         return Err(Failure::Usage(format!(
-            "--clip-file {text}: {} has {} planes, and none of that name or number (from 0)",
+            "--clip-file {text}: {} has {} clips, and none of that name or number (from 0){meant}",
             path.display(),
-            planes.len()
+            clips.len()
         )));
     }
     Ok(found)
@@ -109,21 +162,16 @@ mod tests {
         let clip_file = Vec::new();
         ClipArgs {
             clip,
+            clip_expr: Vec::new(),
             clip_file,
+            save_clip: None,
             clip_op,
         }
         .meant()
     }
 
     fn keeps(clip: &Clip, x: f64, y: f64, z: f64) -> bool {
-        let mut inside = clip
-            .surfaces
-            .iter()
-            .map(|p| p.distance(DVec3::new(x, y, z)) >= 0.0);
-        match clip.op {
-            ClipOp::And => inside.all(|i| i),
-            ClipOp::Or => inside.any(|i| i),
-        }
+        clip.keeps(DVec3::new(x, y, z))
     }
 
     #[test]
@@ -161,12 +209,14 @@ mod tests {
     }
 
     #[test]
-    fn only_one_operation_joins_all_half_spaces() {
-        assert!(clip(&["box:0,0,0,1,1,1", "plane:1,0,0,0"], ClipOp::And).is_ok());
-        assert!(clip(&["!box:0,0,0,1,1,1", "plane:1,0,0,0"], ClipOp::Or).is_ok());
-        assert!(clip(&["!box:0,0,0,1,1,1", "plane:1,0,0,0"], ClipOp::And).is_err());
-        assert!(clip(&["box:0,0,0,1,1,1", "plane:1,0,0,0"], ClipOp::Or).is_err());
-        assert!(clip(&["box:0,0,0,1,1,1", "!box:0,0,0,2,2,2"], ClipOp::And).is_err());
+    fn shapes_of_any_kind_combine() {
+        let flat = clip(&["box:0,0,0,1,1,1", "plane:1,0,0,0"], ClipOp::And).unwrap();
+        assert!(flat.is_flat() && flat.surfaces.len() == 7);
+        let bitten = clip(&["!box:0,0,0,1,1,1", "plane:1,0,0,0"], ClipOp::And).unwrap();
+        assert!(keeps(&bitten, 1.5, 0.0, 0.0) && !keeps(&bitten, 0.5, 0.0, 0.0));
+        let both = clip(&["box:0,0,0,1,1,1", "sphere:3,0,0,1"], ClipOp::Or).unwrap();
+        assert!(keeps(&both, 0.5, 0.0, 0.0) && keeps(&both, 3.5, 0.0, 0.0));
+        assert!(!keeps(&both, 1.5, 0.0, 0.0));
     }
 
     #[test]
@@ -180,15 +230,12 @@ mod tests {
             "box:0,0,0,1,1",
             "box:0,0,0,1,0,1",
             "box:0,0,0,1,1,1,0,0,0,0",
-            "sphere:0,0,0,1",
-            "cylinder:0,0,0,1,1,1,1",
+            "sphere:0,0,0,0",
+            "cylinder:0,0,0,0,0,0,1",
             "cone:1",
             "",
         ] {
             assert!(shape(text).is_err(), "{text}");
         }
-        let many: Vec<&str> =
-            std::iter::repeat_n("plane:1,0,0,0", Clip::MAX_SURFACES + 1).collect();
-        assert!(clip(&many, ClipOp::And).is_err());
     }
 }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::output::{self, grouped, say};
-use super::scenes::SceneArgs;
+use super::scenes::{LoadedLayer, SceneArgs};
 use rara::reference::classify::{Bands, bands};
 use rara::scene::Bounds;
 
@@ -29,6 +29,7 @@ pub(super) struct Info {
 #[derive(Debug, Serialize)]
 struct Document {
     gaussians: usize,
+    layers: Vec<LayerFacts>,
     sh_degree: u32,
     repaired: u64,
     dropped: u64,
@@ -64,6 +65,28 @@ struct Spread {
     max: f32,
 }
 
+#[derive(Debug, Serialize)]
+struct LayerFacts {
+    name: String,
+    gaussians: usize,
+    opacity: f32,
+    visible: bool,
+    /// Whether it has a clip of its own.
+    clipped: bool,
+}
+
+impl LayerFacts {
+    fn of(layer: &LoadedLayer) -> Self {
+        Self {
+            name: layer.name.clone(),
+            gaussians: layer.gaussians.len(),
+            opacity: layer.state.opacity,
+            visible: layer.state.visible,
+            clipped: layer.clip.is_some(),
+        }
+    }
+}
+
 impl Spread {
     fn of(values: impl Iterator<Item = f32>) -> Self {
         let mut values: Vec<f32> = values.collect();
@@ -96,6 +119,7 @@ impl Info {
         let mut loaded = self.scenes.load()?;
         let (repaired, dropped) = (loaded.repaired, loaded.dropped);
         let notes = std::mem::take(&mut loaded.notes);
+        let layers = loaded.layers.iter().map(LayerFacts::of).collect();
         let gaussians = &loaded.merged();
         let sorted = |index: usize| {
             let mut axes = gaussians.scales()[index].to_array();
@@ -113,6 +137,7 @@ impl Info {
         let robust = Bounds::of(gaussians);
         let document = Document {
             gaussians: gaussians.len(),
+            layers,
             sh_degree: gaussians.sh_degree(),
             repaired,
             dropped,
@@ -149,6 +174,19 @@ fn print(document: &Document) {
         "gaussians      {}",
         grouped(document.gaussians as u64)
     ));
+    for layer in document.layers.iter().filter(|_| document.layers.len() > 1) {
+        let state = match (layer.visible, layer.clipped) {
+            (false, _) => ", hidden",
+            (true, true) => ", with a clip of its own",
+            (true, false) => "",
+        };
+        say(format_args!(
+            "  layer        {}: {}, opacity {}{state}",
+            layer.name,
+            grouped(layer.gaussians as u64),
+            layer.opacity
+        ));
+    }
     say(format_args!("SH degree      {}", document.sh_degree));
     say(format_args!(
         "repaired       {}",

@@ -22,6 +22,7 @@ mod precision;
 mod profile;
 mod render;
 mod report;
+mod scene_file;
 mod scenes;
 mod section;
 mod session;

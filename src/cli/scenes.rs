@@ -3,31 +3,69 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::{Gaussians, Layer};
+use rara::{Clip, Gaussians, Layer, LayerState};
 
 use super::failure::Failure;
 use super::output::{Progress, say};
+use super::scene_file::{self, LayerEntry};
 use rara::scene;
 
 /// The flags that name the scene.
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
-    /// Scene files (3DGS .ply); several are the layers of one scene
+    /// Scene files (3DGS .ply); several are the layers of one scene, each called by its file's name or as in NAME=FILE. A
+    /// .json file lists layers: {"layers":[{"path":"skin.ply","name":"skin","opacity":0.5,"visible":true,
+    /// "position":[x,y,z],"rotation":[w,x,y,z],"scale":s,"clip":{...} or "clip_expr":"..."}]}
     #[arg(value_name = "SCENE", required = true)]
     files: Vec<PathBuf>,
+    /// The clip of one layer in place of the frame's (repeatable): an expression as for --clip-expr, or whole for a layer
+    /// that no clip cuts
+    #[arg(long, value_name = "NAME=EXPRESSION")]
+    layer_clip: Vec<String>,
+    /// Leaves a layer out of the picture (repeatable)
+    #[arg(long, value_name = "NAME")]
+    hide: Vec<String>,
 }
 
 impl SceneArgs {
     /// Reads the files.
     pub(super) fn load(&self) -> Result<Loaded, Failure> {
-        load(&self.files)
+        let mut loaded = load(&self.files)?;
+        for text in &self.layer_clip {
+            let Some((name, region)) = text.split_once('=') else {
+                return Err(Failure::Usage(format!(
+                    "--layer-clip {text}: expected NAME=EXPRESSION, as in skin=plane:1,0,0,0"
+                )));
+            };
+            let clip = scene_file::region(region);
+            let clip =
+                clip.map_err(|error| Failure::Usage(format!("--layer-clip {name}: {error}")))?;
+            for layer in loaded.named("--layer-clip", name)? {
+                layer.clip = Some(clip.clone());
+            }
+        }
+        for name in &self.hide {
+            for layer in loaded.named("--hide", name)? {
+                layer.state = layer.state.visible(false);
+            }
+        }
+        Ok(loaded)
     }
+}
+
+/// A layer that has been read.
+pub(super) struct LoadedLayer {
+    /// What it is called.
+    pub(super) name: String,
+    pub(super) gaussians: Gaussians,
+    pub(super) state: LayerState,
+    /// Its own clip.
+    pub(super) clip: Option<Clip>,
 }
 
 /// One or more scene files.
 pub(super) struct Loaded {
-    /// The Gaussians of each file, and the file's name without its ending.
-    pub(super) files: Vec<(String, Gaussians)>,
+    pub(super) layers: Vec<LoadedLayer>,
     /// Gaussians that had a field put right.
     pub(super) repaired: u64,
     /// Gaussians that could not be used.
@@ -40,26 +78,52 @@ impl Loaded {
     /// Gaussians that come from no file.
     pub(super) fn made_up(name: &str, gaussians: Gaussians) -> Self {
         Self {
-            files: vec![(name.to_owned(), gaussians)],
+            layers: vec![LoadedLayer {
+                name: name.to_owned(),
+                gaussians,
+                state: LayerState::default(),
+                clip: None,
+            }],
             repaired: 0,
             dropped: 0,
             notes: Vec::new(),
         }
     }
 
-    /// A scene with a layer for each file.
+    /// The scene of the layers.
     pub(super) fn scene(&self) -> rara::Scene<'_> {
-        let files = self.files.iter();
-        files
-            .map(|(name, gaussians)| Layer::new(name, gaussians))
-            .collect()
+        let layers = self.layers.iter().map(|layer| {
+            let made = Layer::new(&layer.name, &layer.gaussians).with(layer.state);
+            match &layer.clip {
+                Some(clip) => made.clipped(clip.clone()),
+                None => made,
+            }
+        });
+        layers.collect()
+    }
+
+    /// The layers of a name, which `flag` asks for.
+    fn named(&mut self, flag: &str, name: &str) -> Result<Vec<&mut LoadedLayer>, Failure> {
+        let names: Vec<_> = self.layers.iter().map(|layer| layer.name.clone()).collect();
+        let found: Vec<_> = self
+            .layers
+            .iter_mut()
+            .filter(|layer| layer.name == name)
+            .collect();
+        match found.is_empty() {
+            true => Err(Failure::Usage(format!(
+                "{flag}: no layer is called '{name}'; there are {}",
+                names.join(", ")
+            ))),
+            false => Ok(found),
+        }
     }
 
     /// All files' Gaussians as one set.
     pub(super) fn merged(self) -> Gaussians {
-        let mut files = self.files.into_iter().map(|(_, gaussians)| gaussians);
-        let mut merged = files.next().unwrap_or_default();
-        files.for_each(|more| merged.append(&more));
+        let mut layers = self.layers.into_iter().map(|layer| layer.gaussians);
+        let mut merged = layers.next().unwrap_or_default();
+        layers.for_each(|more| merged.append(&more));
         merged
     }
 }
@@ -67,13 +131,23 @@ impl Loaded {
 /// Reads the files in order, and prints what had to be repaired.
 pub(super) fn load(paths: &[PathBuf]) -> Result<Loaded, Failure> {
     let mut all = Loaded {
-        files: Vec::new(),
+        layers: Vec::new(),
         repaired: 0,
         dropped: 0,
         notes: Vec::new(),
     };
+    let mut entries = Vec::new();
     for path in paths {
-        let loaded = load_one(path)?;
+        entries.extend(named_file(path)?);
+    }
+    for LayerEntry {
+        name,
+        path,
+        state,
+        clip,
+    } in entries
+    {
+        let loaded = load_one(&path)?;
         all.repaired += loaded.report.repaired;
         all.dropped += loaded.report.dropped;
         let lines = loaded.report.lines();
@@ -82,14 +156,39 @@ pub(super) fn load(paths: &[PathBuf]) -> Result<Loaded, Failure> {
                 .into_iter()
                 .map(|line| format!("{}: {line}", path.display())),
         );
-        let name = path.file_stem().unwrap_or_default();
-        let name = name.to_string_lossy().into_owned();
-        all.files.push((name, loaded.gaussians));
+        all.layers.push(LoadedLayer {
+            name,
+            gaussians: loaded.gaussians,
+            state,
+            clip,
+        });
     }
     for note in &all.notes {
         say(format_args!("note: {note}"));
     }
     Ok(all)
+}
+
+/// The layers of `FILE` or `NAME=FILE`, of which the first may be a list of layers. A file that exists goes before a name.
+fn named_file(typed: &Path) -> Result<Vec<LayerEntry>, Failure> {
+    let is_list = |path: &Path| path.extension().is_some_and(|ending| ending == "json");
+    let text = typed.to_string_lossy();
+    let (name, path) = match text.split_once('=') {
+        Some((name, path)) if !typed.exists() && !name.is_empty() => (Some(name), Path::new(path)),
+        _ => (None, typed),
+    };
+    if is_list(path) {
+        return match name {
+            Some(name) => Err(Failure::Usage(format!(
+                "{name}={}: a list of layers has names of its own; leave this one out",
+                path.display()
+            ))),
+            None => Ok(scene_file::read(path)?),
+        };
+    }
+    let mut entry = LayerEntry::of(path);
+    entry.name = name.map_or(entry.name, str::to_owned);
+    Ok(vec![entry])
 }
 
 fn load_one(path: &Path) -> rara::Result<scene::Loaded> {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
+use rara::clip::Expression;
 use rara::{Clip, Plane, Settings, Shape};
 
 use super::camera::Views;
@@ -58,11 +59,12 @@ pub(super) struct Sweep {
 impl Sweep {
     pub(super) fn run(self) -> Result<(), Failure> {
         let settings = self.frame.settings.meant()?;
-        let plane = Plane::new(self.clip_normal, 0.0).map_err(Failure::usage)?;
+        let plane: Shape = Plane::new(self.clip_normal, 0.0)
+            .map_err(Failure::usage)?
+            .into();
         // The shapes that stand still, and the one that moves.
-        let mut shapes = self.frame.clip.shapes()?;
-        shapes.push(plane.into());
-        Clip::of_shapes(&shapes, self.frame.clip.op()).map_err(Failure::usage)?;
+        let mut shapes = self.frame.clip.expressions()?;
+        shapes.push(Expression::Shape(plane));
         self.frame.camera.single("a sweep")?;
         let views = self.frame.camera.meant()?;
         if let Some(folder) = &self.output {
@@ -79,7 +81,7 @@ impl Sweep {
         &self,
         profile: &Profile,
         views: Views,
-        mut shapes: Vec<Shape>,
+        mut shapes: Vec<Expression>,
         settings: &Settings,
     ) -> Result<(), Failure> {
         let normal = Plane::new(self.clip_normal, 0.0)?.normal();
@@ -97,8 +99,8 @@ impl Sweep {
             progress.update(index.into(), self.frames.into());
             let plane = Plane::new(normal, -position(range, index, self.frames))?;
             shapes.pop();
-            shapes.push(plane.into());
-            let clip = Clip::of_shapes(&shapes, op)?;
+            shapes.push(Expression::Shape(Shape::from(plane)));
+            let clip = Clip::joined(shapes.iter().map(Expression::clip), op);
             frames.push(if self.independent || self.repeat > 1 {
                 session.frame(&camera, &clip, settings, self.repeat)?
             } else {

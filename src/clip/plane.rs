@@ -22,8 +22,14 @@ impl Plane {
                 normal.x, normal.y, normal.z
             )));
         }
-        let scaled = normal / largest;
-        let length = scaled.length();
+        // A unit vector stays as it is, so that what is written of a plane is read as the same plane.
+        let is_unit = (normal.length_squared() - 1.0).abs() <= 4.0 * f64::EPSILON;
+        let (scaled, largest) = if is_unit {
+            (normal, 1.0)
+        } else {
+            (normal / largest, largest)
+        };
+        let length = if is_unit { 1.0 } else { scaled.length() };
         let offset = offset / largest / length;
         if !offset.is_finite() {
             return Err(Error::Invalid(

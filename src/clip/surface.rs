@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Plane;
+use super::{Plane, Quadric};
 
 /// A surface that divides space into what it keeps and what it does not.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -10,6 +10,8 @@ use super::Plane;
 pub enum Surface {
     /// Keeps a half-space.
     Plane(Plane),
+    /// Keeps one side of a quadric.
+    Quadric(Quadric),
 }
 
 impl Surface {
@@ -18,14 +20,16 @@ impl Surface {
     pub fn complement(&self) -> Self {
         match self {
             Self::Plane(plane) => plane.flipped().into(),
+            Self::Quadric(quadric) => quadric.flipped().into(),
         }
     }
 
     /// A measure of how far a point is from the surface, world units: positive where the surface keeps the point. For a
-    /// plane it is the signed distance.
+    /// plane it is the signed distance; for a quadric it is close to that near the surface.
     pub fn distance(&self, point: DVec3) -> f64 {
         match self {
             Self::Plane(plane) => plane.distance(point),
+            Self::Quadric(quadric) => quadric.distance(point),
         }
     }
 
@@ -33,6 +37,7 @@ impl Surface {
     pub fn as_plane(&self) -> Option<Plane> {
         match *self {
             Self::Plane(plane) => Some(plane),
+            Self::Quadric(_) => None,
         }
     }
 }
@@ -40,5 +45,11 @@ impl Surface {
 impl From<Plane> for Surface {
     fn from(plane: Plane) -> Self {
         Self::Plane(plane)
+    }
+}
+
+impl From<Quadric> for Surface {
+    fn from(quadric: Quadric) -> Self {
+        Self::Quadric(quadric)
     }
 }

@@ -64,6 +64,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat_depth::P
         boxes: false,
         clip_mode: weight.mode,
         several: weight.several,
+        combined: weight.combined,
         decay: weight.decay,
         miss: weight.miss,
         phi_form: weight.phi,

@@ -28,17 +28,21 @@ macro_rules! layered {
 }
 
 // Without a clip the shaders hold no clip code.
-layered!(blocks, clip: Plan::view_is_clipped);
-layered!(classify, clip: Plan::view_is_clipped);
-layered!(clip_blocks);
-layered!(clip);
+layered!(blocks, clip: Plan::view_is_clipped, combined: is_combined);
+layered!(classify, clip: Plan::view_is_clipped, combined: is_combined);
+layered!(clip_blocks, combined: is_combined);
+layered!(clip, combined: is_combined);
 layered!(compact_scan);
 layered!(compact);
-layered!(cutoff);
-layered!(depth);
-layered!(reclip_blocks);
-layered!(reclip);
+layered!(cutoff, combined: is_combined);
+layered!(depth, combined: is_combined);
+layered!(reclip_blocks, combined: is_combined);
+layered!(reclip, combined: is_combined);
 layered!(recut, tiles: Plan::is_tiled, quads: Plan::needs_quads);
+
+fn is_combined(plan: &Plan) -> bool {
+    plan.layers.are_combined()
+}
 
 /// The layers and their surfaces. A copy has the same ones.
 #[derive(Debug, Clone)]
@@ -76,7 +80,9 @@ impl Layers {
                     let clip = layer.clip().unwrap_or(clip);
                     data.region.op = region::op(clip);
                     data.region.first_surface = surfaces.len() as u32;
-                    surfaces.extend(region::surfaces(&clip.in_scene(placement)));
+                    let corners = layer.corners.map(|corner| corner.as_dvec3());
+                    surfaces.extend(region::surfaces(&clip.in_scene(placement), corners));
+                    data.region.combined = clip.is_general().into();
                     data.region.surface_count = surfaces.len() as u32 - data.region.first_surface;
                 }
             }
@@ -101,6 +107,11 @@ impl Layers {
     pub(crate) fn most_surfaces(&self) -> u32 {
         let counts = self.layers().iter().map(|layer| layer.region.surface_count);
         counts.max().unwrap_or(0)
+    }
+
+    /// True when splats of a layer are weighed as combinations of surfaces that may bend.
+    pub(crate) fn are_combined(&self) -> bool {
+        self.layers().iter().any(|layer| layer.region.combined != 0)
     }
 
     /// True when other layers hold and show the same.

@@ -106,7 +106,7 @@ impl Plan {
         let own = visible.filter_map(SceneLayer::clip);
         let region = region_data(own.chain([clip]), settings)?;
         let layers = Layers::new(scene.layers, camera, clip, &region);
-        let weight = weight_data(&scene, &region, layers.most_surfaces(), settings)?;
+        let weight = weight_data(&scene, &region, &layers, settings)?;
         let boxes = layers::boxes(scene.layers, camera);
         let keys = DepthKeys::new(boxes, settings.precision.key_bits)?;
         let degree = settings.sh_degree.unwrap_or(scene.sh_degree);
@@ -236,7 +236,7 @@ fn cuts(mode: u32) -> bool {
 fn weight_data(
     scene: &SceneFacts<'_>,
     region: &types::RegionData,
-    most_surfaces: u32,
+    layers: &Layers,
     settings: &Settings,
 ) -> Result<WeightData> {
     if !(settings.sigma.is_finite() && settings.sigma > 0.0) {
@@ -252,8 +252,13 @@ fn weight_data(
         )));
     }
     // A record is a header of three, the surfaces, and the eye's own plane where the camera may be inside a splat.
+    let most_surfaces = layers.most_surfaces();
+    let vectors = match layers.are_combined() {
+        true => types::ENTRY_VECTORS * most_surfaces.min(limits::MAX_CUTTING),
+        false => most_surfaces,
+    };
     let cut_stride = if cuts(region.mode) {
-        3 + most_surfaces + 1
+        3 + vectors + 1
     } else {
         0
     };

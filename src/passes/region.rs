@@ -1,10 +1,11 @@
 //! The regions that the clip keeps, as the shaders read them: what all layers' regions have in common, and the surfaces of
 //! one.
 
-use std::cmp::Ordering;
+use glam::DVec3;
 
-use crate::clip::{Clip, ClipOp, Surface};
-use crate::error::{Error, Result};
+use crate::clip::postfix::{order, postfix};
+use crate::clip::{Clip, ClipOp, Plane, Quadric, Surface};
+use crate::error::Result;
 use crate::settings::{Mode, Settings};
 use crate::types::{self, RegionData};
 
@@ -18,16 +19,14 @@ pub(super) fn region_data<'a>(
     clips: impl Iterator<Item = &'a Clip>,
     settings: &Settings,
 ) -> Result<RegionData> {
-    let have = clips.map(|clip| clip.surfaces.len()).max().unwrap_or(0);
-    let most = Clip::MAX_SURFACES;
-    if have > most {
-        return Err(Error::Invalid(format!(
-            "a clip of {have} surfaces is beyond the {most} supported; use fewer"
-        )));
+    let mut clipped = false;
+    for clip in clips {
+        clip.check()?;
+        clipped |= !clip.is_everything();
     }
     let mut region: RegionData = bytemuck::Zeroable::zeroed();
     region.mode = match settings.mode {
-        _ if have == 0 => types::MODE_NONE,
+        _ if !clipped => types::MODE_NONE,
         Mode::None => types::MODE_NONE,
         Mode::Hard => types::MODE_HARD,
         Mode::Rara => types::MODE_RARA,
@@ -45,57 +44,85 @@ pub(super) fn region_data<'a>(
 /// How the surfaces of a clip combine, `OP_*`. A clip without any keeps everything, as an intersection of none does.
 pub(super) fn op(clip: &Clip) -> u32 {
     match clip.op {
+        _ if !clip.is_flat() => types::OP_PARTS,
         ClipOp::Or if !clip.surfaces.is_empty() => types::OP_OR,
         ClipOp::And | ClipOp::Or => types::OP_AND,
     }
 }
 
-/// The surfaces of a clip, which is given in the space of the layer that it cuts. There are no repetitions, since cutting
-/// twice is cutting once, and the order is their own, so that no bit of a picture depends on the order in which they are
-/// given.
-pub(super) fn surfaces(clip: &Clip) -> impl Iterator<Item = types::SurfaceData> {
-    let mut surfaces: Vec<_> = clip.surfaces.iter().map(Numbers::of).collect();
-    surfaces.sort_by(Numbers::order);
-    surfaces.dedup();
-    surfaces.into_iter().map(Numbers::packed)
+/// The surfaces of a clip, which is given in the space of the layer that it cuts, whose centres lie between two corners.
+/// There are no repetitions, since cutting twice is cutting once, and the order is their own, so that no bit of a picture
+/// depends on the order in which they are given.
+pub(super) fn surfaces(clip: &Clip, corners: [DVec3; 2]) -> Vec<types::SurfaceData> {
+    if clip.is_flat() {
+        let mut surfaces = clip.surfaces.clone();
+        surfaces.sort_by(order);
+        surfaces.dedup();
+        // Shaders that weigh combinations read the joins of flat lists too.
+        let joins = [clip.op];
+        let numbered = surfaces.iter().enumerate();
+        let packed = numbered
+            .map(|(number, surface)| packed(surface, &joins[..usize::from(number > 0)], corners));
+        return packed.collect();
+    }
+    let steps = postfix(clip);
+    steps
+        .iter()
+        .map(|step| packed(&step.surface, &step.joins, corners))
+        .collect()
 }
 
-/// The numbers of a surface, in which it differs from others.
-#[derive(Clone, Copy, PartialEq)]
-struct Numbers {
-    /// `SURFACE_*`.
-    kind: u32,
-    /// As many as a shape has; none has more so far.
-    values: [f64; 4],
+fn packed(surface: &Surface, joins: &[ClipOp], corners: [DVec3; 2]) -> types::SurfaceData {
+    let mut data = match surface {
+        Surface::Plane(plane) => plane_data(plane),
+        Surface::Quadric(quadric) => quadric_data(quadric, corners),
+    };
+    data.joins = joins.len() as u32;
+    for (place, op) in joins.iter().enumerate() {
+        data.joins |= u32::from(*op == ClipOp::Or) << (types::JOIN_SHIFT as usize + place);
+    }
+    data
 }
 
-impl Numbers {
-    fn of(surface: &Surface) -> Self {
-        match surface {
-            Surface::Plane(plane) => Self {
-                kind: types::SURFACE_PLANE,
-                values: plane.normal().extend(plane.offset()).to_array(),
-            },
-        }
+fn plane_data(plane: &Plane) -> types::SurfaceData {
+    let [high, low] = halves(plane.normal().extend(plane.offset()).to_array());
+    types::SurfaceData {
+        high,
+        low,
+        kind: types::SURFACE_PLANE,
+        ..bytemuck::Zeroable::zeroed()
     }
+}
 
-    fn order(&self, other: &Self) -> Ordering {
-        let pairs = self.values.into_iter().zip(other.values);
-        pairs.fold(self.kind.cmp(&other.kind), |order, (a, b)| {
-            order.then((a + 0.0).total_cmp(&(b + 0.0))) // -0 is 0
-        })
+/// The quadric about a point near the splats that it can cut: its own centre where that lies among them, else the nearest
+/// point of the box around their centres. There its terms are of the size of the distances that count.
+fn quadric_data(quadric: &Quadric, [low, high]: [DVec3; 2]) -> types::SurfaceData {
+    let anchor = match low.cmple(high).all() {
+        true => quadric.anchor().clamp(low, high),
+        false => quadric.anchor(),
+    };
+    let near = quadric.anchored(anchor);
+    let [high, low] = halves(near.linear().extend(near.constant()).to_array());
+    let [anchor, anchor_low] = halves(anchor.extend(0.0).to_array());
+    let [x, y, z] = near.matrix().to_cols_array_2d();
+    let [diagonal, _] = halves([x[0], y[1], z[2], 0.0]);
+    let [across, _] = halves([x[1], x[2], y[2], 0.0]);
+    types::SurfaceData {
+        high,
+        low,
+        anchor,
+        anchor_low,
+        diagonal,
+        across,
+        kind: types::SURFACE_QUADRIC,
+        ..bytemuck::Zeroable::zeroed()
     }
+}
 
-    /// Stores each number as two floats.
-    fn packed(self) -> types::SurfaceData {
-        let values = self.values.map(|v| v.clamp(-FARTHEST, FARTHEST));
-        let high = values.map(|v| v as f32);
-        let low = std::array::from_fn(|i| (values[i] - f64::from(high[i])) as f32);
-        types::SurfaceData {
-            high,
-            low,
-            kind: self.kind,
-            pad: [0; 3],
-        }
-    }
+/// Each number as two floats.
+fn halves(values: [f64; 4]) -> [[f32; 4]; 2] {
+    let values = values.map(|v| v.clamp(-FARTHEST, FARTHEST));
+    let high = values.map(|v| v as f32);
+    let low = std::array::from_fn(|i| (values[i] - f64::from(high[i])) as f32);
+    [high, low]
 }

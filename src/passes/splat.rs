@@ -28,6 +28,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program
     let constants = splat::Constants {
         clip_mode: weight.mode,
         several: weight.several,
+        combined: weight.combined,
         decay: weight.decay,
         miss: weight.miss,
         phi_form: weight.phi,

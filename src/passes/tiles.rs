@@ -133,6 +133,7 @@ fn kernel(plan: &Plan, list: List) -> Kernel<tiles::Program> {
     let constants = tiles::Constants {
         clip_mode: weight.mode,
         several: weight.several && !is_one_of_two,
+        combined: weight.combined && !is_one_of_two,
         decay: weight.decay,
         miss: weight.miss,
         phi_form: weight.phi,

@@ -41,6 +41,8 @@ pub(crate) struct Weight {
     pub(crate) mode: u32,
     /// True when a splat may be cut by more than one surface.
     pub(crate) several: bool,
+    /// True when splats may be weighed as combinations of surfaces that bend.
+    pub(crate) combined: bool,
     /// `DECAY_*`.
     pub(crate) decay: u32,
     /// `MISS_*`.
@@ -56,7 +58,8 @@ impl Weight {
         let (cuts, mode, laws) = (plan.cuts(), plan.mode(), plan.laws);
         Self {
             mode: when(cuts, mode),
-            several: cuts && plan.layers.most_surfaces() > 1,
+            several: cuts && (plan.layers.most_surfaces() > 1 || plan.layers.are_combined()),
+            combined: cuts && plan.layers.are_combined(),
             decay: when(cuts, laws.decay),
             miss: when(cuts && mode == types::MODE_RARA, laws.miss),
             phi: when(cuts && mode == types::MODE_EXACT, laws.phi),

@@ -90,13 +90,18 @@ impl<T: Real> Chord<T> {
             .half_spaces
             .iter()
             .map(|h| h.distance(peak) >= T::zero());
-        let is_kept = match self.miss {
-            Miss::Keep => true,
-            Miss::Drop => false,
-            Miss::Peak => keeps(self.op, kept),
-        };
-        if is_kept { T::one() } else { T::zero() }
+        missed_share(self.miss, keeps(self.op, kept))
     }
+}
+
+/// The share of a pixel whose ray has no chord, by whether the region keeps the ray's densest point.
+pub(super) fn missed_share<T: Real>(miss: Miss, keeps_peak: bool) -> T {
+    let is_kept = match miss {
+        Miss::Keep => true,
+        Miss::Drop => false,
+        Miss::Peak => keeps_peak,
+    };
+    if is_kept { T::one() } else { T::zero() }
 }
 
 impl<T: Real> OnRay<T> {

@@ -11,7 +11,9 @@ use super::clip;
 use super::cutoff::is_beam;
 use super::footprint::Footprint;
 use super::real::{Real, vec3};
-use super::region::{HalfSpace, Side, gaussian_side, surface_gaussian_side, surface_half_space};
+use super::region::{
+    HalfSpace, Reduced, Side, gaussian_side, reduced, surface_gaussian_side, surface_half_space,
+};
 use super::view::View;
 use crate::limits::{ALPHA_MIN_INVERSE, BEYOND_EYE, WIDENING_REST};
 use crate::{Clip, Gaussians, Mode, Settings, Surface};
@@ -51,15 +53,44 @@ pub fn cutting<T: Real>(
     clip: &Clip,
     settings: &Settings,
 ) -> Vec<HalfSpace<T>> {
+    let cutting = cutting_surfaces(scene, index, footprint, clip, settings);
+    let axes = &footprint.axes;
+    let half_spaces = cutting
+        .iter()
+        .map(|s| surface_half_space(s, scene, index, axes));
+    half_spaces.collect()
+}
+
+/// The surfaces of the region and its parts that cut a Gaussian; none where its side is not [`Side::Cutoff`].
+pub fn cutting_surfaces<T: Real>(
+    scene: &Gaussians,
+    index: usize,
+    footprint: &Footprint<T>,
+    clip: &Clip,
+    settings: &Settings,
+) -> Vec<Surface> {
+    if side(scene, index, footprint, clip, settings) != Side::Cutoff {
+        return Vec::new();
+    }
     let deviations = band(scene, index, footprint, settings);
     let axes = &footprint.axes;
-    let cuts = |surface: &&Surface| {
+    let mut surfaces = clip.all_surfaces();
+    surfaces.retain(|surface| {
         surface_gaussian_side(surface, scene, index, axes, deviations, settings) == Side::Cutoff
-    };
-    let cutting = clip.surfaces.iter().filter(cuts);
-    cutting
-        .map(|surface| surface_half_space(surface, scene, index, axes))
-        .collect()
+    });
+    surfaces
+}
+
+/// What is left of the region of one Gaussian in view, whose side is [`Side::Cutoff`].
+pub fn left<T: Real>(
+    scene: &Gaussians,
+    index: usize,
+    footprint: &Footprint<T>,
+    clip: &Clip,
+    settings: &Settings,
+) -> Reduced<T> {
+    let deviations = band(scene, index, footprint, settings);
+    reduced(scene, index, &footprint.axes, deviations, clip, settings)
 }
 
 /// Half width of the band in which a surface cuts, standard deviations, with what perspective adds to it.

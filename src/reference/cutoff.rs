@@ -1,11 +1,12 @@
 //! Stage `cutoff`: how a cut splat's weight varies over its pixels.
 
 use super::chord::Chord;
-use super::classify::{cutting, side};
-use super::exact::{AffinePlane, Beam};
+use super::classify::{cutting, left, side};
+use super::combined::Combined;
+use super::exact::{AffinePlane, Beam, holds_the_eye};
 use super::footprint::Footprint;
-use super::real::Real;
-use super::region::{self, HalfSpace, Side};
+use super::real::{Real, Vec3};
+use super::region::{self, Combination, HalfSpace, Reduced, Side};
 use super::view::View;
 use crate::{Clip, ClipOp, ExactForm, Gaussians, Mode, Projection, Settings};
 
@@ -23,6 +24,10 @@ pub enum Cut<T> {
     Beam(Beam<T>),
     /// The paper's length ratio.
     Chord(Chord<T>),
+    /// Either of surfaces that bend or combine in some other way than a list of planes does.
+    Combined(Combined<T>),
+    /// Less than the region's own test sees: all or nothing is kept.
+    Decided(bool),
 }
 
 impl<T: Real> Cut<T> {
@@ -34,6 +39,9 @@ impl<T: Real> Cut<T> {
             }
             Cut::Beam(beam) => beam.weight(dx, dy),
             Cut::Chord(chord) => chord.weight(dx, dy),
+            Cut::Combined(combined) => combined.weight(dx, dy),
+            Cut::Decided(true) => T::one(),
+            Cut::Decided(false) => T::zero(),
         }
     }
 }
@@ -50,8 +58,66 @@ pub fn cutoff<T: Real>(
     if side(scene, index, footprint, clip, settings) != Side::Cutoff {
         return None;
     }
-    let half_spaces = cutting(scene, index, footprint, clip, settings);
-    Some(match settings.mode {
+    if !clip.is_general() {
+        let half_spaces = cutting(scene, index, footprint, clip, settings);
+        return Some(of_planes(
+            scene,
+            index,
+            footprint,
+            view,
+            half_spaces,
+            clip.op,
+            settings,
+        ));
+    }
+    let reduced = left(scene, index, footprint, clip, settings);
+    let op = reduced.as_planes();
+    Some(match (reduced, op) {
+        (Reduced::Decided(kept), _) => Cut::Decided(kept),
+        (Reduced::Cut(surfaces), Some(op)) => {
+            let half_spaces = surfaces.iter().map(|(surface, _)| surface.half_space);
+            let half_spaces = half_spaces.collect();
+            of_planes(scene, index, footprint, view, half_spaces, op, settings)
+        }
+        (Reduced::Cut(surfaces), None) => {
+            let is_chord = settings.mode == Mode::Rara;
+            let follows_rays = is_chord || is_beam(scene, index, footprint, settings);
+            let front = HalfSpace {
+                normal: footprint.rows[2],
+                offset: footprint.view_centre.z,
+            };
+            let has_front = match is_chord {
+                true => footprint.projection == Projection::Perspective,
+                false => follows_rays && holds_the_eye(footprint),
+            };
+            Cut::Combined(Combined {
+                gradients: match follows_rays {
+                    true => footprint.true_gradients(view),
+                    false => footprint.gradients,
+                },
+                lean: match follows_rays {
+                    true => footprint.lean(),
+                    false => Vec3::zero(),
+                },
+                surfaces: Combination(surfaces),
+                front: has_front.then_some(front),
+                chord: is_chord.then(|| (T::of(f64::from(settings.sigma)), settings.miss)),
+            })
+        }
+    })
+}
+
+/// The record of a splat that only planes cut.
+fn of_planes<T: Real>(
+    scene: &Gaussians,
+    index: usize,
+    footprint: &Footprint<T>,
+    view: &View<T>,
+    half_spaces: Vec<HalfSpace<T>>,
+    op: ClipOp,
+    settings: &Settings,
+) -> Cut<T> {
+    match settings.mode {
         Mode::Rara => Cut::Chord(Chord {
             gradients: footprint.true_gradients(view),
             lean: footprint.lean(),
@@ -60,21 +126,21 @@ pub fn cutoff<T: Real>(
                 offset: footprint.view_centre.z,
             }),
             half_spaces,
-            op: clip.op,
+            op,
             sigma: T::of(f64::from(settings.sigma)),
             miss: settings.miss,
         }),
         _ if is_beam(scene, index, footprint, settings) => {
-            Cut::Beam(Beam::new(footprint, view, half_spaces, clip.op))
+            Cut::Beam(Beam::new(footprint, view, half_spaces, op))
         }
         _ => Cut::Affine {
             planes: half_spaces
                 .iter()
                 .map(|half_space| AffinePlane::new(footprint.gradients, half_space))
                 .collect(),
-            op: clip.op,
+            op,
         },
-    })
+    }
 }
 
 /// True when a splat is too large or too far off the axis for the affine form. An eye within the splat makes it too

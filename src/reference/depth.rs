@@ -15,6 +15,7 @@
 //! two where both are thresholds in one variable, as on a ray without low-pass. A union leaves out what its complements
 //! keep in common, such an interval; it keeps the rest of the whole's mean.
 
+use super::classify::cutting_surfaces;
 use super::footprint::{Footprint, determinant, scaled};
 use super::real::{Real, Vec3};
 use super::region::surface_half_space;
@@ -104,13 +105,21 @@ impl<T: Real> SplatDepth<T> {
             near: open,
             op: clip.op,
         };
-        if clip.surfaces.is_empty() || !matches!(settings.mode, Mode::Rara | Mode::Exact) {
+        let surfaces = match clip.is_flat() {
+            true => clip.surfaces.clone(),
+            false => cutting_surfaces(scene, index, footprint, clip, settings),
+        };
+        if surfaces.is_empty() || !matches!(settings.mode, Mode::Rara | Mode::Exact) {
             depth.op = ClipOp::And;
             return depth;
         }
-        for surface in &clip.surfaces {
+        if !clip.is_flat() {
+            // What cuts a splat of a region with parts is taken for an intersection.
+            depth.op = ClipOp::And;
+        }
+        for surface in &surfaces {
             let half_space = surface_half_space(surface, scene, index, &footprint.axes);
-            let half_space = match clip.op {
+            let half_space = match depth.op {
                 ClipOp::And => half_space,
                 ClipOp::Or => half_space.complement(),
             };

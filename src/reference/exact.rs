@@ -198,7 +198,7 @@ fn in_front<T: Real>(op: ClipOp, planes: impl Iterator<Item = Threshold<T>>, fro
 }
 
 /// `Phi(z) / Phi(front)`, at most 1, however little of the normal distribution is left.
-fn tail_ratio<T: Real>(z: T, front: T) -> T {
+pub(super) fn tail_ratio<T: Real>(z: T, front: T) -> T {
     if z >= front {
         return T::one();
     }

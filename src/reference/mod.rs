@@ -9,6 +9,7 @@ pub mod bin;
 pub mod chord;
 pub mod classify;
 pub mod clip;
+mod combined;
 pub mod compact;
 pub mod cutoff;
 pub mod depth;

@@ -104,6 +104,11 @@ impl<T: Real> Correlation<T> {
     }
 }
 
+/// The chance that two variables are positive.
+pub fn both<T: Real>(a: &Threshold<T>, b: &Threshold<T>) -> T {
+    both_positive(a.z, b.z, Correlation::of(a, b))
+}
+
 /// The chance that all variables are positive.
 pub fn orthant<T: Real>(thresholds: impl Iterator<Item = Threshold<T>>) -> T {
     let (zero, one) = (T::zero(), T::one());

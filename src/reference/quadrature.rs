@@ -10,7 +10,7 @@
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
-use super::region::{keeps, surface_crossings};
+use super::region::surface_crossings;
 use crate::limits::LOW_PASS;
 use crate::{Camera, Clip, Gaussians, Placement, Projection};
 
@@ -254,8 +254,10 @@ impl Pixel {
         if start >= end {
             return [0.0; 3];
         }
-        let surfaces = clip.surfaces.iter();
-        let crossings = surfaces.flat_map(|s| surface_crossings(s, ray.start, ray.step));
+        let surfaces = clip.all_surfaces();
+        let crossings = surfaces
+            .iter()
+            .flat_map(|s| surface_crossings(s, ray.start, ray.step));
         let mut ends: Vec<_> = crossings
             .filter(|t| *t > start && *t < end)
             .chain([start, end])
@@ -280,8 +282,7 @@ impl Pixel {
                 depths += mass * t;
             }
             let point = ray.start + ray.step * centre;
-            let kept = clip.surfaces.iter().map(|s| s.distance(point) >= 0.0);
-            let seen = if keeps(clip.op, kept) { 1.0 } else { 0.0 };
+            let seen = if clip.keeps(point) { 1.0 } else { 0.0 };
             for (total, part) in sums.iter_mut().zip([seen * sum, sum, seen * depths]) {
                 *total += part;
             }

@@ -59,14 +59,12 @@ impl LayerState {
 
 /// That a frame can have the clip of a layer.
 pub(crate) fn check_clip(name: &str, clip: Option<&Clip>) -> Result<()> {
-    let have = clip.map_or(0, |clip| clip.surfaces.len());
-    if have <= Clip::MAX_SURFACES {
-        return Ok(());
+    match clip.map(Clip::check) {
+        Some(Err(error)) => Err(Error::Invalid(format!(
+            "the clip of layer '{name}': {error}"
+        ))),
+        _ => Ok(()),
     }
-    Err(Error::Invalid(format!(
-        "the clip of layer '{name}' has {have} surfaces, and a clip has at most {}; use fewer",
-        Clip::MAX_SURFACES
-    )))
 }
 
 /// A layer of a scene that is to be uploaded.

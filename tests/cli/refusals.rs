@@ -43,7 +43,11 @@ fn render_takes_the_flags_that_scripts_rely_on() {
         "--camera",
         "--size",
         "--clip",
+        "--clip-expr",
         "--clip-file",
+        "--save-clip",
+        "--layer-clip",
+        "--hide",
         "--clip-op",
         "--mode",
         "--decay",
@@ -179,25 +183,22 @@ fn a_wrong_command_line_is_status_2_and_one_line() {
             "render x.ply -o a.png --clip ball:1,0,0",
             "'ball' is not a shape",
         ),
+        ("render x.ply -o a.png --clip sphere:0,0,0,0", "above zero"),
         (
-            "render x.ply -o a.png --clip sphere:0,0,0,1",
-            "not implemented yet",
+            "render x.ply -o a.png --clip !cylinder:0,0,0,1,0,0",
+            "7 numbers",
         ),
         (
-            "render x.ply -o a.png --clip !cylinder:0,0,0,1,0,0,1",
-            "not implemented yet",
+            "render x.ply -o a.png --clip-expr all(sphere:0,0,0,1",
+            "the ) of all(",
+        ),
+        (
+            "render x.ply -o a.png --save-clip a.json",
+            "no clip to save",
         ),
         (
             "render x.ply -o a.png --clip box:0,0,0,1,1,-1",
             "above zero",
-        ),
-        (
-            "render x.ply -o a.png --clip !box:0,0,0,1,1,1 --clip plane:1,0,0,0",
-            "cannot be combined",
-        ),
-        (
-            "render x.ply -o a.png --clip box:0,0,0,1,1,1 --clip plane:1,0,0,0 --clip-op or",
-            "cannot be combined",
         ),
         ("render x.ply -o a.png --clip-op xor", "and, or"),
         (

@@ -18,4 +18,5 @@ mod paper;
 mod pipeline_cache;
 mod precision;
 mod reuse;
+mod shapes;
 mod stress;

@@ -1,6 +1,7 @@
 //! Stage `clip`: the side of each block and, of those that are cut, of each Gaussian.
 
 use glam::{DVec3, Quat, Vec3};
+use rara::clip::Expression;
 use rara::limits::{ALPHA_MIN, BLOCK_SIZE};
 use rara::reference::region::{Bounds, box_side};
 use rara::reference::{Side, clip};
@@ -44,6 +45,42 @@ fn the_clips_sides_are_the_twins() {
             if !scene.is_empty() {
                 check(stages, &planes, &settings);
                 check_blocks(stages, &planes, &settings);
+            }
+        }
+    });
+}
+
+#[test]
+fn the_sides_of_shapes_are_the_twins() {
+    frame::for_each_scene(|stages, scene| {
+        let bounds = rara::scene::Bounds::of(scene);
+        let (c, r) = (bounds.centre(), bounds.radius());
+        let (x, y, z) = (c.x, c.y, c.z);
+        for text in [
+            format!("sphere:{},{y},{z},{}", x + 0.3 * r, 0.5 * r),
+            format!(
+                "!cylinder:{x},{},{z},{x},{},{},{}",
+                y - r,
+                y + r,
+                z + r,
+                0.4 * r
+            ),
+            format!(
+                "any(cone:{x},{y},{z},{x},{},{z},{r}, all(ellipsoid:{x},{y},{z},{r},{},{}, plane:1,0,0,{}))",
+                y + r,
+                0.5 * r,
+                0.3 * r,
+                -x
+            ),
+        ] {
+            let clip = text.parse::<Expression>().expect("an expression").clip();
+            for mode in [Mode::Exact, Mode::Rara, Mode::Hard] {
+                let settings = Settings::default().mode(mode).raster(Raster::Quad);
+                stages.draw(&frame::views(scene)[0], &clip, &settings);
+                if !scene.is_empty() {
+                    check(stages, &clip, &settings);
+                    check_blocks(stages, &clip, &settings);
+                }
             }
         }
     });

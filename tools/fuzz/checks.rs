@@ -111,6 +111,12 @@ pub fn assert_plane(plane: &Plane) {
 pub fn assert_surface(surface: &Surface) {
     match surface {
         Surface::Plane(plane) => assert_plane(plane),
+        Surface::Quadric(quadric) => {
+            let numbers = [quadric.anchor(), quadric.linear()];
+            assert!(numbers.iter().all(|v| v.is_finite()), "{quadric:?}");
+            assert!(quadric.matrix().is_finite() && quadric.constant().is_finite(), "{quadric:?}");
+            assert_eq!(quadric.flipped().flipped(), *quadric);
+        }
         other => panic!("nothing is asked of {other:?}"),
     }
 }

@@ -137,7 +137,10 @@ fn sweep(scene: &Scene<'_>, clip: &Clip, steps: u32) -> Result<Vec<Clip>> {
     };
     let at = |step: u32| {
         let surfaces = clip.surfaces.iter().map(|surface| moved(surface, step));
-        Ok(Clip::of(surfaces.collect::<Result<Vec<_>>>()?, clip.op))
+        Ok(Clip {
+            surfaces: surfaces.collect::<Result<Vec<_>>>()?,
+            ..clip.clone()
+        })
     };
     (0..=steps).map(at).collect()
 }

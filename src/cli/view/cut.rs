@@ -3,15 +3,16 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::{DQuat, DVec2, DVec3};
-use rara::{Camera, Clip, ClipOp, Plane, Projection, Surface};
+use rara::clip::{Expression, Solid};
+use rara::{Camera, Clip, ClipOp, Plane, Projection, Shape};
 
 /// The planes, which of them is held, whether they cut at all, and the other surfaces of the clip.
 #[derive(Debug, Clone)]
 pub(super) struct Cut {
     pub(super) on: bool,
     planes: Vec<Plane>,
-    /// The other surfaces of the clip, which stay where they are.
-    rest: Vec<Surface>,
+    /// The rest of the clip, which stays where it is.
+    rest: Vec<Expression>,
     op: ClipOp,
     held: usize,
     /// The scene's middle.
@@ -20,16 +21,23 @@ pub(super) struct Cut {
 
 impl Cut {
     /// The clip of the command line; without one a plane through the middle of the scene, which is off at first.
-    pub(super) fn new(clip: Clip, centre: DVec3) -> Self {
-        let planes = clip.surfaces.iter().filter_map(Surface::as_plane);
-        let planes: Vec<Plane> = planes.collect();
-        let mut rest = clip.surfaces;
-        rest.retain(|surface| surface.as_plane().is_none());
+    pub(super) fn new(clip: Vec<Expression>, op: ClipOp, centre: DVec3) -> Self {
+        let plane = |expression: &Expression| match expression {
+            Expression::Shape(shape) => match shape.solid() {
+                Solid::Plane(plane) if shape.is_outside() => Some(plane.flipped()),
+                Solid::Plane(plane) => Some(plane),
+                _ => None,
+            },
+            _ => None,
+        };
+        let planes: Vec<Plane> = clip.iter().filter_map(plane).collect();
+        let mut rest = clip;
+        rest.retain(|expression| plane(expression).is_none());
         let mut this = Self {
             on: !planes.is_empty(),
             planes,
             rest,
-            op: clip.op,
+            op,
             held: 0,
             centre,
         };
@@ -41,12 +49,20 @@ impl Cut {
 
     /// The clip in force.
     pub(super) fn clip(&self) -> Clip {
-        let planes = self.planes.iter().filter(|_| self.on);
-        let planes = planes.map(|&plane| plane.into());
-        Clip::of(self.rest.iter().copied().chain(planes), self.op)
+        match &self.expressions()[..] {
+            [] => Clip::default(),
+            all => Clip::joined(all.iter().map(Expression::clip), self.op),
+        }
     }
 
-    /// How the planes combine.
+    /// The same as shapes and expressions.
+    pub(super) fn expressions(&self) -> Vec<Expression> {
+        let planes = self.planes.iter().filter(|_| self.on);
+        let planes = planes.map(|&plane| Expression::Shape(Shape::from(plane)));
+        self.rest.iter().cloned().chain(planes).collect()
+    }
+
+    /// How they combine.
     pub(super) fn op(&self) -> ClipOp {
         self.op
     }
@@ -143,7 +159,7 @@ mod tests {
     const CENTRE: DVec3 = DVec3::new(1.0, 2.0, 3.0);
 
     fn cut() -> Cut {
-        Cut::new(Clip::default(), CENTRE)
+        Cut::new(Vec::new(), ClipOp::And, CENTRE)
     }
 
     fn camera(from: DVec3) -> Camera {
@@ -171,7 +187,8 @@ mod tests {
             Plane::new(DVec3::Y, 0.0).unwrap(),
         ];
         let clip = Clip::of(planes, ClipOp::Or);
-        let mut cut = Cut::new(clip.clone(), CENTRE);
+        let typed = planes.map(|plane| Expression::Shape(plane.into()));
+        let mut cut = Cut::new(typed.into(), ClipOp::Or, CENTRE);
         assert_eq!(cut.clip(), clip);
         cut.next();
         cut.flip();

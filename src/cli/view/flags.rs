@@ -1,5 +1,6 @@
 //! The flags that draw again what the viewer shows.
 
+use rara::clip::Expression;
 use rara::{ClipOp, Precision, Preset, Settings};
 
 use super::cut::Cut;
@@ -8,9 +9,14 @@ use crate::cli::settings::name;
 /// The flags of `rara render` for a clip and settings, as a user would type them. They leave out defaults.
 pub(super) fn flags(cut: &Cut, settings: &Settings) -> String {
     let mut flags = Vec::new();
-    let surfaces = cut.clip().surfaces;
-    flags.extend(surfaces.iter().map(|surface| format!("--clip {surface}")));
-    if surfaces.len() > 1 && cut.op() == ClipOp::Or {
+    let expressions = cut.expressions();
+    // Shells take some of an expression's characters for their own.
+    flags.extend(expressions.iter().map(|expression| match expression {
+        Expression::Shape(shape) if shape.is_outside() => format!("--clip '{shape}'"),
+        Expression::Shape(shape) => format!("--clip {shape}"),
+        other => format!("--clip-expr '{other}'"),
+    }));
+    if expressions.len() > 1 && cut.op() == ClipOp::Or {
         flags.push("--clip-op or".into());
     }
     flags.push(format!("--mode {}", name(settings.mode)));
@@ -115,23 +121,24 @@ mod tests {
     use crate::cli::settings::SettingsArgs;
     use clap::{Args as _, FromArgMatches as _};
     use glam::DVec3;
-    use rara::{Clip, Plane};
+    use rara::Plane;
 
     /// The clip and the settings that flags mean.
-    fn meant(flags: &str) -> (Clip, Settings) {
+    fn meant(flags: &str) -> (Cut, Settings) {
         let command = clap::Command::new("rara").no_binary_name(true);
         let command = SettingsArgs::augment_args(ClipArgs::augment_args(command));
         let matches = command.try_get_matches_from(flags.split_whitespace());
         let matches = matches.unwrap_or_else(|error| panic!("{flags}: {error}"));
         let settings = SettingsArgs::from_arg_matches(&matches).unwrap();
         let clip = ClipArgs::from_arg_matches(&matches).unwrap();
-        (clip.meant().unwrap(), settings.meant().unwrap())
+        let cut = Cut::new(clip.expressions().unwrap(), clip.op(), DVec3::ZERO);
+        (cut, settings.meant().unwrap())
     }
 
     /// The flags that are written for the clip and the settings of `typed`.
     fn written(typed: &str) -> String {
-        let (clip, settings) = meant(typed);
-        flags(&Cut::new(clip, DVec3::ZERO), &settings)
+        let (cut, settings) = meant(typed);
+        flags(&cut, &settings)
     }
 
     #[test]
@@ -192,15 +199,16 @@ mod tests {
     #[test]
     fn no_number_is_rounded() {
         let normal = DVec3::new(0.1, -0.7, 1.0 / 3.0);
-        let clip = Clip::of([Plane::new(normal, 1e-9 / 7.0).unwrap()], ClipOp::And);
+        let plane = Plane::new(normal, 1e-9 / 7.0).unwrap();
         let settings = Settings::default()
             .background(Some([1.0 / 3.0, f32::MIN_POSITIVE, 0.1 + 0.2]))
             .sigma(1e-7 / 3.0)
             .precision(Precision::default().beam_switch(1e20 / 7.0));
-        let cut = Cut::new(clip.clone(), DVec3::ZERO);
+        let typed = vec![Expression::Shape(plane.into())];
+        let cut = Cut::new(typed, ClipOp::And, DVec3::ZERO);
         let (read, again) = meant(&flags(&cut, &settings));
         assert_eq!(again, settings);
-        let [read, plane] = [read, clip].map(|clip| clip.surfaces[0].as_plane().unwrap());
+        let read = read.plane();
         assert!((read.normal() - plane.normal()).length() < 1e-15);
         assert!((read.offset() / plane.offset() - 1.0).abs() < 1e-15);
     }

@@ -72,7 +72,7 @@ const SIZE: (u32, u32) = (1280, 720);
 impl View {
     pub(super) fn run(self) -> Result<(), Failure> {
         let settings = self.frame.settings.meant()?;
-        let clip = self.frame.clip.meant()?;
+        let (clip, op) = (self.frame.clip.expressions()?, self.frame.clip.op());
         let camera = self.frame.camera.sized_by_default(SIZE);
         let views = camera.meant()?;
         let shots = shots(&self.output)?;
@@ -103,7 +103,7 @@ impl View {
                 size: (first.width, first.height),
                 scenery: Scenery {
                     name: name(&scene),
-                    cut: Cut::new(clip, bounds.centre()),
+                    cut: Cut::new(clip, op, bounds.centre()),
                     settings,
                     centre: bounds.centre(),
                     radius: bounds.radius(),

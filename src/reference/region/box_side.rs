@@ -23,7 +23,7 @@ pub struct Bounds {
 /// The side that all of them have; [`Side::Cutoff`] where they may differ. It is conservative: a box has a side only where
 /// each Gaussian alone has it.
 pub fn box_side(bounds: &Bounds, clip: &Clip, settings: &Settings) -> Side {
-    if clip.surfaces.is_empty() || settings.mode == Mode::None {
+    if clip.is_everything() || settings.mode == Mode::None {
         return Side::Visible;
     }
     if settings.trace_all && settings.mode != Mode::Hard {
@@ -34,6 +34,7 @@ pub fn box_side(bounds: &Bounds, clip: &Clip, settings: &Settings) -> Side {
         Mode::Rara => bounds.reach.max(f64::from(settings.sigma) * bounds.sigma),
         Mode::Exact => bounds.reach,
     };
-    let side = |surface| surface_box_side(surface, bounds.middle, bounds.half, support);
-    combined(clip.op, clip.surfaces.iter().map(side))
+    combined(clip, &|surface| {
+        surface_box_side(surface, bounds.middle, bounds.half, support)
+    })
 }

@@ -16,9 +16,10 @@ pub fn gaussian_side<T: Real>(
     clip: &Clip,
     settings: &Settings,
 ) -> Side {
-    if clip.surfaces.is_empty() || settings.mode == Mode::None {
+    if clip.is_everything() || settings.mode == Mode::None {
         return Side::Visible;
     }
-    let side = |surface| surface_gaussian_side(surface, scene, index, axes, deviations, settings);
-    combined(clip.op, clip.surfaces.iter().map(side))
+    combined(clip, &|surface| {
+        surface_gaussian_side(surface, scene, index, axes, deviations, settings)
+    })
 }

@@ -2,9 +2,13 @@
 //! file of the same name in `glsl/region/`.
 
 mod box_side;
+mod combination;
+mod crossing;
 mod gaussian_side;
 mod half_space;
 mod plane;
+mod quadric;
+mod reduced;
 mod share;
 mod sides;
 mod surface;
@@ -12,8 +16,13 @@ mod surface;
 mod tile_side;
 
 pub use box_side::{Bounds, box_side};
+pub use combination::Combination;
+pub(super) use crossing::Sight;
 pub use gaussian_side::gaussian_side;
 pub use half_space::HalfSpace;
+pub use quadric::{Symmetric, UnitSurface};
+pub use reduced::Reduced;
+pub(super) use reduced::reduced;
 pub use share::share;
 pub(super) use sides::keeps;
 pub(super) use surface::{surface_crossings, surface_gaussian_side, surface_half_space};

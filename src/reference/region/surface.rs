@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::{HalfSpace, Side, plane};
+use super::quadric::Symmetric;
+use super::{HalfSpace, Side, UnitSurface, plane, quadric};
 use crate::reference::real::{Real, Vec3};
 use crate::{Gaussians, Mode, Settings, Surface};
 
@@ -27,6 +28,10 @@ pub(in crate::reference) fn surface_gaussian_side<T: Real>(
     }
     match surface {
         Surface::Plane(plane) => plane::gaussian_side(plane, scene, index, axes, deviations),
+        Surface::Quadric(quadric) => {
+            let surface = quadric::unit_surface(quadric, scene, index, axes);
+            quadric::gaussian_side(&surface, deviations)
+        }
     }
 }
 
@@ -39,19 +44,34 @@ pub(super) fn surface_box_side(
 ) -> Side {
     match surface {
         Surface::Plane(plane) => plane::box_side(plane, middle, half, support),
+        Surface::Quadric(quadric) => quadric::box_side(quadric, middle, half, support),
     }
 }
 
-/// The half-space that a surface keeps of Gaussian `index`, which it cuts.
+/// A surface in the unit space of Gaussian `index`.
+pub(in crate::reference) fn unit_surface<T: Real>(
+    surface: &Surface,
+    scene: &Gaussians,
+    index: usize,
+    axes: &[Vec3<T>; 3],
+) -> UnitSurface<T> {
+    match surface {
+        Surface::Plane(plane) => UnitSurface {
+            half_space: plane::half_space(plane, scene, index, axes),
+            bend: Symmetric::zero(),
+        },
+        Surface::Quadric(quadric) => quadric::unit_surface(quadric, scene, index, axes),
+    }
+}
+
+/// The half-space that a surface keeps of Gaussian `index`, which it cuts, to first order about the Gaussian's centre.
 pub(in crate::reference) fn surface_half_space<T: Real>(
     surface: &Surface,
     scene: &Gaussians,
     index: usize,
     axes: &[Vec3<T>; 3],
 ) -> HalfSpace<T> {
-    match surface {
-        Surface::Plane(plane) => plane::half_space(plane, scene, index, axes),
-    }
+    unit_surface(surface, scene, index, axes).half_space
 }
 
 /// The crossings of the line of points `start + t step` with a surface: all such t, in any order. No shader asks this;
@@ -63,5 +83,6 @@ pub(in crate::reference) fn surface_crossings(
 ) -> Vec<f64> {
     match surface {
         Surface::Plane(plane) => plane::crossings(plane, start, step),
+        Surface::Quadric(quadric) => quadric::crossings(quadric, start, step),
     }
 }

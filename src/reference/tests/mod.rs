@@ -1,5 +1,6 @@
 //! Tests of the reference by closed forms: nothing in here repeats a formula of the renderer.
 
+mod combined;
 mod depths;
 mod invariance;
 mod laws;
@@ -22,6 +23,7 @@ const Y00: f64 = 0.282_094_791_773_878_14;
 const NO_CLIP: Clip = Clip {
     surfaces: Vec::new(),
     op: ClipOp::And,
+    parts: Vec::new(),
 };
 
 /// A scene's picture without a clip.

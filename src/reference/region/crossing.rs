@@ -1,0 +1,334 @@
+//! Where a surface that bends stands on a pixel's line of sight.
+//!
+//! Given the pixel, the point u of the Gaussian's unit space is a normal variable with mean m and covariance
+//! `C = I - B^T S^-1 B` (see [`exact`](crate::reference::exact)). A surface's function there is
+//! `F(m + x) = F(m) + h . x + x . Q x`, with the gradient h at m. It varies most along the direction `w = C h / n`, with
+//! `n^2 = h . C h`; along it, `x = tau w` with tau ~ N(0, 1), it is a quadratic function of tau, whose two crossings are
+//! found exactly. In the other directions it varies to second order alone: its mean moves by what the trace of Q C has
+//! beyond `w . Q w`. Without low-pass w is the line of sight itself, and all of this is exact; for a plane Q is zero, and it
+//! is the plane's z.
+
+use crate::reference::footprint::{determinant, scaled};
+use crate::reference::orthant::{Direction, Threshold};
+use crate::reference::real::{Real, Vec3};
+use crate::reference::region::UnitSurface;
+
+/// Beyond this Phi is taken for 0 or 1.
+pub(super) const PHI_ONE: f64 = 4.5;
+/// How much the mean may move by a surface's bend across `w`, in deviations, before the bend is integrated over.
+const BENT: f64 = 0.05;
+
+/// A pixel's line of sight in a Gaussian's unit space.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::reference) struct Sight<T> {
+    gradients: [Vec3<T>; 2],
+    c: Vec3<T>,
+    low_pass: T,
+    det: T,
+    /// What counts of the variance across the line: all, but where nodes stand for a part of it.
+    lateral: T,
+    /// The mean m, given the pixel.
+    pub(in crate::reference) mean: Vec3<T>,
+}
+
+/// A surface on a line of sight: its nearest crossing, and the other one where it counts.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Crossed<T> {
+    /// The half-space that the surface keeps where it is crossed first.
+    pub(super) first: Threshold<T>,
+    /// The one where it is crossed again.
+    pub(super) second: Option<Threshold<T>>,
+    /// True when what is kept lies between the two, false when it lies outside.
+    pub(super) between: bool,
+}
+
+impl<T: Real> Sight<T> {
+    /// The line of sight at an offset from the splat's centre, pixels.
+    pub(in crate::reference) fn new(gradients: [Vec3<T>; 2], delta: [T; 2]) -> Self {
+        let (gradients, factor, low_pass) = scaled(gradients);
+        Self::of(gradients, delta.map(|d| d * factor), low_pass)
+    }
+
+    /// The line itself without what the low-pass adds, and its point nearest the centre. Gaussians without thickness may
+    /// have none.
+    pub(in crate::reference) fn unfiltered(gradients: [Vec3<T>; 2], delta: [T; 2]) -> Option<Self> {
+        let [b1, b2] = gradients;
+        let largest = b1.largest().max(b2.largest()).max(T::of(1e-30));
+        let factor = T::one() / largest;
+        let gradients = [b1 * factor, b2 * factor];
+        let is_line = gradients[0].cross(gradients[1]).squared() > T::zero();
+        is_line.then(|| Self::of(gradients, delta.map(|d| d * factor), T::zero()))
+    }
+
+    fn of([b1, b2]: [Vec3<T>; 2], [dx, dy]: [T; 2], low_pass: T) -> Self {
+        let c = b1.cross(b2);
+        let det = determinant([b1, b2], c, low_pass);
+        let (dx, dy) = (dx / det, dy / det);
+        let along = b2.cross(c) * dx + c.cross(b1) * dy;
+        Self {
+            gradients: [b1, b2],
+            c,
+            low_pass,
+            det,
+            lateral: T::one(),
+            mean: along + (b1 * dx + b2 * dy) * low_pass,
+        }
+    }
+
+    /// `C v`.
+    fn spread(&self, v: Vec3<T>) -> Vec3<T> {
+        let [b1, b2] = self.gradients;
+        let across =
+            v * (b1.squared() + b2.squared() + self.low_pass) - b1 * b1.dot(v) - b2 * b2.dot(v);
+        let all = (self.c * self.c.dot(v) + across * self.low_pass) * (T::one() / self.det);
+        if self.lateral == T::one() {
+            return all;
+        }
+        let line = self.line();
+        let along = line * line.dot(v);
+        along + (all - along) * self.lateral
+    }
+
+    /// The direction of the line, a unit vector.
+    fn line(&self) -> Vec3<T> {
+        self.c * (T::one() / self.c.length().max(T::of(1e-30)))
+    }
+
+    /// `a . C a`, as a sum of squares.
+    fn variance(&self, a: Vec3<T>) -> T {
+        let [b1, b2] = self.gradients;
+        let across = a.cross(b1).squared() + a.cross(b2).squared() + self.low_pass * a.squared();
+        let along = a.dot(self.c);
+        let all = (along * along + self.low_pass * across) / self.det;
+        if self.lateral == T::one() {
+            return all;
+        }
+        let along = a.dot(self.line());
+        along * along + self.lateral * (all - along * along).max(T::zero())
+    }
+
+    /// The trace of `Q C`.
+    fn trace(&self, surface: &UnitSurface<T>) -> T {
+        let [b1, b2] = self.gradients;
+        let bend = &surface.bend;
+        let size = b1.squared() + b2.squared() + self.low_pass;
+        let across = bend.trace() * size - bend.form(b1) - bend.form(b2);
+        let all = (bend.form(self.c) + self.low_pass * across) / self.det;
+        if self.lateral == T::one() {
+            return all;
+        }
+        let along = bend.form(self.line());
+        along + self.lateral * (all - along)
+    }
+
+    /// Lines beside this one that stand for most of the variance across it, and their weights; each has the rest.
+    pub(super) fn beside(&self) -> [(Self, T); 9] {
+        let [b1, b2] = self.gradients;
+        let wider = if b1.squared() < b2.squared() { b2 } else { b1 };
+        let p = wider * (T::one() / wider.length().max(T::of(1e-30)));
+        let q = self.line().cross(p);
+        let covariance = |v: Vec3<T>| {
+            let line = self.line();
+            self.spread(v) - line * line.dot(v)
+        };
+        let root = |v: Vec3<T>| {
+            let moved = covariance(v);
+            let variance = v.dot(moved);
+            match variance > T::zero() {
+                true => (moved * (T::one() / variance.sqrt()), variance),
+                false => (Vec3::zero(), T::one()),
+            }
+        };
+        let (first, variance) = root(p);
+        let (second, _) = root(q - p * (q.dot(covariance(p)) / variance));
+        let at = |i: usize, j: usize| {
+            let (x, y) = (T::of(BESIDE[i].0), T::of(BESIDE[j].0));
+            let sight = Self {
+                lateral: T::one() - T::of(BY_NODES),
+                mean: self.mean + first * x + second * y,
+                ..*self
+            };
+            (sight, T::of(BESIDE[i].1 * BESIDE[j].1))
+        };
+        std::array::from_fn(|number| at(number / 3, number % 3))
+    }
+
+    /// The deviation of a function with this gradient, and the direction in which it varies most: the line of sight itself
+    /// where it does not vary.
+    fn steepest(&self, gradient: Vec3<T>) -> (T, Vec3<T>) {
+        let n = self.variance(gradient).sqrt();
+        let along = match n > T::zero() {
+            true => self.spread(gradient) * (T::one() / n),
+            false => self.line(),
+        };
+        (n, along)
+    }
+
+    fn threshold(&self, z: T, a: Vec3<T>) -> Threshold<T> {
+        let [b1, b2] = self.gradients;
+        let root = self.low_pass.sqrt();
+        let direction = Direction {
+            along: a.dot(self.c),
+            across: [a.cross(b1) * root, a.cross(b2) * root, a * self.low_pass],
+        };
+        let size = direction.squared().sqrt();
+        let signs = [direction.along, a.x, a.y, a.z];
+        let first = signs.iter().find(|&&v| v != T::zero());
+        Threshold {
+            z,
+            far: first.is_none_or(|&v| v > T::zero()),
+            direction: if size > T::zero() {
+                direction * (T::one() / size)
+            } else {
+                direction
+            },
+        }
+    }
+
+    /// The crossings of a surface.
+    pub(super) fn crossed(&self, surface: &UnitSurface<T>) -> Crossed<T> {
+        let (value, gradient) = (surface.at(self.mean), surface.gradient(self.mean));
+        let (n, along) = self.steepest(gradient);
+        let bend = surface.bend.form(along);
+        let value = value + self.trace(surface) - bend;
+        let (two, four) = (T::of(2.0), T::of(4.0));
+        let square = n * n - four * bend * value;
+        let far_away = T::of(40.0).copysign(value);
+        let alone = |z: T, gradient| Crossed {
+            first: self.threshold(z, gradient),
+            second: None,
+            between: true,
+        };
+        let sum = n + square.max(T::zero()).sqrt();
+        if square < T::zero() || !(sum > T::zero()) {
+            return alone(far_away, gradient);
+        }
+        let across = surface.bend.times(along) * two;
+        let z = (two * value / sum).max(T::of(-40.0)).min(T::of(40.0));
+        // The second crossing is at tau = -sum / (2 bend), and z is tau there, whichever side it keeps.
+        let first = self.threshold(z, gradient - across * z);
+        let other = -sum / (two * bend);
+        if !(other.abs() < T::of(PHI_ONE)) {
+            return Crossed {
+                first,
+                second: None,
+                between: true,
+            };
+        }
+        Crossed {
+            first,
+            second: Some(self.threshold(other, gradient + across * other)),
+            between: bend < T::zero(),
+        }
+    }
+
+    /// The share of the splat that a single surface keeps.
+    pub(super) fn share(&self, surface: &UnitSurface<T>) -> T {
+        let gradient = surface.gradient(self.mean);
+        let (n, along) = self.steepest(gradient);
+        let across = self.trace(surface) - surface.bend.form(along);
+        if across.abs() > T::of(BENT) * n {
+            return self.bent_share(surface, gradient);
+        }
+        self.crossed(surface).share()
+    }
+
+    /// A plane's z.
+    pub(in crate::reference) fn plane_z(&self, plane: &UnitSurface<T>) -> T {
+        let n = self.variance(plane.half_space.normal).sqrt();
+        plane.half_space.distance(self.mean) / n.max(T::of(1e-30))
+    }
+
+    /// The same of a surface that bends across the direction in which it varies most: its function is taken as one of two
+    /// variables, along the line of sight and across it, of which one is integrated over in closed form and the other by
+    /// nodes.
+    fn bent_share(&self, surface: &UnitSurface<T>, gradient: Vec3<T>) -> T {
+        let length = self.c.length();
+        if !(length > T::zero()) {
+            return if surface.at(self.mean) >= T::zero() {
+                T::one()
+            } else {
+                T::zero()
+            };
+        }
+        let line = self.c * (T::one() / length);
+        let slope = gradient.dot(line);
+        let aside = self.spread(gradient) - line * slope;
+        let lateral = gradient.dot(aside).max(T::zero()).sqrt();
+        // Where nothing varies across the line, any direction across it will do.
+        let aside = if lateral > T::of(1e-6) * gradient.length() {
+            aside * (T::one() / lateral)
+        } else {
+            let [b1, b2] = self.gradients;
+            let widest = if b1.squared() < b2.squared() { b1 } else { b2 };
+            let aside = self.spread(widest) - line * widest.dot(line);
+            aside * (T::one() / widest.dot(aside).max(T::of(1e-30)).sqrt())
+        };
+        let (a, e, g) = (
+            surface.bend.form(line),
+            T::of(2.0) * line.dot(surface.bend.times(aside)),
+            surface.bend.form(aside),
+        );
+        let value = surface.at(self.mean) + self.trace(surface) - a - g;
+        // Nodes go along the direction in which the function varies less.
+        let along = slope * slope + T::of(2.0) * a * a;
+        let across = lateral * lateral + T::of(2.0) * g * g;
+        let (steep, bend, flat, flat_bend) = if along >= across {
+            (slope, a, lateral, g)
+        } else {
+            (lateral, g, slope, a)
+        };
+        NODES.iter().fold(T::zero(), |sum, &(node, weight)| {
+            let x = T::of(node);
+            let at = value + x * (flat + x * flat_bend);
+            sum + T::of(weight) * interval_share(at, steep + e * x, bend)
+        })
+    }
+}
+
+impl<T: Real> Crossed<T> {
+    /// The share that the surface keeps by itself.
+    pub(super) fn share(&self) -> T {
+        match self.second {
+            None => self.first.z.phi(),
+            Some(second) if self.between => (self.first.z.phi() - (-second.z).phi()).max(T::zero()),
+            Some(second) => (self.first.z.phi() + second.z.phi()).min(T::one()),
+        }
+    }
+}
+
+/// The share of the variance across a line that lines beside it stand for.
+const BY_NODES: f64 = 0.75;
+/// Where those lines are, in deviations, and what they weigh: Gauss and Hermite's nodes, for that share of the variance.
+const BESIDE: [(f64, f64); 3] = [(-1.5, 1.0 / 6.0), (0.0, 2.0 / 3.0), (1.5, 1.0 / 6.0)];
+
+/// Gauss and Hermite's nodes and weights for a normal variable.
+const NODES: [(f64, f64); 7] = [
+    (-3.750_439_717_725_742, 5.482_688_559_722_18e-4),
+    (-2.366_759_410_734_541, 3.075_712_396_758_65e-2),
+    (-1.154_405_394_739_968, 0.240_123_178_605_012_7),
+    (0.0, 0.457_142_857_142_857_1),
+    (1.154_405_394_739_968, 0.240_123_178_605_012_7),
+    (2.366_759_410_734_541, 3.075_712_396_758_65e-2),
+    (3.750_439_717_725_742, 5.482_688_559_722_18e-4),
+];
+
+/// The chance that `at + slope t + bend t^2` is positive for a normal t.
+fn interval_share<T: Real>(at: T, slope: T, bend: T) -> T {
+    let (zero, one, two) = (T::zero(), T::one(), T::of(2.0));
+    let square = slope * slope - T::of(4.0) * bend * at;
+    let sum = slope.abs() + square.max(zero).sqrt();
+    if square < zero || !(sum > zero) {
+        return if at >= zero { one } else { zero };
+    }
+    let near = (two * at / sum).phi();
+    let other = -sum / (two * bend);
+    if !(other.abs() < T::of(9.0)) {
+        return near;
+    }
+    if bend < zero {
+        (near - (-other).phi()).max(zero)
+    } else {
+        (near + other.phi()).min(one)
+    }
+}

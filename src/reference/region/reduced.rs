@@ -1,0 +1,90 @@
+//! A region as one Gaussian sees it: the surfaces that cut it, and how they combine once all others are decided.
+
+use super::surface::unit_surface;
+use super::{Side, UnitSurface, surface_gaussian_side};
+use crate::clip::postfix::{answer, postfix};
+use crate::limits::MAX_CUTTING;
+use crate::reference::real::{Real, Vec3};
+use crate::{Clip, ClipOp, Gaussians, Settings};
+
+/// What is left of a region.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Reduced<T> {
+    /// All or nothing is kept.
+    Decided(bool),
+    /// The surfaces that cut the Gaussian. After each, its joins replace the two answers on top of a stack.
+    Cut(Vec<(UnitSurface<T>, Vec<ClipOp>)>),
+}
+
+impl<T: Real> Reduced<T> {
+    fn join(self, op: ClipOp, other: Self) -> Self {
+        match (self, other) {
+            (Self::Decided(kept), rest) | (rest, Self::Decided(kept)) => {
+                match kept == (op == ClipOp::And) {
+                    true => rest,
+                    false => Self::Decided(kept),
+                }
+            }
+            (Self::Cut(mut one), Self::Cut(other)) => {
+                one.extend(other);
+                one.last_mut().expect("it is not empty").1.push(op);
+                Self::Cut(one)
+            }
+        }
+    }
+
+    /// The operation that joins all surfaces, if there is only one such operation and none of the surfaces bends.
+    pub(in crate::reference) fn as_planes(&self) -> Option<ClipOp> {
+        let Self::Cut(surfaces) = self else {
+            return None;
+        };
+        let mut joins = surfaces.iter().flat_map(|(_, joins)| joins);
+        let op = joins.next().copied().unwrap_or_default();
+        let is_flat = surfaces.iter().all(|(surface, _)| surface.is_flat());
+        (is_flat && joins.all(|other| *other == op)).then_some(op)
+    }
+}
+
+/// What is left of the region of Gaussian `index`, which has the half axes `axes` and a band of `deviations` standard
+/// deviations. Beyond [`MAX_CUTTING`] surfaces only those count that are nearest; of the others it is on the side of its
+/// centre.
+pub(in crate::reference) fn reduced<T: Real>(
+    scene: &Gaussians,
+    index: usize,
+    axes: &[Vec3<T>; 3],
+    deviations: T,
+    clip: &Clip,
+    settings: &Settings,
+) -> Reduced<T> {
+    let steps = postfix(clip);
+    let seen: Vec<_> = steps
+        .iter()
+        .map(|step| {
+            let surface = &step.surface;
+            let side = surface_gaussian_side(surface, scene, index, axes, deviations, settings);
+            (side, unit_surface(surface, scene, index, axes))
+        })
+        .collect();
+    let distance = |surface: &UnitSurface<T>| {
+        surface.half_space.offset.abs() / surface.half_space.normal.length()
+    };
+    let mut distances: Vec<T> = seen
+        .iter()
+        .filter(|(side, _)| *side == Side::Cutoff)
+        .map(|(_, surface)| distance(surface))
+        .collect();
+    distances.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+    let most = MAX_CUTTING as usize;
+    let farthest = distances.get(most).copied().unwrap_or_else(T::infinity);
+    let answers = seen.into_iter().zip(steps).map(|((side, surface), step)| {
+        let part = match side {
+            Side::Cutoff if !(distance(&surface) >= farthest) => {
+                Reduced::Cut(vec![(surface.scaled(), Vec::new())])
+            }
+            Side::Cutoff => Reduced::Decided(surface.half_space.offset >= T::zero()),
+            side => Reduced::Decided(side == Side::Visible),
+        };
+        (part, step.joins)
+    });
+    answer(answers, Reduced::Decided(true), |op, a, b| a.join(op, b))
+}

@@ -1,0 +1,133 @@
+//! Curved shapes and combinations against the f64 reference.
+
+use crate::common;
+use rara::clip::Expression;
+use rara::measure::compare;
+use rara::{Clip, Layer, Mode, Raster, Scene, Settings, scene};
+
+/// Every shape, and regions of several, through the middle of a generated scene of radius 1.
+const EXPRESSIONS: [&str; 14] = [
+    "slab:1,2,0,0.2,0.3",
+    "sphere:0.3,0.1,0,0.6",
+    "!sphere:0,-0.2,0.1,0.5",
+    "ellipsoid:0,0,0,0.9,0.4,0.6,0.9,0.1,0.3,0.2",
+    "cylinder:-0.8,-0.3,0,0.7,0.4,0.2,0.35",
+    "!cylinder:-0.8,-0.3,0,0.7,0.4,0.2,0.35",
+    "capsule:-0.4,-0.3,0,0.5,0.4,0.2,0.3",
+    "cone:0,-0.9,0,0.1,0.9,0.1,0.8",
+    "all(!box:0.2,0,0,0.3,0.3,0.3,0.9,0.2,0.1,0.3, plane:1,0.3,0.2,0.1)",
+    "any(box:-0.4,0,0,0.3,0.3,0.3, box:0.4,0.1,0,0.3,0.4,0.3)",
+    "all(sphere:0,0,0,0.7, not(any(sphere:0.3,0.1,0.2,0.4, plane:0,1,0.2,-0.3)))",
+    "all(sphere:0,0,0,0.8, plane:1,0,0,0.2, plane:0,1,0,0.3)",
+    "any(plane:1,0,0,-0.5, all(!plane:0,1,0,0, plane:0,0,1,0))",
+    "sphere:0.2,0,0,0.02",
+];
+
+fn check(modes: &[Mode], rasters: &[Raster], expressions: &[&str]) {
+    let gaussians = scene::generate(scene::Kind::General, 3_000, 3);
+    let mut headless = common::headless();
+    headless.load(&gaussians).expect("uploads");
+    for camera in common::views(&gaussians, 2, common::scaled((253, 190))) {
+        for text in expressions {
+            let clip = text.parse::<Expression>().expect("an expression").clip();
+            for mode in modes {
+                for raster in rasters {
+                    let settings = Settings::default().mode(*mode).raster(*raster);
+                    let name = format!("{text}, {raster:?}");
+                    common::check(&mut headless, &name, &gaussians, &camera, &clip, &settings);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn exact_shapes_are_the_references() {
+    check(&[Mode::Exact], &[Raster::Tiles], &EXPRESSIONS);
+}
+
+#[test]
+fn rara_and_hard_shapes_are_the_references() {
+    check(&[Mode::Rara, Mode::Hard], &[Raster::Tiles], &EXPRESSIONS);
+}
+
+#[test]
+fn quads_and_meshes_draw_shapes_like_tiles() {
+    let modes = [Mode::Rara, Mode::Exact];
+    check(&modes, &[Raster::Quad, Raster::Mesh], &EXPRESSIONS[8..11]);
+}
+
+#[test]
+fn a_huge_sphere_is_its_tangent_plane() {
+    let gaussians = scene::generate(scene::Kind::General, 3_000, 3);
+    let mut headless = common::headless();
+    headless.load(&gaussians).expect("uploads");
+    let camera = common::views(&gaussians, 1, common::scaled((253, 190))).remove(0);
+    let mut picture = |text: &str| {
+        let clip = text.parse::<Expression>().expect("a shape").clip();
+        let settings = Settings::default();
+        headless.render(&camera, &clip, &settings).expect("renders");
+        headless.picture().expect("reads back")
+    };
+    let plane = picture("plane:0.6,0,0.8,0.1");
+    let sphere = picture("sphere:599999.94,0,799999.92,1000000");
+    let outside = picture("!sphere:-600000.06,0,-800000.08,1000000");
+    for curved in [sphere, outside] {
+        let difference = compare(&curved, &plane).expect("the same size");
+        assert!(difference.max < 0.3, "{difference:?}, in 1/255");
+    }
+}
+
+#[test]
+fn a_region_and_its_complement_rebuild_the_whole() {
+    let gaussians = scene::generate(scene::Kind::General, 3_000, 3);
+    let mut headless = common::headless();
+    headless.load(&gaussians).expect("uploads");
+    let camera = common::views(&gaussians, 1, common::scaled((253, 190))).remove(0);
+    let settings = Settings::default();
+    headless
+        .render(&camera, &Clip::default(), &settings)
+        .expect("renders");
+    let whole = headless.picture().expect("reads back");
+    for text in EXPRESSIONS {
+        let clip = text.parse::<Expression>().expect("an expression").clip();
+        // Equal depths are drawn one after the other: what one layer keeps of a splat, then what the other does.
+        let halves = Scene::from_iter([
+            Layer::new("in", &gaussians).clipped(clip.clone()),
+            Layer::new("out", &gaussians).clipped(clip.complement()),
+        ]);
+        headless.load(&halves).expect("uploads");
+        headless
+            .render(&camera, &Clip::default(), &settings)
+            .expect("renders");
+        let rebuilt = headless.picture().expect("reads back");
+        let difference = compare(&rebuilt, &whole).expect("the same size");
+        assert!(difference.max < 0.5, "{text}: {difference:?}, in 1/255");
+    }
+}
+
+#[test]
+fn a_shape_that_touches_nothing_changes_no_byte() {
+    let gaussians = scene::generate(scene::Kind::General, 3_000, 3);
+    let mut headless = common::headless();
+    headless.load(&gaussians).expect("uploads");
+    let camera = common::views(&gaussians, 1, common::scaled((253, 190))).remove(0);
+    let mut picture = |text: &str| {
+        let clip = text
+            .parse::<Expression>()
+            .map(|e| e.clip())
+            .unwrap_or_default();
+        headless
+            .render(&camera, &clip, &Settings::default())
+            .expect("renders");
+        headless.picture().expect("reads back")
+    };
+    let whole = picture("");
+    for text in [
+        "sphere:0,0,0,50",
+        "!capsule:40,0,0,50,0,0,3",
+        "all(cone:0,0,-90,0,0,90,400, !box:30,0,0,1,1,1)",
+    ] {
+        assert_eq!(picture(text), whole, "{text}");
+    }
+}

@@ -18,6 +18,11 @@ pub(super) struct SceneArgs {
 }
 
 impl SceneArgs {
+    /// The files' names.
+    pub(super) fn files(&self) -> &[PathBuf] {
+        &self.files
+    }
+
     /// Reads the files.
     pub(super) fn load(&self) -> Result<Loaded, Failure> {
         load(&self.files)

@@ -5,6 +5,7 @@ mod common;
 
 mod accuracy;
 mod agreement;
+mod bake;
 mod classification;
 mod curves;
 mod debug_view;

@@ -72,6 +72,8 @@ pub use error::{Error, Result};
 #[doc(inline)]
 pub use gpu::PipelineCache;
 pub use passes::{SceneBuffers, SceneLayer, Staging};
+#[cfg(feature = "picture")]
+pub use picture::Channel;
 pub use picture::Picture;
 pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};

@@ -3,6 +3,7 @@
 #[path = "../common/folder.rs"]
 mod folder;
 
+mod aov;
 mod bake;
 mod profile;
 mod refusals;

@@ -5,6 +5,7 @@ mod common;
 
 mod accuracy;
 mod agreement;
+mod aov;
 mod bake;
 mod classification;
 mod curves;

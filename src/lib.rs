@@ -4,6 +4,8 @@
 #![cfg_attr(doc, doc = include_str!(concat!(env!("OUT_DIR"), "/layers.md")))]
 #![doc = include_str!("../README.md")]
 
+#[cfg(feature = "bake")]
+mod bake;
 mod camera;
 #[cfg(feature = "json")]
 pub mod camera_files;
@@ -46,6 +48,10 @@ mod limits;
 pub mod measure;
 #[cfg(feature = "lab")]
 pub mod reference;
+// What bakes asks the reference on which side of a clip a Gaussian is, and nothing else.
+#[cfg(all(feature = "bake", not(feature = "lab")))]
+#[allow(dead_code, unreachable_pub, unused_imports)]
+mod reference;
 #[cfg(feature = "lab")]
 pub mod stress;
 #[cfg(feature = "lab")]
@@ -56,6 +62,8 @@ mod types;
 /// The versions that this crate's interface is made of.
 pub use {ash, glam, gpu_allocator};
 
+#[cfg(feature = "bake")]
+pub use bake::{BakeCounts, BakeSettings, Baked, bake, bake_layer};
 pub use camera::{Camera, Projection};
 #[doc(inline)]
 pub use clip::{Clip, ClipOp, Plane, Quadric, Shape, Surface};
@@ -64,6 +72,8 @@ pub use error::{Error, Result};
 #[doc(inline)]
 pub use gpu::PipelineCache;
 pub use passes::{SceneBuffers, SceneLayer, Staging};
+#[cfg(feature = "picture")]
+pub use picture::Channel;
 pub use picture::Picture;
 pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};

@@ -71,15 +71,17 @@ uint write_reduced(uint base, Footprint f, vec3 position, float deviations, out 
     uint first_part = gl_LocalInvocationIndex * PART_DEPTH;
     uint first_entry = gl_LocalInvocationIndex * MAX_CUTTING;
     float farthest = 1e30;
+    bool is_again = false;
     uint cutting = 0u;
     uint depth = 0u;
     entries = 0u;
     for (uint i = 0u; i <= LAYER.region.surface_count; i++) {
         if (i == LAYER.region.surface_count) {
-            if (cutting <= MAX_CUTTING || farthest < 1e30) {
+            if (cutting <= MAX_CUTTING || is_again) {
                 break;
             }
             // There are more than have room, so all is done again for the nearest.
+            is_again = true;
             farthest = farthest_counted(f, position, deviations);
             depth = 0u;
             entries = 0u;

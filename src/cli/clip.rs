@@ -83,9 +83,10 @@ impl ClipArgs {
         )?)
     }
 
-    /// The shapes that were typed.
-    pub(super) fn typed(&self) -> Vec<Shape> {
-        self.clip.clone()
+    /// The shapes and expressions that were typed.
+    pub(super) fn typed(&self) -> Vec<Expression> {
+        let shapes = self.clip.iter().copied().map(Expression::Shape);
+        shapes.chain(self.clip_expr.iter().cloned()).collect()
     }
 
     /// All planes of the files, with their names.

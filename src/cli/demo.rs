@@ -58,7 +58,7 @@ impl Demo {
         let loaded = if self.scenes.is_empty() {
             made_up()
         } else {
-            scenes::load(&self.scenes)?
+            scenes::load_files(&self.scenes)?
         };
         let scene = loaded.scene();
         let camera = views.of(&scene)?.remove(0).camera;

@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::output::{self, grouped, say};
+use super::values;
 use rara::scene;
 
 /// Write a made-up scene
@@ -25,7 +26,7 @@ pub(super) struct Generate {
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
     /// The scene's file
-    #[arg(short, long, value_name = "OUT.ply", value_parser = ply_path)]
+    #[arg(short, long, value_name = "OUT.ply", value_parser = values::ply_path)]
     output: PathBuf,
 }
 
@@ -40,17 +41,5 @@ impl Generate {
             self.output.display()
         ));
         Ok(())
-    }
-}
-
-fn ply_path(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    let fits = path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("ply"));
-    if fits {
-        Ok(path)
-    } else {
-        Err("a scene's name ends in .ply".into())
     }
 }

@@ -4,6 +4,8 @@
 //! the work. Only [`output::answer`] writes to stdout what a command was asked for; everything else goes to stderr.
 
 mod ablate;
+mod aov;
+mod bake;
 mod bench;
 mod camera;
 mod clip;
@@ -22,6 +24,7 @@ mod precision;
 mod profile;
 mod render;
 mod report;
+mod residual;
 mod scene_file;
 mod scenes;
 mod section;
@@ -74,6 +77,7 @@ enum Command {
     Demo(demo::Demo),
     Compare(compare::Compare),
     Generate(generate::Generate),
+    Bake(bake::Bake),
     Info(info::Info),
     Stress(stress::Stress),
     Devices(devices::Devices),
@@ -92,6 +96,7 @@ impl Command {
             Self::Demo(command) => command.run(),
             Self::Compare(command) => command.run(),
             Self::Generate(command) => command.run(),
+            Self::Bake(command) => command.run(),
             Self::Info(command) => command.run(),
             Self::Stress(command) => command.run(),
             Self::Devices(command) => command.run(),

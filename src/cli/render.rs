@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use rara::{Clip, Scene, Settings};
 
+use super::aov::{self, Aov};
 use super::camera::{View, Views};
 use super::failure::Failure;
 use super::frame::FrameArgs;
@@ -13,6 +14,7 @@ use super::profile::{Profile, ProfileArgs};
 use super::report::Report;
 use super::scenes::SceneArgs;
 use super::section::{SectionArgs, Sections};
+use super::session::Session;
 use super::settings::name;
 use super::values;
 
@@ -29,6 +31,7 @@ Examples:
   rara render scene.ply -o flat.png --ortho fit
   rara render scene.ply -o axial.png --section axial=0.4
   rara render scene.ply -o slab_{}.png --section coronal=0.1..0.9:9 --section-thickness 2
+  rara render scene.ply -o deep.exr --aov depth,normal,weight
   rara render scene.ply --repeat 20 --json
 
 Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premultiplied.")]
@@ -38,6 +41,9 @@ pub(super) struct Render {
     /// The picture's file, .png or .exr; {} becomes the number of the camera or section. May be left out with --json
     #[arg(short, long, value_name = "OUT", value_parser = values::picture_path, required_unless_present = "json")]
     output: Option<PathBuf>,
+    /// Channels of the .exr beside its colours. Each is drawn by itself, and no time is reported of it
+    #[arg(long, value_name = "LIST", value_delimiter = ',', requires = "output")]
+    aov: Vec<Aov>,
     /// Render N times, nothing carried over between them, and report the medians
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     repeat: u32,
@@ -123,7 +129,12 @@ impl Render {
             progress.update(done as u64, views.len() as u64);
             frames.push(session.frame(&view.camera, clip, settings, self.repeat)?);
             if let Some(path) = self.picture_file(view.number) {
-                profile.save_picture(&mut session, &path)?;
+                if self.aov.is_empty() {
+                    profile.save_picture(&mut session, &path)?;
+                } else {
+                    let drawn = (view, clip, settings);
+                    self.save_channels(&mut session, &scene, drawn, &path)?;
+                }
                 written.push(path);
             }
         }
@@ -142,6 +153,21 @@ impl Render {
         Ok(report.print(self.json, &written)?)
     }
 
+    /// Writes the picture of the session's last frame with the channels that `--aov` asks for.
+    fn save_channels(
+        &self,
+        session: &mut Session,
+        scene: &Scene<'_>,
+        (view, clip, settings): (&View, &Clip, &Settings),
+        path: &Path,
+    ) -> Result<(), Failure> {
+        let picture = session.last_picture()?;
+        let drawn = (&view.camera, clip, settings);
+        let sh = settings.precision.sh;
+        let channels = aov::channels(&self.aov, session, scene, drawn, sh)?;
+        Ok(picture.save_with(path, &channels)?)
+    }
+
     /// The file of the picture of a view.
     fn picture_file(&self, number: usize) -> Option<PathBuf> {
         Some(numbered(self.output.as_ref()?, number))
@@ -152,6 +178,15 @@ impl Render {
         let Some(pattern) = &self.output else {
             return Ok(());
         };
+        let is_exr = pattern
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("exr"));
+        if !self.aov.is_empty() && !is_exr {
+            return Err(Failure::Usage(
+                "--aov makes channels that only .exr files hold: give -o a name that ends in .exr"
+                    .into(),
+            ));
+        }
         let first = numbers.first().copied().unwrap_or(0);
         if several && numbered(pattern, 0) == numbered(pattern, 1) {
             let what = if self.frame.camera.all() {

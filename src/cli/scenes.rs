@@ -28,9 +28,24 @@ pub(super) struct SceneArgs {
 }
 
 impl SceneArgs {
+    /// The layers that are named, of which none is read yet.
+    pub(super) fn entries(&self) -> Result<Vec<LayerEntry>, Failure> {
+        let mut entries = Vec::new();
+        for file in &self.files {
+            entries.extend(named_file(file)?);
+        }
+        Ok(entries)
+    }
+
+    /// True when a layer has a clip of its own.
+    pub(super) fn has_clips(&self) -> Result<bool, Failure> {
+        let is_clipped = |entry: &LayerEntry| entry.clip.is_some();
+        Ok(!self.layer_clip.is_empty() || self.entries()?.iter().any(is_clipped))
+    }
+
     /// Reads the files.
     pub(super) fn load(&self) -> Result<Loaded, Failure> {
-        let mut loaded = load(&self.files)?;
+        let mut loaded = load(self.entries()?)?;
         for text in &self.layer_clip {
             let Some((name, region)) = text.split_once('=') else {
                 return Err(Failure::Usage(format!(
@@ -128,18 +143,23 @@ impl Loaded {
     }
 }
 
+/// Reads the layers that these files are or list.
+pub(super) fn load_files(paths: &[PathBuf]) -> Result<Loaded, Failure> {
+    let mut entries = Vec::new();
+    for path in paths {
+        entries.extend(named_file(path)?);
+    }
+    load(entries)
+}
+
 /// Reads the files in order, and prints what had to be repaired.
-pub(super) fn load(paths: &[PathBuf]) -> Result<Loaded, Failure> {
+fn load(entries: Vec<LayerEntry>) -> Result<Loaded, Failure> {
     let mut all = Loaded {
         layers: Vec::new(),
         repaired: 0,
         dropped: 0,
         notes: Vec::new(),
     };
-    let mut entries = Vec::new();
-    for path in paths {
-        entries.extend(named_file(path)?);
-    }
     for LayerEntry {
         name,
         path,

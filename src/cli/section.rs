@@ -2,7 +2,8 @@
 
 use clap::Args;
 use glam::DVec3;
-use rara::{Bounds, Camera, Clip, ClipOp, Gaussians, Plane, Scene, Shape};
+use rara::clip::Expression;
+use rara::{Bounds, Camera, Clip, ClipOp, Gaussians, Plane, Scene};
 
 use super::camera::{CameraArgs, View};
 use super::clip::ClipArgs;
@@ -144,7 +145,7 @@ fn wanted(text: &str) -> Result<Wanted, String> {
 pub(super) struct Sections {
     planned: Vec<Planned>,
     /// What else clips.
-    shapes: Vec<Shape>,
+    shapes: Vec<Expression>,
     thickness: Option<f64>,
     scale: Option<f64>,
     up: Option<DVec3>,
@@ -192,7 +193,7 @@ impl SectionArgs {
         let (shapes, planes) = if is_named {
             (clip.typed(), clip.planes()?)
         } else {
-            (clip.shapes()?, Vec::new())
+            (clip.expressions()?, Vec::new())
         };
         let mut planned = Vec::new();
         for wanted in &self.section {
@@ -268,10 +269,10 @@ impl Sections {
                 camera = camera.fx(1.0 / scale).fy(1.0 / scale);
             }
             let mut shapes = self.shapes.clone();
-            shapes.push(plane.into());
+            shapes.push(Expression::Shape(plane.into()));
             if let Some(thickness) = self.thickness {
                 let far = Plane::new(-plane.normal(), thickness - plane.offset())?;
-                shapes.push(far.into());
+                shapes.push(Expression::Shape(far.into()));
             }
             Ok(Section {
                 view: View {
@@ -279,7 +280,7 @@ impl Sections {
                     name,
                     camera,
                 },
-                clip: Clip::of_shapes(&shapes, ClipOp::And)?,
+                clip: Clip::joined(shapes.iter().map(Expression::clip), ClipOp::And),
             })
         };
         self.planned.iter().enumerate().map(section).collect()

@@ -63,6 +63,16 @@ impl Session {
         Ok((self.last_picture()?, stats))
     }
 
+    /// The expected depths of a frame.
+    pub(super) fn expected_depth(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<Vec<f32>> {
+        self.headless.expected_depth(camera, clip, settings)
+    }
+
     /// The picture of the last frame.
     pub(super) fn last_picture(&mut self) -> Result<Picture> {
         self.headless.picture()

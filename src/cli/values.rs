@@ -50,6 +50,27 @@ pub(super) fn positive(text: &str) -> Result<f32, String> {
     }
 }
 
+/// A number of zero or more that single precision can hold.
+pub(super) fn not_negative(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
+        _ => Err("expected a finite number of zero or more".into()),
+    }
+}
+
+/// A scene's file name.
+pub(super) fn ply_path(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let fits = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("ply"));
+    if fits {
+        Ok(path)
+    } else {
+        Err("a scene's name ends in .ply".into())
+    }
+}
+
 /// A picture's file name; its ending says the format.
 pub(super) fn picture_path(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);

@@ -3,7 +3,12 @@
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "picture")]
+mod channels;
+#[cfg(feature = "picture")]
 mod file;
+
+#[cfg(feature = "picture")]
+pub use channels::Channel;
 
 /// RGBA pixels, 32-bit float, premultiplied, blended values as they are (no transfer function).
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -3,7 +3,7 @@
 use super::chord::Chord;
 use super::classify::{cutting, left, side};
 use super::combined::Combined;
-use super::exact::{AffinePlane, Beam, holds_the_eye};
+use super::exact::{AffinePlane, Beam};
 use super::footprint::Footprint;
 use super::real::{Real, Vec3};
 use super::region::{self, Combination, HalfSpace, Reduced, Side};
@@ -88,7 +88,7 @@ pub fn cutoff<T: Real>(
             };
             let has_front = match is_chord {
                 true => footprint.projection == Projection::Perspective,
-                false => follows_rays && holds_the_eye(footprint),
+                false => follows_rays && footprint.holds_the_eye(),
             };
             Cut::Combined(Combined {
                 gradients: match follows_rays {

@@ -170,7 +170,7 @@ fn stretch<T: Real>([b1, b2]: [Vec3<T>; 2], [c1, c2]: [Vec3<T>; 2]) -> T {
 }
 
 /// Columns of R(q) S.
-pub(super) fn half_axes<T: Real>(scale: Point, rotation: Quat) -> [Vec3<T>; 3] {
+pub(crate) fn half_axes<T: Real>(scale: Point, rotation: Quat) -> [Vec3<T>; 3] {
     let [x, y, z, w] = rotation.to_array().map(|v| T::of(f64::from(v)));
     let [sx, sy, sz] = scale.to_array().map(|v| T::of(f64::from(v)));
     let (one, two) = (T::one(), T::of(2.0));

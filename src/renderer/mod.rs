@@ -115,6 +115,17 @@ impl Renderer {
         Self::with(&self.device, desc, self.pipelines.sharing())
     }
 
+    /// Another renderer that draws expected depths too, into attachments of this format, and shares this one's pipelines.
+    pub(crate) fn with_expected_depth(&self, format: vk::Format) -> Result<Self> {
+        self.sharing(RendererDesc {
+            expected_depth: Some(ExpectedDepthDesc::new(format)),
+            timing: false,
+            statistics: false,
+            reuse: false,
+            ..self.desc
+        })
+    }
+
     fn with(device: &Device, desc: RendererDesc, pipelines: SharedPipelines) -> Result<Self> {
         desc.check(device)?;
         let frames =

@@ -162,6 +162,7 @@ impl Headless {
     }
 }
 
+mod depth;
 #[cfg(feature = "lab")]
 mod working;
 

@@ -2,6 +2,9 @@
 
 #[path = "../common/folder.rs"]
 mod folder;
+
+mod aov;
+mod bake;
 mod profile;
 mod refusals;
 mod sections;
@@ -47,7 +50,7 @@ fn line_with(folder: &Path, words: &str, variable: Option<(&str, &str)>) -> Outp
         .split_whitespace()
         .map(|word| word.replace('@', folder))
         .collect();
-    let draws = ["render", "sweep", "ablate", "demo", "bench"].contains(&words[0].as_str());
+    let draws = ["render", "sweep", "ablate", "demo", "bench", "bake"].contains(&words[0].as_str());
     if let Ok(device) = std::env::var("RARA_TEST_DEVICE")
         && draws
         && !words.iter().any(|word| word == "--device")

@@ -5,6 +5,8 @@ mod common;
 
 mod accuracy;
 mod agreement;
+mod aov;
+mod bake;
 mod classification;
 mod curves;
 mod debug_view;

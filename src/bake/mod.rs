@@ -1,0 +1,269 @@
+//! Baking: Gaussians that show a cut in any viewer, without a clip.
+//!
+//! What lies outside is dropped, what the clip leaves whole stays as it is, and what it cuts becomes one Gaussian or a few
+//! that have the mass, the mean and the covariance of what is left. A Gaussian has no edge, so that this is a preview of
+//! the cut: see [`bake`].
+
+#![forbid(unsafe_code)]
+
+mod child;
+mod half_line;
+mod rays;
+mod region;
+#[cfg(test)]
+mod tests;
+
+use crate::clip::Clip;
+use crate::error::{Error, Result};
+use crate::scene::{Gaussians, Layer};
+use crate::setters::setters;
+use crate::settings::{Mode, Settings};
+
+use child::Child;
+use region::Region;
+
+/// The most Gaussians that can stand for a cut one.
+const MAX_CHILDREN: u32 = 3;
+
+/// How a clip is baked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct BakeSettings {
+    /// Which Gaussians are cut: those that a frame of this mode cuts. [`Mode::Hard`] cuts none, so that Gaussians stay
+    /// or go by their centres, and [`Mode::None`] keeps all.
+    pub mode: Mode,
+    /// [`Mode::Rara`]: the traced ellipsoid, in standard deviations.
+    pub sigma: f32,
+    /// The number of Gaussians that stand for a cut one, 1 to 3: what is left of it is divided along the cut's normal
+    /// into parts of equal mass.
+    pub children: u32,
+    /// A cut Gaussian stays whole where the clip keeps all within this many standard deviations of its centre. At 1, no
+    /// child of a convex region is ever cut again, so that baking twice is baking once. Greater numbers follow the cut
+    /// closer, up to about 1.5 (a box cuts a scanned heart with 34.4 dB for 32.4), but baking again changes children.
+    pub leave: f32,
+}
+
+setters!(BakeSettings {
+    mode: Mode,
+    sigma: f32,
+    children: u32,
+    leave: f32,
+});
+
+impl Default for BakeSettings {
+    fn default() -> Self {
+        Self {
+            mode: Mode::default(),
+            sigma: Settings::default().sigma,
+            children: 1,
+            leave: 1.0,
+        }
+    }
+}
+
+/// What baking has done to the Gaussians. The first three are the classes that a frame counts, whatever a camera sees.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct BakeCounts {
+    /// Those that the clip leaves whole; they are kept.
+    pub visible: u64,
+    /// Those that the clip cuts; they are replaced, except the next two.
+    pub cutoff: u64,
+    /// Those that lie outside; they are dropped.
+    pub invisible: u64,
+    /// Of those that are cut: kept as they are, since the cut passes far enough outside ([`BakeSettings::leave`]).
+    pub left: u64,
+    /// Of those that are cut: dropped, since what is left of them reaches an alpha of 1/255 nowhere.
+    pub faint: u64,
+    /// Gaussians that stand for cut ones.
+    pub children: u64,
+}
+
+impl std::ops::AddAssign for BakeCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.visible += other.visible;
+        self.cutoff += other.cutoff;
+        self.invisible += other.invisible;
+        self.left += other.left;
+        self.faint += other.faint;
+        self.children += other.children;
+    }
+}
+
+/// Gaussians that show a cut without a clip.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct Baked {
+    /// The Gaussians, in the order of those that they come from.
+    pub gaussians: Gaussians,
+    /// For each of them, the index of the one that it comes from.
+    pub sources: Vec<u32>,
+    /// What has been done.
+    pub counts: BakeCounts,
+}
+
+/// Bakes a clip into Gaussians, so that they show the cut wherever they are drawn.
+///
+/// A cut Gaussian, seen in its unit space, is a standard normal distribution of which the clip keeps a part. Its child has
+/// that part's mean and covariance. Behind one plane, at the signed distance `beta` of the plane along its normal, in
+/// deviations, with `Q = Phi(-beta)` and `L = phi(beta) / Q`, the mean is `L` along the normal and the variance there is
+/// `1 - L (L - beta)` (the truncated normal distribution). For several surfaces both come from a quadrature along 1024
+/// rays from the centre, whatever the surfaces are and however they combine. No opacity of the child is right from
+/// everywhere: seen along the normal it should fall to the share Q, seen across it to Q over the deviation that is left.
+/// It is `Q / |C|^(1/4)` of the whole one's, with the covariance C of the part, which lies between the two and came out
+/// best on average. Spherical harmonics stay as they are.
+///
+/// A Gaussian of which everything within one deviation is kept stays whole ([`BakeSettings::leave`]). That is why no child
+/// of a convex region is ever cut again: the mean of a log-concave distribution is at least one deviation away from the
+/// end of a half-line that bears it. So baking the same clip twice is baking it once, for the inside of a box as for a
+/// plane. Around the outside of a box, children that lie across an edge are cut again, which moves next to nothing.
+///
+/// What it loses: against the exact cut, pictures of single cut Gaussians are off by 12 to 17 % of their light, where a
+/// clip by centres is off by 35 %. Nothing can be won back, and a Gaussian has no edge, so that this is a preview of the
+/// cut and no substitute for it.
+///
+/// ```
+/// use rara::{BakeSettings, Clip, ClipOp, Plane, bake, glam::DVec3, scene};
+///
+/// let scene = scene::generate(scene::Kind::General, 1000, 1);
+/// let clip = Clip::of([Plane::new(DVec3::X, 0.0)?], ClipOp::And);
+/// let baked = bake(&scene, &clip, &BakeSettings::default())?;
+/// assert!(baked.gaussians.len() < 1000 && baked.counts.children > 0);
+/// assert_eq!(bake(&baked.gaussians, &clip, &BakeSettings::default())?.gaussians, baked.gaussians);
+/// # Ok::<(), rara::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Invalid`] for a number of children that is not 1, 2 or 3, for a `sigma` that is not above zero, for a `leave`
+/// below zero, and for more Gaussians than can be numbered.
+pub fn bake(gaussians: &Gaussians, clip: &Clip, settings: &BakeSettings) -> Result<Baked> {
+    bake_faded(gaussians, 1.0, clip, settings)
+}
+
+/// Bakes a clip into a layer of a scene: its own, or where it has none, `clip`. The Gaussians are in the layer's own
+/// space, and replace its Gaussians in its placement and state, without a clip. Its opacity factor is not baked in, but
+/// counts for what is visible at all.
+///
+/// # Errors
+/// As [`bake`].
+pub fn bake_layer(layer: &Layer<'_>, clip: &Clip, settings: &BakeSettings) -> Result<Baked> {
+    let state = layer.state();
+    let clip = layer.clip().unwrap_or(clip).in_scene(&state.placement);
+    bake_faded(layer.gaussians(), state.opacity, &clip, settings)
+}
+
+fn bake_faded(
+    gaussians: &Gaussians,
+    opacity: f32,
+    clip: &Clip,
+    settings: &BakeSettings,
+) -> Result<Baked> {
+    if !(1..=MAX_CHILDREN).contains(&settings.children) {
+        return Err(Error::Invalid(format!(
+            "{} children cannot stand for a cut Gaussian; give 1 to {MAX_CHILDREN}",
+            settings.children
+        )));
+    }
+    // "Not above" also refuses what is not a number.
+    if !(settings.sigma > 0.0 && settings.sigma.is_finite()) {
+        return Err(Error::Invalid(format!(
+            "the traced ellipsoid has {} deviations; give a number above zero",
+            settings.sigma
+        )));
+    }
+    if settings.leave.is_nan() || settings.leave < 0.0 {
+        return Err(Error::Invalid(format!(
+            "no Gaussian can be left within {} deviations; give zero or more",
+            settings.leave
+        )));
+    }
+    if u32::try_from(gaussians.len()).is_err() {
+        return Err(Error::Invalid(format!(
+            "{} Gaussians are more than the {} that can be numbered; bake them in parts",
+            gaussians.len(),
+            u32::MAX
+        )));
+    }
+    let region = Region::new(gaussians, opacity, clip, settings);
+    let fates = fates(&region, gaussians.len(), settings.children as usize);
+    Ok(collect(gaussians, &fates))
+}
+
+/// What becomes of a Gaussian.
+#[derive(Debug, Clone, PartialEq)]
+enum Fate {
+    /// The clip leaves it whole.
+    Visible,
+    /// The clip drops it.
+    Invisible,
+    /// The clip cuts it far outside; it stays whole.
+    Left,
+    /// The clip cuts it; nothing is left that could be seen, or these.
+    Cut(Vec<Child>),
+}
+
+/// The fates of all Gaussians. Each is found by itself, so that the number of threads changes nothing.
+fn fates(region: &Region<'_>, count: usize, children: usize) -> Vec<Fate> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut fates = vec![Fate::Visible; count];
+    // More parts than threads, since cut Gaussians lie together.
+    let part = count.div_ceil(16 * threads).max(1);
+    let parts = std::sync::Mutex::new(fates.chunks_mut(part).enumerate());
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                loop {
+                    let next = parts.lock().map_or(None, |mut parts| parts.next());
+                    let Some((number, part_of)) = next else { break };
+                    for (offset, fate) in part_of.iter_mut().enumerate() {
+                        *fate = region.fate(number * part + offset, children);
+                    }
+                }
+            });
+        }
+    });
+    fates
+}
+
+fn collect(gaussians: &Gaussians, fates: &[Fate]) -> Baked {
+    let mut baked = Baked::default();
+    baked.gaussians.set_sh_degree(gaussians.sh_degree());
+    let counts = &mut baked.counts;
+    for (index, fate) in fates.iter().enumerate() {
+        let children = match fate {
+            Fate::Visible => {
+                counts.visible += 1;
+                None
+            }
+            Fate::Invisible => {
+                counts.invisible += 1;
+                continue;
+            }
+            Fate::Left => {
+                counts.cutoff += 1;
+                counts.left += 1;
+                None
+            }
+            Fate::Cut(children) => {
+                counts.cutoff += 1;
+                counts.faint += u64::from(children.is_empty());
+                counts.children += children.len() as u64;
+                Some(children.as_slice())
+            }
+        };
+        let whole = [Child::whole(gaussians, index)];
+        for child in children.unwrap_or(&whole) {
+            baked.gaussians.push(
+                child.position,
+                child.scale,
+                child.rotation,
+                child.opacity,
+                gaussians.sh_of(index),
+            );
+            // There are no more than u32 has numbers; that was checked.
+            baked.sources.push(index as u32);
+        }
+    }
+    baked
+}

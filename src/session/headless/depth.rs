@@ -1,0 +1,75 @@
+//! How deep a frame's pixels are, drawn by themselves.
+
+use super::super::loaded;
+use super::super::target::blendable_on;
+use super::Headless;
+use crate::camera::Camera;
+use crate::clip::Clip;
+use crate::error::{Error, Result};
+use crate::gpu::{BufferDesc, Drawer, ImageDesc, Location};
+use crate::precision::TargetFormat;
+use crate::settings::{Raster, Settings};
+
+impl Headless {
+    /// Draws the expected depth of each pixel, row by row from the top left: the mean depth along the view axis, world
+    /// units, of what the clip leaves of its splats, each by what it adds to the pixel's alpha. It is 0 where there is none.
+    /// [`Renderer::draw_depth`](crate::Renderer::draw_depth) says what it is of a cut splat.
+    ///
+    /// This is a frame of its own, whose memory is freed again; nothing of the picture changes.
+    ///
+    /// # Errors
+    /// As [`render`](Self::render).
+    pub fn expected_depth(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<Vec<f32>> {
+        let drawn = self.draw_depth(camera, clip, settings);
+        drawn.map_err(|error| self.session.explain(error))
+    }
+
+    fn draw_depth(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<Vec<f32>> {
+        let session = &self.session;
+        let (device, scene) = (&session.device, loaded(&session.scene, "draw depths of")?);
+        let format = blendable_on(device, TargetFormat::Float)?;
+        let mut renderer = session.renderer.with_expected_depth(format.vulkan())?;
+        // Depths are drawn as quads in any case, and lists of tiles could lack room.
+        renderer.configure(scene, camera, clip, &settings.raster(Raster::Quad))?;
+        let image = device.create_image(&ImageDesc {
+            name: "expected depth",
+            width: camera.width,
+            height: camera.height,
+            format: format.vulkan(),
+        })?;
+        let size = u64::from(camera.width) * u64::from(camera.height) * format.pixel_bytes();
+        let readback = device.create_buffer(&BufferDesc {
+            name: "readback",
+            size,
+            location: Location::Readback,
+        })?;
+        device.submit_and_wait(|cmd| {
+            // SAFETY: `cmd` is recording, all earlier frames were waited for, and scene, image, buffer and renderer
+            // outlive the wait for this one; the rendering scope is opened and closed here around the draw, on an
+            // attachment of the format of the renderer's depths, and leaves the image ready to be copied from.
+            unsafe {
+                renderer.prepare(cmd, scene)?;
+                image.begin_rendering(cmd, [0.0; 4]);
+                Drawer::new(device, cmd, None).viewport(image.extent().into());
+                renderer.draw_depth(cmd, [0.0, 0.0])?;
+                image.end_rendering(cmd);
+                image.copy_to(cmd, &readback);
+            }
+            Ok(())
+        })?;
+        Error::validated(device.validation_messages())?;
+        let sums = format.decode(&readback.mapped()[..size as usize]);
+        let depth = |[sum, alpha, ..]: [f32; 4]| if alpha > 0.0 { sum / alpha } else { 0.0 };
+        Ok(sums.map(depth).collect())
+    }
+}

@@ -1,0 +1,81 @@
+//! `rara render --aov`: channels beside the colours.
+
+use std::path::Path;
+
+use exr::prelude::{ReadChannels, ReadLayers, read};
+
+use super::{document, done, folder, line, refused, scene};
+
+/// The channels of an OpenEXR file, by name.
+fn channels(file: &Path) -> Vec<(String, Vec<f32>)> {
+    let reader = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels();
+    let image = reader.first_valid_layer().all_attributes().from_file(file);
+    let list = image.expect("an OpenEXR file").layer_data.channel_data.list;
+    let channel = |c: exr::prelude::AnyChannel<exr::prelude::FlatSamples>| {
+        (c.name.to_string(), c.sample_data.values_as_f32().collect())
+    };
+    list.into_iter().map(channel).collect()
+}
+
+#[test]
+fn channels_say_what_the_picture_is_made_of() {
+    let here = folder("aov");
+    scene(&here);
+    let view = "--size 64x48 --eye 3,-2,-5 --target 0,0,0 --clip plane:1,0,0,0";
+    done(line(
+        &here,
+        &format!("render @/scene.ply -o @/plain.exr {view}"),
+    ));
+    let words = format!("render @/scene.ply -o @/a.exr --aov weight,depth,normal,depth {view}");
+    done(line(&here, &words));
+    // The colours are those without the flag.
+    let difference = document(line(&here, "compare @/plain.exr @/a.exr --json"));
+    assert_eq!(difference["max"], 0.0);
+
+    let channels = channels(&here.join("a.exr"));
+    let names: Vec<&str> = channels.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(
+        names,
+        ["A", "B", "G", "N.X", "N.Y", "N.Z", "R", "Z", "weight"]
+    );
+    let of = |name: &str| &channels.iter().find(|c| c.0 == name).expect("a channel").1;
+    let (alpha, depth, weight) = (of("A"), of("Z"), of("weight"));
+    // From the eye to the middle it is as far as this.
+    let far = 38.0_f32.sqrt();
+    let mut shown = 0;
+    for at in 0..64 * 48 {
+        let normal = glam::Vec3::new(of("N.X")[at], of("N.Y")[at], of("N.Z")[at]);
+        if alpha[at] < 0.1 {
+            assert!(alpha[at] > 0.0 || (depth[at], weight[at], normal.length()) == (0.0, 0.0, 0.0));
+            continue;
+        }
+        shown += 1;
+        assert!((0.2 * far..2.0 * far).contains(&depth[at]), "{}", depth[at]);
+        assert!((0.0..=1.0).contains(&weight[at]), "{}", weight[at]);
+        assert!((normal.length() - 1.0).abs() < 1e-4, "{normal}");
+    }
+    assert!(shown > 100, "{shown} pixels show something");
+    let cut = weight.iter().filter(|w| (0.05..0.95).contains(*w)).count();
+    assert!(cut > 10, "{cut} pixels show the cut");
+    // The mean normal looks at the eye.
+    let sum = |name: &str| of(name).iter().sum::<f32>();
+    assert!(3.0 * sum("N.X") - 2.0 * sum("N.Y") - 5.0 * sum("N.Z") > 0.0);
+}
+
+#[test]
+fn channels_need_an_exr_file() {
+    let here = folder("aov-refused");
+    for (words, what) in [
+        ("render x.ply -o a.png --aov depth", ".exr"),
+        ("render x.ply --json --aov depth", "--output"),
+        (
+            "render x.ply -o a.exr --aov beauty",
+            "depth, normal, weight",
+        ),
+    ] {
+        refused(&line(&here, words), 2, what);
+    }
+}

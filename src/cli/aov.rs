@@ -97,7 +97,7 @@ fn painted(scene: &Scene<'_>, camera: &Camera) -> Vec<Gaussians> {
             let normal = thinnest(scale, rotation);
             let sight = match camera.projection {
                 Projection::Orthographic => axis,
-                Projection::Perspective => position.as_dvec3() - eye,
+                _ => position.as_dvec3() - eye,
             };
             let away = normal.dot(sight) > 0.0;
             let normal = placement.rotation() * if away { -normal } else { normal };

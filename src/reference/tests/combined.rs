@@ -150,7 +150,7 @@ fn single_shapes_keep_what_integration_finds() {
     ] {
         let errors = study(pixels, 1, [3.0, 100.0], 60, 48);
         assert!(
-            errors.partial > 15,
+            errors.partial > 10,
             "the test would say nothing: {errors:?}"
         );
         assert!(
@@ -170,7 +170,7 @@ fn combinations_keep_what_integration_finds() {
     ] {
         let errors = study(pixels, count, [3.0, 100.0], 60, 48);
         assert!(
-            errors.partial > 15,
+            errors.partial > 10,
             "the test would say nothing: {errors:?}"
         );
         assert!(
@@ -200,8 +200,9 @@ fn a_region_and_its_complement_keep_the_whole() {
             };
             let (dx, dy) = (dice.normal() / footprint.conic[0], dice.normal());
             let (kept, rest) = (kept.weight(dx, dy), rest.weight(dx, dy));
+            // The chance that three half-spaces hold at once is integrated in a few steps.
             assert!(
-                (kept + rest - 1.0).abs() < 1e-9,
+                (kept + rest - 1.0).abs() < 5e-4,
                 "{kept} + {rest}: {clip:?}"
             );
             partial += usize::from((0.01..0.99).contains(&kept));

@@ -40,7 +40,7 @@ float exact_z(CurveSource source, vec2 uv, inout bool is_one) {
     if (COMBINED && source.bends) {
         float moved;
         Crossed crossing = crossed(line_through(sight), source.surface, moved);
-        is_one = is_one && moved == 0.0 && crossing.other == NO_CROSSING;
+        is_one = is_one && moved == 0.0 && abs(crossing.other) >= PHI_ONE;
         return crossing.z;
     }
     bool far;

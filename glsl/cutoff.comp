@@ -79,7 +79,7 @@ void write_decided(uint base, bool is_kept) {
         return;
     }
     cut_records.at[base] = vec4(1.0, 0.0, 0.0, float(1u << CUT_COUNT_SHIFT | CUT_BEAM));
-    cut_records.at[base + 1u] = vec4(0.0, 1.0, 0.0, 1.0);
+    cut_records.at[base + 1u] = vec4(0.0, 1.0, 0.0, 0.0); // every pixel's line goes through the centre
     cut_records.at[base + 2u] = vec4(0.0);
     cut_records.at[base + CUT_HEADER] = vec4(vec3(0.0), side);
 }
@@ -190,9 +190,8 @@ void main() {
         source.surface = surface;
         vec3 linear;
         vec3 curvature;
-        if (bends_little(surface)) {
-            Sight sight = sight_through(source.h0, source.h1, source.h2, vec2(0.0), vec2(0.0));
-            carried_bend(sight, surface, f.scale, linear, curvature);
+        Sight sight = sight_through(source.h0, source.h1, source.h2, vec2(0.0), vec2(0.0));
+        if (carried_bend(sight, surface, f.scale, linear, curvature)) {
             write_carried(base, linear, curvature);
             return;
         }

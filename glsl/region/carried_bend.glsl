@@ -1,19 +1,17 @@
 // The weight of a splat that one surface cuts which bends little within it, as a polynomial of degree two in the pixel: to
-// second order in the bend, low-pass included. Twin: none, since the tests hold it to the crossing that it stands for.
+// second order in the bend, low-pass included. There is no twin: pictures are held to the crossing that it stands for.
 #ifndef RARA_REGION_CARRIED_BEND
 #define RARA_REGION_CARRIED_BEND
 #include "region/crossing.glsl"
 
-// The largest bend within a deviation, relative to the slope, for which that is as right as single precision.
+// The largest bend, relative to the deviation given the pixel, for which that is within a twentieth of a level of 8 bits. Near
+// a silhouette the surface's function hardly varies given the pixel, and a small bend is much.
 const float LITTLE_BEND = 0.01;
 
-bool bends_little(UnitSurface s) {
-    return bend_norm(s) <= LITTLE_BEND * length(s.half_space.xyz);
-}
-
 // With m = G delta the mean given the pixel, h the gradient there and n^2 = h . C h, the surface's function has the value
-// F(m) + shift, and z solves F + shift = n z - k z^2, with k the bend along C h / n. All of it to second order in delta.
-void carried_bend(Sight s, UnitSurface surface, float scale, out vec3 linear, out vec3 curvature) {
+// F(m) + shift, and z solves F + shift = n z - k z^2, with k the bend along C h / n. All of it to second order in delta. False
+// where the surface bends too much for that.
+bool carried_bend(Sight s, UnitSurface surface, float scale, out vec3 linear, out vec3 curvature) {
     s.delta = vec2(0.0);
     Line line = line_through(s);
     vec3 gx = scale / line.det * (cross(s.b2, s.c) + s.low_pass * s.b1);
@@ -21,6 +19,9 @@ void carried_bend(Sight s, UnitSurface surface, float scale, out vec3 linear, ou
     vec3 a = surface.half_space.xyz;
     vec3 along;
     float n = steepest(line, a, along);
+    if (!(bend_norm(surface) * length(a) <= LITTLE_BEND * n * n)) {
+        return false;
+    }
     float k = bend_along(surface, along) / n;
     vec3 qx = bent(surface, gx);
     vec3 qy = bent(surface, gy);
@@ -39,6 +40,7 @@ void carried_bend(Sight s, UnitSurface surface, float scale, out vec3 linear, ou
     vec3 squares = vec3(q1.x * q1.x, 2.0 * q1.x * q1.y, q1.y * q1.y);
     curvature = curvature * (1.0 + 2.0 * k * q) + (k + 6.0 * k * k * q) * squares;
     linear = vec3(q + k * q * q + 2.0 * k * k * q * q * q, q1 * (1.0 + 2.0 * k * q + 6.0 * k * k * q * q));
+    return true;
 }
 
 #endif

@@ -194,6 +194,10 @@ float share_of_sides(Line line, uint base, uint count, out uint open) {
         if (count == 1u && moved > 0.0) {
             return bent_share(line, surface);
         }
+        if (count == 1u && crossing.other != NO_CROSSING) {
+            float near = phi(crossing.z);
+            return crossing.between ? max(near - phi(-crossing.other), 0.0) : min(near + phi(crossing.other), 1.0);
+        }
         uint pattern = 0u;
         for (uint side = 0u; side < (crossing.other == NO_CROSSING ? 1u : 2u); side++) {
             float z = side == 0u ? crossing.z : crossing.other;

@@ -78,7 +78,7 @@ float steepest(Line line, vec3 gradient, out vec3 along) {
     return n;
 }
 
-// A surface's crossings: z of the first, and of the second where that is below PHI_ONE. What is kept lies between them or
+// A surface's crossings: z of the first, and of the second where that is not FAR_AWAY. What is kept lies between them or
 // outside; the gradients point to it.
 struct Crossed {
     float z;
@@ -89,6 +89,8 @@ struct Crossed {
 };
 
 const float NO_CROSSING = 1e30;
+// Beyond this nothing is left of a splat, and no chord is as long.
+const float FAR_AWAY = 40.0;
 
 // `moved` is by how many deviations the bend across the direction moves the mean.
 Crossed crossed(Line line, UnitSurface surface, out float moved) {
@@ -102,7 +104,7 @@ Crossed crossed(Line line, UnitSurface surface, out float moved) {
     float value = value_at(surface, line.mean) + shift;
     float square = n * n - 4.0 * bend * value;
     float sum = n + sqrt(max(square, 0.0));
-    crossing.z = value < 0.0 ? -40.0 : 40.0;
+    crossing.z = value < 0.0 ? -FAR_AWAY : FAR_AWAY;
     crossing.other = NO_CROSSING;
     crossing.gradient = gradient;
     crossing.other_gradient = gradient;
@@ -110,11 +112,11 @@ Crossed crossed(Line line, UnitSurface surface, out float moved) {
     if (square < 0.0 || !(sum > 0.0)) {
         return crossing;
     }
-    crossing.z = clamp(2.0 * value / sum, -40.0, 40.0);
+    crossing.z = clamp(2.0 * value / sum, -FAR_AWAY, FAR_AWAY);
     vec3 across = 2.0 * bent(surface, along);
     crossing.gradient = gradient - crossing.z * across;
     float other = -sum / (2.0 * bend);
-    if (abs(other) < PHI_ONE) {
+    if (abs(other) < FAR_AWAY) {
         crossing.other = other;
         crossing.other_gradient = gradient + other * across;
         crossing.between = bend < 0.0;

@@ -37,15 +37,17 @@ uint joined(uint below, uint top, bool is_or, uint first_entry, inout uint entri
     return below;
 }
 
-// How far a surface that cuts a Gaussian is from its centre, in standard deviations.
+// About how far a surface that cuts a Gaussian is from its centre, in standard deviations.
 float nearness(UnitSurface s) {
-    return abs(s.half_space.w) / length(s.half_space.xyz);
+    float slope = length(s.half_space.xyz) + sqrt(abs(s.half_space.w) * bend_norm(s));
+    return min(abs(s.half_space.w) / max(slope, 1e-30), 1e29);
 }
 
-// The least distance of a surface that does not count because MAX_CUTTING others are nearer.
-float farthest_counted(Footprint f, vec3 position, float deviations) {
+// The distance of the last of the MAX_CUTTING nearest surfaces, and how many at that distance are among them.
+float farthest_counted(Footprint f, vec3 position, float deviations, out uint room) {
     float farthest = -1.0;
-    for (uint rank = 0u; rank <= MAX_CUTTING;) {
+    room = MAX_CUTTING;
+    while (true) {
         float next = 1e30;
         uint ties = 0u;
         for (uint i = 0u; i < LAYER.region.surface_count; i++) {
@@ -56,13 +58,12 @@ float farthest_counted(Footprint f, vec3 position, float deviations) {
                 next = here > farthest ? min(next, here) : next;
             }
         }
-        if (ties == 0u) {
-            return 1e30;
+        if (ties == 0u || ties >= room) {
+            return next;
         }
-        rank += ties;
+        room -= ties;
         farthest = next;
     }
-    return farthest;
 }
 
 // Writes the surfaces that cut a Gaussian behind its record's header. Returns 0 or 1 where nothing or all is kept, whatever
@@ -72,6 +73,7 @@ uint write_reduced(uint base, Footprint f, vec3 position, float deviations, out 
     uint first_entry = gl_LocalInvocationIndex * MAX_CUTTING;
     float farthest = 1e30;
     bool is_again = false;
+    uint room = 0u;
     uint cutting = 0u;
     uint depth = 0u;
     entries = 0u;
@@ -82,7 +84,7 @@ uint write_reduced(uint base, Footprint f, vec3 position, float deviations, out 
             }
             // There are more than have room, so all is done again for the nearest.
             is_again = true;
-            farthest = farthest_counted(f, position, deviations);
+            farthest = farthest_counted(f, position, deviations, room);
             depth = 0u;
             entries = 0u;
             i = 0u;
@@ -94,7 +96,10 @@ uint write_reduced(uint base, Footprint f, vec3 position, float deviations, out 
             cutting++;
             UnitSurface s = unit_surface(surface, f.axes, position);
             part = s.half_space.w >= 0.0 ? 1u : 0u;
-            if (nearness(s) < farthest && entries < MAX_CUTTING) {
+            float here = nearness(s);
+            bool counts = !is_again || here < farthest || (here == farthest && room > 0u);
+            room -= is_again && here == farthest && room > 0u ? 1u : 0u;
+            if (counts && entries < MAX_CUTTING) {
                 float size = max(largest(s.half_space.xyz), max(largest(s.diagonal), largest(s.across)));
                 float inverse = size > 0.0 ? 1.0 / size : 1.0;
                 uint at = base + CUT_HEADER + ENTRY_VECTORS * entries;

@@ -159,6 +159,7 @@ fn bake_faded(
     clip: &Clip,
     settings: &BakeSettings,
 ) -> Result<Baked> {
+    clip.check()?;
     if !(1..=MAX_CHILDREN).contains(&settings.children) {
         return Err(Error::Invalid(format!(
             "{} children cannot stand for a cut Gaussian; give 1 to {MAX_CHILDREN}",

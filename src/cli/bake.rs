@@ -110,10 +110,15 @@ impl Bake {
         let scene = loaded.scene();
         for (done, layer) in scene.layers().iter().enumerate() {
             progress.update(done as u64, scene.layers().len() as u64);
-            if is_merged && layer.state().placement != Placement::IDENTITY {
+            let state = layer.state();
+            if is_merged && !state.visible {
+                baked.push(Gaussians::default());
+                continue;
+            }
+            if is_merged && (state.placement != Placement::IDENTITY || state.opacity != 1.0) {
                 return Err(Failure::Usage(format!(
-                    "layer '{}' is placed in the scene, and a file of Gaussians has no placement: put {{}} into -o, which \
-                     bakes each layer in its own space",
+                    "layer '{}' is placed or faded, which a merged file of Gaussians cannot say: put {{}} into -o, which \
+                     bakes each layer by itself",
                     layer.name()
                 )));
             }

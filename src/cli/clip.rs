@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::clip::{Expression, NamedClip, NamedPlane, clips_to_json, load_clips, load_planes};
-use rara::{Clip, ClipOp, Shape};
+use rara::clip::{Expression, NamedClip, Solid, clips_to_json, load_clips};
+use rara::{Clip, ClipOp, Plane, Shape};
 
 use super::failure::Failure;
 use super::output;
@@ -41,22 +41,22 @@ impl ClipArgs {
     /// The clip that the flags mean; reads its files.
     pub(super) fn meant(&self) -> Result<Clip, Failure> {
         let expressions = self.expressions()?;
-        if let Some(path) = &self.save_clip {
-            self.save(path, &expressions)?;
-        }
         Ok(match &expressions[..] {
             [] => Clip::default(),
             all => Clip::joined(all.iter().map(Expression::clip), self.op()),
         })
     }
 
-    /// The shapes and expressions that the flags mean; reads their files.
+    /// The shapes and expressions that the flags mean; reads their files, and saves the clip where that is wanted.
     pub(super) fn expressions(&self) -> Result<Vec<Expression>, Failure> {
         let mut expressions: Vec<_> = self.clip.iter().copied().map(Expression::Shape).collect();
         for text in &self.clip_file {
             expressions.extend(from_file(text)?);
         }
         expressions.extend(self.clip_expr.iter().cloned());
+        if let Some(path) = &self.save_clip {
+            self.save(path, &expressions)?;
+        }
         Ok(expressions)
     }
 
@@ -90,10 +90,22 @@ impl ClipArgs {
     }
 
     /// All planes of the files, with their names.
-    pub(super) fn planes(&self) -> Result<Vec<NamedPlane>, Failure> {
-        let loaded = self.clip_file.iter().map(|file| load_planes(file.as_ref()));
-        let loaded: rara::Result<Vec<_>> = loaded.collect();
-        Ok(loaded?.concat())
+    pub(super) fn planes(&self) -> Result<Vec<(String, Plane)>, Failure> {
+        let mut planes = Vec::new();
+        for file in &self.clip_file {
+            let plane = |named: NamedClip| match named.clip {
+                Expression::Shape(shape) => match shape.solid() {
+                    Solid::Plane(plane) if shape.is_outside() => {
+                        Some((named.name, plane.flipped()))
+                    }
+                    Solid::Plane(plane) => Some((named.name, plane)),
+                    _ => None,
+                },
+                _ => None,
+            };
+            planes.extend(load_clips(file.as_ref())?.into_iter().filter_map(plane));
+        }
+        Ok(planes)
     }
 
     /// How they combine.

@@ -7,6 +7,9 @@ use rara::clip::Expression;
 use rara::{Clip, Error, LayerState, Placement, Result};
 use serde::Deserialize;
 
+/// The longest list that is read.
+const MOST_BYTES: u64 = 16 << 20;
+
 /// A layer that is to be read.
 #[derive(Debug)]
 pub(super) struct LayerEntry {
@@ -72,9 +75,16 @@ pub(super) fn region(text: &str) -> Result<Clip> {
 /// The layers of a scene file, whose paths are relative to its folder.
 pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
     let format = |message: String| Error::format(path, message);
+    let size = std::fs::metadata(path).map_err(Error::io(path))?.len();
+    if size > MOST_BYTES {
+        return Err(format(format!(
+            "{size} bytes are too many for a list of layers; name its files one by one"
+        )));
+    }
     let text = std::fs::read(path).map_err(Error::io(path))?;
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
     let document: Document =
-        serde_json::from_slice(&text).map_err(|error| format(error.to_string()))?;
+        serde_json::from_slice(text).map_err(|error| format(error.to_string()))?;
     if document.layers.is_empty() {
         return Err(format("it has no layer; name at least one".into()));
     }

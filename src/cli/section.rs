@@ -207,13 +207,10 @@ impl SectionArgs {
                 }
                 Wanted::Named(name) => {
                     let before = planned.len();
-                    let found = planes.iter().filter(|plane| plane.name == *name);
-                    planned.extend(found.map(|p| Planned::Plane(name.clone(), p.plane)));
+                    let found = planes.iter().filter(|(of, _)| of == name);
+                    planned.extend(found.map(|(_, plane)| Planned::Plane(name.clone(), *plane)));
                     if planned.len() == before {
-                        return Err(unknown(
-                            name,
-                            planes.iter().map(|plane| plane.name.as_str()),
-                        ));
+                        return Err(unknown(name, planes.iter().map(|(name, _)| name.as_str())));
                     }
                 }
             }

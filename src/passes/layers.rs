@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use crate::camera::Camera;
 use crate::clip::Clip;
+use crate::limits;
 use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::scene_layer::SceneLayer;
@@ -74,10 +75,14 @@ impl Layers {
             if layer.is_visible() {
                 let placement = &layer.state.placement;
                 data.view = layer_view(&camera.in_scene(placement), placement.scale());
-                if index > 0 && scene[index - 1].is_clipped_like(layer) {
+                let own = layer.clip().unwrap_or(clip);
+                let is_anchored_alike =
+                    |other: &SceneLayer| !own.is_general() || other.corners == layer.corners;
+                let before = index.checked_sub(1).map(|before| &scene[before]);
+                if before.is_some_and(|b| b.is_clipped_like(layer) && is_anchored_alike(b)) {
                     data.region = layers[index - 1].region;
                 } else if has_region {
-                    let clip = layer.clip().unwrap_or(clip);
+                    let clip = own;
                     data.region.op = region::op(clip);
                     data.region.first_surface = surfaces.len() as u32;
                     let corners = layer.corners.map(|corner| corner.as_dvec3());
@@ -107,6 +112,18 @@ impl Layers {
     pub(crate) fn most_surfaces(&self) -> u32 {
         let counts = self.layers().iter().map(|layer| layer.region.surface_count);
         counts.max().unwrap_or(0)
+    }
+
+    /// The most vectors that the surfaces of a cutoff record take.
+    pub(crate) fn most_record_vectors(&self) -> u32 {
+        let vectors = self
+            .layers()
+            .iter()
+            .map(|layer| match layer.region.combined {
+                0 => layer.region.surface_count,
+                _ => types::ENTRY_VECTORS * layer.region.surface_count.min(limits::MAX_CUTTING),
+            });
+        vectors.max().unwrap_or(0)
     }
 
     /// True when splats of a layer are weighed as combinations of surfaces that may bend.

@@ -253,10 +253,7 @@ fn weight_data(
     }
     // A record is a header of three, the surfaces, and the eye's own plane where the camera may be inside a splat.
     let most_surfaces = layers.most_surfaces();
-    let vectors = match layers.are_combined() {
-        true => types::ENTRY_VECTORS * most_surfaces.min(limits::MAX_CUTTING),
-        false => most_surfaces,
-    };
+    let vectors = layers.most_record_vectors();
     let cut_stride = if cuts(region.mode) {
         3 + vectors + 1
     } else {

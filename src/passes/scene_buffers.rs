@@ -89,7 +89,7 @@ impl SceneBuffers {
     /// the frame's, from the next [`Renderer::configure`](crate::Renderer::configure) on.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for a number that no layer has, and for more than [`Clip::MAX_SURFACES`]; the clip is then as it
+    /// [`Error::Invalid`] for a number that no layer has, and for a clip of more than 65536 surfaces; the clip is then as it
     /// was.
     pub fn set_layer_clip(&mut self, index: usize, clip: Option<Clip>) -> Result<()> {
         let layer = self.layer_mut(index)?;

@@ -166,10 +166,6 @@ fn a_wrong_command_line_is_status_2_and_one_line() {
             "leave out --clip-op or",
         ),
         ("render x.ply -o a.png --section z=0.5 --up 0,0,1", "up"),
-        (
-            "render x.ply -o a.png --section z=0.5 --clip !box:0,0,0,1,1,1",
-            "cannot be combined",
-        ),
         ("render x.ply -o a.png --size 100", "1024x768"),
         ("render x.ply -o a.png --size 0x100", "0x100"),
         ("render x.ply -o a.png --size 100000x1", "100000x1"),

@@ -1,11 +1,12 @@
 //! The kinds of frame whose pipelines and commands are examined.
 
 use rara::ash::vk;
+use rara::glam::{DQuat, DVec3};
 use rara::gpu::{Device, DeviceDesc, DeviceShape, Recorded};
-use rara::scene::{Kind, generate};
+use rara::scene::{Bounds, Kind, generate};
 use rara::{
     Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, Gaussians, Layer, Mode, Preset,
-    Raster, Renderer, RendererDesc, Scene, SceneBuffers, Settings, ShFormat,
+    Raster, Renderer, RendererDesc, Scene, SceneBuffers, Settings, ShFormat, Shape,
 };
 
 use crate::common;
@@ -15,14 +16,18 @@ const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 pub const SMALL: (u32, u32) = (253, 190);
 
 /// The clips and modes: a name, the mode and how many planes.
-const CLIPS: [(&str, Mode, usize); 6] = [
+const CLIPS: [(&str, Mode, usize); 8] = [
     ("no clip", Mode::None, 0),
     ("hard", Mode::Hard, 1),
     ("rara, one plane", Mode::Rara, 1),
     ("rara, three planes", Mode::Rara, 3),
     ("exact, one plane", Mode::Exact, 1),
     ("exact, three planes", Mode::Exact, 3),
+    ("rara, shapes", Mode::Rara, SHAPES),
+    ("exact, shapes", Mode::Exact, SHAPES),
 ];
+/// In place of a number of planes: curved shapes, and parts.
+const SHAPES: usize = usize::MAX;
 
 /// What of a host a frame has to do with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,7 +70,7 @@ impl Frame {
     pub fn is_usual(&self) -> bool {
         let stored = self.stored == ShFormat::Packed && self.preset == Preset::Balanced;
         let clip = match self.mode {
-            Mode::Exact => true,
+            Mode::Exact => self.planes != SHAPES,
             Mode::Rara => false,
             _ => self.planes <= 1,
         };
@@ -195,6 +200,16 @@ impl Frames {
     }
 
     fn clip(&self, planes: usize, moves: u32) -> Clip {
+        if planes == SHAPES {
+            let bounds = Bounds::of(&self.scene);
+            let (c, r) = (
+                bounds.centre(),
+                bounds.radius() * (0.6 + 0.05 * f64::from(moves)),
+            );
+            let ball = Shape::sphere(c, r).expect("a radius");
+            let block = Shape::cuboid(c, DVec3::splat(0.4 * r), DQuat::IDENTITY).expect("sizes");
+            return Clip::of_shapes(&[ball, block.complement()], ClipOp::And);
+        }
         let clip = common::clip(&self.scene, planes, ClipOp::And);
         match moves {
             0 => clip,

@@ -15,6 +15,8 @@ use crate::reference::region::UnitSurface;
 
 /// Beyond this Phi is taken for 0 or 1.
 pub(super) const PHI_ONE: f64 = 4.5;
+/// Beyond this nothing is left of a splat, and no chord is as long.
+const FAR_AWAY: f64 = 40.0;
 /// How much the mean may move by a surface's bend across `w`, in deviations, before the bend is integrated over.
 const BENT: f64 = 0.05;
 
@@ -193,7 +195,7 @@ impl<T: Real> Sight<T> {
         let value = value + self.trace(surface) - bend;
         let (two, four) = (T::of(2.0), T::of(4.0));
         let square = n * n - four * bend * value;
-        let far_away = T::of(40.0).copysign(value);
+        let far_away = T::of(FAR_AWAY).copysign(value);
         let alone = |z: T, gradient| Crossed {
             first: self.threshold(z, gradient),
             second: None,
@@ -204,11 +206,13 @@ impl<T: Real> Sight<T> {
             return alone(far_away, gradient);
         }
         let across = surface.bend.times(along) * two;
-        let z = (two * value / sum).max(T::of(-40.0)).min(T::of(40.0));
+        let z = (two * value / sum)
+            .max(T::of(-FAR_AWAY))
+            .min(T::of(FAR_AWAY));
         // The second crossing is at tau = -sum / (2 bend), and z is tau there, whichever side it keeps.
         let first = self.threshold(z, gradient - across * z);
         let other = -sum / (two * bend);
-        if !(other.abs() < T::of(PHI_ONE)) {
+        if !(other.abs() < T::of(FAR_AWAY)) {
             return Crossed {
                 first,
                 second: None,

@@ -66,19 +66,23 @@ pub(in crate::reference) fn reduced<T: Real>(
         })
         .collect();
     let distance = |surface: &UnitSurface<T>| {
-        surface.half_space.offset.abs() / surface.half_space.normal.length()
+        let offset = surface.half_space.offset.abs();
+        let slope = surface.half_space.normal.length() + (offset * surface.bend.norm()).sqrt();
+        (offset / slope.max(T::of(1e-30))).min(T::of(1e29))
     };
-    let mut distances: Vec<T> = seen
-        .iter()
-        .filter(|(side, _)| *side == Side::Cutoff)
-        .map(|(_, surface)| distance(surface))
+    let mut nearest: Vec<usize> = (0..seen.len())
+        .filter(|&index| seen[index].0 == Side::Cutoff)
         .collect();
-    distances.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
-    let most = MAX_CUTTING as usize;
-    let farthest = distances.get(most).copied().unwrap_or_else(T::infinity);
-    let answers = seen.into_iter().zip(steps).map(|((side, surface), step)| {
+    // Of equal distances the first in the list counts.
+    nearest.sort_by(|&a, &b| {
+        let (a, b) = (distance(&seen[a].1), distance(&seen[b].1));
+        a.partial_cmp(&b).unwrap_or(std::cmp::Ordering::Equal)
+    });
+    nearest.truncate(MAX_CUTTING as usize);
+    let numbered = seen.into_iter().enumerate();
+    let answers = numbered.zip(steps).map(|((index, (side, surface)), step)| {
         let part = match side {
-            Side::Cutoff if !(distance(&surface) >= farthest) => {
+            Side::Cutoff if nearest.contains(&index) => {
                 Reduced::Cut(vec![(surface.scaled(), Vec::new())])
             }
             Side::Cutoff => Reduced::Decided(surface.half_space.offset >= T::zero()),

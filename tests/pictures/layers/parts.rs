@@ -131,10 +131,10 @@ fn what_is_no_layer_is_refused() {
     let error = headless.set_layer_state(1, state).expect_err("no layer");
     assert!(error.to_string().contains("the scene has 1"), "{error}");
     let plane = rara::Plane::new(DVec3::X, 0.0).expect("a plane");
-    let error = headless.set_layer_clip(0, Some(Clip::of(vec![plane; 33], ClipOp::And)));
+    let error = headless.set_layer_clip(0, Some(Clip::of(vec![plane; 65_537], ClipOp::And)));
     let error = error.expect_err("too many surfaces").to_string();
     assert!(
-        error.contains("'layer 0'") && error.contains("33 surfaces"),
+        error.contains("'layer 0'") && error.contains("65537 surfaces"),
         "{error}"
     );
     let far = Placement::new(DVec3::ZERO, DQuat::IDENTITY, 1e39).expect("a placement");

@@ -8,6 +8,11 @@
 // How often the bound of a quadratic function over a ball is improved at most, and from which step on no more, as a share.
 const uint BALL_STEPS = 16u;
 const float BALL_STEP = 0.01;
+// The least shift as a share of the bend, and the least determinant as a share of the trace's cube: closer to a singular matrix
+// rounding would make a bound of nothing. What is left of its error is taken off.
+const float BALL_SHIFT = 0.02;
+const float BALL_DEFINITE = 1e-4;
+const float BALL_ERROR = 1.01;
 
 vec3 quadric_point(uint surface, vec3 position) {
     return two_float_difference(position, surfaces.at[surface].anchor.xyz, surfaces.at[surface].anchor_low.xyz);
@@ -50,7 +55,8 @@ bool inverse_shifted(UnitSurface s, float sign, float shift, out UnitSurface inv
     vec3 across = vec3(a.y * a.z - a.x * d.z, a.x * a.z - a.y * d.y, a.x * a.y - a.z * d.x);
     float determinant = d.x * minors.x + a.x * across.x + a.y * across.y;
     inverse = UnitSurface(vec4(0.0), minors / determinant, across / determinant);
-    return d.x > 0.0 && minors.z > 0.0 && determinant > 0.0;
+    float trace = d.x + d.y + d.z;
+    return d.x > 0.0 && minors.z > 0.0 && determinant > BALL_DEFINITE * trace * trace * trace;
 }
 
 // The side of the ball that reaches `deviations` standard deviations.
@@ -75,12 +81,12 @@ uint quadric_gaussian_side(uint surface, mat3 axes, vec3 position, float deviati
     for (uint i = 0u; i < BALL_STEPS && is_definite; i++) {
         vec3 nearest = -0.5 * sign * bent(inverse, s.half_space.xyz);
         float reach = length(nearest);
-        float taken = -0.5 * sign * dot(s.half_space.xyz, nearest);
+        float taken = -0.5 * BALL_ERROR * sign * dot(s.half_space.xyz, nearest);
         if (offset - shift * deviations * deviations - taken > margin) {
             return sign > 0.0 ? SIDE_VISIBLE : SIDE_INVISIBLE;
         }
         float next = shift + reach * reach * (reach - deviations) / (deviations * max(bend_along(inverse, nearest), 1e-30));
-        next = max(next, 0.0);
+        next = max(next, BALL_SHIFT * norm);
         if (abs(next - shift) <= BALL_STEP * shift) {
             break;
         }

@@ -25,18 +25,19 @@ const EXPRESSIONS: [&str; 14] = [
 ];
 
 fn check(modes: &[Mode], rasters: &[Raster], expressions: &[&str]) {
-    let gaussians = scene::generate(scene::Kind::General, 2_000, 3);
+    let gaussians = scene::generate(scene::Kind::General, 3_000, 3);
     let mut headless = common::headless();
     headless.load(&gaussians).expect("uploads");
-    let views = common::views(&gaussians, 2, common::scaled((189, 142)));
-    for (number, text) in expressions.iter().enumerate() {
-        let camera = &views[number % 2];
+    let views = common::views(&gaussians, 2, common::scaled((253, 190)));
+    for text in expressions {
         let clip = text.parse::<Expression>().expect("an expression").clip();
-        for mode in modes {
-            for raster in rasters {
-                let settings = Settings::default().mode(*mode).raster(*raster);
-                let name = format!("{text}, {raster:?}");
-                common::check(&mut headless, &name, &gaussians, camera, &clip, &settings);
+        for camera in &views {
+            for mode in modes {
+                for raster in rasters {
+                    let settings = Settings::default().mode(*mode).raster(*raster);
+                    let name = format!("{text}, {raster:?}");
+                    common::check(&mut headless, &name, &gaussians, camera, &clip, &settings);
+                }
             }
         }
     }

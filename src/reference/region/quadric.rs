@@ -73,7 +73,9 @@ impl<T: Real> Symmetric<T> {
         );
         let determinant = d.x * minors.x + a.x * across.x + a.y * across.y;
         let zero = T::zero();
-        (d.x > zero && minors.z > zero && determinant > zero).then(|| {
+        let trace = d.x + d.y + d.z;
+        let least = T::of(DEFINITE) * trace * trace * trace;
+        (d.x > zero && minors.z > zero && determinant > least).then(|| {
             Self {
                 diagonal: minors,
                 across,
@@ -170,6 +172,11 @@ pub(super) fn unit_surface<T: Real>(
 /// How often the bound of a quadratic function over a ball is improved at most, and from which step on no more, as a share.
 const STEPS: usize = 16;
 const STEP: f64 = 0.01;
+/// The least shift as a share of the bend, and the least determinant as a share of the trace's cube: closer to a singular
+/// matrix rounding would make a bound of nothing. What is left of its error is taken off.
+const LEAST_SHIFT: f64 = 0.02;
+const DEFINITE: f64 = 1e-4;
+const ERROR: f64 = 1.01;
 
 /// The side of a Gaussian whose band reaches `deviations` standard deviations: that of the ball of this radius.
 ///
@@ -202,7 +209,7 @@ pub(super) fn gaussian_side<T: Real>(surface: &UnitSurface<T>, deviations: T) ->
         let nearest = inverse.times(half_space.normal) * T::of(-0.5 * sign.wide());
         let length = nearest.length();
         // a . (Q + s I)^-1 a / 4 is half of -a . u.
-        let taken = T::of(-0.5) * sign * half_space.normal.dot(nearest);
+        let taken = T::of(-0.5 * ERROR) * sign * half_space.normal.dot(nearest);
         if offset - shift * deviations * deviations - taken > margin {
             return if sign > T::zero() {
                 Side::Visible
@@ -213,7 +220,7 @@ pub(super) fn gaussian_side<T: Real>(surface: &UnitSurface<T>, deviations: T) ->
         // Newton's step for 1/|u| = 1/K.
         let step = length * length * (length - deviations)
             / (deviations * inverse.form(nearest).max(T::of(1e-30)));
-        let next = (shift + step).max(T::zero());
+        let next = (shift + step).max(T::of(LEAST_SHIFT) * norm);
         if (next - shift).abs() <= T::of(STEP) * shift {
             break;
         }
@@ -302,9 +309,10 @@ mod tests {
         for round in 0..6_000 {
             // Slopes of 1, and radii from a third of a deviation to hundreds.
             let bend = 1.5 * 0.5_f64.powi(round % 10);
-            let squares = match round % 3 {
+            let squares = match round % 4 {
                 0 => vec3(-1.0, -1.0, -1.0),
                 1 => vec3(-1.0, -random.unit(), -0.01),
+                2 => vec3(-1.0, -random.unit(), 0.0),
                 _ => vector(&mut random),
             };
             let slope = vector(&mut random);
@@ -316,7 +324,7 @@ mod tests {
                 },
                 bend: Symmetric {
                     diagonal: squares,
-                    across: vector(&mut random) * 0.2,
+                    across: vector(&mut random) * if round % 4 == 2 { 0.0 } else { 0.2 },
                 }
                 .scaled(bend),
             };

@@ -91,8 +91,8 @@ fn branch(clip: &Clip) -> Branch {
     joined
 }
 
-#[cfg(any(test, feature = "lab"))]
 /// The answer that a stack makes of its steps' answers; `empty` is that of a region without steps.
+#[cfg(any(test, feature = "lab", feature = "bake"))]
 pub(crate) fn answer<A>(
     steps: impl IntoIterator<Item = (A, impl IntoIterator<Item = ClipOp>)>,
     empty: A,

@@ -210,7 +210,8 @@ fn region(solid: &Solid) -> Result<Clip> {
             half,
             rotation,
         } => {
-            if !(half.min_element() > 0.0) {
+            let has_sizes = half.min_element() > 0.0;
+            if !has_sizes {
                 return Err(Error::Invalid("a box's half sizes are above zero".into()));
             }
             let side = |index: usize| {

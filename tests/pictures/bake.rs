@@ -26,7 +26,7 @@ fn clips(bounds: &Bounds) -> [Clip; 3] {
     let shaped = |shape: Shape| shape.clip();
     [
         Clip::of([plane], ClipOp::And),
-        shaped(inside.clone()),
+        shaped(inside),
         shaped(inside.complement()),
     ]
 }

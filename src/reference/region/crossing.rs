@@ -202,7 +202,8 @@ impl<T: Real> Sight<T> {
             between: true,
         };
         let sum = n + square.max(T::zero()).sqrt();
-        if square < T::zero() || !(sum > T::zero()) {
+        let is_crossed = square >= T::zero() && sum > T::zero();
+        if !is_crossed {
             return alone(far_away, gradient);
         }
         let across = surface.bend.times(along) * two;
@@ -212,7 +213,8 @@ impl<T: Real> Sight<T> {
         // The second crossing is at tau = -sum / (2 bend), and z is tau there, whichever side it keeps.
         let first = self.threshold(z, gradient - across * z);
         let other = -sum / (two * bend);
-        if !(other.abs() < T::of(FAR_AWAY)) {
+        let is_near = other.abs() < T::of(FAR_AWAY);
+        if !is_near {
             return Crossed {
                 first,
                 second: None,
@@ -248,7 +250,8 @@ impl<T: Real> Sight<T> {
     /// nodes.
     fn bent_share(&self, surface: &UnitSurface<T>, gradient: Vec3<T>) -> T {
         let length = self.c.length();
-        if !(length > T::zero()) {
+        let is_line = length > T::zero();
+        if !is_line {
             return if surface.at(self.mean) >= T::zero() {
                 T::one()
             } else {
@@ -322,12 +325,14 @@ fn interval_share<T: Real>(at: T, slope: T, bend: T) -> T {
     let (zero, one, two) = (T::zero(), T::one(), T::of(2.0));
     let square = slope * slope - T::of(4.0) * bend * at;
     let sum = slope.abs() + square.max(zero).sqrt();
-    if square < zero || !(sum > zero) {
+    let is_crossed = square >= zero && sum > zero;
+    if !is_crossed {
         return if at >= zero { one } else { zero };
     }
     let near = (two * at / sum).phi();
     let other = -sum / (two * bend);
-    if !(other.abs() < T::of(9.0)) {
+    let is_near = other.abs() < T::of(9.0);
+    if !is_near {
         return near;
     }
     if bend < zero {

@@ -100,7 +100,8 @@ impl<T: Real> UnitSurface<T> {
     pub(in crate::reference) fn scaled(&self) -> Self {
         let bend = self.bend.diagonal.largest().max(self.bend.across.largest());
         let size = self.half_space.normal.largest().max(bend);
-        if !(size > T::zero()) {
+        let has_slope = size > T::zero();
+        if !has_slope {
             return *self;
         }
         let factor = T::one() / size;

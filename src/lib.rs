@@ -2,6 +2,7 @@
 // so these come first.
 #![doc = include_str!("guide/links.md")]
 #![cfg_attr(doc, doc = include_str!(concat!(env!("OUT_DIR"), "/layers.md")))]
+#![cfg_attr(doc, doc = include_str!(concat!(env!("OUT_DIR"), "/brain.md")))]
 #![doc = include_str!("../README.md")]
 
 #[cfg(feature = "bake")]

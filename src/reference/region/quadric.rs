@@ -352,6 +352,23 @@ mod tests {
         );
     }
 
+    /// Its matrix has no full rank, and rounding once made a bound of nothing. A tenth of the ball's surface is inside.
+    #[test]
+    fn a_cylinder_that_cuts_a_disc_from_its_side_is_not_beside_it() {
+        let mut scene = Gaussians::default();
+        let position = glam::Vec3::new(0.217_865_85, -0.212_699_22, 0.132_254_32);
+        let scale = glam::Vec3::new(0.046_538_69, 0.081_522_67, 0.004_208_966);
+        let turn = glam::Quat::from_xyzw(0.208_751_35, -0.504_046_74, 0.813_969_3, -0.199_534_07);
+        scene.push(position, scale, turn, 0.919_330_36, &[0.0; 3]);
+        let (from, to) = (DVec3::new(-0.4, -0.3, 0.0), DVec3::new(0.5, 0.4, 0.2));
+        let quadric = Quadric::cylinder(from, to, 0.3).unwrap();
+        let axes =
+            crate::reference::footprint::half_axes::<f64>(scene.scales()[0], scene.rotations()[0]);
+        let surface = unit_surface(&quadric, &scene, 0, &axes);
+        let deviations = (2.0 * (255.0 * 0.919_330_36_f64).ln()).sqrt();
+        assert_eq!(gaussian_side(&surface, deviations), Side::Cutoff);
+    }
+
     #[test]
     fn boxes_have_a_side_only_where_their_points_do() {
         let mut random = Random::new(7);

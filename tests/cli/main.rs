@@ -5,6 +5,7 @@ mod folder;
 
 mod aov;
 mod bake;
+mod clips;
 mod profile;
 mod refusals;
 mod sections;

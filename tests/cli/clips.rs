@@ -1,0 +1,95 @@
+//! Clips that are saved and read, and layers with names and clips of their own.
+
+use std::fs;
+
+use super::{document, done, folder, line, refused, scene};
+
+#[test]
+fn clips_of_files_are_what_was_saved() {
+    let here = folder("saved_clips");
+    scene(&here);
+    let drawn = |flags: &str| {
+        let words = format!("render @/scene.ply --size 48x32 -o @/a.png --json {flags}");
+        document(line(&here, &words));
+        fs::read(here.join("a.png")).unwrap()
+    };
+    let flags =
+        "--clip sphere:0.2,0,0,0.7 --clip-expr not(box:0,0,0,.4,.4,.4) --clip !plane:0,1,0,.6";
+    let typed = drawn(&format!("{flags} --save-clip @/core.json"));
+    assert_ne!(typed, drawn(""));
+    for saved in ["core.json", "core.json:core", "core.json:0"] {
+        assert_eq!(drawn(&format!("--clip-file @/{saved}")), typed, "{saved}");
+    }
+    refused(
+        &line(
+            &here,
+            "render @/scene.ply --json --clip-file @/core.json:croe",
+        ),
+        2,
+        "did you mean 'core'?",
+    );
+    // What stands still in a sweep may be of any shape.
+    let words = "sweep @/scene.ply --clip-normal 0,0,1 --clip !box:0,0,0,.4,.4,.4 --frames 2 --size 32x32 --json";
+    assert_eq!(
+        document(line(&here, words))["frames"]
+            .as_array()
+            .unwrap()
+            .len(),
+        2
+    );
+}
+
+#[test]
+fn layers_have_names_and_clips_of_their_own() {
+    let here = folder("named_layers");
+    scene(&here);
+    done(line(&here, "generate layers -n 800 --seed 2 -o @/more.ply"));
+    let counts = |flags: &str| {
+        let report = document(line(&here, &format!("render {flags} --size 48x32 --json")));
+        let counts = ["visible", "cutoff", "invisible"]
+            .map(|class| report["counts"][class].as_u64().unwrap());
+        let names = report["scene"]["layers"].as_array().unwrap();
+        let names: Vec<String> = names
+            .iter()
+            .map(|l| l["name"].as_str().unwrap().into())
+            .collect();
+        (counts, names)
+    };
+    let both = "outer=@/scene.ply inner=@/more.ply --clip plane:1,0,0,0";
+    let (cut, names) = counts(both);
+    assert_eq!(names, ["outer", "inner"]);
+    let ([_, _, invisible], _) = counts(&format!("{both} --layer-clip inner=whole"));
+    assert!(0 < invisible && invisible < cut[2]);
+    let (whole, _) = counts("outer=@/scene.ply inner=@/more.ply --layer-clip inner=whole");
+    assert_eq!(whole[1..], [0, 0]);
+    let ([hidden, _, _], _) = counts("outer=@/scene.ply inner=@/more.ply --hide outer");
+    assert!(hidden <= 800);
+    for (flags, words) in [
+        ("--hide skin", "there are outer, inner"),
+        ("--layer-clip inner", "NAME=EXPRESSION"),
+    ] {
+        let words_of = format!("render {both} --json {flags}");
+        refused(&line(&here, &words_of), 2, words);
+    }
+
+    let list = serde_json::json!({"layers": [
+        {"path": "scene.ply", "name": "outer", "clip_expr": "plane:1,0,0,0"},
+        {"path": "more.ply", "name": "inner", "clip": {"plane": {"normal": [1, 0, 0], "d": 0}}},
+    ]});
+    fs::write(here.join("list.json"), list.to_string()).unwrap();
+    assert_eq!(counts("@/list.json"), (cut, names));
+    let listed = document(line(&here, "info @/list.json --json"));
+    assert_eq!(listed["layers"][1]["name"], "inner");
+    for (text, words) in [
+        ("{\"layers\": []}", "no layer"),
+        (
+            "{\"layers\": [{\"path\": \"scene.ply\", \"scale\": 0}]}",
+            "layer 0",
+        ),
+        ("{\"layers\": [{\"path\": \"gone.ply\"}]}", "gone.ply"),
+        ("{\"layers\": [{\"file\": \"scene.ply\"}]}", "file"),
+    ] {
+        fs::write(here.join("list.json"), text).unwrap();
+        refused(&line(&here, "info @/list.json"), 1, words);
+    }
+}

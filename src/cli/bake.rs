@@ -14,6 +14,7 @@ use super::compare::Measures;
 use super::failure::Failure;
 use super::output::{self, Progress, grouped, say};
 use super::residual::{Residual, View, residual};
+use super::scene_file::LayerEntry;
 use super::scenes::{Loaded, SceneArgs};
 use super::settings::{DeviceArgs, name};
 use super::values;
@@ -95,8 +96,9 @@ struct Output {
 
 impl Bake {
     pub(super) fn run(self) -> Result<(), Failure> {
-        let clip = self.meant_clip()?;
-        let paths = self.check_output()?;
+        let entries = self.scenes.entries()?;
+        let clip = self.meant_clip(&entries)?;
+        let paths = self.check_output(&entries)?;
         let loaded = self.scenes.load()?;
 
         let settings = BakeSettings::default()
@@ -142,8 +144,9 @@ impl Bake {
     }
 
     /// The clip, which there has to be.
-    fn meant_clip(&self) -> Result<Clip, Failure> {
-        if self.clip.expressions()?.is_empty() && !self.scenes.has_clips()? {
+    fn meant_clip(&self, entries: &[LayerEntry]) -> Result<Clip, Failure> {
+        let clip = self.clip.meant()?;
+        if clip.is_everything() && !self.scenes.has_clips(entries) {
             return Err(Failure::Usage(
                 "there is no clip to bake: give --clip, --clip-expr, --clip-file or --layer-clip"
                     .into(),
@@ -154,12 +157,11 @@ impl Bake {
                 "--mode none cuts nothing, so that there is nothing to bake; use exact, rara or hard".into(),
             ));
         }
-        self.clip.meant()
+        Ok(clip)
     }
 
     /// The files that `-o` means, one, or one for each scene. No scene is among them: it would be gone.
-    fn check_output(&self) -> Result<Vec<PathBuf>, Failure> {
-        let entries = self.scenes.entries()?;
+    fn check_output(&self, entries: &[LayerEntry]) -> Result<Vec<PathBuf>, Failure> {
         let pattern = self.output.to_str().filter(|text| text.contains("{}"));
         let paths: Vec<PathBuf> = match pattern {
             None => vec![self.output.clone()],

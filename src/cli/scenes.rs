@@ -30,17 +30,12 @@ pub(super) struct SceneArgs {
 impl SceneArgs {
     /// The layers that are named, of which none is read yet.
     pub(super) fn entries(&self) -> Result<Vec<LayerEntry>, Failure> {
-        let mut entries = Vec::new();
-        for file in &self.files {
-            entries.extend(named_file(file)?);
-        }
-        Ok(entries)
+        entries(&self.files)
     }
 
-    /// True when a layer has a clip of its own.
-    pub(super) fn has_clips(&self) -> Result<bool, Failure> {
-        let is_clipped = |entry: &LayerEntry| entry.clip.is_some();
-        Ok(!self.layer_clip.is_empty() || self.entries()?.iter().any(is_clipped))
+    /// True when one of the layers that are named is given a clip of its own.
+    pub(super) fn has_clips(&self, entries: &[LayerEntry]) -> bool {
+        !self.layer_clip.is_empty() || entries.iter().any(|entry| entry.clip.is_some())
     }
 
     /// Reads the files.
@@ -145,11 +140,16 @@ impl Loaded {
 
 /// Reads the layers that these files are or list.
 pub(super) fn load_files(paths: &[PathBuf]) -> Result<Loaded, Failure> {
+    load(entries(paths)?)
+}
+
+/// The layers that files are or list.
+fn entries(files: &[PathBuf]) -> Result<Vec<LayerEntry>, Failure> {
     let mut entries = Vec::new();
-    for path in paths {
-        entries.extend(named_file(path)?);
+    for file in files {
+        entries.extend(named_file(file)?);
     }
-    load(entries)
+    Ok(entries)
 }
 
 /// Reads the files in order, and prints what had to be repaired.

@@ -20,7 +20,7 @@ pub(crate) fn postfix(clip: &Clip) -> Vec<Step> {
 }
 
 /// The numbers that a surface is ordered by: its kind and what it differs in from others.
-pub(crate) fn numbers(surface: &Surface) -> Vec<f64> {
+fn numbers(surface: &Surface) -> Vec<f64> {
     match surface {
         Surface::Plane(plane) => vec_of(plane),
         Surface::Quadric(q) => {
@@ -40,7 +40,7 @@ fn vec_of(plane: &Plane) -> Vec<f64> {
 }
 
 /// The order of surfaces, in which they stand in every list.
-pub(crate) fn order(one: &Surface, other: &Surface) -> Ordering {
+fn order(one: &Surface, other: &Surface) -> Ordering {
     let (a, b) = (numbers(one), numbers(other));
     let pairs = a.iter().zip(&b);
     let mut orders = pairs.map(|(a, b)| (a + 0.0).total_cmp(&(b + 0.0))); // -0 is 0

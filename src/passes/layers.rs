@@ -75,14 +75,14 @@ impl Layers {
             if layer.is_visible() {
                 let placement = &layer.state.placement;
                 data.view = layer_view(&camera.in_scene(placement), placement.scale());
-                let own = layer.clip().unwrap_or(clip);
+                let clip = layer.clip().unwrap_or(clip);
+                // Quadrics are packed relative to a point among the layer's own centres.
                 let is_anchored_alike =
-                    |other: &SceneLayer| !own.is_general() || other.corners == layer.corners;
+                    |other: &SceneLayer| !clip.is_general() || other.corners == layer.corners;
                 let before = index.checked_sub(1).map(|before| &scene[before]);
                 if before.is_some_and(|b| b.is_clipped_like(layer) && is_anchored_alike(b)) {
                     data.region = layers[index - 1].region;
                 } else if has_region {
-                    let clip = own;
                     data.region.op = region::op(clip);
                     data.region.first_surface = surfaces.len() as u32;
                     let corners = layer.corners.map(|corner| corner.as_dvec3());

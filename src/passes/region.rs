@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use crate::clip::postfix::{order, postfix};
+use crate::clip::postfix::postfix;
 use crate::clip::{Clip, ClipOp, Plane, Quadric, Surface};
 use crate::error::Result;
 use crate::settings::{Mode, Settings};
@@ -54,17 +54,6 @@ pub(super) fn op(clip: &Clip) -> u32 {
 /// There are no repetitions, since cutting twice is cutting once, and the order is their own, so that no bit of a picture
 /// depends on the order in which they are given.
 pub(super) fn surfaces(clip: &Clip, corners: [DVec3; 2]) -> Vec<types::SurfaceData> {
-    if clip.is_flat() {
-        let mut surfaces = clip.surfaces.clone();
-        surfaces.sort_by(order);
-        surfaces.dedup();
-        // Shaders that weigh combinations read the joins of flat lists too.
-        let joins = [clip.op];
-        let numbered = surfaces.iter().enumerate();
-        let packed = numbered
-            .map(|(number, surface)| packed(surface, &joins[..usize::from(number > 0)], corners));
-        return packed.collect();
-    }
     let steps = postfix(clip);
     steps
         .iter()

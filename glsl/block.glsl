@@ -19,10 +19,13 @@ vec3 block_half(Block block) {
     return 0.5 * block.high_sigma.xyz - 0.5 * block.low_reach.xyz + 1e-6 * (abs(block.low_reach.xyz) + abs(block.high_sigma.xyz));
 }
 
+float block_support(Block block, float widening) {
+    return box_support(widening * max(block.low_reach.w, 0.0), abs(block.high_sigma.w));
+}
+
 // The region's side of a block, with what perspective widens the band by at most.
 uint block_clip_side(Block block, float widening) {
-    float reach = widening * max(block.low_reach.w, 0.0);
-    return box_side(block_middle(block), block_half(block), reach, abs(block.high_sigma.w));
+    return box_side(block_middle(block), block_half(block), block_support(block, widening));
 }
 
 // A linear function of the camera's frame over the box, whose gradient is the sum of rows times factors that add up to
@@ -118,6 +121,9 @@ uint block_side_in_view(Block block, uint side) {
         return side;
     }
     float rest = 1.0 - 1.001 * LAYER.view.unit * block.low_reach.w / block_nearest(block);
+    if (SHORTLIST_WIDENING * rest < 1.0) {
+        leave_shortlist();
+    }
     return rest > WIDENING_REST ? block_clip_side(block, 1.0 / rest) : SIDE_CUTOFF;
 }
 

@@ -5,7 +5,6 @@
 // block's totals; compact turns them into ordered lists.
 #include "band.glsl"
 #include "masks.glsl"
-#include "region/gaussian_side.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
 layout(constant_id = 0) const bool CLIP = false;
@@ -17,6 +16,8 @@ BUFFER(readonly, 5, uint, clip_sides)
 BUFFER(readonly, 6, uint, clip_masks)
 BUFFER(writeonly, 7, uint, masks)
 BUFFER(writeonly, 8, uvec4, block_counts)
+BUFFER(readonly, 9, uint, shortlists)
+#include "region/gaussian_side.glsl"
 
 shared uint survivor_mask[WORDS];
 shared uint cutoff_mask[WORDS];
@@ -63,7 +64,9 @@ uint classify(uint block, uint local) {
     }
     float sigma = largest(gaussian.scale.xyz);
     if (FRAME.region.mode == MODE_EXACT && is_beam(f, sigma)) {
-        return gaussian_side(f.axes, gaussian.position_opacity.xyz, band_in_view(f, sigma, extent));
+        float deviations = beam_band(f, extent);
+        enter_shortlist(block, deviations / extent);
+        return gaussian_side(f.axes, gaussian.position_opacity.xyz, deviations);
     }
     return clip_stage_side(block, local);
 }

@@ -5,7 +5,6 @@
 // block's masks are eight words of what is visible and eight of what is cut.
 #include "band.glsl"
 #include "masks.glsl"
-#include "region/gaussian_side.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
 
@@ -13,6 +12,8 @@ BUFFER(readonly, 2, Gaussian, gaussians)
 BUFFER(readonly, 3, uint, block_list)
 BUFFER(readonly, 4, FrameCounts, counts)
 BUFFER(writeonly, 5, uint, clip_masks)
+BUFFER(readonly, 6, uint, shortlists)
+#include "region/gaussian_side.glsl"
 
 shared uint masks[2u * WORDS];
 
@@ -26,6 +27,7 @@ void main() {
     bool is_block = group < counts.at[0].clip_groups.w;
     uint block = is_block ? block_list.at[group] : 0u;
     enter_layer_of_block(block);
+    enter_shortlist(block, 1.0);
     if (is_block && local < block_length(block)) {
         Gaussian gaussian = gaussians.at[block * BLOCK_SIZE + local];
         uint side = gaussian_side(half_axes(gaussian), gaussian.position_opacity.xyz,

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // One invocation a cutoff Gaussian writes its cutoff record: everything that the fragment stage needs to weight it.
 #include "band.glsl"
-#include "region/gaussian_side.glsl"
+#include "region/surface.glsl"
 #include "cut.glsl"
 #include "curve.glsl"
 #include "region/carried_bend.glsl"
@@ -13,6 +13,7 @@ BUFFER(readonly, 2, Gaussian, gaussians)
 BUFFER(readonly, 3, uint, cutoffs)
 BUFFER(readonly, 4, FrameCounts, counts)
 BUFFER(, 5, vec4, cut_records)
+BUFFER(readonly, 6, uint, shortlists)
 #include "region/reduced.glsl"
 
 // A half-space in the beam form. Dividing by the largest component keeps the squares of sigmas of 1e5 and 1e-7 in range.
@@ -134,6 +135,10 @@ void main() {
     float extent = opacity_extent(opacity);
     float sigma = largest(gaussian.scale.xyz);
     float deviations = band_in_view(f, sigma, extent);
+    enter_shortlist(index / BLOCK_SIZE, deviations / band(extent));
+    if (has_shortlist() && shortlist_side() != SIDE_CUTOFF) {
+        leave_shortlist(); // it was another list by which the splat is cut
+    }
 
     bool front = holds_the_eye(f, extent);
     bool beam = FRAME.region.mode == MODE_RARA || is_beam(f, sigma) || (FRAME.weight.form == FORM_AUTO && front);
@@ -163,8 +168,8 @@ void main() {
             }
         }
     }
-    for (uint i = 0u; i < LAYER.region.surface_count && (!COMBINED || LAYER.region.combined == 0u); i++) {
-        uint surface = LAYER.region.first_surface + i;
+    for (uint i = 0u; i < surface_count() && (!COMBINED || LAYER.region.combined == 0u); i++) {
+        uint surface = surface_at(i);
         // A surface that keeps the whole splat changes no intersection, and one that drops it changes no union.
         if (surface_gaussian_side(surface, f.axes, position, deviations) != side_undecided()) {
             half_space = beam_plane(surface_half_space(surface, f.axes, position));

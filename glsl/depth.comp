@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 // One invocation a survivor finds how deep it is in each pixel, and how the clip changes that.
 #include "band.glsl"
-#include "region/gaussian_side.glsl"
 #include "cut.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
@@ -11,6 +10,8 @@ BUFFER(readonly, 2, Gaussian, gaussians)
 BUFFER(readonly, 3, uvec2, survivors)
 BUFFER(readonly, 4, FrameCounts, counts)
 BUFFER(writeonly, 5, SplatDepth, depths)
+BUFFER(readonly, 6, uint, shortlists)
+#include "region/gaussian_side.glsl"
 
 // By how much the mean of a.u changes a pixel, given the pixel: the update of affine_plane in cutoff.comp.
 vec2 slope_of(Footprint f, vec3 c, vec3 a) {
@@ -41,19 +42,24 @@ void main() {
     depth.far = vec4(8.0, 0.0, 0.0, 0.0);
     depth.near = depth.far;
     vec3 position = gaussian.position_opacity.xyz;
-    uint surface_count = FRAME.region.mode >= MODE_RARA ? LAYER.region.surface_count : 0u;
+    bool is_cut = FRAME.region.mode >= MODE_RARA;
     float deviations = 0.0;
+    if (has_parts || SHORTLISTED) {
+        float extent = opacity_extent(opacity_in_layer(gaussian));
+        deviations = band_in_view(f, largest(gaussian.scale.xyz), extent);
+        enter_shortlist(index / BLOCK_SIZE, deviations / band(extent));
+    }
     if (has_parts) {
         // What cuts a splat of a region with parts is taken for an intersection.
-        deviations = band_in_view(f, largest(gaussian.scale.xyz), opacity_extent(opacity_in_layer(gaussian)));
-        bool is_cut = gaussian_side(f.axes, position, deviations) == SIDE_CUTOFF;
-        surface_count = is_cut ? surface_count : 0u;
+        is_cut = is_cut && gaussian_side(f.axes, position, deviations) == SIDE_CUTOFF;
     }
-    for (uint i = 0u; i < surface_count; i++) {
-        if (has_parts && surface_gaussian_side(LAYER.region.first_surface + i, f.axes, position, deviations) != SIDE_CUTOFF) {
+    uint asked = is_cut ? surface_count() : 0u;
+    for (uint i = 0u; i < asked; i++) {
+        uint surface = surface_at(i);
+        if (has_parts && surface_gaussian_side(surface, f.axes, position, deviations) != SIDE_CUTOFF) {
             continue;
         }
-        vec4 half_space = surface_half_space(LAYER.region.first_surface + i, f.axes, position);
+        vec4 half_space = surface_half_space(surface, f.axes, position);
         half_space = is_union ? -half_space : half_space;
         float size = max(largest(half_space.xyz), 1e-30);
         vec3 a = half_space.xyz / size;

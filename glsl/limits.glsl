@@ -54,6 +54,12 @@ const uint TIES_ALONE = 24u;
 // Surfaces that a splat is weighed by where regions have parts or bend, those that cut it nearest its centre. Of the others
 // it is on the side of its centre. A region that is a flat list of planes has no such limit.
 const uint MAX_CUTTING = 8u;
+// Surfaces of a region from which its blocks have shortlists: the surfaces that may cut a Gaussian of the block.
+const uint SHORTLIST_FROM = 9u;
+// The most surfaces of a shortlist. The Gaussians of a block that more may cut ask all surfaces of the region.
+const uint SHORTLIST_SURFACES = 31u;
+// Words of a shortlist: see region/shortlist.glsl.
+const uint SHORTLIST_WORDS = 64u;
 // Workgroup size of the sort for GPUs, and the consecutive keys of such a workgroup: its partition.
 const uint RADIX_GROUP_SIZE = 256u;
 const uint RADIX_PARTITION = 4096u;

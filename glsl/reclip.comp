@@ -4,7 +4,6 @@
 // whether what the rasteriser holds of it has to change.
 #include "band.glsl"
 #include "reclip.glsl"
-#include "region/gaussian_side.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
 
@@ -15,6 +14,8 @@ BUFFER(readonly, 5, uint, revisits)
 BUFFER(readonly, 6, uint, block_sides)
 BUFFER(readonly, 7, uint, masks)
 BUFFER(, 8, uint, reclips)
+BUFFER(readonly, 9, uint, shortlists)
+#include "region/gaussian_side.glsl"
 
 shared uint visible_mask[WORDS];
 shared uint cut_mask[WORDS];
@@ -38,7 +39,9 @@ uint gaussian_side_now(uint block, uint index) {
     Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
     float extent = opacity_extent(opacity_in_layer(gaussian));
-    return gaussian_side(f.axes, gaussian.position_opacity.xyz, band_in_view(f, largest(gaussian.scale.xyz), extent));
+    float deviations = band_in_view(f, largest(gaussian.scale.xyz), extent);
+    enter_shortlist(block, deviations / band(extent));
+    return gaussian_side(f.axes, gaussian.position_opacity.xyz, deviations);
 }
 
 bool is_in_view(uint block, uint local) {

@@ -6,7 +6,7 @@ struct Params {
     uint fresh; // 1: the frame before knew no clip
 };
 #define PARAMS Params
-#include "block.glsl"
+#include "frame.glsl"
 #include "reclip.glsl"
 
 layout(local_size_x = BLOCK_GROUP_SIZE) in;
@@ -16,6 +16,8 @@ BUFFER(readonly, 3, uint, block_sides)
 BUFFER(readonly, 4, uvec4, block_counts)
 BUFFER(writeonly, 5, uint, revisits)
 BUFFER(, 6, uint, reclips)
+BUFFER(, 7, uint, shortlists)
+#include "region/block_shortlist.glsl"
 
 // Blocks only partly in view may hold Gaussians whose band the camera widens by any amount.
 uint block_side_now(Block block, uint view_side) {
@@ -38,6 +40,10 @@ void main() {
         reclips.at[base + RECLIP_TOTALS] = in_view;
         reclips.at[base + RECLIP_TOTALS + 1u] = 0u;
         reclips.at[base + RECLIP_TOTALS + 2u] = 0u;
+    }
+    if (SHORTLISTED) {
+        write_shortlist(block, blocks.at[block]);
+        enter_shortlist(block, 1.0);
     }
     uint now = in_view == 0u ? SIDE_VISIBLE : block_side_now(blocks.at[block], view_side);
     reclips.at[base + RECLIP_SIDE] = now;

@@ -5,20 +5,22 @@
 #ifndef RARA_REGION_GAUSSIAN_SIDE
 #define RARA_REGION_GAUSSIAN_SIDE
 #include "region/answers.glsl"
-#include "region/surface.glsl"
+#include "region/shortlist.glsl"
 
 uint gaussian_side(mat3 axes, vec3 position, float deviations) {
+    if (has_shortlist() && shortlist_side() != SIDE_CUTOFF) {
+        return shortlist_side();
+    }
     if (COMBINED && LAYER.region.op == OP_PARTS) {
         Answers answers = Answers(0u, 0u);
-        for (uint i = 0u; i < LAYER.region.surface_count; i++) {
-            uint surface = LAYER.region.first_surface + i;
-            answer(answers, surface_gaussian_side(surface, axes, position, deviations), surfaces.at[surface].joins);
+        for (uint i = 0u; i < surface_count(); i++) {
+            answer(answers, surface_gaussian_side(surface_at(i), axes, position, deviations), joins_at(i));
         }
         return side_answered(answers);
     }
     uint side = side_undecided();
-    for (uint i = 0u; i < LAYER.region.surface_count && side != side_that_decides(); i++) {
-        side = combined_side(side, surface_gaussian_side(LAYER.region.first_surface + i, axes, position, deviations));
+    for (uint i = 0u; i < surface_count() && side != side_that_decides(); i++) {
+        side = combined_side(side, surface_gaussian_side(surface_at(i), axes, position, deviations));
     }
     return side;
 }

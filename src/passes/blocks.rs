@@ -23,7 +23,7 @@ pub(crate) const STAGE: Stage = Stage::when_finding_view(
 #[cfg(feature = "lab")]
 pub(super) const COSTS: &[Cost] = &[Cost::of::<blocks::Program>(
     |n| n.blocks,
-    |n| 1 + n.layer() + n.surfaces,
+    |n| 1 + n.layer() + n.asked_surfaces(),
     // It reads the bounds and their side of the clip, and writes their side.
     |n| n.blocks * (cost::BOUNDS + 2 * cost::WORD),
 )];
@@ -31,7 +31,7 @@ pub(super) const COSTS: &[Cost] = &[Cost::of::<blocks::Program>(
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
     let buffers = buffers!(blocks {
-        b => [frame, surfaces, clip_sides, block_sides],
+        b => [frame, surfaces, clip_sides, block_sides, shortlists],
         frame.scene => [blocks],
     });
     let groups = groups_of_blocks(frame.plan);

@@ -21,6 +21,8 @@ pub(crate) struct Buffers {
     /// The clip's sides and masks of the blocks; empty without a clip.
     pub(crate) clip_sides: Buffer,
     pub(crate) clip_masks: Buffer,
+    /// The blocks' shortlists of surfaces; empty where no region has many.
+    pub(crate) shortlists: Buffer,
     pub(crate) block_sides: Buffer,
     pub(crate) block_list: Buffer,
     pub(crate) block_counts: Buffer,
@@ -92,6 +94,7 @@ struct Sizes {
     layers: u64,
     surfaces: u64,
     clip_blocks: u64,
+    shortlists: u64,
     cut_bytes: u64,
     /// Words.
     histogram: u64,
@@ -130,6 +133,7 @@ impl Sizes {
             } else {
                 blocks
             },
+            shortlists: if plan.is_shortlisted() { blocks } else { 0 },
             cut_bytes,
             histogram: sort::histogram_words(plan),
             quads: if plan.needs_quads() { gaussians } else { 0 },
@@ -210,6 +214,10 @@ impl Buffers {
             masks: gpu("masks", blocks * mask_bytes)?,
             clip_sides: gpu("clip_sides", sizes.clip_blocks * 4)?,
             clip_masks: gpu("clip_masks", sizes.clip_blocks * mask_bytes)?,
+            shortlists: gpu(
+                "shortlists",
+                sizes.shortlists * 4 * u64::from(limits::SHORTLIST_WORDS),
+            )?,
             block_sides: gpu("block_sides", blocks * 4)?,
             block_list: gpu("block_list", blocks * 4)?,
             block_counts: gpu("block_counts", blocks * 16)?,
@@ -279,6 +287,7 @@ impl Buffers {
             && have.layers >= need.layers
             && have.surfaces >= need.surfaces
             && have.clip_blocks >= need.clip_blocks
+            && have.shortlists >= need.shortlists
             && have.cut_bytes >= need.cut_bytes
             && have.histogram >= need.histogram
             && have.quads >= need.quads

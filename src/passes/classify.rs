@@ -23,7 +23,7 @@ pub(super) const COSTS: &[Cost] = &[
     // is a clip, its side and its masks, and writes masks and totals.
     Cost::of::<classify::Program>(
         |n| n.view_blocks * u64::from(limits::BLOCK_SIZE),
-        |n| 2 + n.layer() + 1 + n.surfaces.max(2),
+        |n| 2 + n.layer() + 1 + n.asked_surfaces().max(2),
         |n| {
             let clip = n.surfaces.min(1) * (cost::WORD + cost::MASKS);
             n.view_blocks * (cost::WORD + cost::BLOCK + clip + cost::MASKS + cost::TOTALS)
@@ -34,7 +34,7 @@ pub(super) const COSTS: &[Cost] = &[
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
     let buffers = buffers!(classify {
-        b => [frame, surfaces, block_list, counts, clip_sides, clip_masks, masks, block_counts],
+        b => [frame, surfaces, block_list, counts, clip_sides, clip_masks, masks, block_counts, shortlists],
         frame.scene => [gaussians],
     });
     let groups = indirect!(b.counts, FrameCounts, classify_groups);

@@ -36,7 +36,7 @@ pub(super) const COSTS: &[Cost] = &[
     // The number of its group's block, the block, its layer, its Gaussian. It writes the masks.
     Cost::of::<clip::Program>(
         |n| n.clip_blocks * u64::from(limits::BLOCK_SIZE),
-        |n| 2 + n.layer() + 1 + n.surfaces,
+        |n| 2 + n.layer() + 1 + n.asked_surfaces(),
         |n| n.clip_blocks * (cost::WORD + cost::BLOCK + cost::MASKS),
     ),
 ];
@@ -44,13 +44,13 @@ pub(super) const COSTS: &[Cost] = &[
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (scene, b) = (frame.scene, frame.buffers);
     let buffers = buffers!(clip_blocks {
-        b => [frame, surfaces, clip_sides],
+        b => [frame, surfaces, clip_sides, shortlists],
         scene => [blocks],
     });
     frame.dispatch(recorder, buffers, (), groups_of_blocks(frame.plan));
     block_list::record(frame, recorder, &b.clip_sides, ListFor::Clip);
     let buffers = buffers!(clip {
-        b => [frame, surfaces, block_list, counts, clip_masks],
+        b => [frame, surfaces, block_list, counts, clip_masks, shortlists],
         scene => [gaussians],
     });
     let groups = indirect!(b.counts, FrameCounts, clip_groups);

@@ -91,6 +91,14 @@ impl FrameNumbers {
         ]
     }
 
+    /// The surfaces that a Gaussian asks at most, and where its block has a shortlist the list's word.
+    pub(super) fn asked_surfaces(&self) -> u64 {
+        match self.surfaces < limits::SHORTLIST_FROM.into() {
+            true => self.surfaces,
+            false => 1 + u64::from(limits::SHORTLIST_SURFACES),
+        }
+    }
+
     /// The loads that find a block's layer, and what is constant in it.
     pub(super) fn layer(&self) -> u64 {
         u64::from(self.layers.next_power_of_two().ilog2()) + 1

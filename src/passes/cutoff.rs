@@ -29,7 +29,7 @@ pub(super) const COSTS: &[Cost] = &[
     // How many there are, its Gaussian's number, the layer; the Gaussian meanwhile. It writes the record.
     Cost::of::<cutoff::Program>(
         |n| n.cut,
-        |n| 2 + n.layer() + n.surfaces,
+        |n| 2 + n.layer() + n.asked_surfaces(),
         |n| n.cut * (cost::WORD + cost::gathered(cost::GAUSSIAN) + n.record_bytes),
     ),
 ];
@@ -37,7 +37,7 @@ pub(super) const COSTS: &[Cost] = &[
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
     let buffers = buffers!(cutoff {
-        b => [frame, surfaces, cutoffs, counts, cut_records],
+        b => [frame, surfaces, cutoffs, counts, cut_records, shortlists],
         frame.scene => [gaussians],
     });
     let groups = indirect!(b.counts, FrameCounts, cutoff_groups);

@@ -30,7 +30,7 @@ pub(crate) const STAGE: Stage = Stage {
 #[cfg(feature = "lab")]
 pub(super) const COSTS: &[Cost] = &[Cost::of::<depth::Program>(
     |n| n.survivors,
-    |n| 2 + n.layer() + n.surfaces,
+    |n| 2 + n.layer() + n.asked_surfaces(),
     // It reads the survivor and the Gaussian, and writes the depth.
     |n| n.survivors * (cost::SURVIVOR + cost::GAUSSIAN + size_of::<SplatDepth>() as u64),
 )];
@@ -38,7 +38,7 @@ pub(super) const COSTS: &[Cost] = &[Cost::of::<depth::Program>(
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (b, d) = (frame.buffers, frame.depths());
     let buffers = buffers!(depth {
-        b => [frame, surfaces, survivors, counts],
+        b => [frame, surfaces, survivors, counts, shortlists],
         frame.scene => [gaussians],
         d => [depths],
     });

@@ -29,16 +29,16 @@ macro_rules! layered {
 }
 
 // Without a clip the shaders hold no clip code.
-layered!(blocks, clip: Plan::view_is_clipped, combined: is_combined);
-layered!(classify, clip: Plan::view_is_clipped, combined: is_combined);
-layered!(clip_blocks, combined: is_combined);
-layered!(clip, combined: is_combined);
+layered!(blocks, clip: Plan::view_is_clipped, combined: is_combined, shortlisted: Plan::is_shortlisted);
+layered!(classify, clip: Plan::view_is_clipped, combined: is_combined, shortlisted: Plan::is_shortlisted);
+layered!(clip_blocks, combined: is_combined, shortlisted: Plan::is_shortlisted);
+layered!(clip, combined: is_combined, shortlisted: Plan::is_shortlisted);
 layered!(compact_scan);
 layered!(compact);
-layered!(cutoff, combined: is_combined);
-layered!(depth, combined: is_combined);
-layered!(reclip_blocks, combined: is_combined);
-layered!(reclip, combined: is_combined);
+layered!(cutoff, combined: is_combined, shortlisted: Plan::is_shortlisted);
+layered!(depth, combined: is_combined, shortlisted: Plan::is_shortlisted);
+layered!(reclip_blocks, combined: is_combined, shortlisted: Plan::is_shortlisted);
+layered!(reclip, combined: is_combined, shortlisted: Plan::is_shortlisted);
 layered!(recut, tiles: Plan::is_tiled, quads: Plan::needs_quads);
 
 fn is_combined(plan: &Plan) -> bool {
@@ -87,8 +87,8 @@ impl Layers {
                     data.region.first_surface = surfaces.len() as u32;
                     let corners = layer.corners.map(|corner| corner.as_dvec3());
                     surfaces.extend(region::surfaces(&clip.in_scene(placement), corners));
-                    data.region.combined = clip.is_general().into();
                     data.region.surface_count = surfaces.len() as u32 - data.region.first_surface;
+                    data.region.combined = clip.is_general().into();
                 }
             }
             layers.push(data);

@@ -183,6 +183,11 @@ impl Plan {
         cuts(self.mode())
     }
 
+    /// True when the blocks have shortlists of the surfaces that may cut them.
+    pub(crate) fn is_shortlisted(&self) -> bool {
+        self.mode() != types::MODE_NONE && self.layers.most_surfaces() >= limits::SHORTLIST_FROM
+    }
+
     /// Which of the two pairs of key and order buffers holds the sorted ones.
     pub(crate) fn sorted(&self) -> usize {
         sort::result(self)

@@ -54,7 +54,7 @@ pub(super) const COSTS: &[Cost] = &[
     // block now, the Gaussian. It reads and writes the words that a reclipped frame keeps of the block.
     Cost::of::<reclip::Program>(
         |n| n.clip_blocks * u64::from(limits::BLOCK_SIZE),
-        |n| 2 + n.layer() + 2 + 2 + 2 + n.surfaces,
+        |n| 2 + n.layer() + 2 + 2 + 2 + n.asked_surfaces(),
         |n| n.clip_blocks * (3 * cost::WORD + cost::BLOCK + cost::MASKS / 2 + 2 * KEPT),
     ),
     // Each block says whether it is revisited and then has totals. It writes the block's places.
@@ -93,7 +93,7 @@ const KEPT: u64 = limits::RECLIP_WORDS as u64 * cost::WORD;
 fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (scene, b, s) = (frame.scene, frame.buffers, frame.reclip());
     let buffers = buffers!(reclip_blocks {
-        b => [frame, surfaces, block_sides, block_counts],
+        b => [frame, surfaces, block_sides, block_counts, shortlists],
         scene => [blocks],
         s => [revisits, reclips],
     });
@@ -107,7 +107,7 @@ fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     block_list::record(frame, recorder, &s.revisits, ListFor::Clip);
     let looked_at = indirect!(b.counts, FrameCounts, clip_groups);
     let buffers = buffers!(reclip {
-        b => [frame, surfaces, block_list, counts, block_sides, masks],
+        b => [frame, surfaces, block_list, counts, block_sides, masks, shortlists],
         scene => [gaussians],
         s => [revisits, reclips],
     });

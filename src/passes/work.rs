@@ -76,6 +76,8 @@ impl Kept {
         let (base, region) = match plan.work {
             Work::Whole { .. } if plan.mode() == types::MODE_NONE => (Some(true), had),
             Work::Whole { .. } => (None, Some((plan.data.region, plan.layers.clone()))),
+            // Its shortlists have replaced those of the stage's clip.
+            Work::Reclip { .. } if plan.is_shortlisted() => (Some(false), None),
             Work::Reclip { .. } => (Some(false), had),
             Work::Draw => unreachable!("a frame that changes nothing leaves what there was"),
         };

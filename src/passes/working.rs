@@ -17,6 +17,8 @@ impl Buffers {
             &self.masks,
             &self.clip_sides,
             &self.clip_masks,
+            &self.shortlists,
+            &self.shortlists,
             &self.block_sides,
             &self.block_list,
             &self.block_counts,

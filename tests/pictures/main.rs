@@ -21,4 +21,5 @@ mod pipeline_cache;
 mod precision;
 mod reuse;
 mod shapes;
+mod shortlists;
 mod stress;

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Quat, Vec3};
 use rara::clip::Expression;
-use rara::limits::{ALPHA_MIN, BLOCK_SIZE};
+use rara::limits::{self, ALPHA_MIN, BLOCK_SIZE};
 use rara::reference::region::{Bounds, box_side};
 use rara::reference::{Side, clip};
 use rara::types::Block;
@@ -84,6 +84,37 @@ fn the_sides_of_shapes_are_the_twins() {
             }
         }
     });
+}
+
+/// Of a region of many surfaces a block's Gaussians ask those that its bounds leave open, and find the same sides.
+#[test]
+fn the_sides_by_shortlists_are_the_twins() {
+    const ROOM: u32 = limits::SHORTLIST_SURFACES;
+    let mut stages = Stages::new();
+    let scene = frame::scene(50_000);
+    stages.load(&scene);
+    let at = |number: u32| {
+        let turn = |by: f64| (f64::from(number) * by).sin();
+        format!("{},{},{}", turn(1.7), turn(2.3), turn(0.9))
+    };
+    let spheres: Vec<String> = (0..60).map(|n| format!("sphere:{},.2", at(n))).collect();
+    let holes: Vec<String> = (60..90)
+        .map(|n| format!("!box:{},.1,.2,.1", at(n)))
+        .collect();
+    let text = format!("any(all({}), {})", holes.join(","), spheres.join(","));
+    let clip = text.parse::<Expression>().expect("an expression").clip();
+    for mode in [Mode::Exact, Mode::Rara, Mode::Hard] {
+        let settings = Settings::default().mode(mode).raster(Raster::Quad);
+        stages.draw(&frame::views(&scene)[0], &clip, &settings);
+        check(&mut stages, &clip, &settings);
+        check_blocks(&mut stages, &clip, &settings);
+        let lists: Vec<[u32; limits::SHORTLIST_WORDS as usize]> = stages.read("shortlists");
+        let shorter = lists.iter().filter(|list| list[0] != u32::MAX);
+        let open: Vec<u32> = shorter.map(|list| list[0] >> 2).collect();
+        assert!(open.iter().all(|&surfaces| surfaces <= ROOM));
+        assert!(open.iter().any(|&surfaces| surfaces > 5), "{open:?}");
+        assert!(2 * open.len() > lists.len(), "most blocks ask few: {open:?}");
+    }
 }
 
 fn check(stages: &mut Stages, planes: &Clip, settings: &Settings) {

@@ -146,7 +146,9 @@ pub fn scene(count: usize) -> Gaussians {
 
 /// Such scenes of every size that a stage is tested with.
 pub fn scenes() -> impl Iterator<Item = Gaussians> {
-    SIZES.into_iter().map(scene)
+    let [few @ .., many] = SIZES;
+    let many = (many as f64 * common::scale()) as usize;
+    few.into_iter().chain([many]).map(scene)
 }
 
 /// Runs a test with each of these scenes, which is loaded.

@@ -1,7 +1,10 @@
 //! A camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers.
 
+use std::borrow::Cow;
+
 use glam::{DMat3, DMat4, DVec3};
 
+use crate::clip::{Clip, ClipOp, Plane};
 use crate::error::{Error, Result};
 use crate::setters::setters;
 
@@ -41,6 +44,12 @@ pub struct Camera {
     pub rotation: DMat3,
     /// How points become pixels.
     pub projection: Projection,
+    /// The depth, world units along the view axis, from which on the scene is kept: a plane across the axis that moves with
+    /// the camera and cuts every layer, whatever else cuts it. Splats are cut as by any other plane, by the mode of the
+    /// [settings](crate::Settings); in mode `none` it is not asked.
+    pub clip_near: Option<f64>,
+    /// The depth up to which the scene is kept, likewise.
+    pub clip_far: Option<f64>,
 }
 
 setters!(Camera {
@@ -53,6 +62,8 @@ setters!(Camera {
     eye: DVec3,
     rotation: DMat3,
     projection: Projection,
+    clip_near: Option<f64>,
+    clip_far: Option<f64>,
 });
 
 impl Camera {
@@ -123,6 +134,8 @@ impl Camera {
             eye,
             rotation,
             projection: Projection::Perspective,
+            clip_near: None,
+            clip_far: None,
         }
     }
 
@@ -155,6 +168,8 @@ impl Camera {
             eye,
             rotation,
             projection: Projection::Perspective,
+            clip_near: None,
+            clip_far: None,
         }
         .checked()
     }
@@ -198,6 +213,46 @@ impl Camera {
             ..self
         }
         .checked()
+    }
+
+    /// The planes at [`clip_near`](Self::clip_near) and [`clip_far`](Self::clip_far).
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for depths that are not finite, and where nothing lies between the two.
+    pub fn clip_planes(&self) -> Result<Vec<Plane>> {
+        if let (Some(near), Some(far)) = (self.clip_near, self.clip_far)
+            && near >= far
+        {
+            return Err(Error::Invalid(format!(
+                "nothing lies between a near plane at a depth of {near} and a far plane at {far}; give a far plane behind the near one"
+            )));
+        }
+        let forward = self.rotation.transpose() * DVec3::Z;
+        let depth_of_origin = -forward.dot(self.eye);
+        let near = self
+            .clip_near
+            .map(|near| Plane::new(forward, depth_of_origin - near));
+        let far = self
+            .clip_far
+            .map(|far| Plane::new(-forward, far - depth_of_origin));
+        near.into_iter().chain(far).collect()
+    }
+
+    /// True when a plane that moves with the camera cuts the scene.
+    pub(crate) fn clips(&self) -> bool {
+        self.clip_near.is_some() || self.clip_far.is_some()
+    }
+
+    /// What this camera sees of a region: the rest between its own planes.
+    pub(crate) fn sees_of<'a>(&self, clip: &'a Clip) -> Result<Cow<'a, Clip>> {
+        if !self.clips() {
+            return Ok(Cow::Borrowed(clip));
+        }
+        let planes = Clip::of(self.clip_planes()?, ClipOp::And);
+        Ok(Cow::Owned(Clip::joined(
+            [clip.clone(), planes],
+            ClipOp::And,
+        )))
     }
 
     /// World to camera, as one matrix.

@@ -94,6 +94,8 @@ impl Camera {
             fy: self.fy * unit,
             eye: placement.to_scene(self.eye),
             rotation: self.rotation * DMat3::from_quat(placement.rotation),
+            clip_near: self.clip_near.map(|depth| depth / placement.scale),
+            clip_far: self.clip_far.map(|depth| depth / placement.scale),
             ..*self
         }
     }

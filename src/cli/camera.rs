@@ -53,6 +53,13 @@ pub(super) struct CameraArgs {
     /// "projection": "orthographic"; fx and fy are then the pixels of a world unit
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
+    /// Keep what is at this depth or deeper, world units along the view axis: a plane that moves with the camera, cuts every
+    /// layer, and cuts splats as --mode says
+    #[arg(long, value_name = "DEPTH", allow_hyphen_values = true)]
+    clip_near: Option<f64>,
+    /// Keep what is at this depth or nearer, likewise
+    #[arg(long, value_name = "DEPTH", allow_hyphen_values = true)]
+    clip_far: Option<f64>,
     /// Picture size [default: 1024x1024, or the camera file's own; a window's: 1280x720]
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     size: Option<(u32, u32)>,
@@ -125,7 +132,24 @@ pub(super) enum Views {
         up: DVec3,
         lens: Lens,
         size: (u32, u32),
+        depths: Depths,
     },
+}
+
+/// The depths that `--clip-near` and `--clip-far` mean.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Depths {
+    near: Option<f64>,
+    far: Option<f64>,
+}
+
+impl Depths {
+    /// The camera with planes at these depths.
+    fn of(self, camera: Camera) -> Result<Camera, Failure> {
+        let camera = camera.clip_near(self.near).clip_far(self.far);
+        camera.clip_planes().map_err(Failure::usage)?;
+        Ok(camera)
+    }
 }
 
 impl Views {
@@ -172,10 +196,11 @@ impl CameraArgs {
         (!from_file).then_some(self.up.unwrap_or(UP))
     }
 
-    /// True when a flag places the camera or chooses its lens.
+    /// True when a flag places the camera, chooses its lens or cuts at its depths.
     pub(super) fn places(&self) -> bool {
         let from_file = self.camera.is_some() || self.cameras.is_some();
-        from_file || self.eye.is_some() || self.ortho.is_some() || self.fov_y != FOV_Y
+        let cuts = self.clip_near.is_some() || self.clip_far.is_some();
+        from_file || cuts || self.eye.is_some() || self.ortho.is_some() || self.fov_y != FOV_Y
     }
 
     /// The direction that is up in the picture, if a flag says it.
@@ -192,6 +217,10 @@ impl CameraArgs {
     pub(super) fn meant(&self) -> Result<Views, Failure> {
         let size = self.chosen_size();
         let up = self.up.unwrap_or(UP);
+        let depths = Depths {
+            near: self.clip_near,
+            far: self.clip_far,
+        };
         if let (Some(eye), Some(target)) = (self.eye, self.target) {
             let camera = match self.ortho {
                 None => Camera::look_at(eye, target, up, self.fov_y, size),
@@ -202,7 +231,7 @@ impl CameraArgs {
                     ));
                 }
             };
-            let camera = camera.map_err(Failure::usage)?;
+            let camera = depths.of(camera.map_err(Failure::usage)?)?;
             return Ok(Views::Given(vec![View {
                 number: 0,
                 name: "camera".into(),
@@ -210,7 +239,7 @@ impl CameraArgs {
             }]));
         }
         if let Some(path) = &self.camera {
-            let camera = self.sized(camera_files::load_camera(path)?)?;
+            let camera = depths.of(self.sized(camera_files::load_camera(path)?)?)?;
             return Ok(Views::Given(vec![View {
                 number: 0,
                 name: path.display().to_string(),
@@ -224,9 +253,14 @@ impl CameraArgs {
                 Some(Ortho::Fit) => Lens::Orthographic(None),
             };
             // Errors that do not depend on the scene are found before it is read.
-            lens.frame(&Bounds::of(&Gaussians::default()), up, size)
-                .map_err(Failure::usage)?;
-            return Ok(Views::Framed { up, lens, size });
+            let unframed = lens.frame(&Bounds::of(&Gaussians::default()), up, size);
+            depths.of(unframed.map_err(Failure::usage)?)?;
+            return Ok(Views::Framed {
+                up,
+                lens,
+                size,
+                depths,
+            });
         };
         let loaded = camera_files::load_cameras(path)?.into_iter().enumerate();
         let mut views: Vec<View> = loaded
@@ -240,7 +274,7 @@ impl CameraArgs {
             views = vec![pick(views, &self.view, path)?];
         }
         for view in &mut views {
-            view.camera = self.sized(view.camera)?;
+            view.camera = depths.of(self.sized(view.camera)?)?;
         }
         Ok(Views::Given(views))
     }
@@ -257,8 +291,13 @@ impl Views {
     pub(super) fn of(self, scene: &Scene<'_>) -> Result<Vec<View>, Failure> {
         match self {
             Self::Given(views) => Ok(views),
-            Self::Framed { up, lens, size } => {
-                let camera = lens.frame(&Bounds::of(scene), up, size)?;
+            Self::Framed {
+                up,
+                lens,
+                size,
+                depths,
+            } => {
+                let camera = depths.of(lens.frame(&Bounds::of(scene), up, size)?)?;
                 Ok(vec![View {
                     number: 0,
                     name: "framing".into(),

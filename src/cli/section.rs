@@ -179,7 +179,7 @@ impl SectionArgs {
         }
         if camera.places() {
             return Err(Failure::Usage(
-                "--section places the camera itself: leave out --eye, --target, --fov-y, --ortho, --camera and --cameras; \
+                "--section places the camera itself: leave out --eye, --target, --fov-y, --ortho, --camera, --cameras, --clip-near and --clip-far; \
                  --up, --size and --section-scale change what it shows"
                     .into(),
             ));

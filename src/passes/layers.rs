@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use crate::camera::Camera;
 use crate::clip::Clip;
+use crate::error::Result;
 use crate::limits;
 use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
@@ -52,13 +53,14 @@ pub(crate) struct Layers {
 }
 
 impl Layers {
-    /// The layers of a scene. Camera and clip are in its space; `region` follows from the clip and the settings.
+    /// The layers of a scene. Camera and clip are in its space; `region` follows from clip, camera and settings. An error is
+    /// that of the camera's own planes.
     pub(super) fn new(
         scene: &[SceneLayer],
         camera: &Camera,
         clip: &Clip,
         region: &RegionData,
-    ) -> Self {
+    ) -> Result<Self> {
         let has_region = region.mode != types::MODE_NONE;
         let (mut layers, mut surfaces) = (Vec::<LayerData>::with_capacity(scene.len()), Vec::new());
         for (index, layer) in scene.iter().enumerate() {
@@ -75,7 +77,7 @@ impl Layers {
             if layer.is_visible() {
                 let placement = &layer.state.placement;
                 data.view = layer_view(&camera.in_scene(placement), placement.scale());
-                let clip = layer.clip().unwrap_or(clip);
+                let clip = camera.sees_of(layer.clip().unwrap_or(clip))?;
                 // Quadrics are packed relative to a point among the layer's own centres.
                 let is_anchored_alike =
                     |other: &SceneLayer| !clip.is_general() || other.corners == layer.corners;
@@ -83,7 +85,7 @@ impl Layers {
                 if before.is_some_and(|b| b.is_clipped_like(layer) && is_anchored_alike(b)) {
                     data.region = layers[index - 1].region;
                 } else if has_region {
-                    data.region.op = region::op(clip);
+                    data.region.op = region::op(&clip);
                     data.region.first_surface = surfaces.len() as u32;
                     let corners = layer.corners.map(|corner| corner.as_dvec3());
                     surfaces.extend(region::surfaces(&clip.in_scene(placement), corners));
@@ -93,9 +95,9 @@ impl Layers {
             }
             layers.push(data);
         }
-        Self {
+        Ok(Self {
             lists: Arc::new((layers, surfaces)),
-        }
+        })
     }
 
     /// The layers, in the scene's order.

@@ -1,7 +1,7 @@
 //! A frame's plan, made on the CPU before anything is recorded: which stages run, and the frame's constants.
 
 use crate::camera::Camera;
-use crate::clip::Clip;
+use crate::clip::{Clip, ClipOp};
 use crate::error::{Error, Result};
 use crate::gpu::DeviceShape;
 use crate::limits;
@@ -104,8 +104,9 @@ impl Plan {
     ) -> Result<Self> {
         let visible = scene.layers.iter().filter(|layer| layer.is_visible());
         let own = visible.filter_map(SceneLayer::clip);
-        let region = region_data(own.chain([clip]), settings)?;
-        let layers = Layers::new(scene.layers, camera, clip, &region);
+        let of_camera = Clip::of(camera.clip_planes()?, ClipOp::And);
+        let region = region_data(own.chain([clip, &of_camera]), settings)?;
+        let layers = Layers::new(scene.layers, camera, clip, &region)?;
         let weight = weight_data(&scene, &region, &layers, settings)?;
         let boxes = layers::boxes(scene.layers, camera);
         let keys = DepthKeys::new(boxes, settings.precision.key_bits)?;
@@ -312,7 +313,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::clip::{ClipOp, Plane};
+    use crate::clip::Plane;
     use crate::passes::shaders::project;
     use crate::passes::stage::key;
     use crate::passes::weight::Weight;

@@ -27,13 +27,15 @@ pub fn layers<'a, T: Real>(
     camera: &Camera,
     clip: &Clip,
 ) -> Vec<SeenLayer<'a, T>> {
+    // The renderer refuses a camera with planes that mean nothing.
+    let seen_of = |clip| camera.sees_of(clip).unwrap_or(Cow::Borrowed(clip));
     let mut first = 0;
     let seen = scene.layers().iter().map(|layer| {
         let state = layer.state();
         let seen = SeenLayer {
             gaussians: faded(layer),
             view: View::in_layer(camera, &state.placement),
-            clip: layer.clip().unwrap_or(clip).in_scene(&state.placement),
+            clip: seen_of(layer.clip().unwrap_or(clip)).in_scene(&state.placement),
             first,
             visible: state.visible,
         };

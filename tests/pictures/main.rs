@@ -7,6 +7,7 @@ mod accuracy;
 mod agreement;
 mod aov;
 mod bake;
+mod camera_planes;
 mod classification;
 mod curves;
 mod debug_view;

@@ -7,7 +7,7 @@
 #include "buffers.glsl"
 
 // The debug view.
-layout(constant_id = 6) const bool SHOW_WEIGHT = false;
+layout(constant_id = 6) const uint SHOW = SHOW_COLOUR; // SHOW_*
 
 BUFFER(readonly, 4, vec4, cut_records)
 #include "weight.glsl"
@@ -23,7 +23,7 @@ void main() {
     float weight;
     float alpha = splat_alpha(centre_conic, conic_cut, colour_cut.w, curvature, weight);
     // Blending nothing is cheaper than discard on lavapipe, which would lose early tests.
-    colour = vec4((SHOW_WEIGHT ? weight_colour(weight) : colour_cut.rgb) * alpha, alpha);
+    colour = vec4((SHOW == SHOW_WEIGHT ? weight_colour(weight) : colour_cut.rgb) * alpha, alpha);
 }
 
 #endif

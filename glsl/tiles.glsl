@@ -25,8 +25,7 @@ layout(local_size_x = TILE_WIDTH, local_size_y_id = 6) in;
 layout(constant_id = 7) const bool RECLIPPED = false;
 // How the host's depth that hides splats is stored, if there is one.
 layout(constant_id = 8) const uint DEPTH_FORM = DEPTH_NONE;
-// The debug view.
-layout(constant_id = 9) const bool SHOW_WEIGHT = false;
+layout(constant_id = 9) const uint SHOW = SHOW_COLOUR; // SHOW_*
 // True where the tiles that hold anything are listed: first those that need no code for several surfaces, then, from the end on,
 // the others, and behind all of them how many each list has.
 layout(constant_id = 11) const bool LISTED = false;
@@ -50,6 +49,7 @@ const uint NO_TILE = ~0u;
 vec2 pixel_centre; // the first one's
 vec3 sum[ROWS];
 float transmittance[ROWS];
+float alphas[SHOW == SHOW_MEAN ? ROWS : 1u]; // their sum
 float occluder[ROWS]; // the farness beyond which splats are hidden
 bool done; // no splat changes them any more
 
@@ -106,7 +106,7 @@ void blend(Seen splat, vec2 delta) {
     done = DEPTH_FORM != DEPTH_NONE && hide(splat.far, alpha) && FRAME.order.key_shift == 0u;
     if (!done) {
         float weight[ROWS];
-        if (SHOW_WEIGHT) {
+        if (SHOW == SHOW_WEIGHT) {
             for (uint row = 0u; row < ROWS; row++) {
                 weight[row] = WEIGHT_WHOLE;
             }
@@ -117,11 +117,21 @@ void blend(Seen splat, vec2 delta) {
         float most = 0.0;
         for (uint row = 0u; row < ROWS; row++) {
             float added = transmittance[row] * alpha[row];
-            sum[row] += added * (SHOW_WEIGHT ? weight_colour(weight[row]) : splat.colour);
+            if (SHOW == SHOW_COUNT) {
+                // A column goes on until all of its pixels are saturated.
+                bool counts = alpha[row] >= ALPHA_MIN && transmittance[row] >= FRAME.tiles.transmittance_min;
+                sum[row] += vec3(counts ? 1.0 : 0.0);
+            } else if (SHOW == SHOW_MEAN) {
+                sum[row] += alpha[row] * splat.colour;
+                alphas[row] += alpha[row];
+            } else {
+                sum[row] += added * (SHOW == SHOW_WEIGHT ? weight_colour(weight[row]) : splat.colour);
+            }
             transmittance[row] -= added;
             most = max(most, transmittance[row]);
         }
-        done = most < FRAME.tiles.transmittance_min;
+        // A mean takes all, in whatever order.
+        done = SHOW != SHOW_MEAN && most < FRAME.tiles.transmittance_min;
     }
 }
 
@@ -144,7 +154,7 @@ Seen load(uint number, vec2 tile_middle) {
     if (CLIP_MODE == MODE_EXACT && abs(splat.linear.x) < Z_RANGE) {
         splat.curvature = splats.at[number].curvature_depth.xyz;
     }
-    if (CLIP_MODE >= MODE_RARA && !SHOW_WEIGHT && splat.linear.x < Z_RANGE) {
+    if (CLIP_MODE >= MODE_RARA && SHOW != SHOW_WEIGHT && splat.linear.x < Z_RANGE) {
         uint side = tile_side(splat.linear, splat.curvature, splat.centre_conic, splat.conic_opacity.x, tile_middle);
         splat.linear.x = side == SIDE_VISIBLE ? Z_WHOLE : side == SIDE_INVISIBLE ? Z_CUT_AWAY : splat.linear.x;
     }
@@ -187,6 +197,9 @@ void main() {
     for (uint row = 0u; row < ROWS; row++) {
         sum[row] = vec3(0.0);
         transmittance[row] = pixel.y + row < size.y ? 1.0 : 0.0;
+        if (SHOW == SHOW_MEAN) {
+            alphas[row] = 0.0;
+        }
         occluder[row] = DEPTH_FORM != DEPTH_NONE ? occluder_farness(pixel + uvec2(0u, row)) : 0.0;
     }
     for (uint first = begin; first < end && !all_done(); first += BATCH) {
@@ -204,7 +217,9 @@ void main() {
     }
     for (uint row = 0u; row < ROWS; row++) {
         if (pixel.x < size.x && pixel.y + row < size.y) {
-            write_pixel((pixel.y + row) * size.x + pixel.x, vec4(sum[row], 1.0 - transmittance[row]));
+            float alpha = 1.0 - transmittance[row];
+            vec3 colour = SHOW == SHOW_MEAN ? sum[row] * (alpha / max(alphas[row], ALPHA_MIN)) : sum[row];
+            write_pixel((pixel.y + row) * size.x + pixel.x, vec4(colour, alpha));
         }
     }
 }

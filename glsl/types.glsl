@@ -211,6 +211,11 @@ const uint OP_OR = 1u;
 // By their joins.
 const uint OP_PARTS = 2u;
 const uint JOIN_SHIFT = 5u;
+// What a pixel shows of its splats.
+const uint SHOW_COLOUR = 0u;
+const uint SHOW_WEIGHT = 1u;
+const uint SHOW_COUNT = 2u;
+const uint SHOW_MEAN = 3u;
 const uint DECAY_LINEAR = 0u;
 const uint DECAY_DEPTH = 1u;
 const uint MISS_KEEP = 0u;

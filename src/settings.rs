@@ -71,6 +71,19 @@ pub enum Show {
     /// The effect of the clip on them: a splat that it leaves whole is blue; one that it cuts goes from red, where the
     /// pixel keeps nothing, to yellow, where it keeps all. Blended like colours.
     Weight,
+    /// The number of splats that make the pixel: red, green and blue each, while alpha is as ever. A splat counts of
+    /// which the clip leaves an alpha of 1/255 or more, and that comes before the pixel is saturated. Only tiles count.
+    Count,
+    /// The mean of the splats' colours, each weighted by its alpha, in no order, while alpha is as ever: the colours that lie
+    /// on a plane where the splats are [cross-sections](crate::scene::cross_section). Only tiles make it.
+    Mean,
+}
+
+impl Show {
+    /// True for what no draw of quads shows.
+    pub(crate) fn needs_tiles(self) -> bool {
+        matches!(self, Self::Count | Self::Mean)
+    }
 }
 
 /// Which form of the exact weight a cut splat gets.

@@ -63,6 +63,10 @@ pub const RARA_SHOW_COLOUR: RaraShow = 0;
 /// The effect of the clip on them: a splat that it leaves whole is blue; one that it cuts goes from red, where the
 /// pixel keeps nothing, to yellow, where it keeps all.
 pub const RARA_SHOW_WEIGHT: RaraShow = 1;
+/// The number of splats that make the pixel: red, green and blue each. Only tiles count.
+pub const RARA_SHOW_COUNT: RaraShow = 2;
+/// The mean of the splats' colours, each weighted by its alpha, in no order. Only tiles make it.
+pub const RARA_SHOW_MEAN: RaraShow = 3;
 
 /// RARA_MODE_EXACT only: how the normal distribution's Phi is approximated, and the largest error.
 pub type RaraPhiForm = u32;
@@ -192,6 +196,8 @@ impl RaraSettings {
             .show(match self.show {
                 RARA_SHOW_COLOUR => Show::Colour,
                 RARA_SHOW_WEIGHT => Show::Weight,
+                RARA_SHOW_COUNT => Show::Count,
+                RARA_SHOW_MEAN => Show::Mean,
                 other => return no("show", other, "RaraShow"),
             })
             .precision(

@@ -12,7 +12,7 @@ use crate::passes::pipelines::{Draw, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::splat;
 use crate::passes::weight::Weight;
-use crate::settings::{Raster, Show};
+use crate::settings::Raster;
 use crate::types::FrameCounts;
 
 /// The pipeline that a plan needs: without a clip the fragment shader holds no clip code.
@@ -34,7 +34,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program
         phi_form: weight.phi,
         depth,
         boxes: !plan.needs_quads(),
-        show_weight: plan.way.show == Show::Weight,
+        show: plan.way.show.code(),
     };
     Draw::new(shaders, constants, attachments, depth)
 }

@@ -16,7 +16,6 @@ use crate::passes::stage::{Frame, Stage};
 use crate::passes::weight::Weight;
 use crate::passes::work::Work;
 use crate::precision::TargetFormat;
-use crate::settings::Show;
 use crate::types::{self, FrameCounts};
 
 pub(crate) const STAGE: Stage = Stage {
@@ -141,7 +140,7 @@ fn kernel(plan: &Plan, list: List) -> Kernel<tiles::Program> {
         local_size_y: limits::TILE_HEIGHT / work.rows,
         reclipped: plan.reclips(),
         depth_form: plan.occluders.map_or(types::DEPTH_NONE, |o| o.form),
-        show_weight: plan.way.show == Show::Weight,
+        show: plan.way.show.code(),
         pixels: plan.way.tile_pixels.code(),
         listed: list != List::All,
     };

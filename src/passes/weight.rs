@@ -2,7 +2,7 @@
 //! mode does not use are left at one value, so that no two pipelines differ in them alone.
 
 use crate::passes::plan::Plan;
-use crate::settings::{Decay, Miss, Settings};
+use crate::settings::{Decay, Miss, Settings, Show};
 use crate::types;
 
 /// The settings of a cut splat's weight, whatever the mode.
@@ -30,6 +30,18 @@ impl Laws {
                 Miss::Peak => types::MISS_PEAK,
             },
             phi: settings.precision.phi.code(),
+        }
+    }
+}
+
+impl Show {
+    /// The shaders' name of it, `SHOW_*`.
+    pub(super) fn code(self) -> u32 {
+        match self {
+            Self::Colour => types::SHOW_COLOUR,
+            Self::Weight => types::SHOW_WEIGHT,
+            Self::Count => types::SHOW_COUNT,
+            Self::Mean => types::SHOW_MEAN,
         }
     }
 }

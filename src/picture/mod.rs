@@ -4,11 +4,13 @@
 
 #[cfg(feature = "picture")]
 mod channels;
+mod cues;
 #[cfg(feature = "picture")]
 mod file;
 
 #[cfg(feature = "picture")]
 pub use channels::Channel;
+pub use cues::{Cue, Cues};
 
 /// RGBA pixels, 32-bit float, premultiplied, blended values as they are (no transfer function).
 #[derive(Debug, Clone, PartialEq, Default)]

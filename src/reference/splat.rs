@@ -60,30 +60,56 @@ fn draw_band<T: Real>(
 ) {
     let law = settings.decay_law();
     let mut blended = vec![[T::zero(); 4]; pixels.len()];
+    let mut alphas = vec![T::zero(); pixels.len()];
+    let saturated = T::of(1.0 - f64::from(settings.precision.transmittance_min));
     for splat in splats {
-        for (y, row) in (top..).zip(blended.chunks_mut(width as usize)) {
+        let rows = blended
+            .chunks_mut(width as usize)
+            .zip(alphas.chunks_mut(width as usize));
+        for (y, (row, alphas)) in (top..).zip(rows) {
             let dy = T::of(f64::from(y) + 0.5) - splat.footprint.screen_centre[1];
             let Some((first, last)) = row_span(&splat.footprint, dy, width) else {
                 continue;
             };
-            for (x, pixel) in (first..=last).zip(&mut row[first as usize..]) {
+            let pixels = row.iter_mut().zip(alphas).skip(first as usize);
+            for (x, (pixel, alphas)) in (first..=last).zip(pixels) {
                 let dx = T::of(f64::from(x) + 0.5) - splat.footprint.screen_centre[0];
                 if let Some(alpha) = alpha(splat, dx, dy, law) {
-                    let colour = match settings.show {
-                        Show::Colour => splat.colour,
-                        Show::Weight => weight_colour(splat, dx, dy),
-                    };
-                    blend(pixel, alpha, colour);
+                    match settings.show {
+                        Show::Colour => blend(pixel, alpha, splat.colour),
+                        Show::Weight => blend(pixel, alpha, weight_colour(splat, dx, dy)),
+                        Show::Count => {
+                            let shows = alpha * T::of(f64::from(ALPHA_MIN_INVERSE)) >= T::one();
+                            let counts = shows && pixel[3] <= saturated;
+                            add(pixel, alpha, [T::of(f64::from(u8::from(counts))); 3]);
+                        }
+                        Show::Mean => {
+                            *alphas = *alphas + alpha;
+                            add(pixel, alpha, splat.colour.map(|c| alpha * c));
+                        }
+                    }
                 }
             }
         }
     }
-    for (pixel, blended) in pixels.iter_mut().zip(&mut blended) {
+    for ((pixel, blended), alphas) in pixels.iter_mut().zip(&mut blended).zip(alphas) {
+        if settings.show == Show::Mean && alphas > T::zero() {
+            let share = blended[3] / alphas;
+            blended[..3].iter_mut().for_each(|c| *c = *c * share);
+        }
         if let Some(background) = settings.background {
             blend(blended, T::one(), background.map(|c| T::of(f64::from(c))));
         }
         *pixel = blended.map(|v| v.wide() as f32);
     }
+}
+
+/// Adds to a pixel's numbers, while alpha grows as in blending.
+fn add<T: Real>(pixel: &mut [T; 4], alpha: T, numbers: [T; 3]) {
+    for (sum, number) in pixel.iter_mut().zip(numbers) {
+        *sum = *sum + number;
+    }
+    pixel[3] = pixel[3] + (T::one() - pixel[3]) * alpha;
 }
 
 /// Opacity of a splat at an offset from its centre in pixels; nothing where it does not count: where its uncut alpha is

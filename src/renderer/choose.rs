@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::gpu::{DeviceShape, Support};
 use crate::limits;
-use crate::settings::Raster;
+use crate::settings::{Raster, Settings};
 
 /// The properties of a host's targets that decide whether tiles can draw into them.
 #[derive(Debug, Clone, Copy)]
@@ -18,7 +18,7 @@ pub(super) struct Targets {
 
 /// How splats become pixels on a device, and why in that way.
 pub(super) fn raster(
-    wanted: Raster,
+    settings: &Settings,
     support: &Support,
     shape: DeviceShape,
     targets: Targets,
@@ -28,7 +28,16 @@ pub(super) fn raster(
     } else {
         Raster::Quad
     };
-    Ok(match wanted {
+    let needs_tiles = settings.show.needs_tiles();
+    let can_tile = !targets.hidden && matches!(settings.raster, Raster::Auto | Raster::Tiles);
+    Ok(match settings.raster {
+        _ if needs_tiles && !can_tile => {
+            return Err(Error::Invalid(format!(
+                "Show::{:?} is made by tiles alone; leave the raster to itself, and make the host's depth readable",
+                settings.show
+            )));
+        }
+        Raster::Auto if needs_tiles => (Raster::Tiles, "only tiles show what is asked for"),
         Raster::Mesh if !support.mesh_shader => {
             return Err(Error::Device(
                 "this device has no mesh shaders (VK_EXT_mesh_shader); use --raster quad".into(),
@@ -79,7 +88,8 @@ mod tests {
             mesh_shader,
             ..Support::default()
         };
-        let (raster, reason) = raster(Raster::Auto, &support, shape, targets).expect("a choice");
+        let settings = Settings::default();
+        let (raster, reason) = raster(&settings, &support, shape, targets).expect("a choice");
         assert!(!reason.is_empty());
         raster
     }

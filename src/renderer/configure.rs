@@ -76,7 +76,8 @@ impl Renderer {
         let submission = request.submission;
         self.memory.free_finished(self.frames.finished(submission));
         let tiles = tiles(request.camera);
-        let redrawn = self.make_room(request, tiles);
+        // Where no quads can take the tiles' place, nothing does.
+        let redrawn = self.make_room(request, tiles) || request.settings.show.needs_tiles();
         let support = self.device.support();
         let shape = self.device.shape();
         let hidden = self.desc.depth.is_some_and(|depth| !depth.readable);
@@ -85,7 +86,7 @@ impl Renderer {
             hidden,
             multisampled: self.desc.samples != vk::SampleCountFlags::TYPE_1,
         };
-        let (raster, reason) = choose::raster(request.settings.raster, support, shape, targets)?;
+        let (raster, reason) = choose::raster(request.settings, support, shape, targets)?;
         // Quads, which have to be drawn, take the tiles' place only in a frame that is not redrawn.
         let leaves_picture = raster == Raster::Tiles && redrawn && scene.count > 0;
         let picture = request

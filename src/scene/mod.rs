@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod bounds;
+mod cross_section;
 mod gaussians;
 mod generate;
 mod layer;
@@ -16,6 +17,7 @@ mod report;
 mod save;
 
 pub use bounds::{Bounds, extent_along};
+pub use cross_section::cross_section;
 pub use gaussians::{GaussianArrays, Gaussians, sh_coefficients};
 #[cfg(feature = "lab")]
 pub(crate) use generate::random::Random;

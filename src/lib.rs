@@ -75,12 +75,14 @@ pub use gpu::PipelineCache;
 pub use passes::{SceneBuffers, SceneLayer, Staging};
 #[cfg(feature = "picture")]
 pub use picture::Channel;
-pub use picture::Picture;
+pub use picture::{Cue, Cues, Picture};
 pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 pub use renderer::{DepthDesc, ExpectedDepthDesc, Renderer, RendererDesc};
 #[doc(inline)]
 pub use scene::{Bounds, GaussianArrays, Gaussians, Layer, LayerState, Scene};
+#[cfg(feature = "picture")]
+pub use session::Aov;
 pub use session::{Headless, HeadlessDesc};
 #[cfg(feature = "view")]
 pub use session::{Redraw, Windowed};

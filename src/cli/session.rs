@@ -2,7 +2,8 @@
 
 use rara::gpu::DeviceShape;
 use rara::{
-    Camera, Clip, FrameStats, Headless, HeadlessDesc, Picture, Result, Scene, Settings, ShFormat,
+    Aov, Camera, Channel, Clip, FrameStats, Headless, HeadlessDesc, Picture, Result, Scene,
+    Settings, ShFormat,
 };
 
 use super::combine::{Combine, combine};
@@ -63,14 +64,14 @@ impl Session {
         Ok((self.last_picture()?, stats))
     }
 
-    /// The expected depths of a frame.
-    pub(super) fn expected_depth(
+    /// Channels beside the colours of a frame of the scene that is loaded.
+    pub(super) fn channels(
         &mut self,
-        camera: &Camera,
-        clip: &Clip,
-        settings: &Settings,
-    ) -> Result<Vec<f32>> {
-        self.headless.expected_depth(camera, clip, settings)
+        aovs: &[Aov],
+        scene: &Scene<'_>,
+        frame: (&Camera, &Clip, &Settings),
+    ) -> Result<Vec<Channel>> {
+        self.headless.channels(aovs, scene, frame)
     }
 
     /// The picture of the last frame.

@@ -14,6 +14,8 @@ use crate::scene::{LayerState, Scene};
 use crate::settings::Settings;
 use crate::stats::FrameStats;
 use crate::trace;
+#[cfg(feature = "picture")]
+pub use aov::Aov;
 
 /// A renderer that owns its device and draws into an offscreen picture, of 32-bit floats unless the settings say
 /// otherwise.
@@ -162,6 +164,8 @@ impl Headless {
     }
 }
 
+#[cfg(feature = "picture")]
+mod aov;
 mod depth;
 #[cfg(feature = "lab")]
 mod working;

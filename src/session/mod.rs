@@ -23,6 +23,8 @@ mod target;
 mod windowed;
 
 pub use desc::HeadlessDesc;
+#[cfg(feature = "picture")]
+pub use headless::Aov;
 pub use headless::Headless;
 #[cfg(feature = "view")]
 pub use windowed::{Redraw, Windowed};

@@ -29,7 +29,8 @@ fn channels_say_what_the_picture_is_made_of() {
         &here,
         &format!("render @/scene.ply -o @/plain.exr {view}"),
     ));
-    let words = format!("render @/scene.ply -o @/a.exr --aov weight,depth,normal,depth {view}");
+    let words =
+        format!("render @/scene.ply -o @/a.exr --aov weight,depth,normal,layer,count,depth {view}");
     done(line(&here, &words));
     // The colours are those without the flag.
     let difference = document(line(&here, "compare @/plain.exr @/a.exr --json"));
@@ -39,7 +40,9 @@ fn channels_say_what_the_picture_is_made_of() {
     let names: Vec<&str> = channels.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(
         names,
-        ["A", "B", "G", "N.X", "N.Y", "N.Z", "R", "Z", "weight"]
+        [
+            "A", "B", "G", "N.X", "N.Y", "N.Z", "R", "Z", "count", "layer", "weight"
+        ]
     );
     let of = |name: &str| &channels.iter().find(|c| c.0 == name).expect("a channel").1;
     let (alpha, depth, weight) = (of("A"), of("Z"), of("weight"));
@@ -53,6 +56,8 @@ fn channels_say_what_the_picture_is_made_of() {
             continue;
         }
         shown += 1;
+        assert_eq!(of("layer")[at], 0.0);
+        assert!(of("count")[at] >= 1.0);
         assert!((0.2 * far..2.0 * far).contains(&depth[at]), "{}", depth[at]);
         assert!((0.0..=1.0).contains(&weight[at]), "{}", weight[at]);
         assert!((normal.length() - 1.0).abs() < 1e-4, "{normal}");
@@ -73,7 +78,7 @@ fn channels_need_an_exr_file() {
         ("render x.ply --json --aov depth", "--output"),
         (
             "render x.ply -o a.exr --aov beauty",
-            "depth, normal, weight",
+            "depth, normal, layer, weight, count",
         ),
     ] {
         refused(&line(&here, words), 2, what);

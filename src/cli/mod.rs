@@ -4,7 +4,6 @@
 //! the work. Only [`output::answer`] writes to stdout what a command was asked for; everything else goes to stderr.
 
 mod ablate;
-mod aov;
 mod bake;
 mod bench;
 mod camera;
@@ -31,6 +30,7 @@ mod section;
 mod session;
 mod settings;
 mod sheet;
+mod slice;
 mod stress;
 mod sweep;
 mod values;

@@ -3,9 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::{Clip, Scene, Settings};
+use rara::{Aov, Clip, Picture, Scene, Settings};
 
-use super::aov::{self, Aov};
 use super::camera::{View, Views};
 use super::failure::Failure;
 use super::frame::FrameArgs;
@@ -13,9 +12,10 @@ use super::output::{self, Progress};
 use super::profile::{Profile, ProfileArgs};
 use super::report::Report;
 use super::scenes::SceneArgs;
-use super::section::{SectionArgs, Sections};
+use super::section::{Section, SectionArgs, Sections};
 use super::session::Session;
 use super::settings::name;
+use super::slice::{Cut, SliceArgs, Slicer};
 use super::values;
 
 /// Draw one picture, or one for each camera of a file
@@ -31,7 +31,8 @@ Examples:
   rara render scene.ply -o flat.png --ortho fit
   rara render scene.ply -o axial.png --section axial=0.4
   rara render scene.ply -o slab_{}.png --section coronal=0.1..0.9:9 --section-thickness 2
-  rara render scene.ply -o deep.exr --aov depth,normal,weight
+  rara render scene.ply -o slice.png --section axial=0.4 --slice --outline 1,1,0
+  rara render scene.ply -o deep.exr --aov depth,normal,layer,weight,count
   rara render scene.ply --repeat 20 --json
 
 Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premultiplied.")]
@@ -53,6 +54,8 @@ pub(super) struct Render {
     #[command(flatten)]
     section: SectionArgs,
     #[command(flatten)]
+    slice: SliceArgs,
+    #[command(flatten)]
     frame: FrameArgs,
     #[command(flatten)]
     profile: ProfileArgs,
@@ -65,6 +68,14 @@ enum Pictures {
     Sections(Sections),
 }
 
+/// A picture that is to be drawn.
+struct Planned {
+    view: View,
+    clip: Clip,
+    /// A section's plane.
+    cut: Option<Cut>,
+}
+
 impl Pictures {
     /// Their numbers.
     fn numbers(&self) -> Vec<usize> {
@@ -74,16 +85,26 @@ impl Pictures {
         }
     }
 
-    /// Each picture's camera and clip, once the scene is known.
-    fn of(self, scene: &Scene<'_>) -> Result<Vec<(View, Clip)>, Failure> {
+    /// The pictures, once the scene is known.
+    fn of(self, scene: &Scene<'_>) -> Result<Vec<Planned>, Failure> {
         Ok(match self {
             Self::Views(views, clip) => {
                 let views = views.of(scene)?.into_iter();
-                views.map(|view| (view, clip.clone())).collect()
+                let planned = |view| Planned {
+                    view,
+                    clip: clip.clone(),
+                    cut: None,
+                };
+                views.map(planned).collect()
             }
             Self::Sections(sections) => {
                 let sections = sections.of(scene)?.into_iter();
-                sections.map(|one| (one.view, one.clip)).collect()
+                let planned = |one: Section| Planned {
+                    view: one.view,
+                    clip: one.clip,
+                    cut: Some(one.cut),
+                };
+                sections.map(planned).collect()
             }
         })
     }
@@ -119,30 +140,40 @@ impl Render {
     ) -> Result<(), Failure> {
         let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
-        let views = pictures.of(&scene)?;
+        let planned = pictures.of(&scene)?;
         let device = self.frame.device.meant();
         let mut session = profile.open(device, &scene, settings.precision.sh)?;
         let mut frames = Vec::new();
         let mut written = Vec::new();
+        let mut slicer = Slicer::new(&self.slice, &scene, self.frame.device.meant());
         let mut progress = Progress::new("rendering");
-        for (done, (view, clip)) in views.iter().enumerate() {
-            progress.update(done as u64, views.len() as u64);
-            frames.push(session.frame(&view.camera, clip, settings, self.repeat)?);
-            if let Some(path) = self.picture_file(view.number) {
-                if self.aov.is_empty() {
+        for (done, one) in planned.iter().enumerate() {
+            progress.update(done as u64, planned.len() as u64);
+            let sliced = one.cut.as_ref().filter(|_| self.slice.is_shown());
+            frames.push(match sliced {
+                Some(cut) => slicer.frame(&mut session, (&one.view, cut, settings), self.repeat)?,
+                None => session.frame(&one.view.camera, &one.clip, settings, self.repeat)?,
+            });
+            if let Some(path) = self.picture_file(one.view.number) {
+                if let Some(cut) = one.cut.as_ref().filter(|_| slicer.has_cues()) {
+                    let mut picture = session.last_picture()?;
+                    slicer.draw_cues(&mut picture, (&one.view, cut, settings))?;
+                    self.save(&mut session, (&scene, one, settings), &picture, &path)?;
+                } else if self.aov.is_empty() {
                     profile.save_picture(&mut session, &path)?;
                 } else {
-                    let drawn = (view, clip, settings);
-                    self.save_channels(&mut session, &scene, drawn, &path)?;
+                    let picture = session.last_picture()?;
+                    self.save(&mut session, (&scene, one, settings), &picture, &path)?;
                 }
                 written.push(path);
             }
         }
         drop(progress);
+        slicer.close()?;
 
-        let size = views
-            .first()
-            .map_or((0, 0), |(v, _)| (v.camera.width, v.camera.height));
+        let size = planned.first().map_or((0, 0), |one| {
+            (one.view.camera.width, one.view.camera.height)
+        });
         let report = Report::new(&session, &loaded, size, name(settings.mode), &frames);
         let report = if several {
             report.with_frames(frames)
@@ -153,18 +184,19 @@ impl Render {
         Ok(report.print(self.json, &written)?)
     }
 
-    /// Writes the picture of the session's last frame with the channels that `--aov` asks for.
-    fn save_channels(
+    /// Writes a picture, with the channels that `--aov` asks for.
+    fn save(
         &self,
         session: &mut Session,
-        scene: &Scene<'_>,
-        (view, clip, settings): (&View, &Clip, &Settings),
+        (scene, one, settings): (&Scene<'_>, &Planned, &Settings),
+        picture: &Picture,
         path: &Path,
     ) -> Result<(), Failure> {
-        let picture = session.last_picture()?;
-        let drawn = (&view.camera, clip, settings);
-        let sh = settings.precision.sh;
-        let channels = aov::channels(&self.aov, session, scene, drawn, sh)?;
+        if self.aov.is_empty() {
+            return Ok(picture.save(path)?);
+        }
+        let drawn = (&one.view.camera, &one.clip, settings);
+        let channels = session.channels(&self.aov, scene, drawn)?;
         Ok(picture.save_with(path, &channels)?)
     }
 

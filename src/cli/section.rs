@@ -8,6 +8,7 @@ use rara::{Bounds, Camera, Clip, ClipOp, Gaussians, Plane, Scene};
 use super::camera::{CameraArgs, View};
 use super::clip::ClipArgs;
 use super::failure::Failure;
+use super::slice::Cut;
 use super::values;
 
 /// The sections to draw. Each is a picture of its own.
@@ -165,6 +166,7 @@ enum Planned {
 pub(super) struct Section {
     pub(super) view: View,
     pub(super) clip: Clip,
+    pub(super) cut: Cut,
 }
 
 impl SectionArgs {
@@ -265,6 +267,10 @@ impl Sections {
             if let Some(scale) = self.scale {
                 camera = camera.fx(1.0 / scale).fy(1.0 / scale);
             }
+            let joined = |shapes: &[Expression]| {
+                Clip::joined(shapes.iter().map(Expression::clip), ClipOp::And)
+            };
+            let rest = joined(&self.shapes);
             let mut shapes = self.shapes.clone();
             shapes.push(Expression::Shape(plane.into()));
             if let Some(thickness) = self.thickness {
@@ -277,7 +283,8 @@ impl Sections {
                     name,
                     camera,
                 },
-                clip: Clip::joined(shapes.iter().map(Expression::clip), ClipOp::And),
+                clip: joined(&shapes),
+                cut: Cut { plane, rest },
             })
         };
         self.planned.iter().enumerate().map(section).collect()

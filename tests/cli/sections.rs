@@ -163,3 +163,41 @@ fn a_section_has_the_plane_of_a_file() {
     );
     refused(&output, 2, "mid, other");
 }
+
+#[test]
+fn slices_show_the_plane_and_cues_its_edge() {
+    let here = folder("slices");
+    scene(&here);
+    let section = "--section axial=0.5";
+    let plain = drawn(&here, section);
+    let slice = drawn(&here, &format!("{section} --slice"));
+    assert!(plain != slice);
+    // What is not asked for changes nothing.
+    assert!(plain == drawn(&here, &format!("{section} --cut-level 0.3")));
+    let outlined = drawn(
+        &here,
+        &format!("{section} --outline 1,1,0 --outline-width 3"),
+    );
+    assert!(plain != outlined);
+    assert!(outlined != drawn(&here, &format!("{section} --outline 1,1,0 --rim 0,0,1")));
+    let series = format!("render @/scene.ply -o @/s{{}}.png {SIZE} --slice --outline 1,0,0");
+    done(line(&here, &format!("{series} --section z=0.2..0.8:3")));
+    assert!((0..3).all(|number| here.join(format!("s{number}.png")).is_file()));
+    for (words, what) in [
+        ("render x.ply -o a.png --slice", "--section"),
+        (
+            "render x.ply -o a.png --section z=.5 --outline-width 2",
+            "--outline",
+        ),
+        (
+            "render x.ply -o a.exr --section z=.5 --slice --aov depth",
+            "--aov",
+        ),
+        (
+            "render x.ply -o a.png --section z=.5 --outline 1,1,2",
+            "between 0 and 1",
+        ),
+    ] {
+        refused(&line(&here, words), 2, what);
+    }
+}

@@ -23,4 +23,5 @@ mod precision;
 mod reuse;
 mod shapes;
 mod shortlists;
+mod slices;
 mod stress;

@@ -1,0 +1,149 @@
+//! `--slice`, `--outline` and `--rim`: what lies on a section's plane.
+
+use clap::Args;
+use rara::scene::cross_section;
+use rara::{
+    Clip, Cue, Cues, FrameStats, Gaussians, HeadlessDesc, Layer, Picture, Plane, Scene, Settings,
+    Show,
+};
+
+use super::camera::View;
+use super::failure::Failure;
+use super::session::Session;
+use super::values;
+
+/// What is shown of a section's plane.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Sections")]
+pub(super) struct SliceArgs {
+    /// Show the colours on each section's plane, weighted by the splats' opacities there, instead of the scene behind it
+    #[arg(long, requires = "section", conflicts_with = "aov")]
+    slice: bool,
+    /// Draw a line around each cut surface
+    #[arg(long, value_name = "R,G,B", value_parser = values::colour, requires = "section")]
+    outline: Option<[f32; 3]>,
+    /// Pixels of that line
+    #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 2.0, requires = "outline")]
+    outline_width: f32,
+    /// Tint each cut surface along its edge
+    #[arg(long, value_name = "R,G,B", value_parser = values::colour, requires = "section")]
+    rim: Option<[f32; 3]>,
+    /// Pixels of that tint
+    #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 24.0, requires = "rim")]
+    rim_width: f32,
+    /// The alpha of a slice from which it belongs to the cut surface, 0 to 1
+    #[arg(long, value_name = "ALPHA", value_parser = values::share, default_value_t = 0.1, requires = "section")]
+    cut_level: f32,
+}
+
+/// A plane that is sliced, and the clip of what lies on it.
+#[derive(Debug, Clone)]
+pub(super) struct Cut {
+    pub(super) plane: Plane,
+    pub(super) rest: Clip,
+}
+
+impl SliceArgs {
+    /// True when a slice takes the picture's place.
+    pub(super) fn is_shown(&self) -> bool {
+        self.slice
+    }
+
+    /// The lines and tints to draw.
+    fn cues(&self) -> Option<Cues> {
+        let mut cues = Cues::default();
+        let cue = |width| move |colour| Cue { colour, width };
+        cues.level = self.cut_level;
+        cues.outline = self.outline.map(cue(self.outline_width));
+        cues.rim = self.rim.map(cue(self.rim_width));
+        (self.outline.is_some() || self.rim.is_some()).then_some(cues)
+    }
+}
+
+/// The slices of a scene.
+pub(super) struct Slicer<'a> {
+    args: &'a SliceArgs,
+    scene: Scene<'a>,
+    device: HeadlessDesc,
+    /// Opened for the first cue.
+    session: Option<Session>,
+}
+
+impl<'a> Slicer<'a> {
+    pub(super) fn new(args: &'a SliceArgs, scene: &Scene<'a>, device: HeadlessDesc) -> Self {
+        Self {
+            args,
+            scene: scene.clone(),
+            device,
+            session: None,
+        }
+    }
+
+    /// Draws a slice as the session's frame, in place of the session's scene.
+    pub(super) fn frame(
+        &self,
+        session: &mut Session,
+        (view, cut, settings): (&View, &Cut, &Settings),
+        repeat: u32,
+    ) -> Result<FrameStats, Failure> {
+        let flat = self.cross_sections(&cut.plane);
+        session.reload(&self.flat_scene(&flat), settings.precision.sh)?;
+        let shown = settings.show(Show::Mean);
+        Ok(session.frame(&view.camera, &cut.rest, &shown, repeat)?)
+    }
+
+    /// Draws the cues onto the picture of a section, if there are any.
+    pub(super) fn draw_cues(
+        &mut self,
+        picture: &mut Picture,
+        (view, cut, settings): (&View, &Cut, &Settings),
+    ) -> Result<(), Failure> {
+        let Some(cues) = self.args.cues() else {
+            return Ok(());
+        };
+        let flat = self.cross_sections(&cut.plane);
+        let scene = self.flat_scene(&flat);
+        let sh = settings.precision.sh;
+        let mut session = match self.session.take() {
+            Some(mut session) => {
+                session.reload(&scene, sh)?;
+                session
+            }
+            None => Session::open(&self.device, &scene, sh)?,
+        };
+        let shown = settings.show(Show::Mean).background(None);
+        let (slice, _) = session.picture(&view.camera, &cut.rest, &shown)?;
+        self.session = Some(session);
+        Ok(picture.draw_cues(&slice, &cues)?)
+    }
+
+    /// True when cues are drawn.
+    pub(super) fn has_cues(&self) -> bool {
+        self.args.cues().is_some()
+    }
+
+    fn cross_sections(&self, plane: &Plane) -> Vec<Gaussians> {
+        let layers = self.scene.layers().iter();
+        let section = |layer: &Layer<'_>| {
+            cross_section(layer.gaussians(), &plane.in_scene(&layer.state().placement))
+        };
+        layers.map(section).collect()
+    }
+
+    fn flat_scene<'b>(&self, flat: &'b [Gaussians]) -> Scene<'b> {
+        let layers = self.scene.layers().iter().zip(flat);
+        let layers = layers.map(|(layer, flat)| {
+            let made = Layer::new(layer.name(), flat).with(layer.state());
+            match layer.clip() {
+                Some(clip) => made.clipped(clip.clone()),
+                None => made,
+            }
+        });
+        layers.collect()
+    }
+
+    /// Frees what was opened for cues.
+    pub(super) fn close(self) -> Result<(), Failure> {
+        self.session.map_or(Ok(()), |session| Ok(session.close()?))
+    }
+}

@@ -8,6 +8,7 @@ use rara::{Clip, ClipOp, Plane, Shape};
 
 use super::failure::Failure;
 use super::output;
+use super::values;
 
 /// The clip: the parts to cut away.
 #[derive(Debug, Args)]
@@ -22,7 +23,7 @@ pub(super) struct ClipArgs {
     clip: Vec<Shape>,
     /// An expression of shapes (repeatable): all(...) keeps what all of its operands keep, any(...) what any of them does,
     /// not(...) what its operand does not, as in 'all(box:0,0,0,1,1,1, not(sphere:1,0,0,.5))'
-    #[arg(long, value_name = "EXPRESSION", value_parser = expression, allow_hyphen_values = true)]
+    #[arg(long, value_name = "EXPRESSION", value_parser = values::expression, allow_hyphen_values = true)]
     clip_expr: Vec<Expression>,
     /// The clips of a JSON file (repeatable): a list of planes, {"normal":[x,y,z],"d":d}, or of expressions as trees,
     /// {"clip":{"all":[...]}}, as --save-clip writes them, each with a "name" or without. :NAME takes only those of that
@@ -115,10 +116,6 @@ impl ClipArgs {
 }
 
 fn shape(text: &str) -> Result<Shape, String> {
-    text.parse().map_err(|error: rara::Error| error.to_string())
-}
-
-fn expression(text: &str) -> Result<Expression, String> {
     text.parse().map_err(|error: rara::Error| error.to_string())
 }
 

@@ -1,11 +1,11 @@
-//! `rara sweep`: the camera stands still and one plane moves across the scene.
+//! `rara sweep`: the camera stands still and a clip moves: a plane across the scene, or any region to another.
 
 use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
 use rara::clip::Expression;
-use rara::{Clip, Plane, Settings, Shape};
+use rara::{Clip, Plane, Settings};
 
 use super::camera::Views;
 use super::failure::Failure;
@@ -18,23 +18,33 @@ use super::settings::name;
 use super::values;
 use rara::scene::extent_along;
 
-/// Move a clip plane across the scene in equal steps
+/// Move a plane across the scene, or any clip to another, in equal steps
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   rara sweep scene.ply --clip-normal 0,0,1 -o frames
   rara sweep scene.ply --clip-normal 1,0,0 --frames 30 --mode hard --json
   rara sweep scene.ply --clip-normal 0,0,1 --clip-file planes.json:skin -o frames
+  rara sweep scene.ply --from sphere:0,0,0,.1 --to sphere:0,0,0,2 -o frames
+  rara sweep scene.ply --from 'all(plane:1,0,0,0, box:0,0,0,1,1,1)' --to 'all(plane:0,1,0,0, box:0,0,0,1,1,1)' -o turn
 
-The first frame keeps the whole of the scene's robust bounds, the last one nothing of them. Pictures are
-frame_000.png and so on. The third frame and those after it compute only what the plane changes. Other clip shapes stand still; --clip-op joins the moving plane to them too. The
-JSON has the frames, their medians on top and their means under \"mean\".")]
+Of a plane across the scene the first frame keeps the whole of the robust bounds, and the last one nothing. Pictures are
+frame_000.png and so on. The third frame and those after it compute only what the moving clip changes. Other clip shapes
+stand still; --clip-op joins the moving ones to them too. The JSON has the frames, their medians on top and their means under \"mean\".")]
 pub(super) struct Sweep {
     #[command(flatten)]
     scenes: SceneArgs,
-    /// The moving plane's normal; it points to the side that stays
+    /// The normal of a plane that moves across the scene; it points to the side that stays
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
-    clip_normal: DVec3,
+    #[arg(required_unless_present = "from", conflicts_with = "from")]
+    clip_normal: Option<DVec3>,
+    /// The clip of the first frame, a shape or an expression as for --clip-expr
+    #[arg(long, value_name = "EXPRESSION", value_parser = values::expression, allow_hyphen_values = true, requires = "to")]
+    from: Option<Expression>,
+    /// The clip of the last frame, with the same shapes in the same places: points, sizes and radii move evenly, rotations
+    /// and normals along the shortest arcs
+    #[arg(long, value_name = "EXPRESSION", value_parser = values::expression, allow_hyphen_values = true, requires = "from")]
+    to: Option<Expression>,
     /// Number of frames
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: u32,
@@ -59,12 +69,9 @@ pub(super) struct Sweep {
 impl Sweep {
     pub(super) fn run(self) -> Result<(), Failure> {
         let settings = self.frame.settings.meant()?;
-        let plane: Shape = Plane::new(self.clip_normal, 0.0)
-            .map_err(Failure::usage)?
-            .into();
-        // The shapes that stand still, and the one that moves.
-        let mut shapes = self.frame.clip.expressions()?;
-        shapes.push(Expression::Shape(plane));
+        // The shapes that stand still.
+        let shapes = self.frame.clip.expressions()?;
+        let moving = self.moving()?;
         self.frame.camera.single("a sweep")?;
         let views = self.frame.camera.meant()?;
         if let Some(folder) = &self.output {
@@ -72,24 +79,42 @@ impl Sweep {
         }
 
         let profile = self.profile.begin(&[])?;
-        let done = self.draw(&profile, views, shapes, &settings);
+        let done = self.draw(&profile, views, (shapes, &moving), &settings);
         profile.end_after(done)
     }
 
-    /// `shapes` are those that stand still, and last the one that moves.
+    /// What moves.
+    fn moving(&self) -> Result<Moving, Failure> {
+        let moving = match (self.clip_normal, &self.from, &self.to) {
+            (Some(normal), ..) => {
+                Moving::Plane(Plane::new(normal, 0.0).map_err(Failure::usage)?.normal())
+            }
+            (None, Some(from), Some(to)) => Moving::Region(from.clone(), to.clone()),
+            _ => unreachable!("one of them is required"),
+        };
+        // Errors that do not depend on the scene are found before it is read.
+        for index in 0..self.frames.min(MOST_TRIED) {
+            let share = position((0.0, 1.0), index, self.frames.min(MOST_TRIED));
+            moving.at(share).map_err(Failure::usage)?;
+        }
+        Ok(moving)
+    }
+
     fn draw(
         &self,
         profile: &Profile,
         views: Views,
-        mut shapes: Vec<Expression>,
+        (mut shapes, moving): (Vec<Expression>, &Moving),
         settings: &Settings,
     ) -> Result<(), Failure> {
-        let normal = Plane::new(self.clip_normal, 0.0)?.normal();
         let op = self.frame.clip.op();
         let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
         let camera = views.of(&scene)?.remove(0).camera;
-        let range = extent_along(&scene, normal);
+        let range = match moving {
+            Moving::Plane(normal) => extent_along(&scene, *normal),
+            Moving::Region(..) => (0.0, 1.0),
+        };
         let device = self.frame.device.meant();
         let mut session = profile.open(device, &scene, settings.precision.sh)?;
         let mut frames = Vec::new();
@@ -97,10 +122,9 @@ impl Sweep {
         let mut progress = Progress::new("sweeping");
         for index in 0..self.frames {
             progress.update(index.into(), self.frames.into());
-            let plane = Plane::new(normal, -position(range, index, self.frames))?;
-            shapes.pop();
-            shapes.push(Expression::Shape(Shape::from(plane)));
+            shapes.push(moving.at(position(range, index, self.frames))?);
             let clip = Clip::joined(shapes.iter().map(Expression::clip), op);
+            shapes.pop();
             frames.push(if self.independent || self.repeat > 1 {
                 session.frame(&camera, &clip, settings, self.repeat)?
             } else {
@@ -122,7 +146,28 @@ impl Sweep {
     }
 }
 
-/// The plane's position in one frame: both ends included, the middle when there is one frame only.
+/// The clip that moves.
+enum Moving {
+    /// A plane of this unit normal, across the scene.
+    Plane(DVec3),
+    /// From the first region to the other.
+    Region(Expression, Expression),
+}
+
+/// The most steps that are tried before the scene is read.
+const MOST_TRIED: u32 = 1000;
+
+impl Moving {
+    /// The clip in a position: of a plane along its normal, of a region the share of its way.
+    fn at(&self, position: f64) -> rara::Result<Expression> {
+        Ok(match self {
+            Self::Plane(normal) => Expression::Shape(Plane::new(*normal, -position)?.into()),
+            Self::Region(from, to) => from.between(to, position)?,
+        })
+    }
+}
+
+/// The position in one frame: both ends included, the middle when there is one frame only.
 fn position((from, to): (f64, f64), index: u32, frames: u32) -> f64 {
     match frames {
         1 => (from + to) / 2.0,

@@ -26,6 +26,11 @@ pub(super) fn direction(text: &str) -> Result<DVec3, String> {
     Ok(vector)
 }
 
+/// An expression of shapes.
+pub(super) fn expression(text: &str) -> Result<rara::clip::Expression, String> {
+    text.parse().map_err(|error: rara::Error| error.to_string())
+}
+
 /// `WxH`. The library says which sizes are possible.
 pub(super) fn size(text: &str) -> Result<(u32, u32), String> {
     let parts = text.split_once(['x', 'X']);
@@ -55,6 +60,14 @@ pub(super) fn not_negative(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
         _ => Err("expected a finite number of zero or more".into()),
+    }
+}
+
+/// A number from 0 to 1.
+pub(super) fn share(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(number) if (0.0..=1.0).contains(&number) => Ok(number),
+        _ => Err("expected a number from 0 to 1".into()),
     }
 }
 

@@ -2,6 +2,7 @@
 
 #![forbid(unsafe_code)]
 
+mod between;
 #[cfg(feature = "json")]
 mod clip_file;
 mod expression;

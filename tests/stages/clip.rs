@@ -113,7 +113,10 @@ fn the_sides_by_shortlists_are_the_twins() {
         let open: Vec<u32> = shorter.map(|list| list[0] >> 2).collect();
         assert!(open.iter().all(|&surfaces| surfaces <= ROOM));
         assert!(open.iter().any(|&surfaces| surfaces > 5), "{open:?}");
-        assert!(2 * open.len() > lists.len(), "most blocks ask few: {open:?}");
+        assert!(
+            2 * open.len() > lists.len(),
+            "most blocks ask few: {open:?}"
+        );
     }
 }
 

@@ -43,6 +43,8 @@ fn camera(width: u32, height: u32, focal: f64) -> Camera {
         eye: DVec3::ZERO,
         rotation: DMat3::IDENTITY,
         projection: Projection::Perspective,
+        clip_near: None,
+        clip_far: None,
     }
 }
 

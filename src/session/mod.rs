@@ -17,6 +17,8 @@ use crate::trace::{self, Trace};
 
 mod desc;
 mod headless;
+#[cfg(feature = "view")]
+mod lines;
 mod spans;
 mod target;
 #[cfg(feature = "view")]
@@ -24,6 +26,8 @@ mod windowed;
 
 pub use desc::HeadlessDesc;
 pub use headless::Headless;
+#[cfg(feature = "view")]
+pub use lines::Line;
 #[cfg(feature = "view")]
 pub use windowed::{Redraw, Windowed};
 

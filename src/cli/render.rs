@@ -13,7 +13,7 @@ use super::output::{self, Progress};
 use super::profile::{Profile, ProfileArgs};
 use super::report::Report;
 use super::scenes::SceneArgs;
-use super::section::{SectionArgs, Sections};
+use super::section::{Section, SectionArgs, Sections};
 use super::session::Session;
 use super::settings::name;
 use super::values;
@@ -83,7 +83,11 @@ impl Pictures {
             }
             Self::Sections(sections) => {
                 let sections = sections.of(scene)?.into_iter();
-                sections.map(|one| (one.view, one.clip)).collect()
+                let picture = |section: Section| {
+                    let clip = section.clip();
+                    (section.view, clip)
+                };
+                sections.map(picture).collect()
             }
         })
     }

@@ -164,7 +164,18 @@ enum Planned {
 #[derive(Debug)]
 pub(super) struct Section {
     pub(super) view: View,
-    pub(super) clip: Clip,
+    /// What clips it, all together.
+    pub(super) shapes: Vec<Expression>,
+    /// The plane that the camera faces, which is among the shapes.
+    #[cfg_attr(not(feature = "view"), allow(dead_code))]
+    pub(super) plane: Plane,
+}
+
+impl Section {
+    /// The region that it keeps.
+    pub(super) fn clip(&self) -> Clip {
+        Clip::joined(self.shapes.iter().map(Expression::clip), ClipOp::And)
+    }
 }
 
 impl SectionArgs {
@@ -277,7 +288,8 @@ impl Sections {
                     name,
                     camera,
                 },
-                clip: Clip::joined(shapes.iter().map(Expression::clip), ClipOp::And),
+                shapes,
+                plane,
             })
         };
         self.planned.iter().enumerate().map(section).collect()

@@ -100,8 +100,8 @@ impl Pictures {
             Self::Sections(sections) => {
                 let sections = sections.of(scene)?.into_iter();
                 let planned = |one: Section| Planned {
+                    clip: one.clip(),
                     view: one.view,
-                    clip: one.clip,
                     cut: Some(one.cut),
                 };
                 sections.map(planned).collect()

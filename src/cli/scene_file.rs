@@ -18,8 +18,33 @@ pub(super) struct LayerEntry {
     /// Its file.
     pub(super) path: PathBuf,
     pub(super) state: LayerState,
-    /// Its own clip, in the scene's space; one that keeps everything shields the layer from the frame's.
-    pub(super) clip: Option<Clip>,
+    pub(super) clip: Option<LayerClip>,
+}
+
+/// The clip of one layer in place of the frame's, in the scene's space.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum LayerClip {
+    /// Nothing cuts the layer, neither the frame's clip.
+    Whole,
+    Region(Expression),
+}
+
+impl LayerClip {
+    /// The clip by its text: an expression, or `whole`.
+    pub(super) fn parse(text: &str) -> Result<Self> {
+        match text.trim() {
+            "whole" => Ok(Self::Whole),
+            text => text.parse().map(Self::Region),
+        }
+    }
+
+    /// The region that it keeps.
+    pub(super) fn clip(&self) -> Clip {
+        match self {
+            Self::Whole => Clip::default(),
+            Self::Region(expression) => expression.clip(),
+        }
+    }
 }
 
 impl LayerEntry {
@@ -64,14 +89,6 @@ struct Entry {
     clip_expr: Option<String>,
 }
 
-/// A region by its text: an expression, or `whole`.
-pub(super) fn region(text: &str) -> Result<Clip> {
-    match text.trim() {
-        "whole" => Ok(Clip::default()),
-        text => Ok(text.parse::<Expression>()?.clip()),
-    }
-}
-
 /// The layers of a scene file, whose paths are relative to its folder.
 pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
     let format = |message: String| Error::format(path, message);
@@ -102,8 +119,8 @@ pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
                     "layer {number} has both \"clip\" and \"clip_expr\"; keep one"
                 )));
             }
-            (Some(tree), None) => Some(tree.clip()),
-            (None, Some(text)) => Some(region(&text).map_err(of_entry)?),
+            (Some(tree), None) => Some(LayerClip::Region(tree)),
+            (None, Some(text)) => Some(LayerClip::parse(&text).map_err(of_entry)?),
             (None, None) => None,
         };
         let state = LayerState::default()

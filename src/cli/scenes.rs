@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::{Clip, Gaussians, Layer, LayerState};
+use rara::{Gaussians, Layer, LayerState};
 
 use super::failure::Failure;
 use super::output::{Progress, say};
-use super::scene_file::{self, LayerEntry};
+use super::scene_file::{self, LayerClip, LayerEntry};
 use rara::scene;
 
 /// The flags that name the scene.
@@ -18,13 +18,16 @@ pub(super) struct SceneArgs {
     /// "position":[x,y,z],"rotation":[w,x,y,z],"scale":s,"clip":{...} or "clip_expr":"..."}]}
     #[arg(value_name = "SCENE", required = true)]
     files: Vec<PathBuf>,
-    /// The clip of one layer in place of the frame's (repeatable): an expression as for --clip-expr, or whole for a layer
-    /// that no clip cuts
+    /// The clip of one layer in place of the frame's (repeatable): an expression as for --clip-expr, whole for a layer
+    /// that no clip cuts, or frame for one that the frame's cuts although its list gives it another
     #[arg(long, value_name = "NAME=EXPRESSION")]
     layer_clip: Vec<String>,
     /// Leaves a layer out of the picture (repeatable)
     #[arg(long, value_name = "NAME")]
     hide: Vec<String>,
+    /// Shows a layer that its list hides (repeatable)
+    #[arg(long, value_name = "NAME")]
+    unhide: Vec<String>,
 }
 
 impl SceneArgs {
@@ -42,21 +45,34 @@ impl SceneArgs {
     pub(super) fn load(&self) -> Result<Loaded, Failure> {
         let mut loaded = load(self.entries()?)?;
         for text in &self.layer_clip {
-            let Some((name, region)) = text.split_once('=') else {
+            // A name may hold the sign that ends it.
+            let signs: Vec<usize> = text.match_indices('=').map(|(at, _)| at).collect();
+            let of_a_layer = |at: &&usize| loaded.layers.iter().any(|l| l.name == text[..**at]);
+            let Some(&at) = signs.iter().find(of_a_layer).or(signs.first()) else {
                 return Err(Failure::Usage(format!(
                     "--layer-clip {text}: expected NAME=EXPRESSION, as in skin=plane:1,0,0,0"
                 )));
             };
-            let clip = scene_file::region(region);
-            let clip =
-                clip.map_err(|error| Failure::Usage(format!("--layer-clip {name}: {error}")))?;
+            let (name, region) = (&text[..at], &text[at + 1..]);
+            let clip = match region.trim() {
+                "frame" => None,
+                region => Some(
+                    LayerClip::parse(region)
+                        .map_err(|error| Failure::Usage(format!("--layer-clip {name}: {error}")))?,
+                ),
+            };
             for layer in loaded.named("--layer-clip", name)? {
-                layer.clip = Some(clip.clone());
+                layer.clip = clip.clone();
             }
         }
         for name in &self.hide {
             for layer in loaded.named("--hide", name)? {
                 layer.state = layer.state.visible(false);
+            }
+        }
+        for name in &self.unhide {
+            for layer in loaded.named("--unhide", name)? {
+                layer.state = layer.state.visible(true);
             }
         }
         Ok(loaded)
@@ -70,7 +86,18 @@ pub(super) struct LoadedLayer {
     pub(super) gaussians: Gaussians,
     pub(super) state: LayerState,
     /// Its own clip.
-    pub(super) clip: Option<Clip>,
+    pub(super) clip: Option<LayerClip>,
+    /// Whether it is visible and has a clip of its own before any flag says otherwise.
+    #[cfg_attr(not(feature = "view"), allow(dead_code))]
+    pub(super) listed: Listed,
+}
+
+/// What the list of a scene's layers says of one, in so far as flags may say otherwise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(not(feature = "view"), allow(dead_code))]
+pub(super) struct Listed {
+    pub(super) visible: bool,
+    pub(super) clipped: bool,
 }
 
 /// One or more scene files.
@@ -93,6 +120,10 @@ impl Loaded {
                 gaussians,
                 state: LayerState::default(),
                 clip: None,
+                listed: Listed {
+                    visible: true,
+                    clipped: false,
+                },
             }],
             repaired: 0,
             dropped: 0,
@@ -105,7 +136,7 @@ impl Loaded {
         let layers = self.layers.iter().map(|layer| {
             let made = Layer::new(&layer.name, &layer.gaussians).with(layer.state);
             match &layer.clip {
-                Some(clip) => made.clipped(clip.clone()),
+                Some(clip) => made.clipped(clip.clip()),
                 None => made,
             }
         });
@@ -177,6 +208,10 @@ fn load(entries: Vec<LayerEntry>) -> Result<Loaded, Failure> {
                 .map(|line| format!("{}: {line}", path.display())),
         );
         all.layers.push(LoadedLayer {
+            listed: Listed {
+                visible: state.visible,
+                clipped: clip.is_some(),
+            },
             name,
             gaussians: loaded.gaussians,
             state,

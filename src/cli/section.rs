@@ -165,8 +165,17 @@ enum Planned {
 #[derive(Debug)]
 pub(super) struct Section {
     pub(super) view: View,
-    pub(super) clip: Clip,
+    /// What clips it, all together.
+    pub(super) shapes: Vec<Expression>,
+    /// The plane that the camera faces, which is among the shapes, and what else clips.
     pub(super) cut: Cut,
+}
+
+impl Section {
+    /// The region that it keeps.
+    pub(super) fn clip(&self) -> Clip {
+        joined(&self.shapes)
+    }
 }
 
 impl SectionArgs {
@@ -283,12 +292,17 @@ impl Sections {
                     name,
                     camera,
                 },
-                clip: joined(&shapes),
+                shapes,
                 cut: Cut { plane, rest },
             })
         };
         self.planned.iter().enumerate().map(section).collect()
     }
+}
+
+/// What all of them keep.
+fn joined(shapes: &[Expression]) -> Clip {
+    Clip::joined(shapes.iter().map(Expression::clip), ClipOp::And)
 }
 
 /// The direction that is up where a plane is seen that no axis is across: the world's, unless the plane lies level.

@@ -46,6 +46,35 @@ impl Expression {
             Self::Not(expression) => expression.clip().complement(),
         }
     }
+
+    /// Its shapes, in the order in which they are written, to be moved or replaced.
+    ///
+    /// ```
+    /// use rara::clip::Expression;
+    ///
+    /// let mut region: Expression = "any(sphere:0,0,0,1, not(plane:1,0,0,0))".parse()?;
+    /// for shape in region.shapes_mut() {
+    ///     *shape = shape.complement();
+    /// }
+    /// assert_eq!(region.to_string(), "any(!sphere:0,0,0,1, not(!plane:1,0,0,0))");
+    /// # Ok::<(), rara::Error>(())
+    /// ```
+    pub fn shapes_mut(&mut self) -> Vec<&mut Shape> {
+        match self {
+            Self::Shape(shape) => vec![shape],
+            Self::All(all) | Self::Any(all) => all.iter_mut().flat_map(Self::shapes_mut).collect(),
+            Self::Not(expression) => expression.shapes_mut(),
+        }
+    }
+
+    /// Its shapes, in the order in which they are written.
+    pub fn shapes(&self) -> Vec<Shape> {
+        match self {
+            Self::Shape(shape) => vec![*shape],
+            Self::All(all) | Self::Any(all) => all.iter().flat_map(Self::shapes).collect(),
+            Self::Not(expression) => expression.shapes(),
+        }
+    }
 }
 
 impl FromStr for Expression {

@@ -8,6 +8,8 @@ mod clip_file;
 mod expression;
 #[cfg(feature = "json")]
 mod file;
+mod outline;
+mod placed;
 mod plane;
 pub(crate) mod postfix;
 mod quadric;

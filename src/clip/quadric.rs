@@ -182,6 +182,10 @@ pub(super) fn unit(rotation: DQuat) -> Result<DQuat> {
             "a clip shape's quaternion is finite and not zero".into(),
         ));
     }
+    // One that has this length stays as it is, so that what is written of a shape is read as the same shape.
+    if (rotation.length_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
+        return Ok(rotation);
+    }
     // The largest component is divided out first, which keeps the squares of tiny and huge ones in range.
     Ok(DQuat::from_array(rotation.to_array().map(|v| v / largest)).normalize())
 }

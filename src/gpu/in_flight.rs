@@ -89,6 +89,11 @@ impl InFlight {
         unsafe { raw.reset_fences(&[slot.fence]) }.map_err(failed("vkResetFences"))
     }
 
+    /// The number of the next frame's slot, below [`FRAMES`]. After [`wait`](Self::wait) nothing uses it.
+    pub(crate) fn next(&self) -> usize {
+        self.next
+    }
+
     /// The semaphore with which the next frame's image is acquired, after [`wait`](Self::wait).
     pub(crate) fn acquired(&self) -> vk::Semaphore {
         self.slots[self.next].acquired

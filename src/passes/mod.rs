@@ -15,6 +15,8 @@ pub(crate) mod depth;
 mod depth_keys;
 mod frame;
 mod layers;
+#[cfg_attr(not(feature = "view"), allow(dead_code))]
+mod lines;
 mod occluders;
 mod pipelines;
 mod plan;
@@ -38,6 +40,8 @@ mod working;
 
 pub(crate) use buffers::{Buffers, TilePicture};
 pub(crate) use frame::{DRAW, record};
+#[cfg(feature = "view")]
+pub(crate) use lines::{Lines, PictureLine};
 pub(crate) use occluders::Occluders;
 pub(crate) use pipelines::Pipelines;
 pub(crate) use plan::{Plan, SceneFacts};

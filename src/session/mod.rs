@@ -17,6 +17,8 @@ use crate::trace::{self, Trace};
 
 mod desc;
 mod headless;
+#[cfg(feature = "view")]
+mod lines;
 mod spans;
 mod target;
 #[cfg(feature = "view")]
@@ -26,6 +28,8 @@ pub use desc::HeadlessDesc;
 #[cfg(feature = "picture")]
 pub use headless::Aov;
 pub use headless::Headless;
+#[cfg(feature = "view")]
+pub use lines::Line;
 #[cfg(feature = "view")]
 pub use windowed::{Redraw, Windowed};
 

@@ -5,13 +5,16 @@ use std::sync::Arc;
 use ash::vk;
 use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 
+use super::lines::Line;
 use super::target::Target;
 use super::{HeadlessDesc, Session, loaded};
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
-use crate::gpu::{Device, DeviceDesc, FRAMES, InFlight, Surface, Swapchain, Window};
-use crate::passes::SceneLayer;
+use crate::gpu::{
+    Attachments, Device, DeviceDesc, Drawer, FRAMES, InFlight, Surface, Swapchain, Window,
+};
+use crate::passes::{Lines, SceneLayer};
 use crate::picture::Picture;
 use crate::precision::ShFormat;
 use crate::renderer::{FrameRequest, Outcome, RendererDesc, Submission};
@@ -28,6 +31,9 @@ pub struct Windowed {
     // Dropped in this order, after waiting for the frames.
     frames: InFlight,
     swapchain: Swapchain,
+    /// What the next frames show over their pictures, and its way there.
+    lines: Vec<Line>,
+    overlay: Lines,
     session: Session,
     /// The statistics of the last frame that was waited for and has computed anything.
     stats: Option<FrameStats>,
@@ -71,6 +77,8 @@ impl Windowed {
         Ok(Self {
             frames: InFlight::new(&device)?,
             swapchain,
+            lines: Vec::new(),
+            overlay: Lines::new(desc.bindings_on(&device), FRAMES),
             session: Session::new(device, desc, renderer)?,
             stats: None,
             broken: false,
@@ -114,6 +122,12 @@ impl Windowed {
         self.session.scene_mut()?.set_layer_clip(index, clip)
     }
 
+    /// Draws these lines over the window's next pictures, in place of those before. They stand in the world: each frame's
+    /// camera sees them where they are, the part behind it left out. [`picture`](Self::picture) does not have them.
+    pub fn set_lines(&mut self, lines: Vec<Line>) {
+        self.lines = lines;
+    }
+
     /// Makes the window's images fit a window of this many pixels. Returns the size that the next frame's camera needs,
     /// which may be another one while the window changes; `None` if there is nothing to draw into, as when it is minimised.
     pub fn fit(&mut self, window: (u32, u32)) -> Result<Option<(u32, u32)>> {
@@ -127,7 +141,11 @@ impl Windowed {
         self.unbroken()?;
         self.wait()?;
         let Self {
-            swapchain, frames, ..
+            swapchain,
+            frames,
+            lines,
+            overlay,
+            ..
         } = self;
         let renderer = &mut self.session.renderer;
         let scene = loaded(&self.session.scene, "show")?;
@@ -141,19 +159,32 @@ impl Windowed {
             picture: None,
         })?;
         let changes_nothing = renderer.changes_nothing();
+        let seen: Vec<_> = lines
+            .iter()
+            .filter_map(|line| line.seen_by(camera))
+            .collect();
+        let (device, attachments) = (&self.session.device, Attachments::color(swapchain.format()));
+        let frame = frames.next();
+        overlay.write(device, frame, &seen, attachments)?;
         // SAFETY: the semaphore's last frame was waited for, and with it the wait for the semaphore.
         let Some(image) = (unsafe { swapchain.acquire(frames.acquired()) })? else {
             return Ok(Redraw::Now);
         };
         let [r, g, b] = settings.background.unwrap_or_default();
-        // SAFETY: the frame before the last was waited for, and its image acquired; scene, renderer and swapchain live
-        // until all frames were waited for. The rendering scope is opened and closed here around the draw, on an
-        // attachment of the renderer's format, and the submission waits for its image.
+        // SAFETY: the frame before the last was waited for, and its image acquired; scene, renderer, swapchain and lines live
+        // until all frames were waited for. The rendering scope is opened and closed here around the draws, on an
+        // attachment of the renderer's format, and the submission waits for its image. The lines' buffer is that of this
+        // frame's slot, and the host wrote it before the submission.
         let shown = unsafe {
             let submitted = frames.submit(swapchain.drawn(image), |cmd| {
                 renderer.prepare(cmd, scene)?;
                 swapchain.begin_rendering(cmd, image, [r, g, b, 1.0]);
                 renderer.draw(cmd, [0.0, 0.0])?;
+                if !seen.is_empty() {
+                    let mut drawer = Drawer::new(device, cmd, None);
+                    let size = (camera.width, camera.height);
+                    overlay.record(&mut drawer, frame, size, attachments);
+                }
                 swapchain.end_rendering(cmd, image);
                 Ok(())
             });

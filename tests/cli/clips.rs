@@ -66,7 +66,9 @@ fn layers_have_names_and_clips_of_their_own() {
     assert!(hidden <= 800);
     for (flags, words) in [
         ("--hide skin", "there are outer, inner"),
+        ("--unhide skin", "there are outer, inner"),
         ("--layer-clip inner", "NAME=EXPRESSION"),
+        ("--layer-clip inner=some(box:0)", "column 1"),
     ] {
         let words_of = format!("render {both} --json {flags}");
         refused(&line(&here, &words_of), 2, words);
@@ -80,6 +82,15 @@ fn layers_have_names_and_clips_of_their_own() {
     assert_eq!(counts("@/list.json"), (cut, names));
     let listed = document(line(&here, "info @/list.json --json"));
     assert_eq!(listed["layers"][1]["name"], "inner");
+    // Flags take back what a list says. A name may hold the sign that a clip begins with.
+    let list = serde_json::json!({"layers": [
+        {"path": "scene.ply", "name": "k=v", "clip_expr": "whole"},
+        {"path": "more.ply", "name": "inner", "visible": false},
+    ]});
+    fs::write(here.join("list.json"), list.to_string()).unwrap();
+    let taken_back = "--clip plane:1,0,0,0 --layer-clip k=v=frame --unhide inner";
+    assert_eq!(counts(&format!("@/list.json {taken_back}")).0, cut);
+    assert_ne!(counts("@/list.json --clip plane:1,0,0,0").0, cut);
     for (text, words) in [
         ("{\"layers\": []}", "no layer"),
         (

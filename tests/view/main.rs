@@ -5,6 +5,7 @@
 mod display;
 #[path = "../common/folder.rs"]
 mod folder;
+mod shapes;
 mod viewer;
 mod x11;
 
@@ -235,6 +236,16 @@ fn what_cannot_work_is_said_in_a_line() {
         ),
         ("view @/scene.ply --script @/none.txt", 1, "none.txt"),
         ("view @/scene.ply -o @/one.png", 2, "{}"),
+        (
+            "view @/scene.ply --section axial=0.1..0.9:3",
+            2,
+            "one section, and these are 3",
+        ),
+        (
+            "view @/scene.ply --section axial=0.4 --ortho 2",
+            2,
+            "--section places the camera",
+        ),
     ] {
         let output = rara(&folder, words).output().expect("the rara binary runs");
         let message = stderr(&output);

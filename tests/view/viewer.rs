@@ -20,11 +20,17 @@ pub(super) struct Viewer<'a> {
 }
 
 impl<'a> Viewer<'a> {
+    /// On the folder's scene, without outlines: the window shows the picture and nothing else.
     pub(super) fn start(display: &'a Display, folder: &'a Path, words: &str) -> Self {
-        let mut command = rara(
+        Self::open(
+            display,
             folder,
-            &format!("view @/scene.ply --script - --validation {words}"),
-        );
+            &format!("@/scene.ply --no-outline {words}"),
+        )
+    }
+
+    pub(super) fn open(display: &'a Display, folder: &'a Path, words: &str) -> Self {
+        let mut command = rara(folder, &format!("view --script - --validation {words}"));
         command
             .env("DISPLAY", &display.name)
             .stdin(Stdio::piped())
@@ -168,6 +174,11 @@ pub(super) fn apart(a: &Picture, b: &Picture) -> f32 {
 /// Draws a screenshot again with the flags that the viewer printed and nothing else, as a person would in a shell: the
 /// file is the same, to the byte.
 pub(super) fn draws_again(folder: &Path, name: &str, printed: &str) {
+    draws_again_of(folder, "@/scene.ply", name, printed);
+}
+
+/// The same of these scenes.
+pub(super) fn draws_again_of(folder: &Path, scenes: &str, name: &str, printed: &str) {
     let wrote = format!(
         "wrote {}",
         folder.join(name).with_extension("png").display()
@@ -176,12 +187,7 @@ pub(super) fn draws_again(folder: &Path, name: &str, printed: &str) {
     let line = line.unwrap_or_else(|| panic!("{name} is not in {printed}"));
     let (_, flags) = line.split_once("rara render ").expect("the flags");
     let again = folder.join(format!("{name} again.png"));
-    let mut shell = Command::new("sh");
-    shell.args(["-c", &format!("exec \"$0\" \"$@\" {flags}")]);
-    let render = rara(folder, "render @/scene.ply");
-    shell.arg(render.get_program()).args(render.get_args());
-    shell.arg("-o").arg(&again).env("RARA_CACHE", "");
-    done(shell);
+    draw(folder, scenes, flags, &again);
     let file = |path: &Path| fs::read(path).expect("a picture");
     let shot = folder.join(name).with_extension("png");
     if file(&shot) != file(&again) {
@@ -189,4 +195,14 @@ pub(super) fn draws_again(folder: &Path, name: &str, printed: &str) {
         let off = apart(&picture(&shot), &picture(&again));
         panic!("{name}, {flags}: off by {off}/255");
     }
+}
+
+/// Draws a picture with flags that a shell takes apart.
+pub(super) fn draw(folder: &Path, scenes: &str, flags: &str, picture: &Path) {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &format!("exec \"$0\" \"$@\" {flags}")]);
+    let render = rara(folder, &format!("render {scenes}"));
+    shell.arg(render.get_program()).args(render.get_args());
+    shell.arg("-o").arg(picture).env("RARA_CACHE", "");
+    done(shell);
 }

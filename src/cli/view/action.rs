@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::ValueEnum;
 use glam::{DVec2, DVec3};
-use rara::{Mode, Plane, Projection};
+use rara::{Mode, Plane, Projection, Shape};
 
 use super::viewpoint::Walk;
 use crate::cli::values;
@@ -29,7 +29,13 @@ pub(super) enum Action {
     Reset,
     /// Take the next camera of the file.
     NextView,
-    Plane(PlaneAction),
+    Held(HeldAction),
+    /// Show a layer or hide it; whichever it is not where that is not said.
+    Layer(Which, Option<bool>),
+    /// Choose the clip that is edited.
+    Edit(Edit),
+    /// Outline the shapes that clip, or not; whichever it is not where that is not said.
+    Outline(Option<bool>),
     Mode(Mode),
     /// Write a screenshot to this file, or to the next free number.
     Screenshot(Option<PathBuf>),
@@ -38,29 +44,49 @@ pub(super) enum Action {
     Restore,
     /// Print stage times and counts on stderr.
     Timings,
+    /// Print the flags that draw what is shown.
+    Flags,
     Help,
     Quit,
 }
 
-/// An action on the held plane.
+/// A layer: its name, or its number from 1.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Which(pub(super) String);
+
+/// The clip to edit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Edit {
+    /// The next one: of the layers after that of the frame.
+    Next,
+    Frame,
+    /// A layer's own.
+    Layer(Which),
+    /// The layer whose clip is edited has none of its own any more.
+    Release,
+}
+
+/// An action on the clip that is edited, or on its held shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum PlaneAction {
-    /// Switch all planes on or off.
+pub(super) enum HeldAction {
+    /// Switch the clip on or off.
     On(bool),
     Toggle,
     Flip,
     Next,
-    /// Put it across an axis, through the middle.
+    /// Turn it to an axis; a plane also goes through the middle of the scene.
     Align(DVec3),
-    Set(Plane),
-    /// Move it along its normal, world units.
+    Set(Shape),
+    /// Move it along its normal, or away from the eye, world units.
     Go(f64),
-    /// Move it along its normal, hundredths of the scene's radius.
+    /// The same by hundredths of the scene's radius.
     Step(f64),
     /// Let it follow the mouse, pixels.
     Drag(DVec2),
-    /// Turn it: its normal goes right and down, degrees.
+    /// Turn it: what of it points towards the eye goes right and down, degrees.
     Tilt(DVec2),
+    /// Scale it by a factor.
+    Scale(f64),
 }
 
 impl Action {
@@ -69,7 +95,7 @@ impl Action {
     pub(super) fn moves(&self) -> bool {
         matches!(
             self,
-            Self::Turn(_) | Self::Shift(_) | Self::Zoom(_) | Self::Go(_) | Self::Plane(_)
+            Self::Turn(_) | Self::Shift(_) | Self::Zoom(_) | Self::Go(_) | Self::Held(_)
         )
     }
 }
@@ -101,9 +127,22 @@ impl FromStr for Action {
                     ));
                 }
             },
-            "plane" => Self::Plane(plane(rest)?),
-            "drag" => Self::Plane(PlaneAction::Drag(pair(rest)?)),
-            "tilt" => Self::Plane(PlaneAction::Tilt(pair(rest)?)),
+            "plane" | "shape" => Self::Held(held(verb, rest)?),
+            "drag" => Self::Held(HeldAction::Drag(pair(rest)?)),
+            "tilt" => Self::Held(HeldAction::Tilt(pair(rest)?)),
+            "scale" => Self::Held(HeldAction::Scale(factor(rest)?)),
+            "layer" => layer(rest)?,
+            "edit" => Self::Edit(match rest {
+                "next" => Edit::Next,
+                "frame" => Edit::Frame,
+                "release" => Edit::Release,
+                "" => return Err("edit takes next, frame, release, or a layer".into()),
+                which => Edit::Layer(Which(which.into())),
+            }),
+            "outline" => match switch(rest) {
+                Some(on) => Self::Outline(Some(on)),
+                None => return Err(format!("outline {rest}: on or off is possible")),
+            },
             "mode" => Self::Mode(
                 Mode::from_str(rest, false)
                     .map_err(|_| format!("mode {rest}: none, hard, rara or exact is possible"))?,
@@ -111,18 +150,20 @@ impl FromStr for Action {
             "screenshot" if rest.is_empty() => Self::Screenshot(None),
             "screenshot" => Self::Screenshot(Some(values::picture_path(rest)?)),
             "resize" => Self::Resize(values::size(rest)?),
-            "minimise" | "restore" | "timings" | "help" | "quit" if !rest.is_empty() => {
+            "minimise" | "restore" | "timings" | "flags" | "help" | "quit" if !rest.is_empty() => {
                 return Err(format!("{verb} takes nothing, found {rest}"));
             }
             "minimise" => Self::Minimise,
             "restore" => Self::Restore,
             "timings" => Self::Timings,
+            "flags" => Self::Flags,
             "help" => Self::Help,
             "quit" => Self::Quit,
             other => {
                 return Err(format!(
-                    "\"{other}\" is no action; there are turn, shift, zoom, move, camera, plane, drag, tilt, mode, \
-                     screenshot, resize, minimise, restore, timings, repeat and quit"
+                    "\"{other}\" is no action; there are turn, shift, zoom, move, camera, shape, plane, drag, tilt, \
+                     scale, layer, edit, outline, mode, screenshot, resize, minimise, restore, timings, flags, repeat \
+                     and quit"
                 ));
             }
         };
@@ -130,27 +171,64 @@ impl FromStr for Action {
     }
 }
 
-fn plane(text: &str) -> Result<PlaneAction, String> {
+/// What follows `shape`, or `plane`.
+fn held(verb: &str, text: &str) -> Result<HeldAction, String> {
+    if let Some(on) = switch(text) {
+        return Ok(HeldAction::On(on));
+    }
     Ok(match text {
-        "on" => PlaneAction::On(true),
-        "off" => PlaneAction::On(false),
-        "flip" => PlaneAction::Flip,
-        "next" => PlaneAction::Next,
-        "x" => PlaneAction::Align(DVec3::X),
-        "y" => PlaneAction::Align(DVec3::Y),
-        "z" => PlaneAction::Align(DVec3::Z),
-        by if !by.contains(',') && by.starts_with(['+', '-']) => PlaneAction::Go(number(by)?),
+        "flip" => HeldAction::Flip,
+        "next" => HeldAction::Next,
+        "x" => HeldAction::Align(DVec3::X),
+        "y" => HeldAction::Align(DVec3::Y),
+        "z" => HeldAction::Align(DVec3::Z),
+        by if !by.contains(',') && by.starts_with(['+', '-']) => HeldAction::Go(number(by)?),
+        shape if shape.contains(':') => {
+            let shape = shape.parse::<Shape>().map_err(|error| error.to_string())?;
+            HeldAction::Set(shape)
+        }
         four if four.contains(',') => {
             let [x, y, z, d] = values::numbers::<4>(four)?;
             let plane = Plane::new(DVec3::new(x, y, z), d).map_err(|error| error.to_string())?;
-            PlaneAction::Set(plane)
+            HeldAction::Set(plane.into())
         }
         other => {
             return Err(format!(
-                "plane {other}: on, off, flip, next, x, y, z, a step like +0.1, or nx,ny,nz,d is possible"
+                "{verb} {other}: on, off, flip, next, x, y, z, a step like +0.1, a shape like sphere:0,0,0,1, or a plane's \
+                 nx,ny,nz,d is possible"
             ));
         }
     })
+}
+
+/// What follows `layer`: a name or number, and perhaps on or off.
+fn layer(text: &str) -> Result<Action, String> {
+    let last = text.rsplit_once(char::is_whitespace);
+    let (which, visible) = match last.and_then(|(which, word)| Some((which, switch(word)?))) {
+        Some((which, visible)) => (which.trim(), Some(visible)),
+        None => (text, None),
+    };
+    match which {
+        "" | "on" | "off" => {
+            Err("layer takes a layer's name or its number from 1, and on or off".into())
+        }
+        which => Ok(Action::Layer(Which(which.into()), visible)),
+    }
+}
+
+fn switch(text: &str) -> Option<bool> {
+    match text {
+        "on" => Some(true),
+        "off" => Some(false),
+        _ => None,
+    }
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        factor if factor > 0.0 => Ok(factor),
+        factor => Err(format!("scale {factor}: a factor above zero is possible")),
+    }
 }
 
 fn number(text: &str) -> Result<f64, String> {
@@ -172,17 +250,34 @@ mod tests {
 
     #[test]
     fn what_is_written_is_what_is_done() {
-        assert_eq!(parsed("plane +0.1"), Action::Plane(PlaneAction::Go(0.1)));
-        assert_eq!(parsed("plane -2e-3"), Action::Plane(PlaneAction::Go(-2e-3)));
-        assert_eq!(parsed("plane  off "), Action::Plane(PlaneAction::On(false)));
+        assert_eq!(parsed("plane +0.1"), Action::Held(HeldAction::Go(0.1)));
+        assert_eq!(parsed("plane -2e-3"), Action::Held(HeldAction::Go(-2e-3)));
+        assert_eq!(parsed("plane  off "), Action::Held(HeldAction::On(false)));
         assert_eq!(
             parsed("plane -1,0,0,2"),
-            Action::Plane(PlaneAction::Set(Plane::new(-DVec3::X, 2.0).unwrap()))
+            Action::Held(HeldAction::Set(Plane::new(-DVec3::X, 2.0).unwrap().into()))
         );
         assert_eq!(
             parsed("tilt -5,2.5"),
-            Action::Plane(PlaneAction::Tilt(DVec2::new(-5.0, 2.5)))
+            Action::Held(HeldAction::Tilt(DVec2::new(-5.0, 2.5)))
         );
+        assert_eq!(
+            parsed("shape !sphere:0,0,0,1"),
+            Action::Held(HeldAction::Set("!sphere:0,0,0,1".parse().unwrap()))
+        );
+        assert_eq!(parsed("scale 1.5"), Action::Held(HeldAction::Scale(1.5)));
+        let which = |text: &str| Which(text.into());
+        assert_eq!(parsed("layer 2"), Action::Layer(which("2"), None));
+        assert_eq!(
+            parsed("layer left lung off"),
+            Action::Layer(which("left lung"), Some(false))
+        );
+        assert_eq!(parsed("edit next"), Action::Edit(Edit::Next));
+        assert_eq!(
+            parsed("edit skin"),
+            Action::Edit(Edit::Layer(which("skin")))
+        );
+        assert_eq!(parsed("outline off"), Action::Outline(Some(false)));
         assert_eq!(parsed("mode hard"), Action::Mode(Mode::Hard));
         assert_eq!(parsed("camera fly"), Action::Walk(Walk::Fly));
         assert_eq!(
@@ -206,6 +301,14 @@ mod tests {
             ("plane up", "on, off"),
             ("plane 0,0,0,1", "non-zero normal"),
             ("plane +", "'+' is not a finite number"),
+            ("shape up", "sphere:0,0,0,1"),
+            ("shape torus:1", "not a shape"),
+            ("scale 0", "above zero"),
+            ("scale -2", "above zero"),
+            ("layer", "number from 1"),
+            ("layer  off", "number from 1"),
+            ("edit", "next, frame"),
+            ("outline", "on or off"),
             ("turn 5", "expected 2 numbers"),
             ("mode soft", "none, hard"),
             ("screenshot a.jpg", ".png"),

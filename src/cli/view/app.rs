@@ -220,7 +220,11 @@ impl App {
                 Err(failure) if concerns_a_file(&failure) => say(failure),
                 outcome => outcome?,
             },
-            Some(action) => stage.act(action)?,
+            Some(action) => match stage.act(action) {
+                // A key may ask for a layer that is not there.
+                Err(failure @ Failure::Usage(_)) => say(failure),
+                outcome => outcome?,
+            },
             None => {}
         }
         Ok(())

@@ -1,65 +1,63 @@
-//! The clip that is shown, and the one of its planes that is moved.
+//! A clip that is shown, and the one of its shapes that is held.
 
-use std::f64::consts::FRAC_1_SQRT_2;
-
-use glam::{DQuat, DVec2, DVec3};
+use glam::DVec3;
 use rara::clip::{Expression, Solid};
-use rara::{Camera, Clip, ClipOp, Plane, Projection, Shape};
+use rara::{Clip, ClipOp, Placement, Plane, Shape};
 
-/// The planes, which of them is held, whether they cut at all, and the other surfaces of the clip.
+/// Expressions of shapes, which of the shapes is held, and whether they cut at all.
 #[derive(Debug, Clone)]
 pub(super) struct Cut {
     pub(super) on: bool,
-    planes: Vec<Plane>,
-    /// The rest of the clip, which stays where it is.
-    rest: Vec<Expression>,
+    /// At least one; shapes come before larger expressions, as flags are read.
+    expressions: Vec<Expression>,
     op: ClipOp,
+    /// The number of the held shape, among all shapes as they are written.
     held: usize,
+    /// The point that the held shape is turned about and scaled from, once it was moved; until then it is its middle.
+    pivot: Option<DVec3>,
     /// The scene's middle.
     centre: DVec3,
 }
 
 impl Cut {
-    /// The clip of the command line; without one a plane through the middle of the scene, which is off at first.
+    /// A clip as it was typed; without one a plane through the middle of the scene, which is off at first.
     pub(super) fn new(clip: Vec<Expression>, op: ClipOp, centre: DVec3) -> Self {
-        let plane = |expression: &Expression| match expression {
-            Expression::Shape(shape) => match shape.solid() {
-                Solid::Plane(plane) if shape.is_outside() => Some(plane.flipped()),
-                Solid::Plane(plane) => Some(plane),
-                _ => None,
-            },
-            _ => None,
-        };
-        let planes: Vec<Plane> = clip.iter().filter_map(plane).collect();
-        let mut rest = clip;
-        rest.retain(|expression| plane(expression).is_none());
-        let mut this = Self {
-            on: !planes.is_empty(),
-            planes,
-            rest,
+        let mut expressions = clip;
+        expressions.sort_by_key(|expression| !matches!(expression, Expression::Shape(_)));
+        for shape in expressions.iter_mut().flat_map(Expression::shapes_mut) {
+            // The outside of a half-space is one.
+            if let (Solid::Plane(plane), true) = (shape.solid(), shape.is_outside()) {
+                *shape = plane.flipped().into();
+            }
+        }
+        let on = !expressions.is_empty();
+        if !on {
+            expressions.push(Expression::Shape(across(DVec3::X, centre)));
+        }
+        Self {
+            on,
+            expressions,
             op,
             held: 0,
+            pivot: None,
             centre,
-        };
-        if !this.on {
-            this.planes.push(this.middle(DVec3::X));
         }
-        this
     }
 
     /// The clip in force.
     pub(super) fn clip(&self) -> Clip {
-        match &self.expressions()[..] {
+        match self.expressions() {
             [] => Clip::default(),
             all => Clip::joined(all.iter().map(Expression::clip), self.op),
         }
     }
 
     /// The same as shapes and expressions.
-    pub(super) fn expressions(&self) -> Vec<Expression> {
-        let planes = self.planes.iter().filter(|_| self.on);
-        let planes = planes.map(|&plane| Expression::Shape(Shape::from(plane)));
-        self.rest.iter().cloned().chain(planes).collect()
+    pub(super) fn expressions(&self) -> &[Expression] {
+        match self.on {
+            true => &self.expressions,
+            false => &[],
+        }
     }
 
     /// How they combine.
@@ -67,89 +65,101 @@ impl Cut {
         self.op
     }
 
-    /// The plane that is held.
-    pub(super) fn plane(&self) -> Plane {
-        self.planes[self.held]
+    /// All shapes in it, whether it is on or off.
+    pub(super) fn shapes(&self) -> Vec<Shape> {
+        let expressions = self.expressions.iter();
+        expressions.flat_map(Expression::shapes).collect()
     }
 
-    /// Holds the next plane.
+    /// The number of the held shape among them.
+    pub(super) fn held(&self) -> usize {
+        self.held
+    }
+
+    /// The shape that is held.
+    pub(super) fn shape(&self) -> Shape {
+        let shapes = self.shapes();
+        shapes[self.held.min(shapes.len() - 1)]
+    }
+
+    /// The middle of the held shape; of planes and slabs the point nearest to the middle of the scene when it was taken hold
+    /// of, which moves with them.
+    pub(super) fn middle(&self) -> DVec3 {
+        self.pivot.unwrap_or(self.shape().middle(self.centre))
+    }
+
+    /// Holds the next shape.
     pub(super) fn next(&mut self) {
-        self.held = (self.held + 1) % self.planes.len();
+        self.held = (self.held + 1) % self.shapes().len();
+        self.pivot = None;
     }
 
-    /// Puts another plane in the held one's place.
-    pub(super) fn set(&mut self, plane: Plane) {
-        self.planes[self.held] = plane;
+    /// Holds this shape, if it is there.
+    pub(super) fn hold(&mut self, shape: &Shape) {
+        let found = self.shapes().iter().position(|other| other == shape);
+        self.held = found.unwrap_or(self.held);
+        self.pivot = None;
+    }
+
+    /// Puts another shape in the held one's place, and switches the clip on.
+    pub(super) fn set(&mut self, shape: Shape) {
+        self.pivot = None;
+        self.replace(shape);
+    }
+
+    fn replace(&mut self, shape: Shape) {
+        let shapes = self.expressions.iter_mut().flat_map(Expression::shapes_mut);
+        if let Some(held) = shapes.into_iter().nth(self.held) {
+            *held = shape;
+        }
         self.on = true;
     }
 
-    /// Keeps the other side of the held plane.
+    /// Keeps the other side of the held shape.
     pub(super) fn flip(&mut self) {
-        self.set(self.plane().flipped());
+        let shape = self.shape();
+        self.replace(match shape.solid() {
+            Solid::Plane(plane) => plane.flipped().into(),
+            _ => shape.complement(),
+        });
     }
 
-    /// Puts the held plane through the middle of the scene, across an axis.
-    pub(super) fn align(&mut self, axis: DVec3) {
-        self.set(self.middle(axis));
-    }
-
-    /// Moves the held plane along its normal, world units.
-    pub(super) fn go(&mut self, by: f64) {
-        let plane = self.plane();
-        self.place(plane.normal(), plane.offset() - by);
-    }
-
-    /// Moves the held plane along its normal so that it follows the mouse; where its normal points towards the eye or
-    /// away from it, a drag upwards moves it away.
-    pub(super) fn drag(&mut self, pixels: DVec2, camera: &Camera) {
-        let normal = camera.rotation * self.plane().normal();
-        let mut at = camera.rotation * (self.foot() - camera.eye);
-        // A point behind the eye has no place in the picture.
-        at.z = at.z.max(1e-2 * at.length()).max(f64::MIN_POSITIVE);
-        let focal = DVec2::new(camera.fx, camera.fy);
-        // How the foot moves in the picture, per unit along the normal, and how long a unit is there.
-        let (across, unit) = match camera.projection {
-            Projection::Orthographic => (focal * normal.truncate(), camera.fy),
-            _ => (
-                focal * (normal.truncate() - at.truncate() / at.z * normal.z) / at.z,
-                camera.fy / at.z,
-            ),
-        };
-        let by = if across.length() > (1.0 - FRAC_1_SQRT_2) * unit {
-            pixels.dot(across) / across.length_squared()
-        } else {
-            -pixels.y / unit * normal.z.signum()
-        };
-        self.go(by);
-    }
-
-    /// Turns the held plane about its point nearest to the middle of the scene, so that the tip of a normal that points
-    /// towards the eye goes right and down by so many degrees.
-    pub(super) fn tilt(&mut self, degrees: DVec2, camera: &Camera) {
-        let axes = camera.rotation.transpose();
-        let turn = DQuat::from_axis_angle(-axes.y_axis, degrees.x.to_radians())
-            * DQuat::from_axis_angle(axes.x_axis, degrees.y.to_radians());
-        let foot = self.foot();
-        let normal = turn * self.plane().normal();
-        self.place(normal, -normal.dot(foot));
-    }
-
-    /// The plane's point nearest to the middle of the scene.
-    fn foot(&self) -> DVec3 {
-        let plane = self.plane();
-        self.centre - plane.normal() * plane.distance(self.centre)
-    }
-
-    fn middle(&self, axis: DVec3) -> Plane {
-        Plane::new(axis, -axis.dot(self.centre)).expect("an axis is finite and not zero")
-    }
-
-    fn place(&mut self, normal: DVec3, offset: f64) {
-        // A plane whose numbers overflow stays where it was.
-        if let Ok(plane) = Plane::new(normal, offset) {
-            self.set(plane);
+    /// Scales, turns and moves the held shape. One whose numbers overflow stays where it was.
+    pub(super) fn place(&mut self, placement: &Placement) {
+        if let Ok(shape) = self.shape().placed(placement) {
+            self.pivot = Some(placement.to_world(self.middle()));
+            self.replace(shape);
         }
     }
+
+    /// A plane through the middle of the scene, across an axis.
+    pub(super) fn across(&self, axis: DVec3) -> Shape {
+        across(axis, self.centre)
+    }
+
+    /// A few words on the held shape, for the title: `plane at 0.5000`, `outside of sphere 2 of 3`.
+    pub(super) fn words(&self) -> String {
+        let (shape, count) = (self.shape(), self.shapes().len());
+        let text = shape.to_string();
+        let name = text.trim_start_matches('!').split(':').next();
+        let mut words = match shape.is_outside() {
+            true => "outside of ".to_owned(),
+            false => String::new(),
+        };
+        words += name.unwrap_or_default();
+        if count > 1 {
+            words += &format!(" {} of {count}", self.held + 1);
+        }
+        if let Solid::Plane(plane) = shape.solid() {
+            words += &format!(" at {:.4}", plane.offset() + 0.0); // -0 is 0
+        }
+        words
+    }
+}
+
+fn across(axis: DVec3, centre: DVec3) -> Shape {
+    let plane = Plane::new(axis, -axis.dot(centre)).expect("an axis is finite and not zero");
+    plane.into()
 }
 
 #[cfg(test)]
@@ -158,106 +168,64 @@ mod tests {
 
     const CENTRE: DVec3 = DVec3::new(1.0, 2.0, 3.0);
 
-    fn cut() -> Cut {
-        Cut::new(Vec::new(), ClipOp::And, CENTRE)
-    }
-
-    fn camera(from: DVec3) -> Camera {
-        let eye = CENTRE + 5.0 * from;
-        Camera::look_at(eye, CENTRE, DVec3::NEG_Y, 50.0, (800, 600)).unwrap()
+    fn cut(typed: &[&str]) -> Cut {
+        let typed = typed.iter().map(|text| text.parse().unwrap());
+        Cut::new(typed.collect(), ClipOp::And, CENTRE)
     }
 
     #[test]
-    fn without_a_clip_nothing_is_cut_until_a_plane_is_touched() {
-        let mut cut = cut();
+    fn without_a_clip_nothing_is_cut_until_a_shape_is_set() {
+        let mut cut = cut(&[]);
         assert_eq!(cut.clip(), Clip::default());
-        cut.go(0.25);
-        let surfaces = cut.clip().surfaces;
-        assert_eq!(surfaces.len(), 1);
-        assert!(
-            (surfaces[0].distance(CENTRE) + 0.25).abs() < 1e-12,
-            "{surfaces:?}"
-        );
-    }
-
-    #[test]
-    fn planes_that_were_typed_are_held_in_turn() {
-        let planes = [
-            Plane::new(DVec3::X, 0.0).unwrap(),
-            Plane::new(DVec3::Y, 0.0).unwrap(),
-        ];
-        let clip = Clip::of(planes, ClipOp::Or);
-        let typed = planes.map(|plane| Expression::Shape(plane.into()));
-        let mut cut = Cut::new(typed.into(), ClipOp::Or, CENTRE);
-        assert_eq!(cut.clip(), clip);
-        cut.next();
-        cut.flip();
+        cut.set("sphere:0,0,0,1".parse().unwrap());
         assert_eq!(
             cut.clip(),
-            Clip::of([planes[0], planes[1].flipped()], ClipOp::Or)
+            "sphere:0,0,0,1".parse::<Shape>().unwrap().clip()
         );
-        cut.next();
-        assert_eq!(cut.plane(), planes[0]);
+        cut.on = false;
+        assert!(cut.clip().is_everything() && cut.expressions().is_empty());
     }
 
     #[test]
-    fn a_dragged_plane_follows_the_mouse() {
-        let camera = camera(DVec3::new(0.2, -0.1, -1.0).normalize());
-        let mut cut = cut();
-        let pixel = |point: DVec3| {
-            let p = camera.rotation * (point - camera.eye);
-            DVec2::new(camera.fx * p.x / p.z, camera.fy * p.y / p.z)
-        };
-        let before = pixel(cut.foot());
-        cut.drag(DVec2::new(2.0, 0.0), &camera);
-        let along = pixel(cut.foot()) - before;
-        assert!((along.x - 2.0).abs() < 0.1, "{along}");
-    }
-
-    #[test]
-    fn a_plane_that_faces_the_eye_goes_away_when_dragged_up() {
-        for normal in [DVec3::Z, -DVec3::Z] {
-            let camera = camera(-DVec3::Z);
-            let mut cut = cut();
-            cut.align(normal);
-            cut.drag(DVec2::new(40.0, -10.0), &camera);
-            let depth = (camera.rotation * (cut.foot() - camera.eye)).z;
-            assert!((depth - 5.0 - 50.0 / camera.fy).abs() < 1e-9, "{depth}");
+    fn shapes_are_held_in_turn_wherever_they_stand() {
+        let mut cut = cut(&[
+            "all(sphere:0,0,0,1, not(any(box:0,0,0,1,1,1, !plane:1,0,0,2)))",
+            "plane:0,1,0,0",
+        ]);
+        let mut held = Vec::new();
+        for _ in 0..4 {
+            held.push(cut.words());
+            cut.flip();
+            cut.next();
         }
+        assert_eq!(
+            held,
+            [
+                "plane 1 of 4 at 0.0000",
+                "sphere 2 of 4",
+                "box 3 of 4",
+                "plane 4 of 4 at -2.0000"
+            ]
+        );
+        let text: Vec<String> = cut.expressions().iter().map(ToString::to_string).collect();
+        assert_eq!(
+            text,
+            [
+                "plane:-0,-1,-0,-0",
+                "all(!sphere:0,0,0,1, not(any(!box:0,0,0,1,1,1, plane:1,0,0,2)))"
+            ]
+        );
+        assert_eq!(cut.held(), 0);
+        cut.hold(&"!box:0,0,0,1,1,1".parse().unwrap());
+        assert_eq!(cut.words(), "outside of box 3 of 4");
     }
 
     #[test]
-    fn a_plane_behind_the_eye_can_be_dragged_too() {
-        let mut camera = camera(-DVec3::Z);
-        camera.eye += DVec3::Z * 20.0;
-        let mut cut = cut();
-        cut.drag(DVec2::new(5.0, 5.0), &camera);
-        assert!(cut.plane().offset().is_finite());
-        camera.eye = cut.foot();
-        cut.drag(DVec2::new(5.0, 5.0), &camera);
-        assert!(cut.plane().offset().is_finite());
-    }
-
-    #[test]
-    fn tilting_turns_about_the_point_nearest_to_the_middle() {
-        let camera = camera(-DVec3::Z);
-        let mut cut = cut();
-        cut.align(-DVec3::Z);
-        cut.go(0.5);
-        let foot = cut.foot();
-        cut.tilt(DVec2::new(30.0, 0.0), &camera);
-        assert!(cut.plane().distance(foot).abs() < 1e-12);
-        // The normal pointed at the eye; now also to the right.
-        let normal = cut.plane().normal();
-        assert!(
-            (normal - DVec3::new(0.5, 0.0, -0.75_f64.sqrt())).length() < 1e-12,
-            "{normal}"
-        );
-        cut.tilt(DVec2::new(0.0, 30.0), &camera);
-        assert!(
-            cut.plane().normal().y > 0.1,
-            "down: {}",
-            cut.plane().normal()
-        );
+    fn a_shape_that_would_overflow_stays_where_it_was() {
+        let mut cut = cut(&["box:1e300,0,0,1,1,1"]);
+        let huge = Placement::new(DVec3::ZERO, glam::DQuat::IDENTITY, 1e300).unwrap();
+        let before = cut.clip();
+        cut.place(&huge);
+        assert_eq!(cut.clip(), before);
     }
 }

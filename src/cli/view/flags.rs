@@ -1,14 +1,16 @@
 //! The flags that draw again what the viewer shows.
 
 use rara::clip::Expression;
-use rara::{ClipOp, Precision, Preset, Settings};
+use rara::{Camera, ClipOp, Precision, Preset, Settings};
 
-use super::cut::Cut;
+use super::camera_flags;
+use super::layers::Clips;
 use crate::cli::settings::name;
 
-/// The flags of `rara render` for a clip and settings, as a user would type them. They leave out defaults.
-pub(super) fn flags(cut: &Cut, settings: &Settings) -> String {
+/// The flags of `rara render` for clips, layers and settings, as a user would type them. They leave out defaults.
+pub(super) fn flags(clips: &Clips, settings: &Settings) -> String {
     let mut flags = Vec::new();
+    let cut = &clips.frame;
     let expressions = cut.expressions();
     // Shells take some of an expression's characters for their own.
     flags.extend(expressions.iter().map(|expression| match expression {
@@ -19,10 +21,23 @@ pub(super) fn flags(cut: &Cut, settings: &Settings) -> String {
     if expressions.len() > 1 && cut.op() == ClipOp::Or {
         flags.push("--clip-op or".into());
     }
+    flags.extend(clips.flags());
     flags.push(format!("--mode {}", name(settings.mode)));
     add_settings(&mut flags, settings);
     add_precision(&mut flags, &settings.precision);
     flags.join(" ")
+}
+
+/// The line with all flags of `rara render` that draw what is shown.
+pub(super) fn lines(camera: &Camera, clips: &Clips, settings: &Settings) -> String {
+    let rest = flags(clips, settings);
+    match camera_flags::flags(camera) {
+        Some(camera) => format!("flags    {camera} {rest}"),
+        None => format!(
+            "flags    {rest}\nnote: only a file can say what this camera is; a screenshot (C) writes one beside it, for \
+             --camera"
+        ),
+    }
 }
 
 fn add_settings(flags: &mut Vec<String>, settings: &Settings) {
@@ -119,26 +134,46 @@ mod tests {
     use super::*;
     use crate::cli::clip::ClipArgs;
     use crate::cli::settings::SettingsArgs;
+    use crate::cli::view::action::HeldAction;
+    use crate::cli::view::cut::Cut;
     use clap::{Args as _, FromArgMatches as _};
-    use glam::DVec3;
+    use glam::{DVec2, DVec3};
     use rara::Plane;
 
+    /// A shell's words: blanks are between them, but not within single quotes.
+    fn words(line: &str) -> Vec<String> {
+        let (mut words, mut word, mut is_quoted) = (Vec::new(), None::<String>, false);
+        for letter in line.chars() {
+            match letter {
+                '\'' => {
+                    is_quoted = !is_quoted;
+                    word.get_or_insert_default();
+                }
+                ' ' if !is_quoted => words.extend(word.take()),
+                letter => word.get_or_insert_default().push(letter),
+            }
+        }
+        words.extend(word);
+        words
+    }
+
     /// The clip and the settings that flags mean.
-    fn meant(flags: &str) -> (Cut, Settings) {
+    fn meant(flags: &str) -> (Clips, Settings) {
         let command = clap::Command::new("rara").no_binary_name(true);
         let command = SettingsArgs::augment_args(ClipArgs::augment_args(command));
-        let matches = command.try_get_matches_from(flags.split_whitespace());
+        let matches = command.try_get_matches_from(words(flags));
         let matches = matches.unwrap_or_else(|error| panic!("{flags}: {error}"));
         let settings = SettingsArgs::from_arg_matches(&matches).unwrap();
         let clip = ClipArgs::from_arg_matches(&matches).unwrap();
         let cut = Cut::new(clip.expressions().unwrap(), clip.op(), DVec3::ZERO);
-        (cut, settings.meant().unwrap())
+        let clips = Clips::new(cut, &[], DVec3::ZERO);
+        (clips, settings.meant().unwrap())
     }
 
     /// The flags that are written for the clip and the settings of `typed`.
     fn written(typed: &str) -> String {
-        let (cut, settings) = meant(typed);
-        flags(&cut, &settings)
+        let (clips, settings) = meant(typed);
+        flags(&clips, &settings)
     }
 
     #[test]
@@ -146,6 +181,8 @@ mod tests {
         for typed in [
             "--mode exact",
             "--clip plane:0,0,-1,0.25 --mode hard",
+            "--clip sphere:0,0,0,1 --clip '!box:0,0,0,1,1,1,0.5,0.5,0.5,0.5' --clip-op or --mode hard",
+            "--clip cone:0,0,0,1,1,1,0.5 --clip-expr 'any(slab:0,0,1,0,2, not(capsule:0,0,0,1,1,1,0.5))' --mode exact",
             "--clip plane:0,0,1,0.1 --clip plane:1,0,0,-2 --clip-op or --mode none",
             "--mode rara --decay depth --sigma 1.7 --miss keep --trace-all",
             "--mode rara --decay linear --miss drop",
@@ -205,11 +242,103 @@ mod tests {
             .sigma(1e-7 / 3.0)
             .precision(Precision::default().beam_switch(1e20 / 7.0));
         let typed = vec![Expression::Shape(plane.into())];
-        let cut = Cut::new(typed, ClipOp::And, DVec3::ZERO);
-        let (read, again) = meant(&flags(&cut, &settings));
+        let plane_clip = typed[0].clip();
+        let clips = Clips::new(Cut::new(typed, ClipOp::And, DVec3::ZERO), &[], DVec3::ZERO);
+        let (read, again) = meant(&flags(&clips, &settings));
         assert_eq!(again, settings);
-        let read = read.plane();
-        assert!((read.normal() - plane.normal()).length() < 1e-15);
-        assert!((read.offset() / plane.offset() - 1.0).abs() < 1e-15);
+        assert_eq!(read.frame.clip(), plane_clip);
+    }
+
+    /// Numbers from a generator whose bits look random (Marsaglia 2003: xorshift).
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn below(&mut self, most: u64) -> u64 {
+            for (left, by) in [(true, 13), (false, 7), (true, 17)] {
+                let moved = if left { self.0 << by } else { self.0 >> by };
+                self.0 ^= moved;
+            }
+            self.0 % most
+        }
+
+        /// With all of its digits, from -1 to 1.
+        fn any(&mut self) -> f64 {
+            self.below(1 << 53) as f64 / (1_u64 << 52) as f64 - 1.0
+        }
+
+        fn shape(&mut self) -> Expression {
+            let kinds = [
+                "plane",
+                "slab",
+                "box",
+                "sphere",
+                "ellipsoid",
+                "cylinder",
+                "capsule",
+                "cone",
+            ];
+            let kind = self.below(8) as usize;
+            let count = [4, 5, [6, 10][self.below(2) as usize], 4, 10, 7, 7, 7][kind];
+            let mut numbers: Vec<f64> = (0..count).map(|_| self.any()).collect();
+            // What is a size is above zero.
+            let sizes = match kinds[kind] {
+                "box" | "ellipsoid" => 3..6,
+                "plane" => 0..0,
+                _ => count - 1..count,
+            };
+            numbers[sizes]
+                .iter_mut()
+                .for_each(|size| *size = size.abs() + 1e-3);
+            let list: Vec<String> = numbers.iter().map(f64::to_string).collect();
+            let sign = ["", "!"][self.below(2) as usize];
+            format!("{sign}{}:{}", kinds[kind], list.join(","))
+                .parse()
+                .unwrap()
+        }
+
+        fn tree(&mut self, depth: u32) -> Expression {
+            let text = match self.below(if depth == 0 { 1 } else { 4 }) {
+                0 => return self.shape(),
+                1 => format!("not({})", self.tree(depth - 1)),
+                kind => {
+                    let count = 1 + self.below(3);
+                    let list: Vec<String> = (0..count)
+                        .map(|_| self.tree(depth - 1).to_string())
+                        .collect();
+                    format!("{}({})", ["all", "any"][kind as usize - 2], list.join(", "))
+                }
+            };
+            text.parse().unwrap()
+        }
+    }
+
+    #[test]
+    fn every_clip_parses_back_to_itself_wherever_it_was_moved_to() {
+        let eye = DVec3::new(0.3, -0.2, -4.0);
+        let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, (640, 480)).unwrap();
+        let mut numbers = Numbers(88_172_645_463_325_252);
+        for _ in 0..300 {
+            let count = 1 + numbers.below(4);
+            let typed = (0..count).map(|_| numbers.tree(3)).collect();
+            let op = [ClipOp::And, ClipOp::Or][numbers.below(2) as usize];
+            let mut clips = Clips::new(Cut::new(typed, op, DVec3::ZERO), &[], DVec3::ZERO);
+            for step in 0..6 {
+                let pixels = 40.0 * DVec2::new(numbers.any(), numbers.any());
+                let action = match step {
+                    0 => HeldAction::Drag(pixels),
+                    1 => HeldAction::Tilt(pixels),
+                    2 => HeldAction::Scale(1.5 + numbers.any()),
+                    3 => HeldAction::Flip,
+                    4 => HeldAction::Go(numbers.any()),
+                    _ => HeldAction::Next,
+                };
+                clips.act(action, &camera, 1.0);
+                let written = flags(&clips, &Settings::default());
+                let (read, _) = meant(&written);
+                let (frame, again) = (&clips.frame, &read.frame);
+                assert_eq!(again.expressions(), frame.expressions(), "{written}");
+                assert_eq!(again.clip(), frame.clip(), "{written}");
+            }
+        }
     }
 }

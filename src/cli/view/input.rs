@@ -7,7 +7,7 @@ use rara::Mode;
 use winit::event::{ElementState, MouseButton, MouseScrollDelta};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
-use super::action::{Action, PlaneAction};
+use super::action::{Action, Edit, HeldAction, Which};
 
 /// The text that `--help` and the key H print.
 pub(super) const KEYS: &str = "\
@@ -15,27 +15,36 @@ Mouse:
   left drag                    turn the view
   middle or Shift+left drag    move sideways
   wheel                        nearer, farther; in fly mode faster, slower
-  right drag                   the clip plane along its normal
-  Shift+right drag             tilt the clip plane
+  right drag                   the held shape; a plane or slab along its normal
+  Shift+right drag             turn the held shape about its middle
+  Shift+wheel                  the held shape larger, smaller
 Keys:
   Tab                          orbit about the scene, or fly
   W A S D Q E                  forward, left, back, right, down, up (Shift: slowly)
-  arrows                       turn the view; with Shift tilt the clip plane
+  arrows                       turn the view; with Shift the held shape
   + -                          nearer, farther
   O                            orthographic, or in perspective
   R, N                         back to the start; the next camera of --view all
   0 1 2 3                      mode none, hard, rara, exact
-  P, I                         clip planes on or off; the other side of the plane
-  X Y Z                        the plane across an axis, through the middle
-  Page Up, Page Down           the plane along its normal (Shift: a tenth)
-  G                            take hold of the next plane
+  P, I                         the clip on or off; the other side of the held shape
+  X Y Z                        the held shape along an axis; a plane across it, through the middle
+  Page Up, Page Down           the held shape along its normal or away from the eye (Shift: a tenth)
+  J K                          the held shape smaller, larger
+  G                            take hold of the next shape
+  B                            outlines of the shapes on or off
+  F1 to F9                     layer 1 to 9 on or off
+  L                            edit the next layer's clip, after the last the frame's again
+  U                            the edited layer has no clip of its own any more
   C or F12                     screenshot
+  F                            the flags that draw this, on the terminal
   T                            stage times and counts on the terminal
   H                            this list
   Esc                          quit";
 
 /// How many degrees an arrow key turns.
 const ARROW: f64 = 5.0;
+/// How much larger a shape becomes by a step of the wheel, or by a key.
+const LARGER: f64 = 1.05;
 
 /// The keys and buttons that are held down, and where the mouse is.
 #[derive(Debug, Default)]
@@ -75,7 +84,10 @@ impl Input {
         }
         let shift = self.modifiers.shift_key();
         let action = match logical {
-            Key::Named(key) => named(*key, shift)?,
+            Key::Named(key) => match layer(*key) {
+                Some(number) => Action::Layer(Which(number.to_string()), None),
+                None => named(*key, shift)?,
+            },
             Key::Character(text) => letter(text)?,
             _ => return None,
         };
@@ -83,7 +95,7 @@ impl Input {
         let repeats = action.moves()
             && !matches!(
                 action,
-                Action::Plane(PlaneAction::Toggle | PlaneAction::Flip | PlaneAction::Next)
+                Action::Held(HeldAction::Toggle | HeldAction::Flip | HeldAction::Next)
             );
         (repeats || !repeat).then_some(action)
     }
@@ -105,11 +117,11 @@ impl Input {
         let shift = self.modifiers.shift_key();
         if down(MouseButton::Right) {
             let action = if shift {
-                PlaneAction::Tilt(degrees)
+                HeldAction::Tilt(degrees)
             } else {
-                PlaneAction::Drag(by)
+                HeldAction::Drag(by)
             };
-            return Some(Action::Plane(action));
+            return Some(Action::Held(action));
         }
         if down(MouseButton::Middle) || down(MouseButton::Left) && shift {
             return Some(Action::Shift(by));
@@ -119,11 +131,17 @@ impl Input {
 
     /// Handles a turn of the wheel.
     pub(super) fn wheel(&self, delta: MouseScrollDelta) -> Action {
-        Action::Zoom(match delta {
-            MouseScrollDelta::LineDelta(_, lines) => f64::from(lines),
+        let (across, lines) = match delta {
+            MouseScrollDelta::LineDelta(across, lines) => (across.into(), lines.into()),
             // A touchpad reports pixels, about so many for a line of text.
-            MouseScrollDelta::PixelDelta(pixels) => pixels.y / 20.0,
-        })
+            MouseScrollDelta::PixelDelta(pixels) => (pixels.x / 20.0, pixels.y / 20.0),
+        };
+        if self.modifiers.shift_key() {
+            // Some systems turn the wheel with Shift into one that goes sideways.
+            let steps = if lines == 0.0 { across } else { lines };
+            return Action::Held(HeldAction::Scale(LARGER.powf(steps)));
+        }
+        Action::Zoom(lines)
     }
 
     /// Releases everything, since another window has the keyboard.
@@ -155,7 +173,7 @@ fn named(key: NamedKey, shift: bool) -> Option<Action> {
     let arrow = |x: f64, y: f64| {
         let degrees = ARROW * DVec2::new(x, y);
         if shift {
-            Action::Plane(PlaneAction::Tilt(degrees))
+            Action::Held(HeldAction::Tilt(degrees))
         } else {
             Action::Turn(degrees)
         }
@@ -166,8 +184,8 @@ fn named(key: NamedKey, shift: bool) -> Option<Action> {
         NamedKey::ArrowRight => arrow(1.0, 0.0),
         NamedKey::ArrowUp => arrow(0.0, -1.0),
         NamedKey::ArrowDown => arrow(0.0, 1.0),
-        NamedKey::PageUp => Action::Plane(PlaneAction::Step(step)),
-        NamedKey::PageDown => Action::Plane(PlaneAction::Step(-step)),
+        NamedKey::PageUp => Action::Held(HeldAction::Step(step)),
+        NamedKey::PageDown => Action::Held(HeldAction::Step(-step)),
         NamedKey::Tab => Action::OtherWalk,
         NamedKey::F12 => Action::Screenshot(None),
         NamedKey::Escape => Action::Quit,
@@ -175,8 +193,24 @@ fn named(key: NamedKey, shift: bool) -> Option<Action> {
     })
 }
 
+/// The number of the layer that a function key switches.
+fn layer(key: NamedKey) -> Option<usize> {
+    let keys = [
+        NamedKey::F1,
+        NamedKey::F2,
+        NamedKey::F3,
+        NamedKey::F4,
+        NamedKey::F5,
+        NamedKey::F6,
+        NamedKey::F7,
+        NamedKey::F8,
+        NamedKey::F9,
+    ];
+    keys.iter().position(|of| *of == key).map(|at| at + 1)
+}
+
 fn letter(text: &str) -> Option<Action> {
-    let plane = Action::Plane;
+    let held = Action::Held;
     Some(match text.to_lowercase().as_str() {
         "0" => Action::Mode(Mode::None),
         "1" => Action::Mode(Mode::Hard),
@@ -184,12 +218,18 @@ fn letter(text: &str) -> Option<Action> {
         "3" => Action::Mode(Mode::Exact),
         "+" | "=" => Action::Zoom(1.0),
         "-" => Action::Zoom(-1.0),
-        "p" => plane(PlaneAction::Toggle),
-        "i" => plane(PlaneAction::Flip),
-        "g" => plane(PlaneAction::Next),
-        "x" => plane(PlaneAction::Align(DVec3::X)),
-        "y" => plane(PlaneAction::Align(DVec3::Y)),
-        "z" => plane(PlaneAction::Align(DVec3::Z)),
+        "p" => held(HeldAction::Toggle),
+        "i" => held(HeldAction::Flip),
+        "g" => held(HeldAction::Next),
+        "x" => held(HeldAction::Align(DVec3::X)),
+        "y" => held(HeldAction::Align(DVec3::Y)),
+        "z" => held(HeldAction::Align(DVec3::Z)),
+        "j" => held(HeldAction::Scale(1.0 / LARGER)),
+        "k" => held(HeldAction::Scale(LARGER)),
+        "b" => Action::Outline(None),
+        "l" => Action::Edit(Edit::Next),
+        "u" => Action::Edit(Edit::Release),
+        "f" => Action::Flags,
         "o" => Action::OtherProjection,
         "r" => Action::Reset,
         "n" => Action::NextView,
@@ -226,17 +266,17 @@ mod tests {
         );
         input.button(MouseButton::Left, Released);
         input.button(MouseButton::Right, Pressed);
-        let tilt = Action::Plane(PlaneAction::Tilt(at(0.0, 1.0)));
+        let tilt = Action::Held(HeldAction::Tilt(at(0.0, 1.0)));
         assert_eq!(input.cursor(at(31.0, 7.0), 360), Some(tilt));
         input.modifiers(ModifiersState::empty());
-        let drag = Action::Plane(PlaneAction::Drag(at(0.0, -3.0)));
+        let drag = Action::Held(HeldAction::Drag(at(0.0, -3.0)));
         assert_eq!(input.cursor(at(31.0, 4.0), 360), Some(drag));
     }
 
     #[test]
     fn switches_do_not_repeat_but_moves_do() {
         let mut input = Input::default();
-        let toggle = Some(Action::Plane(PlaneAction::Toggle));
+        let toggle = Some(Action::Held(HeldAction::Toggle));
         assert_eq!(press(&mut input, "p", false), toggle);
         assert_eq!(press(&mut input, "P", true), None);
         assert_eq!(press(&mut input, "c", true), None);
@@ -252,8 +292,31 @@ mod tests {
     fn shift_takes_the_arrows_to_the_plane() {
         let turn = named(NamedKey::ArrowLeft, false);
         assert_eq!(turn, Some(Action::Turn(DVec2::new(-5.0, 0.0))));
-        let tilt = PlaneAction::Tilt(DVec2::new(-5.0, 0.0));
-        assert_eq!(named(NamedKey::ArrowLeft, true), Some(Action::Plane(tilt)));
+        let tilt = HeldAction::Tilt(DVec2::new(-5.0, 0.0));
+        assert_eq!(named(NamedKey::ArrowLeft, true), Some(Action::Held(tilt)));
+    }
+
+    #[test]
+    fn shift_takes_the_wheel_to_the_shape() {
+        let mut input = Input::default();
+        let up = MouseScrollDelta::LineDelta(0.0, 2.0);
+        assert_eq!(input.wheel(up), Action::Zoom(2.0));
+        input.modifiers(ModifiersState::SHIFT);
+        let larger = Action::Held(HeldAction::Scale(LARGER * LARGER));
+        assert_eq!(input.wheel(up), larger);
+        assert_eq!(input.wheel(MouseScrollDelta::LineDelta(2.0, 0.0)), larger);
+    }
+
+    #[test]
+    fn function_keys_switch_layers_once() {
+        let mut input = Input::default();
+        let mut press = |repeat| {
+            let key = Key::Named(NamedKey::F3);
+            input.key(&key, PhysicalKey::Code(KeyCode::F3), Pressed, repeat)
+        };
+        let third = Action::Layer(Which("3".into()), None);
+        assert_eq!(press(false), Some(third));
+        assert_eq!(press(true), None);
     }
 
     #[test]

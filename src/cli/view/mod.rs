@@ -1,11 +1,15 @@
-//! `rara view`: a window on a scene, with a clip plane to drag through it.
+//! `rara view`: a window on a scene, with clip shapes to drag through it.
 
 mod action;
 mod app;
+mod camera_flags;
 mod cut;
 mod flags;
+mod grip;
 mod input;
+mod layers;
 mod lost;
+mod outlines;
 mod script;
 mod shots;
 mod stage;
@@ -15,19 +19,24 @@ mod viewpoint;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::Scene;
+use glam::DVec3;
+use rara::clip::Expression;
 use rara::scene::Bounds;
+use rara::{Camera, ClipOp, Scene};
 
 use self::cut::Cut;
 use self::input::KEYS;
+use self::layers::Clips;
 use self::shots::Shots;
 use self::stage::Scenery;
+use super::camera::Views;
 use super::failure::Failure;
 use super::frame::FrameArgs;
 use super::scenes::SceneArgs;
+use super::section::{SectionArgs, Sections};
 use super::{output, values};
 
-/// Look at a scene in a window, and drag a clip plane through it
+/// Look at a scene in a window, and drag clip shapes through it
 #[derive(Debug, Args)]
 #[command(after_help = format!("\
 {KEYS}
@@ -37,20 +46,25 @@ prints all of them. A screenshot is what rara render draws with the same camera,
 beside it goes its camera, for rara render --camera. Neither replaces a file.
 
 Scripts, a line an action, # begins a comment; each is on the screen before the next:
-  turn DX,DY             degrees          plane on, off, flip, next
-  shift DX,DY            pixels           plane x, y, z        across an axis
-  zoom STEPS                              plane +0.1, -0.1     along its normal, world units
-  move X,Y,Z             world units      plane NX,NY,NZ,D
-  camera orbit, fly, reset, next          drag DX,DY           pixels
-  camera perspective, orthographic        tilt DX,DY           degrees
-  mode none, hard, rara, exact            resize WxH
-  screenshot [FILE]
-  timings                                 minimise, restore
+  turn DX,DY             degrees          shape on, off, flip, next
+  shift DX,DY            pixels           shape x, y, z        along an axis; a plane across it
+  zoom STEPS                              shape +0.1, -0.1     along its normal, world units
+  move X,Y,Z             world units      shape SHAPE          in the held one's place
+  camera orbit, fly, reset, next          plane NX,NY,NZ,D     a plane in its place
+  camera perspective, orthographic        drag DX,DY           pixels
+  mode none, hard, rara, exact            tilt DX,DY           degrees
+  screenshot [FILE]                       scale FACTOR
+  resize WxH                              layer N|NAME [on|off]
+  minimise, restore                       edit next, frame, N|NAME, release
+  timings, flags                          outline on, off
   repeat N ACTION                         quit
 
 Examples:
   rara view scene.ply
   rara view scene.ply --clip plane:0,0,1,-2 --mode hard --size 1600x900
+  rara view scene.ply --clip-expr 'all(box:0,0,0,1,1,1, not(sphere:1,0,0,.5))'
+  rara view body.ply organ.ply --clip plane:1,0,0,0 --layer-clip organ=whole
+  rara view scene.ply --section axial=0.4
   printf 'plane +0.1\\nscreenshot cut.png\\nquit\\n' | rara view scene.ply --script -"))]
 pub(super) struct View {
     #[command(flatten)]
@@ -62,6 +76,11 @@ pub(super) struct View {
     /// window stays
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
+    /// Begin without the outlines of the shapes that clip, which the key B brings
+    #[arg(long)]
+    no_outline: bool,
+    #[command(flatten)]
+    section: SectionArgs,
     #[command(flatten)]
     frame: FrameArgs,
 }
@@ -69,12 +88,22 @@ pub(super) struct View {
 /// A window that fits most screens.
 const SIZE: (u32, u32) = (1280, 720);
 
+/// What is looked at first.
+enum Begin {
+    /// The cameras, under the clip that was typed.
+    Views(Views, Vec<Expression>, ClipOp),
+    Section(Sections),
+}
+
 impl View {
     pub(super) fn run(self) -> Result<(), Failure> {
         let settings = self.frame.settings.meant()?;
-        let (clip, op) = (self.frame.clip.expressions()?, self.frame.clip.op());
+        let clip = &self.frame.clip;
         let camera = self.frame.camera.sized_by_default(SIZE);
-        let views = camera.meant()?;
+        let begin = match self.section.meant(&camera, clip)? {
+            Some(sections) => Begin::Section(single(sections)?),
+            None => Begin::Views(camera.meant()?, clip.expressions()?, clip.op()),
+        };
         let shots = shots(&self.output)?;
         let follow = self.script.as_deref() == Some(Path::new("-"));
         let script = match &self.script {
@@ -85,16 +114,11 @@ impl View {
 
         let loaded = self.scenes.load()?;
         let scene = loaded.scene();
-        let views = views.of(&scene)?.into_iter();
-        // Where a file places the camera, up is what is up in its own picture.
-        let up = |camera: &rara::Camera| camera.rotation.transpose() * -glam::DVec3::Y;
-        let views: Vec<_> = views
-            .map(|view| (view.camera, camera.up().unwrap_or(up(&view.camera))))
-            .collect();
+        let bounds = Bounds::of(&scene);
+        let (views, cut) = begin.of(&scene, camera.up(), bounds.centre())?;
         let Some((first, _)) = views.first() else {
             return Err(Failure::Usage("--cameras: the file has no camera".into()));
         };
-        let bounds = Bounds::of(&scene);
         app::run(
             events,
             app::Start {
@@ -103,7 +127,8 @@ impl View {
                 size: (first.width, first.height),
                 scenery: Scenery {
                     name: name(&scene),
-                    cut: Cut::new(clip, op, bounds.centre()),
+                    clips: Clips::new(cut, &loaded.layers, bounds.centre()),
+                    outlined: !self.no_outline,
                     settings,
                     centre: bounds.centre(),
                     radius: bounds.radius(),
@@ -115,6 +140,47 @@ impl View {
                 follow,
             },
         )
+    }
+}
+
+impl Begin {
+    /// The cameras, each with its up direction, and the clip, once the scene is known.
+    fn of(
+        self,
+        scene: &Scene<'_>,
+        up: Option<DVec3>,
+        centre: DVec3,
+    ) -> Result<(Vec<(Camera, DVec3)>, Cut), Failure> {
+        // Where a file or a section places the camera, up is what is up in its own picture.
+        let own_up = |camera: &Camera| -camera.rotation.row(1);
+        match self {
+            Self::Views(views, clip, op) => {
+                let views = views.of(scene)?.into_iter().map(|view| view.camera);
+                let views = views.map(|camera| (camera, up.unwrap_or(own_up(&camera))));
+                Ok((views.collect(), Cut::new(clip, op, centre)))
+            }
+            Self::Section(sections) => {
+                let mut views = Vec::new();
+                let mut cut = Cut::new(Vec::new(), ClipOp::And, centre);
+                for section in sections.of(scene)? {
+                    views.push((section.view.camera, own_up(&section.view.camera)));
+                    cut = Cut::new(section.shapes, ClipOp::And, centre);
+                    cut.hold(&section.cut.plane.into());
+                }
+                Ok((views, cut))
+            }
+        }
+    }
+}
+
+/// Refuses a series of sections: a window has one camera and one clip.
+fn single(sections: Sections) -> Result<Sections, Failure> {
+    match sections.numbers().count() {
+        1 => Ok(sections),
+        count => Err(Failure::Usage(format!(
+            "--section: a window shows one section, and these are {count}; give one, as axial=0.4, and move it with Page Up \
+             and Page Down, or draw all of them with rara render"
+        ))),
     }
 }
 

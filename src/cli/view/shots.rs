@@ -79,7 +79,7 @@ pub(super) fn wrote(path: &Path, flags: &str) -> String {
 }
 
 /// A word, quoted so that a shell takes it for one.
-fn quoted(word: &str) -> String {
+pub(super) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "_-+=.,:/@%".contains(c);
     if !word.is_empty() && word.chars().all(|c| plain(c) || cfg!(windows) && c == '\\') {
         return word.to_owned();

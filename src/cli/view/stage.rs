@@ -9,10 +9,11 @@ use rara::{Camera, Redraw, Settings, Windowed};
 use winit::dpi::PhysicalSize;
 use winit::window::Window;
 
-use super::action::{Action, PlaneAction};
-use super::cut::Cut;
+use super::action::Action;
 use super::flags;
 use super::input::KEYS;
+use super::layers::Clips;
+use super::outlines;
 use super::shots::{self, Shots};
 use super::title;
 use super::viewpoint::{Viewpoint, Walk};
@@ -27,7 +28,9 @@ pub(super) struct Scenery {
     pub(super) name: String,
     /// The cameras to choose from, each with its up direction; the first is the start.
     pub(super) views: Vec<(Camera, DVec3)>,
-    pub(super) cut: Cut,
+    pub(super) clips: Clips,
+    /// True when the shapes that clip are outlined.
+    pub(super) outlined: bool,
     pub(super) settings: Settings,
     pub(super) centre: DVec3,
     pub(super) radius: f64,
@@ -171,7 +174,14 @@ impl Viewer {
                 self.viewpoint = self.scenery.viewpoint(self.view);
                 self.viewpoint.walk = walk;
             }
-            Action::Plane(action) => self.act_on_plane(action),
+            Action::Held(action) => {
+                let camera = self.viewpoint.camera(self.picture_size());
+                let Scenery { clips, radius, .. } = &mut self.scenery;
+                clips.act(action, &camera, *radius);
+            }
+            Action::Layer(which, visible) => self.scenery.clips.show(&which, visible)?,
+            Action::Edit(edit) => self.scenery.clips.edit(&edit)?,
+            Action::Outline(on) => self.scenery.outlined = on.unwrap_or(!self.scenery.outlined),
             Action::Mode(mode) => self.scenery.settings.mode = mode,
             Action::Screenshot(path) => return self.screenshot(path),
             Action::Minimise | Action::Restore => {
@@ -186,6 +196,14 @@ impl Viewer {
                 self.shown_at = None;
                 return Ok(());
             }
+            Action::Flags => {
+                let camera = self.viewpoint.camera(self.picture_size());
+                let Scenery {
+                    clips, settings, ..
+                } = &self.scenery;
+                say(flags::lines(&camera, clips, settings));
+                return Ok(());
+            }
             Action::Help => {
                 say(KEYS);
                 return Ok(());
@@ -196,24 +214,6 @@ impl Viewer {
         Ok(())
     }
 
-    fn act_on_plane(&mut self, action: PlaneAction) {
-        let camera = self.viewpoint.camera(self.picture_size());
-        let radius = self.scenery.radius;
-        let cut = &mut self.scenery.cut;
-        match action {
-            PlaneAction::On(on) => cut.on = on,
-            PlaneAction::Toggle => cut.on = !cut.on,
-            PlaneAction::Flip => cut.flip(),
-            PlaneAction::Next => cut.next(),
-            PlaneAction::Align(axis) => cut.align(axis),
-            PlaneAction::Set(plane) => cut.set(plane),
-            PlaneAction::Go(by) => cut.go(by),
-            PlaneAction::Step(steps) => cut.go(0.01 * steps * radius),
-            PlaneAction::Drag(pixels) => cut.drag(pixels, &camera),
-            PlaneAction::Tilt(degrees) => cut.tilt(degrees, &camera),
-        }
-    }
-
     /// The size of the picture that is shown, or would be if the window were not minimised.
     fn picture_size(&self) -> (u32, u32) {
         (self.size.0.max(1), self.size.1.max(1))
@@ -222,15 +222,17 @@ impl Viewer {
     fn screenshot(&mut self, path: Option<PathBuf>) -> Result<(), Failure> {
         let camera = self.viewpoint.camera(self.picture_size());
         let Scenery {
-            cut,
+            clips,
             settings,
             shots,
             ..
         } = &mut self.scenery;
         let path = path.unwrap_or_else(|| shots.next());
-        let picture = self.windowed.picture(&camera, &cut.clip(), settings)?;
+        clips.apply(&mut self.windowed)?;
+        let clip = clips.frame.clip();
+        let picture = self.windowed.picture(&camera, &clip, settings)?;
         shots::save(&picture, &camera, &path)?;
-        say(shots::wrote(&path, &flags::flags(cut, settings)));
+        say(shots::wrote(&path, &flags::flags(clips, settings)));
         self.shown_at = None; // the next frame does not follow at once
         Ok(())
     }
@@ -243,8 +245,21 @@ impl Viewer {
             return Ok(());
         };
         let camera = self.viewpoint.camera(size);
-        let Scenery { cut, settings, .. } = &self.scenery;
-        let redraw = self.windowed.show(&camera, &cut.clip(), settings)?;
+        let Scenery {
+            clips,
+            outlined,
+            settings,
+            centre,
+            radius,
+            ..
+        } = &mut self.scenery;
+        clips.apply(&mut self.windowed)?;
+        self.windowed.set_lines(match outlined {
+            true => outlines::lines(clips, &camera, (*centre, *radius)),
+            false => Vec::new(),
+        });
+        let clip = clips.frame.clip();
+        let redraw = self.windowed.show(&camera, &clip, settings)?;
         self.dirty = redraw == Redraw::Now;
         self.unsettled = redraw == Redraw::WhenIdle;
         let now = Instant::now();
@@ -268,12 +283,12 @@ impl Viewer {
         let Scenery {
             name,
             settings,
-            cut,
+            clips,
             ..
         } = &self.scenery;
         let mode = settings::name(settings.mode);
-        let offset = cut.on.then(|| cut.plane().offset());
-        let text = title::title(name, &mode, offset, self.windowed.stats());
+        let stats = self.windowed.stats();
+        let text = title::title(name, &mode, clips.words().as_deref(), stats);
         self.window.set_title(&text);
     }
 

@@ -11,12 +11,12 @@ use crate::cli::output::grouped;
 pub(super) fn title(
     scene: &str,
     mode: &str,
-    cut: Option<f64>,
+    cut: Option<&str>,
     stats: Option<&FrameStats>,
 ) -> String {
     let mut text = format!("rara: {scene}, {mode}");
-    if let Some(offset) = cut {
-        let _ = write!(text, ", plane at {offset:.4}");
+    if let Some(cut) = cut {
+        let _ = write!(text, ", {cut}");
     }
     let Some(stats) = stats.filter(|stats| !stats.passes.is_empty()) else {
         return text;
@@ -102,7 +102,12 @@ mod tests {
 
     #[test]
     fn the_title_names_the_longest_stages() {
-        let text = title("hair.ply", "exact", Some(-0.5), Some(&stats()));
+        let text = title(
+            "hair.ply",
+            "exact",
+            Some("plane at -0.5000"),
+            Some(&stats()),
+        );
         assert_eq!(
             text,
             "rara: hair.ply, exact, plane at -0.5000; 23.5 ms (tiles 14.2, project 5.8, sort 3.0)"

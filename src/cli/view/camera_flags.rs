@@ -1,0 +1,89 @@
+//! The flags of `rara render` that place a camera.
+
+use rara::{Camera, Projection};
+
+/// Share of a number by which cameras that flags place may differ from each other by rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// The flags that place this camera; `None` for one whose pixels are not square or whose principal point is not the picture's
+/// middle, which only a file can say.
+pub(super) fn flags(camera: &Camera) -> Option<String> {
+    let (width, height) = (f64::from(camera.width), f64::from(camera.height));
+    let is_near = |a: f64, b: f64| (a - b).abs() <= ROUNDING * b.abs();
+    let is_plain = is_near(camera.fx, camera.fy)
+        && is_near(camera.cx, width / 2.0)
+        && is_near(camera.cy, height / 2.0);
+    if !is_plain {
+        return None;
+    }
+    let (eye, forward) = (camera.eye, camera.rotation.row(2));
+    // The target is about as far away as the eye is from the origin, so that neither is lost in the other's rounding.
+    let target = eye + forward * eye.length().max(1.0);
+    let up = -camera.rotation.row(1);
+    let list = |v: glam::DVec3| format!("{},{},{}", v.x, v.y, v.z);
+    let lens = match camera.projection {
+        Projection::Orthographic => format!("--ortho {}", height / camera.fy),
+        _ => {
+            let half = (height / 2.0 / camera.fy).atan();
+            format!("--fov-y {}", 2.0 * half.to_degrees())
+        }
+    };
+    Some(format!(
+        "--eye {} --target {} --up {} {lens} --size {}x{}",
+        list(eye),
+        list(target),
+        list(up),
+        camera.width,
+        camera.height
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::camera::{CameraArgs, Views};
+    use clap::{Args as _, FromArgMatches as _};
+    use glam::DVec3;
+
+    fn meant(flags: &str) -> Camera {
+        let command = clap::Command::new("rara").no_binary_name(true);
+        let command = CameraArgs::augment_args(command);
+        let matches = command.try_get_matches_from(flags.split(' ')).unwrap();
+        let args = CameraArgs::from_arg_matches(&matches).unwrap();
+        match args.meant().unwrap() {
+            Views::Given(views) => views[0].camera,
+            Views::Framed { .. } => panic!("{flags}: no camera"),
+        }
+    }
+
+    #[test]
+    fn flags_place_the_same_camera() {
+        for eye in [
+            DVec3::new(1.0, -2.0, -3.5),
+            DVec3::ZERO,
+            DVec3::new(1e6, -2e5, 3e6) / 7.0,
+        ] {
+            let target = eye + DVec3::new(-0.3, 0.7, 2.0);
+            let camera = Camera::look_at(eye, target, DVec3::NEG_Y, 40.0, (80, 60)).unwrap();
+            let flat = camera.projection(Projection::Orthographic);
+            for camera in [camera, flat.fx(17.0).fy(17.0)] {
+                let again = meant(&flags(&camera).expect("it has flags"));
+                let rotation = (again.rotation - camera.rotation).to_cols_array();
+                assert!(rotation.iter().all(|v| v.abs() < 1e-14), "{rotation:?}");
+                assert!((again.fy / camera.fy - 1.0).abs() < 1e-14);
+                assert_eq!(
+                    (again.eye, again.projection),
+                    (camera.eye, camera.projection)
+                );
+                assert_eq!((again.width, again.height), (80, 60));
+            }
+        }
+    }
+
+    #[test]
+    fn what_only_a_file_can_say_has_no_flags() {
+        let camera = Camera::look_at(DVec3::ZERO, DVec3::X, DVec3::NEG_Y, 40.0, (80, 60)).unwrap();
+        assert_eq!(flags(&camera.cx(41.0)), None);
+        assert_eq!(flags(&camera.fx(30.0)), None);
+    }
+}

@@ -1,0 +1,317 @@
+//! The layers of the scene, their clips, and the clip that is edited: the frame's, or a layer's own.
+
+use std::borrow::Cow;
+
+use glam::DVec3;
+use rara::{Camera, ClipOp, Windowed};
+
+use super::action::{Edit, HeldAction, Which};
+use super::cut::Cut;
+use super::shots::quoted;
+use crate::cli::failure::Failure;
+use crate::cli::scene_file::LayerClip;
+use crate::cli::scenes::{Listed, LoadedLayer};
+use rara::clip::Expression;
+
+/// The frame's clip and the layers.
+#[derive(Debug, Clone)]
+pub(super) struct Clips {
+    pub(super) frame: Cut,
+    /// By name: layers of one name that begin alike go together, as flags name them.
+    layers: Vec<NamedLayer>,
+    /// The number of the layer whose own clip is edited; `None` for the frame's.
+    edited: Option<usize>,
+    /// The scene's middle.
+    centre: DVec3,
+    /// True when the window's scene is not yet as these say.
+    changed: bool,
+}
+
+/// The layers of a name.
+#[derive(Debug, Clone)]
+struct NamedLayer {
+    name: String,
+    /// Their numbers in the scene.
+    places: Vec<usize>,
+    visible: bool,
+    /// Their own clip; one that is off leaves them whole. `None` where the frame's holds.
+    own: Option<Cut>,
+    listed: Listed,
+}
+
+impl Clips {
+    pub(super) fn new(frame: Cut, loaded: &[LoadedLayer], centre: DVec3) -> Self {
+        let mut layers: Vec<NamedLayer> = Vec::new();
+        for (place, layer) in loaded.iter().enumerate() {
+            let is_alike = |other: &&mut NamedLayer| {
+                let first = &loaded[other.places[0]];
+                let facts = |l: &LoadedLayer| (l.name.clone(), l.state.visible, l.clip.clone());
+                facts(first) == facts(layer)
+            };
+            match layers.iter_mut().find(is_alike) {
+                Some(other) => other.places.push(place),
+                None => layers.push(NamedLayer {
+                    name: layer.name.clone(),
+                    places: vec![place],
+                    visible: layer.state.visible,
+                    own: layer.clip.as_ref().map(|clip| own(clip, centre)),
+                    listed: layer.listed,
+                }),
+            }
+        }
+        Self {
+            frame,
+            layers,
+            edited: None,
+            centre,
+            changed: false,
+        }
+    }
+
+    /// The clip that is edited, if it is there: a layer may have none of its own.
+    pub(super) fn edited(&self) -> Option<&Cut> {
+        match self.edited {
+            None => Some(&self.frame),
+            Some(layer) => self.layers[layer].own.as_ref(),
+        }
+    }
+
+    /// Every clip that cuts something of what is shown.
+    pub(super) fn in_force(&self) -> impl Iterator<Item = &Cut> {
+        let shown = || self.layers.iter().filter(|layer| layer.visible);
+        let frame = shown()
+            .any(|layer| layer.own.is_none())
+            .then_some(&self.frame);
+        let own = shown().filter_map(|layer| layer.own.as_ref());
+        frame.into_iter().chain(own).filter(|cut| cut.on)
+    }
+
+    /// Does what is asked of the held shape. What changes the clip of a layer without one gives it one, whose only shape is a
+    /// plane through the middle of the scene.
+    pub(super) fn act(&mut self, action: HeldAction, camera: &Camera, radius: f64) {
+        let cut = match self.edited {
+            None => &mut self.frame,
+            Some(layer) => {
+                let own = &mut self.layers[layer].own;
+                if own.is_none() && action == HeldAction::Next {
+                    return;
+                }
+                self.changed = true;
+                own.get_or_insert_with(|| whole(self.centre))
+            }
+        };
+        cut.act(action, camera, radius);
+    }
+
+    /// Shows layers, hides them, or whichever they are not.
+    pub(super) fn show(&mut self, which: &Which, visible: Option<bool>) -> Result<(), Failure> {
+        let layer = self.find(which)?;
+        let layer = &mut self.layers[layer];
+        layer.visible = visible.unwrap_or(!layer.visible);
+        self.changed = true;
+        Ok(())
+    }
+
+    /// Chooses the clip that is edited.
+    pub(super) fn edit(&mut self, edit: &Edit) -> Result<(), Failure> {
+        match (edit, self.edited) {
+            (Edit::Frame, _) => self.edited = None,
+            (Edit::Layer(which), _) => self.edited = Some(self.find(which)?),
+            // After the last layer comes the frame again.
+            (Edit::Next, None) => self.edited = Some(0).filter(|_| !self.layers.is_empty()),
+            (Edit::Next, Some(layer)) => {
+                self.edited = Some(layer + 1).filter(|&next| next < self.layers.len());
+            }
+            (Edit::Release, Some(layer)) => {
+                self.layers[layer].own = None;
+                self.changed = true;
+            }
+            (Edit::Release, None) => {}
+        }
+        Ok(())
+    }
+
+    /// Makes the window's scene what is wanted of its layers.
+    pub(super) fn apply(&mut self, windowed: &mut Windowed) -> rara::Result<()> {
+        if !std::mem::take(&mut self.changed) {
+            return Ok(());
+        }
+        for layer in &self.layers {
+            for &place in &layer.places {
+                let state = windowed.layers()[place].state();
+                windowed.set_layer_state(place, state.visible(layer.visible))?;
+                windowed.set_layer_clip(place, layer.own.as_ref().map(Cut::clip))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The flags that make the layers of the same files what they are.
+    pub(super) fn flags(&self) -> Vec<String> {
+        let mut flags = Vec::new();
+        for layer in &self.layers {
+            let name = quoted(&layer.name);
+            match (layer.listed.visible, layer.visible) {
+                (true, false) => flags.push(format!("--hide={name}")),
+                (false, true) => flags.push(format!("--unhide={name}")),
+                _ => {}
+            }
+            let clip: Option<Cow<'_, str>> = match &layer.own {
+                Some(own) => Some(match own.expressions() {
+                    [] => "whole".into(),
+                    [only] => only.to_string().into(),
+                    all => Expression::All(all.into()).to_string().into(),
+                }),
+                None => layer.listed.clipped.then_some("frame".into()),
+            };
+            let text = clip.map(|clip| quoted(&format!("{}={clip}", layer.name)));
+            flags.extend(text.map(|text| format!("--layer-clip={text}")));
+        }
+        flags
+    }
+
+    /// A few words for the title: which shape of which clip is held, and which layers are hidden.
+    pub(super) fn words(&self) -> Option<String> {
+        let held = self.edited().filter(|cut| cut.on).map(Cut::words);
+        let mut words = Vec::new();
+        match self.edited {
+            None => words.extend(held),
+            Some(layer) => {
+                let layer = &self.layers[layer];
+                let clip = match (&layer.own, held) {
+                    (_, Some(held)) => held,
+                    (Some(_), None) => "whole".into(),
+                    (None, None) => "as the frame".into(),
+                };
+                words.push(format!("clip of {}: {clip}", layer.name));
+            }
+        }
+        let hidden = self.layers.iter().filter(|layer| !layer.visible);
+        let hidden: Vec<&str> = hidden.map(|layer| &layer.name[..]).collect();
+        if !hidden.is_empty() {
+            words.push(format!("without {}", hidden.join(" and ")));
+        }
+        (!words.is_empty()).then(|| words.join(", "))
+    }
+
+    /// The number of the layers that are meant: those of a name, else by their number from 1.
+    fn find(&self, which: &Which) -> Result<usize, Failure> {
+        let text = &which.0;
+        let named = self.layers.iter().position(|layer| layer.name == *text);
+        let number = || text.parse::<usize>().ok()?.checked_sub(1);
+        let found = named.or_else(number).filter(|&at| at < self.layers.len());
+        found.ok_or_else(|| {
+            let names = self.layers.iter().enumerate();
+            let names: Vec<_> = names
+                .map(|(at, l)| format!("{} {}", at + 1, l.name))
+                .collect();
+            Failure::Usage(format!(
+                "there is no layer {text}; there are {}",
+                names.join(", ")
+            ))
+        })
+    }
+}
+
+/// A layer's own clip as it can be edited.
+fn own(clip: &LayerClip, centre: DVec3) -> Cut {
+    match clip {
+        LayerClip::Whole => whole(centre),
+        LayerClip::Region(region) => Cut::new(vec![region.clone()], ClipOp::And, centre),
+    }
+}
+
+/// A clip that is off.
+fn whole(centre: DVec3) -> Cut {
+    Cut::new(Vec::new(), ClipOp::And, centre)
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use rara::{Gaussians, LayerState};
+
+    pub(in crate::cli::view) fn layer(
+        name: &str,
+        visible: bool,
+        clip: Option<&str>,
+    ) -> LoadedLayer {
+        LoadedLayer {
+            name: name.into(),
+            gaussians: Gaussians::default(),
+            state: LayerState::default().visible(visible),
+            clip: clip.map(|text| LayerClip::parse(text).unwrap()),
+            listed: Listed {
+                visible,
+                clipped: clip.is_some(),
+            },
+        }
+    }
+
+    fn clips(layers: &[LoadedLayer]) -> Clips {
+        let frame = vec!["sphere:0,0,0,1".parse().unwrap()];
+        Clips::new(
+            Cut::new(frame, ClipOp::And, DVec3::ZERO),
+            layers,
+            DVec3::ZERO,
+        )
+    }
+
+    fn camera() -> Camera {
+        Camera::look_at(DVec3::NEG_Z, DVec3::ZERO, DVec3::NEG_Y, 50.0, (64, 64)).unwrap()
+    }
+
+    fn which(text: &str) -> Which {
+        Which(text.into())
+    }
+
+    #[test]
+    fn layers_are_named_or_numbered_and_flags_say_what_differs_from_their_list() {
+        let mut clips = clips(&[
+            layer("skin", true, None),
+            layer("a b", false, Some("plane:1,0,0,0")),
+            layer("skin", true, None),
+        ]);
+        assert_eq!(clips.flags(), ["--layer-clip='a b=plane:1,0,0,0'"]);
+        assert_eq!(clips.words().unwrap(), "sphere, without a b");
+        clips.show(&which("2"), None).unwrap();
+        clips.show(&which("skin"), Some(false)).unwrap();
+        clips.edit(&Edit::Layer(which("a b"))).unwrap();
+        assert_eq!(
+            clips.words().unwrap(),
+            "clip of a b: plane at 0.0000, without skin"
+        );
+        clips.act(HeldAction::Flip, &camera(), 1.0);
+        assert_eq!(
+            clips.flags(),
+            [
+                "--hide=skin",
+                "--unhide='a b'",
+                "--layer-clip='a b=plane:-1,-0,-0,-0'"
+            ]
+        );
+        clips.edit(&Edit::Release).unwrap();
+        assert_eq!(clips.flags()[2], "--layer-clip='a b=frame'");
+        let error = clips.show(&which("3"), None).unwrap_err().to_string();
+        assert!(error.contains("1 skin, 2 a b"), "{error}");
+    }
+
+    #[test]
+    fn a_layer_gets_a_clip_of_its_own_when_one_is_asked_for() {
+        let mut clips = clips(&[layer("skin", true, None), layer("bone", true, None)]);
+        for words in ["clip of skin: as the frame", "clip of bone: as the frame"] {
+            clips.edit(&Edit::Next).unwrap();
+            clips.act(HeldAction::Next, &camera(), 1.0);
+            assert_eq!(clips.words().unwrap(), words);
+        }
+        assert!(clips.flags().is_empty() && clips.in_force().count() == 1);
+        clips.act(HeldAction::Toggle, &camera(), 1.0);
+        assert_eq!(clips.words().unwrap(), "clip of bone: plane at 0.0000");
+        assert_eq!(clips.in_force().count(), 2);
+        clips.act(HeldAction::On(false), &camera(), 1.0);
+        assert_eq!(clips.flags(), ["--layer-clip=bone=whole"]);
+        assert_eq!(clips.words().unwrap(), "clip of bone: whole");
+        clips.edit(&Edit::Next).unwrap();
+        assert_eq!(clips.words().unwrap(), "sphere");
+    }
+}

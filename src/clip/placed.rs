@@ -1,0 +1,209 @@
+//! Shapes that are moved, turned and scaled.
+
+use glam::DVec3;
+
+use super::{Plane, Shape, Solid};
+use crate::error::Result;
+use crate::placement::Placement;
+
+impl Shape {
+    /// The same shape scaled, then turned, then moved, as a placed scene is.
+    ///
+    /// ```
+    /// use rara::{Placement, Shape, glam::{DQuat, DVec3}};
+    ///
+    /// let ball: Shape = "sphere:1,0,0,.5".parse()?;
+    /// let twice = Placement::new(DVec3::Y, DQuat::IDENTITY, 2.0)?;
+    /// assert_eq!(ball.placed(&twice)?.to_string(), "sphere:2,1,0,1");
+    /// # Ok::<(), rara::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As of [`Shape::new`], where numbers overflow or a size becomes zero.
+    pub fn placed(&self, placement: &Placement) -> Result<Self> {
+        let (turn, scale) = (placement.rotation(), placement.scale());
+        let point = |p: DVec3| placement.to_world(p);
+        let plane = |plane: Plane| {
+            let normal = turn * plane.normal();
+            Plane::new(
+                normal,
+                scale * plane.offset() - normal.dot(placement.position()),
+            )
+        };
+        let solid = match self.solid() {
+            Solid::Plane(of) => Solid::Plane(plane(of)?),
+            Solid::Slab {
+                plane: of,
+                thickness,
+            } => Solid::Slab {
+                plane: plane(of)?,
+                thickness: scale * thickness,
+            },
+            Solid::Cuboid {
+                centre,
+                half,
+                rotation,
+            } => Solid::Cuboid {
+                centre: point(centre),
+                half: scale * half,
+                rotation: turn * rotation,
+            },
+            Solid::Sphere { centre, radius } => Solid::Sphere {
+                centre: point(centre),
+                radius: scale * radius,
+            },
+            Solid::Ellipsoid {
+                centre,
+                radii,
+                rotation,
+            } => Solid::Ellipsoid {
+                centre: point(centre),
+                radii: scale * radii,
+                rotation: turn * rotation,
+            },
+            Solid::Cylinder { from, to, radius } => Solid::Cylinder {
+                from: point(from),
+                to: point(to),
+                radius: scale * radius,
+            },
+            Solid::Capsule { from, to, radius } => Solid::Capsule {
+                from: point(from),
+                to: point(to),
+                radius: scale * radius,
+            },
+            Solid::Cone { apex, base, radius } => Solid::Cone {
+                apex: point(apex),
+                base: point(base),
+                radius: scale * radius,
+            },
+        };
+        let inside = Self::new(solid)?;
+        Ok(match self.is_outside() {
+            true => inside.complement(),
+            false => inside,
+        })
+    }
+
+    /// The solid's middle, world units: halfway along the axis of one that has ends. Planes and slabs have none; theirs is the
+    /// point nearest to `near`, halfway between the sides of a slab.
+    pub fn middle(&self, near: DVec3) -> DVec3 {
+        match self.solid() {
+            Solid::Plane(plane) => near - plane.normal() * plane.distance(near),
+            Solid::Slab { plane, thickness } => {
+                near - plane.normal() * (plane.distance(near) - thickness / 2.0)
+            }
+            Solid::Cuboid { centre, .. }
+            | Solid::Sphere { centre, .. }
+            | Solid::Ellipsoid { centre, .. } => centre,
+            Solid::Cylinder { from, to, .. } | Solid::Capsule { from, to, .. } => from.midpoint(to),
+            Solid::Cone { apex, base, .. } => apex.midpoint(base),
+        }
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::scene::Random;
+    use glam::DQuat;
+
+    fn direction(random: &mut Random) -> DVec3 {
+        DVec3::from_array([(); 3].map(|()| random.range(-1.0, 1.0))).normalize()
+    }
+
+    /// One of each kind, within a few units of the origin, kept inside or outside.
+    pub(in crate::clip) fn shapes(random: &mut Random) -> Vec<Shape> {
+        let mut shapes = Vec::new();
+        for kind in 0..8 {
+            let size = |random: &mut Random| random.range(0.3, 1.5);
+            let (from, to) = (direction(random), 2.0 * direction(random));
+            let radius = size(random);
+            let sizes = DVec3::from_array([(); 3].map(|()| size(random)));
+            let axis = direction(random);
+            let rotation = DQuat::from_axis_angle(axis, random.range(0.0, 6.0));
+            let plane = Plane::new(from, random.range(-1.0, 1.0)).unwrap();
+            let shape = Shape::new(match kind {
+                0 => Solid::Plane(plane),
+                1 => Solid::Slab {
+                    plane,
+                    thickness: radius,
+                },
+                2 => Solid::Cuboid {
+                    centre: from,
+                    half: sizes,
+                    rotation,
+                },
+                3 => Solid::Sphere {
+                    centre: from,
+                    radius,
+                },
+                4 => Solid::Ellipsoid {
+                    centre: from,
+                    radii: sizes,
+                    rotation,
+                },
+                5 => Solid::Cylinder { from, to, radius },
+                6 => Solid::Capsule { from, to, radius },
+                _ => Solid::Cone {
+                    apex: from,
+                    base: to,
+                    radius,
+                },
+            });
+            let shape = shape.unwrap();
+            shapes.push(match random.unit() < 0.5 {
+                true => shape,
+                false => shape.complement(),
+            });
+        }
+        shapes
+    }
+
+    #[test]
+    fn a_placed_shape_keeps_the_placed_points() {
+        let mut random = Random::new(11);
+        for _ in 0..40 {
+            let turn = DQuat::from_axis_angle(direction(&mut random), random.range(0.0, 6.0));
+            let at = 3.0 * direction(&mut random);
+            let placement = Placement::new(at, turn, random.range(0.2, 4.0)).unwrap();
+            for shape in shapes(&mut random) {
+                let (before, after) = (shape.clip(), shape.placed(&placement).unwrap().clip());
+                for _ in 0..50 {
+                    let point = 3.0 * random.unit() * direction(&mut random);
+                    let surfaces = before.all_surfaces();
+                    // On a surface rounding decides.
+                    if surfaces.iter().all(|s| s.distance(point).abs() > 1e-9) {
+                        let placed = placement.to_world(point);
+                        assert_eq!(before.keeps(point), after.keeps(placed), "{shape}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_overflows_or_shrinks_to_nothing_is_refused() {
+        let placed = |text: &str, position: DVec3, scale: f64| {
+            let shape: Shape = text.parse().unwrap();
+            shape.placed(&Placement::new(position, DQuat::IDENTITY, scale).unwrap())
+        };
+        assert!(placed("sphere:0,0,0,1", DVec3::ZERO, 1e-200).is_ok());
+        assert!(placed("sphere:0,0,0,1e-200", DVec3::ZERO, 1e-200).is_err());
+        assert!(placed("box:1e300,0,0,1,1,1", DVec3::ZERO, 1e300).is_err());
+        assert!(placed("slab:0,0,1,-1e300,1", DVec3::ZERO, 1e300).is_err());
+    }
+
+    #[test]
+    fn a_middle_is_in_the_middle() {
+        let near = DVec3::new(1.0, 2.0, 3.0);
+        for (text, middle) in [
+            ("plane:0,0,1,-1", [1.0, 2.0, 1.0]),
+            ("!slab:0,0,1,-1,2", [1.0, 2.0, 2.0]),
+            ("box:5,6,7,1,1,1", [5.0, 6.0, 7.0]),
+            ("cone:0,0,0,0,0,4,1", [0.0, 0.0, 2.0]),
+        ] {
+            let shape: Shape = text.parse().unwrap();
+            assert_eq!(shape.middle(near), DVec3::from(middle), "{text}");
+        }
+    }
+}

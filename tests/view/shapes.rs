@@ -1,0 +1,174 @@
+//! Shapes that are moved, outlines, layers and sections in the window.
+
+use std::fs;
+
+use rara::Picture;
+
+use super::display::Display;
+use super::viewer::{Viewer, apart, done, draw, draws_again, draws_again_of, folder, rara};
+
+#[test]
+fn every_shape_is_moved_turned_and_scaled_and_drawn_again() {
+    let folder = folder("shapes");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    let words = "--size 160x120 --background 0.2,0.4,0.6 --clip sphere:0.2,0,0,0.8 --clip !capsule:-1,0,0,1,0.3,0,0.2 \
+                 --clip-expr any(box:0,0,0,0.6,0.4,0.5,1,0.2,0,0.1,not(cone:0,0,-1,0,0,1,0.9))";
+    let mut viewer = Viewer::start(&display, &folder, words);
+    let mut before = viewer.screenshot("start");
+    for (number, lines) in [
+        "drag 9,-6\nscale 0.9",
+        "shape next\ndrag 8,8\ntilt 20,30",
+        "shape next\nshape +0.2\ntilt -35,20",
+        "shape next\nshape flip\nshape x",
+        "shape next\nshape ellipsoid:0.1,0,0,0.9,0.5,0.7\nscale 1.1",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        viewer.say(lines);
+        let name = format!("step_{number}");
+        let shot = viewer.screenshot(&name);
+        viewer.shows(&name, &shot);
+        assert!(apart(&before, &shot) > 20.0, "{lines}");
+        before = shot;
+    }
+    let printed = viewer.quit();
+    for number in 0..5 {
+        draws_again(&folder, &format!("step_{number}"), &printed);
+    }
+}
+
+#[test]
+fn outlines_are_drawn_over_the_window_and_not_into_screenshots() {
+    let folder = folder("outlines");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    // Sixty pixels a unit, around the middle.
+    let words = "@/scene.ply --size 320x240 --background 0.1,0.1,0.1 --eye 0,0,-8 --target 0,0,0 --ortho 4 \
+                 --clip box:0,0,0,1,0.5,1 --clip !sphere:0,0,0,0.25";
+    let mut viewer = Viewer::open(&display, &folder, words);
+    let plain = viewer.screenshot("plain");
+    let colours = |viewer: &mut Viewer<'_>, name: &str| {
+        let shot = viewer.screenshot(name);
+        assert!(apart(&shot, &plain) == 0.0, "no line is in {name}");
+        // Two edges of the box, and the sphere's contour.
+        let seen = display.corner(320, 240);
+        [(100, 120), (160, 150), (175, 120)].map(|(x, y)| {
+            let [r, g, b, _] = seen.at(x, y);
+            [r, g, b].map(|v| (255.0 * v).round() as i32)
+        })
+    };
+    let is_near = |a: [i32; 3], b: [i32; 3]| (0..3).all(|i| (a[i] - b[i]).abs() <= 1);
+    let (held, other) = ([255, 153, 26], [64, 179, 255]);
+    let [side, bottom, ball] = colours(&mut viewer, "box");
+    assert!(
+        is_near(side, held) && is_near(bottom, held),
+        "{side:?} {bottom:?}"
+    );
+    assert!(is_near(ball, other), "{ball:?}");
+    viewer.say("shape next");
+    let [side, _, ball] = colours(&mut viewer, "ball");
+    assert!(
+        is_near(side, other) && is_near(ball, held),
+        "{side:?} {ball:?}"
+    );
+    // The eye within the scene sees what is before it, and the validation layer nothing wrong.
+    viewer.say(
+        "camera perspective\ncamera fly\nmove 0,0,7.7\nturn 100,20\nresize 64x200\ncamera reset",
+    );
+    viewer.say("resize 320x240\noutline off");
+    let shot = viewer.screenshot("without");
+    viewer.shows("without outlines", &shot);
+    viewer.sleeps("without outlines");
+    viewer.quit();
+}
+
+#[test]
+fn layers_are_switched_and_cut_by_clips_of_their_own() {
+    let folder = folder("layers");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    done(rara(
+        &folder,
+        "generate layers -n 2000 --seed 5 -o @/more.ply",
+    ));
+    let list = r#"{"layers": [{"path": "scene.ply", "name": "outer skin"}, {"path": "more.ply", "visible": false},
+        {"path": "scene.ply", "name": "k=v", "scale": 0.5, "clip_expr": "plane:0,1,0,0"}]}"#;
+    fs::write(folder.join("list.json"), list).expect("a list");
+    let words =
+        "@/list.json --no-outline --background 0.2,0.4,0.6 --size 160x120 --clip plane:1,0,0,0";
+    let mut viewer = Viewer::open(&display, &folder, words);
+    let mut shots: Vec<Picture> = Vec::new();
+    let steps = [
+        ("shown", "layer more on"),
+        ("own", "edit 2\nshape sphere:0,0,0,0.4"),
+        ("moved", "drag 30,5\nscale 1.5"),
+        ("whole", "edit k=v\nshape off"),
+        ("released", "edit release"),
+        ("cut", "edit frame\nshape +0.3"),
+        ("hidden", "layer 1"),
+    ];
+    for (name, lines) in steps {
+        viewer.say(lines);
+        let shot = viewer.screenshot(name);
+        viewer.shows(name, &shot);
+        for before in &shots {
+            assert!(apart(before, &shot) > 5.0, "{name} is a picture of its own");
+        }
+        shots.push(shot);
+    }
+    let printed = viewer.quit();
+    for (name, _) in steps {
+        draws_again_of(&folder, "@/list.json", name, &printed);
+    }
+}
+
+#[test]
+fn a_section_is_what_render_draws_and_can_be_moved() {
+    let folder = folder("section");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    let section = "--section axial=0.4 --section-thickness 0.8 --clip !sphere:0,0,0,0.3 --size 200x150 --background 0.2,0.4,0.6";
+    let mut viewer = Viewer::open(
+        &display,
+        &folder,
+        &format!("@/scene.ply --no-outline {section}"),
+    );
+    let shot = viewer.screenshot("section");
+    viewer.shows("the section", &shot);
+    done(rara(
+        &folder,
+        &format!("render @/scene.ply -o @/drawn.png {section}"),
+    ));
+    let drawn = Picture::load(folder.join("drawn.png")).expect("a picture");
+    // The window's camera stands elsewhere on the same lines of sight, up to rounding.
+    let off = apart(&drawn, &shot);
+    assert!(off <= 1.01, "the section is off by {off}/255");
+    viewer.say("shape +0.2");
+    let moved = viewer.screenshot("moved");
+    assert!(apart(&shot, &moved) > 20.0, "the section's plane is held");
+    viewer.say("turn 20,10\nflags");
+    let turned = viewer.screenshot("turned");
+    let printed = viewer.quit();
+    for name in ["section", "moved", "turned"] {
+        draws_again(&folder, name, &printed);
+    }
+    // The flags alone place the camera, up to rounding.
+    let line = printed
+        .lines()
+        .find_map(|line| line.strip_prefix("flags    "));
+    let flags = line.expect("the flags were printed");
+    assert!(
+        flags.contains("--ortho ") && flags.contains("--clip plane:"),
+        "{flags}"
+    );
+    let again = folder.join("flags.png");
+    draw(&folder, "@/scene.ply", flags, &again);
+    let off = apart(&Picture::load(again).expect("a picture"), &turned);
+    assert!(off <= 1.01, "{flags}: off by {off}/255");
+}

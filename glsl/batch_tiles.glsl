@@ -1,5 +1,5 @@
 // The tiles of a batch's splats: for each tile of the macro-tile, a bit for each splat of the batch. Included by workgroups of
-// RADIX_GROUP_SIZE, after their further buffers.
+// RADIX_GROUP_SIZE, which say whether they need the splats' numbers in any case, NEEDS_SPLATS.
 #ifndef RARA_BATCH_TILES
 #define RARA_BATCH_TILES
 #include "batches.glsl"
@@ -21,10 +21,12 @@ uint held_place(uint word, uint tile) {
     return word * HELD_STRIDE + tile;
 }
 
-uvec4 tiles_of(uint key, uint splat, uvec2 corner) {
+uvec4 tiles_of(uint pair, uvec2 corner) {
+    uint key = macro_keys.at[pair];
     if (key < PAIR_MASKED) {
         return tiles_of_rect(key);
     }
+    uint splat = macro_splats.at[pair];
     uvec4 tiles = tile_masks.at[splat];
     if (tiles.y == 0u) {
         return tiles_of_mask(tiles.x, tiles.zw, corner);
@@ -40,9 +42,10 @@ void find_held(Batch batch) {
     barrier();
     uvec2 corner = corner_of(batch.macro_tile);
     for (uint i = local; i < batch.pairs.y - batch.pairs.x; i += RADIX_GROUP_SIZE) {
-        uint splat = macro_splats.at[batch.pairs.x + i];
-        batch_splats[i] = splat;
-        uvec4 tiles = tiles_of(macro_keys.at[batch.pairs.x + i], splat, corner);
+        if (NEEDS_SPLATS) {
+            batch_splats[i] = macro_splats.at[batch.pairs.x + i];
+        }
+        uvec4 tiles = tiles_of(batch.pairs.x + i, corner);
         for (uint word = 0u; word < 4u; word++) {
             for (uint bits = tiles[word]; bits != 0u; bits &= bits - 1u) {
                 // Bits may be set in any order.

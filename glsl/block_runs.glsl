@@ -16,7 +16,7 @@ struct BlockRun {
 };
 
 // Blocks that an invocation looks at before it waits for their counts.
-const uint BLOCKS_AT_ONCE = 4u;
+const uint BLOCKS_AT_ONCE = 16u;
 
 shared uvec4 run_totals[BLOCK_SIZE];
 shared uvec4 earlier_totals[BLOCK_SIZE];

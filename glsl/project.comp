@@ -4,7 +4,7 @@
 #include "footprint.glsl"
 #include "quad.glsl"
 #include "spherical_harmonics.glsl"
-#include "bin.glsl"
+#include "rects.glsl"
 #include "depth_keys.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
@@ -13,6 +13,8 @@ layout(constant_id = 0) const bool CUT = false;
 layout(constant_id = 2) const bool TILES = false;
 // True when quads are drawn.
 layout(constant_id = 3) const bool QUADS = false;
+// True when rectangles of tiles are wanted, and masks only where these do not tell everything.
+layout(constant_id = 5) const bool RECTS = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uint, sh)
@@ -84,7 +86,14 @@ void main() {
         if (CUT && cut != NOT_CUT) {
             o.line = cut_away_line_of_record(o.line, cut, weight, conic, extent);
         }
-        tile_masks.at[survivor] = tile_mask(o);
+        uvec4 tiles = tile_mask(o);
+        uint word = rect_word(tiles);
+        if (RECTS) {
+            RECT_WORD(tile_masks, survivor) = word;
+        }
+        if (!RECTS || needs_mask(word)) {
+            tile_masks.at[survivor] = tiles;
+        }
     }
     // Positive floats order like their bits. Counted from the nearest depth that the scene's bounds allow they need
     // fewer bits, and the sort fewer passes; dropping low bits never reverses an order.

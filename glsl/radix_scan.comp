@@ -30,14 +30,22 @@ void main() {
         return; // this pass is skipped
     }
     uint before = 0u;
-    for (uint first = 0u; first < partitions; first += RADIX_GROUP_SIZE) {
-        uint p = first + gl_LocalInvocationIndex;
-        uint place = COUNT_PLACE(d, p);
-        uint count = p < partitions ? histogram.at[place] : 0u;
+    // An invocation has consecutive partitions, whose counts it waits for together.
+    for (uint first = 0u; first < partitions; first += RADIX_GROUP_SIZE * RADIX_SCAN_COUNTS) {
+        uint p = first + gl_LocalInvocationIndex * RADIX_SCAN_COUNTS;
+        uint own[RADIX_SCAN_COUNTS];
+        uint sum = 0u;
+        for (uint k = 0u; k < RADIX_SCAN_COUNTS; k++) {
+            own[k] = p + k < partitions ? histogram.at[COUNT_PLACE(d, p + k)] : 0u;
+            sum += own[k];
+        }
         uint total;
-        uint sum = exclusive_sum(count, total);
-        if (p < partitions) {
-            histogram.at[place] = before + sum;
+        uint place = before + exclusive_sum(sum, total);
+        for (uint k = 0u; k < RADIX_SCAN_COUNTS; k++) {
+            if (p + k < partitions) {
+                histogram.at[COUNT_PLACE(d, p + k)] = place;
+            }
+            place += own[k];
         }
         before += total;
     }

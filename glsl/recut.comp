@@ -4,13 +4,15 @@
 // again. The survivor's centre, colour, depth and tiles stay.
 #include "footprint.glsl"
 #include "quad.glsl"
-#include "bin.glsl"
+#include "rects.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 // True when tiles are wanted.
 layout(constant_id = 0) const bool TILES = false;
 // True when quads are drawn.
 layout(constant_id = 1) const bool QUADS = false;
+// True where rectangles of tiles are kept, and masks only where these do not tell everything.
+layout(constant_id = 2) const bool RECTS = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uvec2, survivors)
@@ -25,6 +27,17 @@ BUFFER(writeonly, 9, Quad, quads)
 
 // All that find a tile changed write the same value. The tiles are the whole splat's, as in the lists.
 void mark(uint survivor) {
+    uint word = RECTS ? RECT_WORD(tile_masks, survivor) : RECT_LARGE;
+    if (!needs_mask(word)) {
+        Rect rect = word == RECT_NONE ? NO_RECT : rect_of_word(word);
+        for (uint row = 0u; row < rect.size.y; row++) {
+            uint first = (rect.first.y + row) * FRAME.tiles.tile_columns + rect.first.x;
+            for (uint tile = first; tile < first + rect.size.x; tile++) {
+                dirty.at[tile] = 1u;
+            }
+        }
+        return;
+    }
     uvec4 tiles = tile_masks.at[survivor];
     for (uvec2 mask = tiles.y == 0u ? tiles.zw : uvec2(0u); (mask.x | mask.y) != 0u;) {
         Span span = next_span(tiles.x, mask);

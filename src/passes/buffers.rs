@@ -37,7 +37,8 @@ pub(crate) struct Buffers {
     pub(crate) keys: [Buffer; 2],
     pub(crate) order: [Buffer; 2],
     pub(crate) histogram: Buffer,
-    /// Which tiles each splat touches; empty where tiles are not wanted.
+    /// Which tiles each splat touches; empty where tiles are not wanted. Kernels for GPUs have words of the splats' rectangles
+    /// behind the masks (glsl/rects.glsl).
     pub(crate) tile_masks: Buffer,
     /// Only for tiles.
     pub(crate) tiles: Option<TileBuffers>,
@@ -133,7 +134,7 @@ impl Sizes {
             cut_bytes,
             histogram: sort::histogram_words(plan),
             quads: if plan.needs_quads() { gaussians } else { 0 },
-            masks: when_tiled(gaussians),
+            masks: when_tiled(gaussians + u64::from(plan.keeps_rects()) * gaussians.div_ceil(4)),
             pairs: when_tiled(plan.data.room.pair_capacity.into()),
             tiles: when_tiled(plan.data.tiles.tile_count.into()),
             bin: bin::Scratch::words(plan).map(when_tiled),

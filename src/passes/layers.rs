@@ -39,7 +39,7 @@ layered!(cutoff, combined: is_combined);
 layered!(depth, combined: is_combined);
 layered!(reclip_blocks, combined: is_combined);
 layered!(reclip, combined: is_combined);
-layered!(recut, tiles: Plan::is_tiled, quads: Plan::needs_quads);
+layered!(recut, tiles: Plan::is_tiled, quads: Plan::needs_quads, rects: Plan::keeps_rects);
 
 fn is_combined(plan: &Plan) -> bool {
     plan.layers.are_combined()

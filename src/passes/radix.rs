@@ -82,6 +82,12 @@ pub(super) fn histogram_words(keys: u64) -> u64 {
     partitions * (digits + 2) + digits
 }
 
+/// The turns of the scan over so many partitions.
+#[cfg(feature = "lab")]
+pub(super) fn scan_turns(partitions: u64) -> u64 {
+    partitions.div_ceil((limits::RADIX_GROUP_SIZE * limits::RADIX_SCAN_COUNTS).into())
+}
+
 /// A pass: the keys and what they order go from the first pair of buffers to the second.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pass<'a> {

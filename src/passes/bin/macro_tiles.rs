@@ -81,8 +81,9 @@ pub(super) fn words(plan: &Plan) -> ScratchWords {
     let tile_rows = u64::from(tiles.tile_count / tiles.tile_columns);
     let pairs = u64::from(plan.data.room.pair_capacity);
     let batches = pairs.div_ceil(limits::BATCH_SPLATS.into()) + columns * rows;
+    let partitions = u64::from(plan.gaussians()).div_ceil(limits::RADIX_PARTITION.into());
     [
-        u64::from(plan.gaussians()).div_ceil(limits::RADIX_PARTITION.into()),
+        partitions * (1 + CHUNKS),
         pairs,
         pairs,
         pairs,
@@ -145,27 +146,33 @@ impl Scratch {
 
 #[cfg(feature = "lab")]
 pub(in crate::passes) const COSTS: &[Cost] = &[
-    // How many splats there are; then each of its own and its mask. It writes how many pairs each splat has, and its rectangle of
-    // tiles.
+    // How many splats there are; then its own and their rectangles. It writes these in the order of depth, and how many pairs
+    // the chunks have.
     Cost::of::<macro_count::Program>(
         partitions_of_splats,
-        |_| 1 + 2 * OWN,
-        |n| n.survivors * (cost::WORD + cost::gathered(cost::TILE_MASK) + 3 * cost::WORD),
-    )
-    .turning(|_| OWN as f64 / 8.0),
-    // The sums of all partitions; then its own counts, which it reads and writes.
+        |_| 3,
+        |n| {
+            let splat = 2 * cost::WORD + cost::gathered(cost::WORD);
+            n.survivors * splat + n.partitions() * (1 + CHUNKS) * cost::WORD
+        },
+    ),
+    // The sums of all partitions; then those of its own chunks, of which it writes where they begin.
     Cost::of::<macro_scan::Program>(
         partitions_of_splats,
         |n| 2 + n.partitions().div_ceil(limits::RADIX_GROUP_SIZE.into()),
-        |n| (n.partitions() + 2 * n.survivors) * cost::WORD,
+        |n| n.partitions() * (1 + 2 * CHUNKS) * cost::WORD,
     ),
-    // How many pairs there are; the search among all splats, for both ends together; where the pairs of those in between begin;
-    // then what is known of the splat of each of its own pairs. It writes the pairs, and counts them for their sort.
+    // How many pairs there are; the search among all chunks, and where the first begins; then, in each round, the splats'
+    // rectangles and their numbers. It writes the pairs, and counts them for their sort.
     Cost::of::<macro_expand::Program>(
         partitions_of_pairs,
-        |n| 1 + u64::from(n.survivors.next_power_of_two().ilog2()) + OWN + 1,
-        |n| (n.survivors * 4 + n.macro_pairs * 2) * cost::WORD + n.pair_histogram(),
-    ),
+        |n| {
+            let chunks = n.partitions() * CHUNKS;
+            2 + u64::from(chunks.next_power_of_two().ilog2()) + 2 * expand_rounds(n)
+        },
+        |n| (n.survivors * 2 + n.macro_pairs * 2) * cost::WORD + n.pair_histogram(),
+    )
+    .turning(|n| expand_rounds(n) as f64 / 8.0),
     // These are as in the sort of the survivors.
     Cost::named(
         radix::PAIR_COUNT,
@@ -177,42 +184,53 @@ pub(in crate::passes) const COSTS: &[Cost] = &[
     Cost::named(
         radix::PAIR_SCAN,
         |_| (1 << limits::SORT_BITS) * u64::from(limits::RADIX_GROUP_SIZE),
-        |n| {
-            1 + n
-                .pair_partitions()
-                .div_ceil(limits::RADIX_GROUP_SIZE.into())
-        },
+        |n| 1 + radix::scan_turns(n.pair_partitions()),
         |n| 2 * n.pair_histogram(),
     )
-    .turning(|n| {
-        n.pair_partitions()
-            .div_ceil(limits::RADIX_GROUP_SIZE.into()) as f64
-            / 8.0
-    }),
+    .turning(|n| radix::scan_turns(n.pair_partitions()) as f64 / 8.0),
     Cost::named(
         radix::PAIR_SCATTER,
         partitions_of_pairs,
         |_| 4 + OWN,
         |n| n.macro_pairs * 4 * cost::WORD + n.pair_histogram(),
     ),
-    // How many pairs there are; then its own. It writes where each macro-tile's begin.
+    // How many pairs there are; the steps of the search, of which each invocation reads a pair of its own. It writes where each
+    // macro-tile's begin.
     Cost::of::<macro_ranges::Program>(
-        partitions_of_pairs,
-        |_| 1 + OWN,
-        |n| (n.macro_pairs + n.macro_tiles()) * cost::WORD,
+        |n| (n.macro_tiles() + 1) * u64::from(limits::MACRO_RANGE_GROUP_SIZE),
+        |n| 1 + range_steps(n),
+        |n| {
+            let step = u64::from(limits::MACRO_RANGE_GROUP_SIZE) * cost::gathered(cost::WORD);
+            (n.macro_tiles() + 1) * (range_steps(n) * step + cost::WORD)
+        },
     )
-    .turning(|_| OWN as f64 / 8.0),
-    // How many batches there are; the search for its own; then each of its splats, the mask and perhaps the splat, and once
-    // more the splat and its record. It writes how many splats of the batch each tile has. The bytes are those of one surface.
-    Cost::of::<batch_count::Program>(batches, |n| 1 + batch(n) + 2 * BATCH_TURNS, batch_bytes)
-        .turning(batch_turns),
-    // The macro-tile's pairs; then the counts of its batches, which it reads and writes. It writes the sums of tiles and rows.
+    .turning(|n| range_steps(n) as f64 / 8.0),
+    // How many batches there are; the search for its own; then each of its pairs, perhaps its splat, the mask and the outline,
+    // and once more the splat and its record. It writes how many splats of the batch each tile has. The bytes are those of one
+    // surface, for which it reads the splats' numbers only where it needs their masks.
+    Cost::of::<batch_count::Program>(
+        batches,
+        |n| 1 + batch(n) + 2 * BATCH_TURNS,
+        |n| {
+            let splats =
+                (n.masked_pairs * cost::gathered(cost::WORD)).min(n.macro_pairs * cost::WORD);
+            n.macro_pairs * cost::WORD + splats + batch_bytes(n)
+        },
+    )
+    .turning(batch_turns),
+    // The macro-tile's pairs; then the counts of its batches, which it reads, several at once, and writes. It writes the sums of
+    // tiles and rows.
     Cost::of::<batch_scan::Program>(
         |n| n.macro_tiles() * u64::from(limits::MACRO_TILES),
-        |n| 2 + n.batches().div_ceil(n.macro_tiles()),
+        |n| {
+            2 + n
+                .batches()
+                .div_ceil(n.macro_tiles())
+                .div_ceil(BATCHES_AT_ONCE)
+        },
         |n| 2 * batch_counts(n) + n.tiles() * cost::WORD + row_sums(n),
     )
-    .turning(|n| n.batches() as f64 / n.macro_tiles().max(1) as f64 / 8.0),
+    .turning(|n| n.batches() as f64 / n.macro_tiles().max(1) as f64 / (8 * BATCHES_AT_ONCE) as f64),
     // The sums of all rows; then the counts of its row's tiles, in place of which it writes where they begin.
     Cost::of::<row_scan::Program>(
         |n| n.tile_rows * u64::from(limits::RADIX_GROUP_SIZE),
@@ -227,7 +245,7 @@ pub(in crate::passes) const COSTS: &[Cost] = &[
     Cost::of::<batch_scatter::Program>(
         batches,
         |n| 2 + batch(n),
-        |n| batch_bytes(n) + (n.tiles() + n.pairs) * cost::WORD,
+        |n| (n.macro_pairs * 2 + n.tiles() + n.pairs) * cost::WORD + batch_bytes(n),
     )
     .turning(batch_turns),
 ];
@@ -243,12 +261,11 @@ const _: () = assert!(
     limits::PAIR_BITS + 2 * (limits::MACRO_COLUMNS * limits::MACRO_ROWS).ilog2() + 1 == u32::BITS
 );
 
-/// Bytes of the pairs of all batches, of the masks of those that need one, which neighbours in a list do not share, and of the
-/// counts.
+/// Bytes of the masks of the pairs that need one, which neighbours in a list do not share, and of the batches' counts.
 #[cfg(feature = "lab")]
 fn batch_bytes(numbers: &FrameNumbers) -> u64 {
     let masks = numbers.masked_pairs * cost::gathered(cost::TILE_MASK);
-    numbers.macro_pairs * 2 * cost::WORD + masks + batch_counts(numbers)
+    masks + batch_counts(numbers)
 }
 
 /// Bytes of the sums of the rows of tiles of macro-tiles.
@@ -256,6 +273,29 @@ fn batch_bytes(numbers: &FrameNumbers) -> u64 {
 fn row_sums(numbers: &FrameNumbers) -> u64 {
     let columns = numbers.tile_columns.div_ceil(limits::MACRO_COLUMNS.into());
     numbers.tile_rows * columns * 4 * cost::WORD
+}
+
+/// Chunks of splats in a partition, as in glsl/macro_tiles.glsl.
+const CHUNKS: u64 = (limits::RADIX_PARTITION / limits::RADIX_GROUP_SIZE) as u64;
+
+/// Batches whose counts an invocation waits for together, as in glsl/batch_scan.comp.
+#[cfg(feature = "lab")]
+const BATCHES_AT_ONCE: u64 = 8;
+
+/// The rounds in which a partition of the pairs finds its splats, 2048 in each, from the beginning of a chunk on; as many
+/// splats as there are where all have as many pairs.
+#[cfg(feature = "lab")]
+fn expand_rounds(numbers: &FrameNumbers) -> u64 {
+    let pairs = numbers.macro_pairs.max(1);
+    let splats = u64::from(limits::RADIX_PARTITION) * numbers.survivors / pairs;
+    (splats + u64::from(limits::RADIX_GROUP_SIZE)).div_ceil(2048)
+}
+
+/// The steps of the search for a macro-tile's first pair.
+#[cfg(feature = "lab")]
+fn range_steps(numbers: &FrameNumbers) -> u64 {
+    let bits = u64::from(numbers.macro_pairs.max(1).ilog2()) + 1;
+    bits.div_ceil(limits::MACRO_RANGE_GROUP_SIZE.ilog2().into())
 }
 
 /// The turns of the loop over an invocation's splats of a batch.
@@ -299,19 +339,19 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let scratch = t.scratch.macro_tiles();
     let sort::Sorted {
         order,
-        spare: [pair_begins, rect_firsts, rect_sizes],
+        spare: [rects, chunk_begins, _],
     } = sort::sorted(frame);
     let partitions = indirect!(b.counts, FrameCounts, sort_groups);
     let buffers = buffers!(macro_count {
         b => [frame, counts, tile_masks],
         scratch => [pair_sums];
-        order, pair_begins, rect_firsts, rect_sizes,
+        order, rects,
     });
     frame.dispatch(recorder, buffers, (), partitions);
     let buffers = buffers!(macro_scan {
         b => [frame, counts],
         scratch => [pair_sums];
-        pair_begins,
+        chunk_begins,
     });
     frame.dispatch(recorder, buffers, (), partitions);
 
@@ -324,8 +364,8 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let splats = [&scratch.macro_splats[0], &scratch.macro_splats[1]];
     let pair_partitions = indirect!(b.counts, FrameCounts, pair_groups);
     let buffers = buffers!(macro_expand {
-        b => [frame, counts];
-        order, pair_begins, rect_firsts, rect_sizes,
+        b => [frame, counts, tile_masks];
+        order, rects, chunk_begins,
         macro_keys: keys[0],
         macro_splats: splats[0],
         histogram: &scratch.macro_histogram,
@@ -353,7 +393,9 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         scratch => [macro_begins];
         macro_keys: &scratch.macro_keys,
     });
-    frame.dispatch(recorder, buffers, (), pair_partitions);
+    let [columns, rows] = macro_tiles(&frame.plan.data.tiles);
+    // And for where all end.
+    frame.dispatch(recorder, buffers, (), Groups::Count(columns * rows + 1));
 
     let batches = indirect!(b.counts, FrameCounts, batch_groups);
     let buffers = buffers!(batch_count {
@@ -362,7 +404,6 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         macro_splats: splats[sorted],
     });
     frame.dispatch(recorder, buffers, (), batches);
-    let [columns, rows] = macro_tiles(&frame.plan.data.tiles);
     let buffers = buffers!(batch_scan {
         b => [frame, counts],
         scratch => [macro_begins, tile_counts, row_sums];

@@ -33,14 +33,17 @@ pub(in crate::passes) const COSTS: &[Cost] = &[
         |n| n.survivors * cost::WORD + n.histogram(),
     )
     .turning(|_| KEYS as f64 / 8.0),
-    // The partitions' least and greatest keys, which decide about the passes; then their counts of the digit, which it reads
-    // and writes.
+    // The partitions' least and greatest keys, which decide about the passes; then their counts of the digit, which it reads,
+    // several at once, and writes.
     Cost::of::<radix_scan::Program>(
         |_| (1 << limits::SORT_BITS) * u64::from(limits::RADIX_GROUP_SIZE),
-        |n| 2 + 2 * n.partitions().div_ceil(limits::RADIX_GROUP_SIZE.into()),
+        |n| {
+            let ranges = n.partitions().div_ceil(limits::RADIX_GROUP_SIZE.into());
+            2 + ranges + radix::scan_turns(n.partitions())
+        },
         |n| 2 * n.histogram(),
     )
-    .turning(|n| n.partitions().div_ceil(limits::RADIX_GROUP_SIZE.into()) as f64 / 8.0),
+    .turning(|n| radix::scan_turns(n.partitions()) as f64 / 8.0),
     // How many keys there are, the digits' totals, its own keys, the partition's counts; then the keys once more.
     // It reads and writes the keys and the survivors' numbers, and reads the counts.
     Cost::of::<radix_scatter::Program>(

@@ -16,7 +16,7 @@ BUFFER(readonly, 8, vec4, cut_records)
 shared uint several[BATCH_WORDS];
 
 bool is_cut_by_several(uint splat) {
-    vec3 linear = vec3(splats.at[splat].conic_cut.zw, splats.at[splat].colour_cut.w);
+    vec3 linear = vec3(SPLAT_CONIC(splat).zw, SPLAT_COLOUR(splat).w);
     if (!(linear.x < -Z_RANGE)) {
         return false; // whole, or one surface that the splat carries
     }

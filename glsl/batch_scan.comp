@@ -34,7 +34,8 @@ void main() {
         for (uint batch = first; batch < end; batch += BATCHES_AT_ONCE) {
             uint own[BATCHES_AT_ONCE];
             for (uint k = 0u; k < BATCHES_AT_ONCE; k++) {
-                own[k] = batch + k < end ? tile_counts.at[tile_count_place(batch + k, tile)] : 0u;
+                uint count = tile_counts.at[tile_count_place(min(batch + k, end - 1u), tile)];
+                own[k] = batch + k < end ? count : 0u;
             }
             for (uint k = 0u; k < BATCHES_AT_ONCE; k++) {
                 if (batch + k < end) {

@@ -5,10 +5,11 @@
 #include "batches.glsl"
 
 BUFFER(readonly, 2, FrameCounts, counts)
-BUFFER(readonly, 3, Splat, splats)
+BUFFER(readonly, 3, vec4, splats)
 BUFFER(readonly, 4, uvec4, tile_masks)
 BUFFER(readonly, 5, uint, macro_splats)
 BUFFER(readonly, 6, uint, macro_keys)
+#include "splat_at.glsl"
 
 const uint BATCH_WORDS = BATCH_SPLATS / 32u;
 // The words of a tile are this far apart, so that neither the words of one tile nor those of neighbours share a memory bank.
@@ -31,7 +32,7 @@ uvec4 tiles_of(uint pair, uvec2 corner) {
     if (tiles.y == 0u) {
         return tiles_of_mask(tiles.x, tiles.zw, corner);
     }
-    return tiles_of_outline(bounded_outline(splats.at[splat], tiles.zw), corner);
+    return tiles_of_outline(bounded_outline(splat_at(splat), tiles.zw), corner);
 }
 
 void find_held(Batch batch) {

@@ -57,6 +57,11 @@ const uint MAX_CUTTING = 8u;
 // Workgroup size of the sort for GPUs, and the consecutive keys of such a workgroup: its partition.
 const uint RADIX_GROUP_SIZE = 256u;
 const uint RADIX_PARTITION = 4096u;
+// The most groups of splats of one depth that are more than such a workgroup sorts, and the most parts, each of so many
+// partitions at least, into which the scene's numbers are divided to sort them.
+const uint MOST_CROWDS = 1020u;
+const uint MOST_STRETCHES = 256u;
+const uint LEAST_STRETCH = 4u;
 // Counts of an invocation in a turn of that sort's scans.
 const uint RADIX_SCAN_COUNTS = 8u;
 // Tiles across and down a macro-tile, in which kernels for GPUs collect splats before they list those of each tile. A picture

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// After the sort of the pairs of macro-tile and splat a workgroup a macro-tile finds where its pairs begin; the last one finds
-// where all end. One that has none begins where the next one does.
+// After a sort of the pairs of macro-tile and splat that took several passes, a workgroup a macro-tile finds where its pairs
+// begin; the last one finds where all end. One that has none begins where the next one does.
 #include "macro_tiles.glsl"
 
 layout(local_size_x = MACRO_RANGE_GROUP_SIZE) in;

@@ -15,14 +15,15 @@ layout(constant_id = 1) const bool QUADS = false;
 layout(constant_id = 2) const bool RECTS = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
-BUFFER(readonly, 2, uvec2, survivors)
+BUFFER(readonly, 2, uint, survivors)
 BUFFER(readonly, 3, FrameCounts, counts)
 BUFFER(readonly, 4, uvec2, recuts)
 BUFFER(readonly, 5, vec4, cut_records)
 BUFFER(readonly, 6, uvec4, tile_masks)
-BUFFER(, 7, Splat, splats)
+BUFFER(, 7, vec4, splats)
 BUFFER(writeonly, 8, uint, dirty)
 BUFFER(writeonly, 9, Quad, quads)
+#include "splat_at.glsl"
 #include "carried.glsl"
 
 // All that find a tile changed write the same value. The tiles are the whole splat's, as in the lists.
@@ -47,7 +48,7 @@ void mark(uint survivor) {
         }
     }
     if (tiles.y != 0u) {
-        Splat splat = splats.at[survivor];
+        Splat splat = splat_at(survivor);
         splat.conic_cut.z = Z_WHOLE;
         Outline o = bounded_outline(splat, tiles.zw);
         for (uint row = o.rows.x; row < o.rows.y; row++) {
@@ -66,7 +67,7 @@ void main() {
     }
     uint survivor = recuts.at[change].x;
     uint cut = recuts.at[change].y;
-    uint index = survivors.at[survivor].x;
+    uint index = survivors.at[survivor];
     enter_layer_of_block(index / BLOCK_SIZE);
     Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
@@ -84,9 +85,9 @@ void main() {
     } else if (QUADS) {
         quad = quad_around(f, opacity_extent(opacity_in_layer(gaussian)), weight);
     }
-    splats.at[survivor].conic_cut.zw = weight.linear.xy;
-    splats.at[survivor].colour_cut.w = weight.linear.z;
-    splats.at[survivor].curvature_depth.xyz = weight.curvature;
+    SPLAT_CONIC(survivor).zw = weight.linear.xy;
+    SPLAT_COLOUR(survivor).w = weight.linear.z;
+    SPLAT_CURVATURE(survivor).xyz = weight.curvature;
     if (QUADS) {
         quads.at[survivor] = quad;
     }

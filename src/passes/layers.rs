@@ -34,7 +34,7 @@ layered!(classify, clip: Plan::view_is_clipped, combined: is_combined);
 layered!(clip_blocks, combined: is_combined);
 layered!(clip, combined: is_combined);
 layered!(compact_scan);
-layered!(compact);
+layered!(compact, cut: Plan::view_is_cut);
 layered!(cutoff, combined: is_combined);
 layered!(depth, combined: is_combined);
 layered!(reclip_blocks, combined: is_combined);

@@ -35,8 +35,8 @@ impl OfPlan for project::Constants {
 pub(super) const COSTS: &[Cost] = &[
     // How many there are, its Gaussian's number, the layer; the Gaussian meanwhile. Then the cutoff record's header and the
     // rest of it, the colour's constant, its units and those of three degrees; the record once more for the tiles.
-    // It reads the survivor, the Gaussian, its colour and the record, and writes the splat, its rectangle of tiles, its key and
-    // its number, and the masks of those that need one, which have a pair each at least; quads are left out, which frames of
+    // It reads the survivor, the Gaussian, its colour and the record, and writes the splat, its depth, its rectangle of tiles and
+    // its key, the curvatures of cut splats, and the masks of those that need one, which have a pair each at least; quads are left out, which frames of
     // tiles do without.
     Cost::of::<project::Program>(
         |n| n.survivors,
@@ -45,7 +45,8 @@ pub(super) const COSTS: &[Cost] = &[
             let read = cost::SURVIVOR + cost::GAUSSIAN + n.sh_bytes;
             let written = cost::SPLAT + 3 * cost::WORD;
             let masks = n.masked_pairs * cost::gathered(cost::TILE_MASK);
-            n.survivors * (read + written) + masks + n.cut * n.record_bytes
+            let cut = n.record_bytes + cost::gathered(cost::CURVATURE);
+            n.survivors * (read + written) + n.cuts() + masks + n.cut * cut
         },
     ),
 ];

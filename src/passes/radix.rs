@@ -99,6 +99,8 @@ pub(super) struct Pass<'a> {
     /// The keys for whichever pass is the first that the device does not skip.
     pub(super) first_keys: &'a Buffer,
     pub(super) histogram: &'a Buffer,
+    /// Where one pass that sorts all pairs leaves where those of each of so many macro-tiles begin.
+    pub(super) macro_begins: Option<(&'a Buffer, u32)>,
 }
 
 impl Pass<'_> {
@@ -159,8 +161,14 @@ impl Pass<'_> {
             sorted_keys: self.keys[1],
             sorted_order: self.order[1],
             depth_keys: self.first_keys,
+            macro_begins: self
+                .macro_begins
+                .map_or(self.order[1], |(begins, _)| begins),
         };
-        let params = radix_scatter::Params { pass: self.number };
+        let params = radix_scatter::Params {
+            pass: self.number,
+            macro_tiles: self.macro_begins.map_or(0, |(_, count)| count),
+        };
         kernels
             .scatter
             .dispatch(pipelines, recorder, buffers, params, groups);

@@ -138,8 +138,7 @@ fn draw(renderer: &mut Headless, camera: &Camera, clip: &Clip, settings: &Settin
     let [keys, order] = [["keys", "order"], ["sorted_keys", "sorted_order"]][passes as usize % 2];
     let records = counts.cutoff as usize * frame.weight.cut_stride as usize * 16;
     let mut wanted = vec![
-        ("survivors", 8 * listed),
-        ("splats", size_of::<rara::types::Splat>() * listed),
+        ("survivors", 4 * listed),
         ("cutoffs", 4 * counts.cutoff as usize),
         ("cut_records", records),
     ];
@@ -159,6 +158,13 @@ fn draw(renderer: &mut Headless, camera: &Camera, clip: &Clip, settings: &Settin
         .into_iter()
         .map(|(name, bytes)| (name, read(name, bytes)))
         .collect();
+    let gaussians = frame.scene.gaussian_count as usize;
+    if gaussians > 0 {
+        let splats = read("splats", 64 * gaussians);
+        let splats: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&splats);
+        let splats = common::splats(&splats, gaussians, renderer.device().shape());
+        buffers.push(("splats", bytemuck::cast_slice(&splats[..listed]).to_vec()));
+    }
     let records = buffers.iter_mut().find(|(name, _)| *name == "cut_records");
     let stride = frame.weight.cut_stride as usize * 16;
     if let Some((_, bytes)) = records.filter(|_| stride > 0) {

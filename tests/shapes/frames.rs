@@ -119,6 +119,7 @@ impl Shapes {
 fn draw(renderer: &mut Headless, camera: &Camera, clip: &Clip, settings: &Settings) -> Drawn {
     renderer.render(camera, clip, settings).expect("renders");
     let picture = renderer.picture().expect("reads back");
+    let shape = renderer.device().shape();
     let mut read = |name: &str, bytes: usize| {
         let content = renderer.working_buffer(name);
         let mut content = content.unwrap_or_else(|| panic!("there is no buffer {name}"));
@@ -160,9 +161,13 @@ fn draw(renderer: &mut Headless, camera: &Camera, clip: &Clip, settings: &Settin
         .collect();
     let gaussians = frame.scene.gaussian_count as usize;
     if gaussians > 0 {
-        let splats = read("splats", 64 * gaussians);
+        let vectors = match shape {
+            DeviceShape::Cpu => 4 * gaussians,
+            _ => 4 * gaussians + gaussians.div_ceil(4),
+        };
+        let splats = read("splats", 16 * vectors);
         let splats: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&splats);
-        let splats = common::splats(&splats, gaussians, renderer.device().shape());
+        let splats = common::splats(&splats, gaussians, shape);
         buffers.push(("splats", bytemuck::cast_slice(&splats[..listed]).to_vec()));
     }
     let records = buffers.iter_mut().find(|(name, _)| *name == "cut_records");

@@ -2,11 +2,12 @@
 #extension GL_GOOGLE_include_directive : require
 // Counts how many splats of each batch are in each tile of its macro-tile, and marks the tiles in which several surfaces cut
 // one of them.
+// True where tiles have a pipeline without code for several surfaces: an exact cut by more than one.
+layout(constant_id = 0) const bool SEVERAL = false;
+#define NEEDS_SPLATS SEVERAL
 #include "batch_tiles.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
-// True where tiles have a pipeline without code for several surfaces: an exact cut by more than one.
-layout(constant_id = 0) const bool SEVERAL = false;
 
 BUFFER(writeonly, 7, uint, tile_counts)
 BUFFER(readonly, 8, vec4, cut_records)
@@ -15,7 +16,7 @@ BUFFER(readonly, 8, vec4, cut_records)
 shared uint several[BATCH_WORDS];
 
 bool is_cut_by_several(uint splat) {
-    vec3 linear = vec3(splats.at[splat].conic_cut.zw, splats.at[splat].colour_cut.w);
+    vec3 linear = vec3(SPLAT_CONIC(splat).zw, SPLAT_COLOUR(splat).w);
     if (!(linear.x < -Z_RANGE)) {
         return false; // whole, or one surface that the splat carries
     }

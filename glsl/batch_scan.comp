@@ -14,6 +14,9 @@ BUFFER(writeonly, 4, uint, tile_begins)
 // Pairs, tiles that hold anything, and those of them in which several surfaces cut a splat.
 BUFFER(writeonly, 5, uvec4, row_sums)
 
+// Batches whose counts an invocation waits for together.
+const uint BATCHES_AT_ONCE = 8u;
+
 shared uint totals[MACRO_TILES];
 
 void main() {
@@ -28,11 +31,19 @@ void main() {
     if (counts.at[0].macro_pairs > 0u) {
         uint first = first_batch(macro_tile);
         uint end = first + batches_of(macro_tile);
-        for (uint batch = first; batch < end; batch++) {
-            uint count = tile_counts.at[tile_count_place(batch, tile)];
-            tile_counts.at[tile_count_place(batch, tile)] = total;
-            total += count & ~SEVERAL_TILE;
-            mark |= count & SEVERAL_TILE;
+        for (uint batch = first; batch < end; batch += BATCHES_AT_ONCE) {
+            uint own[BATCHES_AT_ONCE];
+            for (uint k = 0u; k < BATCHES_AT_ONCE; k++) {
+                uint count = tile_counts.at[tile_count_place(min(batch + k, end - 1u), tile)];
+                own[k] = batch + k < end ? count : 0u;
+            }
+            for (uint k = 0u; k < BATCHES_AT_ONCE; k++) {
+                if (batch + k < end) {
+                    tile_counts.at[tile_count_place(batch + k, tile)] = total;
+                }
+                total += own[k] & ~SEVERAL_TILE;
+                mark |= own[k] & SEVERAL_TILE;
+            }
         }
     }
     totals[tile] = total | mark;

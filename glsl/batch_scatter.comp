@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // The last step of binning for GPUs writes the splats of each batch, front to back, to the places of their tiles.
+#define NEEDS_SPLATS true
 #include "batch_tiles.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;

@@ -1,14 +1,15 @@
 // The tiles of a batch's splats: for each tile of the macro-tile, a bit for each splat of the batch. Included by workgroups of
-// RADIX_GROUP_SIZE, after their further buffers.
+// RADIX_GROUP_SIZE, which say whether they need the splats' numbers in any case, NEEDS_SPLATS.
 #ifndef RARA_BATCH_TILES
 #define RARA_BATCH_TILES
 #include "batches.glsl"
 
 BUFFER(readonly, 2, FrameCounts, counts)
-BUFFER(readonly, 3, Splat, splats)
+BUFFER(readonly, 3, vec4, splats)
 BUFFER(readonly, 4, uvec4, tile_masks)
 BUFFER(readonly, 5, uint, macro_splats)
 BUFFER(readonly, 6, uint, macro_keys)
+#include "splat_at.glsl"
 
 const uint BATCH_WORDS = BATCH_SPLATS / 32u;
 // The words of a tile are this far apart, so that neither the words of one tile nor those of neighbours share a memory bank.
@@ -21,15 +22,17 @@ uint held_place(uint word, uint tile) {
     return word * HELD_STRIDE + tile;
 }
 
-uvec4 tiles_of(uint key, uint splat, uvec2 corner) {
+uvec4 tiles_of(uint pair, uvec2 corner) {
+    uint key = macro_keys.at[pair];
     if (key < PAIR_MASKED) {
         return tiles_of_rect(key);
     }
+    uint splat = macro_splats.at[pair];
     uvec4 tiles = tile_masks.at[splat];
     if (tiles.y == 0u) {
         return tiles_of_mask(tiles.x, tiles.zw, corner);
     }
-    return tiles_of_outline(bounded_outline(splats.at[splat], tiles.zw), corner);
+    return tiles_of_outline(bounded_outline(splat_at(splat), tiles.zw), corner);
 }
 
 void find_held(Batch batch) {
@@ -40,9 +43,10 @@ void find_held(Batch batch) {
     barrier();
     uvec2 corner = corner_of(batch.macro_tile);
     for (uint i = local; i < batch.pairs.y - batch.pairs.x; i += RADIX_GROUP_SIZE) {
-        uint splat = macro_splats.at[batch.pairs.x + i];
-        batch_splats[i] = splat;
-        uvec4 tiles = tiles_of(macro_keys.at[batch.pairs.x + i], splat, corner);
+        if (NEEDS_SPLATS) {
+            batch_splats[i] = macro_splats.at[batch.pairs.x + i];
+        }
+        uvec4 tiles = tiles_of(batch.pairs.x + i, corner);
         for (uint word = 0u; word < 4u; word++) {
             for (uint bits = tiles[word]; bits != 0u; bits &= bits - 1u) {
                 // Bits may be set in any order.

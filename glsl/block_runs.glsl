@@ -16,7 +16,7 @@ struct BlockRun {
 };
 
 // Blocks that an invocation looks at before it waits for their counts.
-const uint BLOCKS_AT_ONCE = 4u;
+const uint BLOCKS_AT_ONCE = 8u;
 
 shared uvec4 run_totals[BLOCK_SIZE];
 shared uvec4 earlier_totals[BLOCK_SIZE];
@@ -35,18 +35,23 @@ BlockRun block_run() {
     for (uint first = 0u; first < workgroup_begin; first += BLOCKS_AT_ONCE * BLOCK_SIZE) {
         for (uint k = 0u; k < BLOCKS_AT_ONCE; k++) {
             uint block = first + k * BLOCK_SIZE + local;
-            if (block < workgroup_begin) {
-                earlier += totals_of(block);
-            }
+            uvec4 totals = totals_of(min(block, workgroup_begin - 1u));
+            earlier += block < workgroup_begin ? totals : uvec4(0u);
         }
     }
     run_totals[local] = total;
     earlier_totals[local] = earlier;
     barrier();
-    uvec4 before = uvec4(0u);
-    for (uint other = 0u; other < BLOCK_SIZE; other++) {
-        before += earlier_totals[other] + (other < local ? run_totals[other] : uvec4(0u));
+    // The runs up to each invocation's, and, in the first place, everything earlier.
+    for (uint distance = 1u; distance < BLOCK_SIZE; distance *= 2u) {
+        uvec4 before = local >= distance ? run_totals[local - distance] : uvec4(0u);
+        uvec4 others = local + distance < BLOCK_SIZE ? earlier_totals[local + distance] : uvec4(0u);
+        barrier();
+        run_totals[local] += before;
+        earlier_totals[local] += others;
+        barrier();
     }
+    uvec4 before = earlier_totals[0] + run_totals[local] - total;
     return BlockRun(bounds, before, gl_GlobalInvocationID.x == runs - 1u);
 }
 

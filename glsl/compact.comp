@@ -4,15 +4,18 @@
 // its block's offset plus the set bits before its own, so the lists are in the order of the scene in every run.
 #include "layer.glsl"
 #include "masks.glsl"
+#include "survivors.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
+// True where survivors may be cut.
+layout(constant_id = 0) const bool CUT = false;
 
 BUFFER(readonly, 1, uint, block_list)
 BUFFER(readonly, 2, FrameCounts, counts)
 BUFFER(readonly, 3, uint, block_sides)
 BUFFER(readonly, 4, uint, masks)
 BUFFER(readonly, 5, uvec2, block_offsets)
-BUFFER(writeonly, 6, uvec2, survivors)
+BUFFER(writeonly, 6, uint, survivors)
 BUFFER(writeonly, 7, uint, cutoffs)
 
 // Set bits of a block's mask before bit `local`.
@@ -22,6 +25,13 @@ uint rank(uint base, uint local) {
         count += bits_before(masks.at[base + word], word, local);
     }
     return count;
+}
+
+void put(uint survivor, uint index, uint cut) {
+    survivors.at[survivor] = index;
+    if (CUT) {
+        survivors.at[cut_place(survivor)] = cut;
+    }
 }
 
 void main() {
@@ -38,7 +48,7 @@ void main() {
     uint index = block * BLOCK_SIZE + local;
     uvec2 offset = block_offsets.at[block];
     if (block_sides.at[block] == SIDE_VISIBLE) {
-        survivors.at[offset.x + local] = uvec2(index, NOT_CUT);
+        put(offset.x + local, index, NOT_CUT);
         return;
     }
     uint base = block * 2u * WORDS;
@@ -47,9 +57,9 @@ void main() {
         return;
     }
     uint cut = NOT_CUT;
-    if ((masks.at[base + WORDS + (local >> 5)] & bit) != 0u) {
+    if (CUT && (masks.at[base + WORDS + (local >> 5)] & bit) != 0u) {
         cut = offset.y + rank(base + WORDS, local);
         cutoffs.at[cut] = index;
     }
-    survivors.at[offset.x + rank(base, local)] = uvec2(index, cut);
+    put(offset.x + rank(base, local), index, cut);
 }

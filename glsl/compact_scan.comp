@@ -19,7 +19,9 @@ BUFFER(writeonly, 5, FrameCounts, counts)
 uvec4 totals_of(uint block) {
     enter_layer_of_block(block);
     uint side = block_sides.at[block];
-    uvec3 totals = side == SIDE_CUTOFF ? block_counts.at[block].xyz
+    // Those of a block that is settled mean nothing, but are there without another wait.
+    uvec3 counted = block_counts.at[block].xyz;
+    uvec3 totals = side == SIDE_CUTOFF ? counted
         : uvec3(side == SIDE_VISIBLE ? 1u : 0u, 0u, side == SIDE_INVISIBLE ? 1u : 0u) * block_length(block);
     return uvec4(totals, totals.x + totals.y > 0u ? 1u : 0u);
 }

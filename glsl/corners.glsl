@@ -8,9 +8,10 @@
 #include "widened.glsl"
 
 BUFFER(readonly, 1, FrameCounts, counts)
-BUFFER(readonly, 2, Splat, splats)
+BUFFER(readonly, 2, vec4, splats)
 BUFFER(readonly, 3, uint, order)
 BUFFER(readonly, 5, Quad, quads)
+#include "splat_at.glsl"
 
 // Splats are drawn back to front: the blend is the ordinary `over`, so that a host can draw them onto what it has drawn.
 uint survivor_at(uint number) {

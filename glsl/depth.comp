@@ -7,7 +7,7 @@
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 
 BUFFER(readonly, 2, Gaussian, gaussians)
-BUFFER(readonly, 3, uvec2, survivors)
+BUFFER(readonly, 3, uint, survivors)
 BUFFER(readonly, 4, FrameCounts, counts)
 BUFFER(writeonly, 5, SplatDepth, depths)
 BUFFER(readonly, 6, uint, shortlists)
@@ -30,7 +30,7 @@ void main() {
     if (survivor >= counts.at[0].visible + counts.at[0].cutoff) {
         return;
     }
-    uint index = survivors.at[survivor].x;
+    uint index = survivors.at[survivor];
     enter_layer_of_block(index / BLOCK_SIZE);
     Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);

@@ -63,6 +63,13 @@ const uint SHORTLIST_WORDS = 64u;
 // Workgroup size of the sort for GPUs, and the consecutive keys of such a workgroup: its partition.
 const uint RADIX_GROUP_SIZE = 256u;
 const uint RADIX_PARTITION = 4096u;
+// The most groups of splats of one depth that are more than such a workgroup sorts, and the most parts, each of so many
+// partitions at least, into which the scene's numbers are divided to sort them.
+const uint MOST_CROWDS = 1020u;
+const uint MOST_STRETCHES = 256u;
+const uint LEAST_STRETCH = 4u;
+// Counts of an invocation in a turn of that sort's scans.
+const uint RADIX_SCAN_COUNTS = 8u;
 // Tiles across and down a macro-tile, in which kernels for GPUs collect splats before they list those of each tile. A picture
 // of 1920x1080 then has 255 macro-tiles, one fewer than a digit of the sort has values.
 const uint MACRO_COLUMNS = 16u;
@@ -70,6 +77,8 @@ const uint MACRO_ROWS = 8u;
 // Bits of a macro-tile's number in the key of a pair of macro-tile and splat, enough for pictures of 32768x32768.
 const uint PAIR_BITS = 17u;
 const uint MACRO_TILES = MACRO_COLUMNS * MACRO_ROWS;
+// Workgroup size of the search for a macro-tile's first pair: what it divides the pairs into in a step.
+const uint MACRO_RANGE_GROUP_SIZE = 64u;
 // Most splats of a macro-tile that a workgroup lists the tiles of: a batch.
 const uint BATCH_SPLATS = 512u;
 // Workgroup size of the spans of tiles, of which one invocation owns a run of consecutive splats.

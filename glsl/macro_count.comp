@@ -1,49 +1,48 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The first step of binning for GPUs finds the macro-tiles of each splat, in the order of depth, and how many pairs each
-// partition of the splats has.
+// The first step of binning for GPUs brings the splats' rectangles of tiles into the order of depth, and finds how many pairs
+// with macro-tiles each chunk and each partition of the splats has.
 #include "macro_tiles.glsl"
 #include "radix.glsl"
-#include "workgroup_sum.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
 
 BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, uint, order)
 BUFFER(readonly, 3, uvec4, tile_masks)
-BUFFER(writeonly, 4, uint, pair_begins)
-// The first tile of each splat's rectangle, its column in the lower half; and how many columns and rows of tiles it has,
-// marked where the splat does not touch all of them.
-BUFFER(writeonly, 5, uint, rect_firsts)
-BUFFER(writeonly, 6, uint, rect_sizes)
-BUFFER(writeonly, 7, uint, pair_sums)
+BUFFER(writeonly, 4, uint, rects)
+// Of the partitions; and behind them of their chunks.
+BUFFER(writeonly, 5, uint, pair_sums)
+
+shared uint chunk_sums[CHUNKS];
 
 void main() {
-    uvec2 bounds = partition_bounds(gl_WorkGroupID.x, KEY_COUNT);
-    uint pairs = 0u;
-    for (uint i = bounds.x + gl_LocalInvocationIndex; i < bounds.y; i += RADIX_GROUP_SIZE) {
-        uvec4 tiles = tile_masks.at[order.at[i]];
-        Rect rect;
-        bool masked = true;
-        if (tiles.y == 0u) {
-            rect = rect_of_mask(tiles.x, tiles.zw);
-            masked = uint(bitCount(tiles.z) + bitCount(tiles.w)) != rect.size.x * rect.size.y;
-        } else {
-            rect = rect_of_bounds(tiles.zw);
-        }
-        uint count = 0u;
-        if (rect.size.x != 0u) {
-            uvec2 size = macro_rect(rect).size;
-            count = size.x * size.y;
-        }
-        pair_begins.at[i] = count;
-        rect_firsts.at[i] = rect.first.x | rect.first.y << 16;
-        rect_sizes.at[i] = rect.size.x | rect.size.y << 16 | (masked ? PAIR_MASKED : 0u);
-        pairs += count;
+    uint local = gl_LocalInvocationIndex;
+    uint p = gl_WorkGroupID.x;
+    if (local < CHUNKS) {
+        chunk_sums[local] = 0u;
     }
-    uint total;
-    exclusive_sum(pairs, total);
-    if (gl_LocalInvocationIndex == 0u) {
-        pair_sums.at[gl_WorkGroupID.x] = total;
+    barrier();
+    uvec2 bounds = partition_bounds(p, KEY_COUNT);
+    for (uint chunk = 0u; chunk < CHUNKS; chunk++) {
+        uint i = bounds.x + chunk * CHUNK_SPLATS + local;
+        if (i < bounds.y) {
+            uint splat = order.at[i];
+            uint word = RECT_WORD(tile_masks, splat);
+            rects.at[i] = word;
+            // The sums do not depend on the order.
+            atomicAdd(chunk_sums[chunk], word == RECT_LARGE ? pairs_of(rect_of_bounds(tile_masks.at[splat].zw)) : pairs_of_word(word));
+        }
+    }
+    barrier();
+    if (local < CHUNKS) {
+        pair_sums.at[CHUNK_SUM_PLACE(p, local)] = chunk_sums[local];
+    }
+    if (local == 0u) {
+        uint sum = 0u;
+        for (uint chunk = 0u; chunk < CHUNKS; chunk++) {
+            sum += chunk_sums[chunk];
+        }
+        pair_sums.at[p] = sum;
     }
 }

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The second step of binning for GPUs finds where the pairs of each splat begin, and whether they have room. Each workgroup
-// adds up the partitions before its own by itself.
+// The second step of binning for GPUs finds where the pairs of each chunk of splats begin, and whether they have room. Each
+// workgroup adds up the partitions before its own by itself.
 #include "macro_tiles.glsl"
 #include "radix.glsl"
 #include "workgroup_sum.glsl"
@@ -10,7 +10,7 @@
 layout(local_size_x = RADIX_GROUP_SIZE) in;
 
 BUFFER(, 1, FrameCounts, counts)
-BUFFER(, 2, uint, pair_begins)
+BUFFER(writeonly, 2, uint, chunk_begins)
 BUFFER(readonly, 3, uint, pair_sums)
 
 void main() {
@@ -39,21 +39,11 @@ void main() {
     }
     uint before;
     exclusive_sum(my_before, before);
-    // An invocation owns consecutive splats.
-    uvec2 bounds = partition_bounds(p, KEY_COUNT);
-    uint first = bounds.x + local * RADIX_KEYS;
-    uint own[RADIX_KEYS];
-    uint sum = 0u;
-    for (uint k = 0u; k < RADIX_KEYS; k++) {
-        own[k] = first + k < bounds.y ? pair_begins.at[first + k] : 0u;
-        sum += own[k];
-    }
-    uint total;
-    uint place = before + exclusive_sum(sum, total);
-    for (uint k = 0u; k < RADIX_KEYS; k++) {
-        if (first + k < bounds.y) {
-            pair_begins.at[first + k] = place;
+    if (local < CHUNKS) {
+        for (uint chunk = 0u; chunk < CHUNKS; chunk++) {
+            uint sum = pair_sums.at[CHUNK_SUM_PLACE(p, chunk)];
+            before += chunk < local ? sum : 0u;
         }
-        place += own[k];
+        chunk_begins.at[p * CHUNKS + local] = before;
     }
 }

@@ -2,7 +2,7 @@
 // tile. A splat has a pair with each macro-tile of a rectangle around its tiles, and may touch none of the macro-tile's.
 #ifndef RARA_MACRO_TILES
 #define RARA_MACRO_TILES
-#include "bin.glsl"
+#include "rects.glsl"
 
 // Marks the count of a tile's splats where several surfaces cut one of them.
 const uint SEVERAL_TILE = 1u << 31u;
@@ -15,48 +15,27 @@ uint macro_tile_count() {
     return macro_columns() * ((tile_rows() + MACRO_ROWS - 1u) / MACRO_ROWS);
 }
 
-// A rectangle of tiles.
-struct Rect {
-    uvec2 first; // column and row
-    uvec2 size; // columns and rows, 0 for none
-};
-
-const Rect NO_RECT = Rect(uvec2(0u), uvec2(0u));
-
-Rect rect_between(uvec2 columns, uvec2 rows) {
-    if (columns.x >= columns.y || rows.x >= rows.y) {
-        return NO_RECT;
-    }
-    return Rect(uvec2(columns.x, rows.x), uvec2(columns.y - columns.x, rows.y - rows.x));
-}
-
-// The rectangle around the tiles of a mask (tile_mask).
-Rect rect_of_mask(uint origin, uvec2 mask) {
-    uint both = mask.x | mask.y;
-    if (both == 0u) {
-        return NO_RECT;
-    }
-    uint columns = both | both >> 16;
-    columns = (columns | columns >> 8) & 0xffu;
-    uint first_bit = mask.x != 0u ? uint(findLSB(mask.x)) : 32u + uint(findLSB(mask.y));
-    uint last_bit = mask.y != 0u ? 32u + uint(findMSB(mask.y)) : uint(findMSB(mask.x));
-    uvec2 first = uvec2(origin & 0xffffu, origin >> 16);
-    return rect_between(first.x + uvec2(findLSB(columns), findMSB(columns) + 1),
-        first.y + uvec2(first_bit / MASK_SIDE, last_bit / MASK_SIDE + 1u));
-}
-
-// That around the tiles of an outline, from its bounds.
-Rect rect_of_bounds(uvec2 bounds) {
-    vec2 sides = sides_of(bounds);
-    return rect_between(tiles_between(sides.x, sides.y, FRAME.view.size.x, TILE_WIDTH), rows_of(bounds));
-}
-
 // The macro-tiles that a rectangle of tiles, which is not empty, touches.
 Rect macro_rect(Rect tiles) {
     uvec2 sides = uvec2(MACRO_COLUMNS, MACRO_ROWS);
     uvec2 first = tiles.first / sides;
     return Rect(first, (tiles.first + tiles.size - 1u) / sides - first + 1u);
 }
+
+// How many pairs a splat has, by its rectangle, and by its rectangle's word, which is not RECT_LARGE.
+uint pairs_of(Rect tiles) {
+    uvec2 size = tiles.size.x == 0u ? uvec2(0u) : macro_rect(tiles).size;
+    return size.x * size.y;
+}
+
+uint pairs_of_word(uint word) {
+    return word == RECT_NONE ? 0u : pairs_of(rect_of_word(word));
+}
+
+// The pairs are counted by chunks of splats, which follow each other in the order of depth, and by partitions of the sort.
+const uint CHUNK_SPLATS = RADIX_GROUP_SIZE;
+const uint CHUNKS = RADIX_PARTITION / CHUNK_SPLATS;
+#define CHUNK_SUM_PLACE(p, chunk) (PARTITIONS + (p) * CHUNKS + (chunk))
 
 // A pair's key is the number of its macro-tile, by which the pairs are sorted; above it is the rectangle of the tiles in the
 // macro-tile, which spares most pairs a look at the splat's mask: first column and row, one less than columns and rows.

@@ -4,8 +4,7 @@
 #include "footprint.glsl"
 #include "quad.glsl"
 #include "spherical_harmonics.glsl"
-#include "bin.glsl"
-#include "depth_keys.glsl"
+#include "rects.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 layout(constant_id = 0) const bool CUT = false;
@@ -13,19 +12,23 @@ layout(constant_id = 0) const bool CUT = false;
 layout(constant_id = 2) const bool TILES = false;
 // True when quads are drawn.
 layout(constant_id = 3) const bool QUADS = false;
+// True when rectangles of tiles are wanted, and masks only where these do not tell everything.
+layout(constant_id = 5) const bool RECTS = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uint, sh)
-BUFFER(readonly, 3, uvec2, survivors)
+BUFFER(readonly, 3, uint, survivors)
 BUFFER(readonly, 4, FrameCounts, counts)
-BUFFER(writeonly, 5, Splat, splats)
+BUFFER(writeonly, 5, vec4, splats)
 BUFFER(writeonly, 6, Quad, quads)
 BUFFER(writeonly, 7, uint, depth_keys)
 #include "sh_storage.glsl"
 BUFFER(readonly, 8, vec4, cut_records)
 BUFFER(writeonly, 9, uvec4, tile_masks)
 
+#include "splats.glsl"
 #include "carried.glsl"
+#include "survivors.glsl"
 
 vec3 colour(uint index, vec3 direction) {
     float basis[MAX_SH_COEFFICIENTS];
@@ -58,7 +61,7 @@ void main() {
     if (survivor >= counts.at[0].visible + counts.at[0].cutoff) {
         return;
     }
-    uint index = survivors.at[survivor].x;
+    uint index = survivors.at[survivor];
     enter_layer_of_block(index / BLOCK_SIZE);
     Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
@@ -67,7 +70,8 @@ void main() {
 
     Splat splat;
     vec3 conic = conic_of(f);
-    Carried weight = CUT ? carried_weight(survivors.at[survivor].y) : whole_weight();
+    uint cut = CUT ? survivors.at[cut_place(survivor)] : NOT_CUT;
+    Carried weight = CUT ? carried_weight(cut) : whole_weight();
     Quad quad = quad_around(f, extent, weight);
     if (QUADS) {
         quads.at[survivor] = quad;
@@ -77,18 +81,33 @@ void main() {
     vec3 direction = is_orthographic() ? LAYER.view.rotation_z.xyz : f.relative;
     splat.colour_cut = vec4(colour(index, normalize(direction / largest(direction))), weight.linear.z);
     splat.curvature_depth = vec4(weight.curvature, f.view_centre.z);
-    splats.at[survivor] = splat;
+    SPLAT_CENTRE(survivor) = splat.centre_conic;
+    SPLAT_CONIC(survivor) = splat.conic_cut;
+    SPLAT_COLOUR(survivor) = splat.colour_cut;
+    if (!splats_lie_apart()) {
+        SPLAT_CURVATURE(survivor) = splat.curvature_depth;
+    } else {
+        if (CUT && abs(weight.linear.x) < Z_RANGE) {
+            SPLAT_CURVATURE(survivor) = splat.curvature_depth;
+        }
+        SPLAT_DEPTH(survivor) = splat.curvature_depth.w;
+    }
     if (TILES) {
         Outline o = outline(splat, quad);
-        uint cut = survivors.at[survivor].y;
         if (CUT && cut != NOT_CUT) {
             o.line = cut_away_line_of_record(o.line, cut, weight, conic, extent);
         }
-        tile_masks.at[survivor] = tile_mask(o);
+        uvec4 tiles = tile_mask(o);
+        uint word = rect_word(tiles);
+        if (RECTS) {
+            RECT_WORD(tile_masks, survivor) = word;
+        }
+        if (!RECTS || needs_mask(word)) {
+            tile_masks.at[survivor] = tiles;
+        }
     }
     // Positive floats order like their bits. Counted from the nearest depth that the scene's bounds allow they need
     // fewer bits, and the sort fewer passes; dropping low bits never reverses an order.
     uint depth = max(floatBitsToUint(f.view_centre.z), FRAME.order.key_near) - FRAME.order.key_near;
     depth_keys.at[survivor] = min(depth, FRAME.order.key_span) >> FRAME.order.key_shift;
-    depth_keys.at[number_place(survivor)] = floatBitsToUint(gaussian.scale.w);
 }

@@ -29,19 +29,29 @@ void main() {
     } else if (push.params.pass <= counts.at[0].sort_skipped) {
         return; // this pass is skipped
     }
+    uint counts_begin = COUNT_PLACE(d, 0u);
     uint before = 0u;
-    for (uint first = 0u; first < partitions; first += RADIX_GROUP_SIZE) {
-        uint p = first + gl_LocalInvocationIndex;
-        uint place = COUNT_PLACE(d, p);
-        uint count = p < partitions ? histogram.at[place] : 0u;
+    // An invocation has consecutive partitions, whose counts it waits for together.
+    for (uint first = 0u; first < partitions; first += RADIX_GROUP_SIZE * RADIX_SCAN_COUNTS) {
+        uint p = first + gl_LocalInvocationIndex * RADIX_SCAN_COUNTS;
+        uint own[RADIX_SCAN_COUNTS];
+        uint sum = 0u;
+        for (uint k = 0u; k < RADIX_SCAN_COUNTS; k++) {
+            uint count = histogram.at[counts_begin + min(p + k, partitions - 1u)];
+            own[k] = p + k < partitions ? count : 0u;
+            sum += own[k];
+        }
         uint total;
-        uint sum = exclusive_sum(count, total);
-        if (p < partitions) {
-            histogram.at[place] = before + sum;
+        uint place = before + exclusive_sum(sum, total);
+        for (uint k = 0u; k < RADIX_SCAN_COUNTS; k++) {
+            if (p + k < partitions) {
+                histogram.at[counts_begin + p + k] = place;
+            }
+            place += own[k];
         }
         before += total;
     }
     if (gl_LocalInvocationIndex == 0u) {
-        histogram.at[TOTAL_PLACE(d)] = before;
+        histogram.at[DIGITS * partitions + d] = before;
     }
 }

@@ -4,6 +4,7 @@
 #define RARA_RADIX_SCATTER
 struct Params {
     uint pass; // of the sort, from 0
+    uint macro_tiles; // how many there are, where one pass sorts the pairs by them; else 0
 };
 #define PARAMS Params
 #include "radix_keys.glsl"
@@ -18,6 +19,8 @@ BUFFER(readonly, 4, uint, histogram)
 BUFFER(writeonly, 5, uint, sorted_keys)
 BUFFER(writeonly, 6, uint, sorted_order)
 BUFFER(readonly, 7, uint, depth_keys)
+// Where the pairs of each macro-tile begin, and where all end, which one pass finds on its way.
+BUFFER(writeonly, 8, uint, macro_begins)
 
 // The first pass of the survivors' keys carries them from where they were found.
 uint key_at(bool is_first, uint i) {
@@ -35,7 +38,14 @@ void main() {
     bool is_first = !PAIRS && number == 0u; // the survivors are in their own order
     uvec2 bounds = partition_bounds(p, KEY_COUNT);
     uint total;
-    uint before = exclusive_sum(histogram.at[TOTAL_PLACE(local)], total);
+    uint of_digit = histogram.at[TOTAL_PLACE(local)];
+    uint before = exclusive_sum(of_digit, total);
+    if (PAIRS && p == 0u && local < push.params.macro_tiles) {
+        macro_begins.at[local] = before;
+        if (local + 1u == push.params.macro_tiles) {
+            macro_begins.at[local + 1u] = before + of_digit;
+        }
+    }
     uint digits[RADIX_KEYS];
     for (uint k = 0u; k < RADIX_KEYS; k++) {
         uint i = bounds.x + position_of(k);

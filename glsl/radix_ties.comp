@@ -2,8 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 // After the sort for GPUs, splats of one depth are in the order of the blocks; this puts them into that of their numbers. An
 // invocation orders a few alone. Where more have one depth, the workgroup of the first ranks them, or sorts them by the digits
-// in which their numbers differ, partition by partition: a layer of one depth keeps one workgroup busy for a while.
-#include "radix_rank.glsl"
+// in which their numbers differ. Of crowds, each workgroup sends its own to their numbers (crowds.glsl).
+#include "radix_carry.glsl"
+#include "crowds.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
 
@@ -11,33 +12,135 @@ BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, uint, keys)
 BUFFER(coherent, 3, uint, order)
 BUFFER(coherent, 4, uint, scratch)
-BUFFER(readonly, 5, uint, depth_keys)
+BUFFER(readonly, 5, uint, survivors)
+BUFFER(readonly, 6, Gaussian, gaussians)
 // The numbers of those that are sorted by digits, by survivor.
-BUFFER(coherent, 6, uint, numbers)
+BUFFER(coherent, 7, uint, numbers)
+BUFFER(, 8, uint, crowds)
+BUFFER(writeonly, 9, uint, crowd_members)
+#define STEPS RADIX_KEYS
 #include "ties.glsl"
 
-// The first of each many that begin in this partition.
-shared uint begins[RADIX_PARTITION / TIES_ALONE];
-shared uint begin_count;
-shared uint last; // of those that are sorted together, exclusive
-shared uint offsets[DIGITS]; // where their next of each digit goes
+// Most that an invocation orders alone: its numbers have room in its part of `items`.
+const uint FEW = RADIX_PARTITION / RADIX_GROUP_SIZE;
+// Of those, how many it waits for together.
+const uint AT_ONCE = 4u;
 
-// One past the last key that equals the one at `begin`.
-uint end_of(uint begin) {
+// The first of each many that begin in this partition.
+shared uint begins[RADIX_PARTITION / FEW];
+shared uint begin_count;
+
+const uvec2 NO_CROWD = uvec2(~0u, 0u);
+
+// The places [first, last) of the keys that equal the one at a place.
+uvec2 equal_keys(uint place) {
+    uint count = KEY_COUNT;
+    uint key = keys.at[place];
+    // The first key that is not below it is in [below.x, below.y], the first one above it in [above.x, above.y].
+    uvec2 below = uvec2(0u, place);
+    uvec2 above = uvec2(place + 1u, count);
+    while (below.x < below.y || above.x < above.y) {
+        uvec2 middle = uvec2((below.x + below.y) / 2u, (above.x + above.y) / 2u);
+        uvec2 there = uvec2(keys.at[middle.x], keys.at[min(middle.y, count - 1u)]);
+        if (below.x < below.y) {
+            below = there.x < key ? uvec2(middle.x + 1u, below.y) : uvec2(below.x, middle.x);
+        }
+        if (above.x < above.y) {
+            above = there.y <= key ? uvec2(middle.y + 1u, above.y) : uvec2(above.x, middle.y);
+        }
+    }
+    return uvec2(below.x, above.x);
+}
+
+// The crowd at a place. It holds half a partition before the place or behind it, which rules out nearly all.
+uvec2 crowd_at(uint place) {
+    const uint HALF_PARTITION = RADIX_PARTITION / 2u;
+    uint key = keys.at[place];
+    bool before = place >= HALF_PARTITION && keys.at[max(place, HALF_PARTITION) - HALF_PARTITION] == key;
+    bool behind = place + HALF_PARTITION < KEY_COUNT && keys.at[min(place + HALF_PARTITION, KEY_COUNT - 1u)] == key;
+    if (!before && !behind) {
+        return NO_CROWD;
+    }
+    uvec2 places = equal_keys(place);
+    return places.y - places.x > crowd_size(KEY_COUNT) ? places : NO_CROWD;
+}
+
+// Sends those of a crowd that are in this partition to their numbers.
+void send(uvec2 crowd, uvec2 bounds) {
+    uint local = gl_LocalInvocationIndex;
+    uint crowd_number = crowd.x / crowd_size(KEY_COUNT);
+    uvec2 own = uvec2(max(crowd.x, bounds.x), min(crowd.y, bounds.y));
+    uint members[RADIX_KEYS];
+    uint its_numbers[RADIX_KEYS];
+    for (uint k = 0u; k < RADIX_KEYS; k++) {
+        members[k] = order.at[min(own.x + k * RADIX_GROUP_SIZE + local, own.y - 1u)];
+        its_numbers[k] = number(members[k]);
+    }
+    for (uint k = 0u; k < RADIX_KEYS; k++) {
+        if (own.x + k * RADIX_GROUP_SIZE + local < own.y) {
+            uint its_number = its_numbers[k];
+            crowd_members.at[its_number] = members[k];
+            crowd_members.at[crowd_place(its_number)] = crowd_number;
+            // Neither bits nor sums depend on the order.
+            atomicOr(crowds.at[crowd_bits_place(its_number)], 1u << its_number % 32u);
+            atomicAdd(crowds.at[crowd_count_place(its_number / stretch_size(), crowd_number)], 1u);
+        }
+    }
+    if (local == 0u && crowd.x >= bounds.x) {
+        crowds.at[crowd_begin_place(crowd_number)] = crowd.x;
+        crowds.at[ANY_CROWD] = 1u; // whoever writes it
+    }
+}
+
+// One past the last key that equals the one at `begin`, of as many as an invocation orders alone; beyond it, of more.
+uint end_of_few(uint begin) {
     uint count = KEY_COUNT;
     uint key = keys.at[begin];
-    if (gl_LocalInvocationIndex == 0u) {
-        last = count;
-    }
-    for (uint first = begin; ; first += RADIX_GROUP_SIZE) {
-        barrier();
-        uint i = first + gl_LocalInvocationIndex;
-        if (i < count && keys.at[i] != key) {
-            atomicMin(last, i);
+    uint size = 2u;
+    bool same = true;
+    while (same && size <= FEW) {
+        uint first = begin + size;
+        for (uint k = 0u; k < AT_ONCE; k++) {
+            uint here = keys.at[min(first + k, count - 1u)];
+            same = same && first + k < count && here == key;
+            size += same ? 1u : 0u;
         }
-        barrier();
-        if (last <= first + RADIX_GROUP_SIZE) {
-            return last;
+    }
+    return begin + size;
+}
+
+// The place in shared memory of one of the numbers that an invocation orders alone.
+uint few_place(uint k) {
+    return k * RADIX_GROUP_SIZE + gl_LocalInvocationIndex;
+}
+
+void order_alone(uint begin, uint end) {
+    uint size = end - begin;
+    uint own[AT_ONCE];
+    uint its_numbers[AT_ONCE];
+    for (uint first = 0u; first < size; first += AT_ONCE) {
+        for (uint k = 0u; k < AT_ONCE; k++) {
+            own[k] = order.at[min(begin + first + k, end - 1u)];
+            its_numbers[k] = number(own[k]);
+        }
+        for (uint k = 0u; k < AT_ONCE; k++) {
+            // Those beyond the end write the last one once more.
+            uint place = min(first + k, size - 1u);
+            scratch.at[begin + place] = own[k];
+            items[few_place(place)] = its_numbers[k];
+        }
+    }
+    for (uint first = 0u; first < size; first += AT_ONCE) {
+        for (uint k = 0u; k < AT_ONCE; k++) {
+            own[k] = scratch.at[min(begin + first + k, end - 1u)];
+        }
+        for (uint k = 0u; k < AT_ONCE; k++) {
+            uint its_number = items[few_place(min(first + k, size - 1u))];
+            uint rank = 0u;
+            for (uint other = 0u; other < size; other++) {
+                rank += items[few_place(other)] < its_number ? 1u : 0u;
+            }
+            order.at[begin + rank] = own[k];
         }
     }
 }
@@ -47,8 +150,13 @@ void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
     uint local = gl_LocalInvocationIndex;
     offsets[local] = 0u;
     barrier();
-    for (uint i = begin + local; i < end; i += RADIX_GROUP_SIZE) {
-        atomicAdd(offsets[digit(numbers.at[at(second, i)], digit_number)], 1u);
+    for (uint first = begin; first < end; first += RADIX_PARTITION) {
+        for (uint k = 0u; k < RADIX_KEYS; k++) {
+            uint i = first + k * RADIX_GROUP_SIZE + local;
+            if (i < end) {
+                atomicAdd(offsets[digit(numbers.at[at(second, i)], digit_number)], 1u);
+            }
+        }
     }
     barrier();
     uint total;
@@ -62,19 +170,20 @@ void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
             digits[k] = position < count ? digit(numbers.at[at(second, first + position)], digit_number) : DIGITS - 1u;
         }
         sort_positions(digits);
-        for (uint i = local; i < count; i += RADIX_GROUP_SIZE) {
-            uint item = items[i];
-            uint d = item_digit(item);
-            put(!second, offsets[d] + i - digit_begins[d], at(second, first + item_position(item)));
+        uint own[RADIX_KEYS];
+        for (uint k = 0u; k < RADIX_KEYS; k++) {
+            uint i = min(k * RADIX_GROUP_SIZE + local, count - 1u);
+            own[k] = at(second, first + item_position(items[i]));
         }
-        barrier();
-        for (uint i = local; i < count; i += RADIX_GROUP_SIZE) {
-            uint d = item_digit(items[i]);
-            if (i + 1u == count || item_digit(items[i + 1u]) != d) {
-                offsets[d] += i + 1u - digit_begins[d];
+        for (uint k = 0u; k < RADIX_KEYS; k++) {
+            uint i = k * RADIX_GROUP_SIZE + local;
+            if (i < count) {
+                uint d = item_digit(items[i]);
+                put(!second, offsets[d] + i - digit_begins[d], own[k]);
             }
         }
         barrier();
+        advance(count);
     }
     publish();
 }
@@ -97,6 +206,20 @@ void rank_together(uint begin, uint end) {
     publish();
 }
 
+// Which of an invocation's keys are the first of several that are equal, a bit each.
+uint find_firsts(uvec2 bounds, uint count) {
+    uint firsts = 0u;
+    for (uint k = 0u; k < RADIX_KEYS; k++) {
+        uint i = bounds.x + k * RADIX_GROUP_SIZE + gl_LocalInvocationIndex;
+        uint here = min(i, count - 1u);
+        uint key = keys.at[here];
+        bool is_first = here == 0u || keys.at[max(here, 1u) - 1u] != key;
+        bool is_followed = i + 1u < count && keys.at[min(here + 1u, count - 1u)] == key;
+        firsts |= i < bounds.y && is_first && is_followed ? 1u << k : 0u;
+    }
+    return firsts;
+}
+
 void main() {
     uint count = KEY_COUNT;
     uvec2 bounds = partition_bounds(gl_WorkGroupID.x, count);
@@ -104,29 +227,36 @@ void main() {
         begin_count = 0u;
     }
     barrier();
-    for (uint i = bounds.x + gl_LocalInvocationIndex; i < bounds.y; i += RADIX_GROUP_SIZE) {
-        uint key = keys.at[i];
-        if (i + 1u >= count || keys.at[i + 1u] != key || (i > 0u && keys.at[i - 1u] == key)) {
-            continue; // no others have its depth, or they begin before it
+    // A crowd holds more than a partition: it holds the first or the last of those that it is in.
+    uvec2 crowds_here[2];
+    for (uint end = 0u; end < 2u; end++) {
+        crowds_here[end] = crowd_at(end == 0u ? bounds.x : bounds.y - 1u);
+    }
+    for (uint firsts = find_firsts(bounds, count); firsts != 0u; firsts &= firsts - 1u) {
+        uint begin = bounds.x + uint(findLSB(firsts)) * RADIX_GROUP_SIZE + gl_LocalInvocationIndex;
+        if (begin == crowds_here[1].x) {
+            continue;
         }
-        uint end = i + 2u;
-        while (end < count && end - i <= TIES_ALONE && keys.at[end] == key) {
-            end++;
-        }
-        if (end - i <= TIES_ALONE) {
-            order_alone(i, end);
+        uint end = end_of_few(begin);
+        if (end - begin <= FEW) {
+            order_alone(begin, end);
         } else {
-            begins[atomicAdd(begin_count, 1u)] = i; // in any order: they are sorted each by itself
+            begins[atomicAdd(begin_count, 1u)] = begin; // in any order: they are sorted each by itself
         }
     }
     barrier();
     for (uint tie = 0u; tie < begin_count; tie++) {
-        uint begin = begins[tie];
-        uint end = end_of(begin);
-        if (end - begin <= RADIX_GROUP_SIZE) {
-            rank_together(begin, end);
+        uvec2 places = equal_keys(begins[tie]);
+        if (places.y - places.x <= RADIX_GROUP_SIZE) {
+            rank_together(places.x, places.y);
         } else {
-            sort_together(begin, end);
+            sort_together(places.x, places.y);
+        }
+    }
+    for (uint end = 0u; end < 2u; end++) {
+        uvec2 crowd = crowds_here[end];
+        if (crowd.y > 0u && (end == 0u || crowd.x != crowds_here[0].x)) {
+            send(crowd, bounds);
         }
     }
 }

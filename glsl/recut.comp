@@ -4,27 +4,41 @@
 // again. The survivor's centre, colour, depth and tiles stay.
 #include "footprint.glsl"
 #include "quad.glsl"
-#include "bin.glsl"
+#include "rects.glsl"
 
 layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
 // True when tiles are wanted.
 layout(constant_id = 0) const bool TILES = false;
 // True when quads are drawn.
 layout(constant_id = 1) const bool QUADS = false;
+// True where rectangles of tiles are kept, and masks only where these do not tell everything.
+layout(constant_id = 2) const bool RECTS = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
-BUFFER(readonly, 2, uvec2, survivors)
+BUFFER(readonly, 2, uint, survivors)
 BUFFER(readonly, 3, FrameCounts, counts)
 BUFFER(readonly, 4, uvec2, recuts)
 BUFFER(readonly, 5, vec4, cut_records)
 BUFFER(readonly, 6, uvec4, tile_masks)
-BUFFER(, 7, Splat, splats)
+BUFFER(, 7, vec4, splats)
 BUFFER(writeonly, 8, uint, dirty)
 BUFFER(writeonly, 9, Quad, quads)
+#include "splat_at.glsl"
 #include "carried.glsl"
 
 // All that find a tile changed write the same value. The tiles are the whole splat's, as in the lists.
 void mark(uint survivor) {
+    uint word = RECTS ? RECT_WORD(tile_masks, survivor) : RECT_LARGE;
+    if (!needs_mask(word)) {
+        Rect rect = word == RECT_NONE ? NO_RECT : rect_of_word(word);
+        for (uint row = 0u; row < rect.size.y; row++) {
+            uint first = (rect.first.y + row) * FRAME.tiles.tile_columns + rect.first.x;
+            for (uint tile = first; tile < first + rect.size.x; tile++) {
+                dirty.at[tile] = 1u;
+            }
+        }
+        return;
+    }
     uvec4 tiles = tile_masks.at[survivor];
     for (uvec2 mask = tiles.y == 0u ? tiles.zw : uvec2(0u); (mask.x | mask.y) != 0u;) {
         Span span = next_span(tiles.x, mask);
@@ -34,7 +48,7 @@ void mark(uint survivor) {
         }
     }
     if (tiles.y != 0u) {
-        Splat splat = splats.at[survivor];
+        Splat splat = splat_at(survivor);
         splat.conic_cut.z = Z_WHOLE;
         Outline o = bounded_outline(splat, tiles.zw);
         for (uint row = o.rows.x; row < o.rows.y; row++) {
@@ -53,7 +67,7 @@ void main() {
     }
     uint survivor = recuts.at[change].x;
     uint cut = recuts.at[change].y;
-    uint index = survivors.at[survivor].x;
+    uint index = survivors.at[survivor];
     enter_layer_of_block(index / BLOCK_SIZE);
     Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
@@ -71,9 +85,9 @@ void main() {
     } else if (QUADS) {
         quad = quad_around(f, opacity_extent(opacity_in_layer(gaussian)), weight);
     }
-    splats.at[survivor].conic_cut.zw = weight.linear.xy;
-    splats.at[survivor].colour_cut.w = weight.linear.z;
-    splats.at[survivor].curvature_depth.xyz = weight.curvature;
+    SPLAT_CONIC(survivor).zw = weight.linear.xy;
+    SPLAT_COLOUR(survivor).w = weight.linear.z;
+    SPLAT_CURVATURE(survivor).xyz = weight.curvature;
     if (QUADS) {
         quads.at[survivor] = quad;
     }

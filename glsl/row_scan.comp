@@ -15,11 +15,22 @@ BUFFER(, 3, uint, tile_begins)
 BUFFER(writeonly, 4, uint, tile_list)
 #include "room.glsl"
 
-// The sum over all invocations.
-uint total_of(uint value) {
-    uint total;
-    exclusive_sum(value, total);
-    return total;
+shared uvec3 row_totals[RADIX_GROUP_SIZE];
+
+// The sums over all invocations.
+uvec3 totals_of(uvec3 values) {
+    uint local = gl_LocalInvocationIndex;
+    row_totals[local] = values;
+    barrier();
+    for (uint rest = RADIX_GROUP_SIZE / 2u; rest > 0u; rest /= 2u) {
+        if (local < rest) {
+            row_totals[local] += row_totals[local + rest];
+        }
+        barrier();
+    }
+    uvec3 totals = row_totals[0];
+    barrier();
+    return totals;
 }
 
 // A tile in one of two counts that share a word: of the tiles that need no code for several surfaces, and of the others.
@@ -48,14 +59,15 @@ void main() {
         my_all = uvec3(capped_sum(my_all.x, sum.x), my_all.yz + sum.yz);
     }
     if (row == 0u) {
-        uvec3 all = uvec3(capped_total(my_all.x), total_of(my_all.y), total_of(my_all.z));
+        uvec3 all = uvec3(capped_total(my_all.x), totals_of(my_all).yz);
         if (local == 0u) {
             write_commands(all.x, all.y, all.z);
         }
     }
-    uint place = total_of(my_before.x);
-    uint several = total_of(my_before.z);
-    uint few = total_of(my_before.y) - several;
+    uvec3 before = totals_of(my_before);
+    uint place = before.x;
+    uint several = before.z;
+    uint few = before.y - several;
     for (uint first = 0u; first < FRAME.tiles.tile_columns; first += RADIX_GROUP_SIZE) {
         uint column = first + local;
         uint tile = row * FRAME.tiles.tile_columns + column;
@@ -64,10 +76,10 @@ void main() {
         uint kind = kind_of(count);
         uint total;
         uint kinds;
-        uint before = exclusive_sum(count & ~SEVERAL_TILE, total);
+        uint pairs_before = exclusive_sum(count & ~SEVERAL_TILE, total);
         uint kinds_before = exclusive_sum(kind, kinds);
         if (is_tile) {
-            tile_begins.at[tile] = place + before;
+            tile_begins.at[tile] = place + pairs_before;
         }
         if (kind == 1u) {
             tile_list.at[few + (kinds_before & 0xffffu)] = tile;

@@ -16,11 +16,15 @@ void decide_passes(uint passes) {
         greatest = 0u;
     }
     barrier();
+    uint my_least = ~0u;
+    uint my_greatest = 0u;
     for (uint i = local; i < RANGES; i += gl_WorkGroupSize.x) {
-        // The least and the greatest do not depend on the order of the atomics.
-        atomicMin(least, histogram.at[RANGE_PLACE(i)]);
-        atomicMax(greatest, histogram.at[RANGE_PLACE(i) + 1u]);
+        my_least = min(my_least, histogram.at[RANGE_PLACE(i)]);
+        my_greatest = max(my_greatest, histogram.at[RANGE_PLACE(i) + 1u]);
     }
+    // The least and the greatest do not depend on the order of the atomics.
+    atomicMin(least, my_least);
+    atomicMax(greatest, my_greatest);
     barrier();
     if (local != 0u) {
         return;

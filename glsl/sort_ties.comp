@@ -12,11 +12,13 @@ BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, uint, keys)
 BUFFER(coherent, 3, uint, order)
 BUFFER(coherent, 4, uint, scratch)
-BUFFER(readonly, 5, uint, depth_keys)
+BUFFER(readonly, 5, uint, survivors)
 // The numbers of those that are sorted by digits, by survivor.
 BUFFER(coherent, 6, uint, numbers)
 // The sort's, of which each invocation uses its own run's part.
 BUFFER(coherent, 7, uint, histogram)
+BUFFER(readonly, 8, Gaussian, gaussians)
+#define STEPS 1u
 #include "ties.glsl"
 
 // Most that a workgroup merges. Beyond, the steps of the merges outweigh the histograms of the digits.
@@ -25,6 +27,18 @@ const uint MANY = 4096u;
 shared uvec2 ties[SORT_GROUP_SIZE]; // begin and end of equal keys that are too many for one
 shared uint tie_count;
 shared uint totals[DIGITS]; // of each digit, all runs together
+
+void order_alone(uint begin, uint end) {
+    for (uint i = begin + 1u; i < end; i++) {
+        uint moved = order.at[i];
+        uint place = i;
+        uint its_number = number(moved);
+        for (; place > begin && number(order.at[place - 1u]) > its_number; place--) {
+            order.at[place] = order.at[place - 1u];
+        }
+        order.at[place] = moved;
+    }
+}
 
 // How many of the ordered [begin, end) have a number below the given one.
 uint rank_among(bool second, uint begin, uint end, uint its_number) {

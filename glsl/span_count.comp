@@ -8,7 +8,7 @@
 layout(local_size_x = SPAN_GROUP_SIZE) in;
 
 BUFFER(readonly, 1, FrameCounts, counts)
-BUFFER(readonly, 2, Splat, splats)
+BUFFER(readonly, 2, vec4, splats)
 BUFFER(readonly, 3, uint, order)
 BUFFER(, 4, uint, span_counts)
 BUFFER(readonly, 5, uvec4, tile_masks)
@@ -16,6 +16,7 @@ BUFFER(readonly, 5, uvec4, tile_masks)
 BUFFER(writeonly, 6, uint, mask_origins)
 BUFFER(writeonly, 7, uint, masks_above)
 BUFFER(writeonly, 8, uint, masks_below)
+#include "splat_at.glsl"
 
 void main() {
     uint run = gl_GlobalInvocationID.x;
@@ -40,7 +41,7 @@ void main() {
         if (tiles.y == 0u) {
             continue;
         }
-        Outline o = bounded_outline(splats.at[splat], tiles.zw);
+        Outline o = bounded_outline(splat_at(splat), tiles.zw);
         for (uint row = o.rows.x; row < o.rows.y; row++) {
             uvec2 columns = tiles_in_row(o, row);
             span_counts.at[run * rows + row] += columns.x < columns.y ? 1u : 0u;

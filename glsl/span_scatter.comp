@@ -6,7 +6,7 @@
 layout(local_size_x = SPAN_GROUP_SIZE) in;
 
 BUFFER(readonly, 1, FrameCounts, counts)
-BUFFER(readonly, 2, Splat, splats)
+BUFFER(readonly, 2, vec4, splats)
 BUFFER(readonly, 3, uint, order)
 BUFFER(, 4, uint, span_counts)
 BUFFER(writeonly, 5, uint, span_splats)
@@ -14,6 +14,7 @@ BUFFER(writeonly, 6, uint, span_columns)
 BUFFER(readonly, 7, uint, mask_origins)
 BUFFER(readonly, 8, uint, masks_above)
 BUFFER(readonly, 9, uint, masks_below)
+#include "splat_at.glsl"
 
 void put(uint slot, uvec2 columns, uint splat) {
     uint place = span_counts.at[slot];
@@ -40,7 +41,7 @@ void main() {
         if (origin != NO_MASK) {
             continue;
         }
-        Outline o = bounded_outline(splats.at[splat], words);
+        Outline o = bounded_outline(splat_at(splat), words);
         for (uint row = o.rows.x; row < o.rows.y; row++) {
             uvec2 columns = tiles_in_row(o, row);
             if (columns.x < columns.y) {

@@ -11,7 +11,7 @@ layout(location = 3) flat out vec3 curvature;
 
 void main() {
     uint survivor = survivor_at(gl_InstanceIndex);
-    Splat splat = splats.at[survivor];
+    Splat splat = splat_at(survivor);
     gl_Position = corner(splat, quad_of(survivor, splat), gl_VertexIndex);
     centre_conic = fragment_centre(splat);
     conic_cut = splat.conic_cut;

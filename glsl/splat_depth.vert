@@ -16,7 +16,7 @@ layout(location = 5) flat out vec4 near;
 
 void main() {
     uint survivor = survivor_at(gl_InstanceIndex);
-    Splat splat = splats.at[survivor];
+    Splat splat = splat_at(survivor);
     SplatDepth depth = depths.at[survivor];
     gl_Position = corner(splat, quads.at[survivor], gl_VertexIndex);
     centre_conic = fragment_centre(splat);

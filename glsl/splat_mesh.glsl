@@ -24,7 +24,7 @@ void main() {
         return;
     }
     uint survivor = survivor_at(begin + local);
-    Splat splat = splats.at[survivor];
+    Splat splat = splat_at(survivor);
     Quad quad = quad_of(survivor, splat);
     for (uint i = 0u; i < 4u; i++) {
         gl_MeshVerticesEXT[4u * local + i].gl_Position = corner(splat, quad, i);

@@ -1,24 +1,12 @@
 // Puts splats of one depth into the order of their numbers. Included after the size of the workgroup and the buffers `order`,
-// `scratch`, `depth_keys` and `numbers` are declared.
+// `scratch`, `survivors`, `gaussians` and `numbers` are declared.
 #ifndef RARA_TIES
 #define RARA_TIES
-#include "depth_keys.glsl"
+#include "frame.glsl"
 
 // A survivor's number in the scene.
 uint number(uint survivor) {
-    return depth_keys.at[number_place(survivor)];
-}
-
-void order_alone(uint begin, uint end) {
-    for (uint i = begin + 1u; i < end; i++) {
-        uint moved = order.at[i];
-        uint place = i;
-        uint its_number = number(moved);
-        for (; place > begin && number(order.at[place - 1u]) > its_number; place--) {
-            order.at[place] = order.at[place - 1u];
-        }
-        order.at[place] = moved;
-    }
+    return floatBitsToUint(gaussians.at[survivors.at[survivor]].scale.w);
 }
 
 uint at(bool second, uint i) {
@@ -42,9 +30,20 @@ void publish() {
 // The whole workgroup carries survivors to the other buffer by one digit of their numbers. The includer says how.
 void sort_by_digit(bool second, uint begin, uint end, uint digit_number);
 
+// Survivors that each invocation waits for together, STEPS apart by the workgroup's size; the includer says how many.
 void copy_back(uint begin, uint end) {
-    for (uint i = begin + gl_LocalInvocationIndex; i < end; i += gl_WorkGroupSize.x) {
-        order.at[i] = scratch.at[i];
+    for (uint first = begin; first < end; first += STEPS * gl_WorkGroupSize.x) {
+        uint own[STEPS];
+        for (uint k = 0u; k < STEPS; k++) {
+            uint i = first + k * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+            own[k] = i < end ? scratch.at[i] : 0u;
+        }
+        for (uint k = 0u; k < STEPS; k++) {
+            uint i = first + k * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+            if (i < end) {
+                order.at[i] = own[k];
+            }
+        }
     }
     publish();
 }
@@ -59,11 +58,18 @@ void sort_together(uint begin, uint end) {
     barrier();
     uint first_number = number(order.at[begin]);
     uint differs = 0u;
-    for (uint i = begin + gl_LocalInvocationIndex; i < end; i += gl_WorkGroupSize.x) {
-        uint survivor = order.at[i];
-        uint its_number = number(survivor);
-        numbers.at[survivor] = its_number;
-        differs |= its_number ^ first_number;
+    for (uint first = begin; first < end; first += STEPS * gl_WorkGroupSize.x) {
+        uint own[STEPS];
+        uint its_numbers[STEPS];
+        for (uint k = 0u; k < STEPS; k++) {
+            uint i = first + k * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+            own[k] = order.at[min(i, end - 1u)];
+            its_numbers[k] = number(own[k]);
+        }
+        for (uint k = 0u; k < STEPS; k++) {
+            numbers.at[own[k]] = its_numbers[k]; // those beyond the end write the last one's once more
+            differs |= its_numbers[k] ^ first_number;
+        }
     }
     atomicOr(differing, differs);
     publish();

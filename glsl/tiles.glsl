@@ -30,13 +30,14 @@ layout(constant_id = 9) const uint SHOW = SHOW_COLOUR; // SHOW_*
 // the others, and behind all of them how many each list has.
 layout(constant_id = 11) const bool LISTED = false;
 
-BUFFER(readonly, 1, Splat, splats)
+BUFFER(readonly, 1, vec4, splats)
 BUFFER(readonly, 2, uint, tile_splats)
 BUFFER(readonly, 3, uint, tile_begins)
 BUFFER(readonly, 4, vec4, cut_records)
 BUFFER(readonly, 6, uint, dirty)
 BUFFER(readonly, 7, uint, occluders)
 BUFFER(readonly, 9, uint, tile_list)
+#include "splats.glsl"
 #include "column.glsl"
 #include "region/tile_side.glsl"
 #include "occluders.glsl"
@@ -144,21 +145,21 @@ bool is_away(Seen splat, vec2 delta) {
 // A splat as an invocation hands it to all. Where the cut's edge does not run through the tile it is whole, or away.
 Seen load(uint number, vec2 tile_middle) {
     Seen splat;
-    vec4 conic_cut = splats.at[number].conic_cut;
-    vec4 colour_cut = splats.at[number].colour_cut;
-    splat.centre_conic = splats.at[number].centre_conic;
+    vec4 conic_cut = SPLAT_CONIC(number);
+    vec4 colour_cut = SPLAT_COLOUR(number);
+    splat.centre_conic = SPLAT_CENTRE(number);
     splat.conic_opacity = conic_cut.xy;
     splat.colour = colour_cut.rgb;
     splat.linear = vec3(conic_cut.zw, colour_cut.w);
     splat.curvature = vec3(0.0);
     if (CLIP_MODE == MODE_EXACT && abs(splat.linear.x) < Z_RANGE) {
-        splat.curvature = splats.at[number].curvature_depth.xyz;
+        splat.curvature = SPLAT_CURVATURE(number).xyz;
     }
     if (CLIP_MODE >= MODE_RARA && SHOW != SHOW_WEIGHT && splat.linear.x < Z_RANGE) {
         uint side = tile_side(splat.linear, splat.curvature, splat.centre_conic, splat.conic_opacity.x, tile_middle);
         splat.linear.x = side == SIDE_VISIBLE ? Z_WHOLE : side == SIDE_INVISIBLE ? Z_CUT_AWAY : splat.linear.x;
     }
-    splat.far = DEPTH_FORM != DEPTH_NONE ? farness(host_depth(splats.at[number].curvature_depth.w)) : 0.0;
+    splat.far = DEPTH_FORM != DEPTH_NONE ? farness(host_depth(SPLAT_DEPTH(number))) : 0.0;
     return splat;
 }
 

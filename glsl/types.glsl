@@ -142,7 +142,7 @@ struct Block {
     vec4 high_sigma; // greatest ones; largest standard deviation, negative where some may miss all pixels though in view
 };
 
-// A survivor on the screen: what each pixel that it covers needs of it, in a cache line's 64 bytes.
+// A survivor on the screen: what each pixel that it covers needs of it, 64 bytes. splats.glsl says how they lie in memory.
 struct Splat {
     vec4 centre_conic; // centre, px; k0 k1 of the inverse 2D covariance's Cholesky factor, 1/px
     vec4 conic_cut; // k2; opacity; the weight's z at the centre and dz/dx, as cut.glsl says

@@ -53,11 +53,11 @@ pub(crate) fn groups_of_list(plan: &Plan) -> Groups<'static> {
     })
 }
 
-/// The loads of an invocation of such a workgroup on a GPU, of which each block takes `loads`: those of the blocks before, four
+/// The loads of an invocation of such a workgroup on a GPU, of which each block takes `loads`: those of the blocks before, 8
 /// at once (glsl/block_runs.glsl), and its own, to count and to list it.
 #[cfg(feature = "lab")]
 pub(super) fn loads_of_list(numbers: &FrameNumbers, loads: u64) -> u64 {
-    1 + (numbers.blocks.div_ceil(4 * u64::from(limits::BLOCK_SIZE)) + 2) * loads
+    1 + (numbers.blocks.div_ceil(8 * u64::from(limits::BLOCK_SIZE)) + 2) * loads
 }
 
 /// An invocation a block.

@@ -34,12 +34,15 @@ pub(crate) struct Buffers {
     pub(crate) splats: Buffer,
     /// What the splats are drawn with; empty where no quads are.
     pub(crate) quads: Buffer,
-    /// The keys of the survivors' depths, and then their numbers in the scene.
+    /// The keys of the survivors' depths; with kernels for GPUs twice as much, since their sort has a use for it later.
     pub(crate) depth_keys: Buffer,
     pub(crate) keys: [Buffer; 2],
     pub(crate) order: [Buffer; 2],
     pub(crate) histogram: Buffer,
-    /// Which tiles each splat touches; empty where tiles are not wanted.
+    /// What the sort for GPUs knows of many splats of one depth; empty for CPU drivers.
+    pub(crate) crowds: Buffer,
+    /// Which tiles each splat touches; empty where tiles are not wanted. Kernels for GPUs have words of the splats' rectangles
+    /// behind the masks (glsl/rects.glsl).
     pub(crate) tile_masks: Buffer,
     /// Only for tiles.
     pub(crate) tiles: Option<TileBuffers>,
@@ -98,6 +101,10 @@ struct Sizes {
     cut_bytes: u64,
     /// Words.
     histogram: u64,
+    crowds: u64,
+    /// Bytes.
+    splats: u64,
+    depth_keys: u64,
     quads: u64,
     masks: u64,
     pairs: u64,
@@ -136,8 +143,14 @@ impl Sizes {
             shortlists: if plan.is_shortlisted() { blocks } else { 0 },
             cut_bytes,
             histogram: sort::histogram_words(plan),
+            crowds: sort::crowd_words(plan),
+            splats: splat_bytes(plan),
+            depth_keys: match plan.way.shape {
+                DeviceShape::Cpu => gaussians * 4,
+                DeviceShape::Gpu { .. } => gaussians * 8,
+            },
             quads: if plan.needs_quads() { gaussians } else { 0 },
-            masks: when_tiled(gaussians),
+            masks: when_tiled(gaussians + u64::from(plan.keeps_rects()) * gaussians.div_ceil(4)),
             pairs: when_tiled(plan.data.room.pair_capacity.into()),
             tiles: when_tiled(plan.data.tiles.tile_count.into()),
             bin: bin::Scratch::words(plan).map(when_tiled),
@@ -145,6 +158,17 @@ impl Sizes {
             depths: if plan.way.expects_depth { gaussians } else { 0 },
             occluders: plan.occluders.map_or(0, |_| when_tiled(pixels)),
         }
+    }
+}
+
+/// Bytes of the splats, which lie as glsl/splats.glsl says.
+fn splat_bytes(plan: &Plan) -> u64 {
+    let vector = size_of::<[f32; 4]>() as u64;
+    let gaussians = u64::from(plan.gaussians());
+    let whole = gaussians * size_of::<Splat>() as u64;
+    match plan.way.shape {
+        DeviceShape::Cpu => whole,
+        DeviceShape::Gpu { .. } => whole + gaussians.div_ceil(4) * vector,
     }
 }
 
@@ -226,12 +250,13 @@ impl Buffers {
             survivors: gpu("survivors", n * 8)?,
             cutoffs: gpu("cutoffs", n * 4)?,
             cut_records: gpu("cut_records", sizes.cut_bytes)?,
-            splats: gpu("splats", n * size_of::<Splat>() as u64)?,
+            splats: gpu("splats", sizes.splats)?,
             quads: gpu("quads", sizes.quads * size_of::<Quad>() as u64)?,
-            depth_keys: gpu("depth_keys", n * 8)?,
+            depth_keys: gpu("depth_keys", sizes.depth_keys)?,
             keys: [gpu("keys", n * 4)?, gpu("sorted_keys", n * 4)?],
             order: [gpu("order", n * 4)?, gpu("sorted_order", n * 4)?],
             histogram: gpu("histogram", sizes.histogram * 4)?,
+            crowds: gpu("crowds", sizes.crowds * 4)?,
             tile_masks: gpu("tile_masks", sizes.masks * 16)?,
             tiles: if plan.is_tiled() {
                 Some(TileBuffers {
@@ -290,6 +315,9 @@ impl Buffers {
             && have.shortlists >= need.shortlists
             && have.cut_bytes >= need.cut_bytes
             && have.histogram >= need.histogram
+            && have.crowds >= need.crowds
+            && have.splats >= need.splats
+            && have.depth_keys >= need.depth_keys
             && have.quads >= need.quads
             && have.masks >= need.masks
             && have.pairs >= need.pairs
@@ -309,7 +337,7 @@ impl Buffers {
         let sizes = self.sized_for;
         sizes
             .cut_bytes
-            .max(sizes.gaussians * size_of::<Splat>() as u64)
+            .max(sizes.splats)
             .max(sizes.pairs * 4)
             .max(sizes.bin.into_iter().max().unwrap_or(0) * 4)
             .max(sizes.picture_bytes)

@@ -25,10 +25,10 @@ pub(crate) const STAGE: Stage = Stage::when_finding_view(
 
 #[cfg(feature = "lab")]
 pub(super) const COSTS: &[Cost] = &[
-    // Each block has a side and then totals, and a layer. It writes the block's places, and the list.
+    // Each block has a side, totals and a layer. It writes the block's places, and the list.
     Cost::of::<compact_scan::Program>(
         |n| n.blocks,
-        |n| loads_of_list(n, n.layer().max(2)),
+        |n| loads_of_list(n, n.layer()),
         |n| n.blocks * (cost::WORD + cost::TOTALS + 2 * cost::WORD + cost::WORD),
     ),
     // The number of its group's block, the block, its layer, its side, its Gaussian's bits in the two masks; and the words of
@@ -38,7 +38,7 @@ pub(super) const COSTS: &[Cost] = &[
         |n| 2 + n.layer() + 3 + 2 * u64::from(limits::BLOCK_SIZE / u32::BITS),
         |n| {
             let block = 4 * cost::WORD + cost::MASKS;
-            n.kept_blocks * block + n.survivors * cost::SURVIVOR + n.cut * cost::WORD
+            n.kept_blocks * block + n.survivors * cost::SURVIVOR + n.cuts() + n.cut * cost::WORD
         },
     ),
 ];

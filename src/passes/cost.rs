@@ -40,6 +40,8 @@ pub struct FrameNumbers {
     pub cut: u64,
     /// Those of them that a moved clip changes.
     pub changed: u64,
+    /// Passes of their sort that are not skipped.
+    pub sort_passes: u64,
     /// The most of them that have one depth.
     pub tied: u64,
     /// Columns of tiles in the picture.
@@ -66,7 +68,7 @@ pub struct FrameNumbers {
 
 impl FrameNumbers {
     /// The numbers by their names.
-    pub fn named(&mut self) -> [(&'static str, &mut u64); 20] {
+    pub fn named(&mut self) -> [(&'static str, &mut u64); 21] {
         [
             ("blocks", &mut self.blocks),
             ("clip_blocks", &mut self.clip_blocks),
@@ -77,6 +79,7 @@ impl FrameNumbers {
             ("survivors", &mut self.survivors),
             ("cut", &mut self.cut),
             ("changed", &mut self.changed),
+            ("sort_passes", &mut self.sort_passes),
             ("tied", &mut self.tied),
             ("tile_columns", &mut self.tile_columns),
             ("tile_rows", &mut self.tile_rows),
@@ -109,9 +112,23 @@ impl FrameNumbers {
         self.survivors.div_ceil(limits::RADIX_PARTITION.into())
     }
 
+    /// Parts of the scene's numbers that the sort collects those of one depth from, if there are as many numbers as survivors.
+    pub(super) fn stretches(&self) -> u64 {
+        sort::stretches(self.survivors)
+    }
+
     /// Partitions of the sort of the pairs of macro-tile and splat.
     pub(super) fn pair_partitions(&self) -> u64 {
         self.macro_pairs.div_ceil(limits::RADIX_PARTITION.into())
+    }
+
+    /// Bytes of the survivors' places among those that are cut, which nobody reads where none can be.
+    pub(super) fn cuts(&self) -> u64 {
+        if self.record_bytes > 0 {
+            self.survivors * WORD
+        } else {
+            0
+        }
     }
 
     /// Macro-tiles of the picture.
@@ -153,10 +170,12 @@ pub(super) const WORD: u64 = size_of::<u32>() as u64;
 pub(super) const GAUSSIAN: u64 = size_of::<types::Gaussian>() as u64;
 /// The bounds of a block.
 pub(super) const BOUNDS: u64 = size_of::<types::Block>() as u64;
-/// A splat.
-pub(super) const SPLAT: u64 = size_of::<types::Splat>() as u64;
-/// A survivor: its Gaussian, and its place among those that are cut.
-pub(super) const SURVIVOR: u64 = 2 * WORD;
+/// A splat without its curvature and its depth, which lie apart.
+pub(super) const SPLAT: u64 = 12 * WORD;
+/// The curvature of a splat's weight.
+pub(super) const CURVATURE: u64 = 4 * WORD;
+/// A survivor: its Gaussian; where the clip cuts any, its place among those that are cut is a word more.
+pub(super) const SURVIVOR: u64 = WORD;
 /// A splat's mask of tiles.
 pub(super) const TILE_MASK: u64 = 4 * WORD;
 /// The Gaussians of a block.

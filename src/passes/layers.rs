@@ -35,12 +35,12 @@ layered!(classify, clip: Plan::view_is_clipped, combined: is_combined, shortlist
 layered!(clip_blocks, combined: is_combined, shortlisted: Plan::is_shortlisted);
 layered!(clip, combined: is_combined, shortlisted: Plan::is_shortlisted);
 layered!(compact_scan);
-layered!(compact);
+layered!(compact, cut: Plan::view_is_cut);
 layered!(cutoff, combined: is_combined, shortlisted: Plan::is_shortlisted);
 layered!(depth, combined: is_combined, shortlisted: Plan::is_shortlisted);
 layered!(reclip_blocks, combined: is_combined, shortlisted: Plan::is_shortlisted);
 layered!(reclip, combined: is_combined, shortlisted: Plan::is_shortlisted);
-layered!(recut, tiles: Plan::is_tiled, quads: Plan::needs_quads);
+layered!(recut, tiles: Plan::is_tiled, quads: Plan::needs_quads, rects: Plan::keeps_rects);
 
 fn is_combined(plan: &Plan) -> bool {
     plan.layers.are_combined()

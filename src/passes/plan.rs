@@ -199,6 +199,11 @@ impl Plan {
         self.way.raster == Raster::Tiles
     }
 
+    /// True when splats' rectangles of tiles are kept, and masks of their tiles only where these do not tell everything.
+    pub(crate) fn keeps_rects(&self) -> bool {
+        self.is_tiled() && self.way.shape != DeviceShape::Cpu
+    }
+
     /// True when the quads of the splats have to be found.
     pub(crate) fn needs_quads(&self) -> bool {
         self.way.needs_quads

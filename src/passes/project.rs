@@ -26,6 +26,7 @@ impl OfPlan for project::Constants {
             sh_format: plan.way.sh_format.code(),
             tiles: plan.is_tiled(),
             quads: plan.needs_quads(),
+            rects: plan.keeps_rects(),
         }
     }
 }
@@ -34,15 +35,18 @@ impl OfPlan for project::Constants {
 pub(super) const COSTS: &[Cost] = &[
     // How many there are, its Gaussian's number, the layer; the Gaussian meanwhile. Then the cutoff record's header and the
     // rest of it, the colour's constant, its units and those of three degrees; the record once more for the tiles.
-    // It reads the survivor, the Gaussian, its colour and the record, and writes the splat, its mask, its key and its number;
-    // quads are left out, which frames of tiles do without.
+    // It reads the survivor, the Gaussian, its colour and the record, and writes the splat, its depth, its rectangle of tiles and
+    // its key, the curvatures of cut splats, and the masks of those that need one, which have a pair each at least; quads are left out, which frames of
+    // tiles do without.
     Cost::of::<project::Program>(
         |n| n.survivors,
         |n| 2 + n.layer() + 2 + 5 + 2,
         |n| {
             let read = cost::SURVIVOR + cost::GAUSSIAN + n.sh_bytes;
-            let written = cost::SPLAT + cost::TILE_MASK + 2 * cost::WORD;
-            n.survivors * (read + written) + n.cut * n.record_bytes
+            let written = cost::SPLAT + 3 * cost::WORD;
+            let masks = n.masked_pairs * cost::gathered(cost::TILE_MASK);
+            let cut = n.record_bytes + cost::gathered(cost::CURVATURE);
+            n.survivors * (read + written) + n.cuts() + masks + n.cut * cut
         },
     ),
 ];

@@ -82,6 +82,12 @@ pub(super) fn histogram_words(keys: u64) -> u64 {
     partitions * (digits + 2) + digits
 }
 
+/// The turns of the scan over so many partitions.
+#[cfg(feature = "lab")]
+pub(super) fn scan_turns(partitions: u64) -> u64 {
+    partitions.div_ceil((limits::RADIX_GROUP_SIZE * limits::RADIX_SCAN_COUNTS).into())
+}
+
 /// A pass: the keys and what they order go from the first pair of buffers to the second.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pass<'a> {
@@ -93,6 +99,8 @@ pub(super) struct Pass<'a> {
     /// The keys for whichever pass is the first that the device does not skip.
     pub(super) first_keys: &'a Buffer,
     pub(super) histogram: &'a Buffer,
+    /// Where one pass that sorts all pairs leaves where those of each of so many macro-tiles begin.
+    pub(super) macro_begins: Option<(&'a Buffer, u32)>,
 }
 
 impl Pass<'_> {
@@ -153,8 +161,14 @@ impl Pass<'_> {
             sorted_keys: self.keys[1],
             sorted_order: self.order[1],
             depth_keys: self.first_keys,
+            macro_begins: self
+                .macro_begins
+                .map_or(self.order[1], |(begins, _)| begins),
         };
-        let params = radix_scatter::Params { pass: self.number };
+        let params = radix_scatter::Params {
+            pass: self.number,
+            macro_tiles: self.macro_begins.map_or(0, |(_, count)| count),
+        };
         kernels
             .scatter
             .dispatch(pipelines, recorder, buffers, params, groups);

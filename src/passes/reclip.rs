@@ -70,7 +70,7 @@ pub(super) const COSTS: &[Cost] = &[
         |_| 4 + u64::from(limits::BLOCK_SIZE / u32::BITS) + 1,
         |n| {
             let block = 4 * cost::WORD + cost::MASKS / 2 + KEPT;
-            n.clip_blocks * block + n.changed * cost::SURVIVOR + n.cut * cost::WORD
+            n.clip_blocks * block + n.changed * CHANGE + n.cut * cost::WORD
         },
     ),
     // How many there are, which survivor, which Gaussian, its layer, the cutoff record, the mask and the splat, most of which
@@ -80,11 +80,16 @@ pub(super) const COSTS: &[Cost] = &[
         |n| 3 + n.layer() + 2 + 2,
         |n| {
             let survivor = cost::gathered(cost::SURVIVOR) + cost::gathered(cost::GAUSSIAN);
-            let splat = cost::gathered(cost::TILE_MASK) + cost::SPLAT;
-            n.changed * (cost::SURVIVOR + survivor + n.record_bytes + splat)
+            let splat =
+                cost::gathered(cost::TILE_MASK) + cost::SPLAT + cost::gathered(cost::CURVATURE);
+            n.changed * (CHANGE + survivor + n.record_bytes + splat)
         },
     ),
 ];
+
+/// Bytes of a change: the survivor, and its place among those that are cut.
+#[cfg(feature = "lab")]
+const CHANGE: u64 = 2 * cost::WORD;
 
 /// Bytes that a reclipped frame keeps of a block.
 #[cfg(feature = "lab")]

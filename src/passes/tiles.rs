@@ -179,7 +179,7 @@ pub(super) const COSTS: &[Cost] = &[
 fn bytes(numbers: &FrameNumbers, tiles: u64) -> u64 {
     let share = tiles as f64 / numbers.filled().max(1) as f64;
     let loaded = numbers.loaded as f64 / numbers.pairs.max(1) as f64;
-    let splats = numbers.macro_pairs as f64 * loaded * cost::SPLAT as f64;
+    let splats = numbers.macro_pairs as f64 * loaded * cost::gathered(cost::SPLAT) as f64;
     let lists = (numbers.loaded * cost::WORD) as f64;
     (share * (lists + splats)) as u64 + tiles * (cost::WORD + TILE * TilePixels::Float.bytes())
 }

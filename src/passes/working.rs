@@ -31,6 +31,7 @@ impl Buffers {
             &self.quads,
             &self.depth_keys,
             &self.histogram,
+            &self.crowds,
             &self.tile_masks,
         ];
         all.extend(self.keys.iter().chain(&self.order));

@@ -1,6 +1,7 @@
 //! The contents that stages have written, for tests of the stages.
 
 use super::Renderer;
+use crate::SceneBuffers;
 
 impl Renderer {
     /// The bytes of the working buffer of a debug name, once the submitted frames have written it; nothing where there is
@@ -9,5 +10,11 @@ impl Renderer {
     pub fn working_buffer(&self, name: &str) -> Option<Vec<u8>> {
         let buffer = self.memory.allocated()?.named(name)?;
         self.device.download(buffer).ok()
+    }
+
+    /// The same of a scene's buffer.
+    #[doc(hidden)]
+    pub fn scene_buffer(&self, scene: &SceneBuffers, name: &str) -> Option<Vec<u8>> {
+        self.device.download(scene.named(name)?).ok()
     }
 }

@@ -9,6 +9,7 @@ use glam::DVec3;
 use rara::gpu::{Bindings, Device, DeviceShape};
 use rara::measure::compare;
 use rara::scene::{Bounds, Kind, generate, load};
+use rara::types::Splat;
 use rara::{
     Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, HeadlessDesc, Picture, PipelineCache,
     Plane, Projection, Raster, Settings, reference,
@@ -27,6 +28,34 @@ pub fn scale() -> f64 {
 pub fn scaled((width, height): (u32, u32)) -> (u32, u32) {
     let scaled = |pixels| (f64::from(pixels) * scale().sqrt()) as u32;
     (scaled(width), scaled(height))
+}
+
+/// The splats of a buffer, which lie as glsl/splats.glsl says.
+pub fn splats(buffer: &[[f32; 4]], gaussians: usize, shape: DeviceShape) -> Vec<Splat> {
+    let apart = shape != DeviceShape::Cpu;
+    let of = |splat: usize| {
+        let place = splat * if apart { 3 } else { 4 };
+        let [centre_conic, conic_cut, colour_cut] = [0, 1, 2].map(|part| buffer[place + part]);
+        let mut curvature_depth = buffer[if apart {
+            3 * gaussians + splat
+        } else {
+            place + 3
+        }];
+        if apart {
+            // Only curvatures that are carried are there.
+            if conic_cut[2].abs() >= 1e30 {
+                curvature_depth = [0.0; 4];
+            }
+            curvature_depth[3] = buffer[4 * gaussians + splat / 4][splat % 4];
+        }
+        Splat {
+            centre_conic,
+            conic_cut,
+            colour_cut,
+            curvature_depth,
+        }
+    };
+    (0..gaussians).map(of).collect()
 }
 
 /// The ways to reach buffers that differ on a device.

@@ -16,6 +16,7 @@ use rara::{
     Gaussians, Mode, Raster, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat, limits,
 };
 
+use crate::common;
 use crate::common::folder::Folder;
 use crate::frames::Drawn;
 use crate::passes::{groups, numbers};
@@ -100,7 +101,9 @@ fn counted(gaussians: usize, drawn: &Drawn, is_cut: bool) -> CountedFrame {
         ..found
     };
     assert!(numbers.pairs > 0, "the pairs have room");
-    let splats: Vec<Splat> = bytemuck::pod_collect_to_vec(&drawn.buffer("splats"));
+    let splats: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&drawn.buffer("splats"));
+    let shape = DeviceShape::Gpu { subgroup: 0 };
+    let splats = common::splats(&splats, data.scene.gaussian_count as usize, shape);
     let splats = &splats[..numbers.survivors as usize];
     numbers.tied = tied(splats, &data);
     numbers.masked_pairs = masked(drawn, numbers.macro_pairs);

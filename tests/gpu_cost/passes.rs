@@ -57,6 +57,7 @@ fn heavy(picture: FrameNumbers) -> FrameNumbers {
         survivors: gaussians,
         cut: gaussians / 20,
         changed: gaussians / 20,
+        sort_passes: 3,
         tied: gaussians / 5, // a layer that is seen face on
         macro_pairs: 3 * gaussians / 2,
         masked_pairs: gaussians / 2,
@@ -118,6 +119,8 @@ pub fn numbers(drawn: &Drawn) -> FrameNumbers {
     let data: FrameData = bytemuck::pod_read_unaligned(&bytes[..size_of::<FrameData>()]);
     let counts: FrameCounts = bytemuck::pod_read_unaligned(&drawn.buffer("counts"));
     let listed = |command: [u32; 4]| u64::from(command[3]);
+    let bits = u32::BITS - (data.order.key_span >> data.order.key_shift).leading_zeros();
+    let passes = bits.div_ceil(limits::SORT_BITS).max(1);
     FrameNumbers {
         blocks: data.scene.block_count.into(),
         clip_blocks: listed(counts.clip_groups),
@@ -127,6 +130,7 @@ pub fn numbers(drawn: &Drawn) -> FrameNumbers {
         survivors: listed(counts.mesh_groups),
         cut: counts.cutoff.into(),
         changed: listed(counts.recut_groups),
+        sort_passes: (passes - counts.sort_skipped).into(),
         tile_columns: data.tiles.tile_columns.into(),
         tile_rows: (data.tiles.tile_count / data.tiles.tile_columns).into(),
         macro_pairs: counts.macro_pairs.into(),

@@ -36,6 +36,14 @@ const TO_DIRECT3D: [&str; 3] = ["--hlsl", "--shader-model", "60"];
 const NOT_IN_DIRECT3D: [(&str, &str); 1] =
     [("radix_scatter.subgroup.comp", "Unsupported builtin in HLSL")];
 
+/// The modules by address that cannot be had in Metal's language, and how spirv-cross refuses them; bound, all can.
+///
+/// `radix_ties` counts in device memory by atomics, which spirv-cross writes only of bound buffers.
+const NOT_IN_METAL_BY_ADDRESS: [(&str, &str); 1] = [(
+    "radix_ties.comp",
+    "No backing variable for atomic operation",
+)];
+
 /// A committed module.
 struct Module {
     /// Its shader, `sort_scan.comp`.
@@ -122,6 +130,13 @@ fn shaders_translate_to_metals_language() {
         for module in Module::without_meshes(variant) {
             let shader = &module.shader;
             let text = module.translated(&TO_METAL);
+            let mut refused = NOT_IN_METAL_BY_ADDRESS.iter();
+            let refused = refused.find(|(name, _)| variant == "address" && *name == *shader);
+            if let Some((_, why)) = refused {
+                let said = text.expect_err("it is no exception any more");
+                assert!(said.contains(why), "{shader} {variant}: {said}");
+                continue;
+            }
             let text = text.unwrap_or_else(|said| panic!("{shader} {variant}: {said}"));
             let main = text.lines().find(|line| line.contains(" main0("));
             let main = main.unwrap_or_else(|| panic!("{shader} {variant}: no entry point"));

@@ -119,6 +119,7 @@ impl Shapes {
 fn draw(renderer: &mut Headless, camera: &Camera, clip: &Clip, settings: &Settings) -> Drawn {
     renderer.render(camera, clip, settings).expect("renders");
     let picture = renderer.picture().expect("reads back");
+    let shape = renderer.device().shape();
     let mut read = |name: &str, bytes: usize| {
         let content = renderer.working_buffer(name);
         let mut content = content.unwrap_or_else(|| panic!("there is no buffer {name}"));
@@ -138,8 +139,7 @@ fn draw(renderer: &mut Headless, camera: &Camera, clip: &Clip, settings: &Settin
     let [keys, order] = [["keys", "order"], ["sorted_keys", "sorted_order"]][passes as usize % 2];
     let records = counts.cutoff as usize * frame.weight.cut_stride as usize * 16;
     let mut wanted = vec![
-        ("survivors", 8 * listed),
-        ("splats", size_of::<rara::types::Splat>() * listed),
+        ("survivors", 4 * listed),
         ("cutoffs", 4 * counts.cutoff as usize),
         ("cut_records", records),
     ];
@@ -159,6 +159,17 @@ fn draw(renderer: &mut Headless, camera: &Camera, clip: &Clip, settings: &Settin
         .into_iter()
         .map(|(name, bytes)| (name, read(name, bytes)))
         .collect();
+    let gaussians = frame.scene.gaussian_count as usize;
+    if gaussians > 0 {
+        let vectors = match shape {
+            DeviceShape::Cpu => 4 * gaussians,
+            _ => 4 * gaussians + gaussians.div_ceil(4),
+        };
+        let splats = read("splats", 16 * vectors);
+        let splats: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&splats);
+        let splats = common::splats(&splats, gaussians, shape);
+        buffers.push(("splats", bytemuck::cast_slice(&splats[..listed]).to_vec()));
+    }
     let records = buffers.iter_mut().find(|(name, _)| *name == "cut_records");
     let stride = frame.weight.cut_stride as usize * 16;
     if let Some((_, bytes)) = records.filter(|_| stride > 0) {

@@ -71,6 +71,17 @@ fn masked([origin, is_larger, above, below]: [u32; 4]) -> Option<Vec<Span>> {
     (is_larger == 0).then(|| (0..).zip(rows).filter_map(in_row).collect())
 }
 
+/// The spans of a rectangle's word (glsl/rects.glsl) that needs no mask.
+fn filled(word: u32) -> Vec<Span> {
+    if word == u32::MAX {
+        return Vec::new();
+    }
+    let [column, row] = [word & 0xfff, word >> 12 & 0xfff];
+    let [columns, rows] = [(word >> 24 & 7) + 1, (word >> 27 & 7) + 1];
+    let columns = [column, column + columns];
+    (row..row + rows).map(|row| Span { row, columns }).collect()
+}
+
 /// Checks the lists of a frame of tiles whose splats have these quads; returns how many spans there are, and how many splats
 /// have other spans than the twin finds, at a tie.
 fn check(stages: &mut Stages, what: &str, quads: &[Quad]) -> [usize; 2] {
@@ -94,11 +105,22 @@ fn check(stages: &mut Stages, what: &str, quads: &[Quad]) -> [usize; 2] {
     }
     // The spans are those of the splats' masks, and those of the twin except for ties.
     let masks: Vec<[u32; 4]> = stages.read("tile_masks");
+    let rects = if stages.is_cpus() {
+        &[]
+    } else {
+        masks[stages.scene.len()..].as_flattened()
+    };
     let (mut all, mut ties) = (0, 0);
     assert_eq!(quads.len(), splats.len(), "{what}");
     for (index, (splat, quad)) in splats.iter().zip(quads).enumerate() {
         let ours = &found[index];
-        if let Some(masked) = masked(masks[index]) {
+        // Kernels for GPUs leave a mask only where a rectangle does not tell everything.
+        let rect = rects.get(index).copied();
+        let has_mask = rect.is_none_or(|rect| rect != u32::MAX && rect >= 1 << 30);
+        if let Some(rect) = rect.filter(|_| !has_mask) {
+            let filled = filled(rect);
+            assert!(*ours == filled, "{what}: {ours:?} against {filled:?}");
+        } else if let Some(masked) = masked(masks[index]) {
             assert!(*ours == masked, "{what}: {ours:?} against {masked:?}");
         }
         let single = outline::<f32>(splat, quad);

@@ -3,7 +3,7 @@
 use rara::gpu::{Bindings, Device, DeviceDesc};
 use rara::reference::depth;
 use rara::reference::{Footprint, Real, View};
-use rara::types::{FrameCounts, SplatDepth};
+use rara::types::{FrameCounts, Gaussian, SplatDepth};
 use rara::{
     Camera, Clip, ClipOp, ExpectedDepthDesc, Layer, LayerState, Mode, Raster, Renderer,
     RendererDesc, Scene, SceneBuffers, Settings, ShFormat, TargetFormat,
@@ -35,11 +35,11 @@ fn depths<'a>(
     let read = |name| renderer.working_buffer(name).expect(name);
     let counts: FrameCounts = bytemuck::pod_read_unaligned(&read("counts"));
     let survivors = (counts.visible + counts.cutoff) as usize;
-    // Behind the keys of all Gaussians are the survivors' numbers.
-    let numbers = read("depth_keys");
-    let numbers = numbers.chunks_exact(size_of::<u32>());
-    let numbers = numbers.skip(scene.gaussians());
-    let numbers = numbers.map(|bytes| bytemuck::pod_read_unaligned::<u32>(bytes) as usize);
+    let gaussians: Vec<Gaussian> =
+        bytemuck::pod_collect_to_vec(&renderer.scene_buffer(&there, "gaussians").expect("them"));
+    let indices: Vec<u32> = bytemuck::pod_collect_to_vec(&read("survivors"));
+    let number = |index: u32| gaussians[index as usize].scale[3].to_bits() as usize;
+    let numbers = indices.into_iter().map(number);
     let depths = read("depths");
     let depths = depths.chunks_exact(size_of::<SplatDepth>());
     let depths = depths.map(bytemuck::pod_read_unaligned);

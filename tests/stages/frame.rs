@@ -3,7 +3,7 @@
 use glam::{DVec3, Quat, Vec3};
 use rara::gpu::{Bindings, DeviceShape};
 use rara::scene::{Bounds, Kind, generate};
-use rara::types::{FrameCounts, FrameData, Gaussian, Quad, Splat};
+use rara::types::{FrameCounts, FrameData, Gaussian, MODE_RARA, NOT_CUT, Quad, Splat};
 use rara::{Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, Plane, Settings, ShFormat};
 
 use crate::common;
@@ -89,13 +89,18 @@ impl Stages {
     /// The indices of the survivors, and their numbers among the cut ones.
     pub fn survivors(&mut self) -> Vec<[u32; 2]> {
         let counts = self.counts();
-        let mut survivors = self.read("survivors");
-        survivors.truncate((counts.visible + counts.cutoff) as usize);
-        survivors
+        let frame: FrameData = self.read("frame")[0];
+        let count = (counts.visible + counts.cutoff) as usize;
+        let survivors: Vec<u32> = self.read("survivors");
+        let cuts = &survivors[frame.scene.gaussian_count as usize..];
+        // Only frames that may cut any say which are cut.
+        let may_cut = frame.region.mode >= MODE_RARA;
+        let cut = |i: usize| if may_cut { cuts[i] } else { NOT_CUT };
+        (0..count).map(|i| [survivors[i], cut(i)]).collect()
     }
 
-    /// The same after a reclipped frame, whose survivors are all in view, clipped away or not.
-    pub fn survivors_in_view(&mut self) -> Vec<[u32; 2]> {
+    /// The indices of the survivors after a reclipped frame, which are all in view, clipped away or not.
+    pub fn survivors_in_view(&mut self) -> Vec<u32> {
         let in_view = self.counts().mesh_groups[3] as usize;
         let mut survivors = self.read("survivors");
         survivors.truncate(in_view);
@@ -103,7 +108,10 @@ impl Stages {
     }
 
     pub fn splats_in_view(&mut self, count: usize) -> Vec<Splat> {
-        let mut splats = self.read("splats");
+        let frame: FrameData = self.read("frame")[0];
+        let splats = self.read::<[f32; 4]>("splats");
+        let gaussians = frame.scene.gaussian_count as usize;
+        let mut splats = common::splats(&splats, gaussians, self.headless.device().shape());
         splats.truncate(count);
         splats
     }
@@ -120,12 +128,12 @@ impl Stages {
         quads
     }
 
-    /// The numbers of the survivors in the scene, as the sort is given them.
+    /// The numbers of the survivors in the scene.
     pub fn numbers_in_view(&mut self, count: usize) -> Vec<u32> {
-        let frame: FrameData = self.read("frame")[0];
-        let first = frame.scene.gaussian_count as usize;
-        let both: Vec<u32> = self.read("depth_keys");
-        both[first..first + count].to_vec()
+        let gaussians: Vec<Gaussian> = self.read("gaussians");
+        let survivors: Vec<u32> = self.read("survivors");
+        let number = |index: &u32| gaussians[*index as usize].scale[3].to_bits();
+        survivors[..count].iter().map(number).collect()
     }
 }
 

@@ -68,6 +68,8 @@ fn equal_depths_are_in_the_files_order() {
         (few, 7),
         (few, 40),
         (few, 900),
+        (4_096, 1),
+        (4_097, 1),
         (6_000, 1),
         (many, 1),
         (many, 3),
@@ -75,6 +77,31 @@ fn equal_depths_are_in_the_files_order() {
     ] {
         check_layers(&mut stages, count, layers);
     }
+}
+
+/// Groups of one depth of every size that kernels tell apart, in one scene: one splat, as many as an invocation, a workgroup and
+/// a partition order, and one more of each, and groups that fill several partitions.
+#[test]
+fn groups_of_one_depth_of_every_size_are_in_the_files_order() {
+    let sizes = [
+        1, 2, 16, 17, 24, 25, 256, 257, 3_000, 4_096, 4_097, 1, 9_000, 300, 4_095, 20_000, 2, 5_000,
+    ];
+    let layers = (0..).zip(sizes).flat_map(|(layer, size)| vec![layer; size]);
+    let mut layers: Vec<usize> = layers.collect();
+    // The numbers of a group lie all over the file.
+    let count = layers.len();
+    for at in 0..count {
+        layers.swap(at, at * 7919 % count);
+    }
+    check_depths(&mut Stages::new(), "every size", &layers);
+}
+
+/// More groups than a digit has values, each of more splats than a partition holds.
+#[test]
+#[ignore = "a million splats; run it where the sort for GPUs has changed"]
+fn many_crowds_are_in_the_files_order() {
+    let layers: Vec<_> = (0..270 * 4_200).map(|index| index * 7919 % 270).collect();
+    check_depths(&mut Stages::new(), "270 crowds", &layers);
 }
 
 /// Kernels that divide the keys into partitions of 4096 have a last one that is full, lacks one key, or holds a single one.
@@ -89,20 +116,28 @@ fn partitions_of_every_length_are_sorted() {
 
 /// Checks the order of Gaussians that stand in so many layers of one depth each, all of them in view.
 fn check_layers(stages: &mut Stages, count: usize, layers: usize) {
+    let of = |index| index * 7919 % layers;
+    let layers_of: Vec<_> = (0..count).map(of).collect();
+    check_depths(stages, &format!("{count} in {layers} layers"), &layers_of);
+}
+
+/// Checks the order of Gaussians that stand in these layers of one depth each, all of them in view.
+fn check_depths(stages: &mut Stages, what: &str, layers: &[usize]) {
+    let count = layers.len();
     let mut scene = generate(Kind::General, count, 2);
     let mut camera = frame::views(&scene)[0];
     camera.rotation = glam::DMat3::IDENTITY;
     camera.eye = glam::DVec3::new(0.0, 0.0, -40.0);
-    for (index, position) in scene.positions_mut().iter_mut().enumerate() {
+    for (position, layer) in scene.positions_mut().iter_mut().zip(layers) {
         *position = position.clamp(Vec3::NEG_ONE, Vec3::ONE);
-        position.z = (index * 7919 % layers) as f32 / 64.0;
+        position.z = *layer as f32 / 64.0;
     }
     scene.opacities_mut().fill(0.5);
     stages.load(&scene);
     let settings = Settings::default().raster(Raster::Quad);
     let counts = stages.draw(&camera, &Clip::default(), &settings).counts;
     assert_eq!(counts.drawn, count as u32, "all are in view");
-    check(stages, &format!("{count} in {layers} layers"));
+    check(stages, what);
 }
 
 /// With fewer bits only neighbours may change places.

@@ -60,7 +60,7 @@ fn a_moved_clip_changes_what_the_twin_says() {
                 let twin = classify::classify(&stages.scene, &view, &clip, &settings);
                 let mut cuts = 0;
                 for &[survivor, cut] in &recuts[..changed] {
-                    let index = survivors[survivor as usize][0] as usize;
+                    let index = survivors[survivor as usize] as usize;
                     let ours = match cut {
                         NOT_CUT => Side::Visible,
                         CUT_AWAY => Side::Invisible,

@@ -1,6 +1,6 @@
 //! Stage `sort`: a stable sort of the survivors by linear view depth, ties by their number in the scene.
 //!
-//! It is given as many keys as there are survivors, in `depth_keys`, and behind them the numbers. `order` holds nothing yet:
+//! It is given as many keys as there are survivors, in `depth_keys`. `order` holds nothing yet:
 //! the survivors are numbered like their keys, from 0. It leaves the sorted keys and their survivors in the pair of `keys`
 //! and `order` that [`result`] names, on which all later stages rely, and the others to the stages that follow
 //! ([`Sorted::spare`]). The plan says which kernels do it: each set has a file here, shaders and scratch of its own.
@@ -25,7 +25,7 @@ pub(crate) const STAGE: Stage = Stage::when_finding_view(
 
 /// The costs of those for GPUs.
 #[cfg(feature = "lab")]
-pub(in crate::passes) use radix::COSTS;
+pub(in crate::passes) use radix::{COSTS, stretches};
 
 /// The kernels that suit the plan's kind of device.
 fn kernels(plan: &Plan) -> &'static KernelSet {
@@ -40,6 +40,14 @@ pub(super) fn histogram_words(plan: &Plan) -> u64 {
     match plan.way.shape {
         DeviceShape::Cpu => runs::histogram_words(plan.data.order.sort_runs.into()),
         DeviceShape::Gpu { .. } => radix::histogram_words(plan),
+    }
+}
+
+/// Words of `crowds` that those kernels use.
+pub(super) fn crowd_words(plan: &Plan) -> u64 {
+    match plan.way.shape {
+        DeviceShape::Cpu => 0,
+        DeviceShape::Gpu { .. } => radix::crowd_words(plan.gaussians()),
     }
 }
 

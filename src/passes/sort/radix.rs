@@ -1,17 +1,16 @@
 //! A radix sort by partitions of consecutive keys, each owned by a workgroup, as suits graphics processors. Its scratch is
-//! `histogram`.
+//! `histogram`, and `crowds` for those of one depth that are more than a workgroup orders.
 
-use crate::gpu::Recorder;
-#[cfg(feature = "lab")]
+use crate::gpu::{Groups, Recorder};
 use crate::limits;
 use crate::passes::buffers::{buffers, indirect};
 #[cfg(feature = "lab")]
 use crate::passes::cost::{self, Cost, FrameNumbers};
 use crate::passes::plan::Plan;
 use crate::passes::radix::{self, Kernels, Keys, Pass};
-use crate::passes::shaders::radix_ties;
 #[cfg(feature = "lab")]
 use crate::passes::shaders::{radix_count, radix_scan, radix_scatter};
+use crate::passes::shaders::{radix_crowds, radix_ties};
 use crate::passes::sort::{of_count, of_pass};
 use crate::passes::stage::{Frame, KernelSet, key};
 use crate::types::FrameCounts;
@@ -20,6 +19,7 @@ pub(super) const KERNELS: KernelSet = KernelSet {
     pipelines: |plan, need| {
         Kernels::new(plan, Keys::Survivors).need(need);
         need(key::<radix_ties::Program>(plan));
+        need(key::<radix_crowds::Program>(plan));
     },
     record,
 };
@@ -33,32 +33,55 @@ pub(in crate::passes) const COSTS: &[Cost] = &[
         |n| n.survivors * cost::WORD + n.histogram(),
     )
     .turning(|_| KEYS as f64 / 8.0),
-    // The partitions' least and greatest keys, which decide about the passes; then their counts of the digit, which it reads
-    // and writes.
+    // The partitions' least and greatest keys, which decide about the passes; then their counts of the digit, which it reads,
+    // several at once, and writes.
     Cost::of::<radix_scan::Program>(
         |_| (1 << limits::SORT_BITS) * u64::from(limits::RADIX_GROUP_SIZE),
-        |n| 2 + 2 * n.partitions().div_ceil(limits::RADIX_GROUP_SIZE.into()),
+        |n| {
+            let ranges = n.partitions().div_ceil(limits::RADIX_GROUP_SIZE.into());
+            2 + ranges + radix::scan_turns(n.partitions())
+        },
         |n| 2 * n.histogram(),
     )
-    .turning(|n| n.partitions().div_ceil(limits::RADIX_GROUP_SIZE.into()) as f64 / 8.0),
+    .turning(|n| radix::scan_turns(n.partitions()) as f64 / 8.0),
     // How many keys there are, the digits' totals, its own keys, the partition's counts; then the keys once more.
-    // It reads and writes the keys and the survivors' numbers, and reads the counts.
+    // It reads and writes the keys and the survivors' numbers, which before the first of the passes nobody has written, and reads
+    // the counts.
     Cost::of::<radix_scatter::Program>(
         workgroup_a_partition,
         |_| 4 + KEYS,
-        |n| n.survivors * 4 * cost::WORD + n.histogram(),
+        |n| {
+            let all = 4 * n.sort_passes.max(1) - 1;
+            n.survivors * all * cost::WORD / n.sort_passes.max(1) + n.histogram()
+        },
     ),
-    // For each of its keys the key and those beside it; then those of one depth. It reads the keys; for those of one depth it
-    // reads the splats' numbers and, for each of four digits, reads and writes the survivors.
+    // How many keys there are, those half a partition away, its own and those beside them; then those of one depth. It reads the
+    // keys; for those of one depth it reads and writes the survivors, for each of four digits where there are many, and looks up
+    // their numbers.
     Cost::of::<radix_ties::Program>(
         workgroup_a_partition,
-        |n| 1 + 2 * KEYS + ties(n.tied),
+        |n| 3 + most_of_ties(n),
         |n| {
-            let tied = cost::gathered(cost::WORD) + 4 * 4 * cost::WORD;
-            n.survivors * cost::WORD + n.tied * tied
+            let number = cost::gathered(cost::WORD) + cost::gathered(cost::GAUSSIAN);
+            n.survivors * cost::WORD + n.tied * (number + 4 * 4 * cost::WORD)
         },
     )
     .turning(ties_turns),
+    // Whether there are crowds; how many the stretch has of each, where the crowd begins and the counts of the stretches before;
+    // then, for each of its partitions, who stands for a number and of which crowd it is one. Of its numbers it reads the bits,
+    // and of those of a crowd the rest.
+    Cost::of::<radix_crowds::Program>(
+        |n| n.stretches() * u64::from(limits::RADIX_GROUP_SIZE),
+        |n| match n.tied > crowd_size(n) {
+            false => 1,
+            true => 3 + n.stretches().div_ceil(8) + 3 * n.partitions().div_ceil(n.stretches()),
+        },
+        |n| match n.tied > crowd_size(n) {
+            false => 0,
+            true => n.survivors / 8 + n.tied * (2 * cost::gathered(cost::WORD) + cost::WORD),
+        },
+    )
+    .turning(|n| if n.tied > crowd_size(n) { 1.0 } else { 0.0 }),
 ];
 
 /// Keys of an invocation.
@@ -70,28 +93,53 @@ fn workgroup_a_partition(numbers: &FrameNumbers) -> u64 {
     numbers.partitions() * u64::from(limits::RADIX_GROUP_SIZE)
 }
 
-/// The loads that put so many survivors of one depth into order: alone by insertion, or as a workgroup by digits.
+/// The longest chain of loads that puts survivors of one depth into order, where as many have it as in the frame, or fewer.
 #[cfg(feature = "lab")]
-fn ties(tied: u64) -> u64 {
-    if tied <= limits::TIES_ALONE.into() {
-        // The end; then each survivor and its number, and those of each before it.
-        return tied + tied * tied.saturating_sub(1);
+fn most_of_ties(numbers: &FrameNumbers) -> u64 {
+    let search = u64::from(numbers.survivors.max(1).ilog2()) + 1;
+    // A survivor, its Gaussian and the number of that.
+    let number = 3;
+    let together = numbers.tied.min(crowd_size(numbers));
+    let alone = together.min(KEYS).div_ceil(4) * (1 + number + 1);
+    if together <= KEYS {
+        return alone;
     }
-    let turns = tied.div_ceil(limits::RADIX_GROUP_SIZE.into());
-    if turns == 1 {
-        return 3; // the end, the survivor and its number
+    let ranked = search + number;
+    if together <= limits::RADIX_GROUP_SIZE.into() {
+        return alone + ranked;
     }
-    let digits = u64::from(tied.ilog2() / limits::SORT_BITS + 1);
-    // The end; the numbers; for each digit a survivor and its number to count, to sort and to carry it; the copy back.
-    turns + 2 * turns + digits * (2 * turns + 2 * turns.div_ceil(KEYS) + turns) + turns
+    let turns = together.div_ceil(limits::RADIX_PARTITION.into());
+    let digits = u64::from(numbers.survivors.max(1).ilog2() / limits::SORT_BITS + 1);
+    // The numbers; for each digit a survivor and its number to count and to sort it, and the survivor to carry it; the copy back.
+    let sorted = search + turns * (number + digits * 5 + 1);
+    alone.max(sorted)
 }
 
-/// The turns of the loops, nearly all of which sort those of one depth: four inside each other, which a compiler takes for
-/// granted. What is left is the loop over an invocation's keys, whose 16 turns are a hundredth of that estimate. Where many have
-/// one depth, their chain of loads is what lasts.
+/// How many survivors of one depth are no crowd yet, as in glsl/crowds.glsl.
+#[cfg(feature = "lab")]
+fn crowd_size(numbers: &FrameNumbers) -> u64 {
+    let size = numbers.survivors.div_ceil(limits::MOST_CROWDS.into());
+    size.max(limits::RADIX_PARTITION.into())
+}
+
+/// The turns of the loops, nearly all of which are of splats of one depth: the compiler takes three inside each other for granted
+/// where a frame's few have one or two turns. What is left is straight code, a hundredth of that estimate.
 #[cfg(feature = "lab")]
 fn ties_turns(_: &FrameNumbers) -> f64 {
     0.01
+}
+
+/// Stretches of so many Gaussians' numbers, as in glsl/crowds.glsl.
+pub(in crate::passes) fn stretches(gaussians: u64) -> u64 {
+    let partitions = gaussians.div_ceil(limits::RADIX_PARTITION.into());
+    let of_stretch = partitions.div_ceil(limits::MOST_STRETCHES.into());
+    partitions.div_ceil(of_stretch.max(limits::LEAST_STRETCH.into()))
+}
+
+/// Words of the crowds: whether there are any, their places, their counts, and a bit for each number.
+pub(super) fn crowd_words(gaussians: u32) -> u64 {
+    let tables = stretches(gaussians.into()) + 1;
+    1 + tables * u64::from(limits::MOST_CROWDS) + u64::from(gaussians.div_ceil(u32::BITS))
 }
 
 /// Words of the histogram for as many keys as there are Gaussians.
@@ -113,20 +161,32 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
             order: pair.map(|pair| &b.order[pair]),
             first_keys: &b.depth_keys,
             histogram: &b.histogram,
+            macro_begins: None,
         };
         pass.count(&kernels, frame, recorder, of_count(&b.counts, number));
         pass.carry(&kernels, frame, recorder, of_pass(&b.counts, number));
     }
     if frame.scene.reordered {
         let sorted = frame.plan.sorted();
+        recorder.fill(&b.crowds, 0, b.crowds.size(), 0);
         let buffers = buffers!(radix_ties {
-            b => [frame, counts, depth_keys];
+            b => [frame, counts, survivors, crowds],
+            frame.scene => [gaussians];
             keys: &b.keys[sorted],
             order: &b.order[sorted],
             scratch: &b.order[sorted ^ 1],
             numbers: &b.keys[sorted ^ 1],
+            // Whose keys have been carried away.
+            crowd_members: &b.depth_keys,
         });
         let partitions = indirect!(b.counts, FrameCounts, sort_groups);
         frame.dispatch(recorder, buffers, (), partitions);
+        let buffers = buffers!(radix_crowds {
+            b => [frame, counts, crowds];
+            order: &b.order[sorted],
+            crowd_members: &b.depth_keys,
+        });
+        let stretches = stretches(frame.plan.gaussians().into()) as u32;
+        frame.dispatch(recorder, buffers, (), Groups::Count(stretches));
     }
 }

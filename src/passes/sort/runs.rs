@@ -55,7 +55,8 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     if frame.scene.reordered {
         let sorted = frame.plan.sorted();
         let buffers = buffers!(sort_ties {
-            b => [frame, counts, depth_keys, histogram];
+            b => [frame, counts, survivors, histogram],
+            frame.scene => [gaussians];
             keys: &b.keys[sorted],
             order: &b.order[sorted],
             scratch: &b.order[sorted ^ 1],

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{Buffer, Device, Recorder};
 use crate::limits;
 use crate::passes::buffers::gpu_only;
-use crate::passes::scene_layer::{PackedLayer, SceneLayer, sizes};
+use crate::passes::scene_layer::{PackedLayer, SceneLayer, layer_index, sizes};
 use crate::precision::ShFormat;
 use crate::scene::{LayerState, Scene, check_clip, sh_coefficients};
 #[cfg(test)]
@@ -71,6 +71,14 @@ impl SceneBuffers {
     /// Its layers, at least one, in the order in which they were given.
     pub fn layers(&self) -> &[SceneLayer] {
         &self.layers
+    }
+
+    /// The number of the first layer of a name, in [`layers`](Self::layers).
+    ///
+    /// # Errors
+    /// [`Error::Invalid`], which lists the names that there are, where no layer is called so.
+    pub fn layer_index(&self, name: &str) -> Result<usize> {
+        layer_index(&self.layers, name)
     }
 
     /// Sets how a layer is shown, of the number that it has in [`layers`](Self::layers), from the next

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::clip::Clip;
+use crate::error::{Error, Result, shortened};
 use crate::limits;
 use crate::passes::{block_order, sh_storage};
 use crate::precision::ShFormat;
@@ -83,6 +84,33 @@ impl SceneLayer {
     pub(super) fn block_end(&self) -> u32 {
         self.first_block + self.gaussians.div_ceil(limits::BLOCK_SIZE)
     }
+}
+
+/// The number of the first layer of a name.
+pub(super) fn layer_index(layers: &[SceneLayer], name: &str) -> Result<usize> {
+    /// Names in a message, at most.
+    const NAMED: usize = 20;
+    let found = layers.iter().position(|layer| layer.name == name);
+    found.ok_or_else(|| {
+        let names: Vec<_> = layers
+            .iter()
+            .take(NAMED)
+            .map(|l| format!("'{}'", l.name))
+            .collect();
+        let (are, more) = (
+            if layers.len() == 1 { "is" } else { "are" },
+            if layers.len() > NAMED {
+                " and more"
+            } else {
+                ""
+            },
+        );
+        Error::Invalid(format!(
+            "no layer is called '{}'; there {are} {}{more}",
+            shortened(name),
+            names.join(", ")
+        ))
+    })
 }
 
 /// Bytes of the Gaussians, their spherical harmonics, and the bounds of their blocks.

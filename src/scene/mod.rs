@@ -8,6 +8,8 @@ mod generate;
 mod layer;
 #[cfg(feature = "ply")]
 mod load;
+mod numbers;
+mod parts;
 #[cfg(feature = "ply")]
 mod ply;
 #[cfg(feature = "ply")]
@@ -22,6 +24,8 @@ pub(crate) use generate::random::Random;
 pub use generate::{Kind, generate};
 pub(crate) use layer::check_clip;
 pub use layer::{Layer, LayerState, Scene};
+pub(crate) use numbers::Numbers;
+pub use parts::Part;
 #[cfg(feature = "ply")]
 pub use {
     load::{Loaded, load, load_from},

@@ -12,6 +12,9 @@ mod numbers;
 mod parts;
 #[cfg(feature = "ply")]
 mod ply;
+mod predicate;
+mod predicate_text;
+mod property;
 #[cfg(feature = "ply")]
 mod report;
 #[cfg(feature = "ply")]
@@ -26,9 +29,11 @@ pub(crate) use layer::check_clip;
 pub use layer::{Layer, LayerState, Scene};
 pub(crate) use numbers::Numbers;
 pub use parts::Part;
+pub use predicate::{Attribute, Comparison, Predicate};
+pub use property::Property;
 #[cfg(feature = "ply")]
 pub use {
-    load::{Loaded, load, load_from},
+    load::{Loaded, load, load_from, load_from_with, load_with},
     report::{LoadReport, Remark},
     save::save_ply,
 };

@@ -3,7 +3,8 @@
 use super::{GaussianArrays, Gaussians};
 use crate::error::{Error, Result};
 
-/// Gaussians that are a part of a set, as [`Gaussians::into_parts`] makes them; [`Layer::numbered`](super::Layer::numbered) makes a layer of one.
+/// Gaussians that are a part of a set, as [`Gaussians::into_parts`] and [`Predicate::split`](super::Predicate::split) make
+/// them; [`Layer::numbered`](super::Layer::numbered) makes a layer of one.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Part {
     /// The Gaussians, in the set's order.

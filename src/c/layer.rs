@@ -7,13 +7,13 @@ use rara::ash::vk;
 use rara::{Error, Layer, LayerState, Result, Scene};
 
 use crate::boundary::{
-    RaraResult, Versioned, exclusive, guard, invalid, number, read, read_list, shared, string,
-    write,
+    RaraResult, Versioned, exclusive, guard, invalid, number, read, read_list, shared, write,
 };
 use crate::clip::RaraClip;
 use crate::device::RaraDevice;
 use crate::placement::RaraPlacement;
 use crate::scene::{self, RaraGaussians, RaraSceneBuffers, RaraShFormat, RaraStaging};
+use crate::text::text;
 
 /// The state of a layer, which may change from frame to frame.
 #[repr(C)]
@@ -100,10 +100,7 @@ impl RaraLayer {
     /// Its pointers are null, or point to what their fields say, which nobody changes for `'a`.
     unsafe fn layer<'a>(&self, place: &str) -> Result<Layer<'a>> {
         // SAFETY: the caller's promise.
-        let name = unsafe { string(self.name, &format!("{place}.name")) }?;
-        let Ok(name) = name.to_str() else {
-            return invalid(format!("{place}.name is not UTF-8: give it in UTF-8"));
-        };
+        let name = unsafe { text(self.name, &format!("{place}.name")) }?;
         // SAFETY: as above.
         let gaussians = unsafe { shared(self.gaussians, &format!("{place}.gaussians")) }?;
         let layer = Layer::new(name, &gaussians.0.gaussians);

@@ -1,10 +1,9 @@
 //! Frames without perspective. A `RaraCamera` has no room to say its projection, so that the calls say it.
 
-use rara::glam::DVec3;
 use rara::{Camera, DepthMap, Projection};
 
 use crate::boundary::RaraResult;
-use crate::camera::{RaraCamera, make, vector};
+use crate::camera::{RaraCamera, look, make};
 use crate::clip::RaraClip;
 use crate::renderer::{RaraRenderer, configure, with};
 use crate::scene::RaraSceneBuffers;
@@ -29,11 +28,7 @@ pub unsafe extern "C" fn rara_camera_orthographic(
     // SAFETY: the caller's promises.
     unsafe {
         make(camera, || {
-            let [eye, target, up]: [DVec3; 3] = [
-                vector(eye, "eye")?,
-                vector(target, "target")?,
-                vector(up, "up")?,
-            ];
+            let [eye, target, up] = look(eye, target, up)?;
             Camera::orthographic(eye, target, up, view_height, (width, height))
         })
     }

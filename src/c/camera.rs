@@ -168,7 +168,7 @@ pub(crate) unsafe fn look(
 
 /// # Safety
 /// `numbers` is null or points to three of them.
-unsafe fn vector(numbers: *const f64, name: &str) -> Result<DVec3> {
+pub(crate) unsafe fn vector(numbers: *const f64, name: &str) -> Result<DVec3> {
     // SAFETY: the caller's promise.
     Ok(DVec3::from_slice(unsafe { list(numbers, 3, name) }?))
 }

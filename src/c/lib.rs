@@ -14,11 +14,13 @@ pub mod clip;
 pub mod depth;
 pub mod device;
 pub mod layer;
+pub mod layer_info;
 pub mod logging;
 #[cfg(test)]
 mod nulls;
 pub mod orthographic;
 pub mod placement;
+pub mod region;
 pub mod renderer;
 pub mod scene;
 pub mod settings;

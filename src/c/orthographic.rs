@@ -4,7 +4,7 @@ use rara::{Camera, DepthMap, Projection};
 
 use crate::boundary::RaraResult;
 use crate::camera::{RaraCamera, look, make};
-use crate::clip::RaraClip;
+use crate::clip::{self, RaraClip};
 use crate::renderer::{RaraRenderer, configure, with};
 use crate::scene::RaraSceneBuffers;
 use crate::settings::RaraSettings;
@@ -48,9 +48,11 @@ pub unsafe extern "C" fn rara_renderer_configure_orthographic(
     clip: *const RaraClip,
     settings: *const RaraSettings,
 ) -> RaraResult {
-    let projection = Projection::Orthographic;
     // SAFETY: the caller's promises.
-    unsafe { configure(renderer, scene, camera, projection, (clip, settings)) }
+    unsafe {
+        let seen = || Ok((Projection::Orthographic, clip::clip(clip)?));
+        configure(renderer, scene, camera, seen, settings)
+    }
 }
 
 /// Changes what the host's depth buffer holds for a depth, from the next rara_renderer_configure_orthographic on: 0 at

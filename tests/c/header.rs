@@ -27,7 +27,9 @@ fn the_header_is_current() {
         "orthographic",
         "scene",
         "layer",
+        "layer_info",
         "settings",
+        "region",
         "stats",
     ];
     let add = |bindings: cbindgen::Builder, file: &&str| {

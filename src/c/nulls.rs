@@ -5,6 +5,7 @@ use std::ptr::{null, null_mut};
 
 use rara::ash::vk;
 
+use crate::bake::*;
 use crate::boundary::*;
 use crate::camera::*;
 use crate::camera_files::*;
@@ -150,6 +151,14 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
     call!(
         rara_renderer_configure_region(null_mut(), null(), null(), 0, null(), null()),
         "renderer is null"
+    );
+    call!(
+        rara_bake_settings_default(null_mut(), size_of::<RaraBakeSettings>()),
+        "settings is null"
+    );
+    call!(
+        rara_gaussians_bake(null(), null(), null(), null_mut(), null_mut(), 0),
+        "baked is null"
     );
     call!(
         rara_cameras_load(null(), null_mut(), null_mut()),

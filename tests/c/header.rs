@@ -30,6 +30,7 @@ fn the_header_is_current() {
         "layer_info",
         "settings",
         "region",
+        "bake",
         "stats",
     ];
     let add = |bindings: cbindgen::Builder, file: &&str| {

@@ -1,10 +1,12 @@
-//! Regions from text, from JSON and from files, and what is none of them.
+//! Regions from text, from JSON and from files, what is none of them, and what is baked by them.
 
 use std::ffi::{CStr, CString};
 use std::ptr::{null, null_mut};
 
 use super::*;
+use crate::bake::*;
 use crate::boundary::*;
+use crate::scene::*;
 use crate::tests::assert_fails;
 
 const CLIPS: &str = r#"[
@@ -96,4 +98,59 @@ fn regions_are_made_of_text_and_json() {
     assert!(projection(RARA_PROJECTION_ORTHOGRAPHIC).is_ok());
     let error = projection(2).expect_err("no projection").to_string();
     assert_eq!(error, "projection 2 is no RaraProjection");
+}
+
+#[test]
+fn baking_is_that_of_rust() {
+    let scene = rara::scene::generate(rara::scene::Kind::General, 900, 4);
+    let text = "all(not(sphere:0,0,0,0.6), plane:0,0,1,0.1)";
+    let expression: Expression = text.parse().expect("a region");
+    let settings = rara::BakeSettings::default().children(2).leave(1.2);
+    let truth = rara::bake(&scene, &expression.clip(), &settings).expect("bakes");
+    let gaussians = RaraGaussians(rara::scene::Loaded {
+        gaussians: scene,
+        report: Default::default(),
+    });
+    let (mut region, mut baked) = (null_mut(), null_mut());
+    let text = CString::new(text).expect("no NUL");
+    // SAFETY: handles that are alive, structs that may hold any bytes, pointers that may be overwritten.
+    unsafe {
+        assert_eq!(rara_region_parse(text.as_ptr(), &mut region), RARA_OK);
+        let mut given: RaraBakeSettings = std::mem::zeroed();
+        let size = size_of_val(&given);
+        assert_eq!(rara_bake_settings_default(&mut given, size), RARA_OK);
+        assert_eq!(given, rara::BakeSettings::default().into());
+        (given.children, given.leave) = (2, 1.2);
+        let mut counts: RaraBakeCounts = std::mem::zeroed();
+        let room = size_of_val(&counts);
+        let mut bake = |given: *const RaraBakeSettings, counts: *mut RaraBakeCounts, room| {
+            let result = rara_gaussians_bake(&gaussians, region, given, &mut baked, counts, room);
+            (result, baked)
+        };
+        let (result, made) = bake(&given, &mut counts, room);
+        assert_eq!(result, RARA_OK);
+        assert_eq!((*made).0.gaussians, truth.gaussians);
+        assert_eq!(counts, truth.counts.into());
+        assert!(counts.children > 0 && counts.struct_size == room);
+        rara_gaussians_destroy(made);
+        // The defaults, and nobody who counts.
+        let (result, made) = bake(null(), null_mut(), 0);
+        assert_eq!(result, RARA_OK);
+        rara_gaussians_destroy(made);
+
+        let (result, made) = bake(&given, &mut counts, 3);
+        assert_fails(result, RARA_ERROR_INVALID, "sizeof(RaraBakeCounts)");
+        assert!(made.is_null());
+        given.children = 4;
+        assert_fails(
+            bake(&given, null_mut(), 0).0,
+            RARA_ERROR_INVALID,
+            "4 children",
+        );
+        given.mode = 9;
+        assert_fails(bake(&given, null_mut(), 0).0, RARA_ERROR_INVALID, "mode 9");
+        let nothing = rara_gaussians_bake(&gaussians, null(), null(), &mut baked, null_mut(), 0);
+        assert_fails(nothing, RARA_ERROR_INVALID, "region is null");
+        rara_region_destroy(region);
+    }
 }

@@ -47,6 +47,10 @@ pub(super) struct Bake {
     /// What is cut: for hard nothing, splats stay or go by their centres; for the others what a frame of that mode cuts
     #[arg(long, default_value = "exact")]
     mode: Mode,
+    /// Mode rara: the traced ellipsoid, in standard deviations; a splat is cut where the ellipsoid or what shows of the
+    /// splat is, whichever is larger [default: 3]
+    #[arg(long, value_name = "K", value_parser = values::positive, allow_hyphen_values = true)]
+    sigma: Option<f32>,
     /// Splats that stand for a cut one, 1 to 3, side by side along the cut's normal. More follow the cut closer, but
     /// thin ones are too opaque from some sides: look at the table
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=3))]
@@ -103,8 +107,13 @@ impl Bake {
         let paths = self.check_output(&entries)?;
         let loaded = self.scenes.load()?;
 
-        let settings = BakeSettings::default()
+        if self.mode != Mode::Rara && self.sigma.is_some() {
+            say("note: --sigma changes nothing without --mode rara");
+        }
+        let defaults = BakeSettings::default();
+        let settings = defaults
             .mode(self.mode)
+            .sigma(self.sigma.unwrap_or(defaults.sigma))
             .children(self.children)
             .leave(self.leave);
         let mut counts = BakeCounts::default();

@@ -2,13 +2,14 @@
 
 use std::any::Any;
 use std::cell::RefCell;
-use std::ffi::{CStr, CString, c_char, c_void};
+use std::ffi::{CString, c_char, c_void};
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::PathBuf;
 
 use rara::ash::vk;
 use rara::{Error, Result};
+
+use crate::text::c_string;
 
 /// The result of every function that can fail. After anything but RARA_OK rara_last_error_message says more.
 pub type RaraResult = i32;
@@ -76,22 +77,6 @@ fn fail(code: RaraResult, message: &str) -> RaraResult {
     // This has no effect while the thread is ending.
     let _ = MESSAGE.try_with(|last| last.replace(message));
     code
-}
-
-/// A text with a NUL at its end and no other NUL.
-pub(crate) fn c_string(text: &str) -> CString {
-    CString::new(text.replace('\0', "\u{fffd}")).unwrap_or_default()
-}
-
-/// As much of a text as fits, in whole characters, and a NUL.
-pub(crate) fn fixed<const N: usize>(from: &str) -> [c_char; N] {
-    let mut to = [0; N];
-    let most = from.len().min(N - 1);
-    let end = (0..=most).rev().find(|&end| from.is_char_boundary(end));
-    for (to, from) in to.iter_mut().zip(from[..end.unwrap_or(0)].bytes()) {
-        *to = from as c_char;
-    }
-    to
 }
 
 fn code(error: &Error) -> RaraResult {
@@ -192,40 +177,6 @@ pub(crate) fn recording(cmd: vk::CommandBuffer) -> Result<vk::CommandBuffer> {
         return invalid("cmd is null");
     }
     Ok(cmd)
-}
-
-/// A string's bytes, without the NUL at its end.
-///
-/// # Safety
-/// `text` is null, or a string that ends in NUL and that nobody changes for `'a`.
-pub(crate) unsafe fn string<'a>(text: *const c_char, name: &str) -> Result<&'a CStr> {
-    // SAFETY: the caller's promise.
-    unsafe { shared(text, name) }?;
-    // SAFETY: as above, and not null.
-    Ok(unsafe { CStr::from_ptr(text) })
-}
-
-/// A file's name: UTF-8, or on Unix any bytes.
-///
-/// # Safety
-/// As for [`string`].
-pub(crate) unsafe fn path(text: *const c_char, name: &str) -> Result<PathBuf> {
-    // SAFETY: the caller's promise.
-    path_of(unsafe { string(text, name) }?)
-}
-
-#[cfg(unix)]
-fn path_of(path: &CStr) -> Result<PathBuf> {
-    use std::os::unix::ffi::OsStrExt;
-    Ok(std::ffi::OsStr::from_bytes(path.to_bytes()).into())
-}
-
-#[cfg(not(unix))]
-fn path_of(path: &CStr) -> Result<PathBuf> {
-    match path.to_str() {
-        Ok(path) => Ok(path.into()),
-        Err(_) => invalid("the path is not UTF-8"),
-    }
 }
 
 /// Makes a handle: `*out` is null if `make` fails.

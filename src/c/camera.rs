@@ -77,11 +77,7 @@ pub unsafe extern "C" fn rara_camera_look_at(
     // SAFETY: the caller's promises.
     unsafe {
         make(camera, || {
-            let (eye, target, up) = (
-                vector(eye, "eye")?,
-                vector(target, "target")?,
-                vector(up, "up")?,
-            );
+            let [eye, target, up] = look(eye, target, up)?;
             Camera::look_at(eye, target, up, fov_y, (width, height))
         })
     }
@@ -149,6 +145,25 @@ pub(crate) unsafe fn make(
         *camera = made()?.into();
         Ok(())
     })
+}
+
+/// The eye, the target and the upward direction of a camera.
+///
+/// # Safety
+/// Each is null or points to three numbers.
+pub(crate) unsafe fn look(
+    eye: *const f64,
+    target: *const f64,
+    up: *const f64,
+) -> Result<[DVec3; 3]> {
+    // SAFETY: the caller's promise.
+    unsafe {
+        Ok([
+            vector(eye, "eye")?,
+            vector(target, "target")?,
+            vector(up, "up")?,
+        ])
+    }
 }
 
 /// # Safety

@@ -5,8 +5,9 @@ use std::ffi::c_char;
 use rara::camera_files::load_cameras;
 use rara::{Error, Projection};
 
-use crate::boundary::{RaraResult, exclusive, fixed, guard, path};
+use crate::boundary::{RaraResult, exclusive, guard};
 use crate::camera::RaraCamera;
+use crate::text::{self, fixed};
 
 /// Room for a camera's name in RaraNamedCamera, the NUL included.
 pub const RARA_MAX_CAMERA_NAME: usize = 256;
@@ -39,7 +40,7 @@ pub unsafe extern "C" fn rara_cameras_load(
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         let count = exclusive(count, "count")?;
-        let path = self::path(path, "path")?;
+        let path = text::path(path, "path")?;
         let loaded = load_cameras(&path)?;
         if let Some(flat) = loaded
             .iter()

@@ -7,13 +7,14 @@ use rara::ash::vk;
 use rara::{Error, Layer, LayerState, Result, Scene};
 
 use crate::boundary::{
-    RaraResult, Versioned, exclusive, guard, invalid, number, read, read_list, shared, string,
-    write,
+    RaraResult, Versioned, exclusive, guard, invalid, read, read_list, shared, write,
 };
 use crate::clip::RaraClip;
 use crate::device::RaraDevice;
+use crate::layer_info::check_index;
 use crate::placement::RaraPlacement;
 use crate::scene::{self, RaraGaussians, RaraSceneBuffers, RaraShFormat, RaraStaging};
+use crate::text::text;
 
 /// The state of a layer, which may change from frame to frame.
 #[repr(C)]
@@ -100,10 +101,7 @@ impl RaraLayer {
     /// Its pointers are null, or point to what their fields say, which nobody changes for `'a`.
     unsafe fn layer<'a>(&self, place: &str) -> Result<Layer<'a>> {
         // SAFETY: the caller's promise.
-        let name = unsafe { string(self.name, &format!("{place}.name")) }?;
-        let Ok(name) = name.to_str() else {
-            return invalid(format!("{place}.name is not UTF-8: give it in UTF-8"));
-        };
+        let name = unsafe { text(self.name, &format!("{place}.name")) }?;
         // SAFETY: as above.
         let gaussians = unsafe { shared(self.gaussians, &format!("{place}.gaussians")) }?;
         let layer = Layer::new(name, &gaussians.0.gaussians);
@@ -228,70 +226,6 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_layers_with(
             self::scene(layers, layer_count)
         })
     }
-}
-
-/// A layer of a scene in device memory.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct RaraLayerInfo {
-    /// Set by rara_scene_buffers_layer_info.
-    pub struct_size: usize,
-    /// Its name: UTF-8, ends in NUL, lives as long as the RaraSceneBuffers. A scene of rara_scene_buffers_upload or
-    /// rara_scene_buffers_upload_with has one layer, named "scene".
-    pub name: *const c_char,
-    /// Gaussians in the layer.
-    pub count: u64,
-}
-
-// SAFETY: repr(C), numbers and a pointer, the size first.
-unsafe impl Versioned for RaraLayerInfo {
-    const NAME: &'static str = "RaraLayerInfo";
-}
-
-/// How many layers a scene has, one or more; 0 for null.
-///
-/// # Safety
-/// `scene` is null or alive.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_scene_buffers_layer_count(scene: *const RaraSceneBuffers) -> usize {
-    // SAFETY: the caller's promise.
-    unsafe { number(scene, "scene", |scene| scene.names.len()) }
-}
-
-/// Checks that a scene has a layer of this number.
-fn check_index(scene: &RaraSceneBuffers, index: usize) -> Result<()> {
-    let count = scene.names.len();
-    if index < count {
-        return Ok(());
-    }
-    invalid(format!(
-        "index is {index}, and rara_scene_buffers_layer_count is {count}: give less than that"
-    ))
-}
-
-/// Describes a layer. Layers are numbered from 0, in the order in which they were given. `info_size` is sizeof *info.
-///
-/// # Safety
-/// `scene` is alive; `info` has room for `info_size` bytes.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_scene_buffers_layer_info(
-    scene: *const RaraSceneBuffers,
-    index: usize,
-    info: *mut RaraLayerInfo,
-    info_size: usize,
-) -> RaraResult {
-    guard(|| {
-        // SAFETY: the caller's promise.
-        let scene = unsafe { shared(scene, "scene") }?;
-        check_index(scene, index)?;
-        let found = RaraLayerInfo {
-            struct_size: size_of::<RaraLayerInfo>(),
-            name: scene.names[index].as_ptr(),
-            count: scene.buffers.layers()[index].gaussians().into(),
-        };
-        // SAFETY: the caller's promise.
-        unsafe { write(info, info_size, &found, "info") }
-    })
 }
 
 /// The state of a layer, as it was uploaded or last set; its rotation has length one. `state_size` is sizeof *state.

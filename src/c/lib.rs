@@ -7,6 +7,7 @@
 #[cfg(not(panic = "unwind"))]
 compile_error!("rara-c stops panics at its boundary, and needs panic = \"unwind\" for that");
 
+pub mod bake;
 pub mod boundary;
 pub mod camera;
 pub mod camera_files;
@@ -14,11 +15,13 @@ pub mod clip;
 pub mod depth;
 pub mod device;
 pub mod layer;
+pub mod layer_info;
 pub mod logging;
 #[cfg(test)]
 mod nulls;
 pub mod orthographic;
 pub mod placement;
+pub mod region;
 pub mod renderer;
 pub mod scene;
 pub mod settings;
@@ -26,3 +29,4 @@ pub mod stats;
 pub mod support;
 #[cfg(test)]
 mod tests;
+mod text;

@@ -5,15 +5,18 @@ use std::ptr::{null, null_mut};
 
 use rara::ash::vk;
 
+use crate::bake::*;
 use crate::boundary::*;
 use crate::camera::*;
 use crate::camera_files::*;
 use crate::depth::*;
 use crate::device::*;
 use crate::layer::*;
+use crate::layer_info::*;
 use crate::logging::*;
 use crate::orthographic::*;
 use crate::placement::*;
+use crate::region::*;
 use crate::renderer::*;
 use crate::scene::*;
 use crate::settings::*;
@@ -125,6 +128,39 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
         "scene is null"
     );
     call!(
+        rara_scene_buffers_layer_by_name(null(), null(), null_mut()),
+        "scene is null"
+    );
+    call!(
+        rara_scene_buffers_set_layer_region(null_mut(), 0, null()),
+        "scene is null"
+    );
+    call!(rara_region_parse(null(), null_mut()), "region is null");
+    call!(
+        rara_region_from_json(null(), 0, null(), null_mut()),
+        "region is null"
+    );
+    call!(
+        rara_region_load(null(), null(), null_mut()),
+        "region is null"
+    );
+    call!(
+        rara_region_keeps(null(), null(), null_mut()),
+        "kept is null"
+    );
+    call!(
+        rara_renderer_configure_region(null_mut(), null(), null(), 0, null(), null()),
+        "renderer is null"
+    );
+    call!(
+        rara_bake_settings_default(null_mut(), size_of::<RaraBakeSettings>()),
+        "settings is null"
+    );
+    call!(
+        rara_gaussians_bake(null(), null(), null(), null_mut(), null_mut(), 0),
+        "baked is null"
+    );
+    call!(
         rara_cameras_load(null(), null_mut(), null_mut()),
         "count is null"
     );
@@ -217,6 +253,7 @@ fn assert_nothing_comes_of_null() {
         rara_scene_buffers_destroy(null_mut());
         rara_renderer_destroy(null_mut());
         rara_device_destroy(null_mut());
+        rara_region_destroy(null_mut());
         assert_eq!(
             rara_device_bytes(null()) + rara_scene_buffers_bytes(null()),
             0

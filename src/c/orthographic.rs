@@ -1,11 +1,10 @@
 //! Frames without perspective. A `RaraCamera` has no room to say its projection, so that the calls say it.
 
-use rara::glam::DVec3;
 use rara::{Camera, DepthMap, Projection};
 
 use crate::boundary::RaraResult;
-use crate::camera::{RaraCamera, make, vector};
-use crate::clip::RaraClip;
+use crate::camera::{RaraCamera, look, make};
+use crate::clip::{self, RaraClip};
 use crate::renderer::{RaraRenderer, configure, with};
 use crate::scene::RaraSceneBuffers;
 use crate::settings::RaraSettings;
@@ -29,11 +28,7 @@ pub unsafe extern "C" fn rara_camera_orthographic(
     // SAFETY: the caller's promises.
     unsafe {
         make(camera, || {
-            let [eye, target, up]: [DVec3; 3] = [
-                vector(eye, "eye")?,
-                vector(target, "target")?,
-                vector(up, "up")?,
-            ];
+            let [eye, target, up] = look(eye, target, up)?;
             Camera::orthographic(eye, target, up, view_height, (width, height))
         })
     }
@@ -53,9 +48,11 @@ pub unsafe extern "C" fn rara_renderer_configure_orthographic(
     clip: *const RaraClip,
     settings: *const RaraSettings,
 ) -> RaraResult {
-    let projection = Projection::Orthographic;
     // SAFETY: the caller's promises.
-    unsafe { configure(renderer, scene, camera, projection, (clip, settings)) }
+    unsafe {
+        let seen = || Ok((Projection::Orthographic, clip::clip(clip)?));
+        configure(renderer, scene, camera, seen, settings)
+    }
 }
 
 /// Changes what the host's depth buffer holds for a depth, from the next rara_renderer_configure_orthographic on: 0 at

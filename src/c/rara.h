@@ -40,6 +40,10 @@ typedef struct RaraDevice RaraDevice;
 // A scene in the host's memory. It may be destroyed once it is on the device. Several threads may read it at once.
 typedef struct RaraGaussians RaraGaussians;
 
+// The region that stays visible, made of planes, slabs, boxes, spheres, ellipsoids, cylinders, capsules and cones. It does
+// not change; several threads, renderers and layers may use it at once.
+typedef struct RaraRegion RaraRegion;
+
 // Draws scenes into the host's rendering scopes. One thread at a time uses it.
 //
 // A frame is three calls: rara_renderer_configure allocates and compiles what is new; rara_renderer_prepare records
@@ -417,6 +421,43 @@ typedef struct RaraLayerInfo {
 // A choice of all settings that give up exactness for time: phi, key_bits, beam_switch and transmittance_min.
 typedef uint32_t RaraPreset;
 
+// How a camera sees.
+typedef uint32_t RaraProjection;
+
+// How a region is baked.
+typedef struct RaraBakeSettings {
+    // Set by rara_bake_settings_default.
+    size_t struct_size;
+    // Which Gaussians are cut: those that a frame of this mode cuts. RARA_MODE_HARD cuts none, so that Gaussians stay or go by
+    // their centres, and RARA_MODE_NONE keeps all. Default: RARA_MODE_EXACT.
+    RaraMode mode;
+    // RARA_MODE_RARA: the traced ellipsoid, in standard deviations. Default: 3.
+    float sigma;
+    // How many Gaussians stand for a cut one, 1 to 3. Default: 1.
+    uint32_t children;
+    // A cut Gaussian stays whole where the region keeps all within this many standard deviations of its centre. Default: 1, at
+    // which baking twice is baking once.
+    float leave;
+} RaraBakeSettings;
+
+// What baking has done. The first three are the classes that a frame counts, whatever a camera sees.
+typedef struct RaraBakeCounts {
+    // Set by rara_gaussians_bake.
+    size_t struct_size;
+    // Gaussians that the region leaves whole; they are kept.
+    uint64_t visible;
+    // Gaussians that it cuts; they are replaced, except the next two.
+    uint64_t cutoff;
+    // Gaussians that lie outside; they are dropped.
+    uint64_t invisible;
+    // Of those that are cut: kept as they are, since the cut passes far enough outside (RaraBakeSettings::leave).
+    uint64_t left;
+    // Of those that are cut: dropped, since nothing is left that could be seen.
+    uint64_t faint;
+    // Gaussians that stand for cut ones.
+    uint64_t children;
+} RaraBakeCounts;
+
 // GPU time of one stage.
 typedef struct RaraPassTime {
     // The stage: the same name as its shader and its debug label.
@@ -595,6 +636,12 @@ typedef struct RaraFrameStats {
 // pixel keeps nothing, to yellow, where it keeps all.
 #define RARA_SHOW_WEIGHT 1
 
+// The number of splats that make the pixel: red, green and blue each. Only tiles count.
+#define RARA_SHOW_COUNT 2
+
+// The mean of the splats' colours, each weighted by its alpha, in no order. Only tiles make it.
+#define RARA_SHOW_MEAN 3
+
 // 1.9e-5.
 #define RARA_PHI_FORM_QUINTIC 0
 
@@ -612,6 +659,12 @@ typedef struct RaraFrameStats {
 
 // Only approximations that pictures hardly show. It goes with scenes in RARA_SH_FORMAT_PACKED.
 #define RARA_PRESET_FAST 2
+
+// In perspective, as rara_renderer_configure.
+#define RARA_PROJECTION_PERSPECTIVE 0
+
+// Without, as rara_renderer_configure_orthographic.
+#define RARA_PROJECTION_ORTHOGRAPHIC 1
 
 #ifdef __cplusplus
 extern "C" {
@@ -1039,21 +1092,6 @@ RaraResult rara_scene_buffers_upload_layers_with(const struct RaraDevice *device
                                                  RaraShFormat sh_format,
                                                  struct RaraSceneBuffers **scene);
 
-// How many layers a scene has, one or more; 0 for null.
-//
-// # Safety
-// `scene` is null or alive.
-size_t rara_scene_buffers_layer_count(const struct RaraSceneBuffers *scene);
-
-// Describes a layer. Layers are numbered from 0, in the order in which they were given. `info_size` is sizeof *info.
-//
-// # Safety
-// `scene` is alive; `info` has room for `info_size` bytes.
-RaraResult rara_scene_buffers_layer_info(const struct RaraSceneBuffers *scene,
-                                         size_t index,
-                                         struct RaraLayerInfo *info,
-                                         size_t info_size);
-
 // The state of a layer, as it was uploaded or last set; its rotation has length one. `state_size` is sizeof *state.
 //
 // # Safety
@@ -1086,11 +1124,116 @@ RaraResult rara_scene_buffers_set_layer_clip(struct RaraSceneBuffers *scene,
                                              size_t index,
                                              const struct RaraClip *clip);
 
+// How many layers a scene has, one or more; 0 for null.
+//
+// # Safety
+// `scene` is null or alive.
+size_t rara_scene_buffers_layer_count(const struct RaraSceneBuffers *scene);
+
+// Describes a layer. Layers are numbered from 0, in the order in which they were given. `info_size` is sizeof *info.
+//
+// # Safety
+// `scene` is alive; `info` has room for `info_size` bytes.
+RaraResult rara_scene_buffers_layer_info(const struct RaraSceneBuffers *scene,
+                                         size_t index,
+                                         struct RaraLayerInfo *info,
+                                         size_t info_size);
+
+// The number of the first layer of a name. RARA_ERROR_INVALID, which lists the names that there are, where no layer is called
+// so; `index` is then left alone.
+//
+// # Safety
+// `scene` is alive, `name` ends in NUL, and `index` may be overwritten.
+RaraResult rara_scene_buffers_layer_by_name(const struct RaraSceneBuffers *scene,
+                                            const char *name,
+                                            size_t *index);
+
 // The default settings with a preset's precision. `settings_size` is sizeof *settings.
 //
 // # Safety
 // `settings` has room for `settings_size` bytes.
 RaraResult rara_settings_default(struct RaraSettings *settings, size_t settings_size, RaraPreset preset);
+
+// Makes a region of the text of an expression: a shape, as "sphere:0,0,0,1" or "!box:0,0,0,1,1,2", whose "!" keeps the
+// outside, or all(...), any(...) and not(...) of expressions, as in "all(box:0,0,0,1,1,2, not(sphere:1,0,0,0.5))".
+// `rara help render` has the numbers of each shape. RARA_ERROR_INVALID says what is wrong and in which column.
+//
+// # Safety
+// `expression` ends in NUL; `region` may be overwritten.
+RaraResult rara_region_parse(const char *expression, struct RaraRegion **region);
+
+// Makes a region of a clip in JSON, of which `rara --save-clip` writes files: a list whose elements have a "name" or not, and
+// either "clip", an expression as a tree, or "normal" and "d", a plane. `name` is the name of the element to take, or its
+// number where none is called so; null takes the only one.
+//
+// # Safety
+// `json` points to `size` bytes, which are not used afterwards; `name` is null or ends in NUL; `region` may be overwritten.
+RaraResult rara_region_from_json(const uint8_t *json,
+                                 size_t size,
+                                 const char *name,
+                                 struct RaraRegion **region);
+
+// Makes a region of a clip in a JSON file, as rara_region_from_json does. `path` is as for rara_gaussians_load.
+//
+// # Safety
+// `path` ends in NUL, `name` is null or ends in NUL, and `region` may be overwritten.
+RaraResult rara_region_load(const char *path, const char *name, struct RaraRegion **region);
+
+// Frees a region; null is ignored. Renderers and layers that were given it have copies of their own.
+//
+// # Safety
+// `region` is null, or alive and not used any more.
+void rara_region_destroy(struct RaraRegion *region);
+
+// As rara_renderer_configure or rara_renderer_configure_orthographic, with a region in place of planes; null keeps
+// everything.
+//
+// # Safety
+// As for rara_renderer_configure; `region` is null or alive.
+RaraResult rara_renderer_configure_region(struct RaraRenderer *renderer,
+                                          const struct RaraSceneBuffers *scene,
+                                          const struct RaraCamera *camera,
+                                          RaraProjection projection,
+                                          const struct RaraRegion *region,
+                                          const struct RaraSettings *settings);
+
+// As rara_scene_buffers_set_layer_clip, with a region in place of planes; null gives the layer the frame's clip again.
+//
+// # Safety
+// `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;
+// `region` is null or alive.
+RaraResult rara_scene_buffers_set_layer_region(struct RaraSceneBuffers *scene,
+                                               size_t index,
+                                               const struct RaraRegion *region);
+
+// Says in `kept` whether a region keeps a point; a surface's own points are kept.
+//
+// # Safety
+// `region` is alive, `point` points to three numbers, and `kept` may be overwritten.
+RaraResult rara_region_keeps(const struct RaraRegion *region, const double *point, VkBool32 *kept);
+
+// The default settings. `settings_size` is sizeof *settings.
+//
+// # Safety
+// `settings` has room for `settings_size` bytes.
+RaraResult rara_bake_settings_default(struct RaraBakeSettings *settings, size_t settings_size);
+
+// Makes Gaussians that show a cut without a region, wherever they are drawn: those outside it are dropped, those that it
+// leaves whole are kept, and each that it cuts is replaced by one with the mass, the mean and the covariance of what is left.
+// A Gaussian has no edge, so that this is a preview: against the exact cut, 12 to 17 % of the light of cut Gaussians is off,
+// where a cut by centres is off by 35 %. It needs no device; all processors work at it.
+//
+// Null `settings` are the defaults. `counts` says what has been done; it may be null, and `counts_size` is sizeof *counts.
+//
+// # Safety
+// `gaussians` and `region` are alive; `settings` is null or points to one; `baked` may be overwritten; `counts` is null, or has
+// room for `counts_size` bytes.
+RaraResult rara_gaussians_bake(const struct RaraGaussians *gaussians,
+                               const struct RaraRegion *region,
+                               const struct RaraBakeSettings *settings,
+                               struct RaraGaussians **baked,
+                               struct RaraBakeCounts *counts,
+                               size_t counts_size);
 
 // The statistics of a frame, to be asked for after waiting for it and before the next rara_renderer_prepare.
 // `stats_size` is sizeof *stats.

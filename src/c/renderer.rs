@@ -2,7 +2,7 @@
 
 use rara::ash::vk;
 use rara::gpu::{Bindings, Target};
-use rara::{ExpectedDepthDesc, Projection, Renderer, RendererDesc, Result};
+use rara::{Clip, ExpectedDepthDesc, Projection, Renderer, RendererDesc, Result};
 
 use crate::boundary::{
     RaraResult, Versioned, create, destroy, exclusive, guard, invalid, read, recording, shared,
@@ -257,26 +257,31 @@ pub unsafe extern "C" fn rara_renderer_configure(
     clip: *const RaraClip,
     settings: *const RaraSettings,
 ) -> RaraResult {
-    let projection = Projection::Perspective;
     // SAFETY: the caller's promises.
-    unsafe { configure(renderer, scene, camera, projection, (clip, settings)) }
+    unsafe {
+        let seen = || Ok((Projection::Perspective, clip::clip(clip)?));
+        configure(renderer, scene, camera, seen, settings)
+    }
 }
 
+/// Configures with the projection and the clip that `seen` reads.
+///
 /// # Safety
 /// As for [`rara_renderer_configure`].
 pub(crate) unsafe fn configure(
     renderer: *mut RaraRenderer,
     scene: *const RaraSceneBuffers,
     camera: *const RaraCamera,
-    projection: Projection,
-    (clip, settings): (*const RaraClip, *const RaraSettings),
+    seen: impl FnOnce() -> Result<(Projection, Clip)>,
+    settings: *const RaraSettings,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
     unsafe {
         with(renderer, |renderer| {
             let scene = shared(scene, "scene")?;
-            let camera = shared(camera, "camera")?.camera()?.projection(projection);
-            let (clip, settings) = (clip::clip(clip)?, settings::settings(settings)?);
+            let camera = shared(camera, "camera")?.camera()?;
+            let (projection, clip) = seen()?;
+            let (camera, settings) = (camera.projection(projection), settings::settings(settings)?);
             renderer.configure(&scene.buffers, &camera, &clip, &settings)
         })
     }

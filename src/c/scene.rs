@@ -8,10 +8,11 @@ use rara::scene::{Bounds, Loaded, load, load_from};
 use rara::{Gaussians, Result, Scene, SceneBuffers, ShFormat, Staging};
 
 use crate::boundary::{
-    self, RaraResult, Versioned, c_string, create, destroy, exclusive, guard, invalid, list,
-    memory, number, recording, shared, write,
+    RaraResult, Versioned, create, destroy, exclusive, guard, invalid, list, memory, number,
+    recording, shared, write,
 };
 use crate::device::RaraDevice;
+use crate::text::{self, c_string};
 
 /// A scene in the host's memory. It may be destroyed once it is on the device. Several threads may read it at once.
 pub struct RaraGaussians(pub(crate) Loaded);
@@ -95,7 +96,7 @@ pub unsafe extern "C" fn rara_gaussians_load(
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         create(gaussians, "gaussians", || {
-            let path = boundary::path(path, "path")?;
+            let path = text::path(path, "path")?;
             load(&path, &mut |_, _| ()).map(RaraGaussians)
         })
     })
@@ -115,7 +116,7 @@ pub unsafe extern "C" fn rara_gaussians_load_from(
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         create(gaussians, "gaussians", || {
-            let name = boundary::path(name, "name")?;
+            let name = text::path(name, "name")?;
             let source = Cursor::new(list(data, size, "data")?);
             load_from(source, &name, &mut |_, _| ()).map(RaraGaussians)
         })

@@ -158,13 +158,7 @@ impl RaraSettings {
             invalid(format!("settings->{field} {value} is no {kind}"))
         }
         Ok(Settings::default()
-            .mode(match self.mode {
-                RARA_MODE_NONE => Mode::None,
-                RARA_MODE_HARD => Mode::Hard,
-                RARA_MODE_RARA => Mode::Rara,
-                RARA_MODE_EXACT => Mode::Exact,
-                other => return no("mode", other, "RaraMode"),
-            })
+            .mode(mode(self.mode)?)
             .decay(match self.decay {
                 RARA_DECAY_AUTO => None,
                 RARA_DECAY_LINEAR => Some(Decay::Linear),
@@ -213,6 +207,25 @@ impl RaraSettings {
                     .beam_switch(self.beam_switch)
                     .transmittance_min(self.transmittance_min),
             ))
+    }
+}
+
+pub(crate) fn mode(value: RaraMode) -> Result<Mode> {
+    Ok(match value {
+        RARA_MODE_NONE => Mode::None,
+        RARA_MODE_HARD => Mode::Hard,
+        RARA_MODE_RARA => Mode::Rara,
+        RARA_MODE_EXACT => Mode::Exact,
+        other => return invalid(format!("settings->mode {other} is no RaraMode")),
+    })
+}
+
+pub(crate) fn mode_code(mode: Mode) -> RaraMode {
+    match mode {
+        Mode::None => RARA_MODE_NONE,
+        Mode::Hard => RARA_MODE_HARD,
+        Mode::Rara => RARA_MODE_RARA,
+        _ => RARA_MODE_EXACT,
     }
 }
 

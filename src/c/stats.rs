@@ -4,11 +4,12 @@ use std::ffi::c_char;
 
 use rara::ash::vk;
 
-use crate::boundary::{RaraResult, Versioned, fixed, guard, shared, write};
+use crate::boundary::{RaraResult, Versioned, guard, shared, write};
 use crate::renderer::RaraRenderer;
 use crate::settings::{
     RARA_RASTER_AUTO, RARA_RASTER_MESH, RARA_RASTER_QUAD, RARA_RASTER_TILES, RaraRaster,
 };
+use crate::text::fixed;
 
 /// Room for a stage's name, the NUL at its end included.
 pub const RARA_NAME_SIZE: usize = 16;

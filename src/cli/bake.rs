@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use rara::scene::{self, Bounds};
 use rara::{
-    BakeCounts, BakeSettings, Camera, Clip, Gaussians, Layer, Mode, Placement, Scene, bake_layer,
+    BakeCounts, BakeSettings, Baked, Camera, Clip, Gaussians, Layer, Mode, Placement, Scene,
+    bake_layer,
 };
 use serde::Serialize;
 
@@ -16,6 +17,7 @@ use super::output::{self, Progress, grouped, say};
 use super::residual::{Residual, View, residual};
 use super::scene_file::LayerEntry;
 use super::scenes::{Loaded, SceneArgs};
+use super::select;
 use super::settings::{DeviceArgs, name};
 use super::values;
 
@@ -45,6 +47,10 @@ pub(super) struct Bake {
     /// What is cut: for hard nothing, splats stay or go by their centres; for the others what a frame of that mode cuts
     #[arg(long, default_value = "exact")]
     mode: Mode,
+    /// Mode rara: the traced ellipsoid, in standard deviations; a splat is cut where the ellipsoid or what shows of the
+    /// splat is, whichever is larger [default: 3]
+    #[arg(long, value_name = "K", value_parser = values::positive, allow_hyphen_values = true)]
+    sigma: Option<f32>,
     /// Splats that stand for a cut one, 1 to 3, side by side along the cut's normal. More follow the cut closer, but
     /// thin ones are too opaque from some sides: look at the table
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=3))]
@@ -101,12 +107,17 @@ impl Bake {
         let paths = self.check_output(&entries)?;
         let loaded = self.scenes.load()?;
 
-        let settings = BakeSettings::default()
+        if self.mode != Mode::Rara && self.sigma.is_some() {
+            say("note: --sigma changes nothing without --mode rara");
+        }
+        let defaults = BakeSettings::default();
+        let settings = defaults
             .mode(self.mode)
+            .sigma(self.sigma.unwrap_or(defaults.sigma))
             .children(self.children)
             .leave(self.leave);
         let mut counts = BakeCounts::default();
-        let mut baked = Vec::new();
+        let mut baked: Vec<Baked> = Vec::new();
         let mut progress = Progress::new("baking");
         let is_merged = !self.output.to_string_lossy().contains("{}");
         let scene = loaded.scene();
@@ -114,7 +125,7 @@ impl Bake {
             progress.update(done as u64, scene.layers().len() as u64);
             let state = layer.state();
             if is_merged && !state.visible {
-                baked.push(Gaussians::default());
+                baked.push(Baked::default());
                 continue;
             }
             if is_merged && (state.placement != Placement::IDENTITY || state.opacity != 1.0) {
@@ -126,7 +137,7 @@ impl Bake {
             }
             let layer = bake_layer(layer, &clip, &settings)?;
             counts += layer.counts;
-            baked.push(layer.gaussians);
+            baked.push(layer);
         }
         drop(progress);
 
@@ -135,7 +146,7 @@ impl Bake {
             0 => None,
             _ => Some(self.compare(&loaded, &baked, &clip)?),
         };
-        let outputs = outputs(&paths, baked);
+        let outputs = outputs(&loaded, &paths, baked);
         for output in &outputs {
             scene::save_ply(&output.path, &output.gaussians)?;
         }
@@ -165,10 +176,10 @@ impl Bake {
         let pattern = self.output.to_str().filter(|text| text.contains("{}"));
         let paths: Vec<PathBuf> = match pattern {
             None => vec![self.output.clone()],
-            Some(pattern) => entries
-                .iter()
-                .map(|entry| named(pattern, &entry.name))
-                .collect(),
+            Some(pattern) => {
+                let names = entries.iter().flat_map(LayerEntry::names);
+                names.map(|name| named(pattern, name)).collect()
+            }
         };
         for (number, path) in paths.iter().enumerate() {
             if paths[..number].contains(path) {
@@ -191,16 +202,12 @@ impl Bake {
     }
 
     /// Draws the exact cut, the cut by centres and the baked scene, and compares them.
-    fn compare(
-        &self,
-        loaded: &Loaded,
-        baked: &[Gaussians],
-        clip: &Clip,
-    ) -> Result<Residual, Failure> {
+    fn compare(&self, loaded: &Loaded, baked: &[Baked], clip: &Clip) -> Result<Residual, Failure> {
         let scene = loaded.scene();
         let cameras = views(&scene, self.up, self.views, self.size)?;
         let layers = scene.layers().iter().zip(baked);
-        let layers = layers.map(|(layer, g)| Layer::new(layer.name(), g).with(layer.state()));
+        let layers = layers
+            .map(|(layer, baked)| Layer::new(layer.name(), &baked.gaussians).with(layer.state()));
         let baked: Scene<'_> = layers.collect();
         residual(&self.device.meant(), &scene, &baked, clip, &cameras)
     }
@@ -284,18 +291,15 @@ fn print_counts(counts: &BakeCounts) {
 }
 
 /// The files with what they hold: all in one, or one each.
-fn outputs(paths: &[PathBuf], baked: Vec<Gaussians>) -> Vec<Output> {
-    let mut outputs: Vec<Output> = Vec::new();
-    for (number, gaussians) in baked.into_iter().enumerate() {
-        match outputs.last_mut() {
-            Some(last) if number >= paths.len() => last.gaussians.append(&gaussians),
-            _ => outputs.push(Output {
-                path: paths[number].clone(),
-                gaussians,
-            }),
-        }
-    }
+fn outputs(loaded: &Loaded, paths: &[PathBuf], baked: Vec<Baked>) -> Vec<Output> {
+    let gaussians = match paths.len() == baked.len() {
+        true => baked.into_iter().map(|baked| baked.gaussians).collect(),
+        false => vec![select::joined(&loaded.layers, &baked)],
+    };
+    let outputs = paths.iter().cloned().zip(gaussians);
     outputs
+        .map(|(path, gaussians)| Output { path, gaussians })
+        .collect()
 }
 
 /// `pattern` with the layer's name in place of `{}`.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::clip::{Expression, NamedClip, Solid, clips_to_json, load_clips};
+use rara::clip::{Expression, NamedClip, clips_to_json, load_clips};
 use rara::{Clip, ClipOp, Plane, Shape};
 
 use super::failure::Failure;
@@ -94,16 +94,7 @@ impl ClipArgs {
     pub(super) fn planes(&self) -> Result<Vec<(String, Plane)>, Failure> {
         let mut planes = Vec::new();
         for file in &self.clip_file {
-            let plane = |named: NamedClip| match named.clip {
-                Expression::Shape(shape) => match shape.solid() {
-                    Solid::Plane(plane) if shape.is_outside() => {
-                        Some((named.name, plane.flipped()))
-                    }
-                    Solid::Plane(plane) => Some((named.name, plane)),
-                    _ => None,
-                },
-                _ => None,
-            };
+            let plane = |named: NamedClip| Some((named.name, named.clip.as_plane()?));
             planes.extend(load_clips(file.as_ref())?.into_iter().filter_map(plane));
         }
         Ok(planes)

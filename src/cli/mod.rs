@@ -27,6 +27,7 @@ mod residual;
 mod scene_file;
 mod scenes;
 mod section;
+mod select;
 mod session;
 mod settings;
 mod sheet;

@@ -7,6 +7,8 @@ use rara::clip::Expression;
 use rara::{Clip, Error, LayerState, Placement, Result};
 use serde::Deserialize;
 
+use super::select::Selected;
+
 /// The longest list that is read.
 const MOST_BYTES: u64 = 16 << 20;
 
@@ -19,6 +21,8 @@ pub(super) struct LayerEntry {
     pub(super) path: PathBuf,
     pub(super) state: LayerState,
     pub(super) clip: Option<LayerClip>,
+    /// The layers that take their splats from it, in the order in which they do so.
+    pub(super) selected: Vec<Selected>,
 }
 
 /// The clip of one layer in place of the frame's, in the scene's space.
@@ -55,7 +59,19 @@ impl LayerEntry {
             path: path.into(),
             state: LayerState::default(),
             clip: None,
+            selected: Vec::new(),
         }
+    }
+
+    /// True when one of the layers that the file makes has a clip of its own.
+    pub(super) fn has_clip(&self) -> bool {
+        self.clip.is_some() || self.selected.iter().any(|one| one.clip.is_some())
+    }
+
+    /// The names of the layers that the file makes: its own, then those that are selected.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        let selected = self.selected.iter().map(|one| one.name.as_str());
+        std::iter::once(self.name.as_str()).chain(selected)
     }
 }
 
@@ -87,6 +103,48 @@ struct Entry {
     clip: Option<Expression>,
     /// An expression as text; `whole` keeps everything.
     clip_expr: Option<String>,
+    #[serde(default)]
+    select: Vec<Selection>,
+}
+
+/// A layer that is selected from another; what it does not say is as of that.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Selection {
+    name: String,
+    /// A predicate as text.
+    r#where: String,
+    opacity: Option<f32>,
+    visible: Option<bool>,
+    clip: Option<Expression>,
+    clip_expr: Option<String>,
+}
+
+/// The clip of a layer, as a tree or as text.
+fn own_clip(tree: Option<Expression>, text: Option<String>) -> Result<Option<LayerClip>> {
+    match (tree, text) {
+        (Some(_), Some(_)) => Err(Error::Invalid(
+            "it has both \"clip\" and \"clip_expr\"; keep one".into(),
+        )),
+        (Some(tree), None) => Ok(Some(LayerClip::Region(tree))),
+        (None, Some(text)) => LayerClip::parse(&text).map(Some),
+        (None, None) => Ok(None),
+    }
+}
+
+impl Selection {
+    /// The layer that it makes of one.
+    fn of(self, layer: &LayerEntry) -> Result<Selected> {
+        let mut selected = Selected::new(self.name, self.r#where.parse()?, layer);
+        let state = selected.state;
+        selected.state = state
+            .opacity(self.opacity.unwrap_or(state.opacity))
+            .visible(self.visible.unwrap_or(state.visible));
+        if let Some(clip) = own_clip(self.clip, self.clip_expr)? {
+            selected.clip = Some(clip);
+        }
+        Ok(selected)
+    }
 }
 
 /// The layers of a scene file, whose paths are relative to its folder.
@@ -113,27 +171,26 @@ pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
         let position = DVec3::from(entry.position.unwrap_or_default());
         let scale = entry.scale.unwrap_or(1.0);
         let placement = Placement::new(position, DQuat::from_xyzw(x, y, z, w), scale);
-        let clip = match (entry.clip, entry.clip_expr) {
-            (Some(_), Some(_)) => {
-                return Err(format(format!(
-                    "layer {number} has both \"clip\" and \"clip_expr\"; keep one"
-                )));
-            }
-            (Some(tree), None) => Some(LayerClip::Region(tree)),
-            (None, Some(text)) => Some(LayerClip::parse(&text).map_err(of_entry)?),
-            (None, None) => None,
-        };
+        let clip = own_clip(entry.clip, entry.clip_expr).map_err(of_entry)?;
         let state = LayerState::default()
             .placement(placement.map_err(of_entry)?)
             .opacity(entry.opacity.unwrap_or(1.0))
             .visible(entry.visible.unwrap_or(true));
         let path = folder.join(entry.path);
-        Ok(LayerEntry {
+        let mut layer = LayerEntry {
             name: entry.name.unwrap_or_else(|| stem(&path)),
             path,
             state,
             clip,
-        })
+            selected: Vec::new(),
+        };
+        for (at, selection) in entry.select.into_iter().enumerate() {
+            let selected = selection.of(&layer);
+            let selected = selected
+                .map_err(|error| format(format!("layer {number}, selection {at}: {error}")))?;
+            layer.selected.push(selected);
+        }
+        Ok(layer)
     };
     layers.map(layer).collect()
 }

@@ -8,16 +8,25 @@ use rara::{Gaussians, Layer, LayerState};
 use super::failure::Failure;
 use super::output::{Progress, say};
 use super::scene_file::{self, LayerClip, LayerEntry};
-use rara::scene;
+use super::select;
+use rara::scene::{self, Property};
 
 /// The flags that name the scene.
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
     /// Scene files (3DGS .ply); several are the layers of one scene, each called by its file's name or as in NAME=FILE. A
     /// .json file lists layers: {"layers":[{"path":"skin.ply","name":"skin","opacity":0.5,"visible":true,
-    /// "position":[x,y,z],"rotation":[w,x,y,z],"scale":s,"clip":{...} or "clip_expr":"..."}]}
+    /// "position":[x,y,z],"rotation":[w,x,y,z],"scale":s,"clip":{...} or "clip_expr":"...",
+    /// "select":[{"name":"vessels","where":"label in 3,4"}]}]}
     #[arg(value_name = "SCENE", required = true)]
     files: Vec<PathBuf>,
+    /// Makes a layer of its own of the splats that fulfil a predicate (repeatable): opacity>0.5, size<0.01 (the largest
+    /// standard deviation), red>0.6, green, blue (the colour of degree 0), 'label in 3,4,7..9' (any property of the file;
+    /// property(NAME) where its name means something else), 'inside(sphere:0,0,0,1)' (the centre, in any expression as for
+    /// --clip-expr), joined by and, or, not and ( ); comparisons are < <= > >= = and !=. It takes from every file, or as
+    /// LAYER/NAME=PREDICATE from one layer, what earlier selections have left
+    #[arg(long, value_name = "NAME=PREDICATE")]
+    select: Vec<String>,
     /// The clip of one layer in place of the frame's (repeatable): an expression as for --clip-expr, whole for a layer
     /// that no clip cuts, or frame for one that the frame's cuts although its list gives it another
     #[arg(long, value_name = "NAME=EXPRESSION")]
@@ -33,12 +42,16 @@ pub(super) struct SceneArgs {
 impl SceneArgs {
     /// The layers that are named, of which none is read yet.
     pub(super) fn entries(&self) -> Result<Vec<LayerEntry>, Failure> {
-        entries(&self.files)
+        let mut entries = entries(&self.files)?;
+        for text in &self.select {
+            select::add(&mut entries, text)?;
+        }
+        Ok(entries)
     }
 
     /// True when one of the layers that are named is given a clip of its own.
     pub(super) fn has_clips(&self, entries: &[LayerEntry]) -> bool {
-        !self.layer_clip.is_empty() || entries.iter().any(|entry| entry.clip.is_some())
+        !self.layer_clip.is_empty() || entries.iter().any(LayerEntry::has_clip)
     }
 
     /// Reads the files.
@@ -87,6 +100,8 @@ pub(super) struct LoadedLayer {
     pub(super) state: LayerState,
     /// Its own clip.
     pub(super) clip: Option<LayerClip>,
+    /// Where it is a part of a file: how many Gaussians are in the files before, and its Gaussians' numbers in the file.
+    pub(super) numbers: Option<(u32, Vec<u32>)>,
     /// Whether it is visible and has a clip of its own before any flag says otherwise.
     #[cfg_attr(not(feature = "view"), allow(dead_code))]
     pub(super) listed: Listed,
@@ -98,6 +113,23 @@ pub(super) struct LoadedLayer {
 pub(super) struct Listed {
     pub(super) visible: bool,
     pub(super) clipped: bool,
+}
+
+impl LoadedLayer {
+    /// A layer that is shown as its list says, before it has any Gaussians.
+    pub(super) fn new(name: String, state: LayerState, clip: Option<LayerClip>) -> Self {
+        Self {
+            name,
+            gaussians: Gaussians::default(),
+            state,
+            listed: Listed {
+                visible: state.visible,
+                clipped: clip.is_some(),
+            },
+            clip,
+            numbers: None,
+        }
+    }
 }
 
 /// One or more scene files.
@@ -116,14 +148,8 @@ impl Loaded {
     pub(super) fn made_up(name: &str, gaussians: Gaussians) -> Self {
         Self {
             layers: vec![LoadedLayer {
-                name: name.to_owned(),
                 gaussians,
-                state: LayerState::default(),
-                clip: None,
-                listed: Listed {
-                    visible: true,
-                    clipped: false,
-                },
+                ..LoadedLayer::new(name.to_owned(), LayerState::default(), None)
             }],
             repaired: 0,
             dropped: 0,
@@ -134,13 +160,49 @@ impl Loaded {
     /// The scene of the layers.
     pub(super) fn scene(&self) -> rara::Scene<'_> {
         let layers = self.layers.iter().map(|layer| {
-            let made = Layer::new(&layer.name, &layer.gaussians).with(layer.state);
-            match &layer.clip {
-                Some(clip) => made.clipped(clip.clip()),
-                None => made,
+            let mut made = Layer::new(&layer.name, &layer.gaussians).with(layer.state);
+            if let Some(clip) = &layer.clip {
+                made = made.clipped(clip.clip());
             }
+            if let Some((first, numbers)) = &layer.numbers {
+                made = made.numbered(*first, numbers);
+            }
+            made
         });
         layers.collect()
+    }
+
+    /// Adds the layers that an entry makes of its file's Gaussians, of which `first` are in the files before.
+    fn add(
+        &mut self,
+        entry: LayerEntry,
+        gaussians: Gaussians,
+        properties: &[Property],
+        first: u32,
+    ) -> rara::Result<()> {
+        let mut layer = LoadedLayer::new(entry.name.clone(), entry.state, entry.clip.clone());
+        if entry.selected.is_empty() {
+            layer.gaussians = gaussians;
+            self.layers.push(layer);
+            return Ok(());
+        }
+        let parts = select::divide(gaussians, properties, &entry)?.into_iter();
+        let own = std::iter::once(layer);
+        let selected = entry.selected.into_iter();
+        let selected = selected.map(|one| LoadedLayer::new(one.name, one.state, one.clip));
+        for (number, (mut layer, part)) in own.chain(selected).zip(parts).enumerate() {
+            if number > 0 && part.numbers.is_empty() {
+                self.notes.push(format!(
+                    "{}: the selection '{}' takes nothing",
+                    entry.path.display(),
+                    layer.name
+                ));
+            }
+            layer.gaussians = part.gaussians;
+            layer.numbers = Some((first, part.numbers));
+            self.layers.push(layer);
+        }
+        Ok(())
     }
 
     /// The layers of a name, which `flag` asks for.
@@ -191,14 +253,10 @@ fn load(entries: Vec<LayerEntry>) -> Result<Loaded, Failure> {
         dropped: 0,
         notes: Vec::new(),
     };
-    for LayerEntry {
-        name,
-        path,
-        state,
-        clip,
-    } in entries
-    {
-        let loaded = load_one(&path)?;
+    let mut before = 0;
+    for entry in entries {
+        let (loaded, properties) = load_one(&entry)?;
+        let path = &entry.path;
         all.repaired += loaded.report.repaired;
         all.dropped += loaded.report.dropped;
         let lines = loaded.report.lines();
@@ -207,16 +265,9 @@ fn load(entries: Vec<LayerEntry>) -> Result<Loaded, Failure> {
                 .into_iter()
                 .map(|line| format!("{}: {line}", path.display())),
         );
-        all.layers.push(LoadedLayer {
-            listed: Listed {
-                visible: state.visible,
-                clipped: clip.is_some(),
-            },
-            name,
-            gaussians: loaded.gaussians,
-            state,
-            clip,
-        });
+        let count = loaded.gaussians.len() as u32;
+        all.add(entry, loaded.gaussians, &properties, before)?;
+        before = before.saturating_add(count);
     }
     for note in &all.notes {
         say(format_args!("note: {note}"));
@@ -246,7 +297,11 @@ fn named_file(typed: &Path) -> Result<Vec<LayerEntry>, Failure> {
     Ok(vec![entry])
 }
 
-fn load_one(path: &Path) -> rara::Result<scene::Loaded> {
+fn load_one(entry: &LayerEntry) -> rara::Result<(scene::Loaded, Vec<Property>)> {
+    let path = &entry.path;
     let mut progress = Progress::new(format!("reading {}", path.display()));
-    scene::load(path, &mut |done, total| progress.update(done, total))
+    let properties = select::properties(&entry.selected);
+    scene::load_with(path, &properties, &mut |done, total| {
+        progress.update(done, total);
+    })
 }

@@ -1,9 +1,11 @@
 //! Clips in JSON: a list of planes, or of regions with names,
 //! `[{"name": "core", "clip": {"all": [{"sphere": {"centre": [0, 0, 0], "radius": 1}}, {"not": ...}]}}, ...]`.
 
+use std::fmt;
 use std::path::Path;
 
 use glam::{DQuat, DVec3};
+use serde::de::{Error as _, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 
 use super::{Expression, Plane, Shape, Solid};
@@ -266,30 +268,60 @@ pub fn load_clips(path: &Path) -> Result<Vec<NamedClip>> {
 /// [`Error::Format`] as there.
 pub fn clips_from_json(json: &[u8], name: &Path) -> Result<Vec<NamedClip>> {
     let format = |message: String| Error::format(name, message);
-    let entries: Vec<Entry> =
+    let List(clips) =
         serde_json::from_slice(json::bare(json)).map_err(|error| format(json::explain(&error)))?;
-    if entries.is_empty() {
-        return Err(format(
-            "there is no clip in it; save the clips again".into(),
-        ));
+    if clips.is_empty() {
+        let message = "there is no clip in it; save the clips again";
+        return Err(format(message.into()));
     }
-    let named = |(number, entry): (usize, Entry)| {
-        let node = match (entry.clip, entry.normal, entry.d) {
+    Ok(clips)
+}
+
+/// The list of a file. Each element becomes a clip as it is read, so that the first bad one ends it.
+struct List(Vec<NamedClip>);
+
+impl<'de> Deserialize<'de> for List {
+    fn deserialize<D: serde::Deserializer<'de>>(
+        deserializer: D,
+    ) -> std::result::Result<Self, D::Error> {
+        deserializer.deserialize_seq(Self(Vec::new()))
+    }
+}
+
+impl<'de> Visitor<'de> for List {
+    type Value = Self;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a list of clips")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(mut self, mut list: A) -> std::result::Result<Self, A::Error> {
+        while let Some(entry) = list.next_element::<Entry>()? {
+            let clip = entry.named(self.0.len()).map_err(A::Error::custom)?;
+            self.0.push(clip);
+        }
+        Ok(self)
+    }
+}
+
+impl Entry {
+    /// The clip of the element of this number.
+    fn named(self, number: usize) -> std::result::Result<NamedClip, String> {
+        let node = match (self.clip, self.normal, self.d) {
             (Some(node), None, None) => node,
             (None, Some(normal), Some(d)) => Node::Plane { normal, d },
             _ => {
-                return Err(format(format!(
+                return Err(format!(
                     "element {number} needs either \"clip\", or \"normal\" and \"d\""
-                )));
+                ));
             }
         };
         let clip = node.expression();
         Ok(NamedClip {
-            clip: clip.map_err(|error| format(format!("element {number}: {error}")))?,
-            name: entry.name.unwrap_or_else(|| number.to_string()),
+            clip: clip.map_err(|error| format!("element {number}: {error}"))?,
+            name: self.name.unwrap_or_else(|| number.to_string()),
         })
-    };
-    entries.into_iter().enumerate().map(named).collect()
+    }
 }
 
 /// The JSON that [`clips_from_json`] reads.

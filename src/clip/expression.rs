@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::shape_text::NAMES;
-use super::{Clip, ClipOp, Shape};
+use super::{Clip, ClipOp, Plane, Shape};
 use crate::error::{Error, Result, shortened};
 
 /// How deep an expression may be nested.
@@ -37,6 +37,14 @@ pub enum Expression {
 }
 
 impl Expression {
+    /// The plane, if it is a shape that is a half-space.
+    pub fn as_plane(&self) -> Option<Plane> {
+        match self {
+            Self::Shape(shape) => shape.as_plane(),
+            _ => None,
+        }
+    }
+
     /// The region that it keeps.
     pub fn clip(&self) -> Clip {
         match self {

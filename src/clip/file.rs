@@ -2,10 +2,7 @@
 
 use std::path::Path;
 
-use glam::DVec3;
-use serde::Deserialize;
-
-use super::Plane;
+use super::{NamedClip, Plane, clips_from_json};
 use crate::error::{Error, Result};
 use crate::json;
 
@@ -18,15 +15,9 @@ pub struct NamedPlane {
     pub plane: Plane,
 }
 
-#[derive(Deserialize)]
-struct Entry {
-    name: Option<String>,
-    normal: [f64; 3],
-    d: f64,
-}
-
 /// Loads the planes of a JSON file: a list of `{"normal": [x, y, z], "d": d}`, each with a `"name"` or without. A plane
-/// keeps the points with `normal . x + d >= 0`; normals of any length are made unit vectors, and `d` goes with them.
+/// keeps the points with `normal . x + d >= 0`; normals of any length are made unit vectors, and `d` goes with them. It is a
+/// file of clips, as [`load_clips`](super::load_clips) reads, that are all planes.
 ///
 /// # Errors
 /// [`Error::Io`] if the file can't be read, [`Error::Format`] if it is no such list, has no plane in it, or one whose
@@ -40,27 +31,22 @@ pub fn load_planes(path: &Path) -> Result<Vec<NamedPlane>> {
 /// # Errors
 /// [`Error::Format`] as there.
 pub fn planes_from_json(json: &[u8], name: &Path) -> Result<Vec<NamedPlane>> {
-    let format = |message: String| Error::format(name, message);
-    let entries: Vec<Entry> =
-        serde_json::from_slice(json::bare(json)).map_err(|error| format(json::explain(&error)))?;
-    if entries.is_empty() {
-        return Err(format(
-            "there is no plane in it; export the planes again".into(),
-        ));
-    }
-    let named = |(number, entry): (usize, Entry)| {
-        let plane = Plane::new(DVec3::from(entry.normal), entry.d);
-        Ok(NamedPlane {
-            plane: plane.map_err(|error| format(format!("plane {number}: {error}")))?,
-            name: entry.name.unwrap_or_else(|| number.to_string()),
-        })
+    let clips = clips_from_json(json, name)?.into_iter().enumerate();
+    let plane = |(number, NamedClip { name: own, clip }): (usize, NamedClip)| match clip.as_plane()
+    {
+        Some(plane) => Ok(NamedPlane { name: own, plane }),
+        None => Err(Error::format(
+            name,
+            format!("element {number} is no plane; leave it out, or read the file as clips"),
+        )),
     };
-    entries.into_iter().enumerate().map(named).collect()
+    clips.map(plane).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
 
     fn parse(json: &str) -> Result<Vec<NamedPlane>> {
         planes_from_json(json.as_bytes(), Path::new("planes.json"))
@@ -77,6 +63,9 @@ mod tests {
         assert_eq!(names, ["axial", "1"]);
         assert_eq!(planes[0].plane, Plane::new(DVec3::Z, -2.5).unwrap());
         assert_eq!(planes[1].plane, Plane::new(-DVec3::X, 1e-3).unwrap());
+        let tree = "[{\"clip\": {\"not\": {\"plane\": {\"normal\": [0, 0, 1], \"d\": 2}}}}]";
+        let other = parse(tree).unwrap()[0].plane;
+        assert_eq!(other, Plane::new(-DVec3::Z, -2.0).unwrap());
     }
 
     #[test]
@@ -84,15 +73,19 @@ mod tests {
         for (json, words) in [
             ("", "line 1"),
             ("{}", "line 1"),
-            ("[]", "no plane"),
-            ("[{\"normal\": [1, 0, 0]}]", "`d`"),
+            ("[]", "there is no clip in it"),
+            ("[{\"normal\": [1, 0, 0]}]", "\"d\""),
             ("[\n{\"normal\": [1, 0], \"d\": 0}]", "line 2"),
             ("[{\"normal\": [1, 0, 0], \"d\": 1e999}]", "line 1"),
             (
                 "[{\"normal\": [1, 0, 0], \"d\": 0}, {\"normal\": [0, 0, 0], \"d\": 0}]",
-                "plane 1: ",
+                "element 1: ",
             ),
             ("[{\"normal\": [1e-300, 0, 0], \"d\": 1e300}]", "overflows"),
+            (
+                "[{\"clip\": {\"sphere\": {\"centre\": [0, 0, 0], \"radius\": 1}}}]",
+                "element 0 is no plane",
+            ),
         ] {
             let message = parse(json).unwrap_err().to_string();
             assert!(

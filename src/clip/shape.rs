@@ -145,6 +145,15 @@ impl Shape {
         Self::new(Solid::Sphere { centre, radius })
     }
 
+    /// The plane, if the shape is a half-space.
+    pub fn as_plane(&self) -> Option<Plane> {
+        match self.solid {
+            Solid::Plane(plane) if self.outside => Some(plane.flipped()),
+            Solid::Plane(plane) => Some(plane),
+            _ => None,
+        }
+    }
+
     /// The solid.
     pub fn solid(&self) -> Solid {
         self.solid

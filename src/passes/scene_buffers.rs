@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{Buffer, Device, Recorder};
 use crate::limits;
 use crate::passes::buffers::gpu_only;
-use crate::passes::scene_layer::{PackedLayer, SceneLayer, sizes};
+use crate::passes::scene_layer::{PackedLayer, SceneLayer, join_sets, layer_index, sizes};
 use crate::precision::ShFormat;
 use crate::scene::{LayerState, Scene, check_clip, sh_coefficients};
 #[cfg(test)]
@@ -24,7 +24,7 @@ pub struct SceneBuffers {
     pub(crate) gaussians: Buffer,
     pub(crate) sh: Buffer,
     pub(crate) blocks: Buffer,
-    /// True when the Gaussians of a layer lie in another order than they were given in.
+    /// True when the Gaussians lie in another order than that of their numbers.
     pub(crate) reordered: bool,
     pub(crate) count: u32,
     pub(crate) sh_degree: u32,
@@ -71,6 +71,14 @@ impl SceneBuffers {
     /// Its layers, at least one, in the order in which they were given.
     pub fn layers(&self) -> &[SceneLayer] {
         &self.layers
+    }
+
+    /// The number of the first layer of a name, in [`layers`](Self::layers).
+    ///
+    /// # Errors
+    /// [`Error::Invalid`], which lists the names that there are, where no layer is called so.
+    pub fn layer_index(&self, name: &str) -> Result<usize> {
+        layer_index(&self.layers, name)
     }
 
     /// Sets how a layer is shown, of the number that it has in [`layers`](Self::layers), from the next
@@ -211,21 +219,21 @@ impl SceneBuffers {
         }
         let sh = (format, 3 * sh_coefficients(scene.sh_degree()));
         let (mut layers, mut packed) = (Vec::<SceneLayer>::new(), Vec::new());
-        let mut count = 0;
-        for layer in scene.layers() {
+        let numbers: Vec<_> = scene.numbers().collect();
+        for (layer, &numbers) in scene.layers().iter().zip(&numbers) {
             let first_block = layers.last().map_or(0, SceneLayer::block_end);
             let gaussians = layer.gaussians();
-            packed.push(PackedLayer::new(gaussians, first_block, count, sh));
+            packed.push(PackedLayer::new(gaussians, first_block, numbers, sh));
             layers.push(SceneLayer::new(layer, first_block));
-            count += gaussians.len() as u32;
         }
+        join_sets(&mut layers, &numbers);
         let buffers = Self {
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
             gaussians: gpu_only(device, "gaussians", sizes[0])?,
             sh: gpu_only(device, "sh", sizes[1])?,
             blocks: gpu_only(device, "blocks", sizes[2])?,
-            reordered: !packed.iter().all(|layer| layer.order.is_sorted()),
-            count,
+            reordered: !packed.iter().flat_map(PackedLayer::numbers).is_sorted(),
+            count: scene.gaussians() as u32,
             sh_degree: scene.sh_degree(),
             sh_format: format,
             layers,

@@ -1,12 +1,15 @@
 //! A layer of a scene on the device: what a frame asks of it, and what goes into the scene's buffers.
 
+use std::collections::HashMap;
+
 use glam::Vec3;
 
 use crate::clip::Clip;
+use crate::error::{Error, Result, shortened};
 use crate::limits;
 use crate::passes::{block_order, sh_storage};
 use crate::precision::ShFormat;
-use crate::scene::{Bounds, Gaussians, Layer, LayerState, Scene, sh_coefficients};
+use crate::scene::{Bounds, Gaussians, Layer, LayerState, Numbers, Scene, sh_coefficients};
 use crate::types::{Block, Gaussian};
 
 /// A layer of a scene that is on the device.
@@ -18,6 +21,8 @@ pub struct SceneLayer {
     /// The layer's first block; it fills whole blocks.
     pub(super) first_block: u32,
     /// The corners of the box around its centres, in its own units.
+    box_around: [Vec3; 2],
+    /// The same of the set that the layer is a part of, or its own: what depends on it is alike in all parts of a set.
     pub(super) corners: [Vec3; 2],
     pub(super) state: LayerState,
     pub(super) clip: Option<Clip>,
@@ -26,11 +31,13 @@ pub struct SceneLayer {
 impl SceneLayer {
     /// That of a layer whose Gaussians begin with a block.
     pub(super) fn new(layer: &Layer<'_>, first_block: u32) -> Self {
+        let corners = corners(layer.gaussians());
         Self {
             name: layer.name().into(),
             gaussians: layer.gaussians().len() as u32,
             first_block,
-            corners: corners(layer.gaussians()),
+            box_around: corners,
+            corners,
             state: layer.state(),
             clip: layer.clip().cloned(),
         }
@@ -70,7 +77,7 @@ impl SceneLayer {
 
     /// The box around all of its centres, in its own units; `None` without Gaussians.
     pub fn bounds(&self) -> Option<Bounds> {
-        let [min, max] = self.corners.map(|corner| corner.as_dvec3());
+        let [min, max] = self.box_around.map(|corner| corner.as_dvec3());
         (self.gaussians > 0).then_some(Bounds { min, max })
     }
 
@@ -82,6 +89,49 @@ impl SceneLayer {
     /// The first block behind it.
     pub(super) fn block_end(&self) -> u32 {
         self.first_block + self.gaussians.div_ceil(limits::BLOCK_SIZE)
+    }
+}
+
+/// The number of the first layer of a name.
+pub(super) fn layer_index(layers: &[SceneLayer], name: &str) -> Result<usize> {
+    /// Names in a message, at most.
+    const NAMED: usize = 20;
+    let found = layers.iter().position(|layer| layer.name == name);
+    found.ok_or_else(|| {
+        let names: Vec<_> = layers
+            .iter()
+            .take(NAMED)
+            .map(|l| format!("'{}'", l.name))
+            .collect();
+        let (are, more) = (
+            if layers.len() == 1 { "is" } else { "are" },
+            if layers.len() > NAMED {
+                " and more"
+            } else {
+                ""
+            },
+        );
+        Error::Invalid(format!(
+            "no layer is called '{}'; there {are} {}{more}",
+            shortened(name),
+            names.join(", ")
+        ))
+    })
+}
+
+/// Gives the parts of each set the box around all of the set's centres.
+pub(super) fn join_sets(layers: &mut [SceneLayer], numbers: &[Numbers<'_>]) {
+    let mut boxes = HashMap::new();
+    let of_set = |numbers: &Numbers<'_>| numbers.set();
+    for (layer, set) in layers.iter().zip(numbers.iter().map(of_set)) {
+        let [low, high] = layer.corners;
+        let joined = boxes.entry(set).or_insert(layer.corners);
+        *joined = [joined[0].min(low), joined[1].max(high)];
+    }
+    for (layer, set) in layers.iter_mut().zip(numbers.iter().map(of_set)) {
+        if set.is_some() {
+            layer.corners = boxes[&set];
+        }
     }
 }
 
@@ -117,18 +167,17 @@ pub(super) struct PackedLayer<'a> {
     pub(super) order: Vec<u32>,
     pub(super) blocks: Vec<Block>,
     first_block: u32,
-    /// Its first Gaussian's number in the scene.
-    first_number: u32,
+    numbers: Numbers<'a>,
     /// How spherical harmonics are stored, and how many numbers there are of each Gaussian.
     sh: (ShFormat, usize),
 }
 
 impl<'a> PackedLayer<'a> {
-    /// Orders the Gaussians of a layer that begins with a block and with a number in the scene; `sh` as the field says.
+    /// Orders the Gaussians of a layer that begins with a block and has numbers in the scene; `sh` as the field says.
     pub(super) fn new(
         gaussians: &'a Gaussians,
         first_block: u32,
-        first_number: u32,
+        numbers: Numbers<'a>,
         sh: (ShFormat, usize),
     ) -> Self {
         let order = block_order::order(gaussians);
@@ -137,7 +186,7 @@ impl<'a> PackedLayer<'a> {
             blocks: block_order::blocks(gaussians, &order),
             order,
             first_block,
-            first_number,
+            numbers,
             sh,
         }
     }
@@ -153,9 +202,14 @@ impl<'a> PackedLayer<'a> {
         ]
     }
 
+    /// The Gaussians' numbers in the scene, in the order of the device.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = u32> {
+        self.order.iter().map(|&number| self.numbers.of(number))
+    }
+
     pub(super) fn gaussian(&self, number: u32) -> Gaussian {
         let (scene, index) = (self.gaussians, number as usize);
-        let in_scene = f32::from_bits(self.first_number + number);
+        let in_scene = f32::from_bits(self.numbers.of(number));
         Gaussian {
             position_opacity: scene.positions()[index]
                 .extend(scene.opacities()[index])

@@ -183,18 +183,21 @@ pub fn expected<'a, T: Real>(
         .map(|layer| super::sides(layer, settings))
         .collect();
     let splats = super::in_order::<T>(&layers, &sides, settings);
+    // By their numbers, the layer and the place in it of the scene's Gaussians.
+    let mut places = vec![(0, 0); sides.iter().map(Vec::len).sum()];
+    for (at, layer) in layers.iter().enumerate() {
+        for index in 0..layer.gaussians.len() {
+            places[layer.numbers.of(index as u32) as usize] = (at, index);
+        }
+    }
     let [width, height] = [camera.width, camera.height];
     let mut pixels = vec![[0.0; 2]; (width * height) as usize];
     for splat in &splats {
         let footprint = &splat.footprint;
-        let after = layers.partition_point(|layer| layer.first <= splat.index);
+        let (layer, index) = places[splat.index as usize];
         let SeenLayer {
-            gaussians,
-            clip,
-            first,
-            ..
-        } = &layers[after - 1];
-        let index = (splat.index - first) as usize;
+            gaussians, clip, ..
+        } = &layers[layer];
         let depth = SplatDepth::new(gaussians, index, footprint, clip, settings);
         let span = |axis, size| footprint.span(axis, size, T::one());
         let (Some((left, right)), Some((top, bottom))) = (span(0, width), span(1, height)) else {

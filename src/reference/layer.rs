@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use super::real::Real;
 use super::view::View;
+use crate::scene::Numbers;
 use crate::{Camera, Clip, Gaussians, Layer, Scene};
 
 /// A layer with what a frame asks of it.
@@ -15,8 +16,8 @@ pub struct SeenLayer<'a, T> {
     pub view: View<T>,
     /// Its clip, in its own space.
     pub clip: Clip,
-    /// The number of its first Gaussian in the scene.
-    pub first: u32,
+    /// The numbers of its Gaussians in the scene.
+    pub numbers: Numbers<'a>,
     /// True when it is drawn.
     pub visible: bool,
 }
@@ -29,18 +30,16 @@ pub fn layers<'a, T: Real>(
 ) -> Vec<SeenLayer<'a, T>> {
     // The renderer refuses a camera with planes that mean nothing.
     let seen_of = |clip| camera.sees_of(clip).unwrap_or(Cow::Borrowed(clip));
-    let mut first = 0;
-    let seen = scene.layers().iter().map(|layer| {
+    let seen = scene.layers().iter().zip(scene.numbers());
+    let seen = seen.map(|(layer, numbers)| {
         let state = layer.state();
-        let seen = SeenLayer {
+        SeenLayer {
             gaussians: faded(layer),
             view: View::in_layer(camera, &state.placement),
             clip: seen_of(layer.clip().unwrap_or(clip)).in_scene(&state.placement),
-            first,
+            numbers,
             visible: state.visible,
-        };
-        first += layer.gaussians().len() as u32;
-        seen
+        }
     });
     seen.collect()
 }

@@ -84,7 +84,7 @@ fn in_order<T: Real>(
             gaussians: scene,
             view,
             clip,
-            first,
+            numbers,
             ..
         } = layer;
         // Find their footprints and colours, and how the cut ones vary over their pixels.
@@ -92,7 +92,7 @@ fn in_order<T: Real>(
             let index = number as usize;
             let mut splat = project::project(scene, index, view, settings)?;
             splat.cut = cutoff::cutoff(scene, index, &splat.footprint, view, clip, settings);
-            splat.index = first + number;
+            splat.index = numbers.of(number);
             Some(splat)
         }));
     }

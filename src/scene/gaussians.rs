@@ -47,6 +47,11 @@ impl Gaussians {
         Ok(Self(arrays))
     }
 
+    /// Gaussians of arrays that are known to fit.
+    pub(super) fn of_fitting(arrays: GaussianArrays) -> Self {
+        Self(arrays)
+    }
+
     /// An empty set of degree `sh_degree` with room for exactly `count`; `None` if there is not enough memory.
     pub(super) fn with_room(count: usize, sh_degree: u32) -> Option<Self> {
         let numbers = count.checked_mul(3 * sh_coefficients(sh_degree))?;

@@ -4,6 +4,7 @@ use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::placement::Placement;
 use crate::scene::Gaussians;
+use crate::scene::numbers::{self, Numbers};
 use crate::setters::setters;
 
 /// The state of a layer, which may change from frame to frame.
@@ -74,6 +75,8 @@ pub struct Layer<'a> {
     gaussians: &'a Gaussians,
     state: LayerState,
     clip: Option<Clip>,
+    /// The number of the first Gaussian of the set that the layer is a part of, and its Gaussians' numbers in that.
+    pub(super) numbers: Option<(u32, &'a [u32])>,
 }
 
 impl<'a> Layer<'a> {
@@ -84,6 +87,7 @@ impl<'a> Layer<'a> {
             gaussians,
             state: LayerState::default(),
             clip: None,
+            numbers: None,
         }
     }
 
@@ -101,6 +105,31 @@ impl<'a> Layer<'a> {
     pub fn clipped(mut self, clip: Clip) -> Self {
         self.clip = Some(clip);
         self
+    }
+
+    /// The same layer as a part of a set of Gaussians, as [`Gaussians::into_parts`] makes them: `numbers` are those that its
+    /// Gaussians have in the set, and `first` is how many Gaussians the scene has before the set. Equal depths are then
+    /// drawn in the order of the set, whichever of its parts they are in: dividing a set changes no picture. Other layers
+    /// number on from the layers before them. The upload refuses a scene in which a number is missing.
+    #[must_use]
+    pub fn numbered(mut self, first: u32, numbers: &'a [u32]) -> Self {
+        self.numbers = Some((first, numbers));
+        self
+    }
+
+    /// The same layer of other Gaussians, one in place of each, which are shown and drawn in the same order.
+    #[cfg(feature = "picture")]
+    pub(crate) fn of<'b>(&self, gaussians: &'b Gaussians) -> Layer<'b>
+    where
+        'a: 'b,
+    {
+        Layer {
+            name: self.name.clone(),
+            gaussians,
+            state: self.state,
+            clip: self.clip.clone(),
+            numbers: self.numbers,
+        }
     }
 
     /// That a frame can show it so.
@@ -134,7 +163,7 @@ impl<'a> Layer<'a> {
 }
 
 /// A scene that is to be uploaded: layers that are sorted and blended together, wherever they reach into each other. Where
-/// two Gaussians are equally deep, the earlier layer's is in front.
+/// two Gaussians are equally deep, the earlier layer's is in front, unless the layers are [parts](Layer::numbered) of one set.
 ///
 /// ```
 /// use rara::{Gaussians, Layer, LayerState, Scene};
@@ -166,7 +195,21 @@ impl<'a> Scene<'a> {
         if self.layers.is_empty() {
             return Err(Error::Invalid("a scene has at least one layer".into()));
         }
-        self.layers.iter().try_for_each(Layer::check)
+        self.layers.iter().try_for_each(Layer::check)?;
+        numbers::check(&self.layers, self.gaussians())
+    }
+
+    /// The numbers of each layer's Gaussians.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = Numbers<'a>> {
+        let mut before = 0;
+        self.layers.iter().map(move |layer| {
+            let numbers = match layer.numbers {
+                Some((first, in_set)) => Numbers::of_part(first, in_set),
+                None => Numbers::of_whole(before),
+            };
+            before += layer.gaussians.len() as u32;
+            numbers
+        })
     }
 
     /// Gaussians of all layers.

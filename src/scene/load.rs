@@ -4,16 +4,21 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-use super::{Gaussians, LoadReport, ply};
+use super::{Gaussians, LoadReport, Property, ply};
 use crate::error::{Error, Result};
 
 /// A file format of scenes.
 pub(super) struct Format {
     /// True for a file of the format, by its first bytes, or by its name where the format has none of its own.
     pub(super) is: fn(&[u8], &Path) -> bool,
-    /// Reads a whole file, of which nothing has been read yet. The name stands for it in messages.
-    pub(super) read: fn(&mut dyn Source, &Path, &mut Progress<'_>) -> Result<Loaded>,
+    /// Reads a whole file, of which nothing has been read yet, with the properties that are asked for. The name stands for
+    /// it in messages.
+    pub(super) read: Reader,
 }
+
+/// How a format reads.
+type Reader =
+    fn(&mut dyn Source, &Path, &[&str], &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)>;
 
 /// All that are known. What is of none is read as the first, which says what is wrong with it.
 const FORMATS: [&Format; 1] = [&ply::FORMAT];
@@ -45,6 +50,20 @@ pub struct Loaded {
 /// [`Error::Io`] if the file can't be read, [`Error::Format`] if it is not a scene or is cut off, [`Error::Memory`] if
 /// it doesn't fit. Single bad elements are no error: see [`LoadReport`].
 pub fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<Loaded> {
+    load_with(path, &[], progress).map(|(loaded, _)| loaded)
+}
+
+/// Loads a scene as [`load`] does, and with it the values of some of the properties that its `vertex` element has beside
+/// those of a Gaussian, such as a label; they have to be numbers, of any type. Each takes 8 bytes a Gaussian; what is not
+/// asked for takes nothing.
+///
+/// # Errors
+/// As [`load`], and [`Error::Format`] for a property that the file has not, that is a list or that a Gaussian is made of.
+pub fn load_with(
+    path: &Path,
+    properties: &[&str],
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<(Loaded, Vec<Property>)> {
     // Before opening it, which would wait for a pipe's writer.
     let metadata = std::fs::metadata(path).map_err(Error::io(path))?;
     if !metadata.is_file() {
@@ -54,7 +73,7 @@ pub fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<Loaded> {
         ));
     }
     let file = File::open(path).map_err(Error::io(path))?;
-    load_from(file, path, progress)
+    load_from_with(file, path, properties, progress)
 }
 
 /// Loads a scene from anything that can be read and sought in, such as an archive's entry in a
@@ -63,10 +82,23 @@ pub fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<Loaded> {
 /// # Errors
 /// As [`load`].
 pub fn load_from<R: Read + Seek>(
-    mut source: R,
+    source: R,
     name: &Path,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Loaded> {
+    load_from_with(source, name, &[], progress).map(|(loaded, _)| loaded)
+}
+
+/// Loads a scene as [`load_from`] does, with properties as [`load_with`] does.
+///
+/// # Errors
+/// As [`load_with`].
+pub fn load_from_with<R: Read + Seek>(
+    mut source: R,
+    name: &Path,
+    properties: &[&str],
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<(Loaded, Vec<Property>)> {
     let total = source.seek(SeekFrom::End(0)).map_err(Error::io(name))?;
     source.rewind().map_err(Error::io(name))?;
     let mut start = Vec::new();
@@ -80,7 +112,7 @@ pub fn load_from<R: Read + Seek>(
         total,
         call: progress,
     };
-    let loaded = (format.read)(&mut source, name, &mut progress)?;
+    let loaded = (format.read)(&mut source, name, properties, &mut progress)?;
     progress.left(0);
     Ok(loaded)
 }

@@ -9,8 +9,13 @@ mod generate;
 mod layer;
 #[cfg(feature = "ply")]
 mod load;
+mod numbers;
+mod parts;
 #[cfg(feature = "ply")]
 mod ply;
+mod predicate;
+mod predicate_text;
+mod property;
 #[cfg(feature = "ply")]
 mod report;
 #[cfg(feature = "ply")]
@@ -24,9 +29,13 @@ pub(crate) use generate::random::Random;
 pub use generate::{Kind, generate};
 pub(crate) use layer::check_clip;
 pub use layer::{Layer, LayerState, Scene};
+pub(crate) use numbers::Numbers;
+pub use parts::Part;
+pub use predicate::{Attribute, Comparison, Predicate};
+pub use property::Property;
 #[cfg(feature = "ply")]
 pub use {
-    load::{Loaded, load, load_from},
+    load::{Loaded, load, load_from, load_from_with, load_with},
     report::{LoadReport, Remark},
     save::save_ply,
 };

@@ -108,6 +108,14 @@ impl Headless {
         self.session.layers()
     }
 
+    /// As [`SceneBuffers::layer_index`], of the scene that is loaded.
+    ///
+    /// # Errors
+    /// The same, and [`Error::Invalid`] without a scene.
+    pub fn layer_index(&self, name: &str) -> Result<usize> {
+        self.session.scene()?.layer_index(name)
+    }
+
     /// As [`SceneBuffers::set_layer_state`], of the scene that is loaded.
     ///
     /// # Errors

@@ -87,6 +87,11 @@ impl Session {
         self.scene.as_ref().map_or(&[], SceneBuffers::layers)
     }
 
+    fn scene(&self) -> Result<&SceneBuffers> {
+        let scene = self.scene.as_ref();
+        scene.ok_or_else(|| Error::Invalid("there is no scene with layers; load one first".into()))
+    }
+
     fn scene_mut(&mut self) -> Result<&mut SceneBuffers> {
         let scene = self.scene.as_mut();
         scene.ok_or_else(|| {

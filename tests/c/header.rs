@@ -27,7 +27,10 @@ fn the_header_is_current() {
         "orthographic",
         "scene",
         "layer",
+        "layer_info",
         "settings",
+        "region",
+        "bake",
         "stats",
     ];
     let add = |bindings: cbindgen::Builder, file: &&str| {

@@ -77,6 +77,8 @@ fn modes_say_what_is_cut_and_children_how_it_is_replaced() {
     );
     let count = |of: &serde_json::Value, name: &str| of["counts"][name].as_u64().expect("a count");
     assert!(count(&rara, "cutoff") >= count(&exact, "cutoff") && count(&exact, "cutoff") > 0);
+    let wide = bake("--mode rara --sigma 6");
+    assert!(count(&wide, "cutoff") > count(&rara, "cutoff"));
     assert!(count(&three, "children") > 2 * count(&exact, "children"));
     assert!(count(&bake("--leave 2"), "left") < count(&exact, "left"));
     // A hard bake is the hard cut: the same splats are drawn.

@@ -9,6 +9,7 @@ mod clips;
 mod profile;
 mod refusals;
 mod sections;
+mod selections;
 mod shape;
 mod work;
 

@@ -229,23 +229,15 @@ fn whole(centre: DVec3) -> Cut {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use rara::{Gaussians, LayerState};
+    use rara::LayerState;
 
     pub(in crate::cli::view) fn layer(
         name: &str,
         visible: bool,
         clip: Option<&str>,
     ) -> LoadedLayer {
-        LoadedLayer {
-            name: name.into(),
-            gaussians: Gaussians::default(),
-            state: LayerState::default().visible(visible),
-            clip: clip.map(|text| LayerClip::parse(text).unwrap()),
-            listed: Listed {
-                visible,
-                clipped: clip.is_some(),
-            },
-        }
+        let clip = clip.map(|text| LayerClip::parse(text).unwrap());
+        LoadedLayer::new(name.into(), LayerState::default().visible(visible), clip)
     }
 
     fn clips(layers: &[LoadedLayer]) -> Clips {

@@ -6,7 +6,7 @@ use super::Progress;
 use super::assemble::{Assembler, Row};
 use super::binary::Failure;
 use super::header::Header;
-use super::layout::{Field, Layout, SLOTS};
+use super::layout::{Field, Layout};
 use crate::error::shortened;
 
 /// A Gaussian takes about 1 kB; a longer line than this is not text at all.
@@ -42,7 +42,7 @@ pub(super) fn read<R: Read>(
             lines.next(|| format!("`{}` element {index} of {}", element.name, element.count))?;
         }
     }
-    let mut row: Row = [0.0; SLOTS];
+    let mut row = layout.row();
     while assembler.rows < layout.count {
         lines.next(|| format!("Gaussian {} of {}", assembler.rows, layout.count))?;
         parse(&lines.line, &layout.fields, &mut row)

@@ -3,14 +3,16 @@
 use glam::{DVec4, Quat, Vec3};
 
 use super::layout::{OPACITY, ROTATION, SCALES, SH, SLOTS, slot_name};
-use crate::scene::{Gaussians, LoadReport, sh_coefficients};
+use crate::scene::{Gaussians, LoadReport, Loaded, Property, sh_coefficients};
 
-/// The numbers of one Gaussian as the file has them, by slot; the unused tail stays zero.
-pub(super) type Row = [f64; SLOTS];
+/// The numbers of one Gaussian as the file has them, by slot; slots that are not in use stay zero.
+pub(super) type Row = [f64];
 
 /// Collects rows into [`Gaussians`].
 pub(super) struct Assembler {
     gaussians: Gaussians,
+    /// The properties that were asked for, whose slots follow on those of a Gaussian.
+    properties: Vec<Property>,
     pub(super) report: LoadReport,
     /// Rows so far, dropped ones included.
     pub(super) rows: u64,
@@ -19,11 +21,20 @@ pub(super) struct Assembler {
 }
 
 impl Assembler {
-    /// Room for exactly `count` Gaussians; the caller has checked that the file is big enough for them. `None` if
-    /// the memory can't be had.
-    pub(super) fn with_room(count: u64, sh_degree: u32) -> Option<Self> {
+    /// Room for exactly `count` Gaussians and their values of `properties`; the caller has checked that the file is big
+    /// enough for them. `None` if the memory can't be had.
+    pub(super) fn with_room(
+        count: u64,
+        sh_degree: u32,
+        mut properties: Vec<Property>,
+    ) -> Option<Self> {
+        let room = usize::try_from(count).ok()?;
+        for property in &mut properties {
+            property.values.try_reserve_exact(room).ok()?;
+        }
         Some(Self {
-            gaussians: Gaussians::with_room(usize::try_from(count).ok()?, sh_degree)?,
+            gaussians: Gaussians::with_room(room, sh_degree)?,
+            properties,
             report: LoadReport::default(),
             rows: 0,
             used: SH + 3 * sh_coefficients(sh_degree),
@@ -79,7 +90,10 @@ impl Assembler {
                 )
             });
         }
-        let single = row.map(|value| value as f32);
+        let mut single = [0.0; SLOTS];
+        for (to, &value) in single.iter_mut().zip(&row[..self.used]) {
+            *to = value as f32;
+        }
         self.gaussians.push(
             Vec3::from_slice(&single[..3]),
             Vec3::from_array(scale),
@@ -87,11 +101,24 @@ impl Assembler {
             (1.0 / (1.0 + (-row[10]).exp())) as f32,
             &single[SH..self.used],
         );
+        for (property, &value) in self.properties.iter_mut().zip(&row[SLOTS..]) {
+            // Text can have more digits than what it stands for.
+            let value = if property.single {
+                f64::from(value as f32)
+            } else {
+                value
+            };
+            property.values.push(value);
+        }
     }
 
-    /// The scene, and the report on what was done to it.
-    pub(super) fn finish(self) -> (Gaussians, LoadReport) {
-        (self.gaussians, self.report)
+    /// The scene and the properties, and the report on what was done to them.
+    pub(super) fn finish(self) -> (Loaded, Vec<Property>) {
+        let loaded = Loaded {
+            gaussians: self.gaussians,
+            report: self.report,
+        };
+        (loaded, self.properties)
     }
 }
 
@@ -120,16 +147,17 @@ fn unit(q: DVec4) -> Option<Quat> {
 mod tests {
     use super::*;
 
-    fn row() -> Row {
+    fn row() -> [f64; SLOTS] {
         let mut row = [0.0; SLOTS];
         row[6] = 1.0;
         row
     }
 
-    fn load(rows: &[Row]) -> (Gaussians, LoadReport) {
-        let mut assembler = Assembler::with_room(rows.len() as u64, 0).unwrap();
+    fn load(rows: &[[f64; SLOTS]]) -> (Gaussians, LoadReport) {
+        let mut assembler = Assembler::with_room(rows.len() as u64, 0, Vec::new()).unwrap();
         rows.iter().for_each(|row| assembler.push(row));
-        assembler.finish()
+        let (loaded, _) = assembler.finish();
+        (loaded.gaussians, loaded.report)
     }
 
     #[test]

@@ -5,9 +5,9 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek};
 use ply_rs::ply::{ElementDef, Encoding};
 
 use super::Progress;
-use super::assemble::{Assembler, Row};
+use super::assemble::Assembler;
 use super::header::Header;
-use super::layout::{Field, Layout, SLOTS, fixed_size};
+use super::layout::{Field, Layout, fixed_size};
 use super::number::Number;
 
 /// Bytes read at once. A larger chunk gains nothing, a smaller one costs system calls.
@@ -69,7 +69,7 @@ impl<R: Read + Seek> Payload<R> {
         assembler: &mut Assembler,
         progress: &mut Progress<'_>,
     ) -> Result<(), Failure> {
-        let mut used = Vec::with_capacity(SLOTS);
+        let mut used = Vec::new();
         let mut stride = 0;
         for field in &layout.fields {
             if let Field::Scalar(kind, slot) = *field {
@@ -79,7 +79,7 @@ impl<R: Read + Seek> Payload<R> {
         }
         let rows_at_once = (CHUNK / stride).max(1);
         let mut chunk = vec![0; stride * rows_at_once.min(layout.count as usize)];
-        let mut row: Row = [0.0; SLOTS];
+        let mut row = layout.row();
         while assembler.rows < layout.count {
             let rows = (layout.count - assembler.rows).min(rows_at_once as u64) as usize;
             let chunk = &mut chunk[..rows * stride];
@@ -104,7 +104,7 @@ impl<R: Read + Seek> Payload<R> {
         assembler: &mut Assembler,
         progress: &mut Progress<'_>,
     ) -> Result<(), Failure> {
-        let mut row: Row = [0.0; SLOTS];
+        let mut row = layout.row();
         while assembler.rows < layout.count {
             self.walk(
                 layout.fields.iter().copied(),

@@ -5,7 +5,7 @@ use ply_rs::ply::{ElementDef, Encoding, PropertyType};
 use super::header::Header;
 use super::number::Number;
 use crate::error::shortened;
-use crate::scene::sh_coefficients;
+use crate::scene::{Property, sh_coefficients};
 
 /// Slots of a row, see [`FIXED`]: logarithms of the scales.
 pub(super) const SCALES: usize = 3;
@@ -42,13 +42,16 @@ pub(super) struct Layout<'a> {
     pub(super) count: u64,
     pub(super) fields: Vec<Field>,
     pub(super) sh_degree: u32,
+    /// The properties that were asked for, in the order of their slots from [`SLOTS`] on; without values.
+    pub(super) properties: Vec<Property>,
     /// Bytes of all elements after the Gaussians, if no list makes that unknowable.
     pub(super) after: Option<u64>,
 }
 
 impl<'a> Layout<'a> {
-    /// Maps `header`'s properties by name, or says why this is no scene.
-    pub(super) fn of(header: &'a Header) -> Result<Self, String> {
+    /// Maps `header`'s properties by name, those of a Gaussian and `asked` ones, or says why this is no scene or what it
+    /// lacks.
+    pub(super) fn of(header: &'a Header, asked: &[&str]) -> Result<Self, String> {
         let at = header.elements.iter().position(|e| e.name == "vertex");
         let at = at.ok_or("the file has no `vertex` element, which holds the Gaussians of a 3DGS .ply; export the scene again")?;
         let vertex = &header.elements[at];
@@ -95,11 +98,16 @@ impl<'a> Layout<'a> {
                 missing.join(", ")
             ));
         }
+        let properties = asked_properties(vertex, asked, rest)?;
+        let asked_slot = |name: &str| {
+            let at = properties.iter().position(|asked| asked.name == name);
+            at.map(|at| SLOTS + at)
+        };
         let fields = vertex
             .properties
             .values()
             .map(|property| {
-                let slot = slot_of(&property.name, rest);
+                let slot = slot_of(&property.name, rest).or_else(|| asked_slot(&property.name));
                 match Field::from(&property.data_type) {
                     Field::Scalar(kind, _) => Ok(Field::Scalar(kind, slot)),
                     Field::List(..) if slot.is_some() => Err(format!(
@@ -118,8 +126,14 @@ impl<'a> Layout<'a> {
             count: vertex.count as u64,
             fields,
             sh_degree,
+            properties,
             after,
         })
+    }
+
+    /// A row of zeros with a slot for each number that is read.
+    pub(super) fn row(&self) -> Vec<f64> {
+        vec![0.0; SLOTS + self.properties.len()]
     }
 
     /// Checks that `available` payload bytes can hold what the header promises, before anything is allocated for it.
@@ -151,6 +165,59 @@ impl<'a> Layout<'a> {
         }
         Ok(())
     }
+}
+
+/// The properties that were asked for, each once, or what is wrong with one.
+fn asked_properties(
+    vertex: &ElementDef,
+    asked: &[&str],
+    rest: usize,
+) -> Result<Vec<Property>, String> {
+    /// Names in a message, at most.
+    const NAMED: usize = 12;
+    let mut properties: Vec<Property> = Vec::new();
+    for &name in asked {
+        let quoted = shortened(name);
+        if properties.iter().any(|known| known.name == name) {
+            continue;
+        }
+        if slot_of(name, rest).is_some() {
+            return Err(format!(
+                "`{quoted}` is what a Gaussian is made of, and no other property; use opacity, size, red, green, blue or a \
+                 shape"
+            ));
+        }
+        let single = match vertex.properties.get(name).map(|found| &found.data_type) {
+            Some(PropertyType::Scalar(kind)) => matches!(Number::from(kind), Number::F32),
+            Some(PropertyType::List(..)) => {
+                return Err(format!(
+                    "the property `{quoted}` is a list; use one that is a number"
+                ));
+            }
+            None => {
+                let others = vertex.properties.keys();
+                let mut others: Vec<String> = others
+                    .filter(|name| slot_of(name, rest).is_none())
+                    .map(|name| shortened(name))
+                    .collect();
+                let more = others.len().saturating_sub(NAMED);
+                others.truncate(NAMED);
+                let has = match (others.is_empty(), more) {
+                    (true, _) => "none".into(),
+                    (false, 0) => others.join(", "),
+                    (false, more) => format!("{} and {more} more", others.join(", ")),
+                };
+                return Err(format!(
+                    "the `vertex` element has no property `{quoted}`; beside those of a Gaussian it has {has}; name \
+                     another, or select in a layer whose file has it"
+                ));
+            }
+        };
+        let mut property = Property::new(name, Vec::new());
+        property.single = single;
+        properties.push(property);
+    }
+    Ok(properties)
 }
 
 /// The number of `f_rest_*` properties, which must be numbered from 0 without a gap.

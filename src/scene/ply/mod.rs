@@ -16,6 +16,7 @@ use self::assemble::Assembler;
 use self::binary::Failure;
 use self::header::Header;
 use self::layout::Layout;
+use super::Property;
 use super::load::{Format, Loaded, Progress, Source};
 use crate::error::{Error, Result};
 
@@ -25,7 +26,12 @@ pub(super) const FORMAT: Format = Format {
     read,
 };
 
-fn read(source: &mut dyn Source, name: &Path, progress: &mut Progress<'_>) -> Result<Loaded> {
+fn read(
+    source: &mut dyn Source,
+    name: &Path,
+    asked: &[&str],
+    progress: &mut Progress<'_>,
+) -> Result<(Loaded, Vec<Property>)> {
     let format = |message: String| Error::format(name, message);
     let mut start = Vec::new();
     let limit = header::MAX_BYTES as u64;
@@ -34,10 +40,12 @@ fn read(source: &mut dyn Source, name: &Path, progress: &mut Progress<'_>) -> Re
     let header = Header::parse(&start).map_err(format)?;
     drop(start);
 
-    let layout = Layout::of(&header).map_err(format)?;
+    let layout = Layout::of(&header, asked).map_err(format)?;
     let left = progress.total().saturating_sub(header.size);
     layout.check_size(header.encoding, left).map_err(format)?;
-    let mut assembler = Assembler::with_room(layout.count, layout.sh_degree).ok_or_else(|| {
+    let properties = layout.properties.clone();
+    let assembler = Assembler::with_room(layout.count, layout.sh_degree, properties);
+    let mut assembler = assembler.ok_or_else(|| {
         Error::Memory(format!(
             "{}: no memory for {} Gaussians; free some or split the file",
             name.display(),
@@ -58,6 +66,5 @@ fn read(source: &mut dyn Source, name: &Path, progress: &mut Progress<'_>) -> Re
             Failure::Format(message) => format(message),
         },
     )?;
-    let (gaussians, report) = assembler.finish();
-    Ok(Loaded { gaussians, report })
+    Ok(assembler.finish())
 }

@@ -114,14 +114,9 @@ impl Headless {
             .scene
             .as_ref()
             .map(|scene: &SceneBuffers| scene.sh_format);
-        let layers = scene.layers().iter().zip(painted).map(|(layer, painted)| {
-            let of = Layer::new(layer.name(), painted).with(layer.state());
-            match layer.clip() {
-                Some(clip) => of.clipped(clip.clone()),
-                None => of,
-            }
-        });
-        self.load_as(layers.collect::<Scene<'_>>(), ShFormat::Float)?;
+        let layers = scene.layers().iter().zip(painted);
+        let layers: Scene<'_> = layers.map(|(layer, painted)| layer.of(painted)).collect();
+        self.load_as(layers, ShFormat::Float)?;
         let picture = self.shown(Show::Colour, frame);
         self.load_as(scene.clone(), format.unwrap_or_default())?;
         picture

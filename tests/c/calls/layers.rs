@@ -2,6 +2,8 @@
 
 use super::*;
 use rara_c::layer::*;
+use rara_c::layer_info::*;
+use rara_c::region::*;
 
 /// # Safety
 /// The handles are alive, and nobody else uses them; the scene is of one layer.
@@ -65,6 +67,22 @@ pub(super) unsafe fn what_is_wrong_is_said(
         };
         let failed = rara_scene_buffers_set_layer_clip(scene, 0, &clip);
         assert_fails(failed, RARA_ERROR_INVALID, "clip->plane_count is 33");
+        let failed = rara_scene_buffers_set_layer_region(scene, 1, null());
+        assert_fails(failed, RARA_ERROR_INVALID, beyond);
+        let mut index = 7;
+        let failed = rara_scene_buffers_layer_by_name(scene, c"skin".as_ptr(), &mut index);
+        assert_fails(
+            failed,
+            RARA_ERROR_INVALID,
+            "no layer is called 'skin'; there is 'scene'",
+        );
+        assert_eq!(index, 7, "left alone");
+        assert_ok(rara_scene_buffers_layer_by_name(
+            scene,
+            c"scene".as_ptr(),
+            &mut index,
+        ));
+        assert_eq!(index, 0);
         let failed = rara_scene_buffers_set_layer_clip(scene, 1, null());
         assert_fails(failed, RARA_ERROR_INVALID, beyond);
         let failed = set(0, &state);

@@ -10,6 +10,7 @@ use super::*;
 use rara::{Clip, Layer, LayerState};
 use rara_c::clip::*;
 use rara_c::layer::*;
+use rara_c::layer_info::*;
 
 const NAMES: [&CStr; 2] = [c"first", c"zweite \u{e4}"];
 

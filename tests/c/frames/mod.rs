@@ -4,6 +4,7 @@
 
 mod layers;
 mod ours;
+mod regions;
 mod staged;
 mod world;
 

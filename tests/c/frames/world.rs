@@ -1,7 +1,10 @@
 //! A frame by the Rust interface, and the same frame by `rara.h`.
 
+use std::ffi::CStr;
+
 use super::*;
 use crate::canvas::{CanvasDesc, Frame};
+use rara::clip::Expression;
 use rara::gpu::Bindings;
 use rara::scene::Bounds;
 use rara::{
@@ -14,6 +17,7 @@ use rara_c::clip::*;
 use rara_c::depth::*;
 use rara_c::orthographic::*;
 use rara_c::placement::*;
+use rara_c::region::*;
 use rara_c::renderer::*;
 use rara_c::settings::*;
 
@@ -42,6 +46,8 @@ pub(super) struct World<'a> {
     pub(super) placement: Placement,
     /// Expected depths are drawn, not colours.
     pub(super) depths: bool,
+    /// The expression that clips in place of the plane.
+    pub(super) region: Option<&'static CStr>,
 }
 
 impl<'a> World<'a> {
@@ -56,7 +62,17 @@ impl<'a> World<'a> {
             raster,
             placement: Placement::IDENTITY,
             depths: false,
+            region: None,
         }
+    }
+
+    /// What clips the frame.
+    fn clip(&self) -> Clip {
+        let Some(text) = self.region else {
+            return Clip::of([self.plane], ClipOp::And);
+        };
+        let expression: Expression = text.to_str().expect("UTF-8").parse().expect("a region");
+        expression.clip()
     }
 
     /// The same seen without perspective.
@@ -104,8 +120,7 @@ impl<'a> World<'a> {
         let mut renderer = Renderer::new(device, desc).expect("a renderer");
         renderer.set_placement(self.placement);
         let settings = Settings::default().raster(self.raster);
-        let clip = Clip::of([self.plane], ClipOp::And);
-        let configured = renderer.configure(&scene, &self.camera, &clip, &settings);
+        let configured = renderer.configure(&scene, &self.camera, &self.clip(), &settings);
         configured.expect("configures");
         let frame = Frame {
             behind: Some(canvas.depth_image(0, 0)),
@@ -186,9 +201,23 @@ impl<'a> World<'a> {
                 true => rara_renderer_configure_orthographic,
                 false => rara_renderer_configure,
             };
+            let mut region = null_mut();
+            if let Some(text) = self.region {
+                assert_ok(rara_region_parse(text.as_ptr(), &mut region));
+            }
             let before = |cmd| {
                 let scene = scene(cmd);
-                assert_ok(configure(renderer, scene, &camera, &clip, &settings));
+                assert_ok(match region.is_null() {
+                    true => configure(renderer, scene, &camera, &clip, &settings),
+                    false => rara_renderer_configure_region(
+                        renderer,
+                        scene,
+                        &camera,
+                        is_flat.into(),
+                        region,
+                        &settings,
+                    ),
+                });
                 assert_ok(rara_renderer_prepare_behind(renderer, cmd, scene, &shown));
             };
             let inside = |cmd| {
@@ -199,6 +228,7 @@ impl<'a> World<'a> {
                 });
             };
             let [pixels, _] = canvas.draw(before, inside);
+            rara_region_destroy(region);
             rara_renderer_destroy(renderer);
             pixels
         }

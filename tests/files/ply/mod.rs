@@ -4,4 +4,5 @@ mod accepted;
 mod collected;
 mod made;
 mod mutated;
+mod properties;
 mod refused;

@@ -3,6 +3,7 @@
 mod changes;
 mod parts;
 mod placed;
+mod selections;
 
 use glam::{DQuat, DVec3, Quat};
 use rara::{

@@ -16,6 +16,10 @@ fn layers_are_drawn_as_the_scene_that_they_are_parts_of() {
         .map(|l| l.name().to_owned())
         .collect();
     assert_eq!(names[1], "layer 1");
+    assert_eq!(layered.layer_index("layer 1").expect("is there"), 1);
+    let error = layered.layer_index("skin").expect_err("no layer");
+    let says = "no layer is called 'skin'; there are 'layer 0', 'layer 1', ";
+    assert!(error.to_string().starts_with(says), "{error}");
     for camera in common::views(&scene, 2, common::scaled(SIZE)) {
         for raster in common::rasters(whole.device()) {
             for (mode, planes, op) in [

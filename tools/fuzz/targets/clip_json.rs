@@ -8,8 +8,8 @@ use rara::clip::planes_from_json;
 use rara_fuzz::{assert_plane, assert_readable, within};
 
 fuzz_target!(|bytes: &[u8]| {
-    // A plane of some thirty bytes takes about a hundred, twice that while its list grows.
-    match within(4 << 10, 16, bytes, || {
+    // A plane of some thirty bytes takes about a hundred and fifty as a clip, three times that while its list grows.
+    match within(4 << 10, 24, bytes, || {
         planes_from_json(bytes, Path::new("fuzz.json"))
     }) {
         Ok(planes) => {

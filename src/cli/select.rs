@@ -1,0 +1,156 @@
+//! `--select`: splats of a layer that become a layer of their own.
+
+use rara::scene::{Part, Predicate, Property};
+use rara::{Baked, Gaussians, LayerState};
+
+use super::failure::Failure;
+use super::scene_file::{LayerClip, LayerEntry};
+use super::scenes::LoadedLayer;
+
+/// A layer that a selection makes of what a predicate takes of another.
+#[derive(Debug, Clone)]
+pub(super) struct Selected {
+    /// What it takes from: 0 for the file's own layer, or one more than the number of an earlier selection of the file.
+    from: usize,
+    pub(super) predicate: Predicate,
+    pub(super) name: String,
+    pub(super) state: LayerState,
+    pub(super) clip: Option<LayerClip>,
+}
+
+impl Selected {
+    /// A selection from what a file's own layer is left with, whose state and clip it takes.
+    pub(super) fn new(name: String, predicate: Predicate, entry: &LayerEntry) -> Self {
+        Self {
+            from: 0,
+            predicate,
+            name,
+            state: entry.state,
+            clip: entry.clip.clone(),
+        }
+    }
+}
+
+/// Adds the selection `[LAYER/]NAME=PREDICATE` to each layer that it takes from: every file's, or those of a name.
+pub(super) fn add(entries: &mut [LayerEntry], text: &str) -> Result<(), Failure> {
+    let usage = |what: String| Failure::Usage(format!("--select {text}: {what}"));
+    let Some((target, predicate)) = text.split_once('=') else {
+        return Err(usage(
+            "expected NAME=PREDICATE, as in 'vessels=label in 3,4'".into(),
+        ));
+    };
+    let predicate: Predicate = predicate
+        .parse()
+        .map_err(|error: rara::Error| usage(error.to_string()))?;
+    let (layer, name) = match target.rsplit_once('/') {
+        Some((layer, name)) => (Some(layer), name.trim()),
+        None => (None, target.trim()),
+    };
+    if name.is_empty() {
+        return Err(usage("a name for the layer goes before the =".into()));
+    }
+    let mut found = false;
+    for entry in entries.iter_mut() {
+        let sources: Vec<_> = match layer {
+            None => vec![0],
+            Some(layer) => {
+                let names = entry.names().enumerate();
+                names
+                    .filter(|(_, name)| *name == layer)
+                    .map(|(at, _)| at)
+                    .collect()
+            }
+        };
+        for from in sources {
+            found = true;
+            let mut selected = Selected::new(name.into(), predicate.clone(), entry);
+            if let Some(source) = from.checked_sub(1).map(|at| &entry.selected[at]) {
+                (selected.state, selected.clip) = (source.state, source.clip.clone());
+            }
+            entry.selected.push(Selected { from, ..selected });
+        }
+    }
+    if found {
+        return Ok(());
+    }
+    let names: Vec<_> = entries.iter().flat_map(LayerEntry::names).collect();
+    Err(usage(format!(
+        "no layer is called '{}'; there are {}",
+        layer.unwrap_or_default(),
+        names.join(", ")
+    )))
+}
+
+/// The names of the properties that selections compare, each once.
+pub(super) fn properties(selected: &[Selected]) -> Vec<&str> {
+    let mut names: Vec<_> = selected
+        .iter()
+        .flat_map(|one| one.predicate.properties())
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+/// Divides a file's Gaussians: what is left of them, then what each selection has taken.
+pub(super) fn divide(
+    gaussians: Gaussians,
+    properties: &[Property],
+    entry: &LayerEntry,
+) -> rara::Result<Vec<Part>> {
+    let mut part_of = vec![0; gaussians.len()];
+    for (number, selected) in entry.selected.iter().enumerate() {
+        let placement = &entry.state.placement;
+        let taken = selected
+            .predicate
+            .select(&gaussians, properties, placement)?;
+        for (part, taken) in part_of.iter_mut().zip(taken) {
+            if taken && *part as usize == selected.from {
+                *part = number as u32 + 1;
+            }
+        }
+    }
+    gaussians.into_parts(&part_of, 1 + entry.selected.len())
+}
+
+/// What baking has made of layers as one set. Where selections have divided files, it is in the files' order, as if they
+/// had not: Gaussians that are equally deep are drawn in that order.
+pub(super) fn joined(layers: &[LoadedLayer], baked: &[Baked]) -> Gaussians {
+    let mut joined = Gaussians::default();
+    if layers.iter().all(|layer| layer.numbers.is_none()) {
+        baked
+            .iter()
+            .for_each(|baked| joined.append(&baked.gaussians));
+        return joined;
+    }
+    let mut places = Vec::new();
+    let mut before = 0;
+    for (layer, (at, baked)) in layers.iter().zip(baked.iter().enumerate()) {
+        for (index, &source) in baked.sources.iter().enumerate() {
+            let number = match &layer.numbers {
+                Some((first, numbers)) => u64::from(*first) + u64::from(numbers[source as usize]),
+                None => before + u64::from(source),
+            };
+            places.push((number, at, index));
+        }
+        before += layer.gaussians.len() as u64;
+    }
+    places.sort_unstable();
+    let degree = baked.iter().map(|baked| baked.gaussians.sh_degree()).max();
+    joined.set_sh_degree(degree.unwrap_or(0));
+    let mut sh = vec![0.0; 3 * joined.sh_coefficients()];
+    for (_, at, index) in places {
+        let from = &baked[at].gaussians;
+        let own = from.sh_of(index);
+        sh.fill(0.0);
+        sh[..own.len()].copy_from_slice(own);
+        joined.push(
+            from.positions()[index],
+            from.scales()[index],
+            from.rotations()[index],
+            from.opacities()[index],
+            &sh,
+        );
+    }
+    joined
+}

@@ -1,0 +1,139 @@
+//! The numbers of a scene's Gaussians: of two that are equally deep, the one of the smaller number is in front.
+
+use super::Layer;
+use crate::error::{Error, Result};
+
+/// The numbers that the Gaussians of a layer have in its scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(not(feature = "lab"), allow(unreachable_pub))]
+pub struct Numbers<'a> {
+    /// The number of the set's first Gaussian, which the layer is a part of or the whole.
+    first: u32,
+    /// For each Gaussian its number in the set; `None` where the layer is the whole of it.
+    in_set: Option<&'a [u32]>,
+}
+
+impl<'a> Numbers<'a> {
+    pub(super) fn of_whole(first: u32) -> Self {
+        Self {
+            first,
+            in_set: None,
+        }
+    }
+
+    pub(super) fn of_part(first: u32, in_set: &'a [u32]) -> Self {
+        Self {
+            first,
+            in_set: Some(in_set),
+        }
+    }
+
+    /// The number of one of the layer's Gaussians.
+    pub(crate) fn of(&self, index: u32) -> u32 {
+        self.first + self.in_set.map_or(index, |numbers| numbers[index as usize])
+    }
+
+    /// The set that a layer with these numbers is a part of, by its first number; `None` where the layer is the whole of it.
+    pub(crate) fn set(&self) -> Option<u32> {
+        self.in_set.map(|_| self.first)
+    }
+}
+
+/// Checks that the layers' Gaussians, `count` in all, have the numbers below `count`, and each its own.
+///
+/// # Errors
+/// [`Error::Invalid`] names the layer, and what is wrong with its numbers.
+pub(super) fn check(layers: &[Layer<'_>], count: usize) -> Result<()> {
+    if layers.iter().all(|layer| layer.numbers.is_none()) {
+        return Ok(());
+    }
+    let mut taken = vec![false; count];
+    let mut before = 0;
+    for layer in layers {
+        let (name, own) = (layer.name(), layer.gaussians().len());
+        let (first, in_set) = match layer.numbers {
+            Some((first, numbers)) => (u64::from(first), Some(numbers)),
+            None => (before, None),
+        };
+        before += own as u64;
+        if let Some(numbers) = in_set.filter(|numbers| numbers.len() != own) {
+            return Err(Error::Invalid(format!(
+                "layer '{name}' has {own} Gaussians and {} numbers for them; give one each",
+                numbers.len()
+            )));
+        }
+        for index in 0..own {
+            let number = first + in_set.map_or(index as u64, |numbers| numbers[index].into());
+            let place = usize::try_from(number).ok();
+            match place.and_then(|place| taken.get_mut(place)) {
+                Some(taken) if !*taken => *taken = true,
+                found => {
+                    let problem = match found {
+                        Some(_) => "which another has too".to_owned(),
+                        None => format!("and the scene's {count} have those below {count}"),
+                    };
+                    return Err(Error::Invalid(format!(
+                        "Gaussian {index} of layer '{name}' has number {number}, {problem}; number the layers by the sets \
+                         that they are parts of, and give all parts of each"
+                    )));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::{Gaussians, Kind, Layer, Scene, generate};
+
+    fn numbers(scene: &Scene<'_>) -> Vec<Vec<u32>> {
+        let of_layer = |(layer, numbers): (&Layer<'_>, super::Numbers<'_>)| {
+            let count = layer.gaussians().len() as u32;
+            (0..count).map(|index| numbers.of(index)).collect()
+        };
+        scene
+            .layers()
+            .iter()
+            .zip(scene.numbers())
+            .map(of_layer)
+            .collect()
+    }
+
+    #[test]
+    fn layers_number_on_and_parts_have_the_numbers_of_their_set() {
+        let [two, three] = [2, 3].map(|count| generate(Kind::General, count, 1));
+        let scene = Scene::from_iter([
+            Layer::new("whole", &two),
+            Layer::new("part", &three).numbered(2, &[0, 3, 4]),
+            Layer::new("rest", &two).numbered(2, &[1, 2]),
+            Layer::new("last", &two),
+        ]);
+        scene.check().expect("each number once");
+        let expected = [vec![0, 1], vec![2, 5, 6], vec![3, 4], vec![7, 8]];
+        assert_eq!(numbers(&scene), expected);
+        let all: Vec<_> = scene.numbers().collect();
+        let sets: Vec<_> = all.iter().map(super::Numbers::set).collect();
+        assert_eq!(sets, [None, Some(2), Some(2), None]);
+    }
+
+    #[test]
+    fn numbers_that_are_missing_or_not_their_own_are_refused() {
+        let two = generate(Kind::General, 2, 1);
+        let none = Gaussians::default();
+        for (first, numbers, words) in [
+            (0, &[0][..], "2 Gaussians and 1 numbers"),
+            (0, &[1, 1], "number 1, which another has too"),
+            (0, &[0, 2], "number 2, and the scene's 2"),
+            (u32::MAX, &[0, u32::MAX], "number 4294967295"),
+        ] {
+            let layers = [
+                Layer::new("two", &two).numbered(first, numbers),
+                Layer::new("none", &none),
+            ];
+            let error = Scene::from_iter(layers).check().expect_err(words);
+            let text = error.to_string();
+            assert!(text.contains(words) && text.contains("'two'"), "{text}");
+        }
+    }
+}

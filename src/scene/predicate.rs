@@ -1,0 +1,340 @@
+//! Predicates: which Gaussians of a set a selection takes.
+
+use super::{Gaussians, Part, Property};
+use crate::clip::Expression;
+use crate::error::{Error, Result, shortened};
+use crate::placement::Placement;
+
+/// The spherical harmonic of degree 0: the density of the colour that does not depend on the direction.
+const SH_0: f64 = 0.282_094_791_773_878_14;
+
+/// What a Gaussian has to be for a selection to take it: a tree of comparisons and regions. It parses from text:
+/// `opacity>0.5`, `size<=0.01`, `label in 3,4` or `label in 1..7`, and `inside(sphere:0,0,0,1)`, joined by `and`, `or`, `not`
+/// and `( )`, where `not` goes before `and` and that before `or`.
+///
+/// ```
+/// use rara::scene::{self, Predicate};
+///
+/// let scene = scene::generate(scene::Kind::General, 1000, 1);
+/// let faint: Predicate = "opacity<0.5 and not inside(sphere:0,0,0,0.1)".parse()?;
+/// let [rest, taken] = faint.split(scene, &[])?;
+/// assert_eq!(rest.numbers.len() + taken.numbers.len(), 1000);
+/// assert!(taken.gaussians.opacities().iter().all(|&opacity| opacity < 0.5));
+/// # Ok::<(), rara::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Predicate {
+    /// The centre is in the region.
+    Inside(Expression),
+    /// The attribute compares so with the number.
+    Compare(Attribute, Comparison, f64),
+    /// The attribute is in one of the ranges, each of which holds both of its ends.
+    In(Attribute, Vec<[f64; 2]>),
+    /// All of them; at least one.
+    All(Vec<Predicate>),
+    /// Any of them; at least one.
+    Any(Vec<Predicate>),
+    /// Not this.
+    Not(Box<Predicate>),
+}
+
+/// A number of a Gaussian that predicates compare.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Attribute {
+    /// The opacity at its centre, 0 to 1.
+    Opacity,
+    /// Its largest standard deviation, the scene's units.
+    Size,
+    /// Red of its colour of degree 0, which is that from all sides where there are no higher degrees: 0 to 1 or beyond.
+    Red,
+    /// Green of the same.
+    Green,
+    /// Blue of the same.
+    Blue,
+    /// A property of this name that its file has beside those of a Gaussian.
+    Property(String),
+}
+
+/// How two numbers compare.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Comparison {
+    /// `<`
+    Less,
+    /// `<=`
+    LessOrEqual,
+    /// `>`
+    Greater,
+    /// `>=`
+    GreaterOrEqual,
+    /// `=`
+    Equal,
+    /// `!=`
+    NotEqual,
+}
+
+impl Comparison {
+    fn holds(self, a: f64, b: f64) -> bool {
+        match self {
+            Self::Less => a < b,
+            Self::LessOrEqual => a <= b,
+            Self::Greater => a > b,
+            Self::GreaterOrEqual => a >= b,
+            Self::Equal => a == b,
+            // What is no number is neither equal nor unequal to one.
+            Self::NotEqual => !a.is_nan() && a != b,
+        }
+    }
+}
+
+impl Predicate {
+    /// The names of the properties that it compares, each once: those to ask [`load_with`](super::load_with) for.
+    pub fn properties(&self) -> Vec<&str> {
+        let mut names = Vec::new();
+        self.collect(&mut names);
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
+    fn collect<'a>(&'a self, names: &mut Vec<&'a str>) {
+        match self {
+            Self::Compare(Attribute::Property(name), ..)
+            | Self::In(Attribute::Property(name), _) => names.push(name),
+            Self::Inside(_) | Self::Compare(..) | Self::In(..) => {}
+            Self::All(all) | Self::Any(all) => all.iter().for_each(|one| one.collect(names)),
+            Self::Not(one) => one.collect(names),
+        }
+    }
+
+    /// For each Gaussian whether the predicate takes it. `placement` is that of the Gaussians: regions and sizes are the
+    /// scene's. Numbers that are stored in single precision are compared in single precision, so that `=0.1` finds a
+    /// stored 0.1; a value that is no number fulfils no comparison.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a property that is not among `properties`, or that has another number of values.
+    pub fn select(
+        &self,
+        gaussians: &Gaussians,
+        properties: &[Property],
+        placement: &Placement,
+    ) -> Result<Vec<bool>> {
+        let each = |holds: &dyn Fn(usize) -> bool| (0..gaussians.len()).map(holds).collect();
+        let select = |one: &Self| one.select(gaussians, properties, placement);
+        Ok(match self {
+            Self::Inside(expression) => {
+                let region = expression.clip().in_scene(placement);
+                each(&|i| region.keeps(gaussians.positions()[i].as_dvec3()))
+            }
+            Self::Compare(attribute, comparison, number) => {
+                let values = Values::of(attribute, gaussians, properties, placement)?;
+                let number = values.rounded(*number);
+                each(&|i| comparison.holds((values.get)(i), number))
+            }
+            Self::In(attribute, ranges) => {
+                let values = Values::of(attribute, gaussians, properties, placement)?;
+                let ranges: Vec<_> = ranges
+                    .iter()
+                    .map(|ends| ends.map(|end| values.rounded(end)))
+                    .collect();
+                each(&|i| {
+                    let value = (values.get)(i);
+                    ranges
+                        .iter()
+                        .any(|&[low, high]| low <= value && value <= high)
+                })
+            }
+            Self::All(all) => joined(vec![true; gaussians.len()], all, select, |a, b| a & b)?,
+            Self::Any(any) => joined(vec![false; gaussians.len()], any, select, |a, b| a | b)?,
+            Self::Not(one) => select(one)?.into_iter().map(|taken| !taken).collect(),
+        })
+    }
+
+    /// Divides Gaussians, which are placed as they are, into those that it leaves and those that it takes.
+    ///
+    /// # Errors
+    /// As of [`select`](Self::select) and [`Gaussians::into_parts`].
+    pub fn split(&self, gaussians: Gaussians, properties: &[Property]) -> Result<[Part; 2]> {
+        let taken = self.select(&gaussians, properties, &Placement::IDENTITY)?;
+        let part_of: Vec<u32> = taken.into_iter().map(u32::from).collect();
+        let mut parts = gaussians.into_parts(&part_of, 2)?.into_iter();
+        Ok([(); 2].map(|()| parts.next().unwrap_or_default()))
+    }
+}
+
+/// Joins what each of the predicates takes.
+fn joined(
+    mut taken: Vec<bool>,
+    predicates: &[Predicate],
+    select: impl Fn(&Predicate) -> Result<Vec<bool>>,
+    join: fn(bool, bool) -> bool,
+) -> Result<Vec<bool>> {
+    for predicate in predicates {
+        for (taken, other) in taken.iter_mut().zip(select(predicate)?) {
+            *taken = join(*taken, other);
+        }
+    }
+    Ok(taken)
+}
+
+/// An attribute's values.
+struct Values<'a> {
+    get: Box<dyn Fn(usize) -> f64 + 'a>,
+    single: bool,
+}
+
+impl<'a> Values<'a> {
+    fn of(
+        attribute: &Attribute,
+        gaussians: &'a Gaussians,
+        properties: &'a [Property],
+        placement: &Placement,
+    ) -> Result<Self> {
+        let colour = |channel: usize| -> Box<dyn Fn(usize) -> f64 + 'a> {
+            Box::new(move |i| {
+                f64::from((0.5 + SH_0 * f64::from(gaussians.sh_of(i)[channel])) as f32)
+            })
+        };
+        let unit = placement.scale();
+        let get: Box<dyn Fn(usize) -> f64 + 'a> = match attribute {
+            Attribute::Opacity => Box::new(|i| gaussians.opacities()[i].into()),
+            Attribute::Size => Box::new(move |i| {
+                let size = f64::from(gaussians.scales()[i].max_element());
+                f64::from((unit * size) as f32)
+            }),
+            Attribute::Red => colour(0),
+            Attribute::Green => colour(1),
+            Attribute::Blue => colour(2),
+            Attribute::Property(name) => {
+                let property = properties.iter().find(|property| property.name == *name);
+                let Some(property) = property else {
+                    return Err(Error::Invalid(format!(
+                        "the property `{}` was not loaded; ask for it by its name",
+                        shortened(name)
+                    )));
+                };
+                if property.values.len() != gaussians.len() {
+                    return Err(Error::Invalid(format!(
+                        "the property `{}` has {} values for {} Gaussians; give one each",
+                        shortened(name),
+                        property.values.len(),
+                        gaussians.len()
+                    )));
+                }
+                return Ok(Self {
+                    get: Box::new(|i| property.values[i]),
+                    single: property.single,
+                });
+            }
+        };
+        Ok(Self { get, single: true })
+    }
+
+    /// A number as it would be stored among the values.
+    fn rounded(&self, number: f64) -> f64 {
+        match self.single {
+            true => f64::from(number as f32),
+            false => number,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DQuat, DVec3, Quat, Vec3};
+
+    /// Three Gaussians along x, ever larger, less opaque and redder.
+    fn three() -> Gaussians {
+        let mut made = Gaussians::default();
+        for (i, opacity) in [0.9, 0.1, 0.5].into_iter().enumerate() {
+            let (x, red) = (i as f32, (i as f64 / 4.0 - 0.5) / SH_0);
+            let scale = Vec3::new(0.1, 0.01, 0.05) * (1.0 + x);
+            made.push(
+                Vec3::X * x,
+                scale,
+                Quat::IDENTITY,
+                opacity,
+                &[red as f32, 0.0, 0.0],
+            );
+        }
+        made
+    }
+
+    fn taken(text: &str) -> Vec<bool> {
+        let labels = Property::new("label", vec![3.0, 4.0, 16_777_217.0]);
+        let mut shares = Property::new("share", [0.1_f32, f32::NAN, 0.3].map(f64::from).to_vec());
+        shares.single = true;
+        let predicate: Predicate = text
+            .parse()
+            .unwrap_or_else(|error| panic!("{text}: {error}"));
+        let again: Predicate = predicate.to_string().parse().unwrap();
+        assert_eq!(again, predicate, "{text}");
+        predicate
+            .select(&three(), &[labels, shares], &Placement::IDENTITY)
+            .unwrap()
+    }
+
+    #[test]
+    fn predicates_take_what_their_text_says() {
+        for (text, expected) in [
+            ("opacity>0.1", [1, 0, 1]),
+            ("opacity>=0.1", [1, 1, 1]),
+            ("opacity = .1", [0, 1, 0]),
+            ("opacity!=0.1", [1, 0, 1]),
+            ("size<0.2", [1, 0, 0]),
+            ("size<=0.2", [1, 1, 0]),
+            ("red in 0.2..0.3, 0.5", [0, 1, 1]),
+            ("green=0.5 and blue=0.5", [1, 1, 1]),
+            ("label in 3,4", [1, 1, 0]),
+            ("label in 4..16777216", [0, 1, 0]),
+            ("label=16777217", [0, 0, 1]),
+            ("property(label)=3 or property(label)=4", [1, 1, 0]),
+            ("share=0.1", [1, 0, 0]),
+            ("share!=0.1", [0, 0, 1]),
+            ("not share!=0.1", [1, 1, 0]),
+            ("inside(sphere:0,0,0,1)", [1, 1, 0]),
+            (
+                "inside(not(any(sphere:0,0,0,.5, plane:1,0,0,-1.5)))",
+                [0, 1, 0],
+            ),
+            ("not opacity<0.2 and label=4 or size>0.25", [0, 0, 1]),
+            (
+                "not (opacity<0.2 or size>0.25) and label in -1..1e9",
+                [1, 0, 0],
+            ),
+            ("opacity<0.2 or opacity>0.8 and size>1", [0, 1, 0]),
+        ] {
+            assert_eq!(taken(text), expected.map(|bit| bit == 1), "{text}");
+        }
+    }
+
+    #[test]
+    fn regions_and_sizes_are_the_scenes() {
+        let placement = Placement::new(DVec3::X * 10.0, DQuat::IDENTITY, 2.0).unwrap();
+        for (text, expected) in [
+            ("inside(slab:1,0,0,-11,2)", [false, true, false]),
+            ("size>0.5", [false, false, true]),
+        ] {
+            let predicate: Predicate = text.parse().unwrap();
+            assert_eq!(
+                predicate.select(&three(), &[], &placement).unwrap(),
+                expected,
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn properties_are_named_once_and_missed() {
+        let predicate: Predicate = "label=3 and (share>0 or not label in 4)".parse().unwrap();
+        assert_eq!(predicate.properties(), ["label", "share"]);
+        let error = predicate.split(three(), &[Property::new("share", vec![0.0; 3])]);
+        let text = error.unwrap_err().to_string();
+        assert!(text.contains("`label` was not loaded"), "{text}");
+        let error = predicate.split(three(), &[Property::new("label", vec![0.0; 2])]);
+        let text = error.unwrap_err().to_string();
+        assert!(text.contains("2 values for 3 Gaussians"), "{text}");
+    }
+}

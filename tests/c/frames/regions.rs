@@ -1,0 +1,103 @@
+//! Frames and layers that are cut by regions of any shapes.
+
+use super::*;
+use rara::clip::Expression;
+use rara::{Clip, Layer};
+use rara_c::layer::*;
+use rara_c::layer_info::*;
+use rara_c::region::*;
+
+#[test]
+fn regions_are_the_same_bytes() {
+    with_both(600, |scene, lent, device, ours| {
+        let bitten = c"all(not(sphere:0.2,0,0,0.5), any(plane:0,0,1,0, cylinder:-1,0,0,1,0,0,.3))";
+        let mut seen: Vec<Pixels> = Vec::new();
+        let uploaded = ours.uploaded();
+        for made in [
+            World::new(scene, Raster::Tiles),
+            World::flat(scene, Raster::Quad),
+        ] {
+            for region in [None, Some(bitten), Some(c"!box:0,0,0,.4,.4,.4")] {
+                let world = World {
+                    region,
+                    layers: scene.into(),
+                    ..made
+                };
+                let canvas = world.canvas(lent, device);
+                let truth = world.drawn(device, &canvas);
+                // SAFETY: the handles are alive.
+                let drawn = unsafe { world.drawn_in_c(ours.device, &canvas, |_| uploaded) };
+                assert!(drawn == truth, "{region:?}");
+                assert!(seen.iter().all(|before| *before != drawn), "{region:?}");
+                seen.push(drawn);
+            }
+        }
+        // SAFETY: all frames were waited for.
+        unsafe { rara_scene_buffers_destroy(uploaded) };
+    });
+}
+
+#[test]
+fn layers_have_regions_of_their_own() {
+    with_both(500, |scene, lent, device, ours| {
+        let text = "cone:0,0,-1,0,0,1,0.8";
+        let expression: Expression = text.parse().expect("a region");
+        let world = |clip: Option<Clip>| {
+            let inner = Layer::new("inner", scene);
+            World {
+                layers: Scene::from_iter([
+                    Layer::new("outer", scene),
+                    match clip {
+                        Some(clip) => inner.clipped(clip),
+                        None => inner,
+                    },
+                ]),
+                ..World::new(scene, Raster::Tiles)
+            }
+        };
+        let (own, shared) = (world(Some(expression.clip())), world(None));
+        let canvas = own.canvas(lent, device);
+        let (mut uploaded, mut region, mut index) = (null_mut(), null_mut(), 0);
+        // SAFETY: the handles are alive, and the pointers may be overwritten.
+        unsafe {
+            let layers = [c"outer", c"inner"].map(|name| {
+                let mut layer: RaraLayer = std::mem::zeroed();
+                let size = size_of_val(&layer);
+                let filled = rara_layer_default(&mut layer, size, name.as_ptr(), ours.gaussians);
+                assert_ok(filled);
+                layer
+            });
+            assert_ok(rara_scene_buffers_upload_layers(
+                ours.device,
+                layers.as_ptr(),
+                layers.len(),
+                RARA_SH_FORMAT_PACKED,
+                &mut uploaded,
+            ));
+            let name = c"inner".as_ptr();
+            assert_ok(rara_scene_buffers_layer_by_name(uploaded, name, &mut index));
+            assert_eq!(index, 1);
+            let json =
+                br#"[{"clip": {"cone": {"apex": [0,0,-1], "base": [0,0,1], "radius": 0.8}}}]"#;
+            let (bytes, size) = (json.as_ptr(), json.len());
+            assert_ok(rara_region_from_json(
+                bytes,
+                size,
+                std::ptr::null(),
+                &mut region,
+            ));
+            assert_ok(rara_scene_buffers_set_layer_region(uploaded, index, region));
+            rara_region_destroy(region); // the layer has a copy
+            let drawn = own.drawn_in_c(ours.device, &canvas, |_| uploaded);
+            assert!(drawn == own.drawn(device, &canvas), "a region of its own");
+            let none = std::ptr::null();
+            assert_ok(rara_scene_buffers_set_layer_region(uploaded, index, none));
+            let again = shared.drawn_in_c(ours.device, &canvas, |_| uploaded);
+            assert!(
+                again == shared.drawn(device, &canvas) && again != drawn,
+                "the frame's"
+            );
+            rara_scene_buffers_destroy(uploaded);
+        }
+    });
+}

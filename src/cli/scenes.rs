@@ -49,6 +49,12 @@ impl SceneArgs {
         Ok(entries)
     }
 
+    /// The selections, as they were typed.
+    #[cfg(feature = "view")]
+    pub(super) fn selections(&self) -> &[String] {
+        &self.select
+    }
+
     /// True when one of the layers that are named is given a clip of its own.
     pub(super) fn has_clips(&self, entries: &[LayerEntry]) -> bool {
         !self.layer_clip.is_empty() || entries.iter().any(LayerEntry::has_clip)

@@ -28,13 +28,18 @@ pub(super) fn flags(camera: &Camera) -> Option<String> {
             format!("--fov-y {}", 2.0 * half.to_degrees())
         }
     };
+    let plane = |flag: &str, depth: Option<f64>| {
+        depth.map_or(String::new(), |depth| format!(" {flag} {depth}"))
+    };
     Some(format!(
-        "--eye {} --target {} --up {} {lens} --size {}x{}",
+        "--eye {} --target {} --up {} {lens} --size {}x{}{}{}",
         list(eye),
         list(target),
         list(up),
         camera.width,
-        camera.height
+        camera.height,
+        plane("--clip-near", camera.clip_near),
+        plane("--clip-far", camera.clip_far)
     ))
 }
 

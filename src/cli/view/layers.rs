@@ -21,6 +21,8 @@ pub(super) struct Clips {
     layers: Vec<NamedLayer>,
     /// The number of the layer whose own clip is edited; `None` for the frame's.
     edited: Option<usize>,
+    /// The selections that were typed, which make layers of files.
+    selections: Vec<String>,
     /// The scene's middle.
     centre: DVec3,
     /// True when the window's scene is not yet as these say.
@@ -63,8 +65,17 @@ impl Clips {
             frame,
             layers,
             edited: None,
+            selections: Vec::new(),
             centre,
             changed: false,
+        }
+    }
+
+    /// The same with the selections that made its layers, as they were typed.
+    pub(super) fn selected(self, selections: &[String]) -> Self {
+        Self {
+            selections: selections.into(),
+            ..self
         }
     }
 
@@ -148,7 +159,10 @@ impl Clips {
 
     /// The flags that make the layers of the same files what they are.
     pub(super) fn flags(&self) -> Vec<String> {
-        let mut flags = Vec::new();
+        let selections = self.selections.iter();
+        let mut flags: Vec<String> = selections
+            .map(|text| format!("--select={}", quoted(text)))
+            .collect();
         for layer in &self.layers {
             let name = quoted(&layer.name);
             match (layer.listed.visible, layer.visible) {
@@ -302,6 +316,11 @@ pub(super) mod tests {
         assert_eq!(clips.in_force().count(), 2);
         clips.act(HeldAction::On(false), &camera(), 1.0);
         assert_eq!(clips.flags(), ["--layer-clip=bone=whole"]);
+        let selected = clips.clone().selected(&["bone=label in 3".into()]);
+        assert_eq!(
+            selected.flags(),
+            ["--select='bone=label in 3'", "--layer-clip=bone=whole"]
+        );
         assert_eq!(clips.words().unwrap(), "clip of bone: whole");
         clips.edit(&Edit::Next).unwrap();
         assert_eq!(clips.words().unwrap(), "sphere");

@@ -127,7 +127,8 @@ impl View {
                 size: (first.width, first.height),
                 scenery: Scenery {
                     name: name(&scene),
-                    clips: Clips::new(cut, &loaded.layers, bounds.centre()),
+                    clips: Clips::new(cut, &loaded.layers, bounds.centre())
+                        .selected(self.scenes.selections()),
                     outlined: !self.no_outline,
                     settings,
                     centre: bounds.centre(),

@@ -92,11 +92,14 @@ impl Viewpoint {
         }
         let ((centre, radius), forward) = (self.scene, self.pose.axes.z_axis);
         // The scene is seen as a whole, also the part of it that a near pivot has behind the eye.
-        let back = 2.0 * radius - (centre - camera.eye).dot(forward);
+        let back = (2.0 * radius - (centre - camera.eye).dot(forward)).max(0.0);
+        let farther = |depth: f64| depth + back;
         camera
+            .clip_near(camera.clip_near.map(farther))
+            .clip_far(camera.clip_far.map(farther))
             .fx(camera.fx / self.pose.distance)
             .fy(camera.fy / self.pose.distance)
-            .eye(camera.eye - forward * back.max(0.0))
+            .eye(camera.eye - forward * back)
     }
 
     /// Changes between perspective and an orthographic view, which show the pivot at one scale.

@@ -49,7 +49,7 @@ fn near_and_far_planes_cut_every_layer_beside_its_own_clip() {
         for mode in [Mode::Exact, Mode::Rara, Mode::Hard] {
             let settings = Settings::default().mode(mode);
             let mut picture = |clip: Clip, camera: &Camera, frames: &Clip| -> Picture {
-                headless.load(&scene(clip)).expect("uploads");
+                headless.load(scene(clip)).expect("uploads");
                 headless.render(camera, frames, &settings).expect("renders");
                 headless.picture().expect("reads back")
             };

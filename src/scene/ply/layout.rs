@@ -250,10 +250,14 @@ fn count_rest(vertex: &ElementDef) -> Result<usize, String> {
     Ok(count)
 }
 
-/// The slot of a property. Files store `f_rest` channel by channel: all of red, then green, then blue.
+/// The slot of a property, where a Gaussian with `rest` of the `f_rest` properties has it. Files store those channel by
+/// channel: all of red, then green, then blue.
 fn slot_of(name: &str, rest: usize) -> Option<usize> {
     if let Some(number) = name.strip_prefix("f_rest_") {
         let number: usize = number.parse().ok()?;
+        if number >= rest {
+            return None; // a name that was asked for may be one of a higher degree than the file's
+        }
         let a_channel = rest / 3;
         return Some(SH + 3 + 3 * (number % a_channel) + number / a_channel);
     }

@@ -123,6 +123,24 @@ fn properties_that_no_file_gives_are_refused() {
         error.contains("of a Gaussian it has none; name another"),
         "{error}"
     );
+    // Harmonics of a higher degree than the file's are properties that it lacks.
+    let first_degree: Vec<String> = (0..9).map(|i| format!("f_rest_{i}")).collect();
+    let mut names = FIXED.to_vec();
+    names.extend(first_degree.iter().map(String::as_str));
+    let degree_1 = scene_file(Format::Ascii, 3, &floats(&names)).bytes();
+    for (bytes, name, words) in [
+        (&bare, "f_rest_0", "no property `f_rest_0`"),
+        (&bare, "f_rest_44", "no property `f_rest_44`"),
+        (&degree_1, "f_rest_9", "no property `f_rest_9`"),
+        (
+            &degree_1,
+            "f_rest_8",
+            "`f_rest_8` is what a Gaussian is made of",
+        ),
+    ] {
+        let error = load_asked(bytes, &[name]).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
     // A text that is no number is only refused where it is asked for.
     let text =
         String::from_utf8(scene_file(Format::Ascii, 1, &declared(&[("uchar", "label")])).bytes());

@@ -71,6 +71,36 @@ fn channels_say_what_the_picture_is_made_of() {
 }
 
 #[test]
+fn channels_are_the_same_whatever_the_picture_holds() {
+    let here = folder("aov-other");
+    scene(&here);
+    let of = |flags: &str| {
+        let words = format!(
+            "render @/scene.ply -o @/a.exr --aov weight,depth,normal,layer,count --size 64x48 --eye 3,-2,-5 --target 0,0,0 \
+             --clip plane:1,0,0,0 {flags}"
+        );
+        done(line(&here, &words));
+        let mut channels = channels(&here.join("a.exr"));
+        channels.retain(|(name, _)| !["R", "G", "B", "A"].contains(&name.as_str()));
+        channels
+    };
+    let truth = of("");
+    let count = truth
+        .iter()
+        .find(|(name, _)| name == "count")
+        .expect("it is asked for");
+    assert!(
+        count.1.iter().any(|count| *count > 1.0),
+        "pixels of several splats"
+    );
+    for flags in ["--target-format 8", "--target-format 16f"] {
+        for ((name, expected), (_, found)) in truth.iter().zip(of(flags)) {
+            assert!(*expected == found, "{flags}: {name} is as without it");
+        }
+    }
+}
+
+#[test]
 fn channels_need_an_exr_file() {
     let here = folder("aov-refused");
     for (words, what) in [

@@ -8,7 +8,7 @@ use crate::clip::Clip;
 use crate::error::Result;
 use crate::passes::SceneBuffers;
 use crate::picture::{Channel, Picture};
-use crate::precision::ShFormat;
+use crate::precision::{ShFormat, TargetFormat};
 use crate::scene::{Gaussians, Layer, Scene};
 use crate::settings::{Settings, Show};
 
@@ -48,8 +48,10 @@ impl Headless {
         scene: &Scene<'_>,
         (camera, clip, settings): (&Camera, &Clip, &Settings),
     ) -> Result<Vec<Channel>> {
-        // A background would count as a splat.
-        let settings = settings.background(None);
+        // A background would count as a splat, and what these frames show is counted and divided: a picture of few bits rounds
+        // it, and holds no count above one.
+        let precision = settings.precision.target(TargetFormat::Float);
+        let settings = settings.background(None).precision(precision);
         let mut channels: Vec<Channel> = Vec::new();
         for (number, aov) in aovs.iter().enumerate() {
             if aovs[..number].contains(aov) {

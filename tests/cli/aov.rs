@@ -71,7 +71,7 @@ fn channels_say_what_the_picture_is_made_of() {
 }
 
 #[test]
-fn channels_are_the_same_whatever_the_picture_holds() {
+fn channels_are_the_same_whatever_the_picture_shows_and_holds() {
     let here = folder("aov-other");
     scene(&here);
     let of = |flags: &str| {
@@ -93,7 +93,12 @@ fn channels_are_the_same_whatever_the_picture_holds() {
         count.1.iter().any(|count| *count > 1.0),
         "pixels of several splats"
     );
-    for flags in ["--target-format 8", "--target-format 16f"] {
+    for flags in [
+        "--target-format 8",
+        "--target-format 16f",
+        "--show count",
+        "--show mean",
+    ] {
         for ((name, expected), (_, found)) in truth.iter().zip(of(flags)) {
             assert!(*expected == found, "{flags}: {name} is as without it");
         }

@@ -2,7 +2,7 @@
 
 use crate::common;
 use rara::scene::{Kind, generate};
-use rara::{Camera, Clip, ClipOp, Mode, Raster, Settings, reference};
+use rara::{Camera, Clip, ClipOp, Mode, Raster, Settings, Show, reference};
 
 #[test]
 fn headless_expected_depths_are_the_references() {
@@ -33,6 +33,11 @@ fn headless_expected_depths_are_the_references() {
             most < 2e-4 && worst < 0.02,
             "{mode:?}: {most:.1e}, {worst:.1e}"
         );
+        // What a picture shows is no matter, also where that is made by tiles alone.
+        for show in [Show::Weight, Show::Count, Show::Mean] {
+            let again = headless.expected_depth(&camera, &clip, &settings.show(show));
+            assert!(again.expect("draws depths") == depths, "{show:?}");
+        }
         // The picture stays.
         assert_eq!(headless.picture().expect("reads back"), before);
         headless.render(&camera, &clip, &settings).expect("renders");

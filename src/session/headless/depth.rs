@@ -8,7 +8,7 @@ use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::gpu::{BufferDesc, Drawer, ImageDesc, Location};
 use crate::precision::TargetFormat;
-use crate::settings::{Raster, Settings};
+use crate::settings::{Raster, Settings, Show};
 
 impl Headless {
     /// Draws the expected depth of each pixel, row by row from the top left: the mean depth along the view axis, world
@@ -39,8 +39,10 @@ impl Headless {
         let (device, scene) = (&session.device, loaded(&session.scene, "draw depths of")?);
         let format = blendable_on(device, TargetFormat::Float)?;
         let mut renderer = session.renderer.with_expected_depth(format.vulkan())?;
-        // Depths are drawn as quads in any case, and lists of tiles could lack room.
-        renderer.configure(scene, camera, clip, &settings.raster(Raster::Quad))?;
+        // Depths are drawn as quads in any case, and lists of tiles could lack room. They are the same whatever a picture
+        // shows, of which some is made by tiles alone.
+        let drawn = settings.raster(Raster::Quad).show(Show::Colour);
+        renderer.configure(scene, camera, clip, &drawn)?;
         let image = device.create_image(&ImageDesc {
             name: "expected depth",
             width: camera.width,

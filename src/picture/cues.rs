@@ -129,25 +129,27 @@ fn nearest(mask: &[bool], wanted: bool, (width, height): (usize, usize)) -> Vec<
         sweep(&mut (0..height));
         sweep(&mut (0..height).rev());
     }
-    let mut hull = Vec::<(usize, f32)>::with_capacity(width);
+    let mut hull = Vec::<(usize, f64)>::with_capacity(width);
     for row in squares.chunks_mut(width.max(1)) {
         hull.clear();
-        // Each parabola of the lower hull, and from where on it is the lowest.
+        // Each parabola of the lower hull, and from where on it is the lowest. The squares of columns beyond 4096 have more
+        // digits than single precision, and their differences are what counts.
         for (x, &square) in row.iter().enumerate() {
-            let crossing = |&(other, _): &(usize, f32)| {
-                let (at, before) = (x as f32, other as f32);
-                (square + at * at - row[other] - before * before) / (2.0 * (at - before))
+            let crossing = |&(other, _): &(usize, f64)| {
+                let (at, before) = (x as f64, other as f64);
+                let squares = f64::from(square) - f64::from(row[other]);
+                (squares + at * at - before * before) / (2.0 * (at - before))
             };
             while hull.last().is_some_and(|last| crossing(last) <= last.1) {
                 hull.pop();
             }
-            let from = hull.last().map_or(f32::NEG_INFINITY, crossing);
+            let from = hull.last().map_or(f64::NEG_INFINITY, crossing);
             hull.push((x, from));
         }
         let mut lowest = 0;
         let least: Vec<f32> = (0..row.len())
             .map(|x| {
-                while hull.get(lowest + 1).is_some_and(|next| next.1 <= x as f32) {
+                while hull.get(lowest + 1).is_some_and(|next| next.1 <= x as f64) {
                     lowest += 1;
                 }
                 let at = hull[lowest].0;
@@ -197,6 +199,32 @@ mod tests {
                 (ours[at] - expected).abs() < 1e-4,
                 "{at}: {} and {expected}",
                 ours[at]
+            );
+        }
+    }
+
+    #[test]
+    fn distances_are_right_at_the_end_of_a_long_row() {
+        let (width, height) = (9000_usize, 3_usize);
+        let mut slice = Picture::filled(width as u32, height as u32, [0.0; 4]);
+        let covered: Vec<(usize, usize)> = (0..width / 7).map(|i| (7 * i, i % height)).collect();
+        for (x, y) in &covered {
+            slice.pixels[y * width + x] = [1.0; 4];
+        }
+        for (at, &ours) in distances(&slice, 0.5).iter().enumerate() {
+            let (x, y) = (at % width, at / width);
+            let apart =
+                |&(to, row): &(usize, usize)| (x as f64 - to as f64).hypot(y as f64 - row as f64);
+            // The nearest is among these, since each seventh column has one.
+            let near = x.saturating_sub(21) / 7..(x / 7 + 4).min(covered.len());
+            let least = covered[near]
+                .iter()
+                .map(apart)
+                .fold(f64::INFINITY, f64::min);
+            let expected = if least == 0.0 { 0.5 } else { 0.5 - least };
+            assert!(
+                (f64::from(ours) - expected).abs() < 1e-3,
+                "{x}, {y}: {ours} and {expected}"
             );
         }
     }

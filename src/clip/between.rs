@@ -1,5 +1,7 @@
 //! Regions between two others of the same form, for cuts that move.
 
+use std::mem::discriminant;
+
 use glam::DVec3;
 
 use super::{Expression, Plane, Shape, Solid};
@@ -19,7 +21,7 @@ impl Expression {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the two have another form, where normals are opposed, so that no arc is the shortest, and where
+    /// [`Error::Invalid`] where the two have another form, whatever the share, and between them where normals are opposed, so that no arc is the shortest, and where
     /// what lies between is no shape.
     pub fn between(&self, other: &Self, share: f64) -> Result<Self> {
         let each = |from: &[Self], to: &[Self]| -> Result<Vec<Self>> {
@@ -51,13 +53,16 @@ fn unlike(from: &impl std::fmt::Display, to: &impl std::fmt::Display) -> Error {
 impl Shape {
     /// The shape at a share of the way to another of its kind, as [`Expression::between`].
     fn between(&self, other: &Self, share: f64) -> Result<Self> {
+        let kind = |shape: &Self| (discriminant(&shape.solid()), shape.is_outside());
+        if kind(self) != kind(other) {
+            return Err(unlike(self, other));
+        }
         if share == 0.0 || share == 1.0 {
             return Ok(*if share == 0.0 { self } else { other });
         }
         let point = |from: DVec3, to: DVec3| from.lerp(to, share);
         let number = |from: f64, to: f64| from + (to - from) * share;
         let solid = match (self.solid(), other.solid()) {
-            _ if self.is_outside() != other.is_outside() => return Err(unlike(self, other)),
             (Solid::Plane(from), Solid::Plane(to)) => Solid::Plane(from.between(&to, share)?),
             (
                 Solid::Slab { plane, thickness },
@@ -257,8 +262,10 @@ mod tests {
             ("all(sphere:0,0,0,1)", "any(sphere:0,0,0,1)"),
             ("all(sphere:0,0,0,1, plane:1,0,0,0)", "all(sphere:0,0,0,1)"),
         ] {
-            let error = between(from, to, 0.5).expect_err(from).to_string();
-            assert!(error.contains("the same shapes"), "{error}");
+            for share in [0.0, 0.5, 1.0] {
+                let error = between(from, to, share).expect_err(from).to_string();
+                assert!(error.contains("the same shapes"), "{share}: {error}");
+            }
         }
         let error = between("plane:1,0,0,0", "plane:-1,0,0,0", 0.5).expect_err("opposed");
         assert!(error.to_string().contains("180 degrees"), "{error}");

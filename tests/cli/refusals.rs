@@ -210,6 +210,14 @@ fn a_wrong_command_line_is_status_2_and_one_line() {
         ("sweep x.ply", "--clip-normal"),
         ("sweep x.ply --clip-normal 0,0,0", "zero"),
         ("sweep x.ply --clip-normal 1,0,0 --frames 0", "0"),
+        (
+            "sweep x.ply --from sphere:0,0,0,1 --to box:0,0,0,1,1,1 --frames 2",
+            "the same shapes",
+        ),
+        (
+            "sweep x.ply --from sphere:0,0,0,1 --to !sphere:0,0,0,1 --frames 2",
+            "the same shapes",
+        ),
         ("generate blob -o a.ply", "general, strands, layers"),
         ("generate general -o a.txt", ".ply"),
         ("compare a.png", "B"),

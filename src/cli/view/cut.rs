@@ -25,10 +25,7 @@ impl Cut {
         let mut expressions = clip;
         expressions.sort_by_key(|expression| !matches!(expression, Expression::Shape(_)));
         for shape in expressions.iter_mut().flat_map(Expression::shapes_mut) {
-            // The outside of a half-space is one.
-            if let (Solid::Plane(plane), true) = (shape.solid(), shape.is_outside()) {
-                *shape = plane.flipped().into();
-            }
+            *shape = inside(*shape);
         }
         let on = !expressions.is_empty();
         if !on {
@@ -110,7 +107,7 @@ impl Cut {
     fn replace(&mut self, shape: Shape) {
         let shapes = self.expressions.iter_mut().flat_map(Expression::shapes_mut);
         if let Some(held) = shapes.into_iter().nth(self.held) {
-            *held = shape;
+            *held = inside(shape);
         }
         self.on = true;
     }
@@ -155,6 +152,12 @@ impl Cut {
         }
         words
     }
+}
+
+/// The same region, by its inside where that is a plane's: the outside of a half-space is a half-space, whose normal can be seen
+/// and turned.
+fn inside(shape: Shape) -> Shape {
+    shape.as_plane().map_or(shape, Shape::from)
 }
 
 fn across(axis: DVec3, centre: DVec3) -> Shape {
@@ -218,6 +221,16 @@ mod tests {
         assert_eq!(cut.held(), 0);
         cut.hold(&"!box:0,0,0,1,1,1".parse().unwrap());
         assert_eq!(cut.words(), "outside of box 3 of 4");
+    }
+
+    #[test]
+    fn the_outside_of_a_plane_is_flipped_at_once() {
+        let mut cut = cut(&[]);
+        cut.set("!plane:1,0,0,0".parse().unwrap());
+        assert_eq!(cut.shape(), "plane:-1,0,0,0".parse::<Shape>().unwrap());
+        assert_eq!(cut.words(), "plane at 0.0000");
+        cut.flip();
+        assert_eq!(cut.shape(), "plane:1,0,0,0".parse::<Shape>().unwrap());
     }
 
     #[test]

@@ -113,6 +113,7 @@ impl Pictures {
 impl Render {
     pub(super) fn run(self) -> Result<(), Failure> {
         let settings = self.frame.settings.meant()?;
+        self.slice.check(&settings)?;
         let sections = self.section.meant(&self.frame.camera, &self.frame.clip)?;
         let pictures = match sections {
             Some(sections) => Pictures::Sections(sections),

@@ -3,13 +3,14 @@
 use clap::Args;
 use rara::scene::cross_section;
 use rara::{
-    Clip, Cue, Cues, FrameStats, Gaussians, HeadlessDesc, Layer, Picture, Plane, Scene, Settings,
-    Show,
+    Clip, Cue, Cues, FrameStats, Gaussians, HeadlessDesc, Layer, Picture, Plane, Raster, Scene,
+    Settings, Show,
 };
 
 use super::camera::View;
 use super::failure::Failure;
 use super::session::Session;
+use super::settings::name;
 use super::values;
 
 /// What is shown of a section's plane.
@@ -47,6 +48,18 @@ impl SliceArgs {
     /// True when a slice takes the picture's place.
     pub(super) fn is_shown(&self) -> bool {
         self.slice
+    }
+
+    /// Refuses to draw a slice in another way than by tiles, before the scene is read.
+    pub(super) fn check(&self, settings: &Settings) -> Result<(), Failure> {
+        let raster = settings.raster;
+        if !self.slice || matches!(raster, Raster::Auto | Raster::Tiles) {
+            return Ok(());
+        }
+        let raster = name(raster);
+        Err(Failure::Usage(format!(
+            "--slice is made by tiles alone, and --raster {raster} draws none: leave out one of them"
+        )))
     }
 
     /// The lines and tints to draw.
@@ -111,7 +124,11 @@ impl<'a> Slicer<'a> {
             }
             None => Session::open(&self.device, &scene, sh)?,
         };
-        let shown = settings.show(Show::Mean).background(None);
+        // The picture may be drawn in any way; its slice is made by tiles alone.
+        let shown = settings
+            .show(Show::Mean)
+            .raster(Raster::Auto)
+            .background(None);
         let (slice, _) = session.picture(&view.camera, &cut.rest, &shown)?;
         self.session = Some(session);
         Ok(picture.draw_cues(&slice, &cues)?)

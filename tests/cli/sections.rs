@@ -180,6 +180,11 @@ fn slices_show_the_plane_and_cues_its_edge() {
     );
     assert!(plain != outlined);
     assert!(outlined != drawn(&here, &format!("{section} --outline 1,1,0 --rim 0,0,1")));
+    // A picture that is drawn in another way has the same cues.
+    let quads = drawn(&here, &format!("{section} --raster quad"));
+    let outlined = drawn(&here, &format!("{section} --raster quad --outline 1,1,0"));
+    let rimmed = drawn(&here, &format!("{section} --raster quad --rim 0,0,1"));
+    assert!(quads != outlined && quads != rimmed && outlined != rimmed);
     let series = format!("render @/scene.ply -o @/s{{}}.png {SIZE} --slice --outline 1,0,0");
     done(line(&here, &format!("{series} --section z=0.2..0.8:3")));
     assert!((0..3).all(|number| here.join(format!("s{number}.png")).is_file()));
@@ -192,6 +197,14 @@ fn slices_show_the_plane_and_cues_its_edge() {
         (
             "render x.ply -o a.exr --section z=.5 --slice --aov depth",
             "--aov",
+        ),
+        (
+            "render x.ply -o a.png --section z=.5 --slice --raster quad",
+            "--slice is made by tiles alone, and --raster quad",
+        ),
+        (
+            "render x.ply -o a.png --section z=.5 --slice --raster mesh",
+            "--raster mesh",
         ),
         (
             "render x.ply -o a.png --section z=.5 --outline 1,1,2",

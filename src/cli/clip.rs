@@ -30,7 +30,7 @@ pub(super) struct ClipArgs {
     /// name, or the one of that number (from 0)
     #[arg(long, value_name = "FILE[:NAME]")]
     clip_file: Vec<String>,
-    /// Write the clip that the flags make to a JSON file, which --clip-file reads
+    /// Write the clip that the flags make to a JSON file, which --clip-file reads; a section's own plane is not in it
     #[arg(long, value_name = "FILE")]
     save_clip: Option<PathBuf>,
     /// How several shapes combine: visible in all of them, or in any
@@ -55,19 +55,20 @@ impl ClipArgs {
             expressions.extend(from_file(text)?);
         }
         expressions.extend(self.clip_expr.iter().cloned());
-        if let Some(path) = &self.save_clip {
-            self.save(path, &expressions)?;
-        }
+        self.save(&expressions, "--clip, --clip-expr or --clip-file")?;
         Ok(expressions)
     }
 
-    /// Writes the clip to a file as one expression.
-    fn save(&self, path: &Path, expressions: &[Expression]) -> Result<(), Failure> {
+    /// Writes the clip to a file as one expression, where that is wanted; `flags` are those that give one.
+    fn save(&self, expressions: &[Expression], flags: &str) -> Result<(), Failure> {
+        let Some(path) = &self.save_clip else {
+            return Ok(());
+        };
         let clip = match (expressions, self.op()) {
             ([], _) => {
-                return Err(Failure::Usage(
-                    "--save-clip: there is no clip to save; give one by --clip, --clip-expr or --clip-file".into(),
-                ));
+                return Err(Failure::Usage(format!(
+                    "--save-clip: there is no clip to save; give one by {flags}"
+                )));
             }
             ([only], _) => only.clone(),
             (all, ClipOp::And) => Expression::All(all.into()),
@@ -84,10 +85,16 @@ impl ClipArgs {
         )?)
     }
 
-    /// The shapes and expressions that were typed.
-    pub(super) fn typed(&self) -> Vec<Expression> {
+    /// The shapes and expressions that clip beside planes that files name, and saves them where that is wanted: those files clip
+    /// nothing by themselves.
+    pub(super) fn beside_planes(&self) -> Result<Vec<Expression>, Failure> {
         let shapes = self.clip.iter().copied().map(Expression::Shape);
-        shapes.chain(self.clip_expr.iter().cloned()).collect()
+        let typed: Vec<_> = shapes.chain(self.clip_expr.iter().cloned()).collect();
+        self.save(
+            &typed,
+            "--clip or --clip-expr: a section's plane is not saved",
+        )?;
+        Ok(typed)
     }
 
     /// All planes of the files, with their names.

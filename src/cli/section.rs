@@ -202,7 +202,8 @@ impl SectionArgs {
         }
         let is_named = self.section.iter().any(|s| matches!(s, Wanted::Named(_)));
         let (shapes, planes) = if is_named {
-            (clip.typed(), clip.planes()?)
+            let planes = clip.planes()?;
+            (clip.beside_planes()?, planes)
         } else {
             (clip.expressions()?, Vec::new())
         };

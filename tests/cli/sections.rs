@@ -157,11 +157,29 @@ fn a_section_has_the_plane_of_a_file() {
     let clipped = "--section z=0.5 --clip-file @/planes.json:other";
     let typed = drawn(&here, "--section z=0.5 --clip plane:1,0,0,0");
     assert!(typed == drawn(&here, clipped));
-    let output = line(
-        &here,
-        "render @/scene.ply -o @/x.png --clip-file @/planes.json --section skin",
-    );
-    refused(&output, 2, "mid, other");
+    // What clips beside the section's plane is saved, as for a section across an axis.
+    for section in ["mid", "z=0.5"] {
+        let file = if section == "mid" {
+            "--clip-file @/planes.json"
+        } else {
+            ""
+        };
+        let words = format!("{file} --section {section} {more} --save-clip @/saved.json");
+        assert!(both == drawn(&here, &words), "{section}");
+        let saved = drawn(&here, "--section z=0.5 --clip-file @/saved.json");
+        assert!(both == saved, "{section}");
+        fs::remove_file(here.join("saved.json")).unwrap();
+    }
+    for (flags, what) in [
+        ("--section skin", "mid, other"),
+        (
+            "--section mid --save-clip @/saved.json",
+            "give one by --clip or --clip-expr",
+        ),
+    ] {
+        let words = format!("render @/scene.ply -o @/x.png --clip-file @/planes.json {flags}");
+        refused(&line(&here, &words), 2, what);
+    }
 }
 
 #[test]

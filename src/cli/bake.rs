@@ -106,6 +106,10 @@ impl Bake {
         let clip = self.meant_clip(&entries)?;
         let paths = self.check_output(&entries)?;
         let loaded = self.scenes.load()?;
+        // What --layer-clip says of a layer may also be that nothing cuts it.
+        if clip.is_everything() && !loaded.has_clips() {
+            return Err(no_clip());
+        }
 
         if self.mode != Mode::Rara && self.sigma.is_some() {
             say("note: --sigma changes nothing without --mode rara");
@@ -154,14 +158,11 @@ impl Bake {
         self.print(gaussians, counts, &outputs, residual)
     }
 
-    /// The clip, which there has to be.
+    /// The clip of the frame, where that or a layer's own may cut.
     fn meant_clip(&self, entries: &[LayerEntry]) -> Result<Clip, Failure> {
         let clip = self.clip.meant()?;
-        if clip.is_everything() && !self.scenes.has_clips(entries) {
-            return Err(Failure::Usage(
-                "there is no clip to bake: give --clip, --clip-expr, --clip-file or --layer-clip"
-                    .into(),
-            ));
+        if clip.is_everything() && !self.scenes.may_have_clips(entries) {
+            return Err(no_clip());
         }
         if self.mode == Mode::None {
             return Err(Failure::Usage(
@@ -265,6 +266,11 @@ impl Bake {
         }
         Ok(())
     }
+}
+
+fn no_clip() -> Failure {
+    let what = "there is no clip to bake: give --clip, --clip-expr, --clip-file, or --layer-clip with a region";
+    Failure::Usage(what.into())
 }
 
 fn print_counts(counts: &BakeCounts) {

@@ -55,8 +55,8 @@ impl SceneArgs {
         &self.select
     }
 
-    /// True when one of the layers that are named is given a clip of its own.
-    pub(super) fn has_clips(&self, entries: &[LayerEntry]) -> bool {
+    /// True when one of the layers that are named may have a clip of its own, once they are read.
+    pub(super) fn may_have_clips(&self, entries: &[LayerEntry]) -> bool {
         !self.layer_clip.is_empty() || entries.iter().any(LayerEntry::has_clip)
     }
 
@@ -161,6 +161,12 @@ impl Loaded {
             dropped: 0,
             notes: Vec::new(),
         }
+    }
+
+    /// True when a layer has a clip of its own that keeps less than everything.
+    pub(super) fn has_clips(&self) -> bool {
+        let mut own = self.layers.iter().filter_map(|layer| layer.clip.as_ref());
+        own.any(|own| !own.clip().is_everything())
     }
 
     /// The scene of the layers.

@@ -159,6 +159,16 @@ fn what_cannot_be_baked_is_refused_and_nothing_is_written() {
     for (words, status, what) in [
         ("bake @/scene.ply -o @/a.ply", 2, "no clip"),
         (
+            "bake @/scene.ply -o @/a.ply --layer-clip scene=frame",
+            2,
+            "no clip",
+        ),
+        (
+            "bake @/scene.ply -o @/a.ply --layer-clip scene=whole",
+            2,
+            "no clip",
+        ),
+        (
             "bake @/scene.ply -o @/a.txt --clip plane:1,0,0,0",
             2,
             ".ply",

@@ -1,5 +1,6 @@
 //! The actions of a viewer, which keys, the mouse and scripts ask for.
 
+use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -50,9 +51,23 @@ pub(super) enum Action {
     Quit,
 }
 
-/// A layer: its name, or its number from 1.
+/// A layer.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Which(pub(super) String);
+pub(super) enum Which {
+    /// By its number from 1, as keys have it.
+    Number(usize),
+    /// By what a script says: a layer's name or, where none has it, a number from 1.
+    Typed(String),
+}
+
+impl fmt::Display for Which {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(to),
+            Self::Typed(text) => text.fmt(to),
+        }
+    }
+}
 
 /// The clip to edit.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -137,7 +152,7 @@ impl FromStr for Action {
                 "frame" => Edit::Frame,
                 "release" => Edit::Release,
                 "" => return Err("edit takes next, frame, release, or a layer".into()),
-                which => Edit::Layer(Which(which.into())),
+                which => Edit::Layer(Which::Typed(which.into())),
             }),
             "outline" => match switch(rest) {
                 Some(on) => Self::Outline(Some(on)),
@@ -212,7 +227,7 @@ fn layer(text: &str) -> Result<Action, String> {
         "" | "on" | "off" => {
             Err("layer takes a layer's name or its number from 1, and on or off".into())
         }
-        which => Ok(Action::Layer(Which(which.into()), visible)),
+        which => Ok(Action::Layer(Which::Typed(which.into()), visible)),
     }
 }
 
@@ -266,7 +281,7 @@ mod tests {
             Action::Held(HeldAction::Set("!sphere:0,0,0,1".parse().unwrap()))
         );
         assert_eq!(parsed("scale 1.5"), Action::Held(HeldAction::Scale(1.5)));
-        let which = |text: &str| Which(text.into());
+        let which = |text: &str| Which::Typed(text.into());
         assert_eq!(parsed("layer 2"), Action::Layer(which("2"), None));
         assert_eq!(
             parsed("layer left lung off"),

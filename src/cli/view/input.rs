@@ -85,7 +85,7 @@ impl Input {
         let shift = self.modifiers.shift_key();
         let action = match logical {
             Key::Named(key) => match layer(*key) {
-                Some(number) => Action::Layer(Which(number.to_string()), None),
+                Some(number) => Action::Layer(Which::Number(number), None),
                 None => named(*key, shift)?,
             },
             Key::Character(text) => letter(text)?,
@@ -314,7 +314,7 @@ mod tests {
             let key = Key::Named(NamedKey::F3);
             input.key(&key, PhysicalKey::Code(KeyCode::F3), Pressed, repeat)
         };
-        let third = Action::Layer(Which("3".into()), None);
+        let third = Action::Layer(Which::Number(3), None);
         assert_eq!(press(false), Some(third));
         assert_eq!(press(true), None);
     }

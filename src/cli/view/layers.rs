@@ -208,19 +208,24 @@ impl Clips {
         (!words.is_empty()).then(|| words.join(", "))
     }
 
-    /// The number of the layers that are meant: those of a name, else by their number from 1.
+    /// The number, from 0, of the layers that are meant.
     fn find(&self, which: &Which) -> Result<usize, Failure> {
-        let text = &which.0;
-        let named = self.layers.iter().position(|layer| layer.name == *text);
-        let number = || text.parse::<usize>().ok()?.checked_sub(1);
-        let found = named.or_else(number).filter(|&at| at < self.layers.len());
+        let numbered = |number: usize| number.checked_sub(1);
+        let found = match which {
+            Which::Number(number) => numbered(*number),
+            Which::Typed(text) => {
+                let named = self.layers.iter().position(|layer| layer.name == *text);
+                named.or_else(|| numbered(text.parse().ok()?))
+            }
+        };
+        let found = found.filter(|&at| at < self.layers.len());
         found.ok_or_else(|| {
             let names = self.layers.iter().enumerate();
             let names: Vec<_> = names
                 .map(|(at, l)| format!("{} {}", at + 1, l.name))
                 .collect();
             Failure::Usage(format!(
-                "there is no layer {text}; there are {}",
+                "there is no layer {which}; there are {}",
                 names.join(", ")
             ))
         })
@@ -268,7 +273,7 @@ pub(super) mod tests {
     }
 
     fn which(text: &str) -> Which {
-        Which(text.into())
+        Which::Typed(text.into())
     }
 
     #[test]
@@ -300,6 +305,22 @@ pub(super) mod tests {
         assert_eq!(clips.flags()[2], "--layer-clip='a b=frame'");
         let error = clips.show(&which("3"), None).unwrap_err().to_string();
         assert!(error.contains("1 skin, 2 a b"), "{error}");
+    }
+
+    #[test]
+    fn keys_go_by_the_number_where_scripts_go_by_the_name_first() {
+        let mut clips = clips(&[layer("0", true, None), layer("1", true, None)]);
+        let hidden = |clips: &Clips| clips.words().unwrap();
+        clips.show(&Which::Number(1), None).unwrap();
+        assert_eq!(hidden(&clips), "sphere, without 0");
+        clips.show(&which("1"), None).unwrap();
+        assert_eq!(hidden(&clips), "sphere, without 0 and 1");
+        clips.show(&which("2"), None).unwrap();
+        assert_eq!(hidden(&clips), "sphere, without 0");
+        for none in [Which::Number(0), Which::Number(3)] {
+            let error = clips.show(&none, None).unwrap_err().to_string();
+            assert!(error.contains("1 0, 2 1"), "{error}");
+        }
     }
 
     #[test]

@@ -75,9 +75,10 @@ mod tests {
     fn the_held_shape_is_drawn_over_the_others_of_its_clip_and_those_over_other_clips() {
         let mut clips = clips(&["box:0,0,0,1,1,1", "slab:1,0,0,0,1"]);
         assert_eq!(widths(&clips), [(1.5, 12), (2.0, 8), (3.0, 12)]);
-        clips.edit(&Edit::Layer(Which("bone".into()))).unwrap();
+        let bone = Which::Typed("bone".into());
+        clips.edit(&Edit::Layer(bone.clone())).unwrap();
         assert_eq!(widths(&clips), [(1.5, 20), (3.0, 12)]);
-        clips.show(&Which("bone".into()), Some(false)).unwrap();
+        clips.show(&bone, Some(false)).unwrap();
         assert_eq!(widths(&clips), [(1.5, 20)]);
         clips.frame.on = false;
         assert_eq!(widths(&clips), []);

@@ -96,6 +96,30 @@ fn every_setting_and_any_name_draws_a_screenshot_again() {
 }
 
 #[test]
+fn planes_that_move_with_the_camera_are_drawn_again() {
+    let folder = folder("camera_planes");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    let words = format!(
+        "--size 160x120 --eye 0,0,-5 --target 0,0,0 --clip-near 4.75 --clip-far 5.5 {}",
+        background()
+    );
+    let mut viewer = Viewer::start(&display, &folder, &words);
+    let start = viewer.screenshot("start");
+    viewer.say("turn 20,10\nmove 0.1,0,0.2");
+    let moved = viewer.screenshot("moved");
+    assert!(apart(&start, &moved) > 5.0, "the camera has moved");
+    // Near its pivot the camera of an orthographic view stands farther back, and so are its planes from it.
+    viewer.say("camera orthographic\nzoom 9");
+    viewer.screenshot("flat");
+    let printed = viewer.quit();
+    for name in ["start", "moved", "flat"] {
+        draws_again(&folder, name, &printed);
+    }
+}
+
+#[test]
 fn a_window_may_change_its_size_and_vanish_for_a_while() {
     let folder = folder("size");
     let Some(display) = Display::start(&folder) else {

@@ -1,4 +1,4 @@
-//! The flags of `rara render` that place a camera.
+//! The flags of `rara render` that place a camera, and those of the planes that move with it.
 
 use rara::{Camera, Projection};
 
@@ -28,19 +28,24 @@ pub(super) fn flags(camera: &Camera) -> Option<String> {
             format!("--fov-y {}", 2.0 * half.to_degrees())
         }
     };
-    let plane = |flag: &str, depth: Option<f64>| {
-        depth.map_or(String::new(), |depth| format!(" {flag} {depth}"))
-    };
     Some(format!(
-        "--eye {} --target {} --up {} {lens} --size {}x{}{}{}",
+        "--eye {} --target {} --up {} {lens} --size {}x{}",
         list(eye),
         list(target),
         list(up),
         camera.width,
-        camera.height,
-        plane("--clip-near", camera.clip_near),
-        plane("--clip-far", camera.clip_far)
+        camera.height
     ))
+}
+
+/// The flags of the planes that move with this camera, of which no file says anything.
+pub(super) fn planes(camera: &Camera) -> Vec<String> {
+    let planes = [
+        ("--clip-near", camera.clip_near),
+        ("--clip-far", camera.clip_far),
+    ];
+    let flag = |(flag, depth): (&str, Option<f64>)| depth.map(|depth| format!("{flag} {depth}"));
+    planes.into_iter().filter_map(flag).collect()
 }
 
 #[cfg(test)]
@@ -86,9 +91,17 @@ mod tests {
     }
 
     #[test]
-    fn what_only_a_file_can_say_has_no_flags() {
+    fn what_only_a_file_can_say_has_no_flags_but_those_of_its_planes() {
         let camera = Camera::look_at(DVec3::ZERO, DVec3::X, DVec3::NEG_Y, 40.0, (80, 60)).unwrap();
-        assert_eq!(flags(&camera.cx(41.0)), None);
-        assert_eq!(flags(&camera.fx(30.0)), None);
+        assert!(planes(&camera).is_empty());
+        let between = camera.clip_near(Some(-0.1)).clip_far(Some(1.0 / 3.0));
+        for odd in [between.cx(41.0), between.fx(30.0)] {
+            assert_eq!(flags(&odd), None);
+            let said = [
+                "--clip-near -0.1".to_owned(),
+                format!("--clip-far {}", 1.0 / 3.0),
+            ];
+            assert_eq!(planes(&odd), said);
+        }
     }
 }

@@ -7,9 +7,10 @@ use super::camera_flags;
 use super::layers::Clips;
 use crate::cli::settings::name;
 
-/// The flags of `rara render` for clips, layers and settings, as a user would type them. They leave out defaults.
-pub(super) fn flags(clips: &Clips, settings: &Settings) -> String {
-    let mut flags = Vec::new();
+/// The flags of `rara render` for clips, the planes of the camera among them, layers and settings, as a user would type them.
+/// They leave out defaults.
+pub(super) fn flags(camera: &Camera, clips: &Clips, settings: &Settings) -> String {
+    let mut flags = camera_flags::planes(camera);
     let cut = &clips.frame;
     let expressions = cut.expressions();
     // Shells take some of an expression's characters for their own.
@@ -30,7 +31,7 @@ pub(super) fn flags(clips: &Clips, settings: &Settings) -> String {
 
 /// The line with all flags of `rara render` that draw what is shown.
 pub(super) fn lines(camera: &Camera, clips: &Clips, settings: &Settings) -> String {
-    let rest = flags(clips, settings);
+    let rest = flags(camera, clips, settings);
     match camera_flags::flags(camera) {
         Some(camera) => format!("flags    {camera} {rest}"),
         None => format!(
@@ -173,7 +174,25 @@ mod tests {
     /// The flags that are written for the clip and the settings of `typed`.
     fn written(typed: &str) -> String {
         let (clips, settings) = meant(typed);
-        flags(&clips, &settings)
+        flags(&camera(), &clips, &settings)
+    }
+
+    fn camera() -> Camera {
+        let eye = DVec3::new(0.3, -0.2, -4.0);
+        Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, (640, 480)).unwrap()
+    }
+
+    #[test]
+    fn the_planes_of_a_camera_are_said_wherever_the_rest_of_it_is() {
+        let (clips, settings) = meant("--mode exact");
+        let cut = camera().clip_near(Some(1.25)).clip_far(Some(7.5));
+        let planes = "--clip-near 1.25 --clip-far 7.5 --mode exact";
+        assert_eq!(flags(&cut, &clips, &settings), planes);
+        for line in [cut, cut.cx(300.0)].map(|camera| lines(&camera, &clips, &settings)) {
+            let first = line.lines().next().unwrap();
+            assert!(first.ends_with(planes), "{line}");
+            assert_eq!(line.matches("--clip-near").count(), 1, "{line}");
+        }
     }
 
     #[test]
@@ -244,7 +263,7 @@ mod tests {
         let typed = vec![Expression::Shape(plane.into())];
         let plane_clip = typed[0].clip();
         let clips = Clips::new(Cut::new(typed, ClipOp::And, DVec3::ZERO), &[], DVec3::ZERO);
-        let (read, again) = meant(&flags(&clips, &settings));
+        let (read, again) = meant(&flags(&camera(), &clips, &settings));
         assert_eq!(again, settings);
         assert_eq!(read.frame.clip(), plane_clip);
     }
@@ -314,8 +333,7 @@ mod tests {
 
     #[test]
     fn every_clip_parses_back_to_itself_wherever_it_was_moved_to() {
-        let eye = DVec3::new(0.3, -0.2, -4.0);
-        let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, (640, 480)).unwrap();
+        let camera = camera();
         let mut numbers = Numbers(88_172_645_463_325_252);
         for _ in 0..300 {
             let count = 1 + numbers.below(4);
@@ -333,7 +351,7 @@ mod tests {
                     _ => HeldAction::Next,
                 };
                 clips.act(action, &camera, 1.0);
-                let written = flags(&clips, &Settings::default());
+                let written = flags(&camera, &clips, &Settings::default());
                 let (read, _) = meant(&written);
                 let (frame, again) = (&clips.frame, &read.frame);
                 assert_eq!(again.expressions(), frame.expressions(), "{written}");

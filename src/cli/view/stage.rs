@@ -232,7 +232,7 @@ impl Viewer {
         let clip = clips.frame.clip();
         let picture = self.windowed.picture(&camera, &clip, settings)?;
         shots::save(&picture, &camera, &path)?;
-        say(shots::wrote(&path, &flags::flags(clips, settings)));
+        say(shots::wrote(&path, &flags::flags(&camera, clips, settings)));
         self.shown_at = None; // the next frame does not follow at once
         Ok(())
     }

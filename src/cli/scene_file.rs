@@ -1,5 +1,6 @@
 //! Scene files: JSON that lists the layers of a scene.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 use glam::{DQuat, DVec3};
@@ -47,6 +48,16 @@ impl LayerClip {
         match self {
             Self::Whole => Clip::default(),
             Self::Region(expression) => expression.clip(),
+        }
+    }
+}
+
+impl fmt::Display for LayerClip {
+    /// The text that is parsed to it.
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => to.write_str("whole"),
+            Self::Region(expression) => expression.fmt(to),
         }
     }
 }

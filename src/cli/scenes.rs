@@ -108,17 +108,18 @@ pub(super) struct LoadedLayer {
     pub(super) clip: Option<LayerClip>,
     /// Where it is a part of a file: how many Gaussians are in the files before, and its Gaussians' numbers in the file.
     pub(super) numbers: Option<(u32, Vec<u32>)>,
-    /// Whether it is visible and has a clip of its own before any flag says otherwise.
+    /// What is said of it before any flag says otherwise.
     #[cfg_attr(not(feature = "view"), allow(dead_code))]
     pub(super) listed: Listed,
 }
 
 /// What the list of a scene's layers says of one, in so far as flags may say otherwise.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(not(feature = "view"), allow(dead_code))]
 pub(super) struct Listed {
     pub(super) visible: bool,
-    pub(super) clipped: bool,
+    /// Its own clip.
+    pub(super) clip: Option<LayerClip>,
 }
 
 impl LoadedLayer {
@@ -130,7 +131,7 @@ impl LoadedLayer {
             state,
             listed: Listed {
                 visible: state.visible,
-                clipped: clip.is_some(),
+                clip: clip.clone(),
             },
             clip,
             numbers: None,

@@ -32,13 +32,15 @@ pub(super) fn flags(camera: &Camera, clips: &Clips, settings: &Settings) -> Stri
 /// The line with all flags of `rara render` that draw what is shown.
 pub(super) fn lines(camera: &Camera, clips: &Clips, settings: &Settings) -> String {
     let rest = flags(camera, clips, settings);
-    match camera_flags::flags(camera) {
+    let lines = match camera_flags::flags(camera) {
         Some(camera) => format!("flags    {camera} {rest}"),
         None => format!(
             "flags    {rest}\nnote: only a file can say what this camera is; a screenshot (C) writes one beside it, for \
              --camera"
         ),
-    }
+    };
+    let notes = clips.note().map(|note| format!("\n{note}"));
+    lines + &notes.unwrap_or_default()
 }
 
 fn add_settings(flags: &mut Vec<String>, settings: &Settings) {

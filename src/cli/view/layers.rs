@@ -1,12 +1,11 @@
 //! The layers of the scene, their clips, and the clip that is edited: the frame's, or a layer's own.
 
-use std::borrow::Cow;
-
 use glam::DVec3;
 use rara::{Camera, ClipOp, Windowed};
 
 use super::action::{Edit, HeldAction, Which};
 use super::cut::Cut;
+use super::layer_flags;
 use super::shots::quoted;
 use crate::cli::failure::Failure;
 use crate::cli::scene_file::LayerClip;
@@ -29,16 +28,24 @@ pub(super) struct Clips {
     changed: bool,
 }
 
-/// The layers of a name.
+/// The layers of a name that begin alike.
 #[derive(Debug, Clone)]
-struct NamedLayer {
-    name: String,
+pub(super) struct NamedLayer {
+    pub(super) name: String,
     /// Their numbers in the scene.
     places: Vec<usize>,
-    visible: bool,
+    pub(super) visible: bool,
     /// Their own clip; one that is off leaves them whole. `None` where the frame's holds.
     own: Option<Cut>,
-    listed: Listed,
+    /// What is listed of each of them, with clips as they can be edited.
+    pub(super) listed: Vec<Listed>,
+}
+
+impl NamedLayer {
+    /// Their own clip, as flags say it.
+    pub(super) fn clip(&self) -> Option<LayerClip> {
+        self.own.as_ref().map(layer_clip)
+    }
 }
 
 impl Clips {
@@ -50,14 +57,25 @@ impl Clips {
                 let facts = |l: &LoadedLayer| (l.name.clone(), l.state.visible, l.clip.clone());
                 facts(first) == facts(layer)
             };
+            let listed = Listed {
+                visible: layer.listed.visible,
+                clip: layer
+                    .listed
+                    .clip
+                    .as_ref()
+                    .map(|clip| layer_clip(&own(clip, centre))),
+            };
             match layers.iter_mut().find(is_alike) {
-                Some(other) => other.places.push(place),
+                Some(other) => {
+                    other.places.push(place);
+                    other.listed.push(listed);
+                }
                 None => layers.push(NamedLayer {
                     name: layer.name.clone(),
                     places: vec![place],
                     visible: layer.state.visible,
                     own: layer.clip.as_ref().map(|clip| own(clip, centre)),
-                    listed: layer.listed,
+                    listed: vec![listed],
                 }),
             }
         }
@@ -163,25 +181,13 @@ impl Clips {
         let mut flags: Vec<String> = selections
             .map(|text| format!("--select={}", quoted(text)))
             .collect();
-        for layer in &self.layers {
-            let name = quoted(&layer.name);
-            match (layer.listed.visible, layer.visible) {
-                (true, false) => flags.push(format!("--hide={name}")),
-                (false, true) => flags.push(format!("--unhide={name}")),
-                _ => {}
-            }
-            let clip: Option<Cow<'_, str>> = match &layer.own {
-                Some(own) => Some(match own.expressions() {
-                    [] => "whole".into(),
-                    [only] => only.to_string().into(),
-                    all => Expression::All(all.into()).to_string().into(),
-                }),
-                None => layer.listed.clipped.then_some("frame".into()),
-            };
-            let text = clip.map(|clip| quoted(&format!("{}={clip}", layer.name)));
-            flags.extend(text.map(|text| format!("--layer-clip={text}")));
-        }
+        flags.extend(layer_flags::flags(&self.layers));
         flags
+    }
+
+    /// A note on what no flags can say.
+    pub(super) fn note(&self) -> Option<String> {
+        layer_flags::note(&self.layers)
     }
 
     /// A few words for the title: which shape of which clip is held, and which layers are hidden.
@@ -240,6 +246,15 @@ fn own(clip: &LayerClip, centre: DVec3) -> Cut {
     }
 }
 
+/// What a layer's own clip is as it has been edited.
+fn layer_clip(own: &Cut) -> LayerClip {
+    match own.expressions() {
+        [] => LayerClip::Whole,
+        [only] => LayerClip::Region(only.clone()),
+        all => LayerClip::Region(Expression::All(all.into())),
+    }
+}
+
 /// A clip that is off.
 fn whole(centre: DVec3) -> Cut {
     Cut::new(Vec::new(), ClipOp::And, centre)
@@ -268,7 +283,7 @@ pub(super) mod tests {
         )
     }
 
-    fn camera() -> Camera {
+    pub(in crate::cli::view) fn camera() -> Camera {
         Camera::look_at(DVec3::NEG_Z, DVec3::ZERO, DVec3::NEG_Y, 50.0, (64, 64)).unwrap()
     }
 
@@ -283,7 +298,7 @@ pub(super) mod tests {
             layer("a b", false, Some("plane:1,0,0,0")),
             layer("skin", true, None),
         ]);
-        assert_eq!(clips.flags(), ["--layer-clip='a b=plane:1,0,0,0'"]);
+        assert!(clips.flags().is_empty(), "all are as they are listed");
         assert_eq!(clips.words().unwrap(), "sphere, without a b");
         clips.show(&which("2"), None).unwrap();
         clips.show(&which("skin"), Some(false)).unwrap();

@@ -7,6 +7,7 @@ mod cut;
 mod flags;
 mod grip;
 mod input;
+mod layer_flags;
 mod layers;
 mod lost;
 mod outlines;

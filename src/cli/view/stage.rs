@@ -233,6 +233,7 @@ impl Viewer {
         let picture = self.windowed.picture(&camera, &clip, settings)?;
         shots::save(&picture, &camera, &path)?;
         say(shots::wrote(&path, &flags::flags(&camera, clips, settings)));
+        clips.note().into_iter().for_each(say);
         self.shown_at = None; // the next frame does not follow at once
         Ok(())
     }

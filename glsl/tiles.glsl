@@ -219,7 +219,7 @@ void main() {
     for (uint row = 0u; row < ROWS; row++) {
         if (pixel.x < size.x && pixel.y + row < size.y) {
             float alpha = 1.0 - transmittance[row];
-            vec3 colour = SHOW == SHOW_MEAN ? sum[row] * (alpha / max(alphas[row], ALPHA_MIN)) : sum[row];
+            vec3 colour = SHOW == SHOW_MEAN ? sum[row] * (alpha / max(alphas[row], 1e-30)) : sum[row];
             write_pixel((pixel.y + row) * size.x + pixel.x, vec4(colour, alpha));
         }
     }

@@ -35,13 +35,18 @@ vec3 quadric_gradient(uint surface, vec3 position) {
     return surfaces.at[surface].high.xyz + 2.0 * bent(quadric_matrix(surface), quadric_point(surface, position));
 }
 
-UnitSurface quadric_unit_surface(uint surface, mat3 axes, vec3 position) {
+// What it is to first order about a Gaussian's centre.
+vec4 quadric_half_space(uint surface, mat3 axes, vec3 position) {
+    return vec4(quadric_gradient(surface, position) * axes, quadric_distance(surface, position));
+}
+
+UnitSurface quadric_unit_surface(uint surface, mat3 axes, vec4 half_space) {
     UnitSurface matrix = quadric_matrix(surface);
     vec3 x = bent(matrix, axes[0]);
     vec3 y = bent(matrix, axes[1]);
     vec3 z = bent(matrix, axes[2]);
     UnitSurface s;
-    s.half_space = vec4(quadric_gradient(surface, position) * axes, quadric_distance(surface, position));
+    s.half_space = half_space;
     s.diagonal = vec3(dot(axes[0], x), dot(axes[1], y), dot(axes[2], z));
     s.across = vec3(dot(axes[0], y), dot(axes[0], z), dot(axes[1], z));
     return s;
@@ -61,18 +66,27 @@ bool inverse_shifted(UnitSurface s, float sign, float shift, out UnitSurface inv
 
 // The side of the ball that reaches `deviations` standard deviations.
 uint quadric_gaussian_side(uint surface, mat3 axes, vec3 position, float deviations) {
-    UnitSurface s = quadric_unit_surface(surface, axes, position);
-    float slope = length(s.half_space.xyz);
+    vec4 half_space = quadric_half_space(surface, axes, position);
+    float sign = half_space.w < 0.0 ? -1.0 : 1.0;
+    float offset = abs(half_space.w);
+    float slope = length(half_space.xyz);
+    uint side = sign > 0.0 ? SIDE_VISIBLE : SIDE_INVISIBLE;
+    // A first bound needs no bend of its own: most Gaussians are far from the surface.
+    float largest = max(max(dot(axes[0], axes[0]), dot(axes[1], axes[1])), dot(axes[2], axes[2]));
+    if (offset >= deviations * (slope + 1.0001 * deviations * largest * bend_norm(quadric_matrix(surface)))) {
+        return side;
+    }
+    UnitSurface s = quadric_unit_surface(surface, axes, half_space);
     float norm = bend_norm(s);
     float support = deviations * (slope + deviations * norm);
-    if (s.half_space.w >= support) {
-        return SIDE_VISIBLE;
+    if (offset >= support) {
+        return side;
     }
-    if (s.half_space.w <= -support) {
-        return SIDE_INVISIBLE;
+    // Of most Gaussians that are cut, the point of the ball that the slope leads to is on the other side.
+    vec3 downhill = (deviations / slope) * s.half_space.xyz;
+    if (offset - deviations * slope + sign * bend_along(s, downhill) <= 0.0) {
+        return SIDE_CUTOFF;
     }
-    float sign = s.half_space.w < 0.0 ? -1.0 : 1.0;
-    float offset = abs(s.half_space.w);
     float margin = 1e-5 * support;
     // Here the matrix is positive definite, and the nearest point is inside the ball.
     float shift = slope / (deviations + deviations) + norm;
@@ -83,7 +97,7 @@ uint quadric_gaussian_side(uint surface, mat3 axes, vec3 position, float deviati
         float reach = length(nearest);
         float taken = -0.5 * BALL_ERROR * sign * dot(s.half_space.xyz, nearest);
         if (offset - shift * deviations * deviations - taken > margin) {
-            return sign > 0.0 ? SIDE_VISIBLE : SIDE_INVISIBLE;
+            return side;
         }
         float next = shift + reach * reach * (reach - deviations) / (deviations * max(bend_along(inverse, nearest), 1e-30));
         next = max(next, BALL_SHIFT * norm);

@@ -53,7 +53,7 @@ uint surface_box_side(uint surface, vec3 middle, vec3 half_size, float support) 
 // A surface in the unit space of a Gaussian that it cuts.
 UnitSurface unit_surface(uint surface, mat3 axes, vec3 position) {
     if (surfaces.at[surface].kind == SURFACE_QUADRIC) {
-        return quadric_unit_surface(surface, axes, position);
+        return quadric_unit_surface(surface, axes, quadric_half_space(surface, axes, position));
     }
     return UnitSurface(plane_half_space(surface, axes, position), vec3(0.0), vec3(0.0));
 }
@@ -63,7 +63,7 @@ UnitSurface unit_surface(uint surface, mat3 axes, vec3 position) {
 vec4 surface_half_space(uint surface, mat3 axes, vec3 position) {
     switch (surfaces.at[surface].kind) {
     case SURFACE_QUADRIC:
-        return COMBINED ? quadric_unit_surface(surface, axes, position).half_space : vec4(0.0);
+        return COMBINED ? quadric_half_space(surface, axes, position) : vec4(0.0);
     default: // SURFACE_PLANE
         return plane_half_space(surface, axes, position);
     }

@@ -200,6 +200,11 @@ pub(super) fn gaussian_side<T: Real>(surface: &UnitSurface<T>, deviations: T) ->
     }
     let sign = T::one().copysign(half_space.offset);
     let (offset, bend) = (half_space.offset.abs(), bend.scaled(sign));
+    // Of most Gaussians that are cut, the point of the ball that the slope leads to is on the other side.
+    let downhill = half_space.normal * (deviations / slope);
+    if offset - deviations * slope + bend.form(downhill) <= T::zero() {
+        return Side::Cutoff;
+    }
     let margin = T::of(1e-5) * support;
     // Here the matrix is positive definite, and the nearest point is inside the ball.
     let mut shift = slope / (deviations + deviations) + norm;

@@ -18,8 +18,15 @@ struct BlockRun {
 // Blocks that an invocation looks at before it waits for their counts.
 const uint BLOCKS_AT_ONCE = 8u;
 
+// The invocations stand in rows, as in workgroup_sum.glsl.
+const uint RUN_ROW = 16u;
+const uint RUN_ROWS = BLOCK_SIZE / RUN_ROW;
+
 shared uvec4 run_totals[BLOCK_SIZE];
 shared uvec4 earlier_totals[BLOCK_SIZE];
+// Of each row, its runs and everything earlier that its invocations have found.
+shared uvec4 runs_of_rows[RUN_ROWS];
+shared uvec4 earlier_of_rows[RUN_ROWS];
 
 BlockRun block_run() {
     uint local = gl_LocalInvocationIndex;
@@ -42,16 +49,24 @@ BlockRun block_run() {
     run_totals[local] = total;
     earlier_totals[local] = earlier;
     barrier();
-    // The runs up to each invocation's, and, in the first place, everything earlier.
-    for (uint distance = 1u; distance < BLOCK_SIZE; distance *= 2u) {
-        uvec4 before = local >= distance ? run_totals[local - distance] : uvec4(0u);
-        uvec4 others = local + distance < BLOCK_SIZE ? earlier_totals[local + distance] : uvec4(0u);
-        barrier();
-        run_totals[local] += before;
-        earlier_totals[local] += others;
-        barrier();
+    uint row = local / RUN_ROW;
+    uint place = local % RUN_ROW;
+    uvec4 before = uvec4(0u);
+    uvec4 others = uvec4(0u);
+    for (uint i = 0u; i < RUN_ROW; i++) {
+        uvec4 run = run_totals[row * RUN_ROW + i];
+        before += i < place ? run : uvec4(0u);
+        others += earlier_totals[row * RUN_ROW + i];
     }
-    uvec4 before = earlier_totals[0] + run_totals[local] - total;
+    if (place == RUN_ROW - 1u) {
+        runs_of_rows[row] = before + total;
+        earlier_of_rows[row] = others;
+    }
+    barrier();
+    for (uint i = 0u; i < RUN_ROWS; i++) {
+        uvec4 runs_there = runs_of_rows[i];
+        before += earlier_of_rows[i] + (i < row ? runs_there : uvec4(0u));
+    }
     return BlockRun(bounds, before, gl_GlobalInvocationID.x == runs - 1u);
 }
 

@@ -16,20 +16,25 @@ BUFFER(writeonly, 4, uint, tile_list)
 #include "room.glsl"
 
 shared uvec3 row_totals[RADIX_GROUP_SIZE];
+shared uvec3 totals_of_rows[SUM_ROWS];
 
 // The sums over all invocations.
 uvec3 totals_of(uvec3 values) {
     uint local = gl_LocalInvocationIndex;
     row_totals[local] = values;
     barrier();
-    for (uint rest = RADIX_GROUP_SIZE / 2u; rest > 0u; rest /= 2u) {
-        if (local < rest) {
-            row_totals[local] += row_totals[local + rest];
+    if (local < SUM_ROWS) {
+        uvec3 sum = uvec3(0u);
+        for (uint i = 0u; i < SUM_ROW; i++) {
+            sum += row_totals[i * SUM_ROWS + local];
         }
-        barrier();
+        totals_of_rows[local] = sum;
     }
-    uvec3 totals = row_totals[0];
     barrier();
+    uvec3 totals = uvec3(0u);
+    for (uint i = 0u; i < SUM_ROWS; i++) {
+        totals += totals_of_rows[i];
+    }
     return totals;
 }
 

@@ -3,20 +3,35 @@
 #define RARA_WORKGROUP_MAX
 #include "limits.glsl"
 
+// The invocations stand in rows, as in workgroup_sum.glsl.
+const uint MAX_ROW = 16u;
+const uint MAX_ROWS = RADIX_GROUP_SIZE / MAX_ROW;
+
 shared uint maxima[RADIX_GROUP_SIZE];
+shared uint maxima_of_rows[MAX_ROWS];
 
 // The greatest value of all invocations before this one, 0 for the first.
 uint exclusive_max(uint value) {
     uint local = gl_LocalInvocationIndex;
+    uint place = local % MAX_ROW;
+    uint row = local / MAX_ROW;
     maxima[local] = value;
     barrier();
-    for (uint distance = 1u; distance < RADIX_GROUP_SIZE; distance *= 2u) {
-        uint before = local >= distance ? maxima[local - distance] : 0u;
-        barrier();
-        maxima[local] = max(maxima[local], before);
-        barrier();
+    uint most = 0u;
+    for (uint i = 0u; i < MAX_ROW; i++) {
+        uint other = maxima[row * MAX_ROW + i];
+        most = i < place ? max(most, other) : most;
     }
-    return local > 0u ? maxima[local - 1u] : 0u;
+    if (place == MAX_ROW - 1u) {
+        maxima_of_rows[row] = max(most, value);
+    }
+    barrier();
+    for (uint i = 0u; i < MAX_ROWS; i++) {
+        uint other = maxima_of_rows[i];
+        most = i < row ? max(most, other) : most;
+    }
+    // No barrier follows: the next call writes to maxima_of_rows only after a barrier of its own.
+    return most;
 }
 
 #endif

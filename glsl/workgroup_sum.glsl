@@ -4,22 +4,37 @@
 #include "limits.glsl"
 #include "capped_sum.glsl"
 
+// The invocations stand in rows. Each adds up its own row as far as itself, and then the rows before: 32 loads that wait for
+// nothing but two barriers, where halving distances would need twice as many barriers as the workgroup's size has bits.
+const uint SUM_ROW = 16u;
+const uint SUM_ROWS = RADIX_GROUP_SIZE / SUM_ROW;
+
 shared uint sums[RADIX_GROUP_SIZE];
+shared uint sums_of_rows[SUM_ROWS];
 
 // The sum of the values of all invocations before this one, and of all of them.
 uint exclusive_sum(uint value, out uint total) {
     uint local = gl_LocalInvocationIndex;
+    uint place = local % SUM_ROW;
+    uint row = local / SUM_ROW;
     sums[local] = value;
     barrier();
-    for (uint distance = 1u; distance < RADIX_GROUP_SIZE; distance *= 2u) {
-        uint before = local >= distance ? sums[local - distance] : 0u;
-        barrier();
-        sums[local] += before;
-        barrier();
+    uint sum = 0u;
+    for (uint i = 0u; i < SUM_ROW; i++) {
+        uint other = sums[row * SUM_ROW + i];
+        sum += i < place ? other : 0u;
     }
-    total = sums[RADIX_GROUP_SIZE - 1u];
-    uint sum = sums[local] - value;
+    if (place == SUM_ROW - 1u) {
+        sums_of_rows[row] = sum + value;
+    }
     barrier();
+    total = 0u;
+    for (uint i = 0u; i < SUM_ROWS; i++) {
+        uint other = sums_of_rows[i];
+        sum += i < row ? other : 0u;
+        total += other;
+    }
+    // No barrier follows: the next sum writes to sums_of_rows only after a barrier of its own.
     return sum;
 }
 
@@ -28,14 +43,18 @@ uint capped_total(uint value) {
     uint local = gl_LocalInvocationIndex;
     sums[local] = value;
     barrier();
-    for (uint rest = RADIX_GROUP_SIZE / 2u; rest > 0u; rest /= 2u) {
-        if (local < rest) {
-            sums[local] = capped_sum(sums[local], sums[local + rest]);
+    if (local < SUM_ROWS) {
+        uint sum = 0u;
+        for (uint i = 0u; i < SUM_ROW; i++) {
+            sum = capped_sum(sum, sums[i * SUM_ROWS + local]);
         }
-        barrier();
+        sums_of_rows[local] = sum;
     }
-    uint total = sums[0];
     barrier();
+    uint total = 0u;
+    for (uint i = 0u; i < SUM_ROWS; i++) {
+        total = capped_sum(total, sums_of_rows[i]);
+    }
     return total;
 }
 

@@ -486,7 +486,7 @@ typedef struct RaraFrameStats {
     // Why splats become pixels in that way.
     char raster_reason[RARA_REASON_SIZE];
     // True when tiles had no room for their lists, so that the frame was drawn as quads, which is slower and gives the
-    // same picture. The next rara_renderer_configure makes the room.
+    // same picture; of RARA_SHOW_COUNT and RARA_SHOW_MEAN nothing was drawn. The next rara_renderer_configure makes the room.
     VkBool32 fell_back;
     // Number of passes; 0 without RaraRendererDesc's timing.
     uint32_t pass_count;

@@ -50,7 +50,7 @@ pub struct RaraFrameStats {
     /// Why splats become pixels in that way.
     pub raster_reason: [c_char; RARA_REASON_SIZE],
     /// True when tiles had no room for their lists, so that the frame was drawn as quads, which is slower and gives the
-    /// same picture. The next rara_renderer_configure makes the room.
+    /// same picture; of RARA_SHOW_COUNT and RARA_SHOW_MEAN nothing was drawn. The next rara_renderer_configure makes the room.
     pub fell_back: vk::Bool32,
     /// Number of passes; 0 without RaraRendererDesc's timing.
     pub pass_count: u32,

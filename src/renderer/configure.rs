@@ -77,7 +77,8 @@ impl Renderer {
         self.memory.free_finished(self.frames.finished(submission));
         let tiles = tiles(request.camera);
         // Where no quads can take the tiles' place, nothing does.
-        let redrawn = self.make_room(request, tiles) || request.settings.show.needs_tiles();
+        let needs_tiles = request.settings.show.needs_tiles();
+        let redrawn = self.make_room(request, tiles) || needs_tiles;
         let support = self.device.support();
         let shape = self.device.shape();
         let hidden = self.desc.depth.is_some_and(|depth| !depth.readable);
@@ -129,7 +130,7 @@ impl Renderer {
             }
             let memory = &mut self.memory;
             match memory.replace(&self.device, &plan, &self.frames, submission) {
-                Err(Error::Memory(_)) if raster == Raster::Tiles => {
+                Err(Error::Memory(_)) if raster == Raster::Tiles && !needs_tiles => {
                     return self.configure_without_tiles(request);
                 }
                 replaced => replaced?,
@@ -153,6 +154,7 @@ impl Renderer {
             unit: self.placement.scale(),
             submission,
             redrawn,
+            needs_tiles,
             prepared: false,
         });
         Ok(())

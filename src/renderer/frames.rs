@@ -25,6 +25,8 @@ pub(super) struct Configured {
     pub(super) submission: Submission,
     /// True when nothing is drawn of it without room for its pairs of tile and splat.
     pub(super) redrawn: bool,
+    /// True when only tiles show what is asked for, so that no quads can take their place.
+    pub(super) needs_tiles: bool,
     /// True when it has been prepared.
     pub(super) prepared: bool,
 }

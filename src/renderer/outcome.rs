@@ -18,6 +18,8 @@ pub(crate) enum Outcome {
     Drawn,
     /// The tiles' lists had no room. Configured once more, the frame has the room, or needs none.
     NeedsRoom,
+    /// The tiles' lists had no room, there is none to be made, and only tiles show what is asked for: nothing was drawn.
+    NoRoom,
     /// Its picture is that of the frame before, and nothing was computed for it.
     Unchanged,
 }

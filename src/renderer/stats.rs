@@ -25,7 +25,8 @@ impl Renderer {
     }
 
     /// True when the frame that [`counts`](Self::counts) is about had more pairs of tile and splat than there was room
-    /// for, so that it was drawn as quads: the same picture, but slower. The next [`configure`](Self::configure) makes
+    /// for, so that it was drawn as quads: the same picture, but slower. Of [`Show`](crate::Show)s that only tiles can make
+    /// nothing was drawn. The next [`configure`](Self::configure) makes
     /// the room, up to 1.5 GiB, or 2.2 with the kernels for GPUs.
     pub fn fell_back(&self) -> bool {
         self.oldest().is_some_and(RecordedFrame::fell_back)
@@ -73,11 +74,17 @@ impl Renderer {
         if configured.is_none_or(Configured::changes_nothing) {
             return Outcome::Unchanged;
         }
-        let redrawn = configured.is_some_and(|configured| configured.redrawn);
-        if frame.fell_back() && (redrawn || self.memory.pairs.can_grow_to(frame.pairs())) {
-            return Outcome::NeedsRoom;
+        if !frame.fell_back() {
+            return Outcome::Drawn;
         }
-        Outcome::Drawn
+        let needs_tiles = configured.is_some_and(|configured| configured.needs_tiles);
+        let redrawn = configured.is_some_and(|configured| configured.redrawn);
+        match self.memory.pairs.can_grow_to(frame.pairs()) {
+            true => Outcome::NeedsRoom,
+            false if needs_tiles => Outcome::NoRoom,
+            false if redrawn => Outcome::NeedsRoom,
+            false => Outcome::Drawn,
+        }
     }
 
     /// The statistics of a configured frame that [changes nothing](Self::changes_nothing) and is not even recorded.

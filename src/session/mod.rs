@@ -143,8 +143,10 @@ impl Session {
             submit(&self.device, renderer, &request, target, trace)?;
             let frame = renderer.newest().expect("it was prepared just now");
             // A first frame finds out how much room the tiles need.
-            if renderer.outcome(frame) != Outcome::NeedsRoom {
-                break (ms_since(begin), frame.stats());
+            match renderer.outcome(frame) {
+                Outcome::NeedsRoom => {}
+                Outcome::NoRoom => return Err(no_room(settings)),
+                Outcome::Drawn | Outcome::Unchanged => break (ms_since(begin), frame.stats()),
             }
             configure(renderer, target)?;
         };
@@ -223,6 +225,15 @@ fn loaded<'a>(scene: &'a Option<SceneBuffers>, wanted: &str) -> Result<&'a Scene
     scene
         .as_ref()
         .ok_or_else(|| Error::Invalid(format!("there is no scene to {wanted}; load one first")))
+}
+
+/// The error of a picture that only tiles can make and that there is no room for.
+fn no_room(settings: &Settings) -> Error {
+    Error::Memory(format!(
+        "the tiles' lists are larger than there is room for, and Show::{:?} is made by tiles alone; draw a smaller picture, or \
+         fewer splats",
+        settings.show
+    ))
 }
 
 fn ms_since(begin: Instant) -> f64 {

@@ -57,6 +57,24 @@ fn what_tiles_never_have_room_for_is_drawn_as_quads() {
     }
 }
 
+/// No quads show what only tiles can make: without room there is an error, and the next frame is as ever.
+#[test]
+fn counts_that_tiles_never_have_room_for_are_an_error() {
+    let mut headless = headless();
+    let scene = generate(Kind::General, 3_000, 1);
+    headless.load(&scene).expect("uploads");
+    headless.session.renderer.limit_pairs(1 << 11);
+    let camera = Camera::frame(&Bounds::of(&scene), -DVec3::Y, 50.0, (200, 150)).expect("a view");
+    let mut draw =
+        |show| headless.render(&camera, &Clip::default(), &Settings::default().show(show));
+    for _ in 0..2 {
+        let error = draw(Show::Count).expect_err("there is no room");
+        assert!(matches!(error, Error::Memory(_)), "{error}");
+        assert!(error.to_string().contains("smaller picture"), "{error}");
+    }
+    assert_eq!(draw(Show::Colour).expect("renders").raster.path, "quad");
+}
+
 /// What stands in for tiles without room, of splats as large as single precision has, and through a lens that puts centres far
 /// outside the picture.
 #[test]

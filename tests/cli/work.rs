@@ -294,7 +294,7 @@ fn the_demo_leaves_five_pictures() {
 fn a_bench_measures_every_choice_and_writes_its_tables() {
     let folder = folder("bench");
     scene(&folder);
-    let words = "bench @/scene.ply --size 48x40 --frames 1 --steps 1 -o @/out --json";
+    let words = "bench @/scene.ply --size 48x40 --frames 1 --steps 1 --shapes -o @/out --json";
     let report = document(line(&folder, words));
     let rows = report["rows"].as_array().expect("rows");
     assert!(rows.len() > 20 && report["refused"].as_array().is_some_and(Vec::is_empty));
@@ -307,6 +307,14 @@ fn a_bench_measures_every_choice_and_writes_its_tables() {
     }
     // Four ways of cutting, at 256 and at the size asked for.
     assert_eq!(report["paper"].as_array().map(Vec::len), Some(8));
+    let shapes = report["shapes"].as_array().expect("shapes");
+    for shape in shapes {
+        let [l1, by_centres, cut] = ["l1", "hard_l1", "cutoff"].map(|key| shape[key].as_f64());
+        // A shape around everything cuts nothing, and is no worse by centres.
+        assert!(cut == Some(0.0) || l1 < by_centres, "{shape}");
+        assert!(shape["twin_psnr"].as_f64() > Some(60.0), "{shape}");
+    }
+    assert!(shapes.len() > 8 && shapes.last().is_some_and(|shape| shape["cutoff"] == 0));
     for name in ["bench.md", "bench.csv", "bench.json", "pareto.svg"] {
         let text = fs::read_to_string(folder.join("out").join(name)).expect(name);
         assert!(text.contains("preset fast"), "{name}");

@@ -34,13 +34,13 @@ pub(super) struct Pass {
     pub(super) ms_min: f64,
 }
 
-/// Times each of the settings. A round is one frame of each; there are `rounds` of them after a first one that is not
-/// counted.
+/// Times each clip with its settings. A round is one frame of each; there are `rounds` of them after a first one that is
+/// not counted.
 pub(super) fn time(
     session: &mut Session,
     scene: &Scene<'_>,
-    (camera, clip): (&Camera, &Clip),
-    all: &[Settings],
+    camera: &Camera,
+    all: &[(&Clip, Settings)],
     rounds: u32,
 ) -> Result<Vec<Times>> {
     let mut samples = vec![Samples::default(); all.len()];
@@ -52,7 +52,7 @@ pub(super) fn time(
             order.reverse();
         }
         for index in order {
-            let (settings, samples) = (&all[index], &mut samples[index]);
+            let ((clip, settings), samples) = (&all[index], &mut samples[index]);
             let sh = settings.precision.sh;
             if loaded != Some(sh) {
                 session.reload(scene, sh)?;

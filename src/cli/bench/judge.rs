@@ -35,7 +35,10 @@ pub(super) struct Measures {
 }
 
 /// JSON has no infinity, so pictures that are equal are 999 dB apart.
-fn finite<S: serde::Serializer>(psnr: &f64, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+pub(super) fn finite<S: serde::Serializer>(
+    psnr: &f64,
+    serializer: S,
+) -> std::result::Result<S::Ok, S::Error> {
     serializer.serialize_f64(psnr.min(999.0))
 }
 

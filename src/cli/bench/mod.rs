@@ -4,6 +4,7 @@ mod chart;
 mod clock;
 mod judge;
 mod paper;
+mod shapes;
 mod tables;
 mod variants;
 
@@ -32,6 +33,7 @@ use variants::variants;
 Examples:
   rara bench scene.ply -o bench
   rara bench scene.ply --clip plane:0,0,1,-2 --size 512x512 --frames 21 --json
+  rara bench scene.ply --shapes --only exact
 
 Without --clip a plane cuts the scene through its middle. Errors are against mode exact with the depth law, each splat
 in the form that is exact in perspective, in double precision. What is not within its own bound of its own picture in
@@ -49,6 +51,9 @@ pub(super) struct Bench {
     /// Only the choices of this name (repeatable), as the table has it
     #[arg(long, value_name = "NAME", value_parser = variants::names())]
     only: Vec<String>,
+    /// Also every shape, and combinations of them, beside a plane through the same point
+    #[arg(long)]
+    shapes: bool,
     /// Folder for the tables and the plot; made unless it is there
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -80,6 +85,7 @@ struct Report {
     band_share: f64,
     rows: Vec<Row>,
     paper: Vec<paper::Line>,
+    shapes: Vec<shapes::Line>,
     refused: Vec<String>,
 }
 
@@ -146,14 +152,15 @@ impl Bench {
             self.steps,
             &named,
         )?;
-        let settings: Vec<_> = right.iter().map(|variant| variant.settings).collect();
-        let times = clock::time(
-            &mut session,
-            &scene,
-            (&camera, &clip),
-            &settings,
-            self.frames,
-        )?;
+        let settings: Vec<_> = right.iter().map(|v| (&clip, v.settings)).collect();
+        let times = clock::time(&mut session, &scene, &camera, &settings, self.frames)?;
+        let shapes = match self.shapes {
+            true => {
+                let plane = middle(&scene, &camera)?;
+                shapes::lines(&mut session, &scene, &camera, plane, &look, self.frames)?
+            }
+            false => Vec::new(),
+        };
         drop(progress);
 
         let mut rows: Vec<Row> = right
@@ -191,6 +198,7 @@ impl Bench {
             band_share: judge.band_share(),
             rows,
             paper,
+            shapes,
             refused,
         };
         if let Some(folder) = &self.output {

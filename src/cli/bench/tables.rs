@@ -63,6 +63,7 @@ pub(super) fn markdown(report: &Report) -> String {
     }
     stages(&mut text, report);
     paper(&mut text, report);
+    shapes(&mut text, report);
     let best = report.rows.iter().filter(|row| row.undominated);
     let mut best: Vec<&Row> = best.collect();
     best.sort_by(|a, b| a.times.cost.total_cmp(&b.times.cost));
@@ -135,6 +136,33 @@ fn paper(text: &mut String, report: &Report) {
             small(m.l1),
             line.l1_over_exact,
             other_errors(m),
+        );
+    }
+}
+
+/// Shapes, where they were measured. Ratios are of costs.
+fn shapes(text: &mut String, report: &Report) {
+    let Some(plane) = report.shapes.first() else {
+        return;
+    };
+    *text += "\n## Shapes through the same point of the scene\n\n\
+        Costs and errors of mode exact; the last columns are mode hard's.\n\n\
+        | region | cut | cost | / plane | / hard | L1 | own PSNR | hard: cost | L1 | as `--clip-expr` |\n\
+        |---|---:|---:|---:|---:|---:|---:|---:|---:|---|\n";
+    for line in &report.shapes {
+        let _ = writeln!(
+            text,
+            "| {} | {} | {:.1} | {:.2} | {:.2} | {} | {:.1} | {:.1} | {} | `{}` |",
+            line.name,
+            line.cutoff,
+            line.exact.cost,
+            line.exact.cost / plane.exact.cost,
+            line.exact.cost / line.hard.cost,
+            small(line.l1),
+            line.twin_psnr,
+            line.hard.cost,
+            small(line.hard_l1),
+            line.region,
         );
     }
 }

@@ -1,0 +1,156 @@
+//! What each shape costs and how far its cut is from the truth, beside a plane through the same point.
+
+use glam::{DQuat, DVec3};
+use rara::clip::{Expression, Solid};
+use rara::measure;
+use rara::scene::Bounds;
+use rara::{Camera, Mode, Plane, Result, Scene, Settings, Shape, reference};
+use serde::Serialize;
+
+use super::Session;
+use super::clock::{self, Times};
+use super::judge::{finite, truth_settings};
+
+/// One region, drawn exactly and by centres.
+#[derive(Debug, Serialize)]
+pub(super) struct Line {
+    pub(super) name: &'static str,
+    /// The region as `--clip-expr` takes it.
+    pub(super) region: String,
+    /// Splats that it cuts.
+    pub(super) cutoff: u32,
+    pub(super) exact: Times,
+    pub(super) hard: Times,
+    /// Errors against the exact cut in double precision, of 255.
+    pub(super) l1: f64,
+    pub(super) hard_l1: f64,
+    /// Peak signal to noise ratio against the same mode in double precision, decibels.
+    #[serde(serialize_with = "finite")]
+    pub(super) twin_psnr: f64,
+}
+
+/// Draws every region through the middle of the scene, in turn with the others.
+pub(super) fn lines(
+    session: &mut Session,
+    scene: &Scene<'_>,
+    camera: &Camera,
+    plane: Plane,
+    look: &Settings,
+    frames: u32,
+) -> Result<Vec<Line>> {
+    session.reload(scene, look.precision.sh)?;
+    let regions = regions(&Bounds::of(scene.clone()), plane)?;
+    let [exact, hard] = [Mode::Exact, Mode::Hard].map(|mode| look.mode(mode));
+    let mut lines = Vec::new();
+    for (name, region) in &regions {
+        let clip = region.clip();
+        let truth = |settings: &Settings| reference::render::<f64>(scene, camera, &clip, settings);
+        let cut = truth(&truth_settings(look)).picture;
+        let (picture, stats) = session.picture(camera, &clip, &exact)?;
+        let by_centres = session.picture(camera, &clip, &hard)?.0;
+        lines.push(Line {
+            name,
+            region: region.to_string(),
+            cutoff: stats.counts.cutoff,
+            exact: Times::default(),
+            hard: Times::default(),
+            l1: measure::compare(&picture, &cut)?.l1,
+            hard_l1: measure::compare(&by_centres, &cut)?.l1,
+            twin_psnr: measure::psnr(&picture, &truth(&exact).picture)?,
+        });
+    }
+    let clips: Vec<_> = regions.iter().map(|(_, region)| region.clip()).collect();
+    let both = clips.iter().flat_map(|clip| [(clip, exact), (clip, hard)]);
+    let both: Vec<_> = both.collect();
+    let mut times = clock::time(session, scene, camera, &both, frames)?.into_iter();
+    for line in &mut lines {
+        line.exact = times.next().expect("two times a line");
+        line.hard = times.next().expect("two times a line");
+    }
+    Ok(lines)
+}
+
+/// The plane, and shapes about as large as the scene whose surfaces touch it in the same point and keep the same side there;
+/// then combinations of them, and a sphere around everything.
+fn regions(bounds: &Bounds, plane: Plane) -> Result<Vec<(&'static str, Expression)>> {
+    let normal = plane.normal();
+    let middle = bounds.centre() - normal * plane.distance(bounds.centre());
+    let radius = bounds.radius();
+    let (across, aside) = normal.any_orthonormal_pair();
+    let turned = DQuat::from_rotation_arc(DVec3::X, normal);
+    let solid = |solid: Solid| Shape::new(solid).map(Expression::Shape);
+    let sphere = |at: DVec3, radius: f64| Shape::sphere(at, radius).map(Expression::Shape);
+    let ends = |inside: f64, half: f64| {
+        let axis = middle + normal * inside;
+        (axis - across * half, axis + across * half)
+    };
+    let (from, to) = ends(0.6 * radius, 1.5 * radius);
+    let cuboid = || {
+        solid(Solid::Cuboid {
+            centre: middle + normal * (0.6 * radius),
+            half: DVec3::new(0.6, 1.0, 1.0) * radius,
+            rotation: turned,
+        })
+    };
+    let whole = sphere(middle + normal * radius, radius);
+    Ok(vec![
+        ("plane", solid(Solid::Plane(plane))?),
+        (
+            "slab",
+            solid(Solid::Slab {
+                plane,
+                thickness: 0.8 * radius,
+            })?,
+        ),
+        ("box", cuboid()?),
+        ("sphere", whole?),
+        (
+            "ellipsoid",
+            solid(Solid::Ellipsoid {
+                centre: middle + normal * (0.6 * radius),
+                radii: DVec3::new(0.6, 1.0, 0.8) * radius,
+                rotation: turned,
+            })?,
+        ),
+        (
+            "cylinder",
+            solid(Solid::Cylinder {
+                from,
+                to,
+                radius: 0.6 * radius,
+            })?,
+        ),
+        (
+            "capsule",
+            solid(Solid::Capsule {
+                from,
+                to,
+                radius: 0.6 * radius,
+            })?,
+        ),
+        (
+            "cone",
+            solid(Solid::Cone {
+                apex: from,
+                base: to,
+                radius: 1.2 * radius,
+            })?,
+        ),
+        (
+            "box and not sphere",
+            Expression::All(vec![
+                cuboid()?,
+                Expression::Not(Box::new(sphere(middle, 0.4 * radius)?)),
+            ]),
+        ),
+        (
+            "sphere or sphere or plane",
+            Expression::Any(vec![
+                sphere(middle + aside * (0.4 * radius), 0.3 * radius)?,
+                sphere(middle - aside * (0.4 * radius), 0.3 * radius)?,
+                solid(Solid::Plane(plane))?,
+            ]),
+        ),
+        ("sphere around everything", sphere(middle, 100.0 * radius)?),
+    ])
+}

@@ -33,6 +33,14 @@ impl Surface {
         }
     }
 
+    /// How [`distance`](Self::distance) grows at a point: the surface's normal, near it of length 1.
+    pub fn gradient(&self, point: DVec3) -> DVec3 {
+        match self {
+            Self::Plane(plane) => plane.normal(),
+            Self::Quadric(quadric) => quadric.gradient(point),
+        }
+    }
+
     /// The plane, if the surface is one; for callers that handle nothing else.
     pub fn as_plane(&self) -> Option<Plane> {
         match *self {

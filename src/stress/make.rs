@@ -1,4 +1,4 @@
-//! How cases are made: splats strewn over a plane so that it cuts all of them, apart from each other or in a crowd.
+//! How cases are made: splats strewn over a surface so that it cuts all of them, apart from each other or in a crowd.
 
 use glam::{DMat3, DQuat, DVec3, Quat};
 
@@ -131,6 +131,26 @@ pub(super) fn on_plane(
 ) -> Gaussians {
     let normal = plane.normal();
     let (across, along) = normal.any_orthonormal_pair();
+    let place = |random: &mut Random| {
+        let (u, v) = (random.range(-1.0, 1.0), random.range(-1.0, 1.0));
+        let point = stage.centre + (across * u + along * v) * stage.radius();
+        (point, normal)
+    };
+    on_surface(random, camera, &place, shape, count, apart)
+}
+
+/// A random point of a surface, and its unit normal there.
+pub(super) type Place<'a> = &'a dyn Fn(&mut Random) -> (DVec3, DVec3);
+
+/// Up to `count` splats that a surface cuts.
+pub(super) fn on_surface(
+    random: &mut Random,
+    camera: &Camera,
+    place: Place<'_>,
+    shape: Deviations<'_>,
+    count: usize,
+    apart: bool,
+) -> Gaussians {
     let view = View::<f64>::new(camera);
     let mut scene = Gaussians::default();
     let mut boxes: Vec<[f64; 4]> = Vec::new();
@@ -138,21 +158,20 @@ pub(super) fn on_plane(
         if scene.len() == count {
             break;
         }
-        let (u, v) = (random.range(-1.0, 1.0), random.range(-1.0, 1.0));
-        let on_plane = stage.centre + (across * u + along * v) * stage.radius();
-        let depth = (camera.rotation * (on_plane - camera.eye)).z.max(1e-3);
+        let (point, normal) = place(random);
+        let depth = (camera.rotation * (point - camera.eye)).z.max(1e-3);
         let pixel = match camera.projection {
             Projection::Perspective => depth / camera.fx,
             Projection::Orthographic => 1.0 / camera.fx,
         };
         let rotation = orientation(random);
         let scales = shape(random, pixel);
-        // The standard deviation along the normal: the plane passes within two of them from the centre.
+        // The standard deviation along the normal: the surface passes within two of them from the centre.
         let deviation = (rotation.as_dquat().inverse() * normal * scales).length();
-        // A point is not cut, but kept or dropped; it then stands within two pixels of the plane.
+        // A point is not cut, but kept or dropped; it then stands within two pixels of the surface.
         let near = if deviation > 0.0 { deviation } else { pixel };
-        let position = (on_plane + normal * near * random.range(-2.0, 2.0)).as_vec3();
-        if plane.distance(position.as_dvec3()).abs() > 2.5 * near {
+        let position = (point + normal * near * random.range(-2.0, 2.0)).as_vec3();
+        if normal.dot(position.as_dvec3() - point).abs() > 2.5 * near {
             continue; // the nearest single-precision position is elsewhere
         }
         let opacity = random.range(0.3, 1.0) as f32;

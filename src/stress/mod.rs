@@ -12,6 +12,7 @@ mod make;
 mod measure;
 mod places;
 mod planes;
+mod regions;
 mod shapes;
 
 use crate::{Camera, Clip, Gaussians};
@@ -21,6 +22,7 @@ pub use frames::regimes as frames;
 pub use measure::{FormRow, Row, run};
 pub use places::regimes as places;
 pub use planes::regimes as planes;
+pub use regions::regimes as regions;
 pub use shapes::regimes as shapes;
 
 /// Largest error of alpha times weight in a pixel that a regime may show, unless it states its own limit.
@@ -101,5 +103,5 @@ impl Regime {
 
 /// All regimes, in the table's order.
 pub fn regimes() -> Vec<Regime> {
-    [shapes(), places(), planes(), frames(), files()].concat()
+    [shapes(), places(), planes(), regions(), frames(), files()].concat()
 }

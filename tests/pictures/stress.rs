@@ -39,6 +39,11 @@ fn planes() {
 }
 
 #[test]
+fn regions() {
+    check(stress::regions());
+}
+
+#[test]
 fn frames_and_files() {
     check([stress::frames(), stress::files()].concat());
 }

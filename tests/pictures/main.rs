@@ -20,6 +20,7 @@ mod orthographic;
 mod paper;
 mod pipeline_cache;
 mod precision;
+mod quadrature;
 mod reuse;
 mod shapes;
 mod shortlists;

@@ -1,6 +1,8 @@
 //! The host's own device, lent to rara.
 
-use std::ffi::CStr;
+use std::ffi::c_void;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use rara::ash::{self, vk};
 use rara::gpu::{AdoptDesc, Device, DeviceShape};
@@ -107,7 +109,8 @@ pub unsafe extern "C" fn rara_adopt_desc_default(
 }
 
 /// Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload and
-/// rara_scene_buffers_upload_layers submit to the queue.
+/// rara_scene_buffers_upload_layers submit to the queue. RARA_ERROR_INVALID names what the description claims and the device
+/// was created without.
 ///
 /// # Safety
 /// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice.
@@ -210,7 +213,7 @@ pub(crate) unsafe fn load_instance(
     Ok(unsafe { ash::Instance::load(&functions, instance) })
 }
 
-/// The device's functions, with those of the extensions that the host says it has enabled.
+/// The device's functions. Device::adopt checks that it has those of the extensions that the host says it has enabled.
 ///
 /// # Safety
 /// The handles of the description are null, or belong together and are alive.
@@ -221,49 +224,6 @@ unsafe fn load_device(instance: &ash::Instance, desc: &RaraAdoptDesc) -> Result<
     if desc.queue == vk::Queue::null() {
         return invalid("desc->queue is null");
     }
-    // SAFETY: the physical device is the instance's, as the caller promises.
-    let offered = unsafe { instance.get_physical_device_properties(desc.physical_device) };
-    let version = desc.api_version.min(offered.api_version);
-    let core = vk::Bool32::from(version >= vk::API_VERSION_1_3);
-    let needed: [(vk::Bool32, &CStr, &str); 7] = [
-        (vk::TRUE, c"vkGetBufferDeviceAddress", "Vulkan 1.2"),
-        (core, c"vkCmdPipelineBarrier2", "Vulkan 1.3"),
-        (
-            1 - core,
-            c"vkCmdPipelineBarrier2KHR",
-            "VK_KHR_synchronization2",
-        ),
-        (
-            1 - core,
-            c"vkCmdBeginRenderingKHR",
-            "VK_KHR_dynamic_rendering",
-        ),
-        (
-            desc.mesh_shader,
-            c"vkCmdDrawMeshTasksEXT",
-            "VK_EXT_mesh_shader",
-        ),
-        (
-            desc.push_descriptor,
-            c"vkCmdPushDescriptorSetKHR",
-            "VK_KHR_push_descriptor",
-        ),
-        (
-            desc.debug_utils,
-            c"vkSetDebugUtilsObjectNameEXT",
-            "VK_EXT_debug_utils",
-        ),
-    ];
-    for (wanted, function, of) in needed {
-        // SAFETY: both handles are alive, as the caller promises.
-        let found = unsafe { instance.get_device_proc_addr(desc.device, function.as_ptr()) };
-        if wanted != 0 && found.is_none() {
-            return invalid(format!(
-                "desc->device was created without {of}: it has no {}",
-                function.to_string_lossy()
-            ));
-        }
-    }
-    // SAFETY: as above.
+    // SAFETY: both handles are alive and not null, as the caller promises and was checked.
     Ok(unsafe { ash::Device::load(instance.fp_v1_0(), desc.device) })
 }

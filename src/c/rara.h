@@ -782,7 +782,8 @@ RaraResult rara_support_features(const struct RaraSupport *support,
 RaraResult rara_adopt_desc_default(struct RaraAdoptDesc *desc, size_t desc_size);
 
 // Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload and
-// rara_scene_buffers_upload_layers submit to the queue.
+// rara_scene_buffers_upload_layers submit to the queue. RARA_ERROR_INVALID names what the description claims and the device
+// was created without.
 //
 // # Safety
 // The handles belong together, are as the description says, and outlive all that is made from the RaraDevice.

@@ -9,7 +9,7 @@ use gpu_allocator::{AllocationSizes, AllocatorDebugSettings};
 
 use super::failure::failed;
 use super::instance::Instance;
-use super::{Device, DeviceInfo, DeviceShape, devices, requirements};
+use super::{Device, DeviceInfo, DeviceShape, devices, functions, requirements};
 use crate::setters::setters;
 use crate::{Error, Result};
 
@@ -224,6 +224,10 @@ impl Device {
 
     /// Works with a host's device. The host keeps owning it: nothing of the description is ever destroyed here.
     ///
+    /// # Errors
+    /// [`Error::Device`] as of [`check`](super::check), and [`Error::Invalid`] names what the description claims and the
+    /// device was created without.
+    ///
     /// # Safety
     ///
     /// All handles must belong together, be as the description says, and outlive this device, its clones and
@@ -232,6 +236,8 @@ impl Device {
         // SAFETY: the caller vouches for the handles.
         let mut support =
             unsafe { requirements::check(&desc.instance, desc.physical_device, desc.api_version) }?;
+        // SAFETY: as above.
+        unsafe { functions::check(&desc, support.api_version) }?;
         // SAFETY: as above.
         let families = unsafe {
             desc.instance

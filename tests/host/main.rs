@@ -10,6 +10,7 @@ mod host;
 mod classic_host;
 mod depth;
 mod embed;
+mod features;
 mod formats;
 mod gpu;
 mod streaming;

@@ -57,7 +57,9 @@ typedef struct RaraRegion RaraRegion;
 // attachments are the host's to synchronise, as for any draw of its own.
 //
 // The calls bind pipelines, push constants and, with RARA_BINDINGS_BOUND, push descriptor set 0: the host binds its own
-// again. No other state, no image and no layout is touched.
+// again. rara_renderer_draw sets the viewport, so that the host's own may be any, of negative height too, and binding
+// rara's pipelines undoes all other dynamic state but the scissor: the host sets all that its pipelines need again. The
+// scissor is the host's, and is not touched. No image and no layout is.
 typedef struct RaraRenderer RaraRenderer;
 
 // A scene in device memory: one layer or several. Several threads and renderers may use it at once, but nobody else
@@ -848,8 +850,8 @@ RaraResult rara_renderer_create_sharing(const struct RaraRenderer *other,
 // `renderer` is alive, was created with a depth attachment, and is not used by another thread; `map` points to one.
 RaraResult rara_renderer_set_depth_map(struct RaraRenderer *renderer, const struct RaraDepthMap *map);
 
-// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the viewport of
-// rara_renderer_draw. A null `clip` clips nothing, null `settings` are the defaults. After an error nothing can be
+// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the viewport that
+// rara_renderer_draw sets. A null `clip` clips nothing, null `settings` are the defaults. After an error nothing can be
 // recorded until a call succeeds.
 //
 // # Safety
@@ -884,13 +886,14 @@ RaraResult rara_renderer_prepare_behind(struct RaraRenderer *renderer,
                                         const struct RaraSceneBuffers *scene,
                                         const struct RaraDepthImage *depth);
 
-// Records the splats inside the host's rendering scope, premultiplied and over what is there. `x` and `y` are the
-// viewport's upper left corner in the attachment, whole pixels; the viewport has the camera's size, and depths from 0 to
-// 1. The call may be recorded more than once for a prepared frame.
+// Records the splats inside the host's rendering scope, premultiplied and over what is there. `x` and `y` are the upper
+// left corner of the camera's picture in the attachment, whole pixels; the viewport is set to that picture, upright where
+// row 0 of the attachment is the upper one, whatever viewport the host has. The host's scissor holds. The call may be
+// recorded more than once for a prepared frame. RARA_ERROR_INVALID where `x` or `y` is not finite.
 //
 // # Safety
 // `cmd` is inside a rendering scope with the attachments of RaraRendererDesc and no others, one layer and no view mask;
-// viewport and scissor are set; rara_renderer_prepare was recorded for the same frame before it.
+// a scissor is set by vkCmdSetScissor; rara_renderer_prepare was recorded for the same frame before it.
 RaraResult rara_renderer_draw(struct RaraRenderer *renderer,
                               VkCommandBuffer cmd,
                               float x,

@@ -173,6 +173,12 @@ impl Plan {
         self.data.region.mode
     }
 
+    /// Width and height of the camera's picture, px.
+    pub(crate) fn size(&self) -> [f32; 2] {
+        let [width, height, ..] = self.data.view.size;
+        [width, height]
+    }
+
     /// The camera's principal point in an attachment in which the viewport begins at `origin`, px.
     pub(crate) fn principal_point(&self, origin: [f32; 2]) -> [f32; 2] {
         let [_, _, cx, cy] = self.data.view.focal;

@@ -32,7 +32,7 @@ pub(crate) struct FrameRequest<'a> {
 
 impl Renderer {
     /// Decides what the next frame needs, and allocates and compiles the missing parts. The camera's picture is the
-    /// viewport of [`draw`](Self::draw). [`Settings::background`] is the host's business and ignored here.
+    /// viewport that [`draw`](Self::draw) sets. [`Settings::background`] is the host's business and ignored here.
     ///
     /// Where a frame needs more memory than the one before, old and new exist side by side while frames are in flight;
     /// with one frame in flight the old goes first. After an error nothing can be recorded until a call succeeds.

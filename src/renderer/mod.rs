@@ -58,11 +58,12 @@ use shared::SharedPipelines;
 /// [`prepare_behind`](Self::prepare_behind) says what it needs.
 ///
 /// **What recording leaves behind.** `prepare` binds a compute pipeline, `draw` a graphics pipeline; both write push
-/// constants. The host binds its own pipelines again, pushes its own constants, and sets the dynamic state of its pipelines
-/// again, all but viewport and scissor: binding a pipeline of rara's, in which the rest is fixed, undoes it. With
-/// [`Bindings::Bound`](crate::gpu::Bindings::Bound) both push descriptor set 0 too, by a layout of their own, so that the
-/// host binds all of its sets again. No image, no layout, no query and no vertex buffer is touched. Of dynamic state `draw`
-/// needs viewport and scissor: the viewport of positive height, its depths from 0 to 1.
+/// constants. `draw` sets the viewport. The host binds its own pipelines again, pushes its own constants, and sets all
+/// dynamic state of its pipelines again but the scissor: binding a pipeline of rara's, in which the rest is fixed,
+/// undoes it. With [`Bindings::Bound`](crate::gpu::Bindings::Bound) both push descriptor set 0 too, by a layout of their
+/// own, so that the host binds all of its sets again. No image, no layout, no query and no vertex buffer is touched. Of
+/// the host's dynamic state `draw` reads one thing, the scissor, which `vkCmdSetScissor` sets and
+/// `vkCmdSetScissorWithCount` does not. The host's viewport may be any, upside down or not yet set.
 ///
 /// **What lives how long.** The scene's buffers, and the image of `prepare_behind`, live until the frame has executed; a
 /// render pass of [`RendererDesc::target`] until no renderer that shares pipelines with this one is left; a host's device

@@ -9,6 +9,7 @@ mod host;
 
 mod classic_host;
 mod depth;
+mod dynamic_state;
 mod embed;
 mod features;
 mod formats;

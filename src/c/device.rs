@@ -8,9 +8,8 @@ use rara::ash::{self, vk};
 use rara::gpu::{AdoptDesc, Device, DeviceShape};
 use rara::{Error, Result};
 
-use crate::boundary::{
-    RaraResult, Versioned, create, destroy, guard, invalid, number, read, write,
-};
+use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
+use crate::handles::{create, destroy, number};
 
 /// `vkGetInstanceProcAddr`, or null.
 #[allow(non_camel_case_types)] // Vulkan's name
@@ -68,7 +67,7 @@ pub struct RaraAdoptDesc {
     pub subgroup: u32,
 }
 
-// SAFETY: repr(C), handles and numbers, the size first.
+// SAFETY: repr(C), handles, numbers and pointers, of which null is none, the size first.
 unsafe impl Versioned for RaraAdoptDesc {
     const NAME: &'static str = "RaraAdoptDesc";
 }
@@ -113,7 +112,8 @@ pub unsafe extern "C" fn rara_adopt_desc_default(
 /// was created without.
 ///
 /// # Safety
-/// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice.
+/// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice, of which
+/// `release` tells the end. It may be called with `release_user` by any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_device_adopt(
     desc: *const RaraAdoptDesc,
@@ -149,8 +149,7 @@ pub unsafe extern "C" fn rara_device_adopt(
 /// `device` is null or alive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_device_bytes(device: *const RaraDevice) -> u64 {
-    // SAFETY: the caller's promise.
-    unsafe { number(device, "device", |device| device.0.device_bytes()) }
+    number(device, "device", |device| device.0.device_bytes())
 }
 
 /// Gives the device back; the VkDevice lives on. What was made from the RaraDevice may be destroyed later, but before the
@@ -160,8 +159,7 @@ pub unsafe extern "C" fn rara_device_bytes(device: *const RaraDevice) -> u64 {
 /// `device` is null, or alive and not used any more.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_device_destroy(device: *mut RaraDevice) {
-    // SAFETY: the caller's promise.
-    unsafe { destroy(device) };
+    destroy(device);
 }
 
 fn shape(desc: &RaraAdoptDesc) -> Result<Option<DeviceShape>> {

@@ -5,7 +5,8 @@
  * Every function that can fail returns a RaraResult; rara_last_error_message says what is wrong. Nothing is thrown and
  * nothing panics across this boundary. Structs that begin with struct_size may grow in later versions: those that go in
  * are filled by their rara_..._default first, those that come out are asked for with their size. Handles come from a
- * function that makes them and end with their rara_..._destroy; "alive" is the time between.
+ * function that makes them and end with their rara_..._destroy; "alive" is the time between. A handle that is not alive is
+ * refused with RARA_ERROR_INVALID, as is one of another kind, and one that another thread's call changes at the same time.
  */
 
 #ifndef RARA_H
@@ -817,15 +818,6 @@ void rara_device_destroy(struct RaraDevice *device);
 RaraResult rara_renderer_set_placement(struct RaraRenderer *renderer,
                                        const struct RaraPlacement *placement);
 
-// One colour attachment of one sample in dynamic rendering, no timestamps, no reuse, one frame in flight. `desc_size` is
-// sizeof *desc.
-//
-// # Safety
-// `desc` has room for `desc_size` bytes.
-RaraResult rara_renderer_desc_default(struct RaraRendererDesc *desc,
-                                      size_t desc_size,
-                                      VkFormat color_format);
-
 // Creates a renderer. The first frame that needs a pipeline or buffer creates it. RARA_ERROR_DEVICE where the device
 // cannot draw into such attachments.
 //
@@ -920,6 +912,15 @@ RaraResult rara_renderer_forget(struct RaraRenderer *renderer);
 // # Safety
 // `renderer` is null, or alive and not used any more, not even by the device.
 void rara_renderer_destroy(struct RaraRenderer *renderer);
+
+// One colour attachment of one sample in dynamic rendering, no timestamps, no reuse, one frame in flight. `desc_size` is
+// sizeof *desc.
+//
+// # Safety
+// `desc` has room for `desc_size` bytes.
+RaraResult rara_renderer_desc_default(struct RaraRendererDesc *desc,
+                                      size_t desc_size,
+                                      VkFormat color_format);
 
 // A camera for rara_renderer_configure_orthographic at `eye` that looks at `target`, whose picture of `width` x `height`
 // pixels is `view_height` world units high. `eye`, `target` and `up` are as for rara_camera_look_at; nothing nearer to the eye

@@ -4,7 +4,8 @@ use std::ffi::c_char;
 
 use rara::ash::vk;
 
-use crate::boundary::{RaraResult, Versioned, guard, shared, write};
+use crate::boundary::{RaraResult, Versioned, guard, write};
+use crate::handles::alive;
 use crate::renderer::RaraRenderer;
 use crate::settings::{
     RARA_RASTER_AUTO, RARA_RASTER_MESH, RARA_RASTER_QUAD, RARA_RASTER_TILES, RaraRaster,
@@ -81,8 +82,7 @@ pub unsafe extern "C" fn rara_renderer_stats(
     stats_size: usize,
 ) -> RaraResult {
     guard(|| {
-        // SAFETY: the caller's promise.
-        let renderer = &unsafe { shared(renderer, "renderer") }?.0;
+        let renderer = &alive(renderer, "renderer")?.0;
         let (counts, raster) = (renderer.counts(), renderer.raster());
         let (times, skipped) = (renderer.pass_times(), renderer.skipped());
         let mut found = RaraFrameStats {

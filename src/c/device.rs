@@ -65,6 +65,12 @@ pub struct RaraAdoptDesc {
     /// With RARA_SHAPE_GPU the invocations of a subgroup that kernels ask for, a power of two that the device can be asked
     /// for; 0, the default, for kernels without subgroup operations. Otherwise ignored.
     pub subgroup: u32,
+    /// Called once, when rara uses nothing of the host's any more, with `release_user`: by the call that ends the last of the
+    /// RaraDevice and of what was made from it. Until then the host keeps its device. It may be on any thread, must throw
+    /// nothing, and may destroy the device. It is not called after rara_device_adopt has failed. Null, the default, for none.
+    pub release: RaraRelease,
+    /// What `release` is given. Default: null.
+    pub release_user: *mut c_void,
 }
 
 // SAFETY: repr(C), handles, numbers and pointers, of which null is none, the size first.
@@ -90,6 +96,33 @@ impl RaraAdoptDesc {
             full_subgroups: vk::FALSE,
             shape: RARA_SHAPE_AUTO,
             subgroup: 0,
+            release: None,
+            release_user: std::ptr::null_mut(),
+        }
+    }
+}
+
+/// Takes the news that rara uses nothing of the host's any more.
+pub type RaraRelease = Option<unsafe extern "C" fn(user: *mut c_void)>;
+
+/// Tells the host when it is dropped that its device is not used any more.
+struct Release {
+    release: RaraRelease,
+    user: *mut c_void,
+    /// False until the device has been adopted.
+    armed: AtomicBool,
+}
+
+// SAFETY: whoever calls rara_device_adopt promises that any thread may call the function with this pointer.
+unsafe impl Send for Release {}
+// SAFETY: as above; it is called once.
+unsafe impl Sync for Release {}
+
+impl Drop for Release {
+    fn drop(&mut self) {
+        if let Some(release) = self.release.filter(|_| *self.armed.get_mut()) {
+            // SAFETY: the host's promise, and nothing of the device is left.
+            unsafe { release(self.user) };
         }
     }
 }
@@ -138,7 +171,14 @@ pub unsafe extern "C" fn rara_device_adopt(
                 .shape(shape(&desc)?)
                 .debug_utils(desc.debug_utils != 0)
                 .pipeline_cache(desc.pipeline_cache);
-            Device::adopt(adopt).map(RaraDevice)
+            let release = Arc::new(Release {
+                release: desc.release,
+                user: desc.release_user,
+                armed: AtomicBool::new(false),
+            });
+            let device = Device::adopt(adopt.keep_alive(Some(release.clone())))?;
+            release.armed.store(true, Ordering::Relaxed);
+            Ok(RaraDevice(device))
         })
     })
 }

@@ -170,6 +170,9 @@ typedef struct RaraSupport {
 // For what kind of machine kernels are chosen.
 typedef uint32_t RaraShape;
 
+// Takes the news that rara uses nothing of the host's any more.
+typedef void (*RaraRelease)(void *user);
+
 // A host's own Vulkan, for rara_device_adopt. All of it stays the host's.
 typedef struct RaraAdoptDesc {
     // Set by rara_adopt_desc_default.
@@ -206,6 +209,12 @@ typedef struct RaraAdoptDesc {
     // With RARA_SHAPE_GPU the invocations of a subgroup that kernels ask for, a power of two that the device can be asked
     // for; 0, the default, for kernels without subgroup operations. Otherwise ignored.
     uint32_t subgroup;
+    // Called once, when rara uses nothing of the host's any more, with `release_user`: by the call that ends the last of the
+    // RaraDevice and of what was made from it. Until then the host keeps its device. It may be on any thread, must throw
+    // nothing, and may destroy the device. It is not called after rara_device_adopt has failed. Null, the default, for none.
+    RaraRelease release;
+    // What `release` is given. Default: null.
+    void *release_user;
 } RaraAdoptDesc;
 
 // The placement of a scene in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1}
@@ -789,8 +798,10 @@ RaraResult rara_adopt_desc_default(struct RaraAdoptDesc *desc, size_t desc_size)
 // was created without.
 //
 // # Safety
-// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice.
-RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc, struct RaraDevice **device);
+// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice, of which
+// `release` tells the end. It may be called with `release_user` by any thread.
+RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc,
+                             struct RaraDevice **device);
 
 // Bytes of device memory that rara has allocated on the device, 0 for null.
 //

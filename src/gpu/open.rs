@@ -1,5 +1,6 @@
 //! There are two ways to a device: headless use opens one of its own, and a host lends one.
 
+use std::any::Any;
 use std::ffi::CStr;
 use std::sync::{Arc, Mutex};
 
@@ -84,6 +85,9 @@ pub struct AdoptDesc {
     pub allocator: Option<Arc<Mutex<Allocator>>>,
     /// The kind of machine that kernels are chosen for; `None` is what suits the device.
     pub shape: Option<DeviceShape>,
+    /// Whatever keeps the host's device and instance alive: it is dropped when the last of the [`Device`]'s clones and of
+    /// what was made from them is gone. `None` where the host sees to it.
+    pub keep_alive: Option<Arc<dyn Any + Send + Sync>>,
 }
 
 setters!(AdoptDesc {
@@ -95,6 +99,7 @@ setters!(AdoptDesc {
     pipeline_cache: vk::PipelineCache,
     allocator: Option<Arc<Mutex<Allocator>>>,
     shape: Option<DeviceShape>,
+    keep_alive: Option<Arc<dyn Any + Send + Sync>>,
 });
 
 impl AdoptDesc {
@@ -121,6 +126,7 @@ impl AdoptDesc {
             pipeline_cache: vk::PipelineCache::null(),
             allocator: None,
             shape: None,
+            keep_alive: None,
         }
     }
 }
@@ -208,6 +214,7 @@ impl Device {
             pipeline_cache,
             allocator: None,
             shape: desc.shape,
+            keep_alive: None,
         };
         let allocator = allocator(&adopt).inspect_err(|_| {
             // SAFETY: nothing else was made from the device, and nobody else knows it.
@@ -231,7 +238,7 @@ impl Device {
     /// # Safety
     ///
     /// All handles must belong together, be as the description says, and outlive this device, its clones and
-    /// everything made from them. While [`Device::submit_and_wait`] or an upload runs, the host must not use the queue.
+    /// everything made from them, which [`AdoptDesc::keep_alive`] can see to. While [`Device::submit_and_wait`] or an upload runs, the host must not use the queue.
     pub unsafe fn adopt(desc: AdoptDesc) -> Result<Self> {
         // SAFETY: the caller vouches for the handles.
         let mut support =

@@ -1,6 +1,7 @@
 //! The functions of `rara.h` on a device: whatever a host does wrong there has a message, and so has a lost device.
 //! `tests/c/cpp_host.rs` and `tests/c/frames` draw what a host does right.
 
+mod ended;
 mod layers;
 mod lost;
 

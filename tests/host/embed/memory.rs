@@ -3,6 +3,25 @@
 use super::*;
 
 #[test]
+fn the_hosts_device_is_kept_alive_as_long_as_anything_is_made_from_it() {
+    let host = open_host(BYTES, VIEW, true);
+    let kept = Arc::new(());
+    let alive = || Arc::strong_count(&kept) > 1;
+    // SAFETY: the handles belong together, and the host outlives what is made of the device.
+    let device = unsafe { Device::adopt(host.lend().keep_alive(Some(kept.clone()))) };
+    let device = device.expect("the host's device draws splats");
+    let scene = SceneBuffers::upload(&device, &scene(), ShFormat::default()).expect("uploads");
+    let renderer = Renderer::new(&device, in_flight(BYTES, Bindings::Address)).expect("a renderer");
+    assert_eq!(device.close(), Vec::<String>::new());
+    assert!(alive());
+    drop(renderer);
+    assert!(alive(), "the scene is left");
+    drop(scene);
+    assert!(!alive());
+    assert_eq!(host.close(), Vec::<String>::new());
+}
+
+#[test]
 fn memory_that_a_frame_outgrows_is_freed_when_no_frame_can_use_it() {
     let scene = scene();
     let frames = frames(&scene);

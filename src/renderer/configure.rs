@@ -175,7 +175,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Makes room for as many pairs of tile and splat as the frame before has shown to be needed. Returns whether nothing
+    /// Makes room for as many pairs of tile and splat as the frame before has shown to be needed, and as this one is expected
+    /// to have. Returns whether nothing
     /// is to be drawn of the next frame where that is not enough.
     fn make_room(&mut self, request: &FrameRequest<'_>, tiles: u32) -> bool {
         let undrawn = |frame: &RecordedFrame| {
@@ -191,6 +192,9 @@ impl Renderer {
         let pairs = &mut self.memory.pairs;
         let had = pairs.room();
         pairs.make(request.scene.count, tiles, needed);
+        if matches!(request.settings.raster, Raster::Auto | Raster::Tiles) {
+            pairs.expect(request.scene.estimated_pairs(request.camera));
+        }
         // Where no more room can be made, quads are drawn at once.
         request.submission == Submission::Awaited && (!fell_back || pairs.room() > had)
     }

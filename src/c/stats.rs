@@ -57,7 +57,7 @@ pub struct RaraFrameStats {
     pub pass_count: u32,
     /// GPU time of each stage, in order.
     pub passes: [RaraPassTime; RARA_MAX_PASSES],
-    /// GPU time of the frame, milliseconds.
+    /// GPU time of the frame, milliseconds; NAN where pass_count is 0.
     pub gpu_ms: f64,
     /// Number of skipped stages.
     pub skipped_count: u32,
@@ -105,7 +105,10 @@ pub unsafe extern "C" fn rara_renderer_stats(
                 name: fixed(""),
                 ms: 0.0,
             }; RARA_MAX_PASSES],
-            gpu_ms: times.iter().map(|pass| pass.ms).sum(),
+            gpu_ms: match times.is_empty() {
+                true => f64::NAN,
+                false => times.iter().map(|pass| pass.ms).sum(),
+            },
             skipped_count: skipped.len().min(RARA_MAX_PASSES) as u32,
             skipped: [fixed(""); RARA_MAX_PASSES],
         };

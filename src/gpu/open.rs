@@ -291,6 +291,19 @@ impl Device {
             Some(lent) => lent.clone(),
             None => allocator(&desc)?,
         };
+        let has = |feature| if feature { "" } else { "no " };
+        log::info!(
+            "{} ({}) was adopted for Vulkan {}.{}: kernels for {:?}, {}; {}mesh shaders, {}push descriptors, {}timestamps",
+            info.name,
+            info.driver,
+            vk::api_version_major(support.api_version),
+            vk::api_version_minor(support.api_version),
+            shape.0,
+            shape.1,
+            has(support.mesh_shader),
+            has(support.push_descriptor),
+            has(support.timestamp_bits > 0),
+        );
         Ok(Self::new(desc, info, support, allocator, None, shape))
     }
 }

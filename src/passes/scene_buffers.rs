@@ -243,6 +243,15 @@ impl SceneBuffers {
             layers,
             sample: PairSample::new(scene),
         };
+        log::info!(
+            "a scene of {} Gaussians in {} takes {} bytes on the device",
+            buffers.count,
+            match buffers.layers.len() {
+                1 => "one layer".into(),
+                layers => format!("{layers} layers"),
+            },
+            buffers.bytes()
+        );
         Ok((buffers, packed))
     }
 

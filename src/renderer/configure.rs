@@ -61,7 +61,9 @@ impl Renderer {
             camera: &camera,
             clip: &clip,
             ..*request
-        })
+        })?;
+        self.note_frame();
+        Ok(())
     }
 
     /// Configures a frame whose camera and clip are in the scene's units already.

@@ -10,6 +10,7 @@ use crate::error::{Error, Result};
 use crate::gpu::Device;
 use crate::passes::{Kept, TilePicture};
 use crate::placement::Placement;
+use crate::stats::RasterChoice;
 
 mod choose;
 mod configure;
@@ -18,6 +19,7 @@ mod desc;
 mod faults;
 mod frames;
 mod memory;
+mod notes;
 mod outcome;
 mod pair_room;
 mod record;
@@ -95,6 +97,8 @@ pub struct Renderer {
     configured: Option<Configured>,
     /// The results that the last prepared frame has left in the memory.
     kept: Option<Kept>,
+    /// How splats become pixels, as the log was told last.
+    noted: RasterChoice,
 }
 
 impl Renderer {
@@ -140,6 +144,7 @@ impl Renderer {
             frames,
             configured: None,
             kept: None,
+            noted: RasterChoice::default(),
         })
     }
 

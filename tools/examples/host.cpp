@@ -13,7 +13,9 @@ int main(int count, char **arguments) {
     const std::string what = count > 3 ? arguments[3] : "both";
     const bool validation = getenv("RARA_VALIDATION") != nullptr;
     check(rara_abi_version() == RARA_ABI_VERSION, "rara.h and the library are of different versions");
-    RARA(rara_set_log([](RaraLogLevel, const char *text, void *) { fprintf(stderr, "rara: %s\n", text); }, nullptr));
+    RARA(rara_set_log([](RaraLogLevel level, const char *text, void *) {
+        if (level <= RARA_LOG_LEVEL_WARN) fprintf(stderr, "rara: %s\n", text);
+    }, nullptr));
 
     VkInstance instance = make_instance(validation);
 

@@ -203,6 +203,7 @@ fn what_is_wrong_is_said() {
         assert_ok(result);
         let reason = CStr::from_ptr(stats.raster_reason.as_ptr());
         assert!(!reason.is_empty() && stats.drawn == 0 && stats.skipped_count > 0);
+        assert!(stats.pass_count == 0 && stats.gpu_ms.is_nan(), "no timing");
         let first = CStr::from_ptr(stats.skipped[0].as_ptr());
         assert_eq!(first, c"clip");
         assert_ok(rara_renderer_forget(renderer));

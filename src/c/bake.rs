@@ -3,8 +3,9 @@
 use rara::scene::{LoadReport, Loaded};
 use rara::{BakeCounts, BakeSettings, bake};
 
-use crate::boundary::{RaraResult, Versioned, create, guard, read, shared, write};
-use crate::region::{RaraRegion, clip};
+use crate::boundary::{RaraResult, Versioned, guard, read, write};
+use crate::handles::{alive, create};
+use crate::region::RaraRegion;
 use crate::scene::RaraGaussians;
 use crate::settings::{RaraMode, mode, mode_code};
 
@@ -118,8 +119,8 @@ pub unsafe extern "C" fn rara_gaussians_bake(
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         create(baked, "baked", || {
-            let gaussians = &shared(gaussians, "gaussians")?.0.gaussians;
-            shared(region, "region")?;
+            let gaussians = alive(gaussians, "gaussians")?;
+            let region = alive(region, "region")?;
             let default = BakeSettings::default();
             let settings = match settings.is_null() {
                 true => default,
@@ -132,7 +133,7 @@ pub unsafe extern "C" fn rara_gaussians_bake(
                         .leave(given.leave)
                 }
             };
-            let made = bake(gaussians, &clip(region)?, &settings)?;
+            let made = bake(&gaussians.0.gaussians, &region.0, &settings)?;
             if !counts.is_null() {
                 write(counts, counts_size, &made.counts.into(), "counts")?;
             }

@@ -179,54 +179,6 @@ pub(crate) fn recording(cmd: vk::CommandBuffer) -> Result<vk::CommandBuffer> {
     Ok(cmd)
 }
 
-/// Makes a handle: `*out` is null if `make` fails.
-///
-/// # Safety
-/// `out` is null, or points to a pointer that may be overwritten.
-pub(crate) unsafe fn create<T>(
-    out: *mut *mut T,
-    name: &str,
-    make: impl FnOnce() -> Result<T>,
-) -> Result<()> {
-    // SAFETY: the caller's promise.
-    let out = unsafe { exclusive(out, name) }?;
-    *out = std::ptr::null_mut();
-    *out = Box::into_raw(Box::new(make()?));
-    Ok(())
-}
-
-/// Ends a handle; null is ignored.
-///
-/// # Safety
-/// `handle` is null, or came from [`create`], and is not used any more.
-pub(crate) unsafe fn destroy<T>(handle: *mut T) {
-    guard(|| {
-        if !handle.is_null() {
-            // SAFETY: the caller's promise.
-            drop(unsafe { Box::from_raw(handle) });
-        }
-        Ok(())
-    });
-}
-
-/// A number of what a handle stands for; 0 if it is null.
-///
-/// # Safety
-/// `handle` is null or alive.
-pub(crate) unsafe fn number<T, N: Default>(
-    handle: *const T,
-    name: &str,
-    number: impl FnOnce(&T) -> N,
-) -> N {
-    let mut found = N::default();
-    guard(|| {
-        // SAFETY: the caller's promise.
-        found = number(unsafe { shared(handle, name) }?);
-        Ok(())
-    });
-    found
-}
-
 /// Structs that may grow at their end. A host says how large its own are, so that each side can be the newer one.
 ///
 /// # Safety

@@ -5,7 +5,8 @@ use rara::Result;
 use rara::glam::{DMat3, DMat4, DVec3};
 use rara::scene::Bounds;
 
-use crate::boundary::{RaraResult, exclusive, guard, list, shared};
+use crate::boundary::{RaraResult, exclusive, guard, list};
+use crate::handles::alive;
 use crate::scene::RaraGaussians;
 
 /// A camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers. It is a pinhole, unless
@@ -125,7 +126,7 @@ pub unsafe extern "C" fn rara_camera_frame(
     // SAFETY: the caller's promises.
     unsafe {
         make(camera, || {
-            let bounds = Bounds::of(&shared(gaussians, "gaussians")?.0.gaussians);
+            let bounds = Bounds::of(&alive(gaussians, "gaussians")?.0.gaussians);
             Camera::frame(&bounds, vector(up, "up")?, fov_y, (width, height))
         })
     }

@@ -1,14 +1,15 @@
 //! The host's own device, lent to rara.
 
-use std::ffi::CStr;
+use std::ffi::c_void;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use rara::ash::{self, vk};
 use rara::gpu::{AdoptDesc, Device, DeviceShape};
 use rara::{Error, Result};
 
-use crate::boundary::{
-    RaraResult, Versioned, create, destroy, guard, invalid, number, read, write,
-};
+use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
+use crate::handles::{create, destroy, number};
 
 /// `vkGetInstanceProcAddr`, or null.
 #[allow(non_camel_case_types)] // Vulkan's name
@@ -64,9 +65,15 @@ pub struct RaraAdoptDesc {
     /// With RARA_SHAPE_GPU the invocations of a subgroup that kernels ask for, a power of two that the device can be asked
     /// for; 0, the default, for kernels without subgroup operations. Otherwise ignored.
     pub subgroup: u32,
+    /// Called once, when rara uses nothing of the host's any more, with `release_user`: by the call that ends the last of the
+    /// RaraDevice and of what was made from it. Until then the host keeps its device. It may be on any thread, must throw
+    /// nothing, and may destroy the device. It is not called after rara_device_adopt has failed. Null, the default, for none.
+    pub release: RaraRelease,
+    /// What `release` is given. Default: null.
+    pub release_user: *mut c_void,
 }
 
-// SAFETY: repr(C), handles and numbers, the size first.
+// SAFETY: repr(C), handles, numbers and pointers, of which null is none, the size first.
 unsafe impl Versioned for RaraAdoptDesc {
     const NAME: &'static str = "RaraAdoptDesc";
 }
@@ -89,6 +96,33 @@ impl RaraAdoptDesc {
             full_subgroups: vk::FALSE,
             shape: RARA_SHAPE_AUTO,
             subgroup: 0,
+            release: None,
+            release_user: std::ptr::null_mut(),
+        }
+    }
+}
+
+/// Takes the news that rara uses nothing of the host's any more.
+pub type RaraRelease = Option<unsafe extern "C" fn(user: *mut c_void)>;
+
+/// Tells the host when it is dropped that its device is not used any more.
+struct Release {
+    release: RaraRelease,
+    user: *mut c_void,
+    /// False until the device has been adopted.
+    armed: AtomicBool,
+}
+
+// SAFETY: whoever calls rara_device_adopt promises that any thread may call the function with this pointer.
+unsafe impl Send for Release {}
+// SAFETY: as above; it is called once.
+unsafe impl Sync for Release {}
+
+impl Drop for Release {
+    fn drop(&mut self) {
+        if let Some(release) = self.release.filter(|_| *self.armed.get_mut()) {
+            // SAFETY: the host's promise, and nothing of the device is left.
+            unsafe { release(self.user) };
         }
     }
 }
@@ -107,10 +141,12 @@ pub unsafe extern "C" fn rara_adopt_desc_default(
 }
 
 /// Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload and
-/// rara_scene_buffers_upload_layers submit to the queue.
+/// rara_scene_buffers_upload_layers submit to the queue. RARA_ERROR_INVALID names what the description claims and the device
+/// was created without.
 ///
 /// # Safety
-/// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice.
+/// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice, of which
+/// `release` tells the end. It may be called with `release_user` by any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_device_adopt(
     desc: *const RaraAdoptDesc,
@@ -135,7 +171,14 @@ pub unsafe extern "C" fn rara_device_adopt(
                 .shape(shape(&desc)?)
                 .debug_utils(desc.debug_utils != 0)
                 .pipeline_cache(desc.pipeline_cache);
-            Device::adopt(adopt).map(RaraDevice)
+            let release = Arc::new(Release {
+                release: desc.release,
+                user: desc.release_user,
+                armed: AtomicBool::new(false),
+            });
+            let device = Device::adopt(adopt.keep_alive(Some(release.clone())))?;
+            release.armed.store(true, Ordering::Relaxed);
+            Ok(RaraDevice(device))
         })
     })
 }
@@ -146,8 +189,7 @@ pub unsafe extern "C" fn rara_device_adopt(
 /// `device` is null or alive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_device_bytes(device: *const RaraDevice) -> u64 {
-    // SAFETY: the caller's promise.
-    unsafe { number(device, "device", |device| device.0.device_bytes()) }
+    number(device, "device", |device| device.0.device_bytes())
 }
 
 /// Gives the device back; the VkDevice lives on. What was made from the RaraDevice may be destroyed later, but before the
@@ -157,8 +199,7 @@ pub unsafe extern "C" fn rara_device_bytes(device: *const RaraDevice) -> u64 {
 /// `device` is null, or alive and not used any more.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_device_destroy(device: *mut RaraDevice) {
-    // SAFETY: the caller's promise.
-    unsafe { destroy(device) };
+    destroy(device);
 }
 
 fn shape(desc: &RaraAdoptDesc) -> Result<Option<DeviceShape>> {
@@ -210,7 +251,7 @@ pub(crate) unsafe fn load_instance(
     Ok(unsafe { ash::Instance::load(&functions, instance) })
 }
 
-/// The device's functions, with those of the extensions that the host says it has enabled.
+/// The device's functions. Device::adopt checks that it has those of the extensions that the host says it has enabled.
 ///
 /// # Safety
 /// The handles of the description are null, or belong together and are alive.
@@ -221,49 +262,6 @@ unsafe fn load_device(instance: &ash::Instance, desc: &RaraAdoptDesc) -> Result<
     if desc.queue == vk::Queue::null() {
         return invalid("desc->queue is null");
     }
-    // SAFETY: the physical device is the instance's, as the caller promises.
-    let offered = unsafe { instance.get_physical_device_properties(desc.physical_device) };
-    let version = desc.api_version.min(offered.api_version);
-    let core = vk::Bool32::from(version >= vk::API_VERSION_1_3);
-    let needed: [(vk::Bool32, &CStr, &str); 7] = [
-        (vk::TRUE, c"vkGetBufferDeviceAddress", "Vulkan 1.2"),
-        (core, c"vkCmdPipelineBarrier2", "Vulkan 1.3"),
-        (
-            1 - core,
-            c"vkCmdPipelineBarrier2KHR",
-            "VK_KHR_synchronization2",
-        ),
-        (
-            1 - core,
-            c"vkCmdBeginRenderingKHR",
-            "VK_KHR_dynamic_rendering",
-        ),
-        (
-            desc.mesh_shader,
-            c"vkCmdDrawMeshTasksEXT",
-            "VK_EXT_mesh_shader",
-        ),
-        (
-            desc.push_descriptor,
-            c"vkCmdPushDescriptorSetKHR",
-            "VK_KHR_push_descriptor",
-        ),
-        (
-            desc.debug_utils,
-            c"vkSetDebugUtilsObjectNameEXT",
-            "VK_EXT_debug_utils",
-        ),
-    ];
-    for (wanted, function, of) in needed {
-        // SAFETY: both handles are alive, as the caller promises.
-        let found = unsafe { instance.get_device_proc_addr(desc.device, function.as_ptr()) };
-        if wanted != 0 && found.is_none() {
-            return invalid(format!(
-                "desc->device was created without {of}: it has no {}",
-                function.to_string_lossy()
-            ));
-        }
-    }
-    // SAFETY: as above.
+    // SAFETY: both handles are alive and not null, as the caller promises and was checked.
     Ok(unsafe { ash::Device::load(instance.fp_v1_0(), desc.device) })
 }

@@ -4,16 +4,15 @@ use std::ffi::c_char;
 use std::ptr::null;
 
 use rara::ash::vk;
-use rara::{Error, Layer, LayerState, Result, Scene};
+use rara::{Error, LayerState, Result};
 
-use crate::boundary::{
-    RaraResult, Versioned, exclusive, guard, invalid, read, read_list, shared, write,
-};
+use crate::boundary::{RaraResult, Versioned, guard, invalid, read, read_list, write};
 use crate::clip::RaraClip;
 use crate::device::RaraDevice;
+use crate::handles::{alive, alone};
 use crate::layer_info::check_index;
 use crate::placement::RaraPlacement;
-use crate::scene::{self, RaraGaussians, RaraSceneBuffers, RaraShFormat, RaraStaging};
+use crate::scene::{self, GivenLayer, RaraGaussians, RaraSceneBuffers, RaraShFormat, RaraStaging};
 use crate::text::text;
 
 /// The state of a layer, which may change from frame to frame.
@@ -98,25 +97,26 @@ impl RaraLayer {
     /// Reads the layer; `place` names it in messages.
     ///
     /// # Safety
-    /// Its pointers are null, or point to what their fields say, which nobody changes for `'a`.
-    unsafe fn layer<'a>(&self, place: &str) -> Result<Layer<'a>> {
+    /// Its pointers are null, or point to what their fields say.
+    unsafe fn layer(&self, place: &str) -> Result<GivenLayer> {
         // SAFETY: the caller's promise.
         let name = unsafe { text(self.name, &format!("{place}.name")) }?;
-        // SAFETY: as above.
-        let gaussians = unsafe { shared(self.gaussians, &format!("{place}.gaussians")) }?;
-        let layer = Layer::new(name, &gaussians.0.gaussians);
-        if self.state.is_null() {
-            return Ok(layer);
+        let mut layer = GivenLayer {
+            gaussians: alive(self.gaussians, &format!("{place}.gaussians"))?,
+            name: name.to_owned(),
+            state: LayerState::default(),
+        };
+        if !self.state.is_null() {
+            // SAFETY: as above.
+            layer.state = unsafe { state(self.state, &format!("{place}.state"), name) }?;
         }
-        // SAFETY: as above.
-        let state = unsafe { state(self.state, &format!("{place}.state"), name) }?;
-        Ok(layer.with(state))
+        Ok(layer)
     }
 }
 
 /// # Safety
-/// `layers` is null, or points to `layer_count` layers, which are as their fields say and nobody changes for `'a`.
-unsafe fn scene<'a>(layers: *const RaraLayer, layer_count: usize) -> Result<Scene<'a>> {
+/// `layers` is null, or points to `layer_count` layers, which are as their fields say.
+unsafe fn given(layers: *const RaraLayer, layer_count: usize) -> Result<Vec<GivenLayer>> {
     if layer_count == 0 {
         return invalid("layer_count is 0, and a scene has at least one layer: give one or more");
     }
@@ -182,11 +182,7 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_layers(
     scene: *mut *mut RaraSceneBuffers,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    unsafe {
-        scene::upload(device, sh_format, scene, || {
-            self::scene(layers, layer_count)
-        })
-    }
+    unsafe { scene::upload(device, sh_format, scene, || given(layers, layer_count)) }
 }
 
 /// Bytes of staging memory that rara_scene_buffers_upload_layers_with needs for a scene.
@@ -202,7 +198,7 @@ pub unsafe extern "C" fn rara_scene_buffers_staging_bytes_of_layers(
     bytes: *mut u64,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    unsafe { scene::staging_bytes(sh_format, bytes, || self::scene(layers, layer_count)) }
+    unsafe { scene::staging_bytes(sh_format, bytes, || given(layers, layer_count)) }
 }
 
 /// Uploads a scene of several layers as rara_scene_buffers_upload_with does one of a single layer. `layers` and what they
@@ -223,7 +219,7 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_layers_with(
     // SAFETY: the caller's promises.
     unsafe {
         scene::upload_with(device, cmd, staging, sh_format, scene, || {
-            self::scene(layers, layer_count)
+            given(layers, layer_count)
         })
     }
 }
@@ -240,9 +236,8 @@ pub unsafe extern "C" fn rara_scene_buffers_layer_state(
     state_size: usize,
 ) -> RaraResult {
     guard(|| {
-        // SAFETY: the caller's promise.
-        let scene = unsafe { shared(scene, "scene") }?;
-        check_index(scene, index)?;
+        let scene = alive(scene, "scene")?;
+        check_index(&scene, index)?;
         let found = scene.buffers.layers()[index].state().into();
         // SAFETY: the caller's promise.
         unsafe { write(state, state_size, &found, "state") }
@@ -263,11 +258,10 @@ pub unsafe extern "C" fn rara_scene_buffers_set_layer_state(
     state: *const RaraLayerState,
 ) -> RaraResult {
     guard(|| {
-        // SAFETY: the caller's promise.
-        let scene = unsafe { exclusive(scene, "scene") }?;
-        check_index(scene, index)?;
+        let mut scene = alone(scene, "scene")?;
+        check_index(&scene, index)?;
         let name = scene.buffers.layers()[index].name().to_owned();
-        // SAFETY: as above.
+        // SAFETY: the caller's promise.
         let state = unsafe { self::state(state, "state", &name) }?;
         scene.buffers.set_layer_state(index, state)
     })
@@ -288,12 +282,11 @@ pub unsafe extern "C" fn rara_scene_buffers_set_layer_clip(
     clip: *const RaraClip,
 ) -> RaraResult {
     guard(|| {
-        // SAFETY: the caller's promise.
-        let scene = unsafe { exclusive(scene, "scene") }?;
-        check_index(scene, index)?;
+        let mut scene = alone(scene, "scene")?;
+        check_index(&scene, index)?;
         let own = match clip.is_null() {
             true => None,
-            // SAFETY: as above.
+            // SAFETY: the caller's promise.
             false => Some(unsafe { crate::clip::clip(clip) }?),
         };
         scene.buffers.set_layer_clip(index, own)

@@ -4,7 +4,8 @@ use std::ffi::c_char;
 
 use rara::Result;
 
-use crate::boundary::{RaraResult, Versioned, exclusive, guard, invalid, number, shared, write};
+use crate::boundary::{RaraResult, Versioned, exclusive, guard, invalid, write};
+use crate::handles::{alive, number};
 use crate::scene::RaraSceneBuffers;
 use crate::text::text;
 
@@ -32,8 +33,7 @@ unsafe impl Versioned for RaraLayerInfo {
 /// `scene` is null or alive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_layer_count(scene: *const RaraSceneBuffers) -> usize {
-    // SAFETY: the caller's promise.
-    unsafe { number(scene, "scene", |scene| scene.names.len()) }
+    number(scene, "scene", |scene| scene.names.len())
 }
 
 /// Checks that a scene has a layer of this number.
@@ -59,9 +59,8 @@ pub unsafe extern "C" fn rara_scene_buffers_layer_info(
     info_size: usize,
 ) -> RaraResult {
     guard(|| {
-        // SAFETY: the caller's promise.
-        let scene = unsafe { shared(scene, "scene") }?;
-        check_index(scene, index)?;
+        let scene = alive(scene, "scene")?;
+        check_index(&scene, index)?;
         let found = RaraLayerInfo {
             struct_size: size_of::<RaraLayerInfo>(),
             name: scene.names[index].as_ptr(),
@@ -85,9 +84,9 @@ pub unsafe extern "C" fn rara_scene_buffers_layer_by_name(
 ) -> RaraResult {
     // SAFETY: the caller's promises.
     guard(|| unsafe {
-        let buffers = &shared(scene, "scene")?.buffers;
+        let scene = alive(scene, "scene")?;
         let (name, index) = (text(name, "name")?, exclusive(index, "index")?);
-        *index = buffers.layer_index(name)?;
+        *index = scene.buffers.layer_index(name)?;
         Ok(())
     })
 }

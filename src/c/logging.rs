@@ -88,6 +88,10 @@ fn forward(record: &Record<'_>) {
 /// Sends the log of the whole process, of every level, to a function of the host's; with null, as in the beginning,
 /// nobody gets it. `user` is what the function is given.
 ///
+/// RARA_LOG_LEVEL_INFO tells of devices that were adopted and for which kernels, of scenes, and of how splats become pixels
+/// and why, where that changes. RARA_LOG_LEVEL_DEBUG tells of each pipeline that is compiled and how long that took, and of
+/// each buffer: a frame that is like one before has neither. RARA_LOG_LEVEL_TRACE tells of each frame.
+///
 /// May be called at any time and by any thread, as long as it holds no lock that the function waits for. The previous
 /// function is then not called any more, and no thread is inside it when this returns: what its `user` points to may be
 /// freed. RARA_ERROR_INVALID if the function itself calls this, and where rara is linked into a Rust program that already

@@ -18,6 +18,7 @@ use crate::orthographic::*;
 use crate::placement::*;
 use crate::region::*;
 use crate::renderer::*;
+use crate::renderer_desc::*;
 use crate::scene::*;
 use crate::settings::*;
 use crate::stats::*;

@@ -67,10 +67,7 @@ pub unsafe extern "C" fn rara_renderer_set_orthographic_depth_map(
     z_zero: f64,
     z_one: f64,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    unsafe {
-        with(renderer, |renderer| {
-            renderer.set_depth_map(DepthMap::orthographic(z_zero, z_one)?)
-        })
-    }
+    with(renderer, |renderer| {
+        renderer.set_depth_map(DepthMap::orthographic(z_zero, z_one)?)
+    })
 }

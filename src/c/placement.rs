@@ -3,7 +3,8 @@
 use rara::glam::{DQuat, DVec3};
 use rara::{Placement, Result};
 
-use crate::boundary::{RaraResult, exclusive, guard, shared};
+use crate::boundary::{RaraResult, guard, shared};
+use crate::handles::alone;
 use crate::renderer::RaraRenderer;
 
 /// The placement of a scene in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1}
@@ -53,7 +54,7 @@ pub unsafe extern "C" fn rara_renderer_set_placement(
 ) -> RaraResult {
     // SAFETY: the caller's promises.
     guard(|| unsafe {
-        let renderer = exclusive(renderer, "renderer")?;
+        let mut renderer = alone(renderer, "renderer")?;
         let placement = shared(placement, "placement")?.placement()?;
         renderer.0.set_placement(placement);
         Ok(())

@@ -5,7 +5,8 @@
  * Every function that can fail returns a RaraResult; rara_last_error_message says what is wrong. Nothing is thrown and
  * nothing panics across this boundary. Structs that begin with struct_size may grow in later versions: those that go in
  * are filled by their rara_..._default first, those that come out are asked for with their size. Handles come from a
- * function that makes them and end with their rara_..._destroy; "alive" is the time between.
+ * function that makes them and end with their rara_..._destroy; "alive" is the time between. A handle that is not alive is
+ * refused with RARA_ERROR_INVALID, as is one of another kind, and one that another thread's call changes at the same time.
  */
 
 #ifndef RARA_H
@@ -57,7 +58,9 @@ typedef struct RaraRegion RaraRegion;
 // attachments are the host's to synchronise, as for any draw of its own.
 //
 // The calls bind pipelines, push constants and, with RARA_BINDINGS_BOUND, push descriptor set 0: the host binds its own
-// again. No other state, no image and no layout is touched.
+// again. rara_renderer_draw sets the viewport, so that the host's own may be any, of negative height too, and binding
+// rara's pipelines undoes all other dynamic state but the scissor: the host sets all that its pipelines need again. The
+// scissor is the host's, and is not touched. No image and no layout is.
 typedef struct RaraRenderer RaraRenderer;
 
 // A scene in device memory: one layer or several. Several threads and renderers may use it at once, but nobody else
@@ -167,6 +170,9 @@ typedef struct RaraSupport {
 // For what kind of machine kernels are chosen.
 typedef uint32_t RaraShape;
 
+// Takes the news that rara uses nothing of the host's any more.
+typedef void (*RaraRelease)(void *user);
+
 // A host's own Vulkan, for rara_device_adopt. All of it stays the host's.
 typedef struct RaraAdoptDesc {
     // Set by rara_adopt_desc_default.
@@ -203,6 +209,12 @@ typedef struct RaraAdoptDesc {
     // With RARA_SHAPE_GPU the invocations of a subgroup that kernels ask for, a power of two that the device can be asked
     // for; 0, the default, for kernels without subgroup operations. Otherwise ignored.
     uint32_t subgroup;
+    // Called once, when rara uses nothing of the host's any more, with `release_user`: by the call that ends the last of the
+    // RaraDevice and of what was made from it. Until then the host keeps its device. It may be on any thread, must throw
+    // nothing, and may destroy the device. It is not called after rara_device_adopt has failed. Null, the default, for none.
+    RaraRelease release;
+    // What `release` is given. Default: null.
+    void *release_user;
 } RaraAdoptDesc;
 
 // The placement of a scene in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1}
@@ -492,7 +504,7 @@ typedef struct RaraFrameStats {
     uint32_t pass_count;
     // GPU time of each stage, in order.
     struct RaraPassTime passes[RARA_MAX_PASSES];
-    // GPU time of the frame, milliseconds.
+    // GPU time of the frame, milliseconds; NAN where pass_count is 0.
     double gpu_ms;
     // Number of skipped stages.
     uint32_t skipped_count;
@@ -680,6 +692,10 @@ const char *rara_last_error_message(void);
 // Sends the log of the whole process, of every level, to a function of the host's; with null, as in the beginning,
 // nobody gets it. `user` is what the function is given.
 //
+// RARA_LOG_LEVEL_INFO tells of devices that were adopted and for which kernels, of scenes, and of how splats become pixels
+// and why, where that changes. RARA_LOG_LEVEL_DEBUG tells of each pipeline that is compiled and how long that took, and of
+// each buffer: a frame that is like one before has neither. RARA_LOG_LEVEL_TRACE tells of each frame.
+//
 // May be called at any time and by any thread, as long as it holds no lock that the function waits for. The previous
 // function is then not called any more, and no thread is inside it when this returns: what its `user` points to may be
 // freed. RARA_ERROR_INVALID if the function itself calls this, and where rara is linked into a Rust program that already
@@ -782,11 +798,14 @@ RaraResult rara_support_features(const struct RaraSupport *support,
 RaraResult rara_adopt_desc_default(struct RaraAdoptDesc *desc, size_t desc_size);
 
 // Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload and
-// rara_scene_buffers_upload_layers submit to the queue.
+// rara_scene_buffers_upload_layers submit to the queue. RARA_ERROR_INVALID names what the description claims and the device
+// was created without.
 //
 // # Safety
-// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice.
-RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc, struct RaraDevice **device);
+// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice, of which
+// `release` tells the end. It may be called with `release_user` by any thread.
+RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc,
+                             struct RaraDevice **device);
 
 // Bytes of device memory that rara has allocated on the device, 0 for null.
 //
@@ -814,15 +833,6 @@ void rara_device_destroy(struct RaraDevice *device);
 RaraResult rara_renderer_set_placement(struct RaraRenderer *renderer,
                                        const struct RaraPlacement *placement);
 
-// One colour attachment of one sample in dynamic rendering, no timestamps, no reuse, one frame in flight. `desc_size` is
-// sizeof *desc.
-//
-// # Safety
-// `desc` has room for `desc_size` bytes.
-RaraResult rara_renderer_desc_default(struct RaraRendererDesc *desc,
-                                      size_t desc_size,
-                                      VkFormat color_format);
-
 // Creates a renderer. The first frame that needs a pipeline or buffer creates it. RARA_ERROR_DEVICE where the device
 // cannot draw into such attachments.
 //
@@ -847,8 +857,8 @@ RaraResult rara_renderer_create_sharing(const struct RaraRenderer *other,
 // `renderer` is alive, was created with a depth attachment, and is not used by another thread; `map` points to one.
 RaraResult rara_renderer_set_depth_map(struct RaraRenderer *renderer, const struct RaraDepthMap *map);
 
-// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the viewport of
-// rara_renderer_draw. A null `clip` clips nothing, null `settings` are the defaults. After an error nothing can be
+// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the viewport that
+// rara_renderer_draw sets. A null `clip` clips nothing, null `settings` are the defaults. After an error nothing can be
 // recorded until a call succeeds.
 //
 // # Safety
@@ -883,13 +893,14 @@ RaraResult rara_renderer_prepare_behind(struct RaraRenderer *renderer,
                                         const struct RaraSceneBuffers *scene,
                                         const struct RaraDepthImage *depth);
 
-// Records the splats inside the host's rendering scope, premultiplied and over what is there. `x` and `y` are the
-// viewport's upper left corner in the attachment, whole pixels; the viewport has the camera's size, and depths from 0 to
-// 1. The call may be recorded more than once for a prepared frame.
+// Records the splats inside the host's rendering scope, premultiplied and over what is there. `x` and `y` are the upper
+// left corner of the camera's picture in the attachment, whole pixels; the viewport is set to that picture, upright where
+// row 0 of the attachment is the upper one, whatever viewport the host has. The host's scissor holds. The call may be
+// recorded more than once for a prepared frame. RARA_ERROR_INVALID where `x` or `y` is not finite.
 //
 // # Safety
 // `cmd` is inside a rendering scope with the attachments of RaraRendererDesc and no others, one layer and no view mask;
-// viewport and scissor are set; rara_renderer_prepare was recorded for the same frame before it.
+// a scissor is set by vkCmdSetScissor; rara_renderer_prepare was recorded for the same frame before it.
 RaraResult rara_renderer_draw(struct RaraRenderer *renderer,
                               VkCommandBuffer cmd,
                               float x,
@@ -916,6 +927,15 @@ RaraResult rara_renderer_forget(struct RaraRenderer *renderer);
 // # Safety
 // `renderer` is null, or alive and not used any more, not even by the device.
 void rara_renderer_destroy(struct RaraRenderer *renderer);
+
+// One colour attachment of one sample in dynamic rendering, no timestamps, no reuse, one frame in flight. `desc_size` is
+// sizeof *desc.
+//
+// # Safety
+// `desc` has room for `desc_size` bytes.
+RaraResult rara_renderer_desc_default(struct RaraRendererDesc *desc,
+                                      size_t desc_size,
+                                      VkFormat color_format);
 
 // A camera for rara_renderer_configure_orthographic at `eye` that looks at `target`, whose picture of `width` x `height`
 // pixels is `view_height` world units high. `eye`, `target` and `up` are as for rara_camera_look_at; nothing nearer to the eye

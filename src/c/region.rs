@@ -7,8 +7,9 @@ use rara::ash::vk;
 use rara::clip::{Expression, NamedClip, clips_from_json, load_clips};
 use rara::{Clip, Error, Projection, Result};
 
-use crate::boundary::{RaraResult, create, destroy, exclusive, guard, invalid, list, shared};
+use crate::boundary::{RaraResult, exclusive, guard, invalid, list};
 use crate::camera::{RaraCamera, vector};
+use crate::handles::{alive, alone, create, destroy};
 use crate::layer_info::check_index;
 use crate::renderer::{RaraRenderer, configure};
 use crate::scene::RaraSceneBuffers;
@@ -126,8 +127,7 @@ unsafe fn named(clips: &[NamedClip], name: *const c_char, path: &Path) -> Result
 /// `region` is null, or alive and not used any more.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_region_destroy(region: *mut RaraRegion) {
-    // SAFETY: the caller's promise.
-    unsafe { destroy(region) };
+    destroy(region);
 }
 
 /// As rara_renderer_configure or rara_renderer_configure_orthographic, with a region in place of planes; null keeps
@@ -146,17 +146,22 @@ pub unsafe extern "C" fn rara_renderer_configure_region(
 ) -> RaraResult {
     // SAFETY: the caller's promises.
     unsafe {
-        let seen = || Ok((self::projection(projection)?, clip(region)?));
+        let seen = || {
+            Ok((
+                self::projection(projection)?,
+                clip(region)?.unwrap_or_default(),
+            ))
+        };
         configure(renderer, scene, camera, seen, settings)
     }
 }
 
-/// # Safety
-/// `region` is null or alive.
-pub(crate) unsafe fn clip(region: *const RaraRegion) -> Result<Clip> {
-    // SAFETY: the caller's promise.
-    let region = unsafe { region.as_ref() };
-    Ok(region.map_or_else(Clip::default, |region| region.0.clone()))
+/// The clip that a region is; `None` for null.
+fn clip(region: *const RaraRegion) -> Result<Option<Clip>> {
+    if region.is_null() {
+        return Ok(None);
+    }
+    Ok(Some(alive(region, "region")?.0.clone()))
 }
 
 /// As rara_scene_buffers_set_layer_clip, with a region in place of planes; null gives the layer the frame's clip again.
@@ -171,11 +176,9 @@ pub unsafe extern "C" fn rara_scene_buffers_set_layer_region(
     region: *const RaraRegion,
 ) -> RaraResult {
     guard(|| {
-        // SAFETY: the caller's promises.
-        let (scene, own) = unsafe { (exclusive(scene, "scene")?, region.as_ref()) };
-        check_index(scene, index)?;
-        let own = own.map(|region| region.0.clone());
-        scene.buffers.set_layer_clip(index, own)
+        let mut scene = alone(scene, "scene")?;
+        check_index(&scene, index)?;
+        scene.buffers.set_layer_clip(index, clip(region)?)
     })
 }
 
@@ -192,7 +195,7 @@ pub unsafe extern "C" fn rara_region_keeps(
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         let kept = exclusive(kept, "kept")?;
-        let region = shared(region, "region")?;
+        let region = alive(region, "region")?;
         *kept = region.0.keeps(vector(point, "point")?).into();
         Ok(())
     })

@@ -2,16 +2,17 @@
 
 use std::ffi::{CString, c_char, c_void};
 use std::io::Cursor;
+use std::sync::Arc;
 
 use rara::ash::vk;
 use rara::scene::{Bounds, Loaded, load, load_from};
-use rara::{Gaussians, Result, Scene, SceneBuffers, ShFormat, Staging};
+use rara::{Layer, LayerState, Result, Scene, SceneBuffers, ShFormat, Staging};
 
 use crate::boundary::{
-    RaraResult, Versioned, create, destroy, exclusive, guard, invalid, list, memory, number,
-    recording, shared, write,
+    RaraResult, Versioned, exclusive, guard, invalid, list, memory, recording, shared, write,
 };
 use crate::device::RaraDevice;
+use crate::handles::{alive, alone, create, destroy, number};
 use crate::text::{self, c_string};
 
 /// A scene in the host's memory. It may be destroyed once it is on the device. Several threads may read it at once.
@@ -136,8 +137,7 @@ pub unsafe extern "C" fn rara_gaussians_append(
         if std::ptr::eq(gaussians, other) && !other.is_null() {
             return invalid("gaussians and other are the same scene");
         }
-        // SAFETY: the caller's promises, and the pointers differ.
-        let (to, from) = unsafe { (exclusive(gaussians, "gaussians")?, shared(other, "other")?) };
+        let (mut to, from) = (alone(gaussians, "gaussians")?, alive(other, "other")?);
         to.0.gaussians.append(&from.0.gaussians);
         to.0.report.dropped += from.0.report.dropped;
         to.0.report.repaired += from.0.report.repaired;
@@ -156,8 +156,8 @@ pub unsafe extern "C" fn rara_gaussians_info(
     info_size: usize,
 ) -> RaraResult {
     guard(|| {
-        // SAFETY: the caller's promise.
-        let Loaded { gaussians, report } = &unsafe { shared(gaussians, "gaussians") }?.0;
+        let gaussians = alive(gaussians, "gaussians")?;
+        let Loaded { gaussians, report } = &gaussians.0;
         let bounds = Bounds::of(gaussians);
         let found = RaraGaussiansInfo {
             struct_size: size_of::<RaraGaussiansInfo>(),
@@ -179,8 +179,7 @@ pub unsafe extern "C" fn rara_gaussians_info(
 /// `gaussians` is null, or alive and not used any more.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussians_destroy(gaussians: *mut RaraGaussians) {
-    // SAFETY: the caller's promise.
-    unsafe { destroy(gaussians) };
+    destroy(gaussians);
 }
 
 /// Uploads a scene of one layer. Only this function and rara_scene_buffers_upload_layers submit to the host's queue and
@@ -199,33 +198,52 @@ pub unsafe extern "C" fn rara_scene_buffers_upload(
     unsafe { upload(device, sh_format, scene, || one_layer(gaussians)) }
 }
 
-/// The scene of one layer that a set of Gaussians is.
-///
-/// # Safety
-/// `gaussians` is null, or alive for `'a`.
-unsafe fn one_layer<'a>(gaussians: *const RaraGaussians) -> Result<Scene<'a>> {
-    // SAFETY: the caller's promise.
-    let gaussians: &Gaussians = &unsafe { shared(gaussians, "gaussians") }?.0.gaussians;
-    Ok(gaussians.into())
+/// A layer of a scene that is to be uploaded.
+pub(crate) struct GivenLayer {
+    pub(crate) gaussians: Arc<RaraGaussians>,
+    pub(crate) name: String,
+    pub(crate) state: LayerState,
+}
+
+/// The one layer that a set of Gaussians is.
+fn one_layer(gaussians: *const RaraGaussians) -> Result<Vec<GivenLayer>> {
+    Ok(vec![GivenLayer {
+        gaussians: alive(gaussians, "gaussians")?,
+        name: "scene".into(),
+        state: LayerState::default(),
+    }])
+}
+
+/// The scene of these layers.
+fn of_layers(given: &[GivenLayer]) -> Scene<'_> {
+    let layer = |given| {
+        let GivenLayer {
+            gaussians,
+            name,
+            state,
+        }: &GivenLayer = given;
+        Layer::new(name.as_str(), &gaussians.0.gaussians).with(*state)
+    };
+    given.iter().map(layer).collect()
 }
 
 /// Uploads the scene that `layers` gives.
 ///
 /// # Safety
 /// As for rara_scene_buffers_upload, but for what `layers` reads.
-pub(crate) unsafe fn upload<'a>(
+pub(crate) unsafe fn upload(
     device: *const RaraDevice,
     sh_format: RaraShFormat,
     scene: *mut *mut RaraSceneBuffers,
-    layers: impl FnOnce() -> Result<Scene<'a>>,
+    layers: impl FnOnce() -> Result<Vec<GivenLayer>>,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         create(scene, "scene", || {
-            let device = &shared(device, "device")?.0;
+            let device = alive(device, "device")?;
             let layers = layers()?;
             let format = self::sh_format(sh_format)?;
-            SceneBuffers::upload(device, layers, format).map(RaraSceneBuffers::new)
+            SceneBuffers::upload(&device.0, of_layers(&layers), format).map(RaraSceneBuffers::new)
         })
     })
 }
@@ -234,16 +252,16 @@ pub(crate) unsafe fn upload<'a>(
 ///
 /// # Safety
 /// `bytes` is null, or may be overwritten.
-pub(crate) unsafe fn staging_bytes<'a>(
+pub(crate) unsafe fn staging_bytes(
     sh_format: RaraShFormat,
     bytes: *mut u64,
-    layers: impl FnOnce() -> Result<Scene<'a>>,
+    layers: impl FnOnce() -> Result<Vec<GivenLayer>>,
 ) -> RaraResult {
     guard(|| {
         // SAFETY: the caller's promise.
         let bytes = unsafe { exclusive(bytes, "bytes") }?;
         let layers = layers()?;
-        *bytes = SceneBuffers::staging_bytes(layers, self::sh_format(sh_format)?);
+        *bytes = SceneBuffers::staging_bytes(of_layers(&layers), self::sh_format(sh_format)?);
         Ok(())
     })
 }
@@ -252,23 +270,23 @@ pub(crate) unsafe fn staging_bytes<'a>(
 ///
 /// # Safety
 /// As for rara_scene_buffers_upload_with, but for what `layers` reads.
-pub(crate) unsafe fn upload_with<'a>(
+pub(crate) unsafe fn upload_with(
     device: *const RaraDevice,
     cmd: vk::CommandBuffer,
     staging: *const RaraStaging,
     sh_format: RaraShFormat,
     scene: *mut *mut RaraSceneBuffers,
-    layers: impl FnOnce() -> Result<Scene<'a>>,
+    layers: impl FnOnce() -> Result<Vec<GivenLayer>>,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         create(scene, "scene", || {
-            let device = &shared(device, "device")?.0;
+            let device = alive(device, "device")?;
             let cmd = recording(cmd)?;
             let staging = shared(staging, "staging")?.staging()?;
             let layers = layers()?;
             let format = self::sh_format(sh_format)?;
-            SceneBuffers::upload_with(device, cmd, staging, layers, format)
+            SceneBuffers::upload_with(&device.0, cmd, staging, of_layers(&layers), format)
                 .map(RaraSceneBuffers::new)
         })
     })
@@ -361,8 +379,7 @@ impl RaraStaging {
 /// `scene` is null or alive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_bytes(scene: *const RaraSceneBuffers) -> u64 {
-    // SAFETY: the caller's promise.
-    unsafe { number(scene, "scene", |scene| scene.buffers.bytes()) }
+    number(scene, "scene", |scene| scene.buffers.bytes())
 }
 
 /// Frees a scene's device memory; null is ignored. The host has waited for the frames that use it.
@@ -371,6 +388,5 @@ pub unsafe extern "C" fn rara_scene_buffers_bytes(scene: *const RaraSceneBuffers
 /// `scene` is null, or alive and not used any more, not even by the device.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_destroy(scene: *mut RaraSceneBuffers) {
-    // SAFETY: the caller's promise.
-    unsafe { destroy(scene) };
+    destroy(scene);
 }

@@ -4,7 +4,8 @@ use std::ffi::c_char;
 
 use rara::ash::vk;
 
-use crate::boundary::{RaraResult, Versioned, guard, shared, write};
+use crate::boundary::{RaraResult, Versioned, guard, write};
+use crate::handles::alive;
 use crate::renderer::RaraRenderer;
 use crate::settings::{
     RARA_RASTER_AUTO, RARA_RASTER_MESH, RARA_RASTER_QUAD, RARA_RASTER_TILES, RaraRaster,
@@ -56,7 +57,7 @@ pub struct RaraFrameStats {
     pub pass_count: u32,
     /// GPU time of each stage, in order.
     pub passes: [RaraPassTime; RARA_MAX_PASSES],
-    /// GPU time of the frame, milliseconds.
+    /// GPU time of the frame, milliseconds; NAN where pass_count is 0.
     pub gpu_ms: f64,
     /// Number of skipped stages.
     pub skipped_count: u32,
@@ -81,8 +82,7 @@ pub unsafe extern "C" fn rara_renderer_stats(
     stats_size: usize,
 ) -> RaraResult {
     guard(|| {
-        // SAFETY: the caller's promise.
-        let renderer = &unsafe { shared(renderer, "renderer") }?.0;
+        let renderer = &alive(renderer, "renderer")?.0;
         let (counts, raster) = (renderer.counts(), renderer.raster());
         let (times, skipped) = (renderer.pass_times(), renderer.skipped());
         let mut found = RaraFrameStats {
@@ -105,7 +105,10 @@ pub unsafe extern "C" fn rara_renderer_stats(
                 name: fixed(""),
                 ms: 0.0,
             }; RARA_MAX_PASSES],
-            gpu_ms: times.iter().map(|pass| pass.ms).sum(),
+            gpu_ms: match times.is_empty() {
+                true => f64::NAN,
+                false => times.iter().map(|pass| pass.ms).sum(),
+            },
             skipped_count: skipped.len().min(RARA_MAX_PASSES) as u32,
             skipped: [fixed(""); RARA_MAX_PASSES],
         };

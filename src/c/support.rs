@@ -2,11 +2,10 @@
 
 use std::ffi::{c_char, c_void};
 
-use rara::Result;
 use rara::ash::vk;
 use rara::gpu::{self, Support};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
+use crate::boundary::{RaraResult, Versioned, guard, read, write};
 use crate::device::{PFN_vkGetInstanceProcAddr, load_instance};
 
 /// Room for the names of extensions in RaraSupport.
@@ -73,6 +72,15 @@ impl RaraSupport {
             full_subgroups: (support.full_subgroups[1] > 0).into(),
         }
     }
+
+    /// As much of it as features depend on.
+    fn support(&self) -> Support {
+        let mut support = Support::default();
+        support.mesh_shader = self.mesh_shader != 0;
+        // Whether there are any sizes matters, and not which.
+        support.full_subgroups = [u32::from(self.full_subgroups != 0); 2];
+        support
+    }
 }
 
 /// Checks whether a physical device will do, before there is a device. If it will not, the result is RARA_ERROR_DEVICE
@@ -119,86 +127,6 @@ pub unsafe extern "C" fn rara_support_features(
     guard(|| unsafe {
         let default = RaraSupport::of(&Support::default());
         let support = read(support, default, "support")?;
-        let optional = [support.mesh_shader, support.full_subgroups];
-        set_features(p_next, optional.map(|offered| offered != 0))
+        support.support().set_features(p_next)
     })
-}
-
-/// # Safety
-/// `next` is null, or a chain of Vulkan's structs that nobody else uses.
-unsafe fn set_features(next: *mut c_void, [mesh_shader, full_subgroups]: [bool; 2]) -> Result<()> {
-    use vk::StructureType as Type;
-    let (mut address, mut synchronization, mut rendering) = (false, false, false);
-    let mut next = next.cast::<vk::BaseOutStructure<'_>>();
-    // SAFETY: each struct of a chain begins with its type, which says what it is, and with a pointer to the next one.
-    unsafe {
-        while let Some(base) = next.as_mut() {
-            match base.s_type {
-                Type::PHYSICAL_DEVICE_VULKAN_1_2_FEATURES => {
-                    let all = &mut *next.cast::<vk::PhysicalDeviceVulkan12Features<'_>>();
-                    all.buffer_device_address = vk::TRUE;
-                    address = true;
-                }
-                Type::PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES => {
-                    let one = next.cast::<vk::PhysicalDeviceBufferDeviceAddressFeatures<'_>>();
-                    (*one).buffer_device_address = vk::TRUE;
-                    address = true;
-                }
-                Type::PHYSICAL_DEVICE_VULKAN_1_3_FEATURES => {
-                    let all = &mut *next.cast::<vk::PhysicalDeviceVulkan13Features<'_>>();
-                    (all.synchronization2, all.dynamic_rendering) = (vk::TRUE, vk::TRUE);
-                    (synchronization, rendering) = (true, true);
-                    if full_subgroups {
-                        (all.subgroup_size_control, all.compute_full_subgroups) =
-                            (vk::TRUE, vk::TRUE);
-                    }
-                }
-                Type::PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES => {
-                    let one = next.cast::<vk::PhysicalDeviceSynchronization2Features<'_>>();
-                    (*one).synchronization2 = vk::TRUE;
-                    synchronization = true;
-                }
-                Type::PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES => {
-                    let one = next.cast::<vk::PhysicalDeviceDynamicRenderingFeatures<'_>>();
-                    (*one).dynamic_rendering = vk::TRUE;
-                    rendering = true;
-                }
-                Type::PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_FEATURES if full_subgroups => {
-                    let all = next.cast::<vk::PhysicalDeviceSubgroupSizeControlFeatures<'_>>();
-                    let all = &mut *all;
-                    (all.subgroup_size_control, all.compute_full_subgroups) = (vk::TRUE, vk::TRUE);
-                }
-                Type::PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT if mesh_shader => {
-                    let all = &mut *next.cast::<vk::PhysicalDeviceMeshShaderFeaturesEXT<'_>>();
-                    (all.mesh_shader, all.task_shader) = (vk::TRUE, vk::TRUE);
-                }
-                _ => {}
-            }
-            next = base.p_next;
-        }
-    }
-    for (found, feature, holder) in [
-        (
-            address,
-            "bufferDeviceAddress",
-            "VkPhysicalDeviceVulkan12Features",
-        ),
-        (
-            synchronization,
-            "synchronization2",
-            "VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceSynchronization2Features",
-        ),
-        (
-            rendering,
-            "dynamicRendering",
-            "VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceDynamicRenderingFeatures",
-        ),
-    ] {
-        if !found {
-            return invalid(format!(
-                "no struct of p_next has the feature {feature}: chain a {holder}"
-            ));
-        }
-    }
-    Ok(())
 }

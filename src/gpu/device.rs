@@ -1,5 +1,6 @@
 //! The device that everything else is made from.
 
+use std::any::Any;
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::ffi::CString;
@@ -53,6 +54,8 @@ pub(super) struct Inner {
     owned: Option<Arc<Instance>>,
     #[cfg(feature = "lab")]
     pub(super) inspector: std::sync::OnceLock<super::inspection::Inspector>,
+    /// What keeps a host's device alive. It is the last field, so that it goes last.
+    _keep_alive: Option<Arc<dyn Any + Send + Sync>>,
 }
 
 /// A buffer's or an image's name, and the device memory that it takes.
@@ -104,6 +107,7 @@ impl Device {
                 owned,
                 #[cfg(feature = "lab")]
                 inspector: std::sync::OnceLock::new(),
+                _keep_alive: desc.keep_alive,
                 instance,
                 raw,
             }),

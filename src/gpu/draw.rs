@@ -43,19 +43,26 @@ impl<'a> Drawer<'a> {
 
     /// Sets viewport and scissor to a rectangle of the attachment.
     pub fn viewport(&mut self, area: vk::Rect2D) {
+        let vk::Extent2D { width, height } = area.extent;
+        let origin = [area.offset.x as f32, area.offset.y as f32];
+        self.picture(origin, [width as f32, height as f32]);
+        // SAFETY: `new`'s contract covers `cmd`.
+        unsafe { self.device.raw().cmd_set_scissor(self.cmd, 0, &[area]) };
+    }
+
+    /// Sets the viewport alone, to a picture whose upper left corner is at `origin` in the attachment, px. Whatever viewport
+    /// was set before, one of negative height too, has no say in the draws after it.
+    pub fn picture(&mut self, [x, y]: [f32; 2], [width, height]: [f32; 2]) {
         let viewport = vk::Viewport {
-            x: area.offset.x as f32,
-            y: area.offset.y as f32,
-            width: area.extent.width as f32,
-            height: area.extent.height as f32,
+            x,
+            y,
+            width,
+            height,
             min_depth: 0.0,
             max_depth: 1.0,
         };
         // SAFETY: `new`'s contract covers `cmd`.
-        unsafe {
-            self.device.raw().cmd_set_viewport(self.cmd, 0, &[viewport]);
-            self.device.raw().cmd_set_scissor(self.cmd, 0, &[area]);
-        }
+        unsafe { self.device.raw().cmd_set_viewport(self.cmd, 0, &[viewport]) };
     }
 
     /// Draws with the `VkDrawIndirectCommand` at `offset` in `args`. `buffers[i]` is the buffer of binding `i`.

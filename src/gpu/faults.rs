@@ -119,6 +119,7 @@ pub(crate) fn lent(host: &Device) -> AdoptDesc {
         pipeline_cache: vk::PipelineCache::null(),
         allocator: None,
         shape: None,
+        keep_alive: None,
     }
 }
 

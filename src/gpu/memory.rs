@@ -1,5 +1,7 @@
 //! Buffers are storage that shaders reach by address or binding, mapped where the host writes or reads.
 
+use std::sync::Arc;
+
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
@@ -34,10 +36,14 @@ pub struct BufferDesc<'a> {
     pub location: Location,
 }
 
-/// A buffer with every usage that a pass can ask of it; dropping it frees it.
+/// A buffer with every usage that a pass can ask of it, shared by its clones; dropping the last frees it.
 ///
 /// The device must be done with it by then: who submits work waits for it first.
-pub struct Buffer {
+#[derive(Clone)]
+pub struct Buffer(Arc<Owned>);
+
+/// A buffer and its memory.
+struct Owned {
     device: Device,
     handle: vk::Buffer,
     address: u64,
@@ -106,7 +112,7 @@ impl Buffer {
             }
         };
         // From here on dropping `buffer` cleans up.
-        let mut buffer = Self {
+        let mut buffer = Owned {
             device: device.clone(),
             handle,
             address: 0,
@@ -127,83 +133,91 @@ impl Buffer {
         // SAFETY: the buffer is bound, has the address usage, and the feature is a requirement.
         buffer.address = unsafe { device.raw().get_buffer_device_address(&info) };
         device.set_name(handle, desc.name);
-        Ok(buffer)
+        log::debug!("buffer \"{}\" of {} was made", desc.name, bytes(size));
+        Ok(Self(Arc::new(buffer)))
     }
 
     /// The device it is on.
     pub(crate) fn device(&self) -> &Device {
-        &self.device
+        &self.0.device
     }
 
     /// The Vulkan handle.
     pub fn handle(&self) -> vk::Buffer {
-        self.handle
+        self.0.handle
     }
 
     /// The device address of its first byte.
     pub fn address(&self) -> u64 {
-        self.address
+        self.0.address
     }
 
     /// Bytes it holds: the size asked for, rounded up to a multiple of 16.
     pub fn size(&self) -> u64 {
-        self.size
+        self.0.size
     }
 
     /// Its name.
     pub fn name(&self) -> &str {
-        &self.name
+        &self.0.name
     }
 
     /// Who reaches it.
     pub fn location(&self) -> Location {
-        self.location
+        self.0.location
     }
 
     /// The bytes, for [`Location::Upload`] and [`Location::Readback`]. Read them when the device is done writing and
     /// the recording ended with [`Recorder::ready_for_host`](super::Recorder::ready_for_host).
     pub fn mapped(&self) -> &[u8] {
         assert!(
-            self.location != Location::GpuOnly,
+            self.0.location != Location::GpuOnly,
             "buffer \"{}\" is not mapped: it is GpuOnly",
-            self.name
+            self.0.name
         );
         let bytes = self
+            .0
             .allocation()
             .mapped_slice()
             .expect("host-visible memory is mapped while it lives");
-        &bytes[..self.size as usize]
+        &bytes[..self.0.size as usize]
     }
 
     /// The bytes, to be written while the device does not use them.
     pub fn mapped_mut(&mut self) -> &mut [u8] {
         assert!(
-            self.location != Location::GpuOnly,
+            self.0.location != Location::GpuOnly,
             "buffer \"{}\" is not mapped: it is GpuOnly",
-            self.name
+            self.0.name
         );
-        let allocation = self.allocation.as_mut().expect("taken only by drop");
+        let size = self.0.size as usize;
+        let owned = Arc::get_mut(&mut self.0).expect("what the host writes has no clones");
+        let allocation = owned.allocation.as_mut().expect("taken only by drop");
         &mut allocation
             .mapped_slice_mut()
-            .expect("host-visible memory is mapped while it lives")[..self.size as usize]
+            .expect("host-visible memory is mapped while it lives")[..size]
     }
 
     /// Panics with a sentence unless `size` bytes at `offset` lie inside.
     pub(crate) fn check_range(&self, offset: u64, size: u64) {
-        let inside = offset.checked_add(size).is_some_and(|end| end <= self.size);
+        let inside = offset
+            .checked_add(size)
+            .is_some_and(|end| end <= self.0.size);
         assert!(
             inside,
             "{size} bytes at {offset} do not lie in buffer \"{}\" of {} bytes",
-            self.name, self.size
+            self.0.name, self.0.size
         );
     }
+}
 
+impl Owned {
     fn allocation(&self) -> &Allocation {
         self.allocation.as_ref().expect("taken only by drop")
     }
 }
 
-impl Drop for Buffer {
+impl Drop for Owned {
     fn drop(&mut self) {
         // SAFETY: whoever submitted work with the buffer waited for it, as the type's contract says.
         unsafe { self.device.raw().destroy_buffer(self.handle, None) };
@@ -216,9 +230,9 @@ impl Drop for Buffer {
 impl std::fmt::Debug for Buffer {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Buffer")
-            .field("name", &self.name)
-            .field("size", &self.size)
-            .field("location", &self.location)
+            .field("name", &self.0.name)
+            .field("size", &self.0.size)
+            .field("location", &self.0.location)
             .finish_non_exhaustive()
     }
 }

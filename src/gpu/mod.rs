@@ -23,6 +23,8 @@ mod draw;
 mod failure;
 #[cfg(test)]
 pub(crate) mod faults;
+mod features;
+mod functions;
 mod image;
 #[cfg(feature = "view")]
 mod in_flight;
@@ -55,12 +57,13 @@ mod validation;
 pub use attachments::Target;
 pub use device::{Device, NamedBytes};
 pub use devices::{DeviceInfo, list_devices};
+pub use features::Features;
 pub use layout::Bindings;
 pub use open::{AdoptDesc, DeviceDesc};
 pub use pipeline_cache::PipelineCacheId;
 pub use pipeline_file::PipelineCache;
 pub use recorder::DepthImage;
-pub use requirements::{Features, Support, check};
+pub use requirements::{Support, check};
 pub use shape::DeviceShape;
 pub(crate) use shape::LEAST_SUBGROUP;
 pub use timer::PassSpan;

@@ -1,5 +1,6 @@
 //! There are two ways to a device: headless use opens one of its own, and a host lends one.
 
+use std::any::Any;
 use std::ffi::CStr;
 use std::sync::{Arc, Mutex};
 
@@ -9,7 +10,7 @@ use gpu_allocator::{AllocationSizes, AllocatorDebugSettings};
 
 use super::failure::failed;
 use super::instance::Instance;
-use super::{Device, DeviceInfo, DeviceShape, devices, requirements};
+use super::{Device, DeviceInfo, DeviceShape, devices, functions, requirements};
 use crate::setters::setters;
 use crate::{Error, Result};
 
@@ -84,6 +85,9 @@ pub struct AdoptDesc {
     pub allocator: Option<Arc<Mutex<Allocator>>>,
     /// The kind of machine that kernels are chosen for; `None` is what suits the device.
     pub shape: Option<DeviceShape>,
+    /// Whatever keeps the host's device and instance alive: it is dropped when the last of the [`Device`]'s clones and of
+    /// what was made from them is gone. `None` where the host sees to it.
+    pub keep_alive: Option<Arc<dyn Any + Send + Sync>>,
 }
 
 setters!(AdoptDesc {
@@ -95,6 +99,7 @@ setters!(AdoptDesc {
     pipeline_cache: vk::PipelineCache,
     allocator: Option<Arc<Mutex<Allocator>>>,
     shape: Option<DeviceShape>,
+    keep_alive: Option<Arc<dyn Any + Send + Sync>>,
 });
 
 impl AdoptDesc {
@@ -121,6 +126,7 @@ impl AdoptDesc {
             pipeline_cache: vk::PipelineCache::null(),
             allocator: None,
             shape: None,
+            keep_alive: None,
         }
     }
 }
@@ -208,6 +214,7 @@ impl Device {
             pipeline_cache,
             allocator: None,
             shape: desc.shape,
+            keep_alive: None,
         };
         let allocator = allocator(&adopt).inspect_err(|_| {
             // SAFETY: nothing else was made from the device, and nobody else knows it.
@@ -224,14 +231,20 @@ impl Device {
 
     /// Works with a host's device. The host keeps owning it: nothing of the description is ever destroyed here.
     ///
+    /// # Errors
+    /// [`Error::Device`] as of [`check`](super::check), and [`Error::Invalid`] names what the description claims and the
+    /// device was created without.
+    ///
     /// # Safety
     ///
     /// All handles must belong together, be as the description says, and outlive this device, its clones and
-    /// everything made from them. While [`Device::submit_and_wait`] or an upload runs, the host must not use the queue.
+    /// everything made from them, which [`AdoptDesc::keep_alive`] can see to. While [`Device::submit_and_wait`] or an upload runs, the host must not use the queue.
     pub unsafe fn adopt(desc: AdoptDesc) -> Result<Self> {
         // SAFETY: the caller vouches for the handles.
         let mut support =
             unsafe { requirements::check(&desc.instance, desc.physical_device, desc.api_version) }?;
+        // SAFETY: as above.
+        unsafe { functions::check(&desc, support.api_version) }?;
         // SAFETY: as above.
         let families = unsafe {
             desc.instance
@@ -278,6 +291,19 @@ impl Device {
             Some(lent) => lent.clone(),
             None => allocator(&desc)?,
         };
+        let has = |feature| if feature { "" } else { "no " };
+        log::info!(
+            "{} ({}) was adopted for Vulkan {}.{}: kernels for {:?}, {}; {}mesh shaders, {}push descriptors, {}timestamps",
+            info.name,
+            info.driver,
+            vk::api_version_major(support.api_version),
+            vk::api_version_minor(support.api_version),
+            shape.0,
+            shape.1,
+            has(support.mesh_shader),
+            has(support.push_descriptor),
+            has(support.timestamp_bits > 0),
+        );
         Ok(Self::new(desc, info, support, allocator, None, shape))
     }
 }

@@ -1,4 +1,4 @@
-//! The requirements for a device, which can be checked before a device exists, and what a host enables when it creates one.
+//! The requirements for a device, which can be checked before a device exists.
 
 use std::ffi::CStr;
 
@@ -78,62 +78,6 @@ impl Support {
             .filter(|(has, _)| *has)
             .map(|(_, name)| name)
             .collect()
-    }
-
-    /// The features to enable, to be chained into the device's create info.
-    pub fn features(&self) -> Features {
-        Features {
-            vulkan12: vk::PhysicalDeviceVulkan12Features::default().buffer_device_address(true),
-            synchronization2: vk::PhysicalDeviceSynchronization2Features::default()
-                .synchronization2(true),
-            dynamic_rendering: vk::PhysicalDeviceDynamicRenderingFeatures::default()
-                .dynamic_rendering(true),
-            mesh: self.mesh_shader.then(|| {
-                vk::PhysicalDeviceMeshShaderFeaturesEXT::default()
-                    .mesh_shader(true)
-                    .task_shader(true)
-            }),
-            subgroup_size: (self.full_subgroups[1] > 0).then(|| {
-                vk::PhysicalDeviceSubgroupSizeControlFeatures::default()
-                    .subgroup_size_control(true)
-                    .compute_full_subgroups(true)
-            }),
-        }
-    }
-}
-
-/// The feature structs that a device is created with, in 1.2 as in 1.3. A host with structs of its own sets the same
-/// fields there; those of `VkPhysicalDeviceVulkan13Features` stand for all but the first and the mesh shaders'.
-#[derive(Debug, Clone)]
-#[non_exhaustive]
-pub struct Features {
-    /// `bufferDeviceAddress`.
-    pub vulkan12: vk::PhysicalDeviceVulkan12Features<'static>,
-    /// `synchronization2`.
-    pub synchronization2: vk::PhysicalDeviceSynchronization2Features<'static>,
-    /// `dynamicRendering`.
-    pub dynamic_rendering: vk::PhysicalDeviceDynamicRenderingFeatures<'static>,
-    /// `meshShader` and `taskShader`, where supported.
-    pub mesh: Option<vk::PhysicalDeviceMeshShaderFeaturesEXT<'static>>,
-    /// `subgroupSizeControl` and `computeFullSubgroups`, where supported.
-    pub subgroup_size: Option<vk::PhysicalDeviceSubgroupSizeControlFeatures<'static>>,
-}
-
-impl Features {
-    /// Chains the structs to `info`.
-    pub fn chain<'a>(&'a mut self, info: vk::DeviceCreateInfo<'a>) -> vk::DeviceCreateInfo<'a> {
-        let info = info
-            .push_next(&mut self.vulkan12)
-            .push_next(&mut self.synchronization2)
-            .push_next(&mut self.dynamic_rendering);
-        let info = match &mut self.mesh {
-            Some(mesh) => info.push_next(mesh),
-            None => info,
-        };
-        match &mut self.subgroup_size {
-            Some(subgroup_size) => info.push_next(subgroup_size),
-            None => info,
-        }
     }
 }
 

@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::gpu::{Buffer, BufferDesc, Device, DeviceShape, Location};
 use crate::limits;
 use crate::passes::plan::Plan;
+use crate::passes::spare::Spare;
 use crate::passes::{bin, sort};
 use crate::types::{self, FrameCounts, FrameData, LayerData, Quad, Splat, SplatDepth, SurfaceData};
 
@@ -81,7 +82,7 @@ pub(crate) struct DepthBuffers {
 }
 
 /// The further buffers of a reclipped frame.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct ReclipBuffers {
     pub(crate) revisits: Buffer,
     pub(crate) reclips: Buffer,
@@ -90,8 +91,8 @@ pub(crate) struct ReclipBuffers {
 }
 
 /// The numbers that the sizes depend on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Sizes {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Sizes {
     gaussians: u64,
     blocks: u64,
     layers: u64,
@@ -117,6 +118,45 @@ struct Sizes {
 }
 
 impl Sizes {
+    /// The larger of each.
+    fn or(self, other: Self) -> Self {
+        let mut bin = self.bin;
+        for (own, other) in bin.iter_mut().zip(other.bin) {
+            *own = other.max(*own);
+        }
+        Self {
+            gaussians: self.gaussians.max(other.gaussians),
+            blocks: self.blocks.max(other.blocks),
+            layers: self.layers.max(other.layers),
+            surfaces: self.surfaces.max(other.surfaces),
+            clip_blocks: self.clip_blocks.max(other.clip_blocks),
+            shortlists: self.shortlists.max(other.shortlists),
+            cut_bytes: self.cut_bytes.max(other.cut_bytes),
+            histogram: self.histogram.max(other.histogram),
+            crowds: self.crowds.max(other.crowds),
+            splats: self.splats.max(other.splats),
+            depth_keys: self.depth_keys.max(other.depth_keys),
+            quads: self.quads.max(other.quads),
+            masks: self.masks.max(other.masks),
+            pairs: self.pairs.max(other.pairs),
+            tiles: self.tiles.max(other.tiles),
+            bin,
+            picture_bytes: self.picture_bytes.max(other.picture_bytes),
+            occluders: self.occluders.max(other.occluders),
+            depths: self.depths.max(other.depths),
+        }
+    }
+
+    /// True when one is at least as large as the other in each, and of the same scene's size: one that goes from scene to
+    /// scene keeps no more than it needs.
+    fn hold(self, need: Self) -> bool {
+        self.is_of(need) && self.or(need) == self
+    }
+
+    fn is_of(self, other: Self) -> bool {
+        self.gaussians == other.gaussians && self.blocks == other.blocks
+    }
+
     fn of(plan: &Plan) -> Self {
         let gaussians = u64::from(plan.gaussians());
         let cut_bytes = if plan.cuts() {
@@ -216,22 +256,59 @@ pub(super) fn gpu_only(device: &Device, name: &'static str, size: u64) -> Result
 }
 
 impl Buffers {
-    /// Allocates for a plan.
-    pub(crate) fn new(device: &Device, plan: &Plan) -> Result<Self> {
-        let sizes = Sizes::of(plan);
-        let gpu = |name, size| gpu_only(device, name, size);
+    /// What of the buffers a plan may use again, where they do not all suffice: nothing where the scene has another size.
+    pub(crate) fn spare_for(&self, plan: &Plan) -> (Spare, Sizes) {
+        let need = Sizes::of(plan);
+        match self.sized_for.is_of(need) {
+            true => (self.spare(), self.sized_for),
+            false => Default::default(),
+        }
+    }
+
+    /// Allocates for a plan what the spare buffers, which had these sizes, do not have. Nothing becomes smaller, so that going
+    /// back to a frame before allocates nothing.
+    pub(crate) fn new(
+        device: &Device,
+        plan: &Plan,
+        (mut spare, had): (Spare, Sizes),
+    ) -> Result<Self> {
+        let sizes = Sizes::of(plan).or(had);
+        let spare = &mut spare;
+        let picture = spare.picture.take();
+        let reclip = spare.reclip.take();
         let location = plan.picture_location();
-        let picture = |name, size| {
-            device.create_buffer(&BufferDesc {
-                name,
-                size,
-                location,
-            })
-        };
         let (n, blocks) = (sizes.gaussians, sizes.blocks);
         let mask_bytes = u64::from(limits::BLOCK_SIZE) / 4; // two bits a Gaussian
         let frame_bytes =
             size_of::<FrameData>() as u64 + sizes.layers * size_of::<LayerData>() as u64;
+        let tiles = match sizes.tiles {
+            0 if !plan.is_tiled() => None,
+            tiles => {
+                let begins = (tiles + 1) * 4;
+                let fits = |old: &Arc<TilePicture>| {
+                    old.begins.size() >= begins
+                        && old.pixels.size() >= sizes.picture_bytes
+                        && old.pixels.location() == location
+                };
+                let picture = match picture.filter(fits) {
+                    Some(picture) => picture,
+                    None => Arc::new(TilePicture {
+                        begins: spare.take(device, "tile_begins", begins, location)?,
+                        pixels: {
+                            let bytes = sizes.picture_bytes;
+                            spare.take(device, "tile_picture", bytes, location)?
+                        },
+                    }),
+                };
+                Some(TileBuffers {
+                    scratch: bin::Scratch::new(device, plan.way.shape, sizes.bin, spare)?,
+                    splats: spare.gpu_only(device, "tile_splats", sizes.pairs * 4)?,
+                    picture,
+                    occluders: spare.gpu_only(device, "occluders", sizes.occluders * 4)?,
+                })
+            }
+        };
+        let mut gpu = |name, size| spare.gpu_only(device, name, size);
         Ok(Self {
             frame: gpu("frame", frame_bytes)?,
             surfaces: gpu("surfaces", sizes.surfaces * size_of::<SurfaceData>() as u64)?,
@@ -258,20 +335,8 @@ impl Buffers {
             histogram: gpu("histogram", sizes.histogram * 4)?,
             crowds: gpu("crowds", sizes.crowds * 4)?,
             tile_masks: gpu("tile_masks", sizes.masks * 16)?,
-            tiles: if plan.is_tiled() {
-                Some(TileBuffers {
-                    scratch: bin::Scratch::new(device, plan.way.shape, sizes.bin)?,
-                    splats: gpu("tile_splats", sizes.pairs * 4)?,
-                    picture: Arc::new(TilePicture {
-                        begins: picture("tile_begins", (sizes.tiles + 1) * 4)?,
-                        pixels: picture("tile_picture", sizes.picture_bytes)?,
-                    }),
-                    occluders: gpu("occluders", sizes.occluders * 4)?,
-                })
-            } else {
-                None
-            },
-            depth: if plan.way.expects_depth {
+            tiles,
+            depth: if sizes.depths > 0 || plan.way.expects_depth {
                 Some(DepthBuffers {
                     depths: gpu("depths", n * size_of::<SplatDepth>() as u64)?,
                     draw: gpu("depth_draw", 16)?,
@@ -279,7 +344,7 @@ impl Buffers {
             } else {
                 None
             },
-            reclip: None,
+            reclip: reclip.filter(|reclip| reclip.dirty.size() >= sizes.tiles * 4),
             sized_for: sizes,
         })
     }
@@ -306,30 +371,7 @@ impl Buffers {
 
     /// True when a plan fits into what is allocated.
     pub(crate) fn fit(&self, plan: &Plan) -> bool {
-        let (have, need) = (self.sized_for, Sizes::of(plan));
-        have.gaussians == need.gaussians
-            && have.blocks == need.blocks
-            && have.layers >= need.layers
-            && have.surfaces >= need.surfaces
-            && have.clip_blocks >= need.clip_blocks
-            && have.shortlists >= need.shortlists
-            && have.cut_bytes >= need.cut_bytes
-            && have.histogram >= need.histogram
-            && have.crowds >= need.crowds
-            && have.splats >= need.splats
-            && have.depth_keys >= need.depth_keys
-            && have.quads >= need.quads
-            && have.masks >= need.masks
-            && have.pairs >= need.pairs
-            && have.tiles >= need.tiles
-            && have
-                .bin
-                .iter()
-                .zip(need.bin)
-                .all(|(have, need)| *have >= need)
-            && have.picture_bytes >= need.picture_bytes
-            && have.depths >= need.depths
-            && have.occluders >= need.occluders
+        self.sized_for.hold(Sizes::of(plan))
     }
 
     /// The largest buffer that a shader binds, bytes.

@@ -18,6 +18,7 @@ mod layers;
 #[cfg_attr(not(feature = "view"), allow(dead_code))]
 mod lines;
 mod occluders;
+mod pair_estimate;
 mod pipelines;
 mod plan;
 mod project;
@@ -29,6 +30,7 @@ mod scene_layer;
 mod sh_storage;
 mod shaders;
 mod sort;
+mod spare;
 pub(crate) mod splat;
 mod stage;
 pub(crate) mod tiles;

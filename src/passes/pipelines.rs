@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 use std::marker::PhantomData;
+use std::time::Instant;
 
 use ash::vk;
 
@@ -201,6 +202,7 @@ impl Pipelines {
             draw,
         } = key;
         let bindings = self.bindings;
+        let begun = Instant::now();
         if let Some((Identity(fragment), attachments, depth_test)) = draw {
             let desc = GraphicsDesc {
                 name,
@@ -225,6 +227,8 @@ impl Pipelines {
             let pipeline = ComputePipeline::new(device, &desc)?;
             self.compute.insert(key, pipeline);
         }
+        let ms = 1e3 * begun.elapsed().as_secs_f64();
+        log::debug!("pipeline \"{name}\" was made in {ms:.1} ms");
         Ok(())
     }
 }

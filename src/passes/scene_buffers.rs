@@ -5,11 +5,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use ash::vk;
 use bytemuck::cast_slice;
 
+use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
 use crate::gpu::{Buffer, Device, Recorder};
 use crate::limits;
 use crate::passes::buffers::gpu_only;
+use crate::passes::pair_estimate::PairSample;
 use crate::passes::scene_layer::{PackedLayer, SceneLayer, join_sets, layer_index, sizes};
 use crate::precision::ShFormat;
 use crate::scene::{LayerState, Scene, check_clip, sh_coefficients};
@@ -30,6 +32,8 @@ pub struct SceneBuffers {
     pub(crate) sh_degree: u32,
     pub(crate) sh_format: ShFormat,
     layers: Vec<SceneLayer>,
+    /// What the pairs of tile and splat are estimated from.
+    sample: PairSample,
 }
 
 static NEXT_ID: AtomicU64 = AtomicU64::new(0);
@@ -237,8 +241,23 @@ impl SceneBuffers {
             sh_degree: scene.sh_degree(),
             sh_format: format,
             layers,
+            sample: PairSample::new(scene),
         };
+        log::info!(
+            "a scene of {} Gaussians in {} takes {} bytes on the device",
+            buffers.count,
+            match buffers.layers.len() {
+                1 => "one layer".into(),
+                layers => format!("{layers} layers"),
+            },
+            buffers.bytes()
+        );
         Ok((buffers, packed))
+    }
+
+    /// An estimate of the pairs of tile and splat in a camera's picture. The camera is in the scene's space.
+    pub(crate) fn estimated_pairs(&self, camera: &Camera) -> u32 {
+        self.sample.pairs(&self.layers, camera)
     }
 
     /// Blocks of all layers.

@@ -32,7 +32,7 @@ pub(crate) struct FrameRequest<'a> {
 
 impl Renderer {
     /// Decides what the next frame needs, and allocates and compiles the missing parts. The camera's picture is the
-    /// viewport of [`draw`](Self::draw). [`Settings::background`] is the host's business and ignored here.
+    /// viewport that [`draw`](Self::draw) sets. [`Settings::background`] is the host's business and ignored here.
     ///
     /// Where a frame needs more memory than the one before, old and new exist side by side while frames are in flight;
     /// with one frame in flight the old goes first. After an error nothing can be recorded until a call succeeds.
@@ -61,7 +61,9 @@ impl Renderer {
             camera: &camera,
             clip: &clip,
             ..*request
-        })
+        })?;
+        self.note_frame();
+        Ok(())
     }
 
     /// Configures a frame whose camera and clip are in the scene's units already.
@@ -177,7 +179,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Makes room for as many pairs of tile and splat as the frame before has shown to be needed. Returns whether nothing
+    /// Makes room for as many pairs of tile and splat as the frame before has shown to be needed, and as this one is expected
+    /// to have. Returns whether nothing
     /// is to be drawn of the next frame where that is not enough.
     fn make_room(&mut self, request: &FrameRequest<'_>, tiles: u32) -> bool {
         let undrawn = |frame: &RecordedFrame| {
@@ -193,6 +196,9 @@ impl Renderer {
         let pairs = &mut self.memory.pairs;
         let had = pairs.room();
         pairs.make(request.scene.count, tiles, needed);
+        if matches!(request.settings.raster, Raster::Auto | Raster::Tiles) {
+            pairs.expect(request.scene.estimated_pairs(request.camera));
+        }
         // Where no more room can be made, quads are drawn at once.
         request.submission == Submission::Awaited && (!fell_back || pairs.room() > had)
     }

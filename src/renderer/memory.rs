@@ -25,7 +25,7 @@ impl WorkingMemory {
             .is_some_and(|buffers| buffers.fit(plan))
     }
 
-    /// Replaces the buffers by ones that a plan fits into; after an error there are none.
+    /// Replaces the buffers that a plan does not fit into, and keeps the others; after an error there are none.
     pub(super) fn replace(
         &mut self,
         device: &Device,
@@ -35,11 +35,13 @@ impl WorkingMemory {
     ) -> Result<()> {
         // Free first: both together may not fit.
         let outgrown = self.buffers.take();
+        let spare = outgrown.as_ref().map(|buffers| buffers.spare_for(plan));
         let prepared = frames.prepared();
+        // What is used again lives on in the new buffers too.
         self.retired
             .extend(outgrown.map(|buffers| (prepared, buffers)));
         self.free_finished(frames.finished(submission));
-        self.buffers = Some(Buffers::new(device, plan)?);
+        self.buffers = Some(Buffers::new(device, plan, spare.unwrap_or_default())?);
         Ok(())
     }
 

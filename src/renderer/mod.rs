@@ -10,6 +10,7 @@ use crate::error::{Error, Result};
 use crate::gpu::Device;
 use crate::passes::{Kept, TilePicture};
 use crate::placement::Placement;
+use crate::stats::RasterChoice;
 
 mod choose;
 mod configure;
@@ -18,6 +19,7 @@ mod desc;
 mod faults;
 mod frames;
 mod memory;
+mod notes;
 mod outcome;
 mod pair_room;
 mod record;
@@ -58,11 +60,12 @@ use shared::SharedPipelines;
 /// [`prepare_behind`](Self::prepare_behind) says what it needs.
 ///
 /// **What recording leaves behind.** `prepare` binds a compute pipeline, `draw` a graphics pipeline; both write push
-/// constants. The host binds its own pipelines again, pushes its own constants, and sets the dynamic state of its pipelines
-/// again, all but viewport and scissor: binding a pipeline of rara's, in which the rest is fixed, undoes it. With
-/// [`Bindings::Bound`](crate::gpu::Bindings::Bound) both push descriptor set 0 too, by a layout of their own, so that the
-/// host binds all of its sets again. No image, no layout, no query and no vertex buffer is touched. Of dynamic state `draw`
-/// needs viewport and scissor: the viewport of positive height, its depths from 0 to 1.
+/// constants. `draw` sets the viewport. The host binds its own pipelines again, pushes its own constants, and sets all
+/// dynamic state of its pipelines again but the scissor: binding a pipeline of rara's, in which the rest is fixed,
+/// undoes it. With [`Bindings::Bound`](crate::gpu::Bindings::Bound) both push descriptor set 0 too, by a layout of their
+/// own, so that the host binds all of its sets again. No image, no layout, no query and no vertex buffer is touched. Of
+/// the host's dynamic state `draw` reads one thing, the scissor, which `vkCmdSetScissor` sets and
+/// `vkCmdSetScissorWithCount` does not. The host's viewport may be any, upside down or not yet set.
 ///
 /// **What lives how long.** The scene's buffers, and the image of `prepare_behind`, live until the frame has executed; a
 /// render pass of [`RendererDesc::target`] until no renderer that shares pipelines with this one is left; a host's device
@@ -94,6 +97,8 @@ pub struct Renderer {
     configured: Option<Configured>,
     /// The results that the last prepared frame has left in the memory.
     kept: Option<Kept>,
+    /// How splats become pixels, as the log was told last.
+    noted: RasterChoice,
 }
 
 impl Renderer {
@@ -139,6 +144,7 @@ impl Renderer {
             frames,
             configured: None,
             kept: None,
+            noted: RasterChoice::default(),
         })
     }
 

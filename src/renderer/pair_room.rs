@@ -1,5 +1,5 @@
 //! How many pairs of tile and splat a frame has room for. It follows from earlier frames, since nothing is read back within
-//! one.
+//! one, and from an estimate, so that a first frame has the room too.
 
 /// The room before any frame has shown how many pairs there are: this many a Gaussian, where most are small, and this many
 /// a tile, where they are few and large.
@@ -36,6 +36,15 @@ impl PairRoom {
             self.room = with_margin(needed);
         }
         self.room = self.room.max(usual.min(self.most));
+    }
+
+    /// Makes room for a frame that has about so many pairs, and for half as many more: estimates err, and the next camera may
+    /// see more. Pairs that would not fit anyway are no reason to take memory.
+    pub(super) fn expect(&mut self, estimated: u32) {
+        let room = estimated.saturating_add(estimated / 2);
+        if room <= self.most {
+            self.room = self.room.max(room);
+        }
     }
 
     /// True when there is no room for so many pairs, but can be. Pairs that would not fit anyway are no reason to take
@@ -91,6 +100,18 @@ mod tests {
         let mut pairs = PairRoom::default();
         pairs.make(1000, 500, MOST);
         assert_eq!(pairs.room(), 34_000);
+    }
+
+    #[test]
+    fn what_is_expected_has_room_before_it_is_needed() {
+        let mut pairs = PairRoom::default();
+        pairs.make(1000, 500, 0);
+        pairs.expect(100_000);
+        assert_eq!(pairs.room(), 150_000, "and half as many more");
+        pairs.expect(1_000);
+        assert_eq!(pairs.room(), 150_000, "what there is stays");
+        pairs.expect(MOST);
+        assert_eq!(pairs.room(), 150_000, "what would not fit takes nothing");
     }
 
     #[test]

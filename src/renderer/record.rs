@@ -101,18 +101,21 @@ impl Renderer {
     }
 
     /// Records the splats, or the picture that the tiles have made of them, inside the host's rendering scope, blended
-    /// `over` what is there: premultiplied colours, the same for all samples of a pixel. `origin` is the viewport's upper
-    /// left corner in the attachment, whole px; the viewport has the camera's size. This may be recorded more than once for
-    /// a prepared frame.
+    /// `over` what is there: premultiplied colours, the same for all samples of a pixel. `origin` is the upper left corner
+    /// of the camera's picture in the attachment, whole px, where row 0 of the attachment is the upper one. This sets the
+    /// viewport to that picture: the host's own, which may have a negative height, has no say in it. The host's scissor has.
+    /// This may be recorded more than once for a prepared frame.
     ///
     /// # Safety
     /// `cmd` is inside a rendering scope with the attachments of the [`RendererDesc`](crate::RendererDesc) and no others,
-    /// one layer and no view mask; viewport and scissor are set; [`prepare`](Self::prepare) was recorded for the same frame
-    /// before it.
+    /// one layer and no view mask; a scissor is set by `vkCmdSetScissor`; [`prepare`](Self::prepare) was recorded for the
+    /// same frame before it.
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) without a prepared frame; nothing is recorded then.
+    /// [`Error::Invalid`](crate::Error::Invalid) without a prepared frame, and for an `origin` that is not finite; nothing is
+    /// recorded then.
     pub unsafe fn draw(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) -> Result<()> {
+        check_origin("draw", origin)?;
         let Some(configured) = self.configured.as_ref().filter(|frame| frame.prepared) else {
             return out_of_order("draw needs a successful configure() and prepare() before it");
         };
@@ -130,6 +133,7 @@ impl Renderer {
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
         let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
         drawer.pass("splat", |drawer| {
+            drawer.picture(origin, plan.size());
             let frame = (plan, buffers);
             passes::splat::record(drawer, pipelines, frame, attachments, origin, map);
             if let Some(t) = tiled {
@@ -152,9 +156,9 @@ impl Renderer {
     /// As for [`draw`](Self::draw), in such a scope.
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) without a prepared frame, and without
-    /// [`RendererDesc::expected_depth`](crate::RendererDesc::expected_depth).
+    /// As for [`draw`](Self::draw), and without [`RendererDesc::expected_depth`](crate::RendererDesc::expected_depth).
     pub unsafe fn draw_depth(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) -> Result<()> {
+        check_origin("draw_depth", origin)?;
         if self.desc.expected_depth.is_none() {
             return out_of_order("draw_depth needs RendererDesc::expected_depth");
         }
@@ -178,10 +182,22 @@ impl Renderer {
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
         let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
         drawer.pass("splat_depth", |drawer| {
+            drawer.picture(origin, plan.size());
             let frame = (plan, buffers, depths);
             let map = (configured.depth_map, configured.unit);
             passes::depth::record_draw(drawer, pipelines, frame, attachments, origin, map);
         });
         Ok(())
     }
+}
+
+/// Refuses a corner that is nowhere, which would draw nothing without a word.
+fn check_origin(call: &str, origin: [f32; 2]) -> Result<()> {
+    if origin.iter().all(|number| number.is_finite()) {
+        return Ok(());
+    }
+    let [x, y] = origin;
+    out_of_order(&format!(
+        "{call} was given the origin {x}, {y}: give the upper left corner of the camera's picture in the attachment, px"
+    ))
 }

@@ -32,6 +32,11 @@ impl Renderer {
         self.oldest().is_some_and(RecordedFrame::fell_back)
     }
 
+    /// The pairs of tile and splat of the same frame.
+    pub(super) fn pairs(&self) -> u32 {
+        self.oldest().map_or(0, RecordedFrame::pairs)
+    }
+
     /// How many Gaussians ended where in the oldest frame that is kept: the last one, with one frame in flight. Ask
     /// after waiting for it, before the next [`prepare`](Self::prepare). The counts are zero where no frame is that old.
     pub fn counts(&self) -> Counts {

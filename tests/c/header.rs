@@ -24,6 +24,7 @@ fn the_header_is_current() {
         "device",
         "placement",
         "renderer",
+        "renderer_desc",
         "orthographic",
         "scene",
         "layer",

@@ -1,5 +1,14 @@
 //! `rara_set_log`: the log's records reach the host's function, on any thread, until it is replaced.
 
+#[path = "../common/canvas/mod.rs"]
+#[allow(unused_imports, reason = "no canvas is drawn on here")]
+mod canvas;
+mod frame_lines;
+#[path = "../../tools/examples/host.rs"]
+#[allow(dead_code, reason = "its frames are for the hosts that draw")]
+mod host;
+mod results;
+
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr::null_mut;
 use std::sync::Mutex;

@@ -9,7 +9,9 @@ mod host;
 
 mod classic_host;
 mod depth;
+mod dynamic_state;
 mod embed;
+mod features;
 mod formats;
 mod gpu;
 mod streaming;

@@ -13,7 +13,9 @@ int main(int count, char **arguments) {
     const std::string what = count > 3 ? arguments[3] : "both";
     const bool validation = getenv("RARA_VALIDATION") != nullptr;
     check(rara_abi_version() == RARA_ABI_VERSION, "rara.h and the library are of different versions");
-    RARA(rara_set_log([](RaraLogLevel, const char *text, void *) { fprintf(stderr, "rara: %s\n", text); }, nullptr));
+    RARA(rara_set_log([](RaraLogLevel level, const char *text, void *) {
+        if (level <= RARA_LOG_LEVEL_WARN) fprintf(stderr, "rara: %s\n", text);
+    }, nullptr));
 
     VkInstance instance = make_instance(validation);
 
@@ -105,7 +107,7 @@ int main(int count, char **arguments) {
         for (int row = 0; row < 3; row++)
             for (int i = 0; i < 3; i++) p[row] += camera.rotation[3 * row + i] * (column < 3 ? i == column : -camera.eye[i]);
         push.world_to_clip[4 * column] = float(2 * camera.fx / W * p[0] + (2 * camera.cx / W - 1) * p[2]);
-        push.world_to_clip[4 * column + 1] = float(2 * camera.fy / H * p[1] + (2 * camera.cy / H - 1) * p[2]);
+        push.world_to_clip[4 * column + 1] = -float(2 * camera.fy / H * p[1] + (2 * camera.cy / H - 1) * p[2]);  // y is up
         push.world_to_clip[4 * column + 2] = column < 3 ? 0 : float(REVERSED.z_near);
         push.world_to_clip[4 * column + 3] = float(p[2]);
     }
@@ -125,7 +127,7 @@ int main(int count, char **arguments) {
     onto.clearValue.color = {{0, 0, 0, 1}};
     VkRenderingInfo scope{VK_STRUCTURE_TYPE_RENDERING_INFO, nullptr, 0, {{0, 0}, {W, H}}, 1, 0, 1, &onto, &behind};
     vkCmdBeginRendering(cmd, &scope);
-    VkViewport viewport{0, 0, W, H, 0, 1};
+    VkViewport viewport{0, H, W, -float(H), 0, 1};  // the host's own: splats need none
     vkCmdSetViewport(cmd, 0, 1, &viewport);
     vkCmdSetScissor(cmd, 0, 1, &scope.renderArea);
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);

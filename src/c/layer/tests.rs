@@ -17,15 +17,18 @@ unsafe fn staging(layers: *const RaraLayer, count: usize, bytes: &mut u64) -> Ra
     unsafe { rara_scene_buffers_staging_bytes_of_layers(layers, count, format, bytes) }
 }
 
+/// Gaussians as C has them.
+fn handle(gaussians: rara::Gaussians) -> *mut RaraGaussians {
+    let report = Default::default();
+    let loaded = rara::scene::Loaded { gaussians, report };
+    crate::handles::add(RaraGaussians(loaded)).expect("a number")
+}
+
 #[test]
 fn layers() {
-    let gaussians = |count| {
-        RaraGaussians(rara::scene::Loaded {
-            gaussians: rara::scene::generate(rara::scene::Kind::General, count, 1),
-            report: Default::default(),
-        })
-    };
+    let gaussians = |count| rara::scene::generate(rara::scene::Kind::General, count, 1);
     let (first, second) = (gaussians(300), gaussians(20));
+    let handles = [handle(first.clone()), handle(second.clone())];
     let mut bytes = 0;
     // SAFETY: strings that end in NUL, handles that are alive, and as many structs as the counts say; they may hold any
     // bytes.
@@ -43,7 +46,7 @@ fn layers() {
         assert_eq!(state, rara::LayerState::default().into());
         let mut layers: [RaraLayer; 2] = std::mem::zeroed();
         let size = size_of::<RaraLayer>();
-        let named = [(c"one", &first), (c"two", &second)];
+        let named = [(c"one", handles[0]), (c"two", handles[1])];
         for (layer, (name, gaussians)) in layers.iter_mut().zip(named) {
             let filled = rara_layer_default(layer, size, name.as_ptr(), gaussians);
             assert_eq!((filled, layer.state), (RARA_OK, null()));
@@ -55,8 +58,8 @@ fn layers() {
         };
         assert_eq!(staging(layers.as_ptr(), 2, &mut bytes), RARA_OK);
         let scene = rara::Scene::from_iter([
-            rara::Layer::new("one", &first.0.gaussians),
-            rara::Layer::new("two", &second.0.gaussians),
+            rara::Layer::new("one", &first),
+            rara::Layer::new("two", &second),
         ]);
         let truth = rara::SceneBuffers::staging_bytes(scene, rara::ShFormat::Half);
         assert_eq!(bytes, truth);
@@ -68,6 +71,14 @@ fn layers() {
         layers = usual;
         layers[0].gaussians = null();
         refused(&layers, "layers[0].gaussians is null");
+        layers[1].gaussians = handle(gaussians(3));
+        rara_gaussians_destroy(layers[1].gaussians.cast_mut());
+        refused(&layers, "layers[0].gaussians is null");
+        layers[0].gaussians = handles[0];
+        refused(
+            &layers,
+            "layers[1].gaussians is no RaraGaussians that is alive: it was destroyed",
+        );
         layers = usual;
         layers[1].state = &state;
         assert_eq!(staging(layers.as_ptr(), 2, &mut bytes), RARA_OK);
@@ -88,15 +99,15 @@ fn layers() {
         };
         layers[1].state = &larger;
         refused(&layers, "layers[1].state->struct_size is ");
+        for handle in handles {
+            rara_gaussians_destroy(handle);
+        }
     }
 }
 
 #[test]
 fn lists_of_structs_of_other_versions() {
-    let gaussians = RaraGaussians(rara::scene::Loaded {
-        gaussians: Default::default(),
-        report: Default::default(),
-    });
+    let gaussians = handle(Default::default());
     let name = c"a layer".as_ptr();
     let ours = size_of::<RaraLayer>();
     // An older host, whose struct ended before `state`.
@@ -110,7 +121,7 @@ fn lists_of_structs_of_other_versions() {
         };
         for index in 0..3 {
             let layer = at(&mut room, index, older);
-            assert_eq!(rara_layer_default(layer, older, name, &gaussians), RARA_OK);
+            assert_eq!(rara_layer_default(layer, older, name, gaussians), RARA_OK);
         }
         assert_eq!(staging(room.as_ptr(), 3, &mut bytes), RARA_OK);
         // Layers of one array, but of two versions.
@@ -128,5 +139,6 @@ fn lists_of_structs_of_other_versions() {
         room[0].struct_size = ours;
         let result = staging(room.as_ptr(), usize::MAX, &mut bytes);
         assert_fails(result, RARA_ERROR_INVALID, "more than memory holds");
+        rara_gaussians_destroy(gaussians);
     }
 }

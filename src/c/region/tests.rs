@@ -92,7 +92,7 @@ fn regions_are_made_of_text_and_json() {
         let result = rara_region_load(c"no/such.json".as_ptr(), null(), &mut region);
         assert_fails(result, RARA_ERROR_IO, "no/such.json");
         // Without a region all is kept.
-        assert!(clip(null()).expect("everything").is_everything());
+        assert!(clip(null()).expect("everything").is_none());
     }
     std::fs::remove_file(&path).expect("is there");
     assert!(projection(RARA_PROJECTION_ORTHOGRAPHIC).is_ok());
@@ -111,6 +111,7 @@ fn baking_is_that_of_rust() {
         gaussians: scene,
         report: Default::default(),
     });
+    let gaussians = crate::handles::add(gaussians).expect("a number");
     let (mut region, mut baked) = (null_mut(), null_mut());
     let text = CString::new(text).expect("no NUL");
     // SAFETY: handles that are alive, structs that may hold any bytes, pointers that may be overwritten.
@@ -124,12 +125,14 @@ fn baking_is_that_of_rust() {
         let mut counts: RaraBakeCounts = std::mem::zeroed();
         let room = size_of_val(&counts);
         let mut bake = |given: *const RaraBakeSettings, counts: *mut RaraBakeCounts, room| {
-            let result = rara_gaussians_bake(&gaussians, region, given, &mut baked, counts, room);
+            let result = rara_gaussians_bake(gaussians, region, given, &mut baked, counts, room);
             (result, baked)
         };
         let (result, made) = bake(&given, &mut counts, room);
         assert_eq!(result, RARA_OK);
-        assert_eq!((*made).0.gaussians, truth.gaussians);
+        let of_made = alive(made, "made").expect("just made");
+        assert_eq!(of_made.0.gaussians, truth.gaussians);
+        drop(of_made);
         assert_eq!(counts, truth.counts.into());
         assert!(counts.children > 0 && counts.struct_size == room);
         rara_gaussians_destroy(made);
@@ -149,8 +152,15 @@ fn baking_is_that_of_rust() {
         );
         given.mode = 9;
         assert_fails(bake(&given, null_mut(), 0).0, RARA_ERROR_INVALID, "mode 9");
-        let nothing = rara_gaussians_bake(&gaussians, null(), null(), &mut baked, null_mut(), 0);
+        let nothing = rara_gaussians_bake(gaussians, null(), null(), &mut baked, null_mut(), 0);
         assert_fails(nothing, RARA_ERROR_INVALID, "region is null");
         rara_region_destroy(region);
+        let nothing = rara_gaussians_bake(gaussians, region, null(), &mut baked, null_mut(), 0);
+        assert_fails(
+            nothing,
+            RARA_ERROR_INVALID,
+            "region is no RaraRegion that is alive",
+        );
+        rara_gaussians_destroy(gaussians);
     }
 }

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::gpu::{Buffer, Device, Groups, Recorder};
 use crate::limits;
 use crate::passes::bin::ScratchWords;
-use crate::passes::buffers::{buffers, gpu_only, indirect};
+use crate::passes::buffers::{buffers, indirect};
 use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::radix::{self, Kernels, Keys, Pass};
@@ -14,6 +14,7 @@ use crate::passes::shaders::{
     batch_count, batch_scan, batch_scatter, macro_count, macro_expand, macro_ranges, macro_scan,
     row_scan,
 };
+use crate::passes::spare::Spare;
 use crate::passes::stage::{Frame, KernelSet, key};
 use crate::passes::{sort, tiles};
 use crate::types::{FrameCounts, TilesData};
@@ -96,7 +97,7 @@ pub(super) fn words(plan: &Plan) -> ScratchWords {
 }
 
 impl Scratch {
-    pub(super) fn new(device: &Device, words: ScratchWords) -> Result<Self> {
+    pub(super) fn new(device: &Device, words: ScratchWords, spare: &mut Spare) -> Result<Self> {
         let [
             sums,
             keys,
@@ -108,7 +109,7 @@ impl Scratch {
             rows,
             list,
         ] = words;
-        let gpu = |name, words| gpu_only(device, name, words * 4);
+        let mut gpu = |name, words| spare.gpu_only(device, name, words * 4);
         Ok(Self {
             pair_sums: gpu("pair_sums", sums)?,
             macro_keys: gpu("macro_keys", keys)?,
@@ -128,7 +129,6 @@ impl Scratch {
         &self.tile_list
     }
 
-    #[cfg(feature = "lab")]
     pub(super) fn all(&self) -> [&Buffer; 9] {
         [
             &self.pair_sums,

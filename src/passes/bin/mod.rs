@@ -12,6 +12,7 @@ mod spans;
 use crate::error::Result;
 use crate::gpu::{Buffer, Device, DeviceShape};
 use crate::passes::plan::Plan;
+use crate::passes::spare::Spare;
 use crate::passes::stage::{KernelSet, Stage};
 
 pub(crate) const STAGE: Stage = Stage {
@@ -53,16 +54,17 @@ impl Scratch {
         }
     }
 
-    /// Allocates that of the kernels for a kind of device.
+    /// Allocates that of the kernels for a kind of device, as far as no spare buffer serves.
     pub(in crate::passes) fn new(
         device: &Device,
         shape: DeviceShape,
         words: ScratchWords,
+        spare: &mut Spare,
     ) -> Result<Self> {
         Ok(match shape {
-            DeviceShape::Cpu => Self::Spans(spans::Scratch::new(device, words)?.into()),
+            DeviceShape::Cpu => Self::Spans(spans::Scratch::new(device, words, spare)?.into()),
             DeviceShape::Gpu { .. } => {
-                Self::MacroTiles(macro_tiles::Scratch::new(device, words)?.into())
+                Self::MacroTiles(macro_tiles::Scratch::new(device, words, spare)?.into())
             }
         })
     }
@@ -76,7 +78,6 @@ impl Scratch {
     }
 
     /// Its buffers.
-    #[cfg(feature = "lab")]
     pub(in crate::passes) fn all(&self) -> Vec<&Buffer> {
         match self {
             Self::Spans(scratch) => scratch.all().into(),

@@ -4,12 +4,13 @@
 use crate::error::Result;
 use crate::gpu::{Buffer, Device, Groups, Recorder};
 use crate::passes::bin::ScratchWords;
-use crate::passes::buffers::{buffers, gpu_only, indirect};
+use crate::passes::buffers::{buffers, indirect};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{
     span_count, span_scan, span_scatter, tile_count, tile_scan, tile_scatter,
 };
 use crate::passes::sort;
+use crate::passes::spare::Spare;
 use crate::passes::stage::{Frame, KernelSet, key};
 use crate::types::FrameCounts;
 
@@ -55,9 +56,9 @@ pub(super) fn words(plan: &Plan) -> ScratchWords {
 }
 
 impl Scratch {
-    pub(super) fn new(device: &Device, words: ScratchWords) -> Result<Self> {
+    pub(super) fn new(device: &Device, words: ScratchWords, spare: &mut Spare) -> Result<Self> {
         let [counts, begins, splats, columns, column_counts, ..] = words;
-        let gpu = |name, words| gpu_only(device, name, words * 4);
+        let mut gpu = |name, words| spare.gpu_only(device, name, words * 4);
         Ok(Self {
             span_counts: gpu("span_counts", counts)?,
             row_begins: gpu("row_begins", begins)?,
@@ -67,7 +68,6 @@ impl Scratch {
         })
     }
 
-    #[cfg(feature = "lab")]
     pub(super) fn all(&self) -> [&Buffer; 5] {
         [
             &self.span_counts,

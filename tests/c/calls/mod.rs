@@ -1,6 +1,7 @@
 //! The functions of `rara.h` on a device: whatever a host does wrong there has a message, and so has a lost device.
 //! `tests/c/cpp_host.rs` and `tests/c/frames` draw what a host does right.
 
+mod ended;
 mod layers;
 mod lost;
 
@@ -17,6 +18,7 @@ use rara_c::clip::*;
 use rara_c::depth::*;
 use rara_c::device::*;
 use rara_c::renderer::*;
+use rara_c::renderer_desc::*;
 use rara_c::scene::*;
 use rara_c::stats::*;
 use rara_c::support::*;
@@ -201,6 +203,7 @@ fn what_is_wrong_is_said() {
         assert_ok(result);
         let reason = CStr::from_ptr(stats.raster_reason.as_ptr());
         assert!(!reason.is_empty() && stats.drawn == 0 && stats.skipped_count > 0);
+        assert!(stats.pass_count == 0 && stats.gpu_ms.is_nan(), "no timing");
         let first = CStr::from_ptr(stats.skipped[0].as_ptr());
         assert_eq!(first, c"clip");
         assert_ok(rara_renderer_forget(renderer));

@@ -19,6 +19,7 @@ use rara_c::orthographic::*;
 use rara_c::placement::*;
 use rara_c::region::*;
 use rara_c::renderer::*;
+use rara_c::renderer_desc::*;
 use rara_c::settings::*;
 
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;

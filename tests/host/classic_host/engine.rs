@@ -140,9 +140,11 @@ impl Host {
             .framebuffer(self.framebuffer)
             .render_area(EXTENT.into())
             .clear_values(&clear);
+        // Upside down, as engines with y up have it. It is not that of the splats.
         let viewport = vk::Viewport {
+            y: EXTENT.height as f32,
             width: EXTENT.width as f32,
-            height: EXTENT.height as f32,
+            height: -(EXTENT.height as f32),
             max_depth: 1.0,
             ..vk::Viewport::default()
         };

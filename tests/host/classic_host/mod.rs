@@ -1,6 +1,6 @@
 //! An engine in raw calls of an older age: classic render passes, barriers and submissions of 1.0, and all memory from
-//! one `gpu-allocator`, which it lends. Its pictures are the headless ones, byte for byte, in Vulkan 1.3 and in 1.2,
-//! where the layer checks that no newer function is called.
+//! one `gpu-allocator`, which it lends. Its viewport has a negative height. Its pictures are the headless ones, byte for
+//! byte, in Vulkan 1.3 and in 1.2, where the layer checks that no newer function is called.
 
 mod engine;
 mod target;

@@ -75,6 +75,12 @@ fn calls_in_an_order_that_makes_no_sense_are_refused() {
         let why = "draw needs a successful configure() and prepare() before it";
         refused(renderer.draw(null, [0.0; 2]), why);
         refused(renderer.draw_depth(null, [0.0; 2]), "expected_depth");
+        refused(
+            renderer.draw(null, [f32::NAN, 0.0]),
+            "draw was given the origin NaN, 0:",
+        );
+        let why = "draw_depth was given the origin 7, inf: give the upper left corner";
+        refused(renderer.draw_depth(null, [7.0, f32::INFINITY]), why);
         let why = "prepare needs a successful configure() before it";
         refused(renderer.prepare(null, &one), why);
         let configured = renderer.configure(&one, &camera, &clip, &settings);

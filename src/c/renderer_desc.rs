@@ -1,0 +1,147 @@
+//! The description of a renderer to be created.
+
+use rara::ash::vk;
+use rara::gpu::{Bindings, Target};
+use rara::{ExpectedDepthDesc, RendererDesc, Result};
+
+use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
+use crate::depth::{self, RaraDepthDesc};
+
+/// How shaders reach buffers.
+pub type RaraBindings = u32;
+/// By address, which is fast. The default.
+pub const RARA_BINDINGS_ADDRESS: RaraBindings = 0;
+/// Bound, so that the validation layer can watch them. Needs VK_KHR_push_descriptor; without it buffers are reached by
+/// address.
+pub const RARA_BINDINGS_BOUND: RaraBindings = 1;
+
+/// The description of a renderer to be created.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RaraRendererDesc {
+    /// Set by rara_renderer_desc_default.
+    pub struct_size: usize,
+    /// Format of the colour attachment. Splats are blended as stored, premultiplied, so sRGB formats give another picture.
+    pub color_format: vk::Format,
+    /// Samples a pixel of the attachments. Default: 1.
+    pub samples: vk::SampleCountFlags,
+    /// The depth attachment that splats are tested against; null, the default, if the scope has none. Only the call
+    /// itself reads it.
+    pub depth: *const RaraDepthDesc,
+    /// A classic render pass, or one compatible with it, that lives until the last rara_renderer_configure; null, the
+    /// default, stands for dynamic rendering.
+    pub render_pass: vk::RenderPass,
+    /// The subpass of render_pass to draw in.
+    pub subpass: u32,
+    /// How shaders reach buffers.
+    pub bindings: RaraBindings,
+    /// True to take timestamps, for the times in RaraFrameStats. Default: false.
+    pub timing: vk::Bool32,
+    /// True to let a frame take over what the one before has computed and it would compute again. The host must then
+    /// submit every frame that it prepares, in order, or call rara_renderer_forget. Default: false.
+    pub reuse: vk::Bool32,
+    /// How many recorded frames may be unfinished at once, 1 or more. Default: 1.
+    pub frames_in_flight: u32,
+    /// Format of the target of rara_renderer_draw_depth, two channels or more; VK_FORMAT_UNDEFINED, the default, if that
+    /// function is not called.
+    pub expected_depth_format: vk::Format,
+    /// Like render_pass, for that target.
+    pub expected_depth_render_pass: vk::RenderPass,
+    /// The subpass of expected_depth_render_pass to draw in.
+    pub expected_depth_subpass: u32,
+}
+
+// SAFETY: repr(C), numbers, handles and a pointer, the size first.
+unsafe impl Versioned for RaraRendererDesc {
+    const NAME: &'static str = "RaraRendererDesc";
+}
+
+impl RaraRendererDesc {
+    fn new(color_format: vk::Format) -> Self {
+        Self {
+            struct_size: size_of::<Self>(),
+            color_format,
+            samples: vk::SampleCountFlags::TYPE_1,
+            depth: std::ptr::null(),
+            render_pass: vk::RenderPass::null(),
+            subpass: 0,
+            bindings: RARA_BINDINGS_ADDRESS,
+            timing: vk::FALSE,
+            reuse: vk::FALSE,
+            frames_in_flight: 1,
+            expected_depth_format: vk::Format::UNDEFINED,
+            expected_depth_render_pass: vk::RenderPass::null(),
+            expected_depth_subpass: 0,
+        }
+    }
+}
+
+/// # Safety
+/// As for [`Target::render_pass`], unless it is null.
+unsafe fn target(render_pass: vk::RenderPass, subpass: u32) -> Target {
+    if render_pass == vk::RenderPass::null() {
+        return Target::DYNAMIC;
+    }
+    // SAFETY: the caller's promise.
+    unsafe { Target::render_pass(render_pass, subpass) }
+}
+
+/// # Safety
+/// `desc` is null or points to one, whose depth is null or points to one, and whose render pass is as its field says.
+pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<RendererDesc> {
+    let default = RaraRendererDesc::new(vk::Format::UNDEFINED);
+    // SAFETY: the caller's promise.
+    let desc = unsafe { read(desc, default, "desc") }?;
+    if desc.color_format == vk::Format::UNDEFINED {
+        return invalid("desc->color_format is VK_FORMAT_UNDEFINED");
+    }
+    if desc.frames_in_flight == 0 {
+        return invalid("desc->frames_in_flight is 0: a renderer needs at least one");
+    }
+    let depth = if desc.depth.is_null() {
+        None
+    } else {
+        // SAFETY: the caller's promise.
+        Some(unsafe { depth::depth_desc(desc.depth) }?)
+    };
+    let expects_depth = desc.expected_depth_format != vk::Format::UNDEFINED;
+    let expected_depth = expects_depth.then(|| {
+        let (pass, subpass) = (desc.expected_depth_render_pass, desc.expected_depth_subpass);
+        // SAFETY: the caller's promise.
+        let target = unsafe { target(pass, subpass) };
+        ExpectedDepthDesc::new(desc.expected_depth_format).target(target)
+    });
+    let bindings = match desc.bindings {
+        RARA_BINDINGS_ADDRESS => Bindings::Address,
+        RARA_BINDINGS_BOUND => Bindings::Bound,
+        other => return invalid(format!("desc->bindings {other} is no RaraBindings")),
+    };
+    // SAFETY: the caller's promise.
+    let target = unsafe { target(desc.render_pass, desc.subpass) };
+    // Statistics stay off: they need a device that rara has opened itself.
+    Ok(RendererDesc::new(desc.color_format)
+        .depth(depth)
+        .samples(desc.samples)
+        .expected_depth(expected_depth)
+        .target(target)
+        .bindings(bindings)
+        .timing(desc.timing != 0)
+        .reuse(desc.reuse != 0)
+        .frames_in_flight(desc.frames_in_flight))
+}
+
+/// One colour attachment of one sample in dynamic rendering, no timestamps, no reuse, one frame in flight. `desc_size` is
+/// sizeof *desc.
+///
+/// # Safety
+/// `desc` has room for `desc_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_desc_default(
+    desc: *mut RaraRendererDesc,
+    desc_size: usize,
+    color_format: vk::Format,
+) -> RaraResult {
+    let default = RaraRendererDesc::new(color_format);
+    // SAFETY: the caller's promise.
+    guard(|| unsafe { write(desc, desc_size, &default, "desc") })
+}

@@ -1,0 +1,73 @@
+//! The functions that a host's device must have: ash ends the process where one is called that was not found.
+
+use std::ffi::CStr;
+
+use ash::vk;
+
+use super::AdoptDesc;
+use crate::{Error, Result};
+
+/// What is to be done where a function of the version's own is missing.
+const ENABLE: &str =
+    "create the device with the extensions and features that gpu::check, in C rara_check, names";
+
+/// Checks that a host's device has the functions of what its description claims, in a Vulkan version.
+///
+/// # Safety
+///
+/// The handles of the description are alive and belong together.
+pub(super) unsafe fn check(desc: &AdoptDesc, version: u32) -> Result<()> {
+    let core = version >= vk::API_VERSION_1_3;
+    let needed: [(bool, &CStr, &str, &str); 7] = [
+        (true, c"vkGetBufferDeviceAddress", "Vulkan 1.2", ENABLE),
+        (core, c"vkCmdPipelineBarrier2", "Vulkan 1.3", ENABLE),
+        (
+            !core,
+            c"vkCmdPipelineBarrier2KHR",
+            "VK_KHR_synchronization2",
+            ENABLE,
+        ),
+        (
+            !core,
+            c"vkCmdBeginRenderingKHR",
+            "VK_KHR_dynamic_rendering",
+            ENABLE,
+        ),
+        (
+            desc.mesh_shader,
+            c"vkCmdDrawMeshTasksEXT",
+            "VK_EXT_mesh_shader",
+            "enable it, or leave the description's mesh_shader false",
+        ),
+        (
+            desc.push_descriptor,
+            c"vkCmdPushDescriptorSetKHR",
+            "VK_KHR_push_descriptor",
+            "enable it, or leave the description's push_descriptor false",
+        ),
+        (
+            desc.debug_utils,
+            c"vkSetDebugUtilsObjectNameEXT",
+            "VK_EXT_debug_utils",
+            "enable it on the instance, or leave the description's debug_utils false",
+        ),
+    ];
+    for (wanted, function, of, remedy) in needed {
+        if !wanted {
+            continue;
+        }
+        let device = desc.device.handle();
+        // SAFETY: the caller vouches for both handles.
+        let found = unsafe {
+            desc.instance
+                .get_device_proc_addr(device, function.as_ptr())
+        };
+        if found.is_none() {
+            return Err(Error::Invalid(format!(
+                "the device was created without {of}: it has no {}; {remedy}",
+                function.to_string_lossy()
+            )));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,185 @@
+//! How many pairs of tile and splat a camera's picture will have, about, before a frame has shown it: the sum over a sample
+//! of the scene's Gaussians, which the host keeps.
+
+use std::f64::consts::PI;
+
+use glam::{DMat3, DVec3, Mat3, Vec3};
+
+use crate::camera::{Camera, Projection};
+use crate::limits;
+use crate::passes::scene_layer::SceneLayer;
+use crate::scene::{Gaussians, Scene};
+
+/// Gaussians in the sample, about. Half as many miss twice as often that a few large ones make most of the pairs, and twice
+/// as many take each frame's configuration twice the tenth of a millisecond.
+const SAMPLES: usize = 2048;
+
+/// A sample of a scene's Gaussians, by layers.
+#[derive(Debug)]
+pub(super) struct PairSample {
+    layers: Vec<LayerSample>,
+}
+
+#[derive(Debug)]
+struct LayerSample {
+    /// How many Gaussians each of these stands for.
+    weight: f64,
+    gaussians: Vec<Sampled>,
+}
+
+/// A Gaussian of the sample, in its layer's space.
+#[derive(Debug, Clone, Copy)]
+struct Sampled {
+    centre: Vec3,
+    /// Half axes one standard deviation long.
+    axes: [Vec3; 3],
+    opacity: f32,
+}
+
+impl PairSample {
+    /// The sample of a scene: each so manieth of its Gaussians, and one of each layer at least.
+    pub(super) fn new(scene: &Scene<'_>) -> Self {
+        let step = scene.gaussians().div_ceil(SAMPLES).max(1);
+        let of_layer = |gaussians: &Gaussians| {
+            let sampled = (0..gaussians.len()).step_by(step);
+            let sampled: Vec<_> = sampled.map(|i| Sampled::new(gaussians, i)).collect();
+            LayerSample {
+                weight: gaussians.len() as f64 / sampled.len().max(1) as f64,
+                gaussians: sampled,
+            }
+        };
+        let layers = scene.layers().iter();
+        Self {
+            layers: layers.map(|layer| of_layer(layer.gaussians())).collect(),
+        }
+    }
+
+    /// The pairs of a picture of these layers, which are the sample's, without what a clip leaves out.
+    pub(super) fn pairs(&self, layers: &[SceneLayer], camera: &Camera) -> u32 {
+        let seen = self.layers.iter().zip(layers);
+        let pairs = seen
+            .filter(|(_, layer)| layer.is_visible())
+            .map(|(own, layer)| {
+                let eye = Eye::new(camera, layer);
+                let sum: f64 = own.gaussians.iter().map(|one| eye.tiles(one)).sum();
+                own.weight * sum
+            });
+        pairs.sum::<f64>().ceil() as u32 // what is too much for 32 bits becomes the most that they hold
+    }
+}
+
+impl Sampled {
+    fn new(gaussians: &Gaussians, index: usize) -> Self {
+        let turn = Mat3::from_quat(gaussians.rotations()[index]);
+        let scale = gaussians.scales()[index];
+        Self {
+            centre: gaussians.positions()[index],
+            axes: [
+                turn.x_axis * scale.x,
+                turn.y_axis * scale.y,
+                turn.z_axis * scale.z,
+            ],
+            opacity: gaussians.opacities()[index],
+        }
+    }
+}
+
+/// A camera as a layer sees it.
+struct Eye<'a> {
+    camera: &'a Camera,
+    position: DVec3,
+    /// From the layer's axes and units to the camera's axes and the scene's units.
+    turn: DMat3,
+    opacity: f64,
+}
+
+impl<'a> Eye<'a> {
+    fn new(camera: &'a Camera, layer: &SceneLayer) -> Self {
+        let placement = &layer.state.placement;
+        let own = camera.in_scene(placement);
+        Self {
+            camera,
+            position: own.eye,
+            turn: own.rotation * placement.scale(),
+            opacity: layer.state.opacity.into(),
+        }
+    }
+
+    /// The tiles that a Gaussian touches, on average over where the tiles' edges lie: the footprint of stage `project`.
+    fn tiles(&self, gaussian: &Sampled) -> f64 {
+        let camera = self.camera;
+        let centre = self.turn * (gaussian.centre.as_dvec3() - self.position);
+        let opacity = f64::from(gaussian.opacity) * self.opacity;
+        let brightness = opacity * f64::from(limits::ALPHA_MIN_INVERSE);
+        // A depth that is none is not in view either.
+        if !(centre.z >= f64::from(limits::NEAR_Z) && brightness > 1.0) {
+            return 0.0;
+        }
+        let axes = gaussian.axes.map(|axis| self.turn * axis.as_dvec3());
+        let size = [f64::from(camera.width), f64::from(camera.height)];
+        let focal = [camera.fx, camera.fy];
+        let principal = [camera.cx, camera.cy];
+        let (w, leans) = match camera.projection {
+            Projection::Perspective => (centre.z, 1.0),
+            Projection::Orthographic => (1.0, 0.0),
+        };
+        let slope = [centre.x / w, centre.y / w];
+        let margin = f64::from(limits::CLAMP_MARGIN);
+        // By how many pixels each half axis moves the image along x and along y.
+        let moved = [0, 1].map(|at| {
+            let low = (-margin * size[at] - principal[at]) / focal[at];
+            let high = ((1.0 + margin) * size[at] - principal[at]) / focal[at];
+            let clamped = slope[at].max(low).min(high);
+            let by = |axis: DVec3| focal[at] / w * (axis[at] - leans * clamped * axis.z);
+            DVec3::from(axes.map(by))
+        });
+        let low_pass = f64::from(limits::LOW_PASS);
+        let [xx, yy] = moved.map(|moved| moved.length_squared() + low_pass);
+        let xy = moved[0].dot(moved[1]);
+        // Out to so many deviations, squared, the splat counts.
+        let extent = 2.0 * brightness.ln();
+        let half = [(extent * xx).sqrt(), (extent * yy).sqrt()];
+        let area = PI * extent * (xx * yy - xy * xy).max(0.0).sqrt();
+        let at = [0, 1].map(|at| focal[at] * slope[at] + principal[at]);
+        touched(at, half, area, size)
+    }
+}
+
+/// The tiles that an ellipse touches in a picture. A convex shape touches as many cells of a grid, on average, as the shape
+/// widened by a cell has room for: its area, its sides and one. What is outside the picture is left out by its share of the
+/// ellipse's box.
+fn touched(at: [f64; 2], half: [f64; 2], area: f64, size: [f64; 2]) -> f64 {
+    let tile = [limits::TILE_WIDTH, limits::TILE_HEIGHT].map(f64::from);
+    // Numbers that are none stand for what covers the picture.
+    let spans = [0, 1].map(|i| [(at[i] - half[i]).max(0.0), (at[i] + half[i]).min(size[i])]);
+    let sides = spans.map(|[low, high]| high - low);
+    if sides.iter().any(|side| *side <= 0.0) {
+        return 0.0;
+    }
+    let cells = |i: usize| (spans[i][1] / tile[i]).ceil() - (spans[i][0] / tile[i]).floor();
+    let most = cells(0) * cells(1);
+    let share = sides[0] / (2.0 * half[0]) * (sides[1] / (2.0 * half[1]));
+    let widened = 1.0 + sides[0] / tile[0] + sides[1] / tile[1];
+    (widened + share * area / (tile[0] * tile[1])).min(most)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_touched_is_bounded_by_the_picture() {
+        let size = [80.0, 40.0];
+        let one = touched([20.0, 20.0], [0.5, 0.5], 0.7, size);
+        assert!((1.0..1.5).contains(&one), "{one}");
+        assert_eq!(touched([-5.0, 20.0], [4.0, 4.0], 50.0, size), 0.0);
+        // A disc of ten tiles across has as many tiles as its area, and some for its edge.
+        let disc = touched([200.0, 200.0], [40.0, 40.0], PI * 1600.0, [400.0, 400.0]);
+        assert!((95.0..105.0).contains(&disc), "{disc}");
+        for huge in [1e30, f64::INFINITY, f64::NAN] {
+            let area = PI * huge * huge;
+            assert_eq!(touched([20.0, 20.0], [huge; 2], area, size), 50.0);
+            assert_eq!(touched([huge; 2], [huge; 2], area, size), 50.0, "{huge}");
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! Tests of what a clip changes in a plan.
+
+use glam::DVec3;
+
+use super::*;
+use crate::clip::Plane;
+use crate::passes::shaders::project;
+use crate::passes::stage::key;
+use crate::passes::weight::Weight;
+use crate::scene::{Kind, Layer, generate};
+use crate::settings::Mode;
+
+fn plan(mode: Mode, planes: usize) -> Plan {
+    let thousand = generate(Kind::General, 1000, 1);
+    let layer = SceneLayer::new(&Layer::new("one", &thousand), 0);
+    let facts = SceneFacts {
+        layers: &[layer],
+        gaussians: 1000,
+        blocks: 4,
+        sh_degree: 0,
+        sh_format: ShFormat::Float,
+        shape: DeviceShape::Cpu,
+        sort_runs: 128,
+        span_runs: 128,
+        raster: Raster::Tiles,
+        tile_work: TileWork::suiting(DeviceShape::Cpu, 8),
+        picture: None,
+        pair_capacity: 1000,
+        redrawn: false,
+        occluders: None,
+        expects_depth: false,
+    };
+    let eye = DVec3::new(0.0, 0.0, -4.0);
+    let camera = Camera::look_at(eye, DVec3::ZERO, -DVec3::Y, 50.0, (64, 64));
+    let plane = Plane::new(DVec3::X, 0.0).expect("a finite normal");
+    let clip = Clip::of(vec![plane; planes], ClipOp::And);
+    let settings = Settings {
+        mode,
+        ..Settings::default()
+    };
+    Plan::new(facts, &camera.expect("a view"), &clip, &settings).expect("a plan")
+}
+
+#[test]
+fn without_planes_every_mode_is_none_to_the_pipeline_and_the_byte() {
+    let none = plan(Mode::None, 0);
+    assert_eq!(none.skipped(), ["clip", "cutoff"]);
+    for (mode, planes) in [
+        (Mode::None, 2),
+        (Mode::Hard, 0),
+        (Mode::Rara, 0),
+        (Mode::Exact, 0),
+    ] {
+        let plan = plan(mode, planes);
+        assert_eq!(plan.work, none.work);
+        assert_eq!(
+            plan.mode(),
+            none.mode(),
+            "the blocks' and the classes' pipeline"
+        );
+        assert_eq!(Weight::of(&plan), Weight::of(&none));
+        assert_eq!(
+            key::<project::Program>(&plan),
+            key::<project::Program>(&none)
+        );
+        assert_eq!(
+            (plan.cuts(), plan.data.weight.cut_stride),
+            (false, 0),
+            "no record"
+        );
+        let bytes = |plan: &Plan| bytemuck::bytes_of(&plan.data).to_vec();
+        assert!(bytes(&plan) == bytes(&none), "{mode:?}");
+    }
+}
+
+#[test]
+fn a_hard_clip_needs_no_records_and_no_weights() {
+    let (none, hard) = (plan(Mode::None, 0), plan(Mode::Hard, 1));
+    assert_eq!(hard.skipped(), ["cutoff"]);
+    assert_eq!(Weight::of(&hard), Weight::of(&none));
+    assert_eq!(
+        key::<project::Program>(&hard),
+        key::<project::Program>(&none)
+    );
+}

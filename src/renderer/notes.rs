@@ -1,0 +1,51 @@
+//! The log's lines about frames, for whoever embeds the renderer: how splats become pixels and why, where that changes, and
+//! at trace level each frame and the outcome of the oldest one.
+
+use super::Renderer;
+use super::frames::Configured;
+
+impl Renderer {
+    /// Writes what is new about the frame that has been configured.
+    pub(super) fn note_frame(&mut self) {
+        let raster = self.raster();
+        if raster != self.noted {
+            log::info!("splats become pixels by {}: {}", raster.path, raster.reason);
+            self.noted = raster;
+        }
+        // Nothing is put together for lines that nobody reads.
+        if log::log_enabled!(log::Level::Trace) {
+            self.trace_frame();
+        }
+    }
+
+    fn trace_frame(&self) {
+        let number = self.frames.prepared();
+        if self.oldest().is_some() {
+            let (counts, times) = (self.counts(), self.pass_times());
+            let took = times.iter().map(|pass| pass.ms).sum::<f64>();
+            let took = match times.is_empty() {
+                true => String::from("untimed"),
+                false => format!("{took:.3} ms on the device"),
+            };
+            log::trace!(
+                "the oldest frame drew {} splats, {} of them cut, of {} pairs of tile and splat: {took}",
+                counts.drawn,
+                counts.cutoff,
+                self.pairs(),
+            );
+        }
+        if let Some(Configured { plan, .. }) = &self.configured {
+            let [width, height] = plan.size();
+            log::trace!(
+                "frame {number} shows {} Gaussians in {width}x{height} px with {} surfaces, room for {} pairs, and without {}",
+                plan.gaussians(),
+                plan.layers.most_surfaces(),
+                plan.data.room.pair_capacity,
+                match self.skipped() {
+                    skipped if skipped.is_empty() => "skipping a stage".into(),
+                    skipped => skipped.join(", "),
+                }
+            );
+        }
+    }
+}

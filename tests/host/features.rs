@@ -1,0 +1,175 @@
+//! Features that a host enables beside its own: rara's structs in a chain with the host's, and the host's own structs, in
+//! which rara sets what it needs. Either way the host has the timeline semaphores that it asked for, and what a host claims
+//! to have enabled and has not is refused by name.
+
+use std::ffi::c_void;
+use std::mem::ManuallyDrop;
+use std::ptr::null_mut;
+
+use crate::host;
+use crate::host::validation::{self, Messages};
+use rara::ash::{Device, Entry, Instance, vk};
+use rara::gpu::{self, AdoptDesc, Support};
+use rara::scene::{Kind, generate};
+use rara::{SceneBuffers, ShFormat};
+
+const VERSION: u32 = vk::API_VERSION_1_3;
+
+/// Creates a device by `create`, which is given the physical one, what it supports, and the create info without features.
+/// The host makes a timeline semaphore on it, and `adopt` adopts it; the validation layer must have nothing to say.
+fn with_device(
+    create: impl FnOnce(&Instance, vk::PhysicalDevice, &Support, vk::DeviceCreateInfo<'_>) -> Device,
+    adopt: impl FnOnce(AdoptDesc, &Support),
+) {
+    // SAFETY: every handle is used while it is alive, and destroyed once, in order; what is pointed to outlives the calls.
+    unsafe {
+        // A layer's threads may still be in the loader's library when the test ends.
+        let entry = ManuallyDrop::new(Entry::load().expect("a Vulkan loader"));
+        let messages = Box::new(Messages::default());
+        let made = validation::instance(&entry, VERSION, true, &messages);
+        let (instance, messenger) = made.expect("the validation layer (tools/test installs it)");
+        let part = std::env::var("RARA_TEST_DEVICE").unwrap_or_default();
+        let chosen = host::choose(&instance, VERSION, &part);
+        let (physical, support) = chosen.expect("a device that draws splats");
+        let extensions: Vec<_> = support.extensions().iter().map(|e| e.as_ptr()).collect();
+        let family = support.queue_family;
+        let queues = [vk::DeviceQueueCreateInfo::default()
+            .queue_family_index(family)
+            .queue_priorities(&[1.0])];
+        let info = vk::DeviceCreateInfo::default()
+            .queue_create_infos(&queues)
+            .enabled_extension_names(&extensions);
+        let raw = create(&instance, physical, &support, info);
+
+        let mut timeline =
+            vk::SemaphoreTypeCreateInfo::default().semaphore_type(vk::SemaphoreType::TIMELINE);
+        let info = vk::SemaphoreCreateInfo::default().push_next(&mut timeline);
+        let semaphore = raw.create_semaphore(&info, None).expect("a semaphore");
+        raw.destroy_semaphore(semaphore, None);
+        let queue = (raw.get_device_queue(family, 0), family);
+        let lent = AdoptDesc::new(VERSION, instance.clone(), physical, raw.clone(), queue);
+        adopt(lent, &support);
+
+        raw.destroy_device(None);
+        if let Some((loader, messenger)) = messenger {
+            loader.destroy_debug_utils_messenger(messenger, None);
+        }
+        instance.destroy_instance(None);
+        let messages = messages.into_inner().expect("nobody has panicked");
+        assert_eq!(messages, Vec::<String>::new());
+    }
+}
+
+/// Adopts a device with all that it was created with, and uploads a scene, which reaches buffers by address.
+fn upload(lent: AdoptDesc, support: &Support) {
+    let lent = lent
+        .mesh_shader(support.mesh_shader)
+        .push_descriptor(support.push_descriptor)
+        .full_subgroups(support.full_subgroups[1] > 0);
+    // SAFETY: the handles belong together, and are as the description says.
+    let device = unsafe { gpu::Device::adopt(lent) }.expect("draws splats");
+    assert_eq!(device.support().mesh_shader, support.mesh_shader);
+    let scene = generate(Kind::General, 100, 1);
+    let buffers = SceneBuffers::upload(&device, &scene, ShFormat::default());
+    drop(buffers.expect("uploads"));
+    assert_eq!(device.close(), Vec::<String>::new());
+}
+
+#[test]
+fn our_structs_go_together_with_a_hosts_single_ones() {
+    with_device(
+        |instance, physical, support, info| {
+            let mut own =
+                vk::PhysicalDeviceTimelineSemaphoreFeatures::default().timeline_semaphore(true);
+            let mut features = support.features();
+            let info = features.chain(info.push_next(&mut own));
+            // SAFETY: the instance is alive, and the device offers all that is asked for.
+            unsafe { instance.create_device(physical, &info, None) }.expect("a device")
+        },
+        upload,
+    );
+}
+
+#[test]
+fn a_hosts_own_structs_take_what_is_needed() {
+    with_device(
+        |instance, physical, support, info| {
+            let mut of_1_2 = vk::PhysicalDeviceVulkan12Features::default().timeline_semaphore(true);
+            let mut of_1_3 = vk::PhysicalDeviceVulkan13Features::default();
+            let mut mesh = vk::PhysicalDeviceMeshShaderFeaturesEXT::default();
+            let mut info = info.push_next(&mut of_1_2);
+            // SAFETY: each chain holds structs that are alive, and nobody else uses them; the device offers all that is
+            // asked for.
+            unsafe {
+                let lacks =
+                    |chain: *mut c_void| support.set_features(chain).unwrap_err().to_string();
+                assert!(lacks(null_mut()).contains("bufferDeviceAddress"));
+                let text = lacks(info.p_next.cast_mut());
+                assert!(text.contains("synchronization2: chain a Vk"), "{text}");
+                info = info.push_next(&mut of_1_3);
+                if support.mesh_shader {
+                    info = info.push_next(&mut mesh);
+                }
+                let set = support.set_features(info.p_next.cast_mut());
+                set.expect("the chain has all of them");
+                let made = instance.create_device(physical, &info, None);
+                assert_eq!(of_1_2.timeline_semaphore + of_1_2.buffer_device_address, 2);
+                assert_eq!(of_1_3.synchronization2 + of_1_3.dynamic_rendering, 2);
+                assert_eq!(of_1_3.maintenance4, vk::FALSE, "not asked for");
+                assert_eq!(mesh.task_shader, vk::Bool32::from(support.mesh_shader));
+                made.expect("a device")
+            }
+        },
+        upload,
+    );
+}
+
+#[test]
+fn what_a_host_claims_and_has_not_enabled_is_refused_by_name() {
+    with_device(
+        |instance, physical, support, info| {
+            let mut own =
+                vk::PhysicalDeviceTimelineSemaphoreFeatures::default().timeline_semaphore(true);
+            let mut support = support.clone();
+            (support.mesh_shader, support.push_descriptor) = (false, false);
+            let mut features = support.features();
+            let extensions: Vec<_> = support.extensions().iter().map(|e| e.as_ptr()).collect();
+            let info = info.enabled_extension_names(&extensions);
+            let info = features.chain(info.push_next(&mut own));
+            // SAFETY: the instance is alive, and the device offers all that is asked for.
+            unsafe { instance.create_device(physical, &info, None) }.expect("a device")
+        },
+        |lent, support| {
+            let refused = |lent: AdoptDesc, says: [&str; 2]| {
+                // SAFETY: the handles belong together; what the description claims wrongly is what is tried here.
+                let error = unsafe { gpu::Device::adopt(lent) }.unwrap_err();
+                let text = error.to_string();
+                assert!(matches!(error, rara::Error::Invalid(_)), "{text}");
+                assert!(says.iter().all(|part| text.contains(part)), "{text}");
+            };
+            for (offered, claimed, says) in [
+                (
+                    support.mesh_shader,
+                    lent.clone().mesh_shader(true),
+                    ["without VK_EXT_mesh_shader", "mesh_shader false"],
+                ),
+                (
+                    support.push_descriptor,
+                    lent.clone().push_descriptor(true),
+                    ["without VK_KHR_push_descriptor", "push_descriptor false"],
+                ),
+            ] {
+                if offered {
+                    refused(claimed, says);
+                }
+            }
+            // What 1.3 has in its core, 1.2 has in extensions, which this device was created without.
+            let mut of_1_2 = lent.clone();
+            of_1_2.api_version = vk::API_VERSION_1_2;
+            refused(of_1_2, ["without VK_KHR_synchronization2", "gpu::check"]);
+            // SAFETY: as above, and nothing is claimed.
+            let device = unsafe { gpu::Device::adopt(lent) }.expect("draws splats");
+            assert_eq!(device.close(), Vec::<String>::new());
+        },
+    );
+}

@@ -53,19 +53,20 @@ BlockRun block_run() {
     uint place = local % RUN_ROW;
     uvec4 before = uvec4(0u);
     uvec4 others = uvec4(0u);
-    for (uint i = 0u; i < RUN_ROW; i++) {
-        uvec4 run = run_totals[row * RUN_ROW + i];
-        before += i < place ? run : uvec4(0u);
-        others += earlier_totals[row * RUN_ROW + i];
+    for (uint i = row * RUN_ROW; i < local; i++) {
+        before += run_totals[i];
+        others += earlier_totals[i];
     }
     if (place == RUN_ROW - 1u) {
         runs_of_rows[row] = before + total;
-        earlier_of_rows[row] = others;
+        earlier_of_rows[row] = others + earlier;
     }
     barrier();
+    for (uint i = 0u; i < row; i++) {
+        before += runs_of_rows[i];
+    }
     for (uint i = 0u; i < RUN_ROWS; i++) {
-        uvec4 runs_there = runs_of_rows[i];
-        before += earlier_of_rows[i] + (i < row ? runs_there : uvec4(0u));
+        before += earlier_of_rows[i];
     }
     return BlockRun(bounds, before, gl_GlobalInvocationID.x == runs - 1u);
 }

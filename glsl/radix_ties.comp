@@ -228,11 +228,13 @@ void main() {
     }
     barrier();
     // A crowd holds more than a partition: it holds the first or the last of those that it is in.
-    uvec2 first_crowd = crowd_at(bounds.x);
-    uvec2 last_crowd = crowd_at(bounds.y - 1u);
+    uvec2 crowds_here[2];
+    for (uint end = 0u; end < 2u; end++) {
+        crowds_here[end] = crowd_at(end == 0u ? bounds.x : bounds.y - 1u);
+    }
     for (uint firsts = find_firsts(bounds, count); firsts != 0u; firsts &= firsts - 1u) {
         uint begin = bounds.x + uint(findLSB(firsts)) * RADIX_GROUP_SIZE + gl_LocalInvocationIndex;
-        if (begin == last_crowd.x) {
+        if (begin == crowds_here[1].x) {
             continue;
         }
         uint end = end_of_few(begin);
@@ -251,10 +253,10 @@ void main() {
             sort_together(places.x, places.y);
         }
     }
-    bool is_another = last_crowd.x != first_crowd.x;
-    uvec2 crowd = first_crowd.y > 0u ? first_crowd : last_crowd;
-    while (crowd.y > 0u) {
-        send(crowd, bounds);
-        crowd = is_another && crowd == first_crowd ? last_crowd : NO_CROWD;
+    for (uint end = 0u; end < 2u; end++) {
+        uvec2 crowd = crowds_here[end];
+        if (crowd.y > 0u && (end == 0u || crowd.x != crowds_here[0].x)) {
+            send(crowd, bounds);
+        }
     }
 }

@@ -73,14 +73,13 @@ void sort_together(uint begin, uint end) {
     }
     atomicOr(differing, differs);
     publish();
-    uint bits = differing; // the next layer may reset it as soon as this one is sorted
+    uint differing_bits = differing; // the next layer may reset it as soon as this one is sorted
     bool second = false;
-    // A loop over all digits would be unrolled, with the body once for each.
-    while (bits != 0u) {
-        uint digit_number = uint(findLSB(bits)) / SORT_BITS;
-        sort_by_digit(second, begin, end, digit_number);
-        second = !second;
-        bits = bitfieldInsert(bits, 0u, int(digit_number * SORT_BITS), int(SORT_BITS));
+    for (uint digit_number = 0u; digit_number * SORT_BITS < 32u; digit_number++) {
+        if (digit(differing_bits, digit_number) != 0u) {
+            sort_by_digit(second, begin, end, digit_number);
+            second = !second;
+        }
     }
     if (second) {
         copy_back(begin, end);

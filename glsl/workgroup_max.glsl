@@ -18,17 +18,15 @@ uint exclusive_max(uint value) {
     maxima[local] = value;
     barrier();
     uint most = 0u;
-    for (uint i = 0u; i < MAX_ROW; i++) {
-        uint other = maxima[row * MAX_ROW + i];
-        most = i < place ? max(most, other) : most;
+    for (uint i = row * MAX_ROW; i < local; i++) {
+        most = max(most, maxima[i]);
     }
     if (place == MAX_ROW - 1u) {
         maxima_of_rows[row] = max(most, value);
     }
     barrier();
-    for (uint i = 0u; i < MAX_ROWS; i++) {
-        uint other = maxima_of_rows[i];
-        most = i < row ? max(most, other) : most;
+    for (uint i = 0u; i < row; i++) {
+        most = max(most, maxima_of_rows[i]);
     }
     // No barrier follows: the next call writes to maxima_of_rows only after a barrier of its own.
     return most;

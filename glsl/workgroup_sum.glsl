@@ -4,8 +4,9 @@
 #include "limits.glsl"
 #include "capped_sum.glsl"
 
-// The invocations stand in rows. Each adds up its own row as far as itself, and then the rows before: 32 loads that wait for
-// nothing but two barriers, where halving distances would need twice as many barriers as the workgroup's size has bits.
+// The invocations stand in rows. Each adds up its own row as far as itself, and then the rows before, between two barriers, where
+// doubling distances would need twice as many barriers as the workgroup's size has bits. Loops that end at the invocation's
+// place need no mask of their own for each step, which on GPUs would take registers from all that follows.
 const uint SUM_ROW = 16u;
 const uint SUM_ROWS = RADIX_GROUP_SIZE / SUM_ROW;
 
@@ -20,19 +21,19 @@ uint exclusive_sum(uint value, out uint total) {
     sums[local] = value;
     barrier();
     uint sum = 0u;
-    for (uint i = 0u; i < SUM_ROW; i++) {
-        uint other = sums[row * SUM_ROW + i];
-        sum += i < place ? other : 0u;
+    for (uint i = row * SUM_ROW; i < local; i++) {
+        sum += sums[i];
     }
     if (place == SUM_ROW - 1u) {
         sums_of_rows[row] = sum + value;
     }
     barrier();
+    for (uint i = 0u; i < row; i++) {
+        sum += sums_of_rows[i];
+    }
     total = 0u;
     for (uint i = 0u; i < SUM_ROWS; i++) {
-        uint other = sums_of_rows[i];
-        sum += i < row ? other : 0u;
-        total += other;
+        total += sums_of_rows[i];
     }
     // No barrier follows: the next sum writes to sums_of_rows only after a barrier of its own.
     return sum;

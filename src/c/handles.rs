@@ -1,7 +1,7 @@
 //! Handles: numbers that C sees as pointers, and that are never followed. None is given out twice, so that one that was
 //! destroyed is known by its number, as is one of another kind, and one that another thread changes at the same time.
 
-use std::any::{Any, type_name};
+use std::any::{Any, TypeId, type_name};
 use std::collections::HashMap;
 use std::ops::{Deref, DerefMut};
 use std::ptr::without_provenance_mut;
@@ -19,8 +19,8 @@ type Object = Arc<dyn Any + Send + Sync>;
 struct Handles {
     /// The number that was given out last.
     last: usize,
-    /// By their numbers; `None` while a thread has the object to itself.
-    objects: HashMap<usize, Option<Object>>,
+    /// By their numbers, with their kind; `None` while a thread has the object to itself.
+    objects: HashMap<usize, (TypeId, Option<Object>)>,
 }
 
 /// Numbers are as far apart as what memory is allocated in, as C expects of pointers.
@@ -56,7 +56,8 @@ pub(crate) fn add<T: Send + Sync + 'static>(object: T) -> Result<*mut T> {
         ));
     };
     handles.last = number;
-    handles.objects.insert(number, Some(Arc::new(object)));
+    let kind = TypeId::of::<T>();
+    handles.objects.insert(number, (kind, Some(Arc::new(object))));
     Ok(without_provenance_mut(number))
 }
 
@@ -68,8 +69,8 @@ pub(crate) fn destroy<T: Send + Sync + 'static>(handle: *mut T) -> RaraResult {
             return Ok(());
         }
         let mut handles = handles();
-        if let Some(Some(object)) = handles.objects.get(&handle.addr()) {
-            check_kind::<T>(object, "the handle")?;
+        if let Some((kind, _)) = handles.objects.get(&handle.addr()) {
+            check_kind::<T>(*kind, "the handle")?;
         }
         let Some(ended) = handles.objects.remove(&handle.addr()) else {
             return not_alive::<T, _>("the handle");
@@ -94,7 +95,7 @@ pub(crate) fn alone<T: Send + Sync + 'static>(handle: *mut T, name: &str) -> Res
     let mut handles = handles();
     find(handle, name, &mut handles)?;
     let place = handles.objects.get_mut(&handle.addr());
-    let object = place.and_then(Option::take);
+    let object = place.and_then(|(_, object)| object.take());
     let object = object.expect("it was found").downcast::<T>();
     let mut object = object.unwrap_or_else(|_| unreachable!("its kind was checked"));
     if Arc::get_mut(&mut object).is_some() {
@@ -104,7 +105,8 @@ pub(crate) fn alone<T: Send + Sync + 'static>(handle: *mut T, name: &str) -> Res
             number,
         });
     }
-    handles.objects.insert(handle.addr(), Some(object));
+    let kind = TypeId::of::<T>();
+    handles.objects.insert(handle.addr(), (kind, Some(object)));
     used_elsewhere(name)
 }
 
@@ -149,7 +151,7 @@ impl<T: Send + Sync> Drop for Alone<T> {
         let object = self.object.take().map(|object| object as Object);
         // Its handle may have been destroyed meanwhile: then it goes now, when the lock is free again.
         let ended = match handles().objects.get_mut(&self.number) {
-            Some(place) => std::mem::replace(place, object),
+            Some((_, place)) => std::mem::replace(place, object),
             None => object,
         };
         drop(ended);
@@ -167,13 +169,18 @@ fn find<'a, T: 'static>(
     }
     match handles.objects.get(&handle.addr()) {
         None => not_alive::<T, _>(name),
-        Some(None) => used_elsewhere(name),
-        Some(Some(object)) => check_kind::<T>(object, name).map(|()| object),
+        Some((kind, object)) => {
+            check_kind::<T>(*kind, name)?;
+            match object {
+                Some(object) => Ok(object),
+                None => used_elsewhere(name),
+            }
+        }
     }
 }
 
-fn check_kind<T: 'static>(object: &Object, name: &str) -> Result<()> {
-    if object.is::<T>() {
+fn check_kind<T: 'static>(kind: TypeId, name: &str) -> Result<()> {
+    if kind == TypeId::of::<T>() {
         return Ok(());
     }
     not_alive::<T, _>(name)

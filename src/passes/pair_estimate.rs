@@ -10,8 +10,8 @@ use crate::limits;
 use crate::passes::scene_layer::SceneLayer;
 use crate::scene::{Gaussians, Scene};
 
-/// Gaussians in the sample, about. Half as many miss twice as often that a few large ones make most of the pairs, and twice
-/// as many take each frame's configuration twice the tenth of a millisecond.
+/// Gaussians in the sample, about. Half of them are the largest of their layers, which stand for themselves alone: a few large
+/// ones may make most of the pairs. The rest are each so manieth of the others.
 const SAMPLES: usize = 2048;
 
 /// A sample of a scene's Gaussians, by layers.
@@ -22,9 +22,10 @@ pub(super) struct PairSample {
 
 #[derive(Debug)]
 struct LayerSample {
-    /// How many Gaussians each of these stands for.
+    largest: Vec<Sampled>,
+    /// How many Gaussians each of the rest stands for.
     weight: f64,
-    gaussians: Vec<Sampled>,
+    rest: Vec<Sampled>,
 }
 
 /// A Gaussian of the sample, in its layer's space.
@@ -37,20 +38,14 @@ struct Sampled {
 }
 
 impl PairSample {
-    /// The sample of a scene: each so manieth of its Gaussians, and one of each layer at least.
+    /// The sample of a scene.
     pub(super) fn new(scene: &Scene<'_>) -> Self {
-        let step = scene.gaussians().div_ceil(SAMPLES).max(1);
-        let of_layer = |gaussians: &Gaussians| {
-            let sampled = (0..gaussians.len()).step_by(step);
-            let sampled: Vec<_> = sampled.map(|i| Sampled::new(gaussians, i)).collect();
-            LayerSample {
-                weight: gaussians.len() as f64 / sampled.len().max(1) as f64,
-                gaussians: sampled,
-            }
-        };
+        let step = scene.gaussians().div_ceil(SAMPLES / 2).max(1);
         let layers = scene.layers().iter();
         Self {
-            layers: layers.map(|layer| of_layer(layer.gaussians())).collect(),
+            layers: layers
+                .map(|layer| LayerSample::new(layer.gaussians(), step))
+                .collect(),
         }
     }
 
@@ -61,10 +56,30 @@ impl PairSample {
             .filter(|(_, layer)| layer.is_visible())
             .map(|(own, layer)| {
                 let eye = Eye::new(camera, layer);
-                let sum: f64 = own.gaussians.iter().map(|one| eye.tiles(one)).sum();
-                own.weight * sum
+                let tiles = |of: &[Sampled]| of.iter().map(|one| eye.tiles(one)).sum::<f64>();
+                tiles(&own.largest) + own.weight * tiles(&own.rest)
             });
         pairs.sum::<f64>().ceil() as u32 // what is too much for 32 bits becomes the most that they hold
+    }
+}
+
+impl LayerSample {
+    /// As many of the largest as of the rest, of which each `step`th is taken.
+    fn new(gaussians: &Gaussians, step: usize) -> Self {
+        let mut by_size: Vec<usize> = (0..gaussians.len()).collect();
+        let size = |&index: &usize| gaussians.scales()[index].max_element();
+        let few = gaussians.len().div_ceil(step);
+        if few < by_size.len() {
+            by_size.select_nth_unstable_by(few, |a, b| size(b).total_cmp(&size(a)));
+        }
+        let (largest, others) = by_size.split_at(few);
+        let sampled = |index: &usize| Sampled::new(gaussians, *index);
+        let rest: Vec<_> = others.iter().step_by(step).map(sampled).collect();
+        Self {
+            largest: largest.iter().map(sampled).collect(),
+            weight: others.len() as f64 / rest.len().max(1) as f64,
+            rest,
+        }
     }
 }
 

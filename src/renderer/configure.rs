@@ -17,6 +17,9 @@ use crate::passes::{
 use crate::precision::TargetFormat;
 use crate::settings::{Raster, Settings};
 
+/// Where only tiles show what is asked for, lists of half the room are tried down to so many pairs.
+const LEAST_ROOM: u32 = 1 << 12;
+
 /// The picture that a frame is to show, and how the frame is submitted.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FrameRequest<'a> {
@@ -135,6 +138,10 @@ impl Renderer {
                 Err(Error::Memory(_)) if raster == Raster::Tiles && !needs_tiles => {
                     return self.configure_without_tiles(request);
                 }
+                Err(Error::Memory(_)) if needs_tiles && self.memory.pairs.room() > LEAST_ROOM => {
+                    self.memory.pairs.refuse();
+                    return self.configure_in_scene(request);
+                }
                 replaced => replaced?,
             }
         }
@@ -180,8 +187,7 @@ impl Renderer {
     }
 
     /// Makes room for as many pairs of tile and splat as the frame before has shown to be needed, and as this one is expected
-    /// to have. Returns whether nothing
-    /// is to be drawn of the next frame where that is not enough.
+    /// to have. Returns whether nothing is to be drawn of the next frame where that is not enough.
     fn make_room(&mut self, request: &FrameRequest<'_>, tiles: u32) -> bool {
         let undrawn = |frame: &RecordedFrame| {
             let redrawn = frame.configured.as_ref().is_some_and(|had| had.redrawn);

@@ -3,7 +3,7 @@
 use super::frames::FramesInFlight;
 use super::outcome::Submission;
 use super::pair_room::PairRoom;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::gpu::Device;
 use crate::passes::{Buffers, Plan};
 
@@ -36,12 +36,18 @@ impl WorkingMemory {
         // Free first: both together may not fit.
         let outgrown = self.buffers.take();
         let spare = outgrown.as_ref().map(|buffers| buffers.spare_for(plan));
+        let had_spare = spare.is_some();
         let prepared = frames.prepared();
         // What is used again lives on in the new buffers too.
         self.retired
             .extend(outgrown.map(|buffers| (prepared, buffers)));
         self.free_finished(frames.finished(submission));
-        self.buffers = Some(Buffers::new(device, plan, spare.unwrap_or_default())?);
+        let made = match (Buffers::new(device, plan, spare.unwrap_or_default()), had_spare) {
+            // What was kept may be larger than this plan needs.
+            (Err(Error::Memory(_)), true) => Buffers::new(device, plan, Default::default()),
+            (made, _) => made,
+        };
+        self.buffers = Some(made?);
         Ok(())
     }
 

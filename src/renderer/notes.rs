@@ -12,7 +12,7 @@ impl Renderer {
             log::info!("splats become pixels by {}: {}", raster.path, raster.reason);
             self.noted = raster;
         }
-        // Nothing is put together for lines that nobody reads.
+        // Nothing is put together where no logger asks for lines; C's function is one that asks for all.
         if log::log_enabled!(log::Level::Trace) {
             self.trace_frame();
         }

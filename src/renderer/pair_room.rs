@@ -8,12 +8,17 @@ const USUAL_PER_TILE: u32 = 64;
 /// The most pairs, 1.5 GiB of lists, or 2.2 GiB with the kernels for GPUs: frames with more are drawn as quads.
 const MOST: u32 = 1 << 27;
 
+/// The device has had no memory for what was estimated.
+const NO_ESTIMATES: u32 = u32::MAX;
+
 /// The room for pairs. It grows with the frames' needs, and does not shrink.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PairRoom {
     room: u32,
     /// Less than [`MOST`] once the device has had no memory for them.
     most: u32,
+    /// The room that an estimate asked for; the most once the device has had no memory for one.
+    expected: u32,
 }
 
 impl Default for PairRoom {
@@ -21,6 +26,7 @@ impl Default for PairRoom {
         Self {
             room: 0,
             most: MOST,
+            expected: 0,
         }
     }
 }
@@ -42,8 +48,9 @@ impl PairRoom {
     /// see more. Pairs that would not fit anyway are no reason to take memory.
     pub(super) fn expect(&mut self, estimated: u32) {
         let room = estimated.saturating_add(estimated / 2);
-        if room <= self.most {
-            self.room = self.room.max(room);
+        if room <= self.most && room > self.room && self.expected != NO_ESTIMATES {
+            self.room = room;
+            self.expected = room;
         }
     }
 
@@ -53,16 +60,25 @@ impl PairRoom {
         needed > self.room && with_margin(needed) <= self.most
     }
 
-    /// Notes that the device has no memory for so many pairs.
+    /// Notes that the device has no memory for so many pairs. Where only an estimate has asked for them, the frames' own
+    /// needs count from now on.
     pub(super) fn refuse(&mut self) {
-        self.most = self.room / 2;
+        if self.room == self.expected {
+            self.expected = NO_ESTIMATES;
+        } else {
+            self.most = self.room / 2;
+        }
         self.room = 0;
     }
 
     /// Allows fewer pairs, as on a device with less memory.
     #[cfg(test)]
     pub(super) fn limited(most: u32) -> Self {
-        Self { room: 0, most }
+        Self {
+            room: 0,
+            most,
+            expected: 0,
+        }
     }
 
     /// Pairs that there is room for.
@@ -112,6 +128,19 @@ mod tests {
         assert_eq!(pairs.room(), 150_000, "what there is stays");
         pairs.expect(MOST);
         assert_eq!(pairs.room(), 150_000, "what would not fit takes nothing");
+    }
+
+    #[test]
+    fn an_estimate_that_is_refused_takes_nothing_from_what_frames_need() {
+        let mut pairs = PairRoom::default();
+        pairs.make(1000, 500, 0);
+        pairs.expect(1 << 20);
+        pairs.refuse();
+        pairs.make(1000, 500, 0);
+        pairs.expect(1 << 20);
+        assert_eq!(pairs.room(), 34_000, "the usual");
+        pairs.make(1000, 500, 1 << 19);
+        assert_eq!(pairs.room(), (1 << 19) + (1 << 17), "what was needed");
     }
 
     #[test]

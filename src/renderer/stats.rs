@@ -117,6 +117,12 @@ impl Configured {
 
     fn raster(&self, fell_back: bool) -> RasterChoice {
         let path = match self.plan.way.raster {
+            Raster::Tiles if fell_back && self.needs_tiles => {
+                return RasterChoice {
+                    path: "tiles",
+                    reason: "there is no room for the tiles' lists, so that nothing is drawn",
+                };
+            }
             Raster::Tiles if fell_back => {
                 return RasterChoice {
                     path: "quad",

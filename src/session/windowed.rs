@@ -208,7 +208,8 @@ impl Windowed {
         // A frame that changes nothing leaves time to wait for the one before.
         Ok(match self.wait()? {
             Some(Outcome::NeedsRoom) => Redraw::WhenIdle,
-            Some(Outcome::Drawn | Outcome::NoRoom | Outcome::Unchanged) | None => Redraw::NotNeeded,
+            Some(Outcome::NoRoom) => return Err(super::no_room(settings)),
+            Some(Outcome::Drawn | Outcome::Unchanged) | None => Redraw::NotNeeded,
         })
     }
 

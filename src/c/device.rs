@@ -141,8 +141,8 @@ pub unsafe extern "C" fn rara_adopt_desc_default(
 }
 
 /// Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload and
-/// rara_scene_buffers_upload_layers submit to the queue. RARA_ERROR_INVALID names what the description claims and the device
-/// was created without.
+/// rara_scene_buffers_upload_layers submit to the queue. RARA_ERROR_INVALID names an extension that the description
+/// claims and whose functions the device does not have. Features that are claimed cannot be checked.
 ///
 /// # Safety
 /// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice, of which

@@ -184,6 +184,9 @@ impl Buffer {
     }
 
     /// The bytes, to be written while the device does not use them.
+    ///
+    /// # Panics
+    /// If the memory is the device's alone, or the buffer has a clone.
     pub fn mapped_mut(&mut self) -> &mut [u8] {
         assert!(
             self.0.location != Location::GpuOnly,

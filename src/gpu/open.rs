@@ -232,8 +232,8 @@ impl Device {
     /// Works with a host's device. The host keeps owning it: nothing of the description is ever destroyed here.
     ///
     /// # Errors
-    /// [`Error::Device`] as of [`check`](super::check), and [`Error::Invalid`] names what the description claims and the
-    /// device was created without.
+    /// [`Error::Device`] as of [`check`](super::check), and [`Error::Invalid`] names an extension that the description
+    /// claims and whose functions the device does not have. Features that are claimed cannot be checked.
     ///
     /// # Safety
     ///

@@ -57,7 +57,9 @@ pub(crate) fn add<T: Send + Sync + 'static>(object: T) -> Result<*mut T> {
     };
     handles.last = number;
     let kind = TypeId::of::<T>();
-    handles.objects.insert(number, (kind, Some(Arc::new(object))));
+    handles
+        .objects
+        .insert(number, (kind, Some(Arc::new(object))));
     Ok(without_provenance_mut(number))
 }
 

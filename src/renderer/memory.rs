@@ -42,7 +42,10 @@ impl WorkingMemory {
         self.retired
             .extend(outgrown.map(|buffers| (prepared, buffers)));
         self.free_finished(frames.finished(submission));
-        let made = match (Buffers::new(device, plan, spare.unwrap_or_default()), had_spare) {
+        let made = match (
+            Buffers::new(device, plan, spare.unwrap_or_default()),
+            had_spare,
+        ) {
             // What was kept may be larger than this plan needs.
             (Err(Error::Memory(_)), true) => Buffers::new(device, plan, Default::default()),
             (made, _) => made,

@@ -64,20 +64,24 @@ impl PairSample {
 }
 
 impl LayerSample {
-    /// As many of the largest as of the rest, of which each `step`th is taken.
+    /// At most as many of the largest as of the rest, of which each `step`th is taken.
     fn new(gaussians: &Gaussians, step: usize) -> Self {
-        let mut by_size: Vec<usize> = (0..gaussians.len()).collect();
-        let size = |&index: &usize| gaussians.scales()[index].max_element();
-        let few = gaussians.len().div_ceil(step);
-        if few < by_size.len() {
-            by_size.select_nth_unstable_by(few, |a, b| size(b).total_cmp(&size(a)));
-        }
-        let (largest, others) = by_size.split_at(few);
-        let sampled = |index: &usize| Sampled::new(gaussians, *index);
-        let rest: Vec<_> = others.iter().step_by(step).map(sampled).collect();
+        let scales = gaussians.scales().iter();
+        let sizes: Vec<f32> = scales.map(|scale| scale.max_element()).collect();
+        let mut by_size = sizes.clone();
+        let few = sizes.len().div_ceil(step);
+        // Those of equal size are all among the rest, so that which of them are taken does not depend on a sort.
+        let most_of_rest = match few < sizes.len() {
+            true => *by_size.select_nth_unstable_by(few, |a, b| b.total_cmp(a)).1,
+            false => f32::NEG_INFINITY,
+        };
+        let is_large = |index: &usize| sizes[*index] > most_of_rest;
+        let sampled = |index: usize| Sampled::new(gaussians, index);
+        let others = (0..sizes.len()).filter(|index| !is_large(index));
+        let rest: Vec<_> = others.clone().step_by(step).map(sampled).collect();
         Self {
-            largest: largest.iter().map(sampled).collect(),
-            weight: others.len() as f64 / rest.len().max(1) as f64,
+            largest: (0..sizes.len()).filter(is_large).map(sampled).collect(),
+            weight: others.count() as f64 / rest.len().max(1) as f64,
             rest,
         }
     }

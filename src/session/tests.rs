@@ -29,14 +29,14 @@ fn closes(session: Session) {
     assert_eq!(device.close(), Vec::<String>::new());
 }
 
-/// More pairs of tile and splat than a first frame has room for: the estimate looks at every other Gaussian of so many, and the
-/// large ones are among the others.
+/// More pairs of tile and splat than a first frame has room for: the estimate looks at every third Gaussian of so many, and the
+/// large ones, which are all alike, are among the others.
 fn crowded() -> (Gaussians, Camera) {
-    let mut scene = generate(Kind::General, 4_000, 5);
+    let mut scene = generate(Kind::General, 2_100, 5);
     let camera = Camera::frame(&Bounds::of(&scene), -DVec3::Y, 50.0, (160, 120));
     let radius = Bounds::of(&scene).radius() as f32;
     scene.scales_mut().fill(Vec3::splat(1e-3));
-    for index in (1..2_000).step_by(2) {
+    for index in (0..2_100).filter(|index| index % 3 != 0) {
         scene.scales_mut()[index] = Vec3::splat(radius);
     }
     scene.opacities_mut().fill(0.02); // so that no pixel is saturated before the last

@@ -41,7 +41,8 @@ pub fn regimes() -> Vec<Regime> {
                 ROUND,
                 "ellipsoid:0,0,0,1,0.8,0.001,0.9,0.1,0.3,0.2",
             )
-        }),
+        })
+        .limited(2e-3, 60.0, THIN),
         Regime::new("a thin cylinder", || {
             of(57, PLAIN, ROUND, "cylinder:-1,-0.3,0,1,0.3,0,0.003")
         }),

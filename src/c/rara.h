@@ -798,14 +798,13 @@ RaraResult rara_support_features(const struct RaraSupport *support,
 RaraResult rara_adopt_desc_default(struct RaraAdoptDesc *desc, size_t desc_size);
 
 // Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload and
-// rara_scene_buffers_upload_layers submit to the queue. RARA_ERROR_INVALID names what the description claims and the device
-// was created without.
+// rara_scene_buffers_upload_layers submit to the queue. RARA_ERROR_INVALID names an extension that the description
+// claims and whose functions the device does not have. Features that are claimed cannot be checked.
 //
 // # Safety
 // The handles belong together, are as the description says, and outlive all that is made from the RaraDevice, of which
 // `release` tells the end. It may be called with `release_user` by any thread.
-RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc,
-                             struct RaraDevice **device);
+RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc, struct RaraDevice **device);
 
 // Bytes of device memory that rara has allocated on the device, 0 for null.
 //

@@ -24,7 +24,7 @@ const uint RUN_ROWS = BLOCK_SIZE / RUN_ROW;
 
 shared uvec4 run_totals[BLOCK_SIZE];
 shared uvec4 earlier_totals[BLOCK_SIZE];
-// Of each row, its runs and everything earlier that its invocations have found.
+// The totals of each row: of its runs, and of everything earlier that its invocations have found.
 shared uvec4 runs_of_rows[RUN_ROWS];
 shared uvec4 earlier_of_rows[RUN_ROWS];
 

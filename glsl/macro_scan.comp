@@ -44,7 +44,7 @@ void main() {
             uint sum = pair_sums.at[CHUNK_SUM_PLACE(p, chunk)];
             before += chunk < local ? sum : 0u;
         }
-        // Of a few splats there are fewer chunks, and there is no room for more.
+        // A few splats make fewer chunks, and there is no room for more.
         uint place = p * CHUNKS + local;
         if (place * CHUNK_SPLATS < KEY_COUNT) {
             chunk_begins.at[place] = before;

@@ -35,7 +35,7 @@ vec3 quadric_gradient(uint surface, vec3 position) {
     return surfaces.at[surface].high.xyz + 2.0 * bent(quadric_matrix(surface), quadric_point(surface, position));
 }
 
-// What it is to first order about a Gaussian's centre.
+// The quadric to first order about a Gaussian's centre.
 vec4 quadric_half_space(uint surface, mat3 axes, vec3 position) {
     return vec4(quadric_gradient(surface, position) * axes, quadric_distance(surface, position));
 }
@@ -82,7 +82,7 @@ uint quadric_gaussian_side(uint surface, mat3 axes, vec3 position, float deviati
     if (offset >= support) {
         return side;
     }
-    // Of most Gaussians that are cut, the point of the ball that the slope leads to is on the other side.
+    // The point of the ball that the slope leads to is on the other side for most Gaussians that are cut.
     vec3 downhill = (deviations / slope) * s.half_space.xyz;
     if (offset - deviations * slope + sign * bend_along(s, downhill) <= 0.0) {
         return SIDE_CUTOFF;

@@ -189,18 +189,18 @@ pub(super) fn gaussian_side<T: Real>(surface: &UnitSurface<T>, deviations: T) ->
     let slope = half_space.normal.length();
     let norm = bend.norm();
     let support = deviations * (slope + deviations * norm);
-    if half_space.offset >= support {
-        return Side::Visible;
-    }
-    if half_space.offset <= -support {
-        return Side::Invisible;
+    let (sign, side) = match half_space.offset < T::zero() {
+        true => (-T::one(), Side::Invisible),
+        false => (T::one(), Side::Visible),
+    };
+    if half_space.offset.abs() >= support {
+        return side;
     }
     if norm == T::zero() {
         return Side::Cutoff;
     }
-    let sign = T::one().copysign(half_space.offset);
     let (offset, bend) = (half_space.offset.abs(), bend.scaled(sign));
-    // Of most Gaussians that are cut, the point of the ball that the slope leads to is on the other side.
+    // The point of the ball that the slope leads to is on the other side for most Gaussians that are cut.
     let downhill = half_space.normal * (deviations / slope);
     if offset - deviations * slope + bend.form(downhill) <= T::zero() {
         return Side::Cutoff;
@@ -217,11 +217,7 @@ pub(super) fn gaussian_side<T: Real>(surface: &UnitSurface<T>, deviations: T) ->
         // a . (Q + s I)^-1 a / 4 is half of -a . u.
         let taken = T::of(-0.5 * ERROR) * sign * half_space.normal.dot(nearest);
         if offset - shift * deviations * deviations - taken > margin {
-            return if sign > T::zero() {
-                Side::Visible
-            } else {
-                Side::Invisible
-            };
+            return side;
         }
         // Newton's step for 1/|u| = 1/K.
         let step = length * length * (length - deviations)

@@ -40,8 +40,10 @@ float exact_z(CurveSource source, vec2 uv, inout bool is_one) {
     if (COMBINED && source.bends) {
         float moved;
         Crossed crossing = crossed(line_through(sight), source.surface, moved);
-        is_one = is_one && moved == 0.0 && abs(crossing.other) >= PHI_ONE;
-        return crossing.z;
+        // Where the surface is not crossed, its z has to say so too.
+        float z = crossing.smooth_z;
+        is_one = is_one && moved == 0.0 && abs(crossing.other) >= PHI_ONE && (abs(z) >= PHI_ONE || abs(crossing.z) < FAR_AWAY);
+        return z;
     }
     bool far;
     return beam_z(sight, determinant(sight), source.half_space, far);

@@ -82,6 +82,7 @@ float steepest(Line line, vec3 gradient, out vec3 along) {
 // outside; the gradients point to it.
 struct Crossed {
     float z;
+    float smooth_z; // the same as a smooth function of the pixel: beyond FAR_AWAY, and where there is no crossing
     float other;
     vec3 gradient;
     vec3 other_gradient;
@@ -105,6 +106,7 @@ Crossed crossed(Line line, UnitSurface surface, out float moved) {
     float square = n * n - 4.0 * bend * value;
     float sum = n + sqrt(max(square, 0.0));
     crossing.z = value < 0.0 ? -FAR_AWAY : FAR_AWAY;
+    crossing.smooth_z = 2.0 * value / sum;
     crossing.other = NO_CROSSING;
     crossing.gradient = gradient;
     crossing.other_gradient = gradient;
@@ -112,7 +114,7 @@ Crossed crossed(Line line, UnitSurface surface, out float moved) {
     if (square < 0.0 || !(sum > 0.0)) {
         return crossing;
     }
-    crossing.z = clamp(2.0 * value / sum, -FAR_AWAY, FAR_AWAY);
+    crossing.z = clamp(crossing.smooth_z, -FAR_AWAY, FAR_AWAY);
     vec3 across = 2.0 * bent(surface, along);
     crossing.gradient = gradient - crossing.z * across;
     float other = -sum / (2.0 * bend);

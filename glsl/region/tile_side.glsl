@@ -88,14 +88,15 @@ TileSight tile_sight(uint base, vec2 delta, vec2 middle) {
     return tile;
 }
 
-// Bounds of a plane's z (beam_z of glsl/sight.glsl) over a tile: it is mean / sqrt(variance det), each a polynomial in the
-// pixel that is bounded by itself. In mode `rara` z is the plane's distance along the line in units of the chord.
-struct ZRange {
-    float low, high;
+// Bounds over a tile of what a plane's z (beam_z of glsl/sight.glsl) is made of: mean / sqrt(variance det), each a polynomial in
+// the pixel that is bounded by itself. In mode `rara` z is the plane's distance along the line in units of the chord.
+struct PlaneRange {
+    float low, high; // the mean
+    float variance_least, variance_most;
     bool far, near; // which part the plane may keep
 };
 
-ZRange z_range(TileSight tile, vec4 half_space) {
+PlaneRange plane_range(TileSight tile, vec4 half_space) {
     Sight s = tile.s;
     vec3 a = half_space.xyz;
     vec3 a1 = cross(a, s.b1);
@@ -119,14 +120,23 @@ ZRange z_range(TileSight tile, vec4 half_space) {
     float mean = half_space.w * tile.det.x + dot(k, s.delta);
     float mean_reach = abs(half_space.w) * max(tile.det.z - tile.det.x, tile.det.x - tile.det.y)
         + dot(abs(s.delta), k_reach) + dot(tile.delta_reach, abs(k) + k_reach);
-    float scale_least = inversesqrt(max(variance_most * tile.det.z, 1e-30));
-    float scale_most = inversesqrt(max(variance_least * tile.det.y, 1e-30));
-    float low = mean - mean_reach;
-    float high = mean + mean_reach;
-    low *= low > 0.0 ? scale_least : scale_most;
-    high *= high < 0.0 ? scale_least : scale_most;
     // A plane whose `along` is no number may keep either part, and then settles nothing.
-    return ZRange(low, high, !(along < -along_reach), !(along > along_reach));
+    return PlaneRange(mean - mean_reach, mean + mean_reach, variance_least, variance_most, !(along < -along_reach), !(along > along_reach));
+}
+
+// Bounds of a plane's z itself.
+struct ZRange {
+    float low, high;
+    bool far, near;
+};
+
+ZRange z_range(TileSight tile, vec4 half_space) {
+    PlaneRange plane = plane_range(tile, half_space);
+    float scale_least = inversesqrt(max(plane.variance_most * tile.det.z, 1e-30));
+    float scale_most = inversesqrt(max(plane.variance_least * tile.det.y, 1e-30));
+    float low = plane.low * (plane.low > 0.0 ? scale_least : scale_most);
+    float high = plane.high * (plane.high < 0.0 ? scale_least : scale_most);
+    return ZRange(low, high, plane.far, plane.near);
 }
 
 // True when Phi(z) / Phi(front) is nearly 0. It grows with z and falls with front, so it is asked of the greatest z and the
@@ -165,6 +175,10 @@ uint planes_side(uint base, uint flags, vec2 delta, vec2 middle) {
     return visible ? SIDE_VISIBLE : invisible ? SIDE_INVISIBLE : SIDE_CUTOFF;
 }
 
+#ifdef RARA_SUBGROUP
+#include "region/tile_combination.glsl"
+#endif
+
 // The side of the tile with this middle, px, in a splat that is cut.
 uint tile_side(vec3 linear, vec3 curvature, vec4 centre_conic, float conic_z, vec2 middle) {
     vec2 delta = middle - centre_conic.xy;
@@ -173,9 +187,6 @@ uint tile_side(vec3 linear, vec3 curvature, vec4 centre_conic, float conic_z, ve
     }
     uint base = record_number(linear) * push.params.cut_stride;
     uint flags = to_uint(cut_records.at[base].w);
-    if (COMBINED && (flags & CUT_COMBINED) != 0u) {
-        return SIDE_CUTOFF;
-    }
     if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         vec2 uv = vec2(centre_conic.z * delta.x, centre_conic.w * delta.x + conic_z * delta.y);
         vec2 reach = vec2(abs(centre_conic.z) * TILE_REACH.x, abs(centre_conic.w) * TILE_REACH.x + abs(conic_z) * TILE_REACH.y);
@@ -184,9 +195,14 @@ uint tile_side(vec3 linear, vec3 curvature, vec4 centre_conic, float conic_z, ve
     if (CLIP_MODE == MODE_RARA && MISS != MISS_PEAK) {
         return SIDE_CUTOFF; // lines of sight beside the ellipsoid are kept or dropped wherever they are
     }
-#ifndef RARA_SUBGROUP
-    if (!SEVERAL) {
-        // On GPUs the bounds of planes would take more registers than all the rest of a pipeline for one surface.
+    bool is_combined = COMBINED && (flags & CUT_COMBINED) != 0u;
+#ifdef RARA_SUBGROUP
+    if (is_combined) {
+        return combination_side(base, flags, delta, middle);
+    }
+#else
+    // On GPUs these bounds would take more registers than all the rest of a pipeline for one surface, or for combined records.
+    if (!SEVERAL || is_combined) {
         return SIDE_CUTOFF;
     }
 #endif

@@ -13,6 +13,8 @@ mod share;
 mod sides;
 mod surface;
 #[cfg(test)]
+mod tile_combination;
+#[cfg(test)]
 mod tile_side;
 
 pub use box_side::{Bounds, box_side};

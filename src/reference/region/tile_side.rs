@@ -9,13 +9,13 @@ use crate::limits::{TILE_HEIGHT, TILE_WIDTH};
 use crate::scene::Random;
 
 /// From a tile's middle to its outermost pixel centres, px.
-const TILE_REACH: Vec2 = Vec2::new(
+pub(super) const TILE_REACH: Vec2 = Vec2::new(
     0.5 * (TILE_WIDTH - 1) as f32,
     0.5 * (TILE_HEIGHT - 1) as f32,
 );
 
 /// The least and the greatest value.
-type Range = [f32; 2];
+pub(super) type Range = [f32; 2];
 
 /// Of a splat that carries its curve.
 fn carried_range(linear: Vec3, curvature: Vec3, delta: Vec2) -> Range {
@@ -76,16 +76,55 @@ fn curve_range(curve: &Curve, uv: Vec2, uv_reach: Vec2) -> Range {
 /// The lines of sight through a splat: the gradients at the tile's middle, how they lean, and the middle relative to the
 /// splat's centre.
 #[derive(Debug, Clone, Copy)]
-struct Sights {
-    b1: Vec3,
-    b2: Vec3,
-    lean: Vec3,
-    delta: Vec2,
-    scale: f32,
-    low_pass: f32,
+pub(super) struct Sights {
+    pub(super) b1: Vec3,
+    pub(super) b2: Vec3,
+    pub(super) lean: Vec3,
+    pub(super) delta: Vec2,
+    pub(super) scale: f32,
+    pub(super) low_pass: f32,
+}
+
+/// How far the terms of the lines of sight of a tile's pixels are from those of the middle one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reach {
+    pub(super) b: Vec2,
+    pub(super) c_x: Vec3,
+    pub(super) c_y: Vec3,
+    pub(super) c: f32,
+    /// The determinant in the middle, the least and the greatest.
+    pub(super) det: [f32; 3],
+}
+
+/// Bounds of what a plane's z is made of: `mean / sqrt(variance det)`.
+pub(super) struct PlaneRange {
+    pub(super) mean: Range,
+    pub(super) variance: Range,
 }
 
 impl Sights {
+    pub(super) fn reach(&self) -> Reach {
+        let determinant =
+            |c: f32, b: Vec2| c * c + self.low_pass * (b.length_squared() + self.low_pass);
+        let c_x = TILE_REACH.x * self.b2.cross(self.lean);
+        let c_y = TILE_REACH.y * self.lean.cross(self.b1);
+        let (c_length, c) = (self.b1.cross(self.b2).length(), c_x.length() + c_y.length());
+        let length = Vec2::new(self.b1.length(), self.b2.length());
+        let b = TILE_REACH * self.lean.length();
+        let det = [
+            determinant(c_length, length),
+            determinant((c_length - c).max(0.0), (length - b).max(Vec2::ZERO)),
+            determinant(c_length + c, length + b),
+        ];
+        Reach {
+            b,
+            c_x,
+            c_y,
+            c,
+            det,
+        }
+    }
+
     /// A half-space's z in the pixel this far from the tile's middle (`beam_z` of `glsl/sight.glsl`), in double precision.
     fn z(&self, half_space: Vec4, pixel: DVec2) -> f64 {
         let lean = self.lean.as_dvec3();
@@ -108,26 +147,17 @@ impl Sights {
         (f64::from(half_space.w) + k.dot(delta) / det) / (variance / det).sqrt()
     }
 
-    /// Bounds of it over the tile.
-    fn z_range(&self, half_space: Vec4) -> Range {
-        let determinant =
-            |c: f32, b: Vec2| c * c + self.low_pass * (b.length_squared() + self.low_pass);
+    /// Bounds over the tile of what it is made of.
+    pub(super) fn plane_range(&self, half_space: Vec4) -> PlaneRange {
+        let reach = self.reach();
+        let [det, det_least, det_most] = reach.det;
         let c = self.b1.cross(self.b2);
-        let c_x = TILE_REACH.x * self.b2.cross(self.lean);
-        let c_y = TILE_REACH.y * self.lean.cross(self.b1);
-        let (c_length, c_reach) = (c.length(), c_x.length() + c_y.length());
-        let b = Vec2::new(self.b1.length(), self.b2.length());
-        let b_reach = TILE_REACH * self.lean.length();
-        let det = determinant(c_length, b);
-        let det_least = determinant((c_length - c_reach).max(0.0), (b - b_reach).max(Vec2::ZERO));
-        let det_most = determinant(c_length + c_reach, b + b_reach);
-
         let a = half_space.truncate();
         let (a1, a2) = (a.cross(self.b1), a.cross(self.b2));
         let across = Vec2::new(a1.length(), a2.length());
         let across_reach = TILE_REACH * a.cross(self.lean).length();
         let along = a.dot(c).abs();
-        let along_reach = a.dot(c_x).abs() + a.dot(c_y).abs();
+        let along_reach = a.dot(reach.c_x).abs() + a.dot(reach.c_y).abs();
         let variance = |along: f32, across: Vec2| {
             along * along
                 + self.low_pass * across.length_squared()
@@ -140,25 +170,37 @@ impl Sights {
             c.dot(a2) + self.low_pass * a.dot(self.b1),
             self.low_pass * a.dot(self.b2) - c.dot(a1),
         );
-        let k_reach = Vec2::new(across.y, across.x) * c_reach
-            + (c_length + c_reach) * Vec2::new(across_reach.y, across_reach.x)
-            + self.low_pass * a.length() * b_reach;
+        let k_reach = Vec2::new(across.y, across.x) * reach.c
+            + (c.length() + reach.c) * Vec2::new(across_reach.y, across_reach.x)
+            + self.low_pass * a.length() * reach.b;
         let delta = self.delta * self.scale;
         let mean = half_space.w * det + k.dot(delta);
         let mean_reach = half_space.w.abs() * (det_most - det).max(det - det_least)
             + delta.abs().dot(k_reach)
             + (TILE_REACH * self.scale).dot(k.abs() + k_reach);
+        PlaneRange {
+            mean: [mean - mean_reach, mean + mean_reach],
+            variance: [variance_least, variance_most],
+        }
+    }
+
+    /// Bounds of it over the tile.
+    fn z_range(&self, half_space: Vec4) -> Range {
+        let [_, det_least, det_most] = self.reach().det;
+        let PlaneRange {
+            mean: [low, high],
+            variance: [variance_least, variance_most],
+        } = self.plane_range(half_space);
         let scale_least = (variance_most * det_most).max(1e-30).sqrt().recip();
         let scale_most = (variance_least * det_least).max(1e-30).sqrt().recip();
         let scaled =
             |mean: f32, outwards: bool| mean * if outwards { scale_most } else { scale_least };
-        let (low, high) = (mean - mean_reach, mean + mean_reach);
         [scaled(low, low <= 0.0), scaled(high, high >= 0.0)]
     }
 }
 
 /// Offsets of a tile's pixel centres from its middle.
-fn pixels() -> impl Iterator<Item = Vec2> {
+pub(super) fn pixels() -> impl Iterator<Item = Vec2> {
     let places = (0..TILE_HEIGHT).flat_map(|y| (0..TILE_WIDTH).map(move |x| (x, y)));
     places.map(|(x, y)| Vec2::new(x as f32, y as f32) - TILE_REACH)
 }
@@ -178,11 +220,11 @@ fn slack(range: Range, values: impl Iterator<Item = f64>) -> f64 {
     (low - least).max(most - high)
 }
 
-fn within(random: &mut Random, most: f32) -> f32 {
+pub(super) fn within(random: &mut Random, most: f32) -> f32 {
     most * (2.0 * random.unit() as f32 - 1.0)
 }
 
-fn vector(random: &mut Random, most: f32) -> Vec3 {
+pub(super) fn vector(random: &mut Random, most: f32) -> Vec3 {
     Vec3::from_array([(); 3].map(|()| within(random, most)))
 }
 

@@ -1,0 +1,63 @@
+// The side of a tile in a splat with a combined record, from the sides of its surfaces. Included by tile_side.glsl. Twin:
+// src/reference/region/tile_combination.rs.
+#ifndef RARA_REGION_TILE_COMBINATION
+#define RARA_REGION_TILE_COMBINATION
+
+// The points of a splat that count in any of a tile's pixels: as far as `deviations` along the middle pixel's line of sight from
+// the mean given that pixel, and as far as `aside` from there in any direction.
+struct TilePoints {
+    vec3 mean;
+    vec3 along; // one deviation along the line of sight
+    float deviations;
+    float aside;
+};
+
+TilePoints tile_points(TileSight tile, float deviations) {
+    Sight s = tile.s;
+    TilePoints points;
+    points.mean = line_through(s).mean;
+    points.along = s.c * inversesqrt(tile.det.x);
+    points.deviations = deviations;
+    // The mean is moves . delta / det, each bounded by itself.
+    vec3 move_x = cross(s.b2, s.c) + s.low_pass * s.b1;
+    vec3 move_y = cross(s.c, s.b1) + s.low_pass * s.b2;
+    vec2 moves = vec2(length(move_x), length(move_y));
+    vec2 b_most = vec2(length(s.b1), length(s.b2)) + tile.b_reach;
+    vec2 moves_reach = b_most.yx * tile.c_reach + tile.c_length * tile.b_reach.yx + s.low_pass * tile.b_reach;
+    float moved = dot(abs(s.delta), moves_reach) + dot(tile.delta_reach, moves + moves_reach)
+        + length(points.mean) * max(tile.det.x - tile.det.y, tile.det.z - tile.det.x);
+    // So is the deviation along a pixel's own line of sight. No deviation across it exceeds the root of `across`.
+    float longest = inversesqrt(tile.det.y);
+    float turned = tile.c_reach * longest + tile.c_length * (longest - inversesqrt(tile.det.z));
+    float across = s.low_pass * (dot(b_most, b_most) + s.low_pass) / tile.det.y;
+    points.aside = moved / tile.det.y + deviations * (turned + sqrt(across));
+    return points;
+}
+
+// The side of the points that count in a surface. Its function is that of the plane that touches it in the middle pixel's mean,
+// and what bends away from that plane.
+uint surface_side(TileSight tile, TilePoints points, UnitSurface surface) {
+    vec3 gradient = gradient_at(surface, points.mean);
+    PlaneRange plane = plane_range(tile, vec4(gradient, value_at(surface, points.mean) - dot(gradient, points.mean)));
+    vec3 bend = bent(surface, points.along);
+    float away = points.deviations * (points.deviations * abs(dot(points.along, bend)) + 2.0 * points.aside * length(bend))
+        + bend_norm(surface) * points.aside * points.aside;
+    float reach = points.deviations * sqrt(plane.variance_most / tile.det.y) + away;
+    // The comparisons are such that a bound that is no number settles nothing.
+    return plane.low > reach * tile.det.z ? SIDE_VISIBLE : plane.high < -reach * tile.det.z ? SIDE_INVISIBLE : SIDE_CUTOFF;
+}
+
+uint combination_side(uint base, uint flags, vec2 delta, vec2 middle) {
+    if ((flags & CUT_FRONT) != 0u) {
+        return SIDE_CUTOFF; // only what is in front of the eye counts
+    }
+    TileSight tile = tile_sight(base, delta, middle);
+    TilePoints points = tile_points(tile, TILE_MARGIN * (CLIP_MODE == MODE_RARA ? push.params.sigma : PHI_ONE));
+    Answers answers = Answers(0u, 0u);
+    for (uint i = 0u; i < flags >> CUT_COUNT_SHIFT; i++) {
+        answer(answers, surface_side(tile, points, entry_of(base, i)), joins_of(base, i));
+    }
+    return side_answered(answers);
+}
+
+#endif

@@ -141,18 +141,20 @@ void split(uint mine[RADIX_KEYS], int bit) {
     barrier();
 }
 
-// Sorts by the digits of this invocation's keys.
+// Sorts by the digits of this invocation's keys. Both rounds share their code: CPU drivers take a time to compile it that grows
+// faster than the number of its barriers.
 void sort_positions(uint digits[RADIX_KEYS]) {
-    uint mine[RADIX_KEYS];
     for (uint k = 0u; k < RADIX_KEYS; k++) {
-        mine[k] = digits[k] * RADIX_PARTITION + position_of(k);
+        items[position_of(k)] = digits[k] * RADIX_PARTITION + position_of(k);
     }
-    split(mine, 0);
-    for (uint k = 0u; k < RADIX_KEYS; k++) {
-        mine[k] = items[position_of(k)];
+    for (int bit = 0; bit < int(SORT_BITS); bit += int(HALF_BITS)) {
+        // Each round ends with a barrier, and has others before it changes an item.
+        uint mine[RADIX_KEYS];
+        for (uint k = 0u; k < RADIX_KEYS; k++) {
+            mine[k] = items[position_of(k)];
+        }
+        split(mine, bit);
     }
-    barrier();
-    split(mine, int(HALF_BITS));
     for (uint i = gl_LocalInvocationIndex; i < RADIX_PARTITION; i += RADIX_GROUP_SIZE) {
         uint d = item_digit(items[i]);
         if (i == 0u || item_digit(items[i - 1u]) != d) {

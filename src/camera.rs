@@ -1,5 +1,7 @@
 //! A camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers.
 
+mod matrices;
+
 use std::borrow::Cow;
 
 use glam::{DMat3, DMat4, DVec3};
@@ -7,6 +9,7 @@ use glam::{DMat3, DMat4, DVec3};
 use crate::clip::{Clip, ClipOp, Plane};
 use crate::error::{Error, Result};
 use crate::setters::setters;
+pub use matrices::Ndc;
 
 /// How a camera takes points in its own axes, X right, Y down and Z forward, to pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -40,7 +43,8 @@ pub struct Camera {
     /// axis, but for what is nearer than 0.2, which no camera sees. Depths count from the eye here too, in single precision:
     /// an eye not much farther away than the scene is large keeps what lies close together in order.
     pub eye: DVec3,
-    /// World to camera rotation (rows are the camera's right, down and forward axes in the world).
+    /// World to camera rotation (rows are the camera's right, down and forward axes in the world). With a determinant of -1,
+    /// as [`of_projection`](Self::of_projection) gives a left-handed host, the picture is that of a mirrored world.
     pub rotation: DMat3,
     /// How points become pixels.
     pub projection: Projection,
@@ -174,16 +178,19 @@ impl Camera {
         .checked()
     }
 
-    fn checked(self) -> Result<Self> {
+    fn check_size((width, height): (u32, u32)) -> Result<()> {
         let possible = 1..=Self::MAX_SIZE;
-        if !(possible.contains(&self.width) && possible.contains(&self.height)) {
+        if !(possible.contains(&width) && possible.contains(&height)) {
             return Err(Error::Invalid(format!(
-                "a picture of {}x{} is not possible; each side is 1 to {} pixels",
-                self.width,
-                self.height,
+                "a picture of {width}x{height} is not possible; each side is 1 to {} pixels",
                 Self::MAX_SIZE
             )));
         }
+        Ok(())
+    }
+
+    fn checked(self) -> Result<Self> {
+        Self::check_size((self.width, self.height))?;
         let focal_ok = |f: f64| f.is_finite() && f > 0.0;
         if !(focal_ok(self.fx) && focal_ok(self.fy) && self.cx.is_finite() && self.cy.is_finite()) {
             return Err(Error::Invalid(

@@ -20,6 +20,23 @@ pub struct DepthMap {
 }
 
 impl DepthMap {
+    /// The map with these numbers, for a camera of this projection.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] unless both are finite and `scale` is not zero.
+    pub fn new(projection: Projection, offset: f64, scale: f64) -> Result<Self> {
+        if !(offset.is_finite() && scale.is_finite() && scale != 0.0) {
+            return Err(Error::Invalid(format!(
+                "a depth buffer with an offset of {offset} and a scale of {scale} is not possible; give finite numbers and a scale that is not zero"
+            )));
+        }
+        Ok(Self {
+            projection,
+            offset,
+            scale,
+        })
+    }
+
     /// 0 at `near`, 1 at `far`, which may be infinite.
     ///
     /// # Errors
@@ -105,6 +122,21 @@ impl DepthMap {
             Projection::Orthographic => self.scale * placement.scale(),
         };
         Self { scale, ..self }
+    }
+
+    /// How the camera of such depths sees.
+    pub fn projection(&self) -> Projection {
+        self.projection
+    }
+
+    /// The buffer's value infinitely far away or, of an orthographic camera, at the eye.
+    pub fn offset(&self) -> f64 {
+        self.offset
+    }
+
+    /// What the buffer's value changes by: for the inverse of a depth in perspective, for a depth's negative without.
+    pub fn scale(&self) -> f64 {
+        self.scale
     }
 
     /// True when nearer is more.

@@ -65,7 +65,7 @@ pub use {ash, glam, gpu_allocator};
 
 #[cfg(feature = "bake")]
 pub use bake::{BakeCounts, BakeSettings, Baked, bake, bake_layer};
-pub use camera::{Camera, Projection};
+pub use camera::{Camera, Ndc, Projection};
 #[doc(inline)]
 pub use clip::{Clip, ClipOp, Plane, Quadric, Shape, Surface};
 pub use depth::DepthMap;

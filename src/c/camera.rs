@@ -1,4 +1,4 @@
-//! Cameras: a plain struct, and three ways to make one.
+//! Cameras: a plain struct, and three ways to make one; `matrices` has a fourth.
 
 use rara::Camera;
 use rara::Result;
@@ -28,7 +28,8 @@ pub struct RaraCamera {
     pub cy: f64,
     /// The eye's position, world units.
     pub eye: [f64; 3],
-    /// World to camera rotation, row-major: the rows are the camera's right, down and forward axes in the world.
+    /// World to camera rotation, row-major: the rows are the camera's right, down and forward axes in the world. A determinant
+    /// of -1 mirrors the picture's world, as rara_camera_of_projection does for a left-handed host.
     pub rotation: [f64; 9],
 }
 
@@ -54,7 +55,12 @@ impl RaraCamera {
         let lens = (self.fx, self.fy, self.cx, self.cy);
         let rotation = DMat3::from_cols_array(&self.rotation).transpose();
         let eye = DVec3::from(self.eye);
-        let turned = Camera::from_world_to_camera(DMat4::from_mat3(rotation), lens, size)?;
+        // A mirror is a rotation with every axis turned around.
+        let proper = match rotation.determinant() < 0.0 {
+            true => -rotation,
+            false => rotation,
+        };
+        let turned = Camera::from_world_to_camera(DMat4::from_mat3(proper), lens, size)?;
         // Exactly the host's numbers, once all of them have been found possible.
         turned.rotation(rotation).eye(eye).resized(size)
     }

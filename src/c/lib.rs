@@ -18,6 +18,7 @@ mod handles;
 pub mod layer;
 pub mod layer_info;
 pub mod logging;
+pub mod matrices;
 #[cfg(test)]
 mod nulls;
 pub mod orthographic;

@@ -14,6 +14,7 @@ use crate::device::*;
 use crate::layer::*;
 use crate::layer_info::*;
 use crate::logging::*;
+use crate::matrices::*;
 use crate::orthographic::*;
 use crate::placement::*;
 use crate::region::*;
@@ -211,6 +212,23 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
     );
     call!(
         rara_renderer_set_orthographic_depth_map(null_mut(), 1.0, 2.0),
+        "renderer is null"
+    );
+    call!(
+        rara_ndc_default(null_mut(), size_of::<RaraNdc>()),
+        "ndc is null"
+    );
+    let view_size = size_of::<RaraHostView>();
+    call!(
+        rara_camera_of_projection(null(), null(), null(), 8, 8, null_mut(), view_size),
+        "seen is null"
+    );
+    call!(
+        rara_camera_of_projection_floats(null(), null(), null(), 8, 8, null_mut(), view_size),
+        "seen is null"
+    );
+    call!(
+        rara_renderer_set_depth_of_projection(null_mut(), null()),
         "renderer is null"
     );
     call!(

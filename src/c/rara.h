@@ -97,7 +97,8 @@ typedef struct RaraCamera {
     double cy;
     // The eye's position, world units.
     double eye[3];
-    // World to camera rotation, row-major: the rows are the camera's right, down and forward axes in the world.
+    // World to camera rotation, row-major: the rows are the camera's right, down and forward axes in the world. A determinant
+    // of -1 mirrors the picture's world, as rara_camera_of_projection does for a left-handed host.
     double rotation[9];
 } RaraCamera;
 
@@ -359,6 +360,46 @@ typedef struct RaraDepthImage {
     int32_t y;
 } RaraDepthImage;
 
+// How the 16 numbers of a matrix lie in memory.
+typedef uint32_t RaraMatrixOrder;
+
+// What a host's matrices do not say of themselves and of its clip space, after the division by w: its normalised device
+// coordinates.
+typedef struct RaraNdc {
+    // Set by rara_ndc_default.
+    size_t struct_size;
+    // How both matrices lie in memory.
+    RaraMatrixOrder order;
+    // True when a y of 1 is the picture's upper edge, as in Direct3D, Metal, WebGPU and OpenGL, and in Vulkan with a viewport
+    // of negative height. Default: false.
+    VkBool32 y_up;
+    // True when depths go from -1 to 1, as in OpenGL and by VK_EXT_depth_clip_control; the buffer then holds (z + 1) / 2.
+    // Default: false, from 0 to 1.
+    VkBool32 negative_one_to_one;
+    // True when nearer is more in the depth buffer. It is asked of orthographic projections alone, whose matrix is the same
+    // for one that looks the other way; that of a perspective one says it. Default: false.
+    VkBool32 reversed;
+} RaraNdc;
+
+// How a camera sees.
+typedef uint32_t RaraProjection;
+
+// What a host's matrices are to a renderer.
+typedef struct RaraHostView {
+    // The size that rara_camera_of_projection was given, or less where this library knows less.
+    size_t struct_size;
+    // The camera, whose rotation has a mirror in it where the world is left-handed.
+    struct RaraCamera camera;
+    // How it sees: rara_renderer_configure and rara_renderer_configure_orthographic are each of one kind, and
+    // rara_renderer_configure_region takes this.
+    RaraProjection projection;
+    // With depth_scale, what the host's depth buffer holds at a depth z along the view axis, world units: depth_offset +
+    // depth_scale / z in perspective, depth_offset - depth_scale z without.
+    double depth_offset;
+    // See depth_offset. Nearer is more where it is above zero.
+    double depth_scale;
+} RaraHostView;
+
 // Describes a scene, and what of its file could not be used.
 typedef struct RaraGaussiansInfo {
     // Set by rara_gaussians_info.
@@ -432,9 +473,6 @@ typedef struct RaraLayerInfo {
 
 // A choice of all settings that give up exactness for time: phi, key_bits, beam_switch and transmittance_min.
 typedef uint32_t RaraPreset;
-
-// How a camera sees.
-typedef uint32_t RaraProjection;
 
 // How a region is baked.
 typedef struct RaraBakeSettings {
@@ -577,6 +615,13 @@ typedef struct RaraFrameStats {
 // Bound, so that the validation layer can watch them. Needs VK_KHR_push_descriptor; without it buffers are reached by
 // address.
 #define RARA_BINDINGS_BOUND 1
+
+// A view's translation is in numbers 12, 13 and 14: columns one after the other, of matrices that stand before column
+// vectors (glm, Eigen), or rows, of matrices that stand behind row vectors (DirectXMath). The default.
+#define RARA_MATRIX_ORDER_TRANSLATION_LAST 0
+
+// A view's translation is in numbers 3, 7 and 11: rows one after the other, of matrices that stand before column vectors.
+#define RARA_MATRIX_ORDER_TRANSLATION_BESIDE 1
 
 // 8 bits a coefficient: 56 bytes.
 #define RARA_SH_FORMAT_BYTE 0
@@ -969,6 +1014,57 @@ RaraResult rara_renderer_configure_orthographic(struct RaraRenderer *renderer,
 // # Safety
 // `renderer` is alive, was created with a depth attachment, and is not used by another thread.
 RaraResult rara_renderer_set_orthographic_depth_map(struct RaraRenderer *renderer, double z_zero, double z_one);
+
+// Vulkan's own: y down, depths from 0 to 1, nearer is less, a view's translation in numbers 12 to 14. `ndc_size` is sizeof
+// *ndc.
+//
+// # Safety
+// `ndc` has room for `ndc_size` bytes.
+RaraResult rara_ndc_default(struct RaraNdc *ndc,
+                            size_t ndc_size);
+
+// The camera of a host's matrices of 16 numbers each, and what its depth buffer holds: for rara_renderer_configure or
+// rara_renderer_configure_region, and for rara_renderer_set_depth_of_projection. `width` and `height` are the viewport's,
+// pixels; `seen_size` is sizeof *seen. A null `ndc` is rara_ndc_default's.
+//
+// The axes of the view may be any, with y up or down and z forward or back, left-handed ones too. The view may scale,
+// evenly along its axes, and lead from a scene instead of the world (the view times a model's matrix), mirrors included.
+// The projection may be reversed, infinite, off-centre, jittered, turned by quarters (as for a display's pre-rotation) or
+// orthographic. RARA_ERROR_INVALID names the matrix and what in it is not possible: an entry that is not finite, a matrix
+// that is singular or looks transposed, a view that shears or scales unevenly, a projection that shears, or whose depth is
+// not a function of the distance alone (as with an oblique near plane).
+//
+// What is nearer than 0.2 is not drawn, whatever the projection's near plane. An orthographic camera's eye is moved back
+// where that would leave out what lies behind the near plane; depths count from there.
+//
+// # Safety
+// `view` and `projection` point to 16 numbers each; `ndc` is null or points to one; `seen` has room for `seen_size` bytes.
+RaraResult rara_camera_of_projection(const double *view,
+                                     const double *projection,
+                                     const struct RaraNdc *ndc,
+                                     uint32_t width,
+                                     uint32_t height,
+                                     struct RaraHostView *seen,
+                                     size_t seen_size);
+
+// As rara_camera_of_projection, of matrices in single precision.
+//
+// # Safety
+// As for rara_camera_of_projection.
+RaraResult rara_camera_of_projection_floats(const float *view,
+                                            const float *projection,
+                                            const struct RaraNdc *ndc,
+                                            uint32_t width,
+                                            uint32_t height,
+                                            struct RaraHostView *seen,
+                                            size_t seen_size);
+
+// Changes what the host's depth buffer holds for a depth to what rara_camera_of_projection has found, from the next
+// rara_renderer_configure on. The configure that follows is of the same projection.
+//
+// # Safety
+// `renderer` is alive, was created with a depth attachment, and is not used by another thread; `seen` points to one.
+RaraResult rara_renderer_set_depth_of_projection(struct RaraRenderer *renderer, const struct RaraHostView *seen);
 
 // Loads a 3DGS .ply file: ascii or binary, spherical harmonics of degree 0 to 3.
 //

@@ -27,7 +27,7 @@ pub const RARA_PROJECTION_PERSPECTIVE: RaraProjection = 0;
 /// Without, as rara_renderer_configure_orthographic.
 pub const RARA_PROJECTION_ORTHOGRAPHIC: RaraProjection = 1;
 
-fn projection(value: RaraProjection) -> Result<Projection> {
+pub(crate) fn projection(value: RaraProjection) -> Result<Projection> {
     Ok(match value {
         RARA_PROJECTION_PERSPECTIVE => Projection::Perspective,
         RARA_PROJECTION_ORTHOGRAPHIC => Projection::Orthographic,

@@ -26,6 +26,7 @@ fn the_header_is_current() {
         "renderer",
         "renderer_desc",
         "orthographic",
+        "matrices",
         "scene",
         "layer",
         "layer_info",

@@ -15,10 +15,11 @@ use crate::folder::Folder;
 use crate::results::assert_ok;
 use ours::{Ours, saved};
 use rara::ash::{Entry, vk};
+use rara::glam::dcamera::lh;
 use rara::glam::{DQuat, DVec3};
 use rara::gpu::{AdoptDesc, Device, DeviceShape};
 use rara::scene::Kind;
-use rara::{Gaussians, Placement, Raster, Scene, SceneBuffers, ShFormat};
+use rara::{Gaussians, Placement, Projection, Raster, Scene, SceneBuffers, ShFormat};
 use rara_c::device::*;
 use rara_c::scene::*;
 use world::World;
@@ -108,6 +109,46 @@ fn what_is_behind_a_mesh_and_expected_depths_are_the_same_bytes() {
             seen[1] != seen[3] && seen[5] != seen[7],
             "without perspective"
         );
+        // SAFETY: all frames were waited for.
+        unsafe { rara_scene_buffers_destroy(uploaded) };
+    });
+}
+
+/// A host's matrices say in C what they say in Rust: left-handed, and seen in a mirror; and orthographic.
+#[test]
+fn views_of_a_hosts_matrices_are_the_same_bytes() {
+    with_both(1_500, |scene, lent, device, ours| {
+        let uploaded = ours.uploaded();
+        let mut seen: Vec<Pixels> = Vec::new();
+        for made in [
+            World::new(scene, Raster::Quad),
+            World::flat(scene, Raster::Quad),
+        ] {
+            let (camera, size) = (made.camera, made.size());
+            let [forward, up] = [DVec3::Z, DVec3::NEG_Y].map(|v| camera.rotation.transpose() * v);
+            let view = lh::view::look_to_mat4(camera.eye, forward, up);
+            let projection = match camera.projection {
+                Projection::Orthographic => {
+                    let [x, y] = [size[0] / camera.fx, size[1] / camera.fy].map(|v| 0.5 * v);
+                    lh::proj::directx::orthographic(-x, x, -y, y, 40.0, 0.0)
+                }
+                _ => {
+                    let angle = 2.0 * (0.5 * size[1] / camera.fy).atan();
+                    let aspect = size[0] / size[1];
+                    lh::proj::directx::perspective_infinite_reverse(angle, aspect, 0.05)
+                }
+            };
+            let world = made.of_matrices([view, projection]);
+            assert!(world.camera.rotation.determinant() < 0.0);
+            let canvas = world.canvas(lent, device);
+            let truth = world.drawn(device, &canvas);
+            // SAFETY: the handles are alive.
+            let drawn = unsafe { world.drawn_in_c(ours.device, &canvas, |_| uploaded) };
+            assert!(drawn == truth);
+            assert!(drawn.iter().filter(|pixel| pixel[1] > 0.05).count() > 1_000);
+            seen.push(drawn);
+        }
+        assert!(seen[0] != seen[1]);
         // SAFETY: all frames were waited for.
         unsafe { rara_scene_buffers_destroy(uploaded) };
     });

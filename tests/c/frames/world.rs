@@ -5,16 +5,18 @@ use std::ffi::CStr;
 use super::*;
 use crate::canvas::{CanvasDesc, Frame};
 use rara::clip::Expression;
+use rara::glam::DMat4;
 use rara::gpu::Bindings;
 use rara::scene::Bounds;
 use rara::{
-    Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, Plane, Projection, Renderer,
+    Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, Ndc, Plane, Projection, Renderer,
     RendererDesc, Settings,
 };
 use rara_c::boundary::*;
 use rara_c::camera::*;
 use rara_c::clip::*;
 use rara_c::depth::*;
+use rara_c::matrices::*;
 use rara_c::orthographic::*;
 use rara_c::placement::*;
 use rara_c::region::*;
@@ -49,6 +51,8 @@ pub(super) struct World<'a> {
     pub(super) depths: bool,
     /// The expression that clips in place of the plane.
     pub(super) region: Option<&'static CStr>,
+    /// A host's view and projection, which say what the camera is and what depths are; y is up.
+    pub(super) matrices: Option<[DMat4; 2]>,
 }
 
 impl<'a> World<'a> {
@@ -64,6 +68,7 @@ impl<'a> World<'a> {
             placement: Placement::IDENTITY,
             depths: false,
             region: None,
+            matrices: None,
         }
     }
 
@@ -85,7 +90,27 @@ impl<'a> World<'a> {
         }
     }
 
+    /// The same seen by a host's matrices, for depths that are reversed.
+    pub(super) fn of_matrices(mut self, matrices: [DMat4; 2]) -> Self {
+        self.matrices = Some(matrices);
+        self.camera = self.host_view(matrices).0;
+        self
+    }
+
+    /// The picture's width and height, pixels.
+    pub(super) fn size(&self) -> [f64; 2] {
+        [VIEW.0.into(), VIEW.1.into()]
+    }
+
+    fn host_view(&self, [view, projection]: [DMat4; 2]) -> (Camera, DepthMap) {
+        let ndc = Ndc::DIRECT3D.reversed(true);
+        Camera::of_projection(view, projection, ndc, VIEW).expect("a camera")
+    }
+
     fn map(&self) -> DepthMap {
+        if let Some(matrices) = self.matrices {
+            return self.host_view(matrices).1;
+        }
         let map = match self.camera.projection {
             Projection::Orthographic => DepthMap::orthographic(FLAT[0], FLAT[1]),
             _ => DepthMap::reversed(MAP.z_near, MAP.z_far),
@@ -180,7 +205,7 @@ impl<'a> World<'a> {
                 plane_count: 1,
                 op: RARA_CLIP_OP_AND,
             };
-            let camera = RaraCamera::from(self.camera);
+            let mut camera = RaraCamera::from(self.camera);
             let shown = canvas.depth_image(0, 0);
             let shown = RaraDepthImage {
                 image: shown.image,
@@ -192,11 +217,17 @@ impl<'a> World<'a> {
                 y: shown.origin.y,
             };
             let is_flat = self.camera.projection == Projection::Orthographic;
-            if is_flat {
+            if is_flat && self.matrices.is_none() {
                 let [zero, one] = FLAT;
                 assert_ok(rara_renderer_set_orthographic_depth_map(
                     renderer, zero, one,
                 ));
+            }
+            if let Some(matrices) = self.matrices {
+                let seen = host_view_in_c(matrices);
+                assert_ok(rara_renderer_set_depth_of_projection(renderer, &seen));
+                assert_eq!(seen.projection, u32::from(is_flat));
+                camera = seen.camera;
             }
             let configure = match is_flat {
                 true => rara_renderer_configure_orthographic,
@@ -233,5 +264,23 @@ impl<'a> World<'a> {
             rara_renderer_destroy(renderer);
             pixels
         }
+    }
+}
+
+/// What a host's matrices are in C, which it keeps row by row.
+unsafe fn host_view_in_c(matrices: [DMat4; 2]) -> RaraHostView {
+    let [view, projection] = matrices.map(|matrix| matrix.transpose().to_cols_array());
+    // SAFETY: both have 16 numbers, and the structs have the room that the calls are given.
+    unsafe {
+        let (mut ndc, mut seen): (RaraNdc, RaraHostView) = (std::mem::zeroed(), std::mem::zeroed());
+        assert_ok(rara_ndc_default(&mut ndc, size_of_val(&ndc)));
+        ndc.order = RARA_MATRIX_ORDER_TRANSLATION_BESIDE;
+        (ndc.y_up, ndc.reversed) = (vk::TRUE, vk::TRUE);
+        let (view, projection, size) = (view.as_ptr(), projection.as_ptr(), size_of_val(&seen));
+        let (width, height) = VIEW;
+        let made =
+            rara_camera_of_projection(view, projection, &ndc, width, height, &mut seen, size);
+        assert_ok(made);
+        seen
     }
 }

@@ -1,12 +1,13 @@
 //! Several views of a scene and several scenes in one picture: two eyes in one scope, views one after the other, scenes
-//! that stand turned, scaled and moved in a world.
+//! that stand turned, scaled and moved in a world, views by a host's matrices.
 
 mod eyes;
+mod matrices;
 mod placed;
 
 use std::cell::RefCell;
 
-use crate::canvas::{Canvas, CanvasDesc, with_host};
+use crate::canvas::{Canvas, CanvasDesc, Frame, with_host};
 use crate::common;
 use rara::ash::vk;
 use rara::glam::DVec3;

@@ -1,4 +1,5 @@
-//! `rara.h` and the library behind it: that the header is current, what a host does wrong and right, and a host in C++.
+//! `rara.h` and the library behind it: that the header is current, what a host does wrong and right, a host in C++,
+//! and what tools/install-c installs.
 
 #[path = "../common/canvas/mod.rs"]
 mod canvas;
@@ -13,4 +14,5 @@ mod calls;
 mod cpp_host;
 mod frames;
 mod header;
+mod install;
 mod results;

@@ -19,6 +19,12 @@ pub(crate) fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
+/// The folder beside this test, where cargo puts the libraries.
+pub(crate) fn libraries() -> PathBuf {
+    let test = env::current_exe().expect("a path");
+    test.parent().expect("a folder").to_owned()
+}
+
 /// Runs a command, which must succeed; `says` is the message if it does not.
 pub(crate) fn run(command: &mut Command, says: &str) {
     let output = command.output().expect("the compiler starts");

@@ -6,7 +6,7 @@ use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::compiler::{compiler, root, run};
+use crate::compiler::{compiler, libraries, root, run};
 use crate::folder::Folder;
 use rara::glam::DVec3;
 use rara::scene::{Bounds, Kind, generate, save_ply};
@@ -16,12 +16,6 @@ use rara::{
 };
 
 const SIZE: (u32, u32) = (480, 360);
-
-/// The folder beside this test, where cargo puts the libraries.
-fn libraries() -> PathBuf {
-    let test = env::current_exe().expect("a path");
-    test.parent().expect("a folder").to_owned()
-}
 
 fn compile(compiler: &str, out: PathBuf, library: &[&str]) -> PathBuf {
     let warnings = [
@@ -124,7 +118,10 @@ fn a_host_in_cpp_draws_splats_and_a_mesh() {
     let folder = libraries();
     let shared = folder.join(format!("{DLL_PREFIX}rara_c{DLL_SUFFIX}"));
     let archive = folder.join("librara_c.a");
-    let rpath = format!("-Wl,-rpath,{}", folder.display());
+    // Where the program looks for it, by the name that it has when it is installed.
+    let named = own.join(format!("librara.so.{}", rara_c::boundary::RARA_ABI_VERSION));
+    std::os::unix::fs::symlink(&shared, named).expect("a link");
+    let rpath = format!("-Wl,-rpath,{}", own.display());
     let shared = shared.to_str().expect("UTF-8");
     let shared = compile(&compiler, own.join("shared"), &[shared, &rpath]);
     let archive = archive.to_str().expect("UTF-8");

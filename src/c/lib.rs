@@ -7,6 +7,7 @@
 #[cfg(not(panic = "unwind"))]
 compile_error!("rara-c stops panics at its boundary, and needs panic = \"unwind\" for that");
 
+pub mod arrays;
 pub mod bake;
 pub mod boundary;
 pub mod camera;

@@ -5,6 +5,7 @@ use std::ptr::{null, null_mut};
 
 use rara::ash::vk;
 
+use crate::arrays::*;
 use crate::bake::*;
 use crate::boundary::*;
 use crate::camera::*;
@@ -71,6 +72,14 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
     call!(rara_gaussians_load(null(), null_mut()), "gaussians is null");
     call!(
         rara_gaussians_load_from(null(), 0, null(), null_mut()),
+        "gaussians is null"
+    );
+    call!(
+        rara_gaussian_arrays_default(null_mut(), size_of::<RaraGaussianArrays>()),
+        "arrays is null"
+    );
+    call!(
+        rara_gaussians_from_arrays(null(), null_mut()),
         "gaussians is null"
     );
     call!(
@@ -200,6 +209,10 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
     );
     call!(
         rara_renderer_set_depth_map(null_mut(), null()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_set_color_format(null_mut(), format),
         "renderer is null"
     );
     call!(

@@ -434,6 +434,39 @@ typedef struct RaraStaging {
     size_t size;
 } RaraStaging;
 
+// A host's Gaussians, as it has them in memory: each attribute an array, or a field of its own structs. A stride is the
+// bytes from one Gaussian's numbers to the next one's; 0, the default, stands for numbers without a gap. Nothing has to be
+// aligned, and only the call itself reads it.
+typedef struct RaraGaussianArrays {
+    // Set by rara_gaussian_arrays_default.
+    size_t struct_size;
+    // How many Gaussians there are. Where there are none the pointers may be null.
+    size_t count;
+    // Centres, world units: 3 floats a Gaussian.
+    const float *positions;
+    // Bytes from one centre to the next; 0 stands for 12.
+    size_t position_stride;
+    // Standard deviations along the Gaussian's own axes, world units, not logarithms: 3 floats a Gaussian, zero or above.
+    const float *scales;
+    // Bytes from one Gaussian's to the next one's; 0 stands for 12.
+    size_t scale_stride;
+    // Unit quaternions x, y, z, w that turn the Gaussian's own axes to the world's: 4 floats a Gaussian. Files of 3DGS have w
+    // first.
+    const float *rotations;
+    // Bytes from one quaternion to the next; 0 stands for 16.
+    size_t rotation_stride;
+    // Opacities at the centre, 0 to 1, not logits: a float a Gaussian.
+    const float *opacities;
+    // Bytes from one opacity to the next; 0 stands for 4.
+    size_t opacity_stride;
+    // Degree of the spherical harmonics, 0 to 3. Default: 0.
+    uint32_t sh_degree;
+    // Spherical harmonics: (sh_degree + 1)^2 coefficients a Gaussian, each red, green and blue, the constant one first.
+    const float *sh;
+    // Bytes from one Gaussian's to the next one's; 0 stands for 12 (sh_degree + 1)^2.
+    size_t sh_stride;
+} RaraGaussianArrays;
+
 // The state of a layer, which may change from frame to frame.
 typedef struct RaraLayerState {
     // Set by rara_layer_state_default and rara_scene_buffers_layer_state.
@@ -901,6 +934,14 @@ RaraResult rara_renderer_create_sharing(const struct RaraRenderer *other,
 // `renderer` is alive, was created with a depth attachment, and is not used by another thread; `map` points to one.
 RaraResult rara_renderer_set_depth_map(struct RaraRenderer *renderer, const struct RaraDepthMap *map);
 
+// Changes the format of the colour attachment, from the next rara_renderer_configure on, which compiles what the format needs
+// and keeps what was compiled for others: for a host whose swapchain changes, or that draws into several targets.
+//
+// # Safety
+// `renderer` is alive, and no other thread uses it.
+RaraResult rara_renderer_set_color_format(struct RaraRenderer *renderer,
+                                          VkFormat color_format);
+
 // Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the viewport that
 // rara_renderer_draw sets. A null `clip` clips nothing, null `settings` are the defaults. After an error nothing can be
 // recorded until a call succeeds.
@@ -1154,6 +1195,21 @@ uint64_t rara_scene_buffers_bytes(const struct RaraSceneBuffers *scene);
 // # Safety
 // `scene` is null, or alive and not used any more, not even by the device.
 void rara_scene_buffers_destroy(struct RaraSceneBuffers *scene);
+
+// No Gaussians, of degree 0, in arrays without gaps. `arrays_size` is sizeof *arrays.
+//
+// # Safety
+// `arrays` has room for `arrays_size` bytes.
+RaraResult rara_gaussian_arrays_default(struct RaraGaussianArrays *arrays, size_t arrays_size);
+
+// Copies Gaussians from a host's arrays. RARA_ERROR_INVALID names the array and, where a number in it cannot be drawn (one
+// that is not finite, a negative scale, a rotation that is no unit quaternion, an opacity that is not between 0 and 1), the
+// element.
+//
+// # Safety
+// `arrays` is as its fields say; `gaussians` may be overwritten.
+RaraResult rara_gaussians_from_arrays(const struct RaraGaussianArrays *arrays,
+                                      struct RaraGaussians **gaussians);
 
 // The state of a layer that stands where it was made, visible and with the opacities of its Gaussians. `state_size` is
 // sizeof *state.

@@ -3,7 +3,7 @@
 use rara::ash::vk;
 use rara::{Clip, Projection, Renderer, Result};
 
-use crate::boundary::{RaraResult, guard, recording, shared};
+use crate::boundary::{RaraResult, guard, invalid, recording, shared};
 use crate::camera::RaraCamera;
 use crate::clip::{self, RaraClip};
 use crate::depth::{self, RaraDepthImage, RaraDepthMap};
@@ -91,6 +91,25 @@ pub unsafe extern "C" fn rara_renderer_set_depth_map(
     with(renderer, |renderer| {
         // SAFETY: the caller's promise.
         renderer.set_depth_map(unsafe { shared(map, "map") }?.map()?)
+    })
+}
+
+/// Changes the format of the colour attachment, from the next rara_renderer_configure on, which compiles what the format needs
+/// and keeps what was compiled for others: for a host whose swapchain changes, or that draws into several targets.
+///
+/// # Safety
+/// `renderer` is alive, and no other thread uses it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_set_color_format(
+    renderer: *mut RaraRenderer,
+    color_format: vk::Format,
+) -> RaraResult {
+    with(renderer, |renderer| {
+        if color_format == vk::Format::UNDEFINED {
+            return invalid("color_format is VK_FORMAT_UNDEFINED");
+        }
+        renderer.set_color_format(color_format);
+        Ok(())
     })
 }
 

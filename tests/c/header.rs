@@ -28,6 +28,7 @@ fn the_header_is_current() {
         "orthographic",
         "matrices",
         "scene",
+        "arrays",
         "layer",
         "layer_info",
         "settings",

@@ -10,6 +10,7 @@ use rara::{Error, Result};
 
 use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
 use crate::handles::{create, destroy, number};
+use crate::lent::{Lender, RaraAllocate, RaraFree};
 
 /// `vkGetInstanceProcAddr`, or null.
 #[allow(non_camel_case_types)] // Vulkan's name
@@ -71,6 +72,14 @@ pub struct RaraAdoptDesc {
     pub release: RaraRelease,
     /// What `release` is given. Default: null.
     pub release_user: *mut c_void,
+    /// Lends all device memory that rara uses, such as vmaAllocateMemory does. Any thread calls it that makes or destroys
+    /// something of rara's, several at once; rara_renderer_prepare and rara_renderer_draw never do. Null, the default, for
+    /// an allocator of rara's own.
+    pub allocate: RaraAllocate,
+    /// Takes back what `allocate` has lent; null where that is.
+    pub free: RaraFree,
+    /// What `allocate` and `free` are given. Default: null.
+    pub allocator_user: *mut c_void,
 }
 
 // SAFETY: repr(C), handles, numbers and pointers, of which null is none, the size first.
@@ -98,6 +107,9 @@ impl RaraAdoptDesc {
             subgroup: 0,
             release: None,
             release_user: std::ptr::null_mut(),
+            allocate: None,
+            free: None,
+            allocator_user: std::ptr::null_mut(),
         }
     }
 }
@@ -146,7 +158,8 @@ pub unsafe extern "C" fn rara_adopt_desc_default(
 ///
 /// # Safety
 /// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice, of which
-/// `release` tells the end. It may be called with `release_user` by any thread.
+/// `release` tells the end. It may be called with `release_user` by any thread, and so may `allocate` and `free` with
+/// `allocator_user`; they keep what their types say.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_device_adopt(
     desc: *const RaraAdoptDesc,
@@ -170,7 +183,8 @@ pub unsafe extern "C" fn rara_device_adopt(
                 .full_subgroups(desc.full_subgroups != 0)
                 .shape(shape(&desc)?)
                 .debug_utils(desc.debug_utils != 0)
-                .pipeline_cache(desc.pipeline_cache);
+                .pipeline_cache(desc.pipeline_cache)
+                .memory(Lender::of(&desc)?.map(|lender| Arc::new(lender) as _));
             let release = Arc::new(Release {
                 release: desc.release,
                 user: desc.release_user,

@@ -18,6 +18,7 @@ pub mod device;
 mod handles;
 pub mod layer;
 pub mod layer_info;
+pub mod lent;
 pub mod logging;
 pub mod matrices;
 #[cfg(test)]

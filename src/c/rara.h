@@ -174,6 +174,44 @@ typedef uint32_t RaraShape;
 // Takes the news that rara uses nothing of the host's any more.
 typedef void (*RaraRelease)(void *user);
 
+// Who reaches device memory.
+typedef uint32_t RaraMemoryUse;
+
+// What RaraAllocate is asked for.
+typedef struct RaraMemoryRequest {
+    // Its size in the library, which may be larger than in the host's header.
+    size_t struct_size;
+    // What it is for, for debuggers: UTF-8, ends in NUL, and is gone after the call.
+    const char *name;
+    // Bytes.
+    uint64_t size;
+    // The offset is a multiple of this.
+    uint64_t alignment;
+    // A bit for each memory type that will do, as in VkMemoryRequirements.
+    uint32_t memory_type_bits;
+    // Who reaches it.
+    RaraMemoryUse memory_use;
+} RaraMemoryRequest;
+
+// A part of device memory that a host lends.
+typedef struct RaraMemory {
+    // The memory, allocated with VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT.
+    VkDeviceMemory memory;
+    // Where the part begins in it, bytes.
+    uint64_t offset;
+    // The part as the processor sees it; null for RARA_MEMORY_USE_DEVICE.
+    void *mapped;
+    // Whatever the host knows it by, such as a VmaAllocation.
+    void *user;
+} RaraMemory;
+
+// Lends memory, with `allocator_user` of RaraAdoptDesc: fills `*memory`, which is all zero before, and returns VK_SUCCESS, or
+// returns why there is none; the call that needs it then fails with RARA_ERROR_MEMORY. It must throw nothing.
+typedef VkResult (*RaraAllocate)(void *user, const struct RaraMemoryRequest *request, struct RaraMemory *memory);
+
+// Takes back what RaraAllocate has lent, as it was lent. The device is done with it. It must throw nothing.
+typedef void (*RaraFree)(void *user, const struct RaraMemory *memory);
+
 // A host's own Vulkan, for rara_device_adopt. All of it stays the host's.
 typedef struct RaraAdoptDesc {
     // Set by rara_adopt_desc_default.
@@ -216,6 +254,14 @@ typedef struct RaraAdoptDesc {
     RaraRelease release;
     // What `release` is given. Default: null.
     void *release_user;
+    // Lends all device memory that rara uses, such as vmaAllocateMemory does. Any thread calls it that makes or destroys
+    // something of rara's, several at once; rara_renderer_prepare and rara_renderer_draw never do. Null, the default, for
+    // an allocator of rara's own.
+    RaraAllocate allocate;
+    // Takes back what `allocate` has lent; null where that is.
+    RaraFree free;
+    // What `allocate` and `free` are given. Default: null.
+    void *allocator_user;
 } RaraAdoptDesc;
 
 // The placement of a scene in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1}
@@ -642,6 +688,15 @@ typedef struct RaraFrameStats {
 // A graphics processor.
 #define RARA_SHAPE_GPU 2
 
+// The device alone.
+#define RARA_MEMORY_USE_DEVICE 0
+
+// Mapped and host-coherent, for the processor to write.
+#define RARA_MEMORY_USE_UPLOAD 1
+
+// Mapped and host-coherent, for the processor to read.
+#define RARA_MEMORY_USE_READBACK 2
+
 // By address, which is fast. The default.
 #define RARA_BINDINGS_ADDRESS 0
 
@@ -881,7 +936,8 @@ RaraResult rara_adopt_desc_default(struct RaraAdoptDesc *desc, size_t desc_size)
 //
 // # Safety
 // The handles belong together, are as the description says, and outlive all that is made from the RaraDevice, of which
-// `release` tells the end. It may be called with `release_user` by any thread.
+// `release` tells the end. It may be called with `release_user` by any thread, and so may `allocate` and `free` with
+// `allocator_user`; they keep what their types say.
 RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc, struct RaraDevice **device);
 
 // Bytes of device memory that rara has allocated on the device, 0 for null.

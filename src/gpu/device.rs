@@ -5,19 +5,20 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::ffi::CString;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use ash::{ext, khr, vk};
-use gpu_allocator::AllocationError;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, Allocator};
+use gpu_allocator::vulkan::{AllocationCreateDesc, Allocator};
 
 use super::clock::Clock;
 use super::commands::Commands;
 use super::instance::Instance;
+use super::lent::Memory;
 use super::submit::OneOff;
 use super::validation::Messages;
 use super::{
-    AdoptDesc, Buffer, BufferDesc, Calibration, DeviceInfo, DeviceShape, Image, ImageDesc, Support,
+    AdoptDesc, Buffer, BufferDesc, Calibration, DeviceInfo, DeviceShape, Image, ImageDesc,
+    MemorySource, Support,
 };
 use crate::Result;
 
@@ -44,6 +45,8 @@ pub(super) struct Inner {
     debug_utils: Option<ext::debug_utils::Device>,
     /// Our own or the host's; `None` only while being dropped.
     allocator: Option<Arc<Mutex<Allocator>>>,
+    /// The host's own source of memory, which takes the allocator's place.
+    source: Option<Arc<dyn MemorySource>>,
     allocated: AtomicU64,
     allocated_at_most: AtomicU64,
     /// The same by name. They are counted here, as a host's allocator holds more than our memory.
@@ -100,6 +103,7 @@ impl Device {
                 queue_family: desc.queue_family,
                 pipeline_cache: desc.pipeline_cache,
                 allocator: Some(allocator),
+                source: desc.memory,
                 allocated: AtomicU64::new(0),
                 allocated_at_most: AtomicU64::new(0),
                 allocated_by_name: Mutex::default(),
@@ -298,11 +302,11 @@ impl Device {
         let _ = unsafe { debug.set_debug_utils_object_name(&info) };
     }
 
-    pub(crate) fn allocate(
+    pub(super) fn allocate(
         &self,
         desc: &AllocationCreateDesc<'_>,
-    ) -> std::result::Result<Allocation, AllocationError> {
-        let allocation = self.allocator().allocate(desc)?;
+    ) -> std::result::Result<Memory, String> {
+        let allocation = self.take_memory(desc)?;
         let before = self
             .inner
             .allocated
@@ -312,7 +316,8 @@ impl Device {
             .fetch_max(before + allocation.size(), Ordering::Relaxed);
         self.account(desc.name, |bytes| bytes + allocation.size());
         // Blocks that a host's allocator shares among its buffers and ours are the host's to name.
-        if allocation.is_dedicated() || self.inner.owned.is_some() {
+        let is_lent = self.inner.source.is_some();
+        if !is_lent && (allocation.is_dedicated() || self.inner.owned.is_some()) {
             let name = if allocation.is_dedicated() {
                 desc.name
             } else {
@@ -324,19 +329,20 @@ impl Device {
         Ok(allocation)
     }
 
-    pub(crate) fn free(&self, name: &str, allocation: Allocation) {
+    pub(super) fn free(&self, name: &str, allocation: Memory) {
         self.inner
             .allocated
             .fetch_sub(allocation.size(), Ordering::Relaxed);
         self.account(name, |bytes| bytes - allocation.size());
-        if let Err(error) = self.allocator().free(allocation) {
-            log::error!("device memory could not be freed: {error}");
-        }
+        self.give_memory_back(allocation);
     }
 
-    fn allocator(&self) -> MutexGuard<'_, Allocator> {
-        let allocator = self.inner.allocator.as_ref().expect("taken only by drop");
-        allocator.lock().unwrap_or_else(PoisonError::into_inner)
+    pub(super) fn memory_source(&self) -> Option<&dyn MemorySource> {
+        self.inner.source.as_deref()
+    }
+
+    pub(super) fn lent_allocator(&self) -> &Mutex<Allocator> {
+        self.inner.allocator.as_ref().expect("taken only by drop")
     }
 
     fn account(&self, name: &str, change: impl FnOnce(u64) -> u64) {

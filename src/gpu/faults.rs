@@ -118,6 +118,7 @@ pub(crate) fn lent(host: &Device) -> AdoptDesc {
         pipeline_statistics: false,
         pipeline_cache: vk::PipelineCache::null(),
         allocator: None,
+        memory: None,
         shape: None,
         keep_alive: None,
     }

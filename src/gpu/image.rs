@@ -2,10 +2,11 @@
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+use gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme};
 
 use super::failure::failed;
 use super::label::{begin_label, end_label};
+use super::lent::Memory;
 use super::memory::bytes;
 use super::{Buffer, Device};
 use crate::{Error, Result};
@@ -31,7 +32,7 @@ pub struct Image {
     extent: vk::Extent2D,
     format: vk::Format,
     name: Box<str>,
-    allocation: Option<Allocation>,
+    allocation: Option<Memory>,
 }
 
 /// Every target has one level and one layer of colour.

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+use gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme};
 
 use super::Device;
 use super::failure::failed;
+use super::lent::Memory;
 use crate::{Error, Result};
 
 /// Allocations from this size on get memory of their own; smaller ones share blocks. With a lower limit small buffers would
@@ -51,7 +52,7 @@ struct Owned {
     name: Box<str>,
     location: Location,
     /// `None` only while being dropped.
-    allocation: Option<Allocation>,
+    allocation: Option<Memory>,
 }
 
 impl Buffer {
@@ -108,7 +109,7 @@ impl Buffer {
             Err(error) => {
                 // SAFETY: created above, used by nothing.
                 unsafe { device.raw().destroy_buffer(handle, None) };
-                return Err(full(&error.to_string()));
+                return Err(full(&error));
             }
         };
         // From here on dropping `buffer` cleans up.
@@ -178,7 +179,7 @@ impl Buffer {
         let bytes = self
             .0
             .allocation()
-            .mapped_slice()
+            .mapped()
             .expect("host-visible memory is mapped while it lives");
         &bytes[..self.0.size as usize]
     }
@@ -197,7 +198,7 @@ impl Buffer {
         let owned = Arc::get_mut(&mut self.0).expect("what the host writes has no clones");
         let allocation = owned.allocation.as_mut().expect("taken only by drop");
         &mut allocation
-            .mapped_slice_mut()
+            .mapped_mut()
             .expect("host-visible memory is mapped while it lives")[..size]
     }
 
@@ -215,7 +216,7 @@ impl Buffer {
 }
 
 impl Owned {
-    fn allocation(&self) -> &Allocation {
+    fn allocation(&self) -> &Memory {
         self.allocation.as_ref().expect("taken only by drop")
     }
 }

@@ -33,6 +33,7 @@ mod inspection;
 mod instance;
 mod label;
 mod layout;
+mod lent;
 mod memory;
 mod open;
 mod pipeline;
@@ -59,6 +60,8 @@ pub use device::{Device, NamedBytes};
 pub use devices::{DeviceInfo, list_devices};
 pub use features::Features;
 pub use layout::Bindings;
+pub use lent::{LentMemory, MemoryRequest, MemorySource};
+pub use memory::Location;
 pub use open::{AdoptDesc, DeviceDesc};
 pub use pipeline_cache::PipelineCacheId;
 pub use pipeline_file::PipelineCache;
@@ -89,7 +92,7 @@ mod inner {
     pub use super::image::{Image, ImageDesc};
     #[cfg(feature = "lab")]
     pub use super::inspection::{CompiledShader, Dispatched, DispatchedGroups, Recorded};
-    pub use super::memory::{Buffer, BufferDesc, Location};
+    pub use super::memory::{Buffer, BufferDesc};
     pub use super::pipeline::{ComputeDesc, ComputePipeline, GraphicsDesc, GraphicsPipeline};
     #[cfg(feature = "lab")]
     pub use super::recorder::group_grid;

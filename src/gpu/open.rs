@@ -10,7 +10,7 @@ use gpu_allocator::{AllocationSizes, AllocatorDebugSettings};
 
 use super::failure::failed;
 use super::instance::Instance;
-use super::{Device, DeviceInfo, DeviceShape, devices, functions, requirements};
+use super::{Device, DeviceInfo, DeviceShape, MemorySource, devices, functions, requirements};
 use crate::setters::setters;
 use crate::{Error, Result};
 
@@ -83,6 +83,9 @@ pub struct AdoptDesc {
     /// rara's own. It is locked while a buffer or an image is made or destroyed, never by
     /// [`Renderer::prepare`](crate::Renderer::prepare) or a draw.
     pub allocator: Option<Arc<Mutex<Allocator>>>,
+    /// The source of all device memory in place of an allocator, for a host whose own is no `gpu_allocator`. `None` where there
+    /// is none.
+    pub memory: Option<Arc<dyn MemorySource>>,
     /// The kind of machine that kernels are chosen for; `None` is what suits the device.
     pub shape: Option<DeviceShape>,
     /// Whatever keeps the host's device and instance alive: it is dropped when the last of the [`Device`]'s clones and of
@@ -98,6 +101,7 @@ setters!(AdoptDesc {
     pipeline_statistics: bool,
     pipeline_cache: vk::PipelineCache,
     allocator: Option<Arc<Mutex<Allocator>>>,
+    memory: Option<Arc<dyn MemorySource>>,
     shape: Option<DeviceShape>,
     keep_alive: Option<Arc<dyn Any + Send + Sync>>,
 });
@@ -125,6 +129,7 @@ impl AdoptDesc {
             pipeline_statistics: false,
             pipeline_cache: vk::PipelineCache::null(),
             allocator: None,
+            memory: None,
             shape: None,
             keep_alive: None,
         }
@@ -213,6 +218,7 @@ impl Device {
             pipeline_statistics: support.pipeline_statistics,
             pipeline_cache,
             allocator: None,
+            memory: None,
             shape: desc.shape,
             keep_alive: None,
         };
@@ -287,6 +293,12 @@ impl Device {
             None
         });
         let shape = DeviceShape::of(&info, &support, desc.shape, shape)?;
+        if desc.allocator.is_some() && desc.memory.is_some() {
+            return Err(Error::Invalid(
+                "the description has an allocator and another source of memory: give one of them"
+                    .into(),
+            ));
+        }
         let allocator = match &desc.allocator {
             Some(lent) => lent.clone(),
             None => allocator(&desc)?,

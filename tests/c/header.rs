@@ -22,6 +22,7 @@ fn the_header_is_current() {
         "depth",
         "support",
         "device",
+        "lent",
         "placement",
         "renderer",
         "renderer_desc",

@@ -3,6 +3,7 @@
 //! layers that are hidden, moved and faded.
 
 mod layers;
+mod lent;
 mod ours;
 mod regions;
 mod staged;

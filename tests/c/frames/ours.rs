@@ -30,6 +30,20 @@ impl Ours {
         path: &Path,
         shape: RaraShape,
     ) -> Self {
+        // SAFETY: the caller's promise.
+        unsafe { Self::described(entry, host, path, |desc| desc.shape = shape) }
+    }
+
+    /// The same with more in the description of the device.
+    ///
+    /// # Safety
+    /// As for `new`, and what is added is as its fields say.
+    pub(super) unsafe fn described(
+        entry: &Entry,
+        host: &AdoptDesc,
+        path: &Path,
+        add: impl FnOnce(&mut RaraAdoptDesc),
+    ) -> Self {
         let mut device = null_mut();
         // SAFETY: the caller's promise; the others are alive, or to be overwritten.
         unsafe {
@@ -45,7 +59,7 @@ impl Ours {
             desc.debug_utils = host.debug_utils.into();
             desc.full_subgroups = host.full_subgroups.into();
             desc.api_version = host.api_version;
-            desc.shape = shape;
+            add(&mut desc);
             assert_ok(rara_device_adopt(&desc, &mut device));
         }
         let gaussians = loaded_in_c(path);

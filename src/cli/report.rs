@@ -235,6 +235,9 @@ fn wrote(paths: &[PathBuf]) -> String {
 
 /// The most memory this process ever had resident; 0 where the system does not report it.
 fn peak_rss_bytes() -> u64 {
+    if !cfg!(any(target_os = "linux", target_os = "android")) {
+        return 0; // other systems have no such file
+    }
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     let kib = line.and_then(|rest| {

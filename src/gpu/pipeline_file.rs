@@ -12,7 +12,8 @@ use crate::{Error, Result};
 /// The place in which [`Headless`](crate::Headless) keeps compiled pipelines from one run to the next.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum PipelineCache {
-    /// They are kept in the user's cache folder: `RARA_CACHE`, else `rara` in `XDG_CACHE_HOME`, else `~/.cache/rara`. They
+    /// They are kept in the user's cache folder: `RARA_CACHE`, else `rara` in `XDG_CACHE_HOME`, else `~/.cache/rara` (on
+    /// Windows `rara` in `LOCALAPPDATA`, on macOS `~/Library/Caches/rara`). They
     /// are kept nowhere if there is no home, or if `RARA_CACHE` is set to nothing.
     #[default]
     User,
@@ -42,7 +43,14 @@ fn user_folder(variable: impl Fn(&str) -> Option<std::ffi::OsString>) -> Option<
             .map(PathBuf::from)
             .filter(|path| path.is_absolute())
     };
-    let caches = absolute("XDG_CACHE_HOME").or_else(|| Some(absolute("HOME")?.join(".cache")));
+    let home = |folder| Some(absolute("HOME")?.join(folder));
+    let caches = if cfg!(windows) {
+        absolute("LOCALAPPDATA")
+    } else if cfg!(target_vendor = "apple") {
+        home("Library/Caches")
+    } else {
+        absolute("XDG_CACHE_HOME").or_else(|| home(".cache"))
+    };
     Some(caches?.join("rara"))
 }
 
@@ -177,6 +185,7 @@ fn read(path: &Path, id: &PipelineCacheId) -> io::Result<Vec<u8>> {
 mod tests {
     use super::*;
 
+    #[cfg(target_os = "linux")]
     #[test]
     fn the_users_folder_is_the_first_that_is_set() {
         let folder = |set: &[(&str, &str)]| {

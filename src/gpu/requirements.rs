@@ -261,3 +261,21 @@ pub unsafe fn check(
         portability_subset: has(khr::portability_subset::NAME),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_device_that_only_approaches_vulkan_is_opened_with_the_subset() {
+        for portability_subset in [false, true] {
+            let support = Support {
+                portability_subset,
+                ..Support::default()
+            };
+            let extensions = support.extensions();
+            let has = extensions.contains(&khr::portability_subset::NAME);
+            assert_eq!(has, portability_subset);
+        }
+    }
+}

@@ -3,6 +3,9 @@
 /// Time that all threads of this process have spent on a processor so far, ms, as Linux's scheduler counts it; 0 where
 /// there is no such count.
 pub fn processor_ms() -> f64 {
+    if !cfg!(any(target_os = "linux", target_os = "android")) {
+        return 0.0; // other systems have no such files
+    }
     let Ok(threads) = std::fs::read_dir("/proc/self/task") else {
         return 0.0;
     };

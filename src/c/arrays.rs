@@ -3,7 +3,6 @@
 use std::ptr::null;
 
 use rara::glam::{Quat, Vec3};
-use rara::scene::Loaded;
 use rara::{Error, GaussianArrays, Gaussians, Result};
 
 use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
@@ -97,8 +96,7 @@ pub unsafe extern "C" fn rara_gaussians_from_arrays(
             let gaussians = Gaussians::new(arrays.copied()?).map_err(|error| {
                 Error::Invalid(format!("arrays->{error}")) // which begins with the array's name
             })?;
-            let report = Default::default();
-            Ok(RaraGaussians(Loaded { gaussians, report }))
+            Ok(gaussians.into())
         })
     })
 }

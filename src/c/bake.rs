@@ -1,6 +1,5 @@
 //! Baking: Gaussians that show a cut in any viewer.
 
-use rara::scene::{LoadReport, Loaded};
 use rara::{BakeCounts, BakeSettings, bake};
 
 use crate::boundary::{RaraResult, Versioned, guard, read, write};
@@ -133,14 +132,11 @@ pub unsafe extern "C" fn rara_gaussians_bake(
                         .leave(given.leave)
                 }
             };
-            let made = bake(&gaussians.0.gaussians, &region.0, &settings)?;
+            let made = bake(&gaussians.gaussians, &region.0, &settings)?;
             if !counts.is_null() {
                 write(counts, counts_size, &made.counts.into(), "counts")?;
             }
-            Ok(RaraGaussians(Loaded {
-                gaussians: made.gaussians,
-                report: LoadReport::default(),
-            }))
+            Ok(made.gaussians.into())
         })
     })
 }

@@ -132,7 +132,7 @@ pub unsafe extern "C" fn rara_camera_frame(
     // SAFETY: the caller's promises.
     unsafe {
         make(camera, || {
-            let bounds = Bounds::of(&alive(gaussians, "gaussians")?.0.gaussians);
+            let bounds = Bounds::of(&alive(gaussians, "gaussians")?.gaussians);
             Camera::frame(&bounds, vector(up, "up")?, fov_y, (width, height))
         })
     }

@@ -5,8 +5,8 @@ use std::io::Cursor;
 use std::sync::Arc;
 
 use rara::ash::vk;
-use rara::scene::{Bounds, Loaded, load, load_from};
-use rara::{Layer, LayerState, Result, Scene, SceneBuffers, ShFormat, Staging};
+use rara::scene::{Bounds, LoadReport, Loaded, load, load_from};
+use rara::{Gaussians, Layer, LayerState, Result, Scene, SceneBuffers, ShFormat, Staging};
 
 use crate::boundary::{
     RaraResult, Versioned, exclusive, guard, invalid, list, memory, recording, shared, write,
@@ -16,7 +16,29 @@ use crate::handles::{alive, alone, create, destroy, number};
 use crate::text::{self, c_string};
 
 /// A scene in the host's memory. It may be destroyed once it is on the device. Several threads may read it at once.
-pub struct RaraGaussians(pub(crate) Loaded);
+pub struct RaraGaussians {
+    pub(crate) gaussians: Gaussians,
+    /// What of the file could not be used; nothing where there was none.
+    pub(crate) report: LoadReport,
+}
+
+impl From<Loaded> for RaraGaussians {
+    fn from(loaded: Loaded) -> Self {
+        Self {
+            gaussians: loaded.gaussians,
+            report: loaded.report,
+        }
+    }
+}
+
+impl From<Gaussians> for RaraGaussians {
+    fn from(gaussians: Gaussians) -> Self {
+        Self {
+            gaussians,
+            report: LoadReport::default(),
+        }
+    }
+}
 
 /// A scene in device memory: one layer or several. Several threads and renderers may use it at once, but nobody else
 /// while rara_scene_buffers_set_layer_state runs.
@@ -98,7 +120,7 @@ pub unsafe extern "C" fn rara_gaussians_load(
     guard(|| unsafe {
         create(gaussians, "gaussians", || {
             let path = text::path(path, "path")?;
-            load(&path, &mut |_, _| ()).map(RaraGaussians)
+            load(&path, &mut |_, _| ()).map(RaraGaussians::from)
         })
     })
 }
@@ -119,7 +141,7 @@ pub unsafe extern "C" fn rara_gaussians_load_from(
         create(gaussians, "gaussians", || {
             let name = text::path(name, "name")?;
             let source = Cursor::new(list(data, size, "data")?);
-            load_from(source, &name, &mut |_, _| ()).map(RaraGaussians)
+            load_from(source, &name, &mut |_, _| ()).map(RaraGaussians::from)
         })
     })
 }
@@ -138,9 +160,9 @@ pub unsafe extern "C" fn rara_gaussians_append(
             return invalid("gaussians and other are the same scene");
         }
         let (mut to, from) = (alone(gaussians, "gaussians")?, alive(other, "other")?);
-        to.0.gaussians.append(&from.0.gaussians);
-        to.0.report.dropped += from.0.report.dropped;
-        to.0.report.repaired += from.0.report.repaired;
+        to.gaussians.append(&from.gaussians);
+        to.report.dropped += from.report.dropped;
+        to.report.repaired += from.report.repaired;
         Ok(())
     })
 }
@@ -157,7 +179,7 @@ pub unsafe extern "C" fn rara_gaussians_info(
 ) -> RaraResult {
     guard(|| {
         let gaussians = alive(gaussians, "gaussians")?;
-        let Loaded { gaussians, report } = &gaussians.0;
+        let RaraGaussians { gaussians, report } = &*gaussians;
         let bounds = Bounds::of(gaussians);
         let found = RaraGaussiansInfo {
             struct_size: size_of::<RaraGaussiansInfo>(),
@@ -222,7 +244,7 @@ fn of_layers(given: &[GivenLayer]) -> Scene<'_> {
             name,
             state,
         }: &GivenLayer = given;
-        Layer::new(name.as_str(), &gaussians.0.gaussians).with(*state)
+        Layer::new(name.as_str(), &gaussians.gaussians).with(*state)
     };
     given.iter().map(layer).collect()
 }

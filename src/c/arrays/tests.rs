@@ -17,7 +17,7 @@ fn made(arrays: &RaraGaussianArrays) -> (RaraResult, Option<Gaussians>) {
         let result = rara_gaussians_from_arrays(arrays, &mut handle);
         let found = (result == RARA_OK).then(|| {
             let object = alive(handle.cast_const(), "gaussians").expect("made just now");
-            object.0.gaussians.clone()
+            object.gaussians.clone()
         });
         rara_gaussians_destroy(handle);
         (result, found)

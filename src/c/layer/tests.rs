@@ -19,9 +19,7 @@ unsafe fn staging(layers: *const RaraLayer, count: usize, bytes: &mut u64) -> Ra
 
 /// Gaussians as C has them.
 fn handle(gaussians: rara::Gaussians) -> *mut RaraGaussians {
-    let report = Default::default();
-    let loaded = rara::scene::Loaded { gaussians, report };
-    crate::handles::add(RaraGaussians(loaded)).expect("a number")
+    crate::handles::add(RaraGaussians::from(gaussians)).expect("a number")
 }
 
 #[test]

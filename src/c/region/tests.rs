@@ -107,11 +107,7 @@ fn baking_is_that_of_rust() {
     let expression: Expression = text.parse().expect("a region");
     let settings = rara::BakeSettings::default().children(2).leave(1.2);
     let truth = rara::bake(&scene, &expression.clip(), &settings).expect("bakes");
-    let gaussians = RaraGaussians(rara::scene::Loaded {
-        gaussians: scene,
-        report: Default::default(),
-    });
-    let gaussians = crate::handles::add(gaussians).expect("a number");
+    let gaussians = crate::handles::add(RaraGaussians::from(scene)).expect("a number");
     let (mut region, mut baked) = (null_mut(), null_mut());
     let text = CString::new(text).expect("no NUL");
     // SAFETY: handles that are alive, structs that may hold any bytes, pointers that may be overwritten.
@@ -131,7 +127,7 @@ fn baking_is_that_of_rust() {
         let (result, made) = bake(&given, &mut counts, room);
         assert_eq!(result, RARA_OK);
         let of_made = alive(made, "made").expect("just made");
-        assert_eq!(of_made.0.gaussians, truth.gaussians);
+        assert_eq!(of_made.gaussians, truth.gaussians);
         drop(of_made);
         assert_eq!(counts, truth.counts.into());
         assert!(counts.children > 0 && counts.struct_size == room);

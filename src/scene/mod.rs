@@ -11,6 +11,7 @@ mod layer;
 mod load;
 mod numbers;
 mod parts;
+mod placed;
 #[cfg(feature = "ply")]
 mod ply;
 mod predicate;

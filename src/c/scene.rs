@@ -105,7 +105,8 @@ pub(crate) fn sh_format(value: RaraShFormat) -> Result<ShFormat> {
     })
 }
 
-/// Loads a 3DGS .ply file: ascii or binary, spherical harmonics of degree 0 to 3.
+/// Loads a scene: 3DGS .ply (ascii or binary, spherical harmonics of degree 0 to 3), .compressed.ply, .splat, .ksplat, .spz,
+/// SOG (an archive, its folder or meta.json) or glTF with KHR_gaussian_splatting. The format is found by what is in the file.
 ///
 /// `path` is UTF-8, or on Unix whatever the file system takes.
 ///
@@ -125,7 +126,8 @@ pub unsafe extern "C" fn rara_gaussians_load(
     })
 }
 
-/// Loads a 3DGS .ply file that is in memory, such as an archive's entry. `name` stands for it in messages.
+/// Loads a scene that is in memory, such as an archive's entry, in any format that is one file. `name` stands for it in
+/// messages.
 ///
 /// # Safety
 /// `data` points to `size` bytes, which are not used afterwards; `name` ends in NUL; `gaussians` may be overwritten.

@@ -68,6 +68,8 @@ struct Spread {
 #[derive(Debug, Serialize)]
 struct LayerFacts {
     name: String,
+    /// The format of its file.
+    format: String,
     gaussians: usize,
     opacity: f32,
     visible: bool,
@@ -79,6 +81,9 @@ impl LayerFacts {
     fn of(layer: &LoadedLayer) -> Self {
         Self {
             name: layer.name.clone(),
+            format: layer
+                .format
+                .map_or_else(|| "none".into(), |format| format.to_string()),
             gaussians: layer.gaussians.len(),
             opacity: layer.state.opacity,
             visible: layer.state.visible,
@@ -181,11 +186,15 @@ fn print(document: &Document) {
             (true, false) => "",
         };
         say(format_args!(
-            "  layer        {}: {}, opacity {}{state}",
+            "  layer        {} ({}): {}, opacity {}{state}",
             layer.name,
+            layer.format,
             grouped(layer.gaussians as u64),
             layer.opacity
         ));
+    }
+    if let [layer] = &document.layers[..] {
+        say(format_args!("format         {}", layer.format));
     }
     say(format_args!("SH degree      {}", document.sh_degree));
     say(format_args!(

@@ -14,7 +14,7 @@ use rara::scene::{self, Property};
 /// The flags that name the scene.
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
-    /// Scene files (3DGS .ply); several are the layers of one scene, each called by its file's name or as in NAME=FILE. A
+    /// Scene files (3DGS .ply, .compressed.ply, .splat, .ksplat, .spz, .sog, a folder of SOG, .glb, .gltf); several are the layers of one scene, each called by its file's name or as in NAME=FILE. A
     /// .json file lists layers: {"layers":[{"path":"skin.ply","name":"skin","opacity":0.5,"visible":true,
     /// "position":[x,y,z],"rotation":[w,x,y,z],"scale":s,"clip":{...} or "clip_expr":"...",
     /// "select":[{"name":"vessels","where":"label in 3,4"}]}]}
@@ -103,6 +103,8 @@ pub(super) struct LoadedLayer {
     /// What it is called.
     pub(super) name: String,
     pub(super) gaussians: Gaussians,
+    /// Its file's format; none where it comes from no file.
+    pub(super) format: Option<scene::Format>,
     pub(super) state: LayerState,
     /// Its own clip.
     pub(super) clip: Option<LayerClip>,
@@ -128,6 +130,7 @@ impl LoadedLayer {
         Self {
             name,
             gaussians: Gaussians::default(),
+            format: None,
             state,
             listed: Listed {
                 visible: state.visible,
@@ -279,7 +282,11 @@ fn load(entries: Vec<LayerEntry>) -> Result<Loaded, Failure> {
                 .map(|line| format!("{}: {line}", path.display())),
         );
         let count = loaded.gaussians.len() as u32;
+        let first = all.layers.len();
         all.add(entry, loaded.gaussians, &properties, before)?;
+        for layer in &mut all.layers[first..] {
+            layer.format = Some(loaded.format);
+        }
         before = before.saturating_add(count);
     }
     for note in &all.notes {

@@ -2,11 +2,40 @@
 
 use glam::{DVec4, Quat, Vec3};
 
-use super::layout::{OPACITY, ROTATION, SCALES, SH, SLOTS, slot_name};
-use crate::scene::{Gaussians, LoadReport, Loaded, Property, sh_coefficients};
+use super::{Format, Gaussians, LoadReport, Loaded, Property, sh_coefficients};
+
+/// Slots of a row, see [`FIXED`]: the scales, by default their logarithms.
+pub(super) const SCALES: usize = 3;
+/// The quaternion, w first.
+pub(super) const ROTATION: usize = 6;
+/// The opacity, by default its logit.
+pub(super) const OPACITY: usize = 10;
+/// From here on the spherical harmonics as `[coefficient][r, g, b]`.
+pub(super) const SH: usize = 11;
+/// Slots of a row at degree 3.
+pub(super) const SLOTS: usize = SH + 48;
+
+/// What every scene has, in the order of the slots and by the names of a `.ply`: `FIXED[slot]`.
+pub(super) const FIXED: [&str; SH + 3] = [
+    "x", "y", "z", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3", "opacity",
+    "f_dc_0", "f_dc_1", "f_dc_2",
+];
 
 /// The numbers of one Gaussian as the file has them, by slot; slots that are not in use stay zero.
 pub(super) type Row = [f64];
+
+/// How a file stores what can be stored in two ways.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stored {
+    /// Scales as logarithms, opacities as logits.
+    Logarithms,
+    /// Scales as logarithms, opacities from 0 to 1.
+    #[cfg_attr(not(feature = "formats"), allow(dead_code))]
+    LogScales,
+    /// Both as they are.
+    #[cfg_attr(not(feature = "formats"), allow(dead_code))]
+    Plain,
+}
 
 /// Collects rows into [`Gaussians`].
 pub(super) struct Assembler {
@@ -18,6 +47,7 @@ pub(super) struct Assembler {
     pub(super) rows: u64,
     /// Slots in use.
     used: usize,
+    stored: Stored,
 }
 
 impl Assembler {
@@ -38,7 +68,14 @@ impl Assembler {
             report: LoadReport::default(),
             rows: 0,
             used: SH + 3 * sh_coefficients(sh_degree),
+            stored: Stored::Logarithms,
         })
+    }
+
+    /// The same for rows that store scales and opacities in another way.
+    pub(super) fn stored(mut self, stored: Stored) -> Self {
+        self.stored = stored;
+        self
     }
 
     /// Takes the next row.
@@ -48,7 +85,7 @@ impl Assembler {
         let degree = self.gaussians.sh_degree();
         let unusable = |(slot, &value): (usize, &f64)| {
             let value = value as f32;
-            !(value.is_finite() || is_limit(slot, value))
+            !(value.is_finite() || self.is_limit(slot, value))
         };
         if let Some(slot) = row[..self.used].iter().enumerate().position(unusable) {
             self.report.drop_element(element, || {
@@ -62,7 +99,11 @@ impl Assembler {
             });
             return;
         }
-        let scale = [row[3], row[4], row[5]].map(|log| log.exp() as f32);
+        let stored = [row[3], row[4], row[5]];
+        let scale = match self.stored {
+            Stored::Plain => stored.map(|scale| scale.abs() as f32),
+            _ => stored.map(|log| log.exp() as f32),
+        };
         if let Some(axis) = scale.iter().position(|s| !s.is_finite()) {
             self.report.drop_element(element, || {
                 format!(
@@ -73,16 +114,21 @@ impl Assembler {
             return;
         }
         let rotation = unit(DVec4::new(row[7], row[8], row[9], row[6]));
-        let limit = (SCALES..=OPACITY).find(|&slot| is_limit(slot, row[slot] as f32));
         // A row counts once, however much of it is repaired.
         if rotation.is_none() {
             self.report.repair_element(element, || {
                 "its rotation was all zeros, now the identity".into()
             });
-        } else if let Some(slot) = limit {
+        } else if let Some(slot) =
+            (SCALES..=OPACITY).find(|&slot| self.is_repaired(slot, row[slot]))
+        {
             self.report.repair_element(element, || {
                 let becomes = if slot == OPACITY { "opacity" } else { "scale" };
-                let value = if row[slot] > 0.0 { 1 } else { 0 };
+                let value = match row[slot] {
+                    value if slot < ROTATION && value.is_finite() => value.abs(),
+                    value if value > 0.0 => 1.0,
+                    _ => 0.0,
+                };
                 format!(
                     "{} is {:e}, taken as the {becomes} {value}",
                     slot_name(slot, degree),
@@ -98,7 +144,10 @@ impl Assembler {
             Vec3::from_slice(&single[..3]),
             Vec3::from_array(scale),
             rotation.unwrap_or(Quat::IDENTITY),
-            (1.0 / (1.0 + (-row[10]).exp())) as f32,
+            match self.stored {
+                Stored::Logarithms => (1.0 / (1.0 + (-row[OPACITY]).exp())) as f32,
+                _ => row[OPACITY].clamp(0.0, 1.0) as f32,
+            },
             &single[SH..self.used],
         );
         for (property, &value) in self.properties.iter_mut().zip(&row[SLOTS..]) {
@@ -117,19 +166,42 @@ impl Assembler {
         let loaded = Loaded {
             gaussians: self.gaussians,
             report: self.report,
+            format: Format::Ply,
         };
         (loaded, self.properties)
     }
+
+    /// True when an infinite value is the exact stored form of a sensible one: editors write the logit of opacity 1 as
+    /// infinity, and the logarithm of scale 0 as its negative.
+    fn is_limit(&self, slot: usize, value: f32) -> bool {
+        match slot {
+            OPACITY => self.stored == Stored::Logarithms && value.is_infinite(),
+            SCALES..ROTATION => self.stored != Stored::Plain && value == f32::NEG_INFINITY,
+            _ => false,
+        }
+    }
+
+    /// True for what is put right: such an infinity, a negative scale, an opacity beyond 0 and 1.
+    fn is_repaired(&self, slot: usize, value: f64) -> bool {
+        let is_wrong = match slot {
+            OPACITY => self.stored != Stored::Logarithms && !(0.0..=1.0).contains(&value),
+            SCALES..ROTATION => self.stored == Stored::Plain && value < 0.0,
+            _ => false,
+        };
+        is_wrong || self.is_limit(slot, value as f32)
+    }
 }
 
-/// True when an infinite value is the exact stored form of a sensible one: editors write the logit of opacity 1 as
-/// infinity, and the logarithm of scale 0 as its negative.
-fn is_limit(slot: usize, value: f32) -> bool {
-    match slot {
-        OPACITY => value.is_infinite(),
-        SCALES..ROTATION => value == f32::NEG_INFINITY,
-        _ => false,
+/// The property a slot was read from, for messages; formats without properties call them the same.
+pub(super) fn slot_name(slot: usize, sh_degree: u32) -> String {
+    if slot < FIXED.len() {
+        return FIXED[slot].into();
     }
+    let (coefficient, channel) = ((slot - SH) / 3 - 1, (slot - SH) % 3);
+    format!(
+        "f_rest_{}",
+        channel * (sh_coefficients(sh_degree) - 1) + coefficient
+    )
 }
 
 /// The quaternion x, y, z, w at length one; `None` for zero. Dividing by the largest component first keeps the
@@ -212,6 +284,27 @@ mod tests {
             report.first_repaired[0].reason,
             "opacity is inf, taken as the opacity 1"
         );
+    }
+
+    #[test]
+    fn plain_scales_and_opacities_are_taken_as_they_are() {
+        let mut rows = [row(), row(), row()];
+        (rows[0][SCALES], rows[0][OPACITY]) = (0.5, 0.25);
+        (rows[1][SCALES], rows[1][OPACITY]) = (-0.5, 1.0);
+        rows[2][OPACITY] = 1.5;
+        let assembler = Assembler::with_room(3, 0, Vec::new()).unwrap();
+        let mut assembler = assembler.stored(Stored::Plain);
+        rows.iter().for_each(|row| assembler.push(row));
+        let (
+            Loaded {
+                gaussians, report, ..
+            },
+            _,
+        ) = assembler.finish();
+        assert_eq!(gaussians.scales()[0], Vec3::new(0.5, 0.0, 0.0));
+        assert_eq!(gaussians.scales()[1], gaussians.scales()[0]);
+        assert_eq!(gaussians.opacities(), [0.25, 1.0, 1.0]);
+        assert_eq!((report.repaired, report.dropped), (2, 0));
     }
 
     #[test]

@@ -4,27 +4,42 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-use super::{Gaussians, LoadReport, Property, ply};
+use super::{Format, Gaussians, LoadReport, Property, ply};
 use crate::error::{Error, Result};
 
-/// A file format of scenes.
-pub(super) struct Format {
-    /// True for a file of the format, by its first bytes, or by its name where the format has none of its own.
-    pub(super) is: fn(&[u8], &Path) -> bool,
-    /// Reads a whole file, of which nothing has been read yet, with the properties that are asked for. The name stands for
-    /// it in messages.
-    pub(super) read: Reader,
+/// What a format reads: a file of which nothing has been read yet.
+pub(super) struct Input<'a> {
+    pub(super) source: &'a mut dyn Source,
+    /// Stands for the file in messages.
+    pub(super) name: &'a Path,
+    /// The folder of the files that this one may name; none for a file in memory.
+    #[cfg_attr(not(feature = "formats"), allow(dead_code))]
+    pub(super) folder: Option<&'a Path>,
+    /// The properties that are asked for.
+    pub(super) properties: &'a [&'a str],
 }
 
 /// How a format reads.
-type Reader =
-    fn(&mut dyn Source, &Path, &[&str], &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)>;
-
-/// All that are known. What is of none is read as the first, which says what is wrong with it.
-const FORMATS: [&Format; 1] = [&ply::FORMAT];
+pub(super) type Found = fn(Input<'_>, &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)>;
 
 /// Bytes that a format is recognised by, at most.
-const START: u64 = 64;
+const START: u64 = 4096;
+
+/// The format of a file, by its first bytes and its size. What is of none is read as a PLY, which says what is wrong with
+/// it, where no other format can be.
+fn find(start: &[u8], total: u64, name: &Path) -> Result<Found> {
+    if start.starts_with(b"ply") {
+        return Ok(ply::read);
+    }
+    #[cfg(feature = "formats")]
+    return super::formats::find(start, total)
+        .ok_or_else(|| Error::format(name, super::formats::unknown(start)));
+    #[cfg(not(feature = "formats"))]
+    {
+        let _ = (total, name);
+        Ok(ply::read)
+    }
+}
 
 /// A source that a scene is read from.
 pub(super) trait Source: Read + Seek {}
@@ -38,13 +53,21 @@ pub struct Loaded {
     pub gaussians: Gaussians,
     /// Elements that were dropped or repaired.
     pub report: LoadReport,
+    /// The file's format.
+    pub format: Format,
 }
 
-/// Loads a 3DGS `.ply` file: ascii or binary of either byte order, spherical harmonics of degree 0 to 3, properties of
-/// any type in any order; properties and elements that are no part of a Gaussian are ignored.
+/// Loads a scene from a file of any [format](Format), which is found by what is in the file, whatever its name.
 ///
-/// Peak memory is the scene itself plus a few MiB. `progress` is called now and then with the bytes read so far and
-/// the file's size, last with both equal. A `vertex` element of zero Gaussians is an empty scene, not an error.
+/// Of 3DGS `.ply` files this reads ascii and binary of either byte order, spherical harmonics of degree 0 to 3, and
+/// properties of any type in any order; properties and elements that are no part of a Gaussian are ignored. The other
+/// formats but `.compressed.ply` need the feature `formats`. Scenes of several files, as SOG that is not packed and
+/// `.gltf`, are loaded by the file that names the others; for SOG the folder does, too. Where a format has other axes, as
+/// `.spz` and glTF have, they become those of a 3DGS `.ply`: right, down and forward.
+///
+/// Peak memory is the scene itself plus a few MiB, and for formats beside `.ply` the file and what it decompresses to.
+/// `progress` is called now and then with the bytes read so far and the file's size, last with both equal. A file of zero
+/// Gaussians is an empty scene, not an error.
 ///
 /// # Errors
 /// [`Error::Io`] if the file can't be read, [`Error::Format`] if it is not a scene or is cut off, [`Error::Memory`] if
@@ -66,14 +89,22 @@ pub fn load_with(
 ) -> Result<(Loaded, Vec<Property>)> {
     // Before opening it, which would wait for a pipe's writer.
     let metadata = std::fs::metadata(path).map_err(Error::io(path))?;
+    #[cfg(feature = "formats")]
+    if let Some(file) = ["meta.json", "lod-meta.json"]
+        .map(|name| path.join(name))
+        .iter()
+        .find(|f| f.is_file())
+    {
+        return load_with(file, properties, progress);
+    }
     if !metadata.is_file() {
         return Err(Error::format(
             path,
-            "this is a folder or a device, not a file; give a .ply file",
+            "this is a folder without the meta.json of a SOG scene, or a device; give a scene's file, such as a .ply",
         ));
     }
     let file = File::open(path).map_err(Error::io(path))?;
-    load_from_with(file, path, properties, progress)
+    read(file, path, path.parent(), properties, progress)
 }
 
 /// Loads a scene from anything that can be read and sought in, such as an archive's entry in a
@@ -94,8 +125,18 @@ pub fn load_from<R: Read + Seek>(
 /// # Errors
 /// As [`load_with`].
 pub fn load_from_with<R: Read + Seek>(
+    source: R,
+    name: &Path,
+    properties: &[&str],
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<(Loaded, Vec<Property>)> {
+    read(source, name, None, properties, progress)
+}
+
+fn read<R: Read + Seek>(
     mut source: R,
     name: &Path,
+    folder: Option<&Path>,
     properties: &[&str],
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<(Loaded, Vec<Property>)> {
@@ -105,14 +146,18 @@ pub fn load_from_with<R: Read + Seek>(
     let mut beginning = (&mut source).take(START);
     beginning.read_to_end(&mut start).map_err(Error::io(name))?;
     source.rewind().map_err(Error::io(name))?;
-    let mut known = FORMATS.iter();
-    let format = known.find(|format| (format.is)(&start, name));
-    let format = format.unwrap_or(&FORMATS[0]);
+    let found = find(&start, total, name)?;
     let mut progress = Progress {
         total,
         call: progress,
     };
-    let loaded = (format.read)(&mut source, name, properties, &mut progress)?;
+    let input = Input {
+        source: &mut source,
+        name,
+        folder,
+        properties,
+    };
+    let loaded = found(input, &mut progress)?;
     progress.left(0);
     Ok(loaded)
 }

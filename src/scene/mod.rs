@@ -2,8 +2,14 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "ply")]
+mod assemble;
 mod bounds;
 mod cross_section;
+#[cfg(feature = "ply")]
+mod format;
+#[cfg(feature = "formats")]
+mod formats;
 mod gaussians;
 mod generate;
 mod layer;
@@ -36,7 +42,8 @@ pub use predicate::{Attribute, Comparison, Predicate};
 pub use property::Property;
 #[cfg(feature = "ply")]
 pub use {
+    format::Format,
     load::{Loaded, load, load_from, load_from_with, load_with},
     report::{LoadReport, Remark},
-    save::save_ply,
+    save::{save, save_ply},
 };

@@ -34,6 +34,8 @@ pub struct LoadReport {
     pub first_repaired: Vec<Remark>,
     /// Bytes that follow the declared data (0 also where a list makes their number unknowable).
     pub trailing_bytes: u64,
+    /// What of the file was left out beside that, a sentence each.
+    pub notes: Vec<String>,
 }
 
 impl LoadReport {
@@ -52,6 +54,33 @@ impl LoadReport {
     pub(crate) fn repair_element(&mut self, element: u64, reason: impl FnOnce() -> String) {
         self.repaired += 1;
         remember(&mut self.first_repaired, element, reason);
+    }
+
+    /// Says what was left out.
+    #[cfg_attr(not(feature = "formats"), allow(dead_code))]
+    pub(crate) fn note(&mut self, note: String) {
+        self.notes.push(note);
+    }
+
+    /// Adds the report on another part of the same scene, before which there were `before` elements.
+    #[cfg_attr(not(feature = "formats"), allow(dead_code))]
+    pub(crate) fn append(&mut self, other: Self, before: u64) {
+        self.dropped += other.dropped;
+        self.repaired += other.repaired;
+        self.trailing_bytes += other.trailing_bytes;
+        for (to, from) in [
+            (&mut self.first_dropped, other.first_dropped),
+            (&mut self.first_repaired, other.first_repaired),
+        ] {
+            for remark in from {
+                remember(to, before + remark.element, || remark.reason);
+            }
+        }
+        for note in other.notes {
+            if !self.notes.contains(&note) {
+                self.notes.push(note);
+            }
+        }
     }
 
     /// One sentence for each kind of intervention; none for a clean file.
@@ -83,6 +112,7 @@ impl LoadReport {
                 self.trailing_bytes
             ));
         }
+        lines.extend_from_slice(&self.notes);
         lines
     }
 }

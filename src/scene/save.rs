@@ -1,10 +1,10 @@
-//! Writing 3DGS `.ply` scenes as INRIA's trainer does: the same properties in the same order, binary little endian.
+//! Writing scenes; 3DGS `.ply` as INRIA's trainer does: the same properties in the same order, binary little endian.
 
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::Gaussians;
-use crate::error::Result;
+use super::{Format, Gaussians};
+use crate::error::{Error, Result};
 use crate::files::write_atomically;
 
 /// The number written as the logarithm of a scale of exactly zero: exp(-104) is below the smallest single-precision
@@ -20,12 +20,37 @@ const LOGIT_ONE: f32 = 40.0;
 /// stored as ln of a number below the smallest (-104), opacities of 0 and 1 as the logits -104 and 40.
 ///
 /// # Errors
-/// [`Error::Io`](crate::Error::Io) if the file can't be written.
+/// [`Error::Io`] if the file can't be written.
 pub fn save_ply(path: &Path, gaussians: &Gaussians) -> Result<()> {
     write_atomically(path, |out| {
         write_header(out, gaussians)?;
         (0..gaussians.len()).try_for_each(|index| write_row(out, gaussians, index))
     })
+}
+
+/// Writes `gaussians` in the [format](Format::of_name) that the file's name says: `.ply`, and with the feature `formats`
+/// also `.compressed.ply`, `.spz`, `.sog` and `.glb`. The file appears when complete.
+///
+/// All but `.ply` and `.glb` round what they store, and `.compressed.ply` and `.sog` change the Gaussians' order; the
+/// guide's chapter on the [command line](crate::guide::command_line) has what that costs.
+///
+/// # Errors
+/// [`Error::Invalid`] for a name of another format, and for Gaussians that the format cannot hold; [`Error::Io`] if the
+/// file can't be written.
+pub fn save(path: &Path, gaussians: &Gaussians) -> Result<()> {
+    match Format::of_name(path) {
+        Some(Format::Ply) => save_ply(path, gaussians),
+        #[cfg(feature = "formats")]
+        Some(format) => {
+            let bytes = super::formats::encode(gaussians, format)?;
+            write_atomically(path, |out| out.write_all(&bytes))
+        }
+        _ => Err(Error::Invalid(format!(
+            "{}: the name says no format that is written; it has to end in {}",
+            path.display(),
+            Format::endings()
+        ))),
+    }
 }
 
 fn write_header(out: &mut dyn Write, gaussians: &Gaussians) -> io::Result<()> {

@@ -2,6 +2,9 @@
 
 mod benchmark;
 mod cameras;
+#[path = "../common/folder.rs"]
+mod folder;
+mod formats;
 mod in_memory;
 mod ply;
 mod regressions;

@@ -3,11 +3,11 @@
 use std::io::{BufRead, BufReader, Read};
 
 use super::Progress;
-use super::assemble::{Assembler, Row};
 use super::binary::Failure;
 use super::header::Header;
 use super::layout::{Field, Layout};
 use crate::error::shortened;
+use crate::scene::assemble::{Assembler, Row};
 
 /// A Gaussian takes about 1 kB; a longer line than this is not text at all.
 const MAX_LINE: u64 = 4 << 20;

@@ -5,10 +5,10 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek};
 use ply_rs::ply::{ElementDef, Encoding};
 
 use super::Progress;
-use super::assemble::Assembler;
 use super::header::Header;
 use super::layout::{Field, Layout, fixed_size};
 use super::number::Number;
+use crate::scene::assemble::Assembler;
 
 /// Bytes read at once. A larger chunk gains nothing, a smaller one costs system calls.
 const CHUNK: usize = 4 << 20;

@@ -5,24 +5,8 @@ use ply_rs::ply::{ElementDef, Encoding, PropertyType};
 use super::header::Header;
 use super::number::Number;
 use crate::error::shortened;
-use crate::scene::{Property, sh_coefficients};
-
-/// Slots of a row, see [`FIXED`]: logarithms of the scales.
-pub(super) const SCALES: usize = 3;
-/// The quaternion, w first.
-pub(super) const ROTATION: usize = 6;
-/// The opacity's logit.
-pub(super) const OPACITY: usize = 10;
-/// From here on the spherical harmonics as `[coefficient][r, g, b]`.
-pub(super) const SH: usize = 11;
-/// Slots of a row at degree 3.
-pub(super) const SLOTS: usize = SH + 48;
-
-/// The properties that every scene has, in the order of their slots: `FIXED[slot]`.
-const FIXED: [&str; SH + 3] = [
-    "x", "y", "z", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3", "opacity",
-    "f_dc_0", "f_dc_1", "f_dc_2",
-];
+use crate::scene::Property;
+use crate::scene::assemble::{FIXED, SH, SLOTS};
 
 /// One declared property of the Gaussians, in file order.
 #[derive(Debug, Clone, Copy)]
@@ -55,11 +39,6 @@ impl<'a> Layout<'a> {
         let at = header.elements.iter().position(|e| e.name == "vertex");
         let at = at.ok_or("the file has no `vertex` element, which holds the Gaussians of a 3DGS .ply; export the scene again")?;
         let vertex = &header.elements[at];
-        if vertex.properties.contains_key("packed_position") {
-            return Err("this is a compressed PLY (packed_position); convert it to an uncompressed 3DGS .ply, for \
-                        example with splat-transform"
-                .into());
-        }
         if vertex.count as u64 > u64::from(u32::MAX) {
             return Err(format!(
                 "the header promises {} Gaussians, more than the {} that can be numbered; split the file",
@@ -262,18 +241,6 @@ fn slot_of(name: &str, rest: usize) -> Option<usize> {
         return Some(SH + 3 + 3 * (number % a_channel) + number / a_channel);
     }
     FIXED.iter().position(|&fixed| fixed == name)
-}
-
-/// The property a slot was read from, for messages.
-pub(super) fn slot_name(slot: usize, sh_degree: u32) -> String {
-    if slot < FIXED.len() {
-        return FIXED[slot].into();
-    }
-    let (coefficient, channel) = ((slot - SH) / 3 - 1, (slot - SH) % 3);
-    format!(
-        "f_rest_{}",
-        channel * (sh_coefficients(sh_degree) - 1) + coefficient
-    )
 }
 
 impl From<&PropertyType> for Field {

@@ -1,37 +1,35 @@
 //! Reading 3DGS `.ply` scenes: header through `ply-rs`, payload by our own chunked readers straight into the arrays.
 
 mod ascii;
-mod assemble;
 mod binary;
 mod header;
 mod layout;
 mod number;
+mod packed;
 
 use std::io::{Read, SeekFrom};
-use std::path::Path;
 
 use ply_rs::ply::Encoding;
 
-use self::assemble::Assembler;
 use self::binary::Failure;
 use self::header::Header;
 use self::layout::Layout;
-use super::Property;
-use super::load::{Format, Loaded, Progress, Source};
+use super::assemble::Assembler;
+use super::load::{Input, Loaded, Progress};
+use super::{Format, Property};
 use crate::error::{Error, Result};
 
-/// 3DGS `.ply` files.
-pub(super) const FORMAT: Format = Format {
-    is: |start, _| start.starts_with(b"ply"),
-    read,
-};
-
-fn read(
-    source: &mut dyn Source,
-    name: &Path,
-    asked: &[&str],
+/// Reads 3DGS `.ply` files, compressed ones too.
+pub(super) fn read(
+    input: Input<'_>,
     progress: &mut Progress<'_>,
 ) -> Result<(Loaded, Vec<Property>)> {
+    let Input {
+        source,
+        name,
+        properties: asked,
+        ..
+    } = input;
     let format = |message: String| Error::format(name, message);
     let mut start = Vec::new();
     let limit = header::MAX_BYTES as u64;
@@ -40,18 +38,38 @@ fn read(
     let header = Header::parse(&start).map_err(format)?;
     drop(start);
 
-    let layout = Layout::of(&header, asked).map_err(format)?;
+    let memory = |count: u64| {
+        Error::Memory(format!(
+            "{}: no memory for {count} Gaussians; free some or split the file",
+            name.display()
+        ))
+    };
     let left = progress.total().saturating_sub(header.size);
+    if packed::is(&header) {
+        if let Some(property) = asked.first() {
+            return Err(format(format!(
+                "a compressed PLY has no property `{}` beside what a Gaussian is made of; only plain 3DGS .ply files have \
+                 such",
+                crate::error::shortened(property)
+            )));
+        }
+        let start = SeekFrom::Start(header.size);
+        source.seek(start).map_err(Error::io(name))?;
+        let made = packed::read(source, &header, left, progress);
+        let made = made.map_err(|failure| match failure {
+            packed::Failure::Io(error) => Error::io(name)(error),
+            packed::Failure::Format(message) => format(message),
+            packed::Failure::Memory(count) => memory(count),
+        });
+        let (mut loaded, properties) = made?.finish();
+        loaded.format = Format::CompressedPly;
+        return Ok((loaded, properties));
+    }
+    let layout = Layout::of(&header, asked).map_err(format)?;
     layout.check_size(header.encoding, left).map_err(format)?;
     let properties = layout.properties.clone();
     let assembler = Assembler::with_room(layout.count, layout.sh_degree, properties);
-    let mut assembler = assembler.ok_or_else(|| {
-        Error::Memory(format!(
-            "{}: no memory for {} Gaussians; free some or split the file",
-            name.display(),
-            layout.count
-        ))
-    })?;
+    let mut assembler = assembler.ok_or_else(|| memory(layout.count))?;
 
     source
         .seek(SeekFrom::Start(header.size))

@@ -2,7 +2,7 @@
 
 mod accepted;
 mod collected;
-mod made;
+pub(crate) mod made;
 mod mutated;
 mod properties;
 mod refused;

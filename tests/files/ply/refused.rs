@@ -51,7 +51,7 @@ fn headers_that_are_refused() {
             b"ply\nformat ascii 1.0\nelement a 1000000000\nend_header\n".to_vec(),
             "without any property",
         ),
-        (compressed.to_vec(), "compressed PLY"),
+        (compressed.to_vec(), "1 `chunk` elements"),
         (mesh.to_vec(), "mesh"),
         (without("opacity"), "lacks opacity"),
         (without("rot_3"), "lacks rot_3"),

@@ -1,0 +1,259 @@
+//! glTF 2.0 with `KHR_gaussian_splatting`: attributes of points, or a whole `.spz` in their place.
+
+mod accessor;
+mod buffers;
+mod nodes;
+
+use std::path::Path;
+
+use glam::{DQuat, DVec3};
+use serde_json::Value;
+
+use self::accessor::Accessor;
+use self::buffers::Buffers;
+use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored};
+use super::super::{Gaussians, LoadReport, sh_coefficients};
+use super::bytes::Bytes;
+use super::{Failure, Made, SH_0, json, room, spz};
+use crate::error::shortened;
+use crate::placement::Placement;
+
+/// The extension's name, which attributes begin with.
+pub(super) const EXTENSION: &str = "KHR_gaussian_splatting";
+/// What names of its compression begin with; drafts have a number behind.
+const SPZ: &str = "KHR_gaussian_splatting_compression_spz";
+
+/// Gaussians that a byte of the buffers may be drawn as: even one of a compressed scene is no more than 52.
+const MOST_DRAWN: usize = 64;
+
+/// The turn from glTF's axes, left, up and forward, to ours: half a turn about the direction of view.
+pub(super) fn turn() -> DQuat {
+    DQuat::from_xyzw(0.0, 0.0, 1.0, 0.0)
+}
+
+/// Reads a `.glb`.
+pub(super) fn read_binary(bytes: &[u8], folder: Option<&Path>) -> Result<Made, Failure> {
+    let what = "the .glb";
+    let mut bytes = Bytes(bytes);
+    bytes.take(4, what)?;
+    let version = bytes.u32(what)?;
+    if version != 2 {
+        return Err(Failure::Format(format!(
+            "this is glTF of version {version}; version 2 is read, export the scene again"
+        )));
+    }
+    let length = u64::from(bytes.u32(what)?).saturating_sub(12);
+    let mut chunks = Bytes(bytes.take(length, what)?);
+    let (mut document, mut binary) = (None, None);
+    while !chunks.0.is_empty() {
+        let (size, kind) = (chunks.u32("a chunk")?, chunks.u32("a chunk")?);
+        let chunk = chunks.take(size.into(), "a chunk of the .glb")?;
+        match kind {
+            0x4E4F_534A if document.is_none() => document = Some(json(chunk)?),
+            0x004E_4942 if binary.is_none() => binary = Some(chunk),
+            _ => {}
+        }
+    }
+    let document = document.ok_or_else(|| "the .glb has no JSON; get it again".to_owned())?;
+    let mut made = read_document(&document, binary, folder)?;
+    made.report.trailing_bytes = bytes.0.len() as u64;
+    Ok(made)
+}
+
+/// Reads a document; `binary` is the buffer of the file that it is in.
+pub(super) fn read_document(
+    document: &Value,
+    binary: Option<&[u8]>,
+    folder: Option<&Path>,
+) -> Result<Made, Failure> {
+    let mut buffers = Buffers::new(document, binary, folder);
+    let mut whole = Made {
+        gaussians: Gaussians::default(),
+        report: LoadReport::default(),
+    };
+    let (mut found, mut others) = (0, 0);
+    for (mesh, placement) in nodes::meshes(document)? {
+        let primitives = list(document, "meshes")
+            .get(mesh)
+            .map(|mesh| list(mesh, "primitives"));
+        let primitives = primitives.ok_or_else(|| {
+            format!(
+                "a node of the glTF has mesh {mesh}, which there is not; export the scene again"
+            )
+        })?;
+        for primitive in primitives {
+            let Some(extension) = primitive
+                .get("extensions")
+                .and_then(|all| all.get(EXTENSION))
+            else {
+                others += 1;
+                continue;
+            };
+            found += 1;
+            let mut made = read_primitive(document, &mut buffers, primitive, extension)?;
+            let turned = Placement::new(DVec3::ZERO, turn(), 1.0)?;
+            made.gaussians.place(&nodes::joined(&turned, &placement)?);
+            whole.append(made);
+            if whole.gaussians.len() / MOST_DRAWN > buffers.size() {
+                return Err(Failure::Format(format!(
+                    "the glTF draws {} Gaussians and more of {} bytes, the same ones again and again; export the scene once",
+                    whole.gaussians.len(),
+                    buffers.size()
+                )));
+            }
+        }
+    }
+    if found == 0 {
+        return Err(Failure::Format(format!(
+            "the glTF has no Gaussians in its scene: none of its {others} drawn primitive(s) has {EXTENSION}; export them \
+             with it"
+        )));
+    }
+    if others > 0 {
+        whole.report.note(format!(
+            "left out {others} primitive(s) of the glTF that are no Gaussians"
+        ));
+    }
+    Ok(whole)
+}
+
+/// A list of an object; empty where there is none.
+fn list<'a>(object: &'a Value, key: &str) -> &'a [Value] {
+    let list = object.get(key).and_then(Value::as_array);
+    list.map(Vec::as_slice).unwrap_or_default()
+}
+
+/// An index or a count.
+fn index(object: &Value, key: &str) -> Option<u64> {
+    object.get(key).and_then(Value::as_u64)
+}
+
+fn read_primitive(
+    document: &Value,
+    buffers: &mut Buffers<'_>,
+    primitive: &Value,
+    extension: &Value,
+) -> Result<Made, Failure> {
+    let inner = [extension.get("extensions"), primitive.get("extensions")];
+    let inner = inner
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_object)
+        .flatten();
+    for (name, compressed) in inner {
+        if name.starts_with(SPZ) {
+            let view = index(compressed, "bufferView").ok_or_else(|| {
+                format!(
+                    "{} has no bufferView; export the scene again",
+                    shortened(name)
+                )
+            })?;
+            return spz::read(buffers.view(document, view)?.0, false);
+        }
+        if name.contains("compression") {
+            return Err(Failure::Format(format!(
+                "the Gaussians are compressed by {}, which is not read; export them uncompressed or as {SPZ}",
+                shortened(name)
+            )));
+        }
+    }
+    let mut notes = Vec::new();
+    let kernel = extension
+        .get("kernel")
+        .and_then(Value::as_str)
+        .unwrap_or("ellipse");
+    if kernel != "ellipse" {
+        notes.push(format!(
+            "the kernel \"{}\" is drawn as an ellipse",
+            shortened(kernel)
+        ));
+    }
+    let space = extension
+        .get("colorSpace")
+        .and_then(Value::as_str)
+        .unwrap_or("srgb_rec709_display");
+    if space != "srgb_rec709_display" {
+        notes.push(format!(
+            "colours of the space \"{}\" are drawn as sRGB",
+            shortened(space)
+        ));
+    }
+    let attributes = primitive.get("attributes");
+    let count = attribute(attributes, "POSITION")
+        .and_then(|number| list(document, "accessors").get(number))
+        .and_then(|accessor| index(accessor, "count"))
+        .ok_or_else(|| {
+            "the Gaussians have no attribute POSITION with a count; export the scene again"
+                .to_owned()
+        })?;
+    let mut get = |name: &str, parts: usize| -> Result<Option<Accessor>, Failure> {
+        match attribute(attributes, name) {
+            Some(number) => Accessor::of(document, buffers, number, name, count, parts).map(Some),
+            None => Ok(None),
+        }
+    };
+    let own = |name: &str| format!("{EXTENSION}:{name}");
+    let lacks =
+        |name: &str| format!("the Gaussians have no attribute {name}; export the scene again");
+    let mut needed =
+        |name: &str, parts: usize| get(name, parts)?.ok_or_else(|| Failure::Format(lacks(name)));
+    let positions = needed("POSITION", 3)?;
+    let rotations = needed(&own("ROTATION"), 4)?;
+    let scales = needed(&own("SCALE"), 3)?;
+    let opacities = get(&own("OPACITY"), 1)?;
+    let colours = get("COLOR_0", 4)?;
+    let mut harmonics = Vec::new();
+    let mut degree = 0;
+    for band in 0..=3_u32 {
+        let name = |coefficient: u32| own(&format!("SH_DEGREE_{band}_COEF_{coefficient}"));
+        if attribute(attributes, &name(0)).is_none() {
+            break;
+        }
+        for coefficient in 0..=2 * band {
+            let accessor = get(&name(coefficient), 3)?;
+            harmonics.push(accessor.ok_or_else(|| lacks(&name(coefficient)))?);
+        }
+        degree = band;
+    }
+    if harmonics.is_empty() && colours.is_none() {
+        return Err(Failure::Format(lacks(&own("SH_DEGREE_0_COEF_0"))));
+    }
+    if opacities.is_none() && colours.is_none() {
+        return Err(Failure::Format(lacks(&own("OPACITY"))));
+    }
+    let mut made = room(count, degree, Stored::Plain)?;
+    for index in 0..count {
+        let mut row = [0.0; SLOTS];
+        for axis in 0..3 {
+            row[axis] = positions.at(index, axis);
+            row[SCALES + axis] = scales.at(index, axis);
+        }
+        // x, y, z, w in the file.
+        row[ROTATION] = rotations.at(index, 3);
+        for axis in 0..3 {
+            row[ROTATION + 1 + axis] = rotations.at(index, axis);
+        }
+        let alpha = || colours.as_ref().map_or(1.0, |colours| colours.at(index, 3));
+        row[OPACITY] = opacities
+            .as_ref()
+            .map_or_else(alpha, |opacities| opacities.at(index, 0));
+        for channel in 0..3 {
+            if let (true, Some(colours)) = (harmonics.is_empty(), &colours) {
+                row[SH + channel] = (colours.at(index, channel) - 0.5) / SH_0;
+            }
+            for (coefficient, accessor) in
+                harmonics.iter().enumerate().take(sh_coefficients(degree))
+            {
+                row[SH + 3 * coefficient + channel] = accessor.at(index, channel);
+            }
+        }
+        made.push(&row);
+    }
+    notes.into_iter().for_each(|note| made.report.note(note));
+    Ok(made.into())
+}
+
+/// The accessor of an attribute.
+fn attribute(attributes: Option<&Value>, name: &str) -> Option<usize> {
+    usize::try_from(index(attributes?, name)?).ok()
+}

@@ -1,0 +1,265 @@
+//! Formats beside 3DGS `.ply`, one file each. All are read from the whole file in memory, since most are compressed; no
+//! count in a file is believed before there are bytes for it.
+
+mod bytes;
+mod gltf;
+mod inflate;
+mod ksplat;
+mod sog;
+mod splat;
+mod spz;
+mod write;
+
+use std::io::Read;
+use std::path::Path;
+
+pub(super) use self::write::encode;
+use super::assemble::{Assembler, Stored};
+use super::load::{Found, Input, Progress};
+use super::{Format, Gaussians, LoadReport, Loaded, Property};
+use crate::error::{Error, Result};
+
+/// Why nothing was read.
+enum Failure {
+    /// What is wrong with the file.
+    Format(String),
+    /// There is no memory for so many Gaussians.
+    Memory(u64),
+    /// What is wrong with a file beside it.
+    Other(Error),
+}
+
+impl From<String> for Failure {
+    fn from(message: String) -> Self {
+        Self::Format(message)
+    }
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self::Other(error)
+    }
+}
+
+/// What a reader makes of a file.
+struct Made {
+    gaussians: Gaussians,
+    report: LoadReport,
+}
+
+impl From<Assembler> for Made {
+    fn from(assembler: Assembler) -> Self {
+        let (loaded, _) = assembler.finish();
+        Self {
+            gaussians: loaded.gaussians,
+            report: loaded.report,
+        }
+    }
+}
+
+impl Made {
+    /// Appends what another part of the file has become.
+    fn append(&mut self, other: Self) {
+        let before = self.gaussians.len() as u64 + self.report.dropped;
+        self.gaussians.append(&other.gaussians);
+        self.report.append(other.report, before);
+    }
+}
+
+/// An assembler with room for so many Gaussians, for which the file has bytes.
+fn room(count: u64, sh_degree: u32, stored: Stored) -> std::result::Result<Assembler, Failure> {
+    if count > u64::from(u32::MAX) {
+        return Err(Failure::Format(format!(
+            "{count} Gaussians are more than the {} that can be numbered; split the file",
+            u32::MAX
+        )));
+    }
+    let assembler = Assembler::with_room(count, sh_degree, Vec::new());
+    let assembler = assembler.ok_or(Failure::Memory(count))?;
+    Ok(assembler.stored(stored))
+}
+
+/// The coefficient of degree 0 that shows a colour channel.
+fn colour(byte: u8) -> f64 {
+    (f64::from(byte) / 255.0 - 0.5) / SH_0
+}
+
+/// The spherical harmonic of degree 0.
+const SH_0: f64 = 0.282_094_791_773_878_14;
+
+/// A quaternion, w first, of its three smaller parts and the place of the largest.
+fn unit_quaternion(largest: usize, others: [f64; 3]) -> [f64; 4] {
+    let rest: f64 = others.iter().map(|part| part * part).sum();
+    let mut all = [0.0; 4];
+    let mut next = others.into_iter();
+    for (place, part) in all.iter_mut().enumerate() {
+        *part = match place == largest {
+            true => (1.0 - rest).max(0.0).sqrt(),
+            false => next.next().unwrap_or_default(),
+        };
+    }
+    all
+}
+
+/// The format of a file that is no PLY, by its first bytes and its size.
+pub(super) fn find(start: &[u8], total: u64) -> Option<Found> {
+    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+    match start {
+        [0x1f, 0x8b, ..] | [b'N', b'G', b'S', b'P', ..] => Some(read_spz),
+        [b'P', b'K', 3 | 5, 4 | 6, ..] => Some(read_sog),
+        [b'g', b'l', b'T', b'F', ..] => Some(read_glb),
+        _ if text.trim_ascii_start().starts_with(b"{") => Some(read_json),
+        _ if ksplat::is(start, total) => Some(read_ksplat),
+        _ if splat::is(start, total) => Some(read_splat),
+        _ => None,
+    }
+}
+
+/// What a file is that none of the formats reads, and what to do about it.
+pub(super) fn unknown(start: &[u8]) -> String {
+    let guess = match start {
+        [] => "it is empty",
+        [b'P', b'X', b'R', b'-', ..] | [b'#', b'u', b's', b'd', b'a', ..] => "it is a USD scene",
+        [b'L', b'A', b'S', b'F', ..] => "it is a LAS point cloud",
+        [0x28, 0xb5, 0x2f, 0xfd, ..] => "it is compressed with zstd",
+        [b'R', b'A', b'D', b'0', ..] => "it is a .rad scene of Spark",
+        [0x89, b'H', b'D', b'F', ..] => "it is an HDF5 file, perhaps a checkpoint of a trainer",
+        [b'R', b'I', b'F', b'F', ..] => {
+            "it is a WebP picture; give the meta.json or the folder that it belongs to"
+        }
+        [b'[', ..] => "it is a JSON list, perhaps of cameras",
+        _ => "its first bytes are those of none",
+    };
+    format!(
+        "this is no scene of a format that is read, {guess}; .ply, .compressed.ply, .splat, .ksplat, .spz, .sog and glTF \
+         with KHR_gaussian_splatting are: convert it to one of these, for example with splat-transform"
+    )
+}
+
+/// Reads the whole file and what `read` makes of it.
+fn whole(
+    input: Input<'_>,
+    progress: &mut Progress<'_>,
+    read: impl FnOnce(&[u8]) -> std::result::Result<(Made, Format), Failure>,
+) -> Result<(Loaded, Vec<Property>)> {
+    let Input { source, name, .. } = input;
+    let memory = |what: String| {
+        Error::Memory(format!(
+            "{}: no memory for {what}; free some",
+            name.display()
+        ))
+    };
+    let total = progress.total();
+    let mut bytes = Vec::new();
+    let room = usize::try_from(total).is_ok_and(|total| bytes.try_reserve_exact(total).is_ok());
+    if !room {
+        return Err(memory(format!("its {total} bytes")));
+    }
+    source
+        .take(total)
+        .read_to_end(&mut bytes)
+        .map_err(Error::io(name))?;
+    let (made, format) = read(&bytes).map_err(|failure| match failure {
+        Failure::Format(message) => Error::format(name, message),
+        Failure::Memory(count) => memory(format!("{count} Gaussians")),
+        Failure::Other(error) => error,
+    })?;
+    if let Some(property) = input.properties.first() {
+        return Err(Error::format(
+            name,
+            format!(
+                "a {format} file has no property `{}` beside what a Gaussian is made of; only 3DGS .ply files have such",
+                crate::error::shortened(property)
+            ),
+        ));
+    }
+    let loaded = Loaded {
+        gaussians: made.gaussians,
+        report: made.report,
+        format,
+    };
+    Ok((loaded, Vec::new()))
+}
+
+fn read_spz(input: Input<'_>, progress: &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)> {
+    whole(input, progress, |bytes| {
+        Ok((spz::read(bytes, true)?, Format::Spz))
+    })
+}
+
+fn read_ksplat(input: Input<'_>, progress: &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)> {
+    whole(input, progress, |bytes| {
+        Ok((ksplat::read(bytes)?, Format::Ksplat))
+    })
+}
+
+fn read_splat(input: Input<'_>, progress: &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)> {
+    whole(input, progress, |bytes| {
+        Ok((splat::read(bytes)?, Format::Splat))
+    })
+}
+
+fn read_sog(input: Input<'_>, progress: &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)> {
+    whole(input, progress, |bytes| {
+        Ok((sog::read_archive(bytes)?, Format::Sog))
+    })
+}
+
+fn read_glb(input: Input<'_>, progress: &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)> {
+    let folder = input.folder;
+    whole(input, progress, |bytes| {
+        Ok((gltf::read_binary(bytes, folder)?, Format::Gltf))
+    })
+}
+
+/// JSON of any of the formats that are JSON.
+fn read_json(input: Input<'_>, progress: &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)> {
+    let folder = input.folder;
+    whole(input, progress, |bytes| {
+        let document = json(bytes)?;
+        let has = |key: &str| document.get(key).is_some();
+        if has("means") {
+            Ok((sog::read_folder(&document, folder)?, Format::Sog))
+        } else if has("tree") && has("filenames") {
+            Ok((sog::read_streamed(&document, folder)?, Format::StreamedSog))
+        } else if has("asset") {
+            Ok((gltf::read_document(&document, None, folder)?, Format::Gltf))
+        } else {
+            let what = match has("layers") {
+                true => {
+                    "it is a list of layers, which the program rara reads where its name ends in .json"
+                }
+                false => "it is JSON, but neither the meta.json of a SOG scene nor glTF",
+            };
+            Err(Failure::Format(format!(
+                "this is no scene: {what}; give a .ply, .splat, .ksplat, .spz, .sog or .glb file"
+            )))
+        }
+    })
+}
+
+/// A JSON document; its text is the limit of its memory, and its depth is bounded.
+fn json(bytes: &[u8]) -> std::result::Result<serde_json::Value, String> {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    serde_json::from_slice(text)
+        .map_err(|error| format!("its JSON is damaged: {error}; export the scene again"))
+}
+
+/// A file beside the scene's, whose name stands in it: within its folder, and a name that cannot lead out.
+fn beside(name: &str, folder: Option<&Path>) -> std::result::Result<Vec<u8>, Failure> {
+    let quoted = crate::error::shortened(name);
+    let folder = folder.ok_or_else(|| {
+        format!("it needs the file \"{quoted}\" beside it; load it by its path, not from memory")
+    })?;
+    let mut parts = Path::new(name).components();
+    if name.is_empty()
+        || name.contains(['\\', ':'])
+        || !parts.all(|part| matches!(part, std::path::Component::Normal(_)))
+    {
+        return Err(Failure::Format(format!(
+            "it names \"{quoted}\", which is no name of a file in its own folder; export the scene again"
+        )));
+    }
+    let path = folder.join(name);
+    Ok(std::fs::read(&path).map_err(Error::io(&path))?)
+}

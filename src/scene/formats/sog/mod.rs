@@ -1,0 +1,152 @@
+//! SOG: attributes as the pixels of WebP pictures, and a `meta.json` that says what their values mean.
+
+mod archive;
+mod meta;
+mod picture;
+mod streamed;
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use self::archive::Archive;
+use self::meta::{Meta, Range};
+use self::picture::Picture;
+use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored};
+use super::{Failure, Made, beside, inflate, json, room, unit_quaternion};
+
+pub(super) use self::streamed::read as read_streamed;
+
+/// Centroids in a row of the picture of spherical harmonics.
+pub(super) const CENTROIDS: usize = 64;
+/// The alpha of a rotation's pixel is this and the place of its largest part.
+pub(super) const LARGEST: u8 = 252;
+
+/// Reads an archive.
+pub(super) fn read_archive(bytes: &[u8]) -> Result<Made, Failure> {
+    let archive = Archive::open(bytes)?;
+    let document = json(&archive.get("meta.json")?)?;
+    read(&document, &|name| archive.get(name))
+}
+
+/// Reads a `meta.json`, whose pictures are files beside it.
+pub(super) fn read_folder(document: &Value, folder: Option<&Path>) -> Result<Made, Failure> {
+    read(document, &|name| beside(name, folder))
+}
+
+/// Reads what a `meta.json` describes; `get` gives the file of a name.
+fn read(document: &Value, get: &dyn Fn(&str) -> Result<Vec<u8>, Failure>) -> Result<Made, Failure> {
+    let meta = Meta::of(document)?;
+    let count = meta.count;
+    let names = [
+        meta.means[0],
+        meta.means[1],
+        meta.scales.0,
+        meta.quats,
+        meta.sh0.0,
+    ];
+    let mut files = Vec::new();
+    for name in names {
+        files.push(get(name)?);
+    }
+    let stored = files.iter().map(Vec::len).sum();
+    if !inflate::may_become(stored, count) {
+        return Err(Failure::Format(format!(
+            "meta.json promises {count} Gaussians, which its pictures of {stored} bytes cannot hold; get the scene again"
+        )));
+    }
+    let plane = |name: &str, file: &[u8]| -> Result<Picture, Failure> {
+        let picture = Picture::decode(file, name, picture::most(count))?;
+        if (picture.pixels().len() as u64) < count {
+            return Err(Failure::Format(format!(
+                "the picture {} has {} pixels, fewer than its {count} Gaussians; get the scene again",
+                crate::error::shortened(name),
+                picture.pixels().len()
+            )));
+        }
+        Ok(picture)
+    };
+    let mut planes = Vec::new();
+    for (name, file) in names.into_iter().zip(&files) {
+        planes.push(plane(name, file)?);
+    }
+    drop(files);
+    let [low, high, scales, quats, sh0] = [0, 1, 2, 3, 4].map(|at| &planes[at]);
+    let harmonics = match &meta.harmonics {
+        Some(harmonics) => {
+            let centroids = get(harmonics.centroids)?;
+            let most = CENTROIDS * 15 * (harmonics.count as usize).div_ceil(CENTROIDS);
+            let centroids = Picture::decode(&centroids, harmonics.centroids, most)?;
+            let degree = harmonics.degree(centroids.width)?;
+            let rows = centroids.pixels().len() / centroids.width;
+            if ((CENTROIDS * rows) as u64) < harmonics.count {
+                return Err(Failure::Format(format!(
+                    "the picture {} has room for {} of {} sets of spherical harmonics; get the scene again",
+                    crate::error::shortened(harmonics.centroids),
+                    CENTROIDS * rows,
+                    harmonics.count
+                )));
+            }
+            Some((
+                harmonics,
+                degree,
+                centroids,
+                plane(harmonics.labels, &get(harmonics.labels)?)?,
+            ))
+        }
+        None => None,
+    };
+    let degree = harmonics.as_ref().map_or(0, |(_, degree, ..)| *degree);
+    let stored = if meta.is_first {
+        Stored::Logarithms
+    } else {
+        Stored::LogScales
+    };
+    let mut made = room(count, degree, stored)?;
+    for index in 0..count as usize {
+        let mut row = [0.0; SLOTS];
+        for axis in 0..3 {
+            let value = u16::from_le_bytes([low.at(index)[axis], high.at(index)[axis]]);
+            let [least, most] = meta.bounds[axis];
+            let log = least + (most - least) * f64::from(value) / 65535.0;
+            row[axis] = log.signum() * log.abs().exp_m1();
+            row[SCALES + axis] = meta.scales.1.value(axis, scales.at(index)[axis]);
+            row[SH + axis] = meta.sh0.1.value(axis, sh0.at(index)[axis]);
+        }
+        row[OPACITY] = match meta.sh0.1 {
+            Range::Codebook(_) => f64::from(sh0.at(index)[3]) / 255.0,
+            Range::Ends(_) => meta.sh0.1.value(3, sh0.at(index)[3]),
+        };
+        let [a, b, c, tag] = quats.at(index);
+        let largest = tag.checked_sub(LARGEST).ok_or_else(|| {
+            format!(
+                "the rotation of Gaussian {index} has the mark {tag}, where {LARGEST} to 255 are possible; get the scene \
+                 again"
+            )
+        })?;
+        let part = |byte: u8| (f64::from(byte) / 255.0 - 0.5) * std::f64::consts::SQRT_2;
+        let rotation = unit_quaternion(largest.into(), [part(a), part(b), part(c)]);
+        row[ROTATION..OPACITY].copy_from_slice(&rotation);
+        if let Some((harmonics, degree, centroids, labels)) = &harmonics {
+            let [low, high, ..] = labels.at(index);
+            let label = usize::from(u16::from_le_bytes([low, high]));
+            if label as u64 >= harmonics.count {
+                return Err(Failure::Format(format!(
+                    "Gaussian {index} has the spherical harmonics of set {label}, of {} sets; get the scene again",
+                    harmonics.count
+                )));
+            }
+            let coefficients = super::super::sh_coefficients(*degree) - 1;
+            let first = label / CENTROIDS * centroids.width + label % CENTROIDS * coefficients;
+            for coefficient in 0..coefficients {
+                let pixel = centroids.at(first + coefficient);
+                for channel in 0..3 {
+                    let value = harmonics.values.value(0, pixel[channel]);
+                    row[SH + 3 + 3 * coefficient + channel] = value;
+                }
+            }
+        }
+        made.push(&row);
+    }
+    Ok(made.into())
+}

@@ -1,0 +1,80 @@
+//! Gaussians to the bytes of a file, one file a format.
+
+mod codebook;
+mod glb;
+mod packed;
+mod sog;
+mod spz;
+
+use super::super::{Format, Gaussians};
+use crate::error::{Error, Result};
+
+/// The bytes of a file of this format.
+///
+/// # Errors
+/// [`Error::Invalid`] for a format that is not written this way, and for Gaussians that it cannot hold.
+pub(in super::super) fn encode(gaussians: &Gaussians, format: Format) -> Result<Vec<u8>> {
+    match format {
+        Format::CompressedPly => Ok(packed::encode(gaussians)),
+        Format::Spz => spz::encode(gaussians),
+        Format::Sog => sog::encode(gaussians),
+        Format::Gltf => glb::encode(gaussians),
+        other => Err(Error::Invalid(format!(
+            "{other} is read but not written; use a name that ends in {}",
+            Format::endings()
+        ))),
+    }
+}
+
+/// The Gaussians' numbers along a space-filling curve through their centres, so that neighbours in a file are alike.
+fn along_a_curve(gaussians: &Gaussians) -> Vec<u32> {
+    let all = gaussians.positions();
+    let low = all
+        .iter()
+        .copied()
+        .reduce(glam::Vec3::min)
+        .unwrap_or_default()
+        .as_dvec3();
+    let high = all
+        .iter()
+        .copied()
+        .reduce(glam::Vec3::max)
+        .unwrap_or_default()
+        .as_dvec3();
+    let cells = 1023.0 / (high - low).max(glam::DVec3::splat(f64::MIN_POSITIVE));
+    let key = |position: &glam::Vec3| {
+        let cell = ((position.as_dvec3() - low) * cells).as_uvec3();
+        let spread = |value: u32| (0..10).fold(0, |key, bit| key | (value >> bit & 1) << (3 * bit));
+        spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2
+    };
+    let keys: Vec<u32> = all.iter().map(key).collect();
+    let mut order: Vec<u32> = (0..all.len() as u32).collect();
+    order.sort_by_key(|&index| keys[index as usize]);
+    order
+}
+
+/// A byte of a share from 0 to 1.
+fn byte(share: f64) -> u8 {
+    (share * 255.0).round().clamp(0.0, 255.0) as u8
+}
+
+/// The place of a unit quaternion's largest part among `parts`, and the others with the sign that makes it positive.
+fn smallest_three(parts: [f32; 4]) -> (u32, [f64; 3]) {
+    let mut largest = 0;
+    for (place, part) in parts.iter().enumerate() {
+        if part.abs() > parts[largest].abs() {
+            largest = place;
+        }
+    }
+    let sign = if parts[largest] < 0.0 { -1.0 } else { 1.0 };
+    let mut others = parts
+        .iter()
+        .enumerate()
+        .filter(|(place, _)| *place != largest);
+    let others = [(); 3].map(|()| {
+        others
+            .next()
+            .map_or(0.0, |(_, part)| sign * f64::from(*part))
+    });
+    (largest as u32, others)
+}

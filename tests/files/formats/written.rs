@@ -1,0 +1,170 @@
+//! What is written is read again as it was, within the format's steps.
+
+use rara::glam::{Quat, Vec3};
+use rara::scene::{Kind, generate, load, save, save_ply};
+use rara::{Gaussians, Placement};
+
+use super::distance::Distance;
+use crate::folder::Folder;
+
+/// A scene whose harmonics are not zero.
+fn scene(count: usize) -> Gaussians {
+    let mut scene = generate(Kind::General, count, 7);
+    scene.set_sh_degree(3);
+    let mut number = 1_u32;
+    for (at, value) in scene.sh_mut().iter_mut().enumerate() {
+        number = number.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        if at % 48 >= 3 {
+            *value = (number >> 8) as f32 / (1 << 24) as f32 - 0.5;
+        }
+    }
+    scene
+}
+
+#[test]
+fn round_trips_stay_within_the_formats_steps() {
+    let folder = Folder::new("formats-written");
+    let scene = scene(3000);
+    let extent = scene
+        .positions()
+        .iter()
+        .map(|p| p.abs().max_element())
+        .fold(0.0, f32::max);
+    let rotation = 4.0 * std::f32::consts::SQRT_2;
+    for (name, [position, scale, turned, opacity, colour, harmonics]) in [
+        ("a.ply", [0.0, 1e-5, 1e-3, 1e-6, 0.0, 0.0]),
+        ("a.glb", [0.0, 0.0, 1e-3, 0.0, 0.0, 1e-6]),
+        (
+            "a.compressed.ply",
+            [
+                extent / 1023.0,
+                0.01,
+                rotation / 1023.0,
+                0.002,
+                0.01,
+                0.0157,
+            ],
+        ),
+        ("a.spz", [2e-4, 0.032, 4.0 / 511.0, 0.002, 0.004, 0.0040]),
+        (
+            "a.sog",
+            [extent / 5e3, 0.1, rotation / 255.0, 0.002, 0.01, 0.0040],
+        ),
+    ] {
+        let path = folder.join(name);
+        save(&path, &scene).unwrap();
+        let loaded = load(&path, &mut |_, _| ()).unwrap();
+        assert!(loaded.report.is_clean(), "{name}: {}", loaded.report);
+        let distance = Distance::between(&scene, &loaded.gaussians, 2.0 * position + 1e-4, 5e-5);
+        eprintln!("{name}: {distance:?}");
+        for (what, found, bound) in [
+            ("position", distance.position, position),
+            ("scale", distance.scale, scale),
+            ("rotation", distance.rotation, turned),
+            ("opacity", distance.opacity, opacity),
+            ("colour", distance.colour, colour),
+            ("harmonics", distance.harmonics, harmonics),
+        ] {
+            assert!(
+                found <= bound,
+                "{name}: {what} is off by {found}, over {bound}"
+            );
+        }
+    }
+}
+
+/// The first writing rounds; after that nothing changes any more but the order.
+#[test]
+fn what_was_rounded_once_stays() {
+    let folder = Folder::new("formats-twice");
+    for name in ["a.spz", "a.glb"] {
+        let path = folder.join(name);
+        save(&path, &scene(300)).unwrap();
+        let once = load(&path, &mut |_, _| ()).unwrap().gaussians;
+        save(&path, &once).unwrap();
+        let twice = load(&path, &mut |_, _| ()).unwrap().gaussians;
+        assert_eq!(once.positions(), twice.positions(), "{name}");
+        assert_eq!(once.opacities(), twice.opacities(), "{name}");
+        let distance = Distance::between(&once, &twice, 1e-3, 1e-5);
+        assert!(
+            distance.scale < 1e-6 && distance.harmonics < 1e-6,
+            "{name}: {distance:?}"
+        );
+    }
+}
+
+#[test]
+fn scenes_of_nothing_and_of_extremes_are_written() {
+    let folder = Folder::new("formats-extremes");
+    let mut extremes = Gaussians::default();
+    for scale in [0.0, 1e-30, 1e20] {
+        let position = Vec3::new(-1e3, scale, 2e3).min(Vec3::splat(1e5));
+        extremes.push(
+            position,
+            Vec3::splat(scale),
+            Quat::from_xyzw(0.0, 0.0, 0.0, -1.0),
+            1.0,
+            &[9.0, -9.0, 0.0],
+        );
+    }
+    for scene in [Gaussians::default(), extremes] {
+        for name in ["a.ply", "a.glb", "a.compressed.ply", "a.spz", "a.sog"] {
+            let path = folder.join(name);
+            save(&path, &scene).unwrap();
+            let loaded = load(&path, &mut |_, _| ()).unwrap();
+            assert!(loaded.report.is_clean(), "{name}: {}", loaded.report);
+            assert_eq!(loaded.gaussians.len(), scene.len(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn centres_that_spz_cannot_hold_are_refused() {
+    let folder = Folder::new("formats-far");
+    let mut far = Gaussians::default();
+    far.push(Vec3::splat(1e9), Vec3::ONE, Quat::IDENTITY, 1.0, &[0.0; 3]);
+    let path = folder.join("a.spz");
+    let error = save(&path, &far).unwrap_err().to_string();
+    assert!(error.contains("1e9") && !path.exists(), "{error}");
+}
+
+/// What a glTF node places is where it says, whatever its axes are called.
+#[test]
+fn nodes_of_gltf_place_their_gaussians() {
+    let folder = Folder::new("formats-nodes");
+    let scene = scene(20);
+    let (plain, path) = (folder.join("a.glb"), folder.join("b.glb"));
+    save(&plain, &scene).unwrap();
+    let bytes = std::fs::read(&plain).unwrap();
+    let from = r#""nodes":[{"mesh":0}]"#;
+    // As long as what stands there, so that no length changes.
+    let text = String::from_utf8_lossy(&bytes).into_owned();
+    assert!(text.contains(from));
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let json = std::str::from_utf8(&bytes[20..20 + length]).unwrap();
+    let to = r#""nodes":[{"children":[1],"scale":[2,2,2]},{"mesh":0,"translation":[1,2,3]}]"#;
+    let json = format!(
+        "{:<width$}",
+        json.trim_end().replace(from, to),
+        width = length + 128
+    )
+    .into_bytes();
+    let mut changed = b"glTF\x02\0\0\0".to_vec();
+    changed.extend(((bytes.len() + json.len() - length) as u32).to_le_bytes());
+    changed.extend((json.len() as u32).to_le_bytes());
+    changed.extend(b"JSON");
+    changed.extend(&json);
+    changed.extend(&bytes[20 + length..]);
+    std::fs::write(&path, changed).unwrap();
+    let loaded = load(&path, &mut |_, _| ()).unwrap().gaussians;
+    // glTF's left, up and forward are ours turned by half about the third.
+    let mut expected = scene.clone();
+    let offset = rara::glam::DVec3::new(-2.0, -4.0, 6.0);
+    expected.place(&Placement::new(offset, rara::glam::DQuat::IDENTITY, 2.0).unwrap());
+    let distance = Distance::between(&expected, &loaded, 1e-3, 1e-9);
+    assert!(
+        distance.position < 1e-4 && distance.scale < 1e-5 && distance.harmonics < 1e-5,
+        "{distance:?}"
+    );
+    save_ply(&path, &loaded).unwrap();
+}

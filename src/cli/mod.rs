@@ -10,6 +10,7 @@ mod camera;
 mod clip;
 mod combine;
 mod compare;
+mod convert;
 mod demo;
 mod devices;
 mod failure;
@@ -77,6 +78,7 @@ enum Command {
     Model(model::Model),
     Demo(demo::Demo),
     Compare(compare::Compare),
+    Convert(convert::Convert),
     Generate(generate::Generate),
     Bake(bake::Bake),
     Info(info::Info),
@@ -96,6 +98,7 @@ impl Command {
             Self::Model(command) => command.run(),
             Self::Demo(command) => command.run(),
             Self::Compare(command) => command.run(),
+            Self::Convert(command) => command.run(),
             Self::Generate(command) => command.run(),
             Self::Bake(command) => command.run(),
             Self::Info(command) => command.run(),

@@ -6,6 +6,7 @@ mod folder;
 mod aov;
 mod bake;
 mod clips;
+mod convert;
 mod profile;
 mod refusals;
 mod sections;

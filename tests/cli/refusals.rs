@@ -7,7 +7,8 @@ use super::{done, folder, line, rara, refused, stderr, stdout};
 #[test]
 fn every_command_has_help_with_an_example() {
     let commands = [
-        "render", "sweep", "ablate", "demo", "compare", "generate", "bake", "info", "devices",
+        "render", "sweep", "ablate", "demo", "compare", "convert", "generate", "bake", "info",
+        "devices",
     ];
     let overview = stdout(&done(rara(["--help"])));
     for command in commands {

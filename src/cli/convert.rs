@@ -1,0 +1,241 @@
+//! `rara convert`: scenes from one format to another.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use glam::{DQuat, DVec3};
+use rara::scene::{self, Format};
+use rara::{Clip, Gaussians, LayerState, Placement};
+use serde::Serialize;
+
+use super::clip::ClipArgs;
+use super::failure::Failure;
+use super::output::{self, grouped, say};
+use super::scenes::{LoadedLayer, SceneArgs};
+use super::values;
+
+/// Write a scene in another format
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  rara convert scene.ply -o scene.spz
+  rara convert scene.sog -o scene.ply
+  rara convert scene.ply -o core.compressed.ply --clip sphere:0,0,0,2 --min-opacity 0.01
+  rara convert scene.splat -o turned.glb --rotate 1,0,0,180 --scale 0.1 --move 0,1,0
+  rara convert body.ply organ.ply -o both.sog --sh-degree 1
+
+OUT's name says the format: .ply, .compressed.ply, .spz (version 3), .sog (version 2) or .glb. Nothing writes .splat,
+.ksplat, streamed SOG or .gltf. Several scenes become one; where their list places, fades or hides layers, the Gaussians are
+placed and faded, and hidden layers are left out.
+
+--clip and the like keep whole Gaussians by their centres, in the space of the scene as it was read; `rara bake` cuts
+them. After the clip, the scene is scaled, then turned, then moved.")]
+pub(super) struct Convert {
+    #[command(flatten)]
+    scenes: SceneArgs,
+    /// The file to write; its name says the format
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// Leaves out what is less opaque
+    #[arg(long, value_name = "A", value_parser = values::share)]
+    min_opacity: Option<f32>,
+    /// Leaves out spherical harmonics above a degree
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=3))]
+    sh_degree: Option<u32>,
+    /// Scales the scene about the origin
+    #[arg(long, value_name = "K", value_parser = values::positive, allow_hyphen_values = true)]
+    scale: Option<f32>,
+    /// Turns the scene about an axis through the origin, by degrees
+    #[arg(long, value_name = "X,Y,Z,DEGREES", value_parser = turn, allow_hyphen_values = true)]
+    rotate: Option<DQuat>,
+    /// Moves the scene
+    #[arg(long = "move", value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
+    offset: Option<DVec3>,
+    /// Print what was done as JSON to stdout
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    clip: ClipArgs,
+}
+
+/// What was done, as a document.
+#[derive(Debug, Serialize)]
+struct Document {
+    file: PathBuf,
+    format: String,
+    /// Gaussians that were read, and of these what was left out and why; the rest was written.
+    gaussians: usize,
+    hidden: usize,
+    clipped: usize,
+    faint: usize,
+    written: usize,
+    sh_degree: u32,
+    bytes: u64,
+    notes: Vec<String>,
+}
+
+/// An axis and an angle in degrees.
+fn turn(text: &str) -> Result<DQuat, String> {
+    let [x, y, z, degrees] = values::numbers::<4>(text)?;
+    let axis = DVec3::new(x, y, z).try_normalize();
+    let axis = axis.ok_or("an axis cannot be zero")?;
+    // Whole quarters are exact, which an angle in radians is not.
+    let quarters = (degrees / 90.0).rem_euclid(4.0);
+    let (sin, cos) = match quarters {
+        2.0 => (1.0, 0.0),
+        _ => (quarters * std::f64::consts::FRAC_PI_4).sin_cos(),
+    };
+    Ok(DQuat::from_xyzw(
+        axis.x * sin,
+        axis.y * sin,
+        axis.z * sin,
+        cos,
+    ))
+}
+
+impl Convert {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let format = Format::of_name(&self.output).ok_or_else(|| {
+            Failure::Usage(format!(
+                "{}: the name says no format that is written; it has to end in .ply, .compressed.ply, .spz, .sog or .glb",
+                self.output.display()
+            ))
+        })?;
+        output::check_file(&self.output)?;
+        for entry in self.scenes.entries()? {
+            if is_same(&entry.path, &self.output) {
+                return Err(Failure::Usage(format!(
+                    "{} is one of the scenes to convert, and would be replaced; name another file",
+                    self.output.display()
+                )));
+            }
+        }
+        let placement = self.placement()?;
+        let clip = self.clip.meant()?;
+        let mut loaded = self.scenes.load()?;
+        let mut document = Document {
+            file: self.output.clone(),
+            format: format.to_string(),
+            gaussians: 0,
+            hidden: 0,
+            clipped: 0,
+            faint: 0,
+            written: 0,
+            sh_degree: 0,
+            bytes: 0,
+            notes: std::mem::take(&mut loaded.notes),
+        };
+        let mut whole = Gaussians::default();
+        for layer in std::mem::take(&mut loaded.layers) {
+            document.gaussians += layer.gaussians.len();
+            if !layer.state.visible {
+                document.hidden += layer.gaussians.len();
+                continue;
+            }
+            let own = layer
+                .clip
+                .as_ref()
+                .map_or_else(|| clip.clone(), |own| own.clip());
+            whole.append(&self.kept(layer, &own, &mut document)?);
+        }
+        whole.place(&placement);
+        if let Some(degree) = self.sh_degree.filter(|&degree| degree < whole.sh_degree()) {
+            whole.set_sh_degree(degree);
+        }
+        scene::save(&self.output, &whole)?;
+        document.written = whole.len();
+        document.sh_degree = whole.sh_degree();
+        document.bytes = std::fs::metadata(&self.output).map_or(0, |metadata| metadata.len());
+        self.print(&document)
+    }
+
+    fn placement(&self) -> Result<Placement, Failure> {
+        let (position, turn) = (
+            self.offset.unwrap_or_default(),
+            self.rotate.unwrap_or(DQuat::IDENTITY),
+        );
+        Ok(Placement::new(
+            position,
+            turn,
+            self.scale.unwrap_or(1.0).into(),
+        )?)
+    }
+
+    /// What a layer keeps, in the scene's space.
+    fn kept(
+        &self,
+        layer: LoadedLayer,
+        clip: &Clip,
+        document: &mut Document,
+    ) -> Result<Gaussians, Failure> {
+        let LayerState {
+            placement, opacity, ..
+        } = layer.state;
+        let mut gaussians = layer.gaussians;
+        gaussians.place(&placement);
+        gaussians
+            .opacities_mut()
+            .iter_mut()
+            .for_each(|own| *own *= opacity);
+        let least = self.min_opacity.unwrap_or(0.0);
+        let mut part_of = Vec::with_capacity(gaussians.len());
+        for (position, own) in gaussians.positions().iter().zip(gaussians.opacities()) {
+            let is_clipped = !clip.keeps(position.as_dvec3());
+            let is_faint = !is_clipped && *own < least;
+            document.clipped += usize::from(is_clipped);
+            document.faint += usize::from(is_faint);
+            part_of.push(u32::from(is_clipped || is_faint));
+        }
+        let parts = gaussians.into_parts(&part_of, 2)?.into_iter();
+        Ok(parts.map(|part| part.gaussians).next().unwrap_or_default())
+    }
+
+    fn print(&self, document: &Document) -> Result<(), Failure> {
+        if self.json {
+            return Ok(output::json(document)?);
+        }
+        for (count, why) in [
+            (document.hidden, "in hidden layers"),
+            (document.clipped, "outside the clip"),
+            (document.faint, "too faint"),
+        ] {
+            if count > 0 {
+                say(format_args!(
+                    "left out {} Gaussians {why}",
+                    grouped(count as u64)
+                ));
+            }
+        }
+        say(format_args!(
+            "wrote {} Gaussians of degree {} to {} ({}, {} bytes)",
+            grouped(document.written as u64),
+            document.sh_degree,
+            document.file.display(),
+            document.format,
+            grouped(document.bytes)
+        ));
+        Ok(())
+    }
+}
+
+/// True where two paths lead to one file that is there.
+fn is_same(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_are_about_an_axis_by_degrees() {
+        let half = turn("0,0,2,180").expect("an axis");
+        assert_eq!(half * DVec3::X, DVec3::NEG_X);
+        let back = turn("0,1,0,-90").expect("an axis");
+        assert!((back * DVec3::X).distance(DVec3::Z) < 1e-15);
+        assert!(turn("0,0,0,90").is_err() && turn("1,2,3").is_err());
+    }
+}

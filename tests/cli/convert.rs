@@ -1,0 +1,147 @@
+//! `rara convert`: what it writes, what it leaves out, and what it refuses.
+
+use std::fs;
+
+use serde_json::Value;
+
+use super::{document, done, folder, line, refused, scene, stderr};
+
+fn centre(info: &Value, end: &str, axis: usize) -> f64 {
+    info["centres"][end][axis].as_f64().expect("a number")
+}
+
+#[test]
+fn every_format_is_written_and_named() {
+    let here = folder("convert");
+    scene(&here);
+    for (name, format) in [
+        ("b.ply", "3DGS .ply"),
+        ("b.compressed.ply", "compressed .ply"),
+        ("b.spz", ".spz"),
+        ("b.sog", "SOG"),
+        ("b.glb", "glTF"),
+    ] {
+        let report = document(line(
+            &here,
+            &format!("convert @/scene.ply -o @/{name} --json"),
+        ));
+        assert_eq!(
+            (&report["format"], &report["written"]),
+            (&format.into(), &2000.into())
+        );
+        assert_eq!(
+            report["bytes"],
+            fs::metadata(here.join(name)).unwrap().len()
+        );
+        let info = document(line(&here, &format!("info @/{name} --json")));
+        assert_eq!(info["layers"][0]["format"], format);
+        assert_eq!(info["gaussians"], 2000);
+        let printed = stderr(&done(line(&here, &format!("info @/{name}"))));
+        assert!(
+            printed.contains(&format!("format         {format}")),
+            "{printed}"
+        );
+    }
+    // Full precision comes back to the bit through glTF, but for what a .ply rounds itself.
+    done(line(&here, "convert @/b.glb -o @/c.ply"));
+    let [a, c] =
+        ["b.ply", "c.ply"].map(|name| document(line(&here, &format!("info @/{name} --json"))));
+    assert_eq!(
+        (&a["centres"], &a["opacity"]),
+        (&c["centres"], &c["opacity"])
+    );
+}
+
+#[test]
+fn what_is_left_out_is_counted() {
+    let here = folder("convert-filters");
+    scene(&here);
+    let words = "convert @/scene.ply -o @/b.ply --clip plane:1,0,0,0 --min-opacity 0.5 --sh-degree 0 --json";
+    let report = document(line(&here, words));
+    let count = |name: &str| report[name].as_u64().expect("a count");
+    assert!(count("clipped") > 0 && count("faint") > 0, "{report}");
+    assert_eq!(count("clipped") + count("faint") + count("written"), 2000);
+    let info = document(line(&here, "info @/b.ply --json"));
+    assert_eq!(
+        (&info["gaussians"], &info["sh_degree"]),
+        (&report["written"], &0.into())
+    );
+    assert!(centre(&info, "min", 0) >= 0.0, "{info}");
+    assert!(
+        info["opacity"]["min"].as_f64().expect("a number") >= 0.4999,
+        "{info}"
+    );
+
+    // An expression, and a layer's own clip in its place.
+    let kept = |flags: &str| {
+        let words = format!("convert @/scene.ply -o @/c.ply {flags} --json");
+        document(line(&here, &words))["written"]
+            .as_u64()
+            .expect("a count")
+    };
+    assert_eq!(kept("--clip-expr not(plane:1,0,0,0)"), count("clipped"));
+    assert_eq!(kept("--clip plane:1,0,0,0 --layer-clip scene=whole"), 2000);
+}
+
+#[test]
+fn scenes_are_placed_and_joined() {
+    let here = folder("convert-placed");
+    scene(&here);
+    done(line(
+        &here,
+        "convert @/scene.ply -o @/b.ply --scale 2 --rotate 0,0,1,180 --move 0,0,5",
+    ));
+    let [a, b] =
+        ["scene.ply", "b.ply"].map(|name| document(line(&here, &format!("info @/{name} --json"))));
+    for (found, expected) in [
+        (centre(&b, "min", 0), -2.0 * centre(&a, "max", 0)),
+        (centre(&b, "max", 1), -2.0 * centre(&a, "min", 1)),
+        (centre(&b, "min", 2), 2.0 * centre(&a, "min", 2) + 5.0),
+    ] {
+        assert!((found - expected).abs() < 1e-5, "{found} {expected}");
+    }
+    let list = r#"{"layers": [{"path": "scene.ply", "scale": 2, "rotation": [0, 0, 0, 1], "position": [0, 0, 5]},
+        {"path": "b.ply", "visible": false}]}"#;
+    fs::write(here.join("list.json"), list).unwrap();
+    let report = document(line(&here, "convert @/list.json -o @/c.ply --json"));
+    assert_eq!(
+        (&report["gaussians"], &report["hidden"]),
+        (&4000.into(), &2000.into())
+    );
+    let c = document(line(&here, "info @/c.ply --json"));
+    for (end, axis) in [("min", 0), ("max", 1), ("max", 2)] {
+        assert!(
+            (centre(&c, end, axis) - centre(&b, end, axis)).abs() < 1e-5,
+            "{end} {axis}"
+        );
+    }
+}
+
+#[test]
+fn what_cannot_be_written_is_refused_before_anything_is_read() {
+    let here = folder("convert-refused");
+    scene(&here);
+    refused(
+        &line(&here, "convert @/scene.ply -o @/a.splat"),
+        2,
+        "it has to end in",
+    );
+    refused(
+        &line(&here, "convert @/scene.ply -o @/scene.ply"),
+        2,
+        "one of the scenes",
+    );
+    refused(&line(&here, "convert @/scene.ply -o @/no/a.spz"), 1, "no");
+    refused(
+        &line(&here, "convert @/scene.ply -o @/a.spz --rotate 0,0,0,90"),
+        2,
+        "axis",
+    );
+    refused(
+        &line(&here, "convert @/scene.ply -o @/a.spz --scale 0"),
+        2,
+        "--scale",
+    );
+    fs::write(here.join("a.usd"), "#usda 1.0").unwrap();
+    refused(&line(&here, "info @/a.usd"), 1, "USD");
+}

@@ -87,7 +87,13 @@ impl LayerEntry {
 }
 
 fn stem(path: &Path) -> String {
-    path.file_stem()
+    let is_of_folder = path.ends_with("meta.json") || path.ends_with("lod-meta.json");
+    let named = path
+        .parent()
+        .filter(|folder| is_of_folder && folder.file_name().is_some());
+    named
+        .unwrap_or(path)
+        .file_stem()
         .unwrap_or_default()
         .to_string_lossy()
         .into_owned()
@@ -156,6 +162,23 @@ impl Selection {
         }
         Ok(selected)
     }
+}
+
+/// True for a file whose name ends in .json unless it is a scene itself: what describes a SOG scene, or glTF.
+pub(super) fn is_list(path: &Path) -> bool {
+    /// What each of these has, and a list of layers has not.
+    const OF_SCENES: [&str; 3] = ["means", "tree", "asset"];
+    if path.extension().is_none_or(|ending| ending != "json") {
+        return false;
+    }
+    let is_short = std::fs::metadata(path).is_ok_and(|metadata| metadata.len() <= MOST_BYTES);
+    let text = if is_short {
+        std::fs::read(path).ok()
+    } else {
+        None
+    };
+    let document = text.and_then(|text| serde_json::from_slice::<serde_json::Value>(&text).ok());
+    !document.is_some_and(|document| OF_SCENES.iter().any(|key| document.get(key).is_some()))
 }
 
 /// The layers of a scene file, whose paths are relative to its folder.

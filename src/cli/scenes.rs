@@ -297,13 +297,12 @@ fn load(entries: Vec<LayerEntry>) -> Result<Loaded, Failure> {
 
 /// The layers of `FILE` or `NAME=FILE`, of which the first may be a list of layers. A file that exists goes before a name.
 fn named_file(typed: &Path) -> Result<Vec<LayerEntry>, Failure> {
-    let is_list = |path: &Path| path.extension().is_some_and(|ending| ending == "json");
     let text = typed.to_string_lossy();
     let (name, path) = match text.split_once('=') {
         Some((name, path)) if !typed.exists() && !name.is_empty() => (Some(name), Path::new(path)),
         _ => (None, typed),
     };
-    if is_list(path) {
+    if scene_file::is_list(path) {
         return match name {
             Some(name) => Err(Failure::Usage(format!(
                 "{name}={}: a list of layers has names of its own; leave this one out",

@@ -117,6 +117,50 @@ fn scenes_are_placed_and_joined() {
     }
 }
 
+/// A SOG scene that was unpacked is its folder or its meta.json, which is no list of layers, alone or in a list.
+#[test]
+fn unpacked_scenes_are_read_by_their_folder() {
+    let here = folder("convert-unpacked");
+    scene(&here);
+    done(line(&here, "convert @/scene.ply -o @/b.sog"));
+    let bytes = fs::read(here.join("b.sog")).unwrap();
+    let unpacked = here.join("kept");
+    fs::create_dir(&unpacked).unwrap();
+    // The archive is stored: each file's own header is 30 bytes, then its name and the file.
+    let number = |at: usize, size: usize| {
+        (0..size)
+            .rev()
+            .fold(0, |sum, byte| 256 * sum + usize::from(bytes[at + byte]))
+    };
+    let mut at = 0;
+    while bytes[at..].starts_with(b"PK\x03\x04") {
+        let (size, name) = (number(at + 18, 4), number(at + 26, 2));
+        let name_at = at + 30;
+        let path = unpacked.join(std::str::from_utf8(&bytes[name_at..name_at + name]).unwrap());
+        at = name_at + name + size;
+        fs::write(path, &bytes[at - size..at]).unwrap();
+    }
+    fs::write(
+        here.join("list.json"),
+        r#"{"layers": [{"path": "kept/meta.json"}]}"#,
+    )
+    .unwrap();
+    for words in [
+        "info @/kept --json",
+        "info @/kept/meta.json --json",
+        "info @/list.json --json",
+    ] {
+        let info = document(line(&here, words));
+        assert_eq!(
+            (&info["gaussians"], &info["layers"][0]["format"]),
+            (&2000.into(), &"SOG".into())
+        );
+        assert_eq!(info["layers"][0]["name"], "kept", "{words}");
+    }
+    fs::remove_file(unpacked.join("quats.webp")).unwrap();
+    refused(&line(&here, "info @/kept"), 1, "quats.webp");
+}
+
 #[test]
 fn what_cannot_be_written_is_refused_before_anything_is_read() {
     let here = folder("convert-refused");

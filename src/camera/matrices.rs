@@ -140,6 +140,8 @@ fn far_enough([offset, scale]: [f64; 2]) -> f64 {
 
 /// How unequal and how oblique the axes of a view may be, which hosts turn in single precision and by many small steps.
 const VIEW_TOLERANCE: f64 = 1e-4;
+/// How far the first numbers of a view's last row may be from 0.
+const LAST_ROW_TOLERANCE: f64 = 1e-6;
 /// How oblique a projection may be.
 const SHEAR_TOLERANCE: f64 = 1e-6;
 
@@ -158,7 +160,10 @@ impl View {
     fn new(matrix: DMat4) -> Result<Self> {
         check_finite(&matrix, "view")?;
         let last = matrix.row(3);
-        if last != DVec4::W {
+        // What a host has inverted in single precision is not exact.
+        if last.truncate().abs().max_element() > LAST_ROW_TOLERANCE
+            || (last.w - 1.0).abs() > VIEW_TOLERANCE
+        {
             let transposed = matrix.w_axis == DVec4::W;
             return refused(format!(
                 "the view matrix's last row is {last}, and not 0, 0, 0, 1{}",
@@ -168,6 +173,7 @@ impl View {
                 }
             ));
         }
+        let matrix = matrix * (1.0 / last.w);
         let linear = DMat3::from_mat4(matrix);
         let lengths = [linear.x_axis, linear.y_axis, linear.z_axis].map(DVec3::length);
         let unit = (linear.x_axis.length_squared()

@@ -12,11 +12,11 @@ fn main() {
     let version = version.expect("boundary.rs says the version of rara.h");
     let system = env::var("CARGO_CFG_TARGET_OS").unwrap_or_default();
     let name = match system.as_str() {
-        "linux" | "android" | "freebsd" | "netbsd" | "openbsd" | "dragonfly" => {
+        "linux" | "freebsd" | "netbsd" | "openbsd" | "dragonfly" => {
             format!("-soname,librara.so.{version}")
         }
         "macos" | "ios" => format!("-install_name,@rpath/librara.{version}.dylib"),
-        // Its libraries are found by the names of their files.
+        // Libraries are found there by the names of their files.
         _ => return,
     };
     println!("cargo:rustc-cdylib-link-arg=-Wl,{name}");

@@ -6,8 +6,8 @@ use rara::glam::{Quat, Vec3};
 use rara::{Error, GaussianArrays, Gaussians, Result};
 
 use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
+use crate::gaussians::RaraGaussians;
 use crate::handles::create;
-use crate::scene::RaraGaussians;
 
 /// A host's Gaussians, as it has them in memory: each attribute an array, or a field of its own structs. A stride is the
 /// bytes from one Gaussian's numbers to the next one's; 0, the default, stands for numbers without a gap. Nothing has to be

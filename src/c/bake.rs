@@ -3,9 +3,9 @@
 use rara::{BakeCounts, BakeSettings, bake};
 
 use crate::boundary::{RaraResult, Versioned, guard, read, write};
+use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, create};
 use crate::region::RaraRegion;
-use crate::scene::RaraGaussians;
 use crate::settings::{RaraMode, mode, mode_code};
 
 /// How a region is baked.

@@ -6,8 +6,8 @@ use rara::glam::{DMat3, DMat4, DVec3};
 use rara::scene::Bounds;
 
 use crate::boundary::{RaraResult, exclusive, guard, list};
+use crate::gaussians::RaraGaussians;
 use crate::handles::alive;
-use crate::scene::RaraGaussians;
 
 /// A camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers. It is a pinhole, unless
 /// rara_renderer_configure_orthographic takes it.

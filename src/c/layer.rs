@@ -9,10 +9,11 @@ use rara::{Error, LayerState, Result};
 use crate::boundary::{RaraResult, Versioned, guard, invalid, read, read_list, write};
 use crate::clip::RaraClip;
 use crate::device::RaraDevice;
+use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, alone};
 use crate::layer_info::check_index;
 use crate::placement::RaraPlacement;
-use crate::scene::{self, GivenLayer, RaraGaussians, RaraSceneBuffers, RaraShFormat, RaraStaging};
+use crate::scene::{self, GivenLayer, RaraSceneBuffers, RaraShFormat, RaraStaging};
 use crate::text::text;
 
 /// The state of a layer, which may change from frame to frame.

@@ -15,6 +15,7 @@ pub mod camera_files;
 pub mod clip;
 pub mod depth;
 pub mod device;
+pub mod gaussians;
 mod handles;
 pub mod layer;
 pub mod layer_info;

@@ -12,6 +12,7 @@ use crate::camera::*;
 use crate::camera_files::*;
 use crate::depth::*;
 use crate::device::*;
+use crate::gaussians::*;
 use crate::layer::*;
 use crate::layer_info::*;
 use crate::logging::*;

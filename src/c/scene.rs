@@ -1,44 +1,16 @@
-//! Scenes: from files and memory, and onto the device.
+//! Scenes onto the device.
 
-use std::ffi::{CString, c_char, c_void};
-use std::io::Cursor;
+use std::ffi::{CString, c_void};
 use std::sync::Arc;
 
 use rara::ash::vk;
-use rara::scene::{Bounds, LoadReport, Loaded, load, load_from};
-use rara::{Gaussians, Layer, LayerState, Result, Scene, SceneBuffers, ShFormat, Staging};
+use rara::{Layer, LayerState, Result, Scene, SceneBuffers, ShFormat, Staging};
 
-use crate::boundary::{
-    RaraResult, Versioned, exclusive, guard, invalid, list, memory, recording, shared, write,
-};
+use crate::boundary::{RaraResult, exclusive, guard, invalid, memory, recording, shared};
 use crate::device::RaraDevice;
-use crate::handles::{alive, alone, create, destroy, number};
-use crate::text::{self, c_string};
-
-/// A scene in the host's memory. It may be destroyed once it is on the device. Several threads may read it at once.
-pub struct RaraGaussians {
-    pub(crate) gaussians: Gaussians,
-    /// What of the file could not be used; nothing where there was none.
-    pub(crate) report: LoadReport,
-}
-
-impl From<Loaded> for RaraGaussians {
-    fn from(loaded: Loaded) -> Self {
-        Self {
-            gaussians: loaded.gaussians,
-            report: loaded.report,
-        }
-    }
-}
-
-impl From<Gaussians> for RaraGaussians {
-    fn from(gaussians: Gaussians) -> Self {
-        Self {
-            gaussians,
-            report: LoadReport::default(),
-        }
-    }
-}
+use crate::gaussians::RaraGaussians;
+use crate::handles::{alive, create, destroy, number};
+use crate::text::c_string;
 
 /// A scene in device memory: one layer or several. Several threads and renderers may use it at once, but nobody else
 /// while rara_scene_buffers_set_layer_state runs.
@@ -56,32 +28,6 @@ impl RaraSceneBuffers {
             buffers,
         }
     }
-}
-
-/// Describes a scene, and what of its file could not be used.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct RaraGaussiansInfo {
-    /// Set by rara_gaussians_info.
-    pub struct_size: usize,
-    /// Gaussians in the scene.
-    pub count: u64,
-    /// Elements of the file that were left out: numbers that are not finite.
-    pub dropped: u64,
-    /// Elements that were kept with a value put right.
-    pub repaired: u64,
-    /// Degree of its spherical harmonics, 0 to 3.
-    pub sh_degree: u32,
-    /// The corner of the scene's box with the smallest coordinates. The box holds all but the outermost percent of the
-    /// centres at each end of each axis.
-    pub bounds_min: [f64; 3],
-    /// The corner with the largest coordinates.
-    pub bounds_max: [f64; 3],
-}
-
-// SAFETY: repr(C), plain numbers, the size first.
-unsafe impl Versioned for RaraGaussiansInfo {
-    const NAME: &'static str = "RaraGaussiansInfo";
 }
 
 /// How spherical harmonics lie in device memory; the sizes are of one Gaussian of degree 3.
@@ -103,107 +49,6 @@ pub(crate) fn sh_format(value: RaraShFormat) -> Result<ShFormat> {
         RARA_SH_FORMAT_FLOAT => ShFormat::Float,
         _ => return invalid(format!("sh_format {value} is no RaraShFormat")),
     })
-}
-
-/// Loads a scene: 3DGS .ply (ascii or binary, spherical harmonics of degree 0 to 3), .compressed.ply, .splat, .ksplat, .spz,
-/// SOG (an archive, its folder or meta.json) or glTF with KHR_gaussian_splatting. The format is found by what is in the file.
-///
-/// `path` is UTF-8, or on Unix whatever the file system takes.
-///
-/// # Safety
-/// `path` ends in NUL; `gaussians` may be overwritten.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_gaussians_load(
-    path: *const c_char,
-    gaussians: *mut *mut RaraGaussians,
-) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        create(gaussians, "gaussians", || {
-            let path = text::path(path, "path")?;
-            load(&path, &mut |_, _| ()).map(RaraGaussians::from)
-        })
-    })
-}
-
-/// Loads a scene that is in memory, such as an archive's entry, in any format that is one file. `name` stands for it in
-/// messages.
-///
-/// # Safety
-/// `data` points to `size` bytes, which are not used afterwards; `name` ends in NUL; `gaussians` may be overwritten.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_gaussians_load_from(
-    data: *const u8,
-    size: usize,
-    name: *const c_char,
-    gaussians: *mut *mut RaraGaussians,
-) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        create(gaussians, "gaussians", || {
-            let name = text::path(name, "name")?;
-            let source = Cursor::new(list(data, size, "data")?);
-            load_from(source, &name, &mut |_, _| ()).map(RaraGaussians::from)
-        })
-    })
-}
-
-/// Appends another scene to one, so that both are sorted and composited as one.
-///
-/// # Safety
-/// Both are alive and not the same; nobody else uses `gaussians` meanwhile.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_gaussians_append(
-    gaussians: *mut RaraGaussians,
-    other: *const RaraGaussians,
-) -> RaraResult {
-    guard(|| {
-        if std::ptr::eq(gaussians, other) && !other.is_null() {
-            return invalid("gaussians and other are the same scene");
-        }
-        let (mut to, from) = (alone(gaussians, "gaussians")?, alive(other, "other")?);
-        to.gaussians.append(&from.gaussians);
-        to.report.dropped += from.report.dropped;
-        to.report.repaired += from.report.repaired;
-        Ok(())
-    })
-}
-
-/// Describes a scene. `info_size` is sizeof *info.
-///
-/// # Safety
-/// `gaussians` is alive; `info` has room for `info_size` bytes.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_gaussians_info(
-    gaussians: *const RaraGaussians,
-    info: *mut RaraGaussiansInfo,
-    info_size: usize,
-) -> RaraResult {
-    guard(|| {
-        let gaussians = alive(gaussians, "gaussians")?;
-        let RaraGaussians { gaussians, report } = &*gaussians;
-        let bounds = Bounds::of(gaussians);
-        let found = RaraGaussiansInfo {
-            struct_size: size_of::<RaraGaussiansInfo>(),
-            count: gaussians.len() as u64,
-            dropped: report.dropped,
-            repaired: report.repaired,
-            sh_degree: gaussians.sh_degree(),
-            bounds_min: bounds.min.into(),
-            bounds_max: bounds.max.into(),
-        };
-        // SAFETY: the caller's promise.
-        unsafe { write(info, info_size, &found, "info") }
-    })
-}
-
-/// Frees a scene's memory; null is ignored.
-///
-/// # Safety
-/// `gaussians` is null, or alive and not used any more.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_gaussians_destroy(gaussians: *mut RaraGaussians) {
-    destroy(gaussians);
 }
 
 /// Uploads a scene of one layer. Only this function and rara_scene_buffers_upload_layers submit to the host's queue and

@@ -7,6 +7,7 @@ use crate::boundary::*;
 use crate::camera::*;
 use crate::camera_files::*;
 use crate::clip::*;
+use crate::gaussians::*;
 use crate::placement::*;
 use crate::scene::*;
 use crate::settings::*;

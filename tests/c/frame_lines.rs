@@ -13,6 +13,7 @@ use rara::ash::{Entry, vk};
 use rara_c::boundary::*;
 use rara_c::camera::*;
 use rara_c::device::*;
+use rara_c::gaussians::*;
 use rara_c::logging::*;
 use rara_c::renderer::*;
 use rara_c::renderer_desc::*;

@@ -4,8 +4,8 @@ use std::ptr::null_mut;
 
 use super::*;
 use crate::boundary::{RARA_ERROR_INVALID, RARA_OK};
+use crate::gaussians::rara_gaussians_destroy;
 use crate::handles::alive;
-use crate::scene::rara_gaussians_destroy;
 use crate::tests::assert_fails;
 use rara::scene::{Kind, generate};
 

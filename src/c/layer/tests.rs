@@ -4,6 +4,7 @@ use std::ptr::null;
 
 use super::*;
 use crate::boundary::*;
+use crate::gaussians::*;
 use crate::scene::*;
 use crate::tests::assert_fails;
 

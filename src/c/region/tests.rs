@@ -6,7 +6,7 @@ use std::ptr::{null, null_mut};
 use super::*;
 use crate::bake::*;
 use crate::boundary::*;
-use crate::scene::*;
+use crate::gaussians::*;
 use crate::tests::assert_fails;
 
 const CLIPS: &str = r#"[

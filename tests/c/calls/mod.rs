@@ -17,6 +17,7 @@ use rara_c::camera::*;
 use rara_c::clip::*;
 use rara_c::depth::*;
 use rara_c::device::*;
+use rara_c::gaussians::*;
 use rara_c::renderer::*;
 use rara_c::renderer_desc::*;
 use rara_c::scene::*;

@@ -22,6 +22,7 @@ use rara::gpu::{AdoptDesc, Device, DeviceShape};
 use rara::scene::Kind;
 use rara::{Gaussians, Placement, Projection, Raster, Scene, SceneBuffers, ShFormat};
 use rara_c::device::*;
+use rara_c::gaussians::*;
 use rara_c::scene::*;
 use world::World;
 

@@ -233,6 +233,12 @@ proptest! {
         let (pixel, ..) = host.seen(point);
         let (ours, _) = projected(&camera, point);
         prop_assert!((ours - pixel).length() < 0.02, "{ours} is not {pixel}");
+        // A host that inverts the camera's own matrix rounds twice more, and the last row too.
+        let mut inverted = host.view().as_mat4().inverse().inverse();
+        inverted.w_axis.w = f32::from_bits(inverted.w_axis.w.to_bits() - 1);
+        let made = Camera::of_projection(inverted.as_dmat4(), projection, host.ndc(), SIZE);
+        let (ours, _) = projected(&made.expect("a camera").0, point);
+        prop_assert!((ours - pixel).length() < 0.1, "{ours} is not {pixel}");
     }
 }
 

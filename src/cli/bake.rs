@@ -17,7 +17,7 @@ use super::output::{self, Progress, grouped, say};
 use super::residual::{Residual, View, residual};
 use super::scene_file::LayerEntry;
 use super::scenes::{Loaded, SceneArgs};
-use super::select;
+use super::select::{self, Taken};
 use super::settings::{DeviceArgs, name};
 use super::values;
 
@@ -300,7 +300,16 @@ fn print_counts(counts: &BakeCounts) {
 fn outputs(loaded: &Loaded, paths: &[PathBuf], baked: Vec<Baked>) -> Vec<Output> {
     let gaussians = match paths.len() == baked.len() {
         true => baked.into_iter().map(|baked| baked.gaussians).collect(),
-        false => vec![select::joined(&loaded.layers, &baked)],
+        false => {
+            let taken = loaded.layers.iter().zip(baked);
+            let taken = taken.map(|(layer, baked)| Taken {
+                numbers: layer.numbers.clone(),
+                count: layer.gaussians.len(),
+                gaussians: baked.gaussians,
+                sources: baked.sources,
+            });
+            vec![select::joined(taken.collect())]
+        }
     };
     let outputs = paths.iter().cloned().zip(gaussians);
     outputs

@@ -4,14 +4,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::{DQuat, DVec3};
-use rara::scene::{self, Format};
-use rara::{Clip, Gaussians, LayerState, Placement};
+use rara::scene::{self, Part};
+use rara::{Clip, LayerState, Placement};
 use serde::Serialize;
 
 use super::clip::ClipArgs;
 use super::failure::Failure;
 use super::output::{self, grouped, say};
 use super::scenes::{LoadedLayer, SceneArgs};
+use super::select::{self, Taken};
 use super::values;
 
 /// Write a scene in another format
@@ -68,7 +69,10 @@ struct Document {
     hidden: usize,
     clipped: usize,
     faint: usize,
+    lost: usize,
     written: usize,
+    /// Of what was written, how much has numbers at the ends of what the format holds in place of its own.
+    clamped: u64,
     sh_degree: u32,
     bytes: u64,
     notes: Vec<String>,
@@ -79,11 +83,10 @@ fn turn(text: &str) -> Result<DQuat, String> {
     let [x, y, z, degrees] = values::numbers::<4>(text)?;
     let axis = DVec3::new(x, y, z).try_normalize();
     let axis = axis.ok_or("an axis cannot be zero")?;
-    // Whole quarters are exact, which an angle in radians is not.
-    let quarters = (degrees / 90.0).rem_euclid(4.0);
-    let (sin, cos) = match quarters {
-        2.0 => (1.0, 0.0),
-        _ => (quarters * std::f64::consts::FRAC_PI_4).sin_cos(),
+    // Half a turn is exact, which its angle in radians is not.
+    let (sin, cos) = match degrees.rem_euclid(360.0) {
+        180.0 => (1.0, 0.0),
+        degrees => (0.5 * degrees).to_radians().sin_cos(),
     };
     Ok(DQuat::from_xyzw(
         axis.x * sin,
@@ -95,12 +98,8 @@ fn turn(text: &str) -> Result<DQuat, String> {
 
 impl Convert {
     pub(super) fn run(self) -> Result<(), Failure> {
-        let format = Format::of_name(&self.output).ok_or_else(|| {
-            Failure::Usage(format!(
-                "{}: the name says no format that is written; it has to end in .ply, .compressed.ply, .spz, .sog or .glb",
-                self.output.display()
-            ))
-        })?;
+        let format =
+            scene::saved_format(&self.output).map_err(|error| Failure::Usage(error.to_string()))?;
         output::check_file(&self.output)?;
         for entry in self.scenes.entries()? {
             if is_same(&entry.path, &self.output) {
@@ -120,29 +119,36 @@ impl Convert {
             hidden: 0,
             clipped: 0,
             faint: 0,
+            lost: 0,
             written: 0,
+            clamped: 0,
             sh_degree: 0,
             bytes: 0,
             notes: std::mem::take(&mut loaded.notes),
         };
-        let mut whole = Gaussians::default();
+        let mut taken = Vec::new();
         for layer in std::mem::take(&mut loaded.layers) {
-            document.gaussians += layer.gaussians.len();
-            if !layer.state.visible {
-                document.hidden += layer.gaussians.len();
-                continue;
-            }
-            let own = layer
-                .clip
-                .as_ref()
-                .map_or_else(|| clip.clone(), |own| own.clip());
-            whole.append(&self.kept(layer, &own, &mut document)?);
+            let count = layer.gaussians.len();
+            document.gaussians += count;
+            let (numbers, part) = if layer.state.visible {
+                self.kept(layer, &clip, &mut document)?
+            } else {
+                document.hidden += count;
+                (layer.numbers, Part::default())
+            };
+            taken.push(Taken {
+                numbers,
+                count,
+                gaussians: part.gaussians,
+                sources: part.numbers,
+            });
         }
-        whole.place(&placement);
+        let mut whole = select::joined(taken);
+        document.lost += whole.place(&placement).len();
         if let Some(degree) = self.sh_degree.filter(|&degree| degree < whole.sh_degree()) {
             whole.set_sh_degree(degree);
         }
-        scene::save(&self.output, &whole)?;
+        document.clamped = scene::save(&self.output, &whole)?;
         document.written = whole.len();
         document.sh_degree = whole.sh_degree();
         document.bytes = std::fs::metadata(&self.output).map_or(0, |metadata| metadata.len());
@@ -161,18 +167,22 @@ impl Convert {
         )?)
     }
 
-    /// What a layer keeps, in the scene's space.
+    /// What a layer keeps of the frame's clip or its own, in the scene's space, and its numbers in its file.
     fn kept(
         &self,
         layer: LoadedLayer,
         clip: &Clip,
         document: &mut Document,
-    ) -> Result<Gaussians, Failure> {
+    ) -> Result<(Option<(u32, Vec<u32>)>, Part), Failure> {
         let LayerState {
             placement, opacity, ..
         } = layer.state;
+        let own = layer.clip.as_ref().map(|own| own.clip());
+        let clip = own.as_ref().unwrap_or(clip);
         let mut gaussians = layer.gaussians;
-        gaussians.place(&placement);
+        let count = gaussians.len() as u32;
+        let lost = gaussians.place(&placement);
+        document.lost += lost.len();
         gaussians
             .opacities_mut()
             .iter_mut()
@@ -186,8 +196,17 @@ impl Convert {
             document.faint += usize::from(is_faint);
             part_of.push(u32::from(is_clipped || is_faint));
         }
-        let parts = gaussians.into_parts(&part_of, 2)?.into_iter();
-        Ok(parts.map(|part| part.gaussians).next().unwrap_or_default())
+        let mut part = gaussians.into_parts(&part_of, 2)?.swap_remove(0);
+        if !lost.is_empty() {
+            let mut lost = lost.into_iter().peekable();
+            let left: Vec<u32> = (0..count)
+                .filter(|number| lost.next_if_eq(number).is_none())
+                .collect();
+            part.numbers
+                .iter_mut()
+                .for_each(|number| *number = left[*number as usize]);
+        }
+        Ok((layer.numbers, part))
     }
 
     fn print(&self, document: &Document) -> Result<(), Failure> {
@@ -198,6 +217,10 @@ impl Convert {
             (document.hidden, "in hidden layers"),
             (document.clipped, "outside the clip"),
             (document.faint, "too faint"),
+            (
+                document.lost,
+                "beyond single precision where they are placed",
+            ),
         ] {
             if count > 0 {
                 say(format_args!(
@@ -205,6 +228,13 @@ impl Convert {
                     grouped(count as u64)
                 ));
             }
+        }
+        if document.clamped > 0 {
+            say(format_args!(
+                "note: {} Gaussians have scales, colours or coefficients beyond what {} holds, which are the nearest that it does now",
+                grouped(document.clamped),
+                document.format
+            ));
         }
         say(format_args!(
             "wrote {} Gaussians of degree {} to {} ({}, {} bytes)",

@@ -86,8 +86,11 @@ impl LayerEntry {
     }
 }
 
+/// The names of what describes an unpacked SOG scene.
+const NAMES: [&str; 2] = ["meta.json", "lod-meta.json"];
+
 fn stem(path: &Path) -> String {
-    let is_of_folder = path.ends_with("meta.json") || path.ends_with("lod-meta.json");
+    let is_of_folder = NAMES.iter().any(|name| path.ends_with(name));
     let named = path
         .parent()
         .filter(|folder| is_of_folder && folder.file_name().is_some());
@@ -171,13 +174,19 @@ pub(super) fn is_list(path: &Path) -> bool {
     if path.extension().is_none_or(|ending| ending != "json") {
         return false;
     }
+    if NAMES.iter().any(|name| path.ends_with(name)) {
+        return false;
+    }
     let is_short = std::fs::metadata(path).is_ok_and(|metadata| metadata.len() <= MOST_BYTES);
     let text = if is_short {
         std::fs::read(path).ok()
     } else {
         None
     };
-    let document = text.and_then(|text| serde_json::from_slice::<serde_json::Value>(&text).ok());
+    let document = text.and_then(|text| {
+        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
+        serde_json::from_slice::<serde_json::Value>(text).ok()
+    });
     !document.is_some_and(|document| OF_SCENES.iter().any(|key| document.get(key).is_some()))
 }
 

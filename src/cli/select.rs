@@ -1,11 +1,10 @@
 //! `--select`: splats of a layer that become a layer of their own.
 
 use rara::scene::{Part, Predicate, Property};
-use rara::{Baked, Gaussians, LayerState};
+use rara::{Gaussians, LayerState};
 
 use super::failure::Failure;
 use super::scene_file::{LayerClip, LayerEntry};
-use super::scenes::LoadedLayer;
 
 /// A layer that a selection makes of what a predicate takes of another.
 #[derive(Debug, Clone)]
@@ -113,34 +112,44 @@ pub(super) fn divide(
     gaussians.into_parts(&part_of, 1 + entry.selected.len())
 }
 
-/// What baking has made of layers as one set. Where selections have divided files, it is in the files' order, as if they
-/// had not: Gaussians that are equally deep are drawn in that order.
-pub(super) fn joined(layers: &[LoadedLayer], baked: &[Baked]) -> Gaussians {
+/// What has become of a layer's Gaussians.
+pub(super) struct Taken {
+    /// Of the layer before: where it is a part of a file, its place in the files, and how many Gaussians it had.
+    pub(super) numbers: Option<(u32, Vec<u32>)>,
+    pub(super) count: usize,
+    pub(super) gaussians: Gaussians,
+    /// For each of them, the number in the layer of the one that it comes from.
+    pub(super) sources: Vec<u32>,
+}
+
+/// What has become of layers as one set. Where selections have divided files, it is in the files' order, as if they had not:
+/// Gaussians that are equally deep are drawn in that order.
+pub(super) fn joined(layers: Vec<Taken>) -> Gaussians {
     let mut joined = Gaussians::default();
     if layers.iter().all(|layer| layer.numbers.is_none()) {
-        baked
-            .iter()
-            .for_each(|baked| joined.append(&baked.gaussians));
+        for layer in layers {
+            joined.append(&layer.gaussians);
+        }
         return joined;
     }
     let mut places = Vec::new();
     let mut before = 0;
-    for (layer, (at, baked)) in layers.iter().zip(baked.iter().enumerate()) {
-        for (index, &source) in baked.sources.iter().enumerate() {
+    for (at, layer) in layers.iter().enumerate() {
+        for (index, &source) in layer.sources.iter().enumerate() {
             let number = match &layer.numbers {
                 Some((first, numbers)) => u64::from(*first) + u64::from(numbers[source as usize]),
                 None => before + u64::from(source),
             };
             places.push((number, at, index));
         }
-        before += layer.gaussians.len() as u64;
+        before += layer.count as u64;
     }
     places.sort_unstable();
-    let degree = baked.iter().map(|baked| baked.gaussians.sh_degree()).max();
+    let degree = layers.iter().map(|layer| layer.gaussians.sh_degree()).max();
     joined.set_sh_degree(degree.unwrap_or(0));
     let mut sh = vec![0.0; 3 * joined.sh_coefficients()];
     for (_, at, index) in places {
-        let from = &baked[at].gaussians;
+        let from = &layers[at].gaussians;
         let own = from.sh_of(index);
         sh.fill(0.0);
         sh[..own.len()].copy_from_slice(own);

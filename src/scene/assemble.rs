@@ -37,12 +37,17 @@ pub(super) enum Stored {
     Plain,
 }
 
+/// The spherical harmonic of degree 0: the density of the colour that does not depend on the direction.
+pub(super) const SH_0: f64 = 0.282_094_791_773_878_14;
+
 /// Collects rows into [`Gaussians`].
 pub(super) struct Assembler {
     gaussians: Gaussians,
     /// The properties that were asked for, whose slots follow on those of a Gaussian.
     properties: Vec<Property>,
     pub(super) report: LoadReport,
+    /// The numbers of the rows that were dropped, which ascend.
+    pub(super) dropped: Vec<u64>,
     /// Rows so far, dropped ones included.
     pub(super) rows: u64,
     /// Slots in use.
@@ -66,6 +71,7 @@ impl Assembler {
             gaussians: Gaussians::with_room(room, sh_degree)?,
             properties,
             report: LoadReport::default(),
+            dropped: Vec::new(),
             rows: 0,
             used: SH + 3 * sh_coefficients(sh_degree),
             stored: Stored::Logarithms,
@@ -88,7 +94,7 @@ impl Assembler {
             !(value.is_finite() || self.is_limit(slot, value))
         };
         if let Some(slot) = row[..self.used].iter().enumerate().position(unusable) {
-            self.report.drop_element(element, || {
+            self.drop_row(element, || {
                 let value = row[slot];
                 let beyond = if value.is_finite() {
                     ", beyond single precision"
@@ -105,7 +111,7 @@ impl Assembler {
             _ => stored.map(|log| log.exp() as f32),
         };
         if let Some(axis) = scale.iter().position(|s| !s.is_finite()) {
-            self.report.drop_element(element, || {
+            self.drop_row(element, || {
                 format!(
                     "exp(scale_{axis}) is beyond single precision: scale_{axis} is {}",
                     row[3 + axis]
@@ -161,6 +167,11 @@ impl Assembler {
         }
     }
 
+    fn drop_row(&mut self, row: u64, reason: impl FnOnce() -> String) {
+        self.dropped.push(row);
+        self.report.drop_element(row, reason);
+    }
+
     /// The scene and the properties, and the report on what was done to them.
     pub(super) fn finish(self) -> (Loaded, Vec<Property>) {
         let loaded = Loaded {
@@ -202,6 +213,20 @@ pub(super) fn slot_name(slot: usize, sh_degree: u32) -> String {
         "f_rest_{}",
         channel * (sh_coefficients(sh_degree) - 1) + coefficient
     )
+}
+
+/// A unit quaternion of its three smaller parts, in their order, and the place of the largest, which is positive.
+pub(super) fn unit_quaternion(largest: usize, others: [f64; 3]) -> [f64; 4] {
+    let rest: f64 = others.iter().map(|part| part * part).sum();
+    let mut all = [0.0; 4];
+    let mut next = others.into_iter();
+    for (place, part) in all.iter_mut().enumerate() {
+        *part = match place == largest {
+            true => (1.0 - rest).max(0.0).sqrt(),
+            false => next.next().unwrap_or_default(),
+        };
+    }
+    all
 }
 
 /// The quaternion x, y, z, w at length one; `None` for zero. Dividing by the largest component first keeps the

@@ -200,6 +200,30 @@ impl Gaussians {
         }
     }
 
+    /// Appends `other` as [`append`](Self::append) does; `None` if there is no memory for it.
+    #[cfg_attr(not(feature = "formats"), allow(dead_code))]
+    pub(super) fn try_append(&mut self, other: &Gaussians) -> Option<()> {
+        let (count, arrays) = (other.len(), &mut self.0);
+        arrays.positions.try_reserve(count).ok()?;
+        arrays.scales.try_reserve(count).ok()?;
+        arrays.rotations.try_reserve(count).ok()?;
+        arrays.opacities.try_reserve(count).ok()?;
+        let numbers = 3 * sh_coefficients(arrays.sh_degree.max(other.0.sh_degree));
+        arrays.sh.try_reserve(count.checked_mul(numbers)?).ok()?;
+        self.append(other);
+        Some(())
+    }
+
+    /// Keeps those of these numbers, which ascend.
+    pub(super) fn keep(&mut self, numbers: &[u32]) {
+        self.0.keep(numbers);
+    }
+
+    /// Refuses what cannot be drawn, as [`new`](Self::new) does.
+    pub(super) fn check(&self) -> Result<()> {
+        self.0.check().map_err(Error::Invalid)
+    }
+
     /// Changes the degree: higher coefficients are dropped, missing ones are zero.
     ///
     /// # Panics

@@ -45,5 +45,5 @@ pub use {
     format::Format,
     load::{Loaded, load, load_from, load_from_with, load_with},
     report::{LoadReport, Remark},
-    save::{save, save_ply},
+    save::{save, save_ply, saved_format},
 };

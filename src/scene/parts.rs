@@ -82,7 +82,7 @@ impl Gaussians {
 
 impl GaussianArrays {
     /// Drops all but those of these numbers, which ascend.
-    fn keep(&mut self, numbers: &[u32]) {
+    pub(super) fn keep(&mut self, numbers: &[u32]) {
         fn keep<T: Copy>(array: &mut Vec<T>, numbers: &[u32], each: usize) {
             for (to, &from) in numbers.iter().enumerate() {
                 let from = from as usize * each;

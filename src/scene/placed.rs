@@ -1,6 +1,6 @@
 //! Gaussians that are moved, turned and scaled for good.
 
-use glam::{DMat3, DVec3, Quat};
+use glam::{DMat3, DVec3};
 
 use super::{Gaussians, sh_coefficients};
 use crate::placement::Placement;
@@ -9,10 +9,12 @@ impl Gaussians {
     /// Scales, turns and moves the Gaussians themselves, their spherical harmonics too, in double precision. A layer's
     /// [placement](super::LayerState::placement) changes no number; this is for scenes that are written to files.
     ///
-    /// A position that single precision cannot hold becomes infinite, and its Gaussian is not drawn.
-    pub fn place(&mut self, placement: &Placement) {
+    /// Gaussians that single precision cannot hold where they are placed are dropped. Returns their numbers before that,
+    /// which ascend.
+    #[must_use = "what was dropped is to be told"]
+    pub fn place(&mut self, placement: &Placement) -> Vec<u32> {
         if *placement == Placement::IDENTITY {
-            return; // to the bit
+            return Vec::new(); // to the bit
         }
         for position in self.positions_mut() {
             *position = placement.to_world(position.as_dvec3()).as_vec3();
@@ -22,8 +24,8 @@ impl Gaussians {
         }
         let turn = placement.rotation();
         for rotation in self.rotations_mut() {
-            let turned: Quat = (turn * rotation.as_dquat()).normalize().as_quat();
-            *rotation = turned;
+            // Its length stays what it is, so that turning back gives the same bits.
+            *rotation = (turn * rotation.as_dquat()).as_quat();
         }
         let degree = self.sh_degree();
         let bands = bands(DMat3::from_quat(turn), degree);
@@ -33,6 +35,21 @@ impl Gaussians {
                 turn_band(own, sh_coefficients(band - 1), matrix);
             }
         }
+        self.drop_infinite()
+    }
+
+    fn drop_infinite(&mut self) -> Vec<u32> {
+        let is_finite = |&index: &u32| {
+            let at = index as usize;
+            self.positions()[at].is_finite()
+                && self.scales()[at].is_finite()
+                && self.sh_of(at).iter().all(|value| value.is_finite())
+        };
+        let (kept, dropped): (Vec<u32>, _) = (0..self.len() as u32).partition(is_finite);
+        if !dropped.is_empty() {
+            self.keep(&kept);
+        }
+        dropped
     }
 }
 
@@ -147,7 +164,7 @@ mod tests {
         let turn = DQuat::from_xyzw(0.3, -0.5, 0.2, 0.9).normalize();
         let placement = Placement::new(DVec3::new(4.0, -1.0, 2.5), turn, 0.35).expect("numbers");
         let mut placed = whole.clone();
-        placed.place(&placement);
+        assert!(placed.place(&placement).is_empty());
         for index in 0..whole.len() {
             let to = placement.to_world(whole.positions()[index].as_dvec3());
             assert!(to.distance(placed.positions()[index].as_dvec3()) < 1e-6);
@@ -165,15 +182,29 @@ mod tests {
     }
 
     #[test]
-    fn half_turns_change_signs_and_nothing_else() {
+    fn half_turns_there_and_back_change_nothing() {
         let mut whole = generate(Kind::General, 40, 3);
         whole.set_sh_degree(3);
-        let half = Placement::new(DVec3::ZERO, DQuat::from_xyzw(0.0, 0.0, 1.0, 0.0), 1.0);
-        let half = half.expect("numbers");
+        let half = DQuat::from_xyzw(0.0, 0.0, 1.0, 0.0);
         let mut placed = whole.clone();
-        placed.place(&half);
-        placed.place(&half);
-        assert_eq!(placed.sh(), whole.sh());
-        assert_eq!(placed.positions(), whole.positions());
+        for turn in [half, half.inverse()] {
+            let placement = Placement::new(DVec3::ZERO, turn, 1.0).expect("numbers");
+            assert!(placed.place(&placement).is_empty());
+        }
+        assert_eq!(placed, whole);
+    }
+
+    #[test]
+    fn what_cannot_be_held_where_it_is_placed_is_dropped() {
+        let mut whole = generate(Kind::General, 5, 3);
+        whole.positions_mut().fill(DVec3::X.as_vec3());
+        whole.positions_mut()[1] *= 10.0;
+        whole.positions_mut()[2] = DVec3::ZERO.as_vec3();
+        whole.scales_mut()[2].x = 10.0;
+        let kept = [0, 3, 4].map(|at| whole.sh_of(at).to_vec()).concat();
+        let placement = Placement::new(DVec3::ZERO, DQuat::IDENTITY, 1e38).expect("numbers");
+        assert_eq!(whole.place(&placement), [1, 2]);
+        assert_eq!((whole.len(), whole.sh()), (3, &kept[..]));
+        assert!(whole.positions().iter().all(|at| at.is_finite()));
     }
 }

@@ -1,12 +1,10 @@
 //! Predicates: which Gaussians of a set a selection takes.
 
+use super::assemble::SH_0;
 use super::{Gaussians, Part, Property};
 use crate::clip::Expression;
 use crate::error::{Error, Result, shortened};
 use crate::placement::Placement;
-
-/// The spherical harmonic of degree 0: the density of the colour that does not depend on the direction.
-const SH_0: f64 = 0.282_094_791_773_878_14;
 
 /// What a Gaussian has to be for a selection to take it: a tree of comparisons and regions. It parses from text:
 /// `opacity>0.5`, `size<=0.01`, `label in 3,4` or `label in 1..7`, and `inside(sphere:0,0,0,1)`, joined by `and`, `or`, `not`

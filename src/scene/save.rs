@@ -20,8 +20,10 @@ const LOGIT_ONE: f32 = 40.0;
 /// stored as ln of a number below the smallest (-104), opacities of 0 and 1 as the logits -104 and 40.
 ///
 /// # Errors
-/// [`Error::Io`] if the file can't be written.
+/// [`Error::Invalid`] names the first number that no reader could draw, such as one that is not finite; [`Error::Io`] if the
+/// file can't be written.
 pub fn save_ply(path: &Path, gaussians: &Gaussians) -> Result<()> {
+    check(path, gaussians)?;
     write_atomically(path, |out| {
         write_header(out, gaussians)?;
         (0..gaussians.len()).try_for_each(|index| write_row(out, gaussians, index))
@@ -31,26 +33,49 @@ pub fn save_ply(path: &Path, gaussians: &Gaussians) -> Result<()> {
 /// Writes `gaussians` in the [format](Format::of_name) that the file's name says: `.ply`, and with the feature `formats`
 /// also `.compressed.ply`, `.spz`, `.sog` and `.glb`. The file appears when complete.
 ///
-/// All but `.ply` and `.glb` round what they store, and `.compressed.ply` and `.sog` change the Gaussians' order; the
-/// guide's chapter on the [command line](crate::guide::command_line) has what that costs.
+/// All but `.glb` round what they store, `.ply` in the last digits of scales and opacities, and `.compressed.ply` and `.sog`
+/// change the Gaussians' order; the guide's chapter on the [command line](crate::guide::command_line) has what that costs.
+///
+/// Returns how many Gaussians have a scale, a colour or a coefficient beyond what the format holds; it becomes the nearest
+/// that it does.
 ///
 /// # Errors
-/// [`Error::Invalid`] for a name of another format, and for Gaussians that the format cannot hold; [`Error::Io`] if the
-/// file can't be written.
-pub fn save(path: &Path, gaussians: &Gaussians) -> Result<()> {
-    match Format::of_name(path) {
-        Some(Format::Ply) => save_ply(path, gaussians),
+/// [`Error::Invalid`] for a name of another format, for a number that no reader could draw, and for centres that the format
+/// cannot hold; [`Error::Io`] if the file can't be written.
+pub fn save(path: &Path, gaussians: &Gaussians) -> Result<u64> {
+    match saved_format(path)? {
+        Format::Ply => save_ply(path, gaussians).map(|()| 0),
         #[cfg(feature = "formats")]
-        Some(format) => {
-            let bytes = super::formats::encode(gaussians, format)?;
-            write_atomically(path, |out| out.write_all(&bytes))
+        format => {
+            check(path, gaussians)?;
+            let (bytes, clamped) = super::formats::encode(gaussians, format)?;
+            write_atomically(path, |out| out.write_all(&bytes))?;
+            Ok(clamped)
         }
-        _ => Err(Error::Invalid(format!(
+        #[cfg(not(feature = "formats"))]
+        _ => Ok(0), // no name says another
+    }
+}
+
+/// The format that [`save`] writes to a file of this name.
+///
+/// # Errors
+/// [`Error::Invalid`] names the endings of those that are written.
+pub fn saved_format(path: &Path) -> Result<Format> {
+    Format::of_name(path).ok_or_else(|| {
+        Error::Invalid(format!(
             "{}: the name says no format that is written; it has to end in {}",
             path.display(),
             Format::endings()
-        ))),
-    }
+        ))
+    })
+}
+
+/// Refuses what cannot be drawn, which whoever changes Gaussians in place can make.
+fn check(path: &Path, gaussians: &Gaussians) -> Result<()> {
+    gaussians
+        .check()
+        .map_err(|error| Error::Invalid(format!("{} is not written: {error}", path.display())))
 }
 
 fn write_header(out: &mut dyn Write, gaussians: &Gaussians) -> io::Result<()> {

@@ -44,11 +44,41 @@ fn every_format_is_written_and_named() {
     }
     // Full precision comes back to the bit through glTF, but for what a .ply rounds itself.
     done(line(&here, "convert @/b.glb -o @/c.ply"));
-    let [a, c] =
-        ["b.ply", "c.ply"].map(|name| document(line(&here, &format!("info @/{name} --json"))));
-    assert_eq!(
-        (&a["centres"], &a["opacity"]),
-        (&c["centres"], &c["opacity"])
+    let [b, c] = ["b.ply", "c.ply"].map(|name| fs::read(here.join(name)).unwrap());
+    assert!(b == c, "turned to glTF's axes and back");
+}
+
+/// Gaussians that are equally deep are drawn in the file's order.
+#[test]
+fn selections_leave_the_order_as_it_is() {
+    let here = folder("convert-selected");
+    scene(&here);
+    done(line(&here, "convert @/scene.ply -o @/b.ply"));
+    let words = "convert @/scene.ply -o @/c.ply --select top=opacity>0.5";
+    done(line(&here, words));
+    let [b, c] = ["b.ply", "c.ply"].map(|name| fs::read(here.join(name)).unwrap());
+    assert!(b == c, "the selection changed the file");
+}
+
+#[test]
+fn what_is_lost_or_clamped_is_said() {
+    let here = folder("convert-lost");
+    scene(&here);
+    let report = document(line(
+        &here,
+        "convert @/scene.ply -o @/b.sog --scale 1e38 --json",
+    ));
+    let count = |name: &str| report[name].as_u64().expect("a count");
+    assert!(count("lost") > 0 && count("written") > 0, "{report}");
+    assert_eq!(count("lost") + count("written"), 2000);
+    let info = document(line(&here, "info @/b.sog --json"));
+    assert_eq!(info["gaussians"], report["written"]);
+
+    let made = done(line(&here, "convert @/scene.ply -o @/b.spz --scale 1000"));
+    assert!(
+        stderr(&made).contains("beyond what .spz holds"),
+        "{}",
+        stderr(&made)
     );
 }
 

@@ -24,15 +24,22 @@ impl<'a> Gzip<'a> {
         (&mut self.0)
             .take(count)
             .read_to_end(&mut read)
-            .map_err(|error| damaged("gzip", &error))?;
+            .map_err(|error| failed("gzip", &error))?;
         Ok(read)
     }
 
     /// Bytes that come after, in the stream and behind it. This checks the stream's sum, too.
     pub(super) fn rest(mut self) -> Result<u64, Failure> {
         let inside =
-            io::copy(&mut self.0, &mut io::sink()).map_err(|error| damaged("gzip", &error))?;
+            io::copy(&mut self.0, &mut io::sink()).map_err(|error| failed("gzip", &error))?;
         Ok(inside + self.0.into_inner().len() as u64)
+    }
+}
+
+fn failed(what: &str, error: &io::Error) -> Failure {
+    match error.kind() {
+        io::ErrorKind::OutOfMemory => Failure::Memory(format!("what its {what} stream holds")),
+        _ => damaged(what, error),
     }
 }
 
@@ -67,7 +74,7 @@ fn exactly(from: impl Read, size: u64, kind: &str, what: &str) -> Result<Vec<u8>
     let mut read = Vec::new();
     let mut from = from.take(size.saturating_add(1));
     from.read_to_end(&mut read)
-        .map_err(|error| damaged(kind, &error))?;
+        .map_err(|error| failed(kind, &error))?;
     match read.len() as u64 == size {
         true => Ok(read),
         false => Err(Failure::Format(format!(

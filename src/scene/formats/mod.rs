@@ -14,17 +14,18 @@ use std::io::Read;
 use std::path::Path;
 
 pub(super) use self::write::encode;
-use super::assemble::{Assembler, Stored};
+use super::assemble::{Assembler, SH_0, Stored};
 use super::load::{Found, Input, Progress};
 use super::{Format, Gaussians, LoadReport, Loaded, Property};
 use crate::error::{Error, Result};
+use crate::placement::Placement;
 
 /// Why nothing was read.
 enum Failure {
     /// What is wrong with the file.
     Format(String),
-    /// There is no memory for so many Gaussians.
-    Memory(u64),
+    /// There is no memory for this.
+    Memory(String),
     /// What is wrong with a file beside it.
     Other(Error),
 }
@@ -42,27 +43,64 @@ impl From<Error> for Failure {
 }
 
 /// What a reader makes of a file.
+#[derive(Default)]
 struct Made {
     gaussians: Gaussians,
     report: LoadReport,
+    /// The file's elements, those included that were dropped.
+    elements: u64,
+    /// The numbers of those that were dropped or not asked for, which ascend.
+    dropped: Vec<u64>,
 }
 
 impl From<Assembler> for Made {
-    fn from(assembler: Assembler) -> Self {
+    fn from(mut assembler: Assembler) -> Self {
+        let (elements, dropped) = (assembler.rows, std::mem::take(&mut assembler.dropped));
         let (loaded, _) = assembler.finish();
         Self {
             gaussians: loaded.gaussians,
             report: loaded.report,
+            elements,
+            dropped,
         }
     }
 }
 
 impl Made {
     /// Appends what another part of the file has become.
-    fn append(&mut self, other: Self) {
-        let before = self.gaussians.len() as u64 + self.report.dropped;
-        self.gaussians.append(&other.gaussians);
+    fn append(&mut self, other: Self) -> std::result::Result<(), Failure> {
+        let before = self.elements;
+        self.gaussians
+            .try_append(&other.gaussians)
+            .ok_or_else(|| Failure::Memory(format!("{} Gaussians", other.elements + before)))?;
         self.report.append(other.report, before);
+        self.elements += other.elements;
+        let dropped = other.dropped.iter().map(|element| before + element);
+        self.dropped.extend(dropped);
+        Ok(())
+    }
+
+    /// The element that each Gaussian was.
+    fn numbers(&self) -> impl Iterator<Item = u64> {
+        let mut dropped = self.dropped.iter().peekable();
+        (0..self.elements).filter(move |element| dropped.next_if(|next| *next == element).is_none())
+    }
+
+    /// Places the Gaussians; what cannot be held there is dropped.
+    fn place(&mut self, placement: &Placement) {
+        let lost = self.gaussians.place(placement);
+        if lost.is_empty() {
+            return;
+        }
+        let numbers: Vec<u64> = self.numbers().collect();
+        for index in lost {
+            let element = numbers[index as usize];
+            self.dropped.push(element);
+            self.report.drop_element(element, || {
+                "it is beyond single precision where it is placed".into()
+            });
+        }
+        self.dropped.sort_unstable();
     }
 }
 
@@ -75,30 +113,13 @@ fn room(count: u64, sh_degree: u32, stored: Stored) -> std::result::Result<Assem
         )));
     }
     let assembler = Assembler::with_room(count, sh_degree, Vec::new());
-    let assembler = assembler.ok_or(Failure::Memory(count))?;
+    let assembler = assembler.ok_or_else(|| Failure::Memory(format!("{count} Gaussians")))?;
     Ok(assembler.stored(stored))
 }
 
 /// The coefficient of degree 0 that shows a colour channel.
 fn colour(byte: u8) -> f64 {
     (f64::from(byte) / 255.0 - 0.5) / SH_0
-}
-
-/// The spherical harmonic of degree 0.
-const SH_0: f64 = 0.282_094_791_773_878_14;
-
-/// A quaternion, w first, of its three smaller parts and the place of the largest.
-fn unit_quaternion(largest: usize, others: [f64; 3]) -> [f64; 4] {
-    let rest: f64 = others.iter().map(|part| part * part).sum();
-    let mut all = [0.0; 4];
-    let mut next = others.into_iter();
-    for (place, part) in all.iter_mut().enumerate() {
-        *part = match place == largest {
-            true => (1.0 - rest).max(0.0).sqrt(),
-            false => next.next().unwrap_or_default(),
-        };
-    }
-    all
 }
 
 /// The format of a file that is no PLY, by its first bytes and its size.
@@ -161,7 +182,7 @@ fn whole(
         .map_err(Error::io(name))?;
     let (made, format) = read(&bytes).map_err(|failure| match failure {
         Failure::Format(message) => Error::format(name, message),
-        Failure::Memory(count) => memory(format!("{count} Gaussians")),
+        Failure::Memory(what) => memory(what),
         Failure::Other(error) => error,
     })?;
     if let Some(property) = input.properties.first() {

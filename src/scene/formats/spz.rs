@@ -1,10 +1,10 @@
 //! `.spz`: each attribute in a run of its own, quantised; all in one gzip stream (versions 1 to 3), or each in a stream of
 //! zstd (version 4).
 
-use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored};
+use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored, unit_quaternion};
 use super::bytes::{Bytes, f16_at};
 use super::inflate::{self, Gzip};
-use super::{Failure, Made, room, unit_quaternion};
+use super::{Failure, Made, room};
 
 const MAGIC: &[u8; 4] = b"NGSP";
 /// Bytes of the header that all versions have, and of version 4's.

@@ -6,13 +6,13 @@ use ply_rs::ply::{ElementDef, Encoding};
 
 use super::header::Header;
 use super::layout::{Field, fixed_size};
-use crate::scene::assemble::{Assembler, OPACITY, ROTATION, SCALES, SH, SLOTS, Stored};
+use crate::scene::assemble::{
+    Assembler, OPACITY, ROTATION, SCALES, SH, SH_0, SLOTS, Stored, unit_quaternion,
+};
 use crate::scene::load::{Progress, Source};
 
 /// Gaussians in a chunk.
 const CHUNK: usize = 256;
-/// The spherical harmonic of degree 0.
-const SH_0: f64 = 0.282_094_791_773_878_14;
 
 /// Why nothing was read.
 pub(super) enum Failure {
@@ -306,9 +306,5 @@ fn thirds(packed: u32) -> [f64; 3] {
 fn quaternion(packed: u32) -> [f64; 4] {
     let part =
         |shift: u32| (f64::from(packed >> shift & 1023) / 1023.0 - 0.5) * std::f64::consts::SQRT_2;
-    let others = [part(20), part(10), part(0)];
-    let rest: f64 = others.iter().map(|part| part * part).sum();
-    let mut all = others.to_vec();
-    all.insert((packed >> 30) as usize, (1.0 - rest).max(0.0).sqrt());
-    [all[0], all[1], all[2], all[3]]
+    unit_quaternion((packed >> 30) as usize, [part(20), part(10), part(0)])
 }

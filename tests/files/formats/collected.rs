@@ -187,6 +187,20 @@ fn the_finest_level_of_a_streamed_scene_is_read() {
         loaded.gaussians.positions()[50..],
         whole.positions()[8000..]
     );
+    // A null in a codebook drops Gaussians; the others keep their numbers.
+    let path = folder.join("0_0/meta.json");
+    let text = std::fs::read(&path).unwrap();
+    let mut document: serde_json::Value = serde_json::from_slice(&text).unwrap();
+    let book = document["scales"]["codebook"].as_array_mut().unwrap();
+    book[100..130].fill(serde_json::Value::Null);
+    std::fs::write(&path, document.to_string()).unwrap();
+    let loaded = load(&folder, &mut |_, _| ()).unwrap();
+    let kept = loaded.gaussians.len() - 192;
+    assert!(0 < kept && kept < 50 && loaded.report.dropped > 0, "{kept}");
+    let mut asked = whole.positions()[100..150].iter();
+    let own = &loaded.gaussians.positions()[..kept];
+    assert!(own.iter().all(|own| asked.any(|other| other == own)));
+
     for (first, second) in [
         (piece(0, 0, 9000), piece(1, 0, 1)),
         (piece(0, 0, 1), piece(2, 0, 1)),

@@ -5,6 +5,7 @@ mod damaged;
 mod detected;
 mod distance;
 mod truth;
+mod variants;
 mod written;
 
 use std::io::Cursor;

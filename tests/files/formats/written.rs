@@ -73,6 +73,41 @@ fn round_trips_stay_within_the_formats_steps() {
     }
 }
 
+#[test]
+fn what_no_reader_could_draw_is_not_written() {
+    let folder = Folder::new("formats-unsound");
+    let mut scene = scene(300);
+    scene.positions_mut()[7].y = f32::INFINITY;
+    for name in ["a.ply", "a.glb", "a.compressed.ply", "a.spz", "a.sog"] {
+        let path = folder.join(name);
+        let error = save(&path, &scene).unwrap_err().to_string();
+        assert!(error.contains("positions[7]"), "{error}");
+        assert!(!path.exists());
+    }
+}
+
+#[test]
+fn what_a_format_clamps_is_counted() {
+    let folder = Folder::new("formats-clamped");
+    let plain = scene(300);
+    let mut changed = plain.clone();
+    changed.scales_mut()[0].x = 2e9;
+    changed.sh_mut()[48 + 5] = 2.0;
+    changed.sh_mut()[2 * 48 + 5] = -5.0;
+    changed.scales_mut()[3].z = 0.0;
+    for (name, clamped) in [
+        ("a.ply", 0),
+        ("a.glb", 0),
+        ("a.compressed.ply", 3),
+        ("a.spz", 4),
+        ("a.sog", 1),
+    ] {
+        let path = folder.join(name);
+        assert_eq!(save(&path, &plain).unwrap(), 0, "{name}");
+        assert_eq!(save(&path, &changed).unwrap(), clamped, "{name}");
+    }
+}
+
 /// The first writing rounds; after that nothing changes any more but the order.
 #[test]
 fn what_was_rounded_once_stays() {
@@ -160,7 +195,8 @@ fn nodes_of_gltf_place_their_gaussians() {
     // glTF's left, up and forward are ours turned by half about the third.
     let mut expected = scene.clone();
     let offset = rara::glam::DVec3::new(-2.0, -4.0, 6.0);
-    expected.place(&Placement::new(offset, rara::glam::DQuat::IDENTITY, 2.0).unwrap());
+    let _all_fit =
+        expected.place(&Placement::new(offset, rara::glam::DQuat::IDENTITY, 2.0).unwrap());
     let distance = Distance::between(&expected, &loaded, 1e-3, 1e-9);
     assert!(
         distance.position < 1e-4 && distance.scale < 1e-5 && distance.harmonics < 1e-5,

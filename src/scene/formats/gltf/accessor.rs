@@ -126,7 +126,9 @@ impl Accessor {
             stride,
             kind,
             parts: found,
-            normalized: accessor.get("normalized").and_then(Value::as_bool) == Some(true),
+            // Of floats it means nothing.
+            normalized: !matches!(kind, Kind::F32)
+                && accessor.get("normalized").and_then(Value::as_bool) == Some(true),
         })
     }
 

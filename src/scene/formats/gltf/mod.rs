@@ -4,6 +4,7 @@ mod accessor;
 mod buffers;
 mod nodes;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use glam::{DQuat, DVec3};
@@ -11,10 +12,10 @@ use serde_json::Value;
 
 use self::accessor::Accessor;
 use self::buffers::Buffers;
-use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored};
-use super::super::{Gaussians, LoadReport, sh_coefficients};
+use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SH_0, SLOTS, Stored};
+use super::super::sh_coefficients;
 use super::bytes::Bytes;
-use super::{Failure, Made, SH_0, json, room, spz};
+use super::{Failure, Made, json, room, spz};
 use crate::error::shortened;
 use crate::placement::Placement;
 
@@ -25,6 +26,8 @@ const SPZ: &str = "KHR_gaussian_splatting_compression_spz";
 
 /// Gaussians that a byte of the buffers may be drawn as: even one of a compressed scene is no more than 52.
 const MOST_DRAWN: usize = 64;
+/// Primitives of Gaussians that a scene may draw.
+const MOST_PRIMITIVES: u64 = 1 << 16;
 
 /// The turn from glTF's axes, left, up and forward, to ours: half a turn about the direction of view.
 pub(super) fn turn() -> DQuat {
@@ -67,33 +70,26 @@ pub(super) fn read_document(
     folder: Option<&Path>,
 ) -> Result<Made, Failure> {
     let mut buffers = Buffers::new(document, binary, folder);
-    let mut whole = Made {
-        gaussians: Gaussians::default(),
-        report: LoadReport::default(),
-    };
-    let (mut found, mut others) = (0, 0);
-    for (mesh, placement) in nodes::meshes(document)? {
-        let primitives = list(document, "meshes")
-            .get(mesh)
-            .map(|mesh| list(mesh, "primitives"));
-        let primitives = primitives.ok_or_else(|| {
-            format!(
-                "a node of the glTF has mesh {mesh}, which there is not; export the scene again"
-            )
-        })?;
-        for primitive in primitives {
-            let Some(extension) = primitive
-                .get("extensions")
-                .and_then(|all| all.get(EXTENSION))
-            else {
-                others += 1;
-                continue;
-            };
-            found += 1;
+    let mut whole = Made::default();
+    let (mut found, mut others) = (0_u64, 0_u64);
+    let mut meshes = BTreeMap::new();
+    for (number, placement) in nodes::meshes(document)? {
+        if !meshes.contains_key(&number) {
+            meshes.insert(number, Mesh::of(document, number)?);
+        }
+        let mesh = &meshes[&number];
+        found += mesh.splats.len() as u64;
+        others += mesh.others;
+        if found > MOST_PRIMITIVES {
+            return Err(Failure::Format(format!(
+                "the glTF draws more than {MOST_PRIMITIVES} primitives of Gaussians; export the scene as one"
+            )));
+        }
+        for &(primitive, extension) in &mesh.splats {
             let mut made = read_primitive(document, &mut buffers, primitive, extension)?;
             let turned = Placement::new(DVec3::ZERO, turn(), 1.0)?;
-            made.gaussians.place(&nodes::joined(&turned, &placement)?);
-            whole.append(made);
+            made.place(&nodes::joined(&turned, &placement)?);
+            whole.append(made)?;
             if whole.gaussians.len() / MOST_DRAWN > buffers.size() {
                 return Err(Failure::Format(format!(
                     "the glTF draws {} Gaussians and more of {} bytes, the same ones again and again; export the scene once",
@@ -115,6 +111,32 @@ pub(super) fn read_document(
         ));
     }
     Ok(whole)
+}
+
+/// The primitives of a mesh that are Gaussians, with what the extension says, and how many are not.
+struct Mesh<'a> {
+    splats: Vec<(&'a Value, &'a Value)>,
+    others: u64,
+}
+
+impl<'a> Mesh<'a> {
+    fn of(document: &'a Value, number: usize) -> Result<Self, Failure> {
+        let mesh = list(document, "meshes").get(number).ok_or_else(|| {
+            format!(
+                "a node of the glTF has mesh {number}, which there is not; export the scene again"
+            )
+        })?;
+        let all = list(mesh, "primitives");
+        let splat = |primitive: &'a Value| {
+            let extension = primitive.get("extensions")?.get(EXTENSION)?;
+            Some((primitive, extension))
+        };
+        let splats: Vec<_> = all.iter().filter_map(splat).collect();
+        Ok(Self {
+            others: (all.len() - splats.len()) as u64,
+            splats,
+        })
+    }
 }
 
 /// A list of an object; empty where there is none.

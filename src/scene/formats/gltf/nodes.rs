@@ -4,7 +4,7 @@ use glam::{DMat3, DQuat, DVec3};
 use serde_json::Value;
 
 use super::super::Failure;
-use super::{index, list};
+use super::list;
 use crate::placement::Placement;
 
 /// How far the sides of a node's axes may be from each other, or from a right angle, to be one scale and a turn.
@@ -13,29 +13,25 @@ const EVEN: f64 = 1e-4;
 /// The number of each mesh that the scene draws, with its placement in the scene.
 pub(super) fn meshes(document: &Value) -> Result<Vec<(usize, Placement)>, Failure> {
     let nodes = list(document, "nodes");
-    let scene = index(document, "scene").unwrap_or(0);
-    let scene = usize::try_from(scene)
-        .ok()
-        .and_then(|scene| list(document, "scenes").get(scene));
-    let Some(scene) = scene else {
+    let scenes = list(document, "scenes");
+    if scenes.is_empty() {
         // A document without a scene is a library of meshes.
         let all = 0..list(document, "meshes").len();
         return Ok(all.map(|mesh| (mesh, Placement::IDENTITY)).collect());
-    };
-    let number = |value: &Value| {
-        value
-            .as_u64()
-            .and_then(|number| usize::try_from(number).ok())
-    };
-    let numbers = |object: &Value, key: &str| {
-        list(object, key)
-            .iter()
-            .filter_map(number)
-            .collect::<Vec<_>>()
-    };
+    }
+    let scene = document
+        .get("scene")
+        .map_or(Some(0), number)
+        .and_then(|scene| scenes.get(scene));
+    let scene = scene.ok_or_else(|| {
+        format!(
+            "the glTF shows a scene that there is not, of {}; export the scene again",
+            scenes.len()
+        )
+    })?;
     let mut found = Vec::new();
     let mut seen = vec![false; nodes.len()];
-    let roots = numbers(scene, "nodes").into_iter().rev();
+    let roots = indices(scene, "nodes")?.into_iter().rev();
     let mut open: Vec<(usize, Placement)> = roots.map(|node| (node, Placement::IDENTITY)).collect();
     while let Some((at, parent)) = open.pop() {
         let wrong = |what: &str| {
@@ -47,21 +43,34 @@ pub(super) fn meshes(document: &Value) -> Result<Vec<(usize, Placement)>, Failur
         if std::mem::replace(&mut seen[at], true) {
             return Err(wrong("is in the scene twice, or its own child"));
         }
-        let own = placement(node).ok_or_else(|| {
-            wrong("does not turn and scale alike in all directions, which Gaussians cannot follow: apply its transform")
-        })?;
+        let own = placement(node).map_err(wrong)?;
         let own = joined(&parent, &own)?;
-        if let Some(mesh) = node.get("mesh").and_then(number) {
+        if let Some(mesh) = node.get("mesh") {
+            let mesh = number(mesh).ok_or_else(|| wrong("has a mesh that is no number"))?;
             found.push((mesh, own));
         }
         open.extend(
-            numbers(node, "children")
+            indices(node, "children")?
                 .into_iter()
                 .rev()
                 .map(|child| (child, own)),
         );
     }
     Ok(found)
+}
+
+/// A number of something in a list.
+fn number(value: &Value) -> Option<usize> {
+    usize::try_from(value.as_u64()?).ok()
+}
+
+fn indices(object: &Value, key: &str) -> Result<Vec<usize>, Failure> {
+    let all: Option<Vec<usize>> = list(object, key).iter().map(number).collect();
+    all.ok_or_else(|| {
+        Failure::Format(format!(
+            "the \"{key}\" of the glTF's scene are not all numbers of nodes; export the scene again"
+        ))
+    })
 }
 
 /// The placement of something within what is placed itself.
@@ -76,16 +85,31 @@ pub(super) fn joined(outer: &Placement, inner: &Placement) -> crate::error::Resu
     )
 }
 
-fn numbers<const N: usize>(node: &Value, key: &str) -> Option<Option<[f64; N]>> {
+/// So many numbers; nothing where there are none.
+fn numbers<const N: usize>(node: &Value, key: &str) -> Result<Option<[f64; N]>, &'static str> {
     let Some(value) = node.get(key) else {
-        return Some(None);
+        return Ok(None);
     };
-    let all: Option<Vec<f64>> = value.as_array()?.iter().map(Value::as_f64).collect();
-    Some(Some(all?.try_into().ok()?))
+    let all = value.as_array().and_then(|all| {
+        let all: Option<Vec<f64>> = all.iter().map(Value::as_f64).collect();
+        all?.try_into().ok()
+    });
+    let wrong = "has a matrix, translation, rotation or scale that is not of 16, 3, 4 or 3 numbers";
+    all.map(Some).ok_or(wrong)
 }
 
-/// A node's own transform; `None` for one that is no placement.
-fn placement(node: &Value) -> Option<Placement> {
+/// A node's own transform, or what is wrong with it.
+fn placement(node: &Value) -> Result<Placement, &'static str> {
+    const UNEVEN: &str = "scales unlike in different directions or shears, which Gaussians cannot follow: apply its transform";
+    const MIRRORED: &str =
+        "mirrors or is scaled to nothing, which is not read: apply its transform";
+    let made = |position: DVec3, rotation: DQuat, scale: f64| {
+        if scale <= 0.0 {
+            return Err(MIRRORED);
+        }
+        let made = Placement::new(position, rotation, scale);
+        made.map_err(|_| "has a rotation of length 0, or numbers beyond all that is sensible")
+    };
     if let Some(matrix) = numbers::<16>(node, "matrix")? {
         let axes = DMat3::from_cols_array(&[
             matrix[0], matrix[1], matrix[2], matrix[4], matrix[5], matrix[6], matrix[8], matrix[9],
@@ -93,15 +117,24 @@ fn placement(node: &Value) -> Option<Placement> {
         ]);
         let scale = axes.determinant().cbrt();
         let turn = axes * scale.recip();
-        let is_turn = (turn * turn.transpose()).abs_diff_eq(DMat3::IDENTITY, EVEN);
+        if scale > 0.0 && !(turn * turn.transpose()).abs_diff_eq(DMat3::IDENTITY, EVEN) {
+            return Err(UNEVEN);
+        }
         let position = DVec3::new(matrix[12], matrix[13], matrix[14]);
-        let made = Placement::new(position, DQuat::from_mat3(&turn), scale);
-        return made.ok().filter(|_| is_turn);
+        let rotation = match scale > 0.0 {
+            true => DQuat::from_mat3(&turn),
+            false => DQuat::IDENTITY,
+        };
+        return made(position, rotation, scale);
     }
     let position = numbers::<3>(node, "translation")?.unwrap_or_default();
     let rotation = numbers::<4>(node, "rotation")?.unwrap_or([0.0, 0.0, 0.0, 1.0]);
     let [x, y, z] = numbers::<3>(node, "scale")?.unwrap_or([1.0; 3]);
-    let is_even = (x - y).abs() <= EVEN * x.abs() && (x - z).abs() <= EVEN * x.abs();
-    let made = Placement::new(DVec3::from(position), DQuat::from_array(rotation), x);
-    made.ok().filter(|_| is_even)
+    if [x, y, z].iter().any(|scale| *scale <= 0.0) {
+        return Err(MIRRORED);
+    }
+    if (x - y).abs() > EVEN * x || (x - z).abs() > EVEN * x {
+        return Err(UNEVEN);
+    }
+    made(DVec3::from(position), DQuat::from_array(rotation), x)
 }

@@ -63,7 +63,8 @@ fn ends(part: &Value, name: &str, channels: usize) -> Result<Vec<[f64; 2]>, Stri
 
 /// Spherical harmonics above degree 0: sets of them, and for each Gaussian the number of its set.
 pub(super) struct Harmonics<'a> {
-    pub(super) count: u64,
+    /// How many sets there are; version 1 does not say it.
+    pub(super) count: Option<u64>,
     bands: Option<u64>,
     pub(super) values: Range,
     pub(super) centroids: &'a str,
@@ -146,10 +147,12 @@ impl<'a> Meta<'a> {
             Some(part) => {
                 let [centroids, labels] = files(part, "shN")?;
                 let sets = match (part.get("count"), part.get("bands")) {
-                    (None, bands) => Some((65536, bands)),
+                    (None, bands) => Some((None, bands)),
                     (Some(count), bands) => {
-                        let count = count.as_u64().filter(|count| (1..=65536).contains(count));
-                        count.map(|count| (count, bands))
+                        let count = count
+                            .as_u64()
+                            .filter(|count| (1..=super::MOST_SETS).contains(count));
+                        count.map(|count| (Some(count), bands))
                     }
                 };
                 let (count, bands) = sets.ok_or(

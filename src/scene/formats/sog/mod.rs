@@ -12,15 +12,22 @@ use serde_json::Value;
 use self::archive::Archive;
 use self::meta::{Meta, Range};
 use self::picture::Picture;
-use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored};
-use super::{Failure, Made, beside, inflate, json, room, unit_quaternion};
+use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored, unit_quaternion};
+use super::{Failure, Made, beside, json, room};
 
 pub(super) use self::streamed::read as read_streamed;
 
 /// Centroids in a row of the picture of spherical harmonics.
 pub(super) const CENTROIDS: usize = 64;
+/// Sets of spherical harmonics that labels can name.
+const MOST_SETS: u64 = 1 << 16;
 /// The alpha of a rotation's pixel is this and the place of its largest part.
 pub(super) const LARGEST: u8 = 252;
+
+/// Gaussians that a byte of the pictures may stand for, beside a few: of most scenes a Gaussian takes several bytes, but
+/// what is all the same takes hardly any.
+const MOST_OF_BYTE: u64 = 16;
+const FEW: u64 = 1 << 16;
 
 /// Reads an archive.
 pub(super) fn read_archive(bytes: &[u8]) -> Result<Made, Failure> {
@@ -49,8 +56,8 @@ fn read(document: &Value, get: &dyn Fn(&str) -> Result<Vec<u8>, Failure>) -> Res
     for name in names {
         files.push(get(name)?);
     }
-    let stored = files.iter().map(Vec::len).sum();
-    if !inflate::may_become(stored, count) {
+    let stored: usize = files.iter().map(Vec::len).sum();
+    if count > MOST_OF_BYTE * stored as u64 + FEW {
         return Err(Failure::Format(format!(
             "meta.json promises {count} Gaussians, which its pictures of {stored} bytes cannot hold; get the scene again"
         )));
@@ -75,20 +82,22 @@ fn read(document: &Value, get: &dyn Fn(&str) -> Result<Vec<u8>, Failure>) -> Res
     let harmonics = match &meta.harmonics {
         Some(harmonics) => {
             let centroids = get(harmonics.centroids)?;
-            let most = CENTROIDS * 15 * (harmonics.count as usize).div_ceil(CENTROIDS);
+            let most = harmonics.count.unwrap_or(MOST_SETS) as usize;
+            let most = CENTROIDS * 15 * most.div_ceil(CENTROIDS);
             let centroids = Picture::decode(&centroids, harmonics.centroids, most)?;
             let degree = harmonics.degree(centroids.width)?;
             let rows = centroids.pixels().len() / centroids.width;
-            if ((CENTROIDS * rows) as u64) < harmonics.count {
+            let room = (CENTROIDS * rows) as u64;
+            let sets = harmonics.count.unwrap_or(room.min(MOST_SETS));
+            if room < sets {
                 return Err(Failure::Format(format!(
-                    "the picture {} has room for {} of {} sets of spherical harmonics; get the scene again",
+                    "the picture {} has room for {room} of {sets} sets of spherical harmonics; get the scene again",
                     crate::error::shortened(harmonics.centroids),
-                    CENTROIDS * rows,
-                    harmonics.count
                 )));
             }
             Some((
                 harmonics,
+                sets,
                 degree,
                 centroids,
                 plane(harmonics.labels, &get(harmonics.labels)?)?,
@@ -96,7 +105,7 @@ fn read(document: &Value, get: &dyn Fn(&str) -> Result<Vec<u8>, Failure>) -> Res
         }
         None => None,
     };
-    let degree = harmonics.as_ref().map_or(0, |(_, degree, ..)| *degree);
+    let degree = harmonics.as_ref().map_or(0, |(_, _, degree, ..)| *degree);
     let stored = if meta.is_first {
         Stored::Logarithms
     } else {
@@ -127,13 +136,12 @@ fn read(document: &Value, get: &dyn Fn(&str) -> Result<Vec<u8>, Failure>) -> Res
         let part = |byte: u8| (f64::from(byte) / 255.0 - 0.5) * std::f64::consts::SQRT_2;
         let rotation = unit_quaternion(largest.into(), [part(a), part(b), part(c)]);
         row[ROTATION..OPACITY].copy_from_slice(&rotation);
-        if let Some((harmonics, degree, centroids, labels)) = &harmonics {
+        if let Some((harmonics, sets, degree, centroids, labels)) = &harmonics {
             let [low, high, ..] = labels.at(index);
             let label = usize::from(u16::from_le_bytes([low, high]));
-            if label as u64 >= harmonics.count {
+            if label as u64 >= *sets {
                 return Err(Failure::Format(format!(
-                    "Gaussian {index} has the spherical harmonics of set {label}, of {} sets; get the scene again",
-                    harmonics.count
+                    "Gaussian {index} has the spherical harmonics of set {label}, of {sets} sets; get the scene again"
                 )));
             }
             let coefficients = super::super::sh_coefficients(*degree) - 1;

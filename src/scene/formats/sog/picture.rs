@@ -44,7 +44,7 @@ impl Picture {
                  without loss"
             )));
         }
-        let memory = || Failure::Memory(count);
+        let memory = || Failure::Memory(format!("the {count} pixels of the picture {name}"));
         let channels = if decoder.has_alpha() { 4 } else { 3 };
         let mut plain = Vec::new();
         let size = count as usize * channels;

@@ -1,12 +1,11 @@
 //! Streamed SOG: a tree of places, each with Gaussians of several levels of detail in folders of SOG.
 
 use std::collections::{BTreeMap, HashSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
 use super::super::{Failure, Made, beside, json};
-use crate::scene::{Gaussians, LoadReport};
 
 /// Reads the finest level that each place has, and the surroundings.
 pub(in super::super) fn read(document: &Value, folder: Option<&Path>) -> Result<Made, Failure> {
@@ -28,7 +27,7 @@ pub(in super::super) fn read(document: &Value, folder: Option<&Path>) -> Result<
         let Some((_, piece)) = finest else { continue };
         let number = |key: &str| piece.get(key).and_then(Value::as_u64);
         match (number("file"), number("offset"), number("count")) {
-            (Some(file), Some(offset), Some(count)) if (file as usize) < names.len() => {
+            (Some(file), Some(offset), Some(count)) if file < names.len() as u64 => {
                 let end = offset.saturating_add(count);
                 pieces.entry(file as usize).or_default().push([offset, end]);
             }
@@ -40,20 +39,12 @@ pub(in super::super) fn read(document: &Value, folder: Option<&Path>) -> Result<
             }
         }
     }
-    let mut whole = Made {
-        gaussians: Gaussians::default(),
-        report: LoadReport::default(),
-    };
+    let mut whole = Made::default();
     let mut read = HashSet::new();
     for (file, mut ranges) in pieces {
-        if !read.insert(names[file].as_str()) {
-            return Err(Failure::Format(format!(
-                "lod-meta.json names file {file} twice; export the scene again"
-            )));
-        }
-        let mut piece = load(&names[file], folder)?;
+        let mut piece = load(&names[file], folder, &mut read)?;
         ranges.sort_unstable();
-        let count = piece.gaussians.len() as u64 + piece.report.dropped;
+        let count = piece.elements;
         let next = ranges.iter().try_fold(0, |next, &[first, end]| {
             (first >= next && end <= count).then_some(end)
         });
@@ -62,29 +53,44 @@ pub(in super::super) fn read(document: &Value, folder: Option<&Path>) -> Result<
                 "lod-meta.json asks for Gaussians of file {file} twice, or for more than its {count}; export the scene again"
             )));
         }
-        // Where some were dropped, numbers have moved: the whole file is as near as can be.
         let all = ranges.iter().map(|[first, end]| end - first).sum::<u64>() == count;
-        if !all && piece.report.dropped == 0 {
-            let mut part_of = vec![0; piece.gaussians.len()];
-            for [first, end] in ranges {
-                part_of[first as usize..end as usize].fill(1);
-            }
+        if !all {
+            let mut open = ranges.iter().peekable();
+            let part_of = piece.numbers().map(|element| {
+                while open.next_if(|[_, end]| *end <= element).is_some() {}
+                u32::from(open.peek().is_none_or(|[first, _]| *first > element))
+            });
+            let part_of: Vec<u32> = part_of.collect();
+            let numbered = piece.numbers().zip(&part_of);
+            let left_out: Vec<u64> = numbered
+                .filter(|(_, part)| **part == 1)
+                .map(|(element, _)| element)
+                .collect();
+            piece.dropped.extend(left_out);
+            piece.dropped.sort_unstable();
             let parts = std::mem::take(&mut piece.gaussians).into_parts(&part_of, 2)?;
-            piece.gaussians = parts.into_iter().nth(1).unwrap_or_default().gaussians;
+            piece.gaussians = parts.into_iter().next().unwrap_or_default().gaussians;
         }
-        whole.append(piece);
+        whole.append(piece)?;
     }
     if let Some(surroundings) = document.get("environment").filter(|name| !name.is_null()) {
-        whole.append(load(surroundings, folder)?);
+        whole.append(load(surroundings, folder, &mut read)?)?;
     }
     Ok(whole)
 }
 
-/// A folder of SOG, by the name of its `meta.json`.
-fn load(name: &Value, folder: Option<&Path>) -> Result<Made, Failure> {
+/// A folder of SOG, by the name of its `meta.json`, which may not have been read before.
+fn load(name: &Value, folder: Option<&Path>, read: &mut HashSet<PathBuf>) -> Result<Made, Failure> {
     let name = name.as_str().ok_or_else(|| {
         "a file name in lod-meta.json is no text; export the scene again".to_owned()
     })?;
+    // Its parts, since there are many ways to write one path.
+    if !read.insert(Path::new(name).components().collect()) {
+        return Err(Failure::Format(format!(
+            "lod-meta.json names the file \"{}\" twice; export the scene again",
+            crate::error::shortened(name)
+        )));
+    }
     let document = json(&beside(name, folder)?)?;
     let own = folder.and_then(|folder| Some(folder.join(name).parent()?.to_owned()));
     super::read_folder(&document, own.as_deref())

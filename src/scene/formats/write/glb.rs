@@ -10,7 +10,8 @@ use crate::placement::Placement;
 
 pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
     let mut turned = gaussians.clone();
-    turned.place(&Placement::new(DVec3::ZERO, turn(), 1.0)?);
+    // The reader turns the other way, which gives the same bits again.
+    let _all_fit = turned.place(&Placement::new(DVec3::ZERO, turn().inverse(), 1.0)?);
     let count = turned.len();
     let mut parts = Parts::default();
     let low = turned

@@ -9,20 +9,53 @@ mod spz;
 use super::super::{Format, Gaussians};
 use crate::error::{Error, Result};
 
-/// The bytes of a file of this format.
+/// The bytes of a file of this format, and how many Gaussians have a number that it holds no nearer than at an end of its
+/// range.
 ///
 /// # Errors
 /// [`Error::Invalid`] for a format that is not written this way, and for Gaussians that it cannot hold.
-pub(in super::super) fn encode(gaussians: &Gaussians, format: Format) -> Result<Vec<u8>> {
-    match format {
-        Format::CompressedPly => Ok(packed::encode(gaussians)),
-        Format::Spz => spz::encode(gaussians),
-        Format::Sog => sog::encode(gaussians),
-        Format::Gltf => glb::encode(gaussians),
-        other => Err(Error::Invalid(format!(
-            "{other} is read but not written; use a name that ends in {}",
-            Format::endings()
-        ))),
+pub(in super::super) fn encode(gaussians: &Gaussians, format: Format) -> Result<(Vec<u8>, u64)> {
+    let (bytes, ranges) = match format {
+        Format::CompressedPly => (packed::encode(gaussians), packed::RANGES),
+        Format::Spz => (spz::encode(gaussians)?, spz::RANGES),
+        Format::Sog => (sog::encode(gaussians)?, sog::RANGES),
+        Format::Gltf => (glb::encode(gaussians)?, Ranges::ALL),
+        other => {
+            return Err(Error::Invalid(format!(
+                "{other} is read but not written; use a name that ends in {}",
+                Format::endings()
+            )));
+        }
+    };
+    let beyond = |&at: &usize| !ranges.hold(gaussians, at);
+    Ok((bytes, (0..gaussians.len()).filter(beyond).count() as u64))
+}
+
+/// The ends of what a format holds: logarithms of scales, and coefficients of degree 0 and above.
+struct Ranges {
+    logs: [f64; 2],
+    colours: [f64; 2],
+    coefficients: [f64; 2],
+}
+
+/// All numbers there are.
+const ANY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+impl Ranges {
+    const ALL: Self = Self {
+        logs: ANY,
+        colours: ANY,
+        coefficients: ANY,
+    };
+
+    /// Whether a Gaussian is within them.
+    fn hold(&self, gaussians: &Gaussians, at: usize) -> bool {
+        let within = |value: f64, [low, high]: [f64; 2]| (low..=high).contains(&value);
+        let (colour, rest) = gaussians.sh_of(at).split_at(3);
+        let scales = gaussians.scales()[at].to_array();
+        scales.iter().all(|&s| within(f64::from(s).ln(), self.logs))
+            && colour.iter().all(|&c| within(c.into(), self.colours))
+            && rest.iter().all(|&c| within(c.into(), self.coefficients))
     }
 }
 

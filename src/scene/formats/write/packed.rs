@@ -1,13 +1,19 @@
 //! Writing `.compressed.ply`.
 
 use super::super::super::Gaussians;
-use super::super::SH_0;
-use super::{along_a_curve, byte, smallest_three};
+use super::super::super::assemble::SH_0;
+use super::{ANY, Ranges, along_a_curve, byte, smallest_three};
 
 /// Gaussians in a chunk.
 const CHUNK: usize = 256;
 /// Logarithms of scales that are written, at most and at least.
 const LOG: f64 = 20.0;
+
+pub(super) const RANGES: Ranges = Ranges {
+    logs: [-LOG, LOG],
+    colours: ANY,
+    coefficients: [-4.0, 4.0],
+};
 
 /// The ends of a chunk's values of three parts.
 struct Range([f32; 3], [f32; 3]);

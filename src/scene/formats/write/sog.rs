@@ -6,13 +6,19 @@ use serde_json::json;
 use super::super::super::Gaussians;
 use super::super::sog::{CENTROIDS, LARGEST};
 use super::codebook::{Codebook, sets};
-use super::{along_a_curve, byte, smallest_three};
+use super::{ANY, Ranges, along_a_curve, byte, smallest_three};
 use crate::error::{Error, Result};
 
 /// Sets of spherical harmonics at most.
 const SETS: usize = 65536;
 /// The least logarithm of a scale that is written.
 const LEAST_LOG: f64 = -20.0;
+
+pub(super) const RANGES: Ranges = Ranges {
+    logs: [LEAST_LOG, f64::INFINITY],
+    colours: ANY,
+    coefficients: ANY,
+};
 
 pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
     let order = along_a_curve(gaussians);

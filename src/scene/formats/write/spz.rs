@@ -7,11 +7,18 @@ use flate2::write::GzEncoder;
 
 use super::super::super::Gaussians;
 use super::super::spz::{COLOUR, RIGHT_UP_BACK, signs};
-use super::{byte, smallest_three};
+use super::{Ranges, byte, smallest_three};
 use crate::error::{Error, Result};
 
 /// The most bits behind the point of a position that are used.
 const MOST_BITS: u32 = 16;
+
+/// With half a step more at each end.
+pub(super) const RANGES: Ranges = Ranges {
+    logs: [-10.0 - 0.5 / 16.0, -10.0 + 255.5 / 16.0],
+    colours: [(-0.5 - 0.5 / 255.0) / COLOUR, (0.5 + 0.5 / 255.0) / COLOUR],
+    coefficients: [-128.5 / 128.0, 127.5 / 128.0],
+};
 
 pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
     let largest = gaussians.positions().iter().map(|p| p.abs().max_element());

@@ -53,6 +53,10 @@ pub enum Error {
     /// The device has not enough memory for what was asked.
     #[error("{0}")]
     Memory(String),
+    /// It would take more device memory than
+    /// [`Device::set_memory_budget`](crate::gpu::Device::set_memory_budget) allows. None of it was allocated.
+    #[error("{0}")]
+    Budget(String),
     /// The validation layer reported something; the messages are the layer's own.
     #[error("the validation layer reported {} message(s); the first: {}", .0.len(), .0.first().map_or("", |m| m.as_str()))]
     Validation(Vec<String>),

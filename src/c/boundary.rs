@@ -23,7 +23,7 @@ pub const RARA_ERROR_IO: RaraResult = 2;
 pub const RARA_ERROR_FORMAT: RaraResult = 3;
 /// The device lacks something.
 pub const RARA_ERROR_DEVICE: RaraResult = 4;
-/// There is not enough memory, on the device or the host.
+/// There is not enough memory, on the device, on the host, or in the budget of rara_device_set_memory_budget.
 pub const RARA_ERROR_MEMORY: RaraResult = 5;
 /// A Vulkan call failed for another reason.
 pub const RARA_ERROR_VULKAN: RaraResult = 6;
@@ -86,7 +86,7 @@ fn code(error: &Error) -> RaraResult {
         Error::Format { .. } => RARA_ERROR_FORMAT,
         Error::Device(_) => RARA_ERROR_DEVICE,
         Error::DeviceLost { .. } => RARA_ERROR_DEVICE_LOST,
-        Error::Memory(_) => RARA_ERROR_MEMORY,
+        Error::Memory(_) | Error::Budget(_) => RARA_ERROR_MEMORY,
         // The wildcard stands for what a later version may add to these two.
         Error::Vulkan { .. } | Error::Validation(_) | _ => RARA_ERROR_VULKAN,
     }

@@ -1,15 +1,13 @@
 //! The device that everything else is made from.
 
 use std::any::Any;
-use std::cmp::Reverse;
-use std::collections::BTreeMap;
 use std::ffi::CString;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ash::{ext, khr, vk};
-use gpu_allocator::vulkan::{AllocationCreateDesc, Allocator};
+use gpu_allocator::vulkan::Allocator;
 
+use super::account::Account;
 use super::clock::Clock;
 use super::commands::Commands;
 use super::instance::Instance;
@@ -47,10 +45,7 @@ pub(super) struct Inner {
     allocator: Option<Arc<Mutex<Allocator>>>,
     /// The host's own source of memory, which takes the allocator's place.
     source: Option<Arc<dyn MemorySource>>,
-    allocated: AtomicU64,
-    allocated_at_most: AtomicU64,
-    /// The same by name. They are counted here, as a host's allocator holds more than our memory.
-    allocated_by_name: Mutex<BTreeMap<String, u64>>,
+    account: Account,
     /// Idle command buffers of [`Device::submit_and_wait`].
     pub(super) idle: Mutex<Vec<OneOff>>,
     /// `None` for a host's device, which is never destroyed here. Shared with a window's surface.
@@ -59,16 +54,6 @@ pub(super) struct Inner {
     pub(super) inspector: std::sync::OnceLock<super::inspection::Inspector>,
     /// What keeps a host's device alive. It is the last field, so that it goes last.
     _keep_alive: Option<Arc<dyn Any + Send + Sync>>,
-}
-
-/// A buffer's or an image's name, and the device memory that it takes.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct NamedBytes {
-    /// Its name, which says what it is for.
-    pub name: String,
-    /// Its size.
-    pub bytes: u64,
 }
 
 impl Device {
@@ -104,9 +89,7 @@ impl Device {
                 pipeline_cache: desc.pipeline_cache,
                 allocator: Some(allocator),
                 source: desc.memory,
-                allocated: AtomicU64::new(0),
-                allocated_at_most: AtomicU64::new(0),
-                allocated_by_name: Mutex::default(),
+                account: Account::default(),
                 idle: Mutex::new(Vec::new()),
                 owned,
                 #[cfg(feature = "lab")]
@@ -208,32 +191,6 @@ impl Device {
         Image::new(self, desc)
     }
 
-    /// Bytes of device memory that live buffers and images take.
-    pub fn device_bytes(&self) -> u64 {
-        self.inner.allocated.load(Ordering::Relaxed)
-    }
-
-    /// The most that [`device_bytes`](Self::device_bytes) has ever been.
-    pub fn peak_device_bytes(&self) -> u64 {
-        self.inner.allocated_at_most.load(Ordering::Relaxed)
-    }
-
-    /// The memory of live buffers and images by name, the largest first and with what alignment adds; those of one name
-    /// are added up.
-    pub fn memory_by_name(&self) -> Vec<NamedBytes> {
-        let by_name = self.inner.allocated_by_name.lock();
-        let mut sums: Vec<NamedBytes> = by_name
-            .unwrap_or_else(PoisonError::into_inner)
-            .iter()
-            .map(|(name, bytes)| NamedBytes {
-                name: name.clone(),
-                bytes: *bytes,
-            })
-            .collect();
-        sums.sort_by_key(|sum| Reverse(sum.bytes)); // a stable sort, so that equals stay in the order of their names
-        sums
-    }
-
     /// The device's clock now; `None` where it cannot be read.
     #[cfg_attr(not(feature = "lab"), doc(hidden))]
     pub fn calibrate(&self) -> Option<Calibration> {
@@ -302,39 +259,24 @@ impl Device {
         let _ = unsafe { debug.set_debug_utils_object_name(&info) };
     }
 
-    pub(super) fn allocate(
-        &self,
-        desc: &AllocationCreateDesc<'_>,
-    ) -> std::result::Result<Memory, String> {
-        let allocation = self.take_memory(desc)?;
-        let before = self
-            .inner
-            .allocated
-            .fetch_add(allocation.size(), Ordering::Relaxed);
-        self.inner
-            .allocated_at_most
-            .fetch_max(before + allocation.size(), Ordering::Relaxed);
-        self.account(desc.name, |bytes| bytes + allocation.size());
+    /// What is made on it.
+    pub(super) fn account(&self) -> &Account {
+        &self.inner.account
+    }
+
+    /// Names the memory of something of a name for debuggers.
+    pub(super) fn name_memory(&self, name: &str, allocation: &Memory) {
         // Blocks that a host's allocator shares among its buffers and ours are the host's to name.
         let is_lent = self.inner.source.is_some();
         if !is_lent && (allocation.is_dedicated() || self.inner.owned.is_some()) {
             let name = if allocation.is_dedicated() {
-                desc.name
+                name
             } else {
                 "shared"
             };
             // SAFETY: the memory is alive as long as the allocation, and only named here.
             self.set_name(unsafe { allocation.memory() }, name);
         }
-        Ok(allocation)
-    }
-
-    pub(super) fn free(&self, name: &str, allocation: Memory) {
-        self.inner
-            .allocated
-            .fetch_sub(allocation.size(), Ordering::Relaxed);
-        self.account(name, |bytes| bytes - allocation.size());
-        self.give_memory_back(allocation);
     }
 
     pub(super) fn memory_source(&self) -> Option<&dyn MemorySource> {
@@ -343,16 +285,6 @@ impl Device {
 
     pub(super) fn lent_allocator(&self) -> &Mutex<Allocator> {
         self.inner.allocator.as_ref().expect("taken only by drop")
-    }
-
-    fn account(&self, name: &str, change: impl FnOnce(u64) -> u64) {
-        let by_name = self.inner.allocated_by_name.lock();
-        let mut by_name = by_name.unwrap_or_else(PoisonError::into_inner);
-        let bytes = by_name.entry(name.to_owned()).or_default();
-        *bytes = change(*bytes);
-        if *bytes == 0 {
-            by_name.remove(name);
-        }
     }
 }
 

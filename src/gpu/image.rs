@@ -90,10 +90,12 @@ impl Image {
                     desc.height,
                     bytes(requirements.size)
                 );
-                return Err(Error::Memory(format!(
-                    "image \"{}\" of {size} could not be allocated ({error}); make the picture smaller",
-                    desc.name
-                )));
+                return Err(error.error(|why| {
+                    Error::Memory(format!(
+                        "image \"{}\" of {size} could not be allocated ({why}); make the picture smaller",
+                        desc.name
+                    ))
+                }));
             }
         };
         // From here on dropping `image` cleans up.

@@ -109,7 +109,7 @@ impl Buffer {
             Err(error) => {
                 // SAFETY: created above, used by nothing.
                 unsafe { device.raw().destroy_buffer(handle, None) };
-                return Err(full(&error));
+                return Err(error.error(full));
             }
         };
         // From here on dropping `buffer` cleans up.

@@ -14,6 +14,7 @@
 )]
 
 mod access;
+mod account;
 mod attachments;
 mod clock;
 mod commands;
@@ -55,8 +56,9 @@ mod tracker;
 mod upload;
 mod validation;
 
+pub use account::NamedBytes;
 pub use attachments::Target;
-pub use device::{Device, NamedBytes};
+pub use device::Device;
 pub use devices::{DeviceInfo, list_devices};
 pub use features::Features;
 pub use layout::Bindings;

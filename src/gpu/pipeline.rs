@@ -278,6 +278,7 @@ impl Pipeline {
         call: &'static str,
     ) -> Result<Self> {
         let raw = made.map_err(failed(call))?[0];
+        device.account().count_pipeline();
         device.set_name(raw, name);
         Ok(Self {
             name,

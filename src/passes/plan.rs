@@ -163,6 +163,15 @@ impl Plan {
         })
     }
 
+    /// The same plan for another size of the picture, px, as far as buffers are concerned.
+    pub(crate) fn sized(&self, width: u32, height: u32, settings: &Settings) -> Result<Self> {
+        let mut plan = self.clone();
+        let runs = self.data.tiles.span_runs;
+        plan.data.tiles = tiles_data(vk::Extent2D { width, height }, runs, settings)?;
+        plan.data.view.size[..2].copy_from_slice(&[width as f32, height as f32]);
+        Ok(plan)
+    }
+
     /// Gaussians in the scene.
     pub(crate) fn gaussians(&self) -> u32 {
         self.data.scene.gaussian_count

@@ -13,10 +13,12 @@ use crate::limits;
 use crate::passes::buffers::gpu_only;
 use crate::passes::pair_estimate::PairSample;
 use crate::passes::scene_layer::{PackedLayer, SceneLayer, join_sets, layer_index, sizes};
+use crate::passes::sh_storage;
 use crate::precision::ShFormat;
 use crate::scene::{LayerState, Scene, check_clip, sh_coefficients};
 #[cfg(test)]
 use crate::types::Block;
+use crate::types::Gaussian;
 
 /// A scene's Gaussians in device memory.
 #[derive(Debug)]
@@ -34,6 +36,8 @@ pub struct SceneBuffers {
     layers: Vec<SceneLayer>,
     /// What the pairs of tile and splat are estimated from.
     sample: PairSample,
+    /// How often layers have been changed.
+    pub(crate) changes: u64,
 }
 
 static NEXT_ID: AtomicU64 = AtomicU64::new(0);
@@ -111,6 +115,7 @@ impl SceneBuffers {
     }
 
     fn layer_mut(&mut self, index: usize) -> Result<&mut SceneLayer> {
+        self.changes += 1;
         let count = self.layers.len();
         self.layers.get_mut(index).ok_or_else(|| {
             Error::Invalid(format!(
@@ -221,6 +226,8 @@ impl SceneBuffers {
                 scene.sh_degree()
             )));
         }
+        let what = format!("a scene of {} Gaussians", scene.gaussians());
+        device.check_budget(&what, sizes.iter().sum(), 0)?;
         let sh = (format, 3 * sh_coefficients(scene.sh_degree()));
         let (mut layers, mut packed) = (Vec::<SceneLayer>::new(), Vec::new());
         let numbers: Vec<_> = scene.numbers().collect();
@@ -242,6 +249,7 @@ impl SceneBuffers {
             sh_format: format,
             layers,
             sample: PairSample::new(scene),
+            changes: 0,
         };
         log::info!(
             "a scene of {} Gaussians in {} takes {} bytes on the device",
@@ -255,8 +263,10 @@ impl SceneBuffers {
         Ok((buffers, packed))
     }
 
-    /// An estimate of the pairs of tile and splat in a camera's picture. The camera is in the scene's space.
-    pub(crate) fn estimated_pairs(&self, camera: &Camera) -> u32 {
+    /// An estimate of the pairs of tile and splat in the picture of a camera in the scene's space
+    /// ([`Camera::in_scene`]), without what a clip leaves out; it takes about 0.1 ms. Tiles need room for them:
+    /// [`FrameLimits::pairs`](crate::FrameLimits::pairs).
+    pub fn estimated_pairs(&self, camera: &Camera) -> u32 {
         self.sample.pairs(&self.layers, camera)
     }
 
@@ -280,6 +290,13 @@ impl SceneBuffers {
         };
         let count = self.block_count() as usize;
         device.upload(&self.blocks, 0, cast_slice(&vec![anywhere; count]))
+    }
+
+    /// The largest buffer that a scene of so many Gaussians can have, bytes.
+    pub(crate) fn largest_of(gaussians: u32, format: ShFormat) -> u64 {
+        let words = sh_storage::words(format, 3 * sh_coefficients(3)) as u64;
+        let bytes = (4 * words).max(size_of::<Gaussian>() as u64);
+        u64::from(gaussians) * bytes
     }
 
     /// The largest buffer, bytes; the blocks' is never that.

@@ -30,7 +30,7 @@ pub struct SceneLayer {
 
 impl SceneLayer {
     /// That of a layer whose Gaussians begin with a block.
-    pub(super) fn new(layer: &Layer<'_>, first_block: u32) -> Self {
+    pub(crate) fn new(layer: &Layer<'_>, first_block: u32) -> Self {
         let corners = corners(layer.gaussians());
         Self {
             name: layer.name().into(),

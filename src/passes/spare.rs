@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::gpu::{Buffer, BufferDesc, Device, Location};
-use crate::passes::buffers::{Buffers, ReclipBuffers, TilePicture};
+use crate::gpu::{Buffer, Device};
+use crate::passes::buffers::{Buffers, ReclipBuffers, TilePicture, gpu_only};
+use crate::passes::plan::Plan;
+use crate::passes::sizes::{Sized, Sizes};
 
 /// Buffers that may be used again. Those that are not are dropped, and go when the frames that use them are done.
 #[derive(Debug, Default)]
@@ -15,42 +17,67 @@ pub(crate) struct Spare {
 }
 
 impl Spare {
-    /// A buffer of a name that holds so many bytes: a spare one, or else a new one. A spare one that is too small goes
-    /// before.
-    pub(super) fn take(
-        &mut self,
-        device: &Device,
-        name: &'static str,
-        size: u64,
-        location: Location,
-    ) -> Result<Buffer> {
-        let at = self.buffers.iter().position(|buffer| buffer.name() == name);
-        let spare = at.map(|at| self.buffers.swap_remove(at));
-        let fits = |buffer: &Buffer| buffer.size() >= size && buffer.location() == location;
-        match spare.filter(fits) {
-            Some(buffer) => Ok(buffer),
-            None => device.create_buffer(&BufferDesc {
-                name,
-                size,
-                location,
-            }),
-        }
+    /// True when there is a buffer of a name.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.buffers.iter().any(|buffer| buffer.name() == name)
     }
 
-    /// As [`take`](Self::take), of a buffer that only the device sees.
+    /// Keeps what is large enough for these sizes, and where a plan wants it.
+    pub(crate) fn retain(&mut self, sizes: Sizes, plan: &Plan) {
+        let location = plan.picture_location();
+        self.keep(sizes, plan, |buffer, bytes| buffer.size() >= bytes);
+        let is_there = |picture: &Arc<TilePicture>| picture.pixels.location() == location;
+        self.picture = self.picture.take().filter(is_there);
+    }
+
+    /// Keeps what is exactly as large as these sizes ask for.
+    pub(crate) fn retain_exact(&mut self, sizes: Sizes, plan: &Plan) {
+        self.keep(sizes, plan, |buffer, bytes| {
+            buffer.size() == bytes.max(1).next_multiple_of(16)
+        });
+    }
+
+    fn keep(&mut self, sizes: Sizes, plan: &Plan, fits: impl Fn(&Buffer, u64) -> bool) {
+        let fit = |sized: &[Sized], buffer: &Buffer| {
+            let mut named = sized.iter().filter(|(name, _)| *name == buffer.name());
+            named.any(|(_, bytes)| fits(buffer, *bytes))
+        };
+        let wanted = sizes.buffers(plan.way.shape);
+        self.buffers.retain(|buffer| fit(&wanted, buffer));
+        let wanted = sizes.picture();
+        let picture = self.picture.take();
+        self.picture = picture.filter(|p| fit(&wanted, &p.begins) && fit(&wanted, &p.pixels));
+        let wanted = sizes.reclip();
+        let reclip = self.reclip.take();
+        self.reclip = reclip.filter(|reclip| reclip.all().iter().all(|b| fit(&wanted, b)));
+    }
+
+    /// All of it.
+    pub(super) fn all(&self) -> Vec<&Buffer> {
+        let picture = self.picture.iter().flat_map(|p| [&p.begins, &p.pixels]);
+        let reclip = self.reclip.iter().flat_map(ReclipBuffers::all);
+        self.buffers.iter().chain(picture).chain(reclip).collect()
+    }
+
+    /// A buffer of a name that only the device sees and that holds so many bytes: a spare one, or else a new one.
     pub(super) fn gpu_only(
         &mut self,
         device: &Device,
         name: &'static str,
         size: u64,
     ) -> Result<Buffer> {
-        self.take(device, name, size, Location::GpuOnly)
+        let at = self.buffers.iter().position(|buffer| buffer.name() == name);
+        let spare = at.map(|at| self.buffers.swap_remove(at));
+        match spare {
+            Some(buffer) => Ok(buffer),
+            None => gpu_only(device, name, size),
+        }
     }
 }
 
 impl Buffers {
     /// What of the buffers another frame may use.
-    pub(super) fn spare(&self) -> Spare {
+    pub(crate) fn spare(&self) -> Spare {
         let tiles = self.tiles.as_ref();
         Spare {
             buffers: self.single().into_iter().cloned().collect(),
@@ -95,14 +122,13 @@ impl Buffers {
     }
 
     /// All buffers.
-    #[cfg(any(feature = "lab", test))]
     pub(crate) fn all(&self) -> Vec<&Buffer> {
         let mut all = self.single();
         if let Some(t) = &self.tiles {
             all.extend([&t.picture.begins, &t.picture.pixels]);
         }
         if let Some(s) = &self.reclip {
-            all.extend([&s.revisits, &s.reclips, &s.recuts, &s.dirty]);
+            all.extend(s.all());
         }
         all
     }

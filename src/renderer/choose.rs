@@ -45,7 +45,7 @@ pub(super) fn raster(
         }
         Raster::Auto if targets.hidden => (draws, HIDDEN),
         Raster::Tiles if targets.hidden => (Raster::Quad, HIDDEN),
-        Raster::Auto if u64::from(targets.tiles) * TILE_BYTES > MOST_PICTURE => {
+        Raster::Auto if targets.tiles > MOST_TILES => {
             (draws, "the tiles' picture would take more than 1 GiB")
         }
         // See the guide's measurements (src/guide/speed.md).
@@ -68,6 +68,9 @@ const HIDDEN: &str = "tiles need the host's depth before its scope (DepthDesc::r
 /// The bytes of a tile's pixels, and the most that a picture of them may take: what every device can allocate at once.
 const TILE_BYTES: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64 * 16;
 const MOST_PICTURE: u64 = 1 << 30;
+
+/// The most tiles that a picture may have.
+pub(super) const MOST_TILES: u32 = (MOST_PICTURE / TILE_BYTES) as u32;
 
 /// Runs of the sort and of the bin: on CPU drivers at least as many as all cores have lanes, but few, since each has counts of
 /// its own. The kernels for GPUs have none; they divide their work into partitions.

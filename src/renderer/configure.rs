@@ -8,13 +8,15 @@ use super::frames::{Configured, RecordedFrame};
 use super::outcome::Submission;
 use crate::camera::Camera;
 use crate::clip::Clip;
+use crate::depth::DepthMap;
 use crate::error::{Error, Result};
 use crate::gpu::Bindings;
 use crate::limits;
 use crate::passes::{
-    Kept, Occluders, Plan, SceneBuffers, SceneFacts, Targets, TilePixels, TileWork, Work,
+    Kept, Occluders, Plan, SceneBuffers, SceneFacts, SceneLayer, Targets, TilePixels, TileWork,
+    Work,
 };
-use crate::precision::TargetFormat;
+use crate::precision::{ShFormat, TargetFormat};
 use crate::settings::{Raster, Settings};
 
 /// Where only tiles show what is asked for, lists of half the room are tried down to so many pairs.
@@ -80,53 +82,29 @@ impl Renderer {
         }
         let submission = request.submission;
         self.memory.free_finished(self.frames.finished(submission));
-        let tiles = tiles(request.camera);
+        let tiles = tiles_of(request.camera.width, request.camera.height);
         // Where no quads can take the tiles' place, nothing does.
         let needs_tiles = request.settings.show.needs_tiles();
         let redrawn = self.make_room(request, tiles) || needs_tiles;
-        let support = self.device.support();
-        let shape = self.device.shape();
-        let hidden = self.desc.depth.is_some_and(|depth| !depth.readable);
-        let targets = choose::Targets {
-            tiles,
-            hidden,
-            multisampled: self.desc.samples != vk::SampleCountFlags::TYPE_1,
-        };
-        let (raster, reason) = choose::raster(request.settings, support, shape, targets)?;
+        let (raster, reason) = self.choose_raster(request.settings, tiles)?;
         // Quads, which have to be drawn, take the tiles' place only in a frame that is not redrawn.
         let leaves_picture = raster == Raster::Tiles && redrawn && scene.count > 0;
         let picture = request
             .picture
             .filter(|_| leaves_picture)
             .and_then(TilePixels::of);
-        let depth_map = self
-            .desc
-            .depth
-            .map(|depth| depth.map.in_scene(&self.placement));
+        let depth_map = self.depth_map();
         if let Some(map) = &depth_map {
             map.check(request.camera.projection)?;
         }
         let facts = SceneFacts {
-            layers: scene.layers(),
-            gaussians: scene.count,
             blocks: scene.block_count(),
             sh_degree: scene.sh_degree,
             sh_format: scene.sh_format,
-            shape,
-            sort_runs: choose::runs(shape, scene.count),
-            span_runs: choose::runs(shape, scene.count),
-            raster,
-            tile_work: TileWork::suiting(shape, support.subgroup_size),
             picture,
             pair_capacity: self.memory.pairs.room(),
             redrawn,
-            occluders: self
-                .desc
-                .depth
-                .filter(|depth| depth.readable)
-                .zip(depth_map)
-                .map(|(depth, map)| Occluders::new(depth.format, map)),
-            expects_depth: self.desc.expected_depth.is_some(),
+            ..self.facts(scene.layers(), scene.count, raster, depth_map)
         };
         let mut plan = Plan::new(facts, request.camera, request.clip, request.settings)?;
         if !self.memory.fits(&plan) {
@@ -135,6 +113,10 @@ impl Renderer {
             }
             let memory = &mut self.memory;
             match memory.replace(&self.device, &plan, &self.frames, submission) {
+                // Frames with more pairs than there is room for are drawn as quads: that is no reason to draw none.
+                Err(Error::Budget(_)) if memory.pairs.hold(self.device.memory_budget()) => {
+                    return self.configure_in_scene(request);
+                }
                 Err(Error::Memory(_)) if raster == Raster::Tiles && !needs_tiles => {
                     return self.configure_without_tiles(request);
                 }
@@ -147,10 +129,7 @@ impl Renderer {
         }
         plan.work = self.work(scene.id, &plan)?;
         let bindings = self.bindings(scene);
-        let targets = Targets {
-            colour: self.desc.attachments(),
-            expected_depth: self.desc.expected_depth_attachments(),
-        };
+        let targets = self.targets();
         let pipelines = &mut self.pipelines;
         pipelines.ensure(&self.device, bindings, targets, &plan)?;
         self.configured = Some(Configured {
@@ -167,6 +146,66 @@ impl Renderer {
             prepared: false,
         });
         Ok(())
+    }
+
+    /// How splats become pixels in a picture of so many tiles, and why in that way.
+    pub(super) fn choose_raster(
+        &self,
+        settings: &Settings,
+        tiles: u32,
+    ) -> Result<(Raster, &'static str)> {
+        let targets = choose::Targets {
+            tiles,
+            hidden: self.desc.depth.is_some_and(|depth| !depth.readable),
+            multisampled: self.desc.samples != vk::SampleCountFlags::TYPE_1,
+        };
+        let device = &self.device;
+        choose::raster(settings, device.support(), device.shape(), targets)
+    }
+
+    /// The map from a depth in the scene's units to the host's depth buffer.
+    pub(super) fn depth_map(&self) -> Option<DepthMap> {
+        let depth = self.desc.depth?;
+        Some(depth.map.in_scene(&self.placement))
+    }
+
+    /// The attachments of the next frame.
+    pub(super) fn targets(&self) -> Targets {
+        Targets {
+            colour: self.desc.attachments(),
+            expected_depth: self.desc.expected_depth_attachments(),
+        }
+    }
+
+    /// A plan's arguments for so many Gaussians of these layers, as far as they follow from device and description.
+    pub(super) fn facts<'a>(
+        &self,
+        layers: &'a [SceneLayer],
+        gaussians: u32,
+        raster: Raster,
+        depth_map: Option<DepthMap>,
+    ) -> SceneFacts<'a> {
+        let shape = self.device.shape();
+        let readable = self.desc.depth.filter(|depth| depth.readable);
+        SceneFacts {
+            layers,
+            gaussians,
+            blocks: 0,
+            sh_degree: 0,
+            sh_format: ShFormat::default(),
+            shape,
+            sort_runs: choose::runs(shape, gaussians),
+            span_runs: choose::runs(shape, gaussians),
+            raster,
+            tile_work: TileWork::suiting(shape, self.device.support().subgroup_size),
+            picture: None,
+            pair_capacity: 0,
+            redrawn: false,
+            occluders: readable
+                .zip(depth_map)
+                .map(|(depth, map)| Occluders::new(depth.format, map)),
+            expects_depth: self.desc.expected_depth.is_some(),
+        }
     }
 
     /// Configures the same frame as quads, on a device that has no memory for so many tiles and their lists.
@@ -201,9 +240,11 @@ impl Renderer {
         let needed = before.map_or(0, RecordedFrame::pairs);
         let pairs = &mut self.memory.pairs;
         let had = pairs.room();
+        pairs.review(self.device.memory_budget());
         pairs.make(request.scene.count, tiles, needed);
-        if matches!(request.settings.raster, Raster::Auto | Raster::Tiles) {
-            pairs.expect(request.scene.estimated_pairs(request.camera));
+        if matches!(request.settings.raster, Raster::Auto | Raster::Tiles) && !pairs.is_fixed() {
+            let estimate = self.estimate.of(request.scene, request.camera);
+            pairs.expect(estimate);
         }
         // Where no more room can be made, quads are drawn at once.
         request.submission == Submission::Awaited && (!fell_back || pairs.room() > had)
@@ -220,7 +261,7 @@ impl Renderer {
         match self.memory.ensure_reclip(&self.device) {
             Ok(()) => Ok(work),
             // A whole frame needs less memory than a reclipped one.
-            Err(Error::Memory(_)) => {
+            Err(Error::Memory(_) | Error::Budget(_)) => {
                 self.kept = None;
                 Ok(Kept::work(None, scene, plan))
             }
@@ -228,10 +269,14 @@ impl Renderer {
         }
     }
 
-    /// How buffers are reached: as wanted, unless the device cannot bind buffers as large as these.
+    /// How a frame's buffers are reached.
     fn bindings(&self, scene: &SceneBuffers) -> Bindings {
         // An earlier frame may have made the buffers larger than this one needs.
-        let largest = self.memory.buffers().largest().max(scene.largest());
+        self.bindings_of(self.memory.buffers().sizes().largest().max(scene.largest()))
+    }
+
+    /// How buffers are reached: as wanted, unless the device cannot bind buffers as large as this one.
+    pub(super) fn bindings_of(&self, largest: u64) -> Bindings {
         let support = self.device.support();
         let binds = support.push_descriptor && largest <= support.max_storage_buffer_range;
         match self.desc.bindings {
@@ -241,8 +286,8 @@ impl Renderer {
     }
 }
 
-/// Tiles of a camera's picture.
-fn tiles(camera: &Camera) -> u32 {
-    let columns = camera.width.div_ceil(limits::TILE_WIDTH);
-    columns.saturating_mul(camera.height.div_ceil(limits::TILE_HEIGHT))
+/// Tiles of a picture.
+pub(super) fn tiles_of(width: u32, height: u32) -> u32 {
+    let columns = width.div_ceil(limits::TILE_WIDTH);
+    columns.saturating_mul(height.div_ceil(limits::TILE_HEIGHT))
 }

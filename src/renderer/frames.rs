@@ -121,6 +121,11 @@ impl FramesInFlight {
         }
     }
 
+    /// The slots, in no order.
+    pub(super) fn slots(&self) -> &[RecordedFrame] {
+        &self.slots
+    }
+
     /// Frames prepared so far.
     pub(super) fn prepared(&self) -> u64 {
         self.prepared

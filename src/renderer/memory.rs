@@ -5,7 +5,7 @@ use super::outcome::Submission;
 use super::pair_room::PairRoom;
 use crate::error::{Error, Result};
 use crate::gpu::Device;
-use crate::passes::{Buffers, Plan};
+use crate::passes::{Buffers, Plan, Sizes};
 
 /// The buffers that all frames share, one after the other.
 #[derive(Debug, Default)]
@@ -33,30 +33,78 @@ impl WorkingMemory {
         frames: &FramesInFlight,
         submission: Submission,
     ) -> Result<()> {
+        self.reserve(device, (plan, Sizes::of(plan), false), frames, submission)
+    }
+
+    /// As [`replace`](Self::replace), by buffers of these sizes at least, and on demand those of reclipped frames. Where the
+    /// budget has no room for them, the buffers are as they were.
+    pub(super) fn reserve(
+        &mut self,
+        device: &Device,
+        (plan, need, reclips): (&Plan, Sizes, bool),
+        frames: &FramesInFlight,
+        submission: Submission,
+    ) -> Result<()> {
+        let had = self.buffers.as_ref();
+        let spare = had.map(|buffers| buffers.spare_for(need));
+        let (mut spare, sizes) = spare.unwrap_or_default();
+        // Nothing becomes smaller, so that going back to a frame before allocates nothing.
+        let all = need.or(sizes);
+        spare.retain(all, plan);
+        let missing = Buffers::missing(&spare, all, plan, reclips);
+        let (prepared, finished) = (frames.prepared(), frames.finished(submission));
+        // What no frame in flight uses goes before the rest comes.
+        let goes = had.filter(|_| finished >= prepared);
+        let goes = goes.map_or(0, |buffers| buffers.outgrown(&spare));
+        device.check_budget("a frame's working memory", missing, goes)?;
         // Free first: both together may not fit.
         let outgrown = self.buffers.take();
-        let spare = outgrown.as_ref().map(|buffers| buffers.spare_for(plan));
-        let had_spare = spare.is_some();
-        let prepared = frames.prepared();
+        let had_spare = outgrown.is_some();
         // What is used again lives on in the new buffers too.
         self.retired
             .extend(outgrown.map(|buffers| (prepared, buffers)));
-        self.free_finished(frames.finished(submission));
-        let made = match (
-            Buffers::new(device, plan, spare.unwrap_or_default()),
-            had_spare,
-        ) {
+        self.free_finished(finished);
+        let made = match (Buffers::new(device, plan, all, spare), had_spare) {
             // What was kept may be larger than this plan needs.
-            (Err(Error::Memory(_)), true) => Buffers::new(device, plan, Default::default()),
+            (Err(Error::Memory(_)), true) => Buffers::new(device, plan, need, Default::default()),
             (made, _) => made,
         };
-        self.buffers = Some(made?);
-        Ok(())
+        let buffers = self.buffers.insert(made?);
+        match reclips {
+            true => buffers.ensure_reclip(device),
+            false => Ok(()),
+        }
     }
 
     /// Frees buffers that only the first `finished` frames have used.
     pub(super) fn free_finished(&mut self, finished: u64) {
         self.retired.retain(|(prepared, _)| *prepared > finished);
+    }
+
+    /// Frees all that a plan does not need, once all frames are finished; after an error there is nothing.
+    pub(super) fn trim(&mut self, device: &Device, plan: Option<&Plan>) -> Result<()> {
+        self.retired.clear();
+        let had = self.buffers.take();
+        if let Some(plan) = plan {
+            let sizes = Sizes::of(plan);
+            let mut spare = had.as_ref().map(Buffers::spare).unwrap_or_default();
+            spare.retain_exact(sizes, plan);
+            drop(had);
+            self.buffers = Some(Buffers::new(device, plan, sizes, spare)?);
+        }
+        Ok(())
+    }
+
+    /// Bytes of all buffers.
+    pub(super) fn bytes(&self) -> u64 {
+        let retired = self.retired.iter().map(|(_, buffers)| buffers);
+        let mut all: Vec<_> = retired
+            .chain(&self.buffers)
+            .flat_map(Buffers::all)
+            .collect();
+        all.sort_unstable_by_key(|buffer| buffer.address());
+        all.dedup_by_key(|buffer| buffer.address());
+        all.iter().map(|buffer| buffer.size()).sum()
     }
 
     /// Adds the further buffers of a reclipped frame.

@@ -15,14 +15,17 @@ use crate::stats::RasterChoice;
 mod choose;
 mod configure;
 mod desc;
+mod estimate;
 #[cfg(test)]
 mod faults;
 mod frames;
+mod limits;
 mod memory;
 mod notes;
 mod outcome;
 mod pair_room;
 mod record;
+mod reserve;
 mod shared;
 mod stats;
 #[cfg(test)]
@@ -33,8 +36,10 @@ mod working;
 pub(crate) use configure::FrameRequest;
 pub use desc::{DepthDesc, ExpectedDepthDesc, RendererDesc};
 pub(crate) use frames::RecordedFrame;
+pub use limits::FrameLimits;
 pub(crate) use outcome::{Outcome, Submission};
 
+use estimate::PairEstimate;
 use frames::{Configured, FramesInFlight};
 use memory::WorkingMemory;
 use shared::SharedPipelines;
@@ -97,6 +102,8 @@ pub struct Renderer {
     configured: Option<Configured>,
     /// The results that the last prepared frame has left in the memory.
     kept: Option<Kept>,
+    /// The pairs that were estimated last.
+    estimate: PairEstimate,
     /// How splats become pixels, as the log was told last.
     noted: RasterChoice,
 }
@@ -144,6 +151,7 @@ impl Renderer {
             frames,
             configured: None,
             kept: None,
+            estimate: PairEstimate::default(),
             noted: RasterChoice::default(),
         })
     }

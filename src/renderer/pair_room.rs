@@ -19,6 +19,12 @@ pub(super) struct PairRoom {
     most: u32,
     /// The room that an estimate asked for; the most once the device has had no memory for one.
     expected: u32,
+    /// The room that there is without growth.
+    least: u32,
+    /// True when a host has reserved so much and no more.
+    fixed: bool,
+    /// The budget that had no room for more.
+    held: Option<u64>,
 }
 
 impl Default for PairRoom {
@@ -27,42 +33,90 @@ impl Default for PairRoom {
             room: 0,
             most: MOST,
             expected: 0,
+            least: 0,
+            fixed: false,
+            held: None,
         }
     }
 }
 
 impl PairRoom {
-    /// Room for a scene of `gaussians` in a picture of `tiles`, after a frame that had, or would have had, `needed` pairs.
-    pub(super) fn make(&mut self, gaussians: u32, tiles: u32, needed: u32) {
-        let usual = gaussians
+    /// The room that a host has reserved, which neither grows nor shrinks.
+    pub(super) fn fixed(pairs: u32) -> Self {
+        Self {
+            room: pairs,
+            most: pairs,
+            least: pairs,
+            fixed: true,
+            ..Self::default()
+        }
+    }
+
+    /// True when it does not grow.
+    pub(super) fn is_fixed(&self) -> bool {
+        self.fixed
+    }
+
+    /// The room that scenes of `gaussians` in pictures of `tiles` usually need.
+    pub(super) fn usual(gaussians: u32, tiles: u32) -> u32 {
+        gaussians
             .saturating_mul(USUAL_PER_GAUSSIAN)
             .saturating_add(tiles.saturating_mul(USUAL_PER_TILE))
-            .min(gaussians.saturating_mul(tiles));
+            .min(gaussians.saturating_mul(tiles))
+            .min(MOST)
+    }
+
+    /// Room for a scene of `gaussians` in a picture of `tiles`, after a frame that had, or would have had, `needed` pairs.
+    pub(super) fn make(&mut self, gaussians: u32, tiles: u32, needed: u32) {
+        if self.fixed {
+            return;
+        }
+        let usual = Self::usual(gaussians, tiles).min(self.most);
+        self.least = self.room.max(usual);
         if self.can_grow_to(needed) {
             self.room = with_margin(needed);
         }
-        self.room = self.room.max(usual.min(self.most));
+        self.room = self.room.max(usual);
     }
 
     /// Makes room for a frame that has about so many pairs, and for half as many more: estimates err, and the next camera may
     /// see more. Pairs that would not fit anyway are no reason to take memory.
     pub(super) fn expect(&mut self, estimated: u32) {
         let room = estimated.saturating_add(estimated / 2);
-        if room <= self.most && room > self.room && self.expected != NO_ESTIMATES {
+        let can_grow = !self.fixed && self.held.is_none() && self.expected != NO_ESTIMATES;
+        if room <= self.most && room > self.room && can_grow {
             self.room = room;
             self.expected = room;
         }
     }
 
+    /// Takes back the growth since the frame before, for which a budget has no room; there is no more as long as it is the
+    /// budget. False where nothing had grown.
+    pub(super) fn hold(&mut self, budget: Option<u64>) -> bool {
+        let has_grown = self.room > self.least;
+        if has_grown {
+            self.room = self.least;
+            self.held = budget;
+        }
+        has_grown
+    }
+
+    /// Lets it grow again if the budget is another one.
+    pub(super) fn review(&mut self, budget: Option<u64>) {
+        self.held = self.held.filter(|held| Some(*held) == budget);
+    }
+
     /// True when there is no room for so many pairs, but can be. Pairs that would not fit anyway are no reason to take
     /// memory.
     pub(super) fn can_grow_to(&self, needed: u32) -> bool {
-        needed > self.room && with_margin(needed) <= self.most
+        let grows = !self.fixed && self.held.is_none();
+        grows && needed > self.room && with_margin(needed) <= self.most
     }
 
     /// Notes that the device has no memory for so many pairs. Where only an estimate has asked for them, the frames' own
     /// needs count from now on.
     pub(super) fn refuse(&mut self) {
+        self.fixed = false;
         if self.room == self.expected {
             self.expected = NO_ESTIMATES;
         } else {
@@ -75,9 +129,8 @@ impl PairRoom {
     #[cfg(test)]
     pub(super) fn limited(most: u32) -> Self {
         Self {
-            room: 0,
             most,
-            expected: 0,
+            ..Self::default()
         }
     }
 
@@ -141,6 +194,31 @@ mod tests {
         assert_eq!(pairs.room(), 34_000, "the usual");
         pairs.make(1000, 500, 1 << 19);
         assert_eq!(pairs.room(), (1 << 19) + (1 << 17), "what was needed");
+    }
+
+    #[test]
+    fn what_a_host_has_reserved_neither_grows_nor_shrinks() {
+        let mut pairs = PairRoom::fixed(5_000);
+        pairs.make(1000, 500, 40_000);
+        pairs.expect(100_000);
+        assert_eq!(pairs.room(), 5_000);
+        assert!(!pairs.can_grow_to(6_000));
+    }
+
+    #[test]
+    fn what_a_budget_has_no_room_for_waits_for_another_budget() {
+        let mut pairs = PairRoom::default();
+        pairs.make(1000, 500, 40_000);
+        assert!(pairs.hold(Some(1 << 20)));
+        assert_eq!(pairs.room(), 34_000, "the usual");
+        pairs.review(Some(1 << 20));
+        pairs.make(1000, 500, 40_000);
+        pairs.expect(100_000);
+        assert_eq!(pairs.room(), 34_000, "as long as it is the budget");
+        assert!(!pairs.hold(Some(1 << 20)), "nothing has grown");
+        pairs.review(Some(1 << 21));
+        pairs.make(1000, 500, 40_000);
+        assert_eq!(pairs.room(), 50_000);
     }
 
     #[test]

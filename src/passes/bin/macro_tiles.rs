@@ -3,7 +3,7 @@
 //! a splat over the whole picture costs its tiles and nobody waits for it.
 
 use crate::error::Result;
-use crate::gpu::{Buffer, Device, Groups, Recorder};
+use crate::gpu::{Buffer, Groups, Recorder};
 use crate::limits;
 use crate::passes::bin::ScratchWords;
 use crate::passes::buffers::{buffers, indirect};
@@ -14,7 +14,6 @@ use crate::passes::shaders::{
     batch_count, batch_scan, batch_scatter, macro_count, macro_expand, macro_ranges, macro_scan,
     row_scan,
 };
-use crate::passes::spare::Spare;
 use crate::passes::stage::{Frame, KernelSet, key};
 use crate::passes::{sort, tiles};
 use crate::types::{FrameCounts, TilesData};
@@ -76,6 +75,19 @@ fn passes(plan: &Plan) -> u32 {
         .max(1)
 }
 
+/// The buffers' names, in the order of their words.
+pub(super) const NAMES: [&str; 9] = [
+    "pair_sums",
+    "macro_keys",
+    "macro_splats",
+    "sorted_macro_splats",
+    "macro_histogram",
+    "macro_begins",
+    "tile_counts",
+    "row_sums",
+    "tile_list",
+];
+
 pub(super) fn words(plan: &Plan) -> ScratchWords {
     let tiles = &plan.data.tiles;
     let [columns, rows] = macro_tiles(tiles).map(u64::from);
@@ -97,31 +109,16 @@ pub(super) fn words(plan: &Plan) -> ScratchWords {
 }
 
 impl Scratch {
-    pub(super) fn new(device: &Device, words: ScratchWords, spare: &mut Spare) -> Result<Self> {
-        let [
-            sums,
-            keys,
-            splats,
-            sorted,
-            histogram,
-            begins,
-            counts,
-            rows,
-            list,
-        ] = words;
-        let mut gpu = |name, words| spare.gpu_only(device, name, words * 4);
+    pub(super) fn new(gpu: &mut dyn FnMut(&'static str) -> Result<Buffer>) -> Result<Self> {
         Ok(Self {
-            pair_sums: gpu("pair_sums", sums)?,
-            macro_keys: gpu("macro_keys", keys)?,
-            macro_splats: [
-                gpu("macro_splats", splats)?,
-                gpu("sorted_macro_splats", sorted)?,
-            ],
-            macro_histogram: gpu("macro_histogram", histogram)?,
-            macro_begins: gpu("macro_begins", begins)?,
-            tile_counts: gpu("tile_counts", counts)?,
-            row_sums: gpu("row_sums", rows)?,
-            tile_list: gpu("tile_list", list)?,
+            pair_sums: gpu("pair_sums")?,
+            macro_keys: gpu("macro_keys")?,
+            macro_splats: [gpu("macro_splats")?, gpu("sorted_macro_splats")?],
+            macro_histogram: gpu("macro_histogram")?,
+            macro_begins: gpu("macro_begins")?,
+            tile_counts: gpu("tile_counts")?,
+            row_sums: gpu("row_sums")?,
+            tile_list: gpu("tile_list")?,
         })
     }
 

@@ -10,9 +10,8 @@ mod macro_tiles;
 mod spans;
 
 use crate::error::Result;
-use crate::gpu::{Buffer, Device, DeviceShape};
+use crate::gpu::{Buffer, DeviceShape};
 use crate::passes::plan::Plan;
-use crate::passes::spare::Spare;
 use crate::passes::stage::{KernelSet, Stage};
 
 pub(crate) const STAGE: Stage = Stage {
@@ -54,18 +53,22 @@ impl Scratch {
         }
     }
 
-    /// Allocates that of the kernels for a kind of device, as far as no spare buffer serves.
+    /// The buffers' names, in the order of their words.
+    pub(in crate::passes) fn names(shape: DeviceShape) -> &'static [&'static str] {
+        match shape {
+            DeviceShape::Cpu => &spans::NAMES,
+            DeviceShape::Gpu { .. } => &macro_tiles::NAMES,
+        }
+    }
+
+    /// That of the kernels for a kind of device; `gpu` makes the buffer of a name.
     pub(in crate::passes) fn new(
-        device: &Device,
         shape: DeviceShape,
-        words: ScratchWords,
-        spare: &mut Spare,
+        gpu: &mut dyn FnMut(&'static str) -> Result<Buffer>,
     ) -> Result<Self> {
         Ok(match shape {
-            DeviceShape::Cpu => Self::Spans(spans::Scratch::new(device, words, spare)?.into()),
-            DeviceShape::Gpu { .. } => {
-                Self::MacroTiles(macro_tiles::Scratch::new(device, words, spare)?.into())
-            }
+            DeviceShape::Cpu => Self::Spans(spans::Scratch::new(gpu)?.into()),
+            DeviceShape::Gpu { .. } => Self::MacroTiles(macro_tiles::Scratch::new(gpu)?.into()),
         })
     }
 

@@ -2,7 +2,7 @@
 //! are few and long, as suits processors.
 
 use crate::error::Result;
-use crate::gpu::{Buffer, Device, Groups, Recorder};
+use crate::gpu::{Buffer, Groups, Recorder};
 use crate::passes::bin::ScratchWords;
 use crate::passes::buffers::{buffers, indirect};
 use crate::passes::plan::Plan;
@@ -10,7 +10,6 @@ use crate::passes::shaders::{
     span_count, span_scan, span_scatter, tile_count, tile_scan, tile_scatter,
 };
 use crate::passes::sort;
-use crate::passes::spare::Spare;
 use crate::passes::stage::{Frame, KernelSet, key};
 use crate::types::FrameCounts;
 
@@ -36,6 +35,15 @@ pub(in crate::passes) struct Scratch {
     column_counts: Buffer,
 }
 
+/// The buffers' names, in the order of their words.
+pub(super) const NAMES: [&str; 5] = [
+    "span_counts",
+    "row_begins",
+    "span_splats",
+    "span_columns",
+    "column_counts",
+];
+
 pub(super) fn words(plan: &Plan) -> ScratchWords {
     let tiles = &plan.data.tiles;
     let rows = u64::from(tiles.tile_count / tiles.tile_columns);
@@ -56,15 +64,13 @@ pub(super) fn words(plan: &Plan) -> ScratchWords {
 }
 
 impl Scratch {
-    pub(super) fn new(device: &Device, words: ScratchWords, spare: &mut Spare) -> Result<Self> {
-        let [counts, begins, splats, columns, column_counts, ..] = words;
-        let mut gpu = |name, words| spare.gpu_only(device, name, words * 4);
+    pub(super) fn new(gpu: &mut dyn FnMut(&'static str) -> Result<Buffer>) -> Result<Self> {
         Ok(Self {
-            span_counts: gpu("span_counts", counts)?,
-            row_begins: gpu("row_begins", begins)?,
-            span_splats: gpu("span_splats", splats)?,
-            span_columns: gpu("span_columns", columns)?,
-            column_counts: gpu("column_counts", column_counts)?,
+            span_counts: gpu("span_counts")?,
+            row_begins: gpu("row_begins")?,
+            span_splats: gpu("span_splats")?,
+            span_columns: gpu("span_columns")?,
+            column_counts: gpu("column_counts")?,
         })
     }
 

@@ -4,6 +4,7 @@
 mod frames;
 mod memory;
 mod refused;
+mod reserve;
 mod viewport;
 
 use crate::canvas::{adopt, open_host};

@@ -1,0 +1,196 @@
+//! The most that frames will ask for, so that room for them is made before the first one.
+
+use crate::camera::Camera;
+use crate::clip::{Clip, ClipOp, Plane, Quadric, Surface};
+use crate::error::{Error, Result};
+use crate::limits;
+use crate::precision::ShFormat;
+use crate::setters::setters;
+use crate::settings::{Mode, Settings};
+
+/// The most that frames will ask for, for [`Renderer::reserve`](super::Renderer::reserve): [`FrameLimits::new`] is the usual,
+/// and a host sets what it wants otherwise.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FrameLimits {
+    /// Width and height of the pictures, px, each by itself: of one that may be upright or lying, the longer side twice.
+    pub size: (u32, u32),
+    /// Gaussians of a scene, all of its layers together.
+    pub gaussians: u32,
+    /// Layers of a scene.
+    pub layers: u32,
+    /// How the scenes' spherical harmonics are stored.
+    pub sh_format: ShFormat,
+    /// Planes of a clip that is a list of planes; [`Camera::clip_near`] and [`Camera::clip_far`] add one each. Of more than
+    /// [`Clip::MAX_SURFACES`] it is a combination.
+    pub planes: u32,
+    /// Surfaces of a clip that bends or combines; 0 for none.
+    pub surfaces: u32,
+    /// The settings that frames have, each with every kind of clip: modes, rasters, what is shown and with which laws.
+    pub settings: Vec<Settings>,
+    /// Pairs of tile and splat, for which there is then exactly this room: a frame with more is drawn as quads, the same
+    /// picture but slower, and [`fell_back`](super::Renderer::fell_back) says so.
+    /// [`SceneBuffers::estimated_pairs`](crate::SceneBuffers::estimated_pairs) tells a camera's. `None` for the usual room:
+    /// 2 a Gaussian and 64 a tile of 8x8 pixels; frames with more then have it grow, which allocates.
+    pub pairs: Option<u32>,
+}
+
+setters!(FrameLimits {
+    size: (u32, u32),
+    gaussians: u32,
+    layers: u32,
+    sh_format: ShFormat,
+    planes: u32,
+    surfaces: u32,
+    settings: Vec<Settings>,
+    pairs: Option<u32>,
+});
+
+impl FrameLimits {
+    /// Pictures of so many pixels and scenes of so many Gaussians in one layer, cut by up to six planes in any mode, with the
+    /// other settings as they are by default.
+    pub fn new(size: (u32, u32), gaussians: u32) -> Self {
+        let modes = [Mode::None, Mode::Hard, Mode::Rara, Mode::Exact];
+        Self {
+            size,
+            gaussians,
+            layers: 1,
+            sh_format: ShFormat::default(),
+            planes: 6,
+            surfaces: 0,
+            settings: modes.map(|mode| Settings::default().mode(mode)).to_vec(),
+            pairs: None,
+        }
+    }
+
+    /// That there can be such frames.
+    pub(super) fn check(&self) -> Result<()> {
+        let refuse = |what: String| Err(Error::Invalid(format!("FrameLimits::{what}")));
+        let possible = 1..=Camera::MAX_SIZE;
+        let (width, height) = self.size;
+        if !possible.contains(&width) || !possible.contains(&height) {
+            return refuse(format!(
+                "size is {width}x{height}: a picture has 1 to {} pixels a side",
+                Camera::MAX_SIZE
+            ));
+        }
+        if self.layers == 0 {
+            return refuse("layers is 0: a scene has at least one".into());
+        }
+        let places =
+            u64::from(self.gaussians) + u64::from(self.layers) * u64::from(limits::BLOCK_SIZE);
+        if places > u64::from(u32::MAX) {
+            return refuse(format!(
+                "gaussians is {} in {} layers: beyond the 2^32 of an index",
+                self.gaussians, self.layers
+            ));
+        }
+        let most = self.planes.max(self.surfaces);
+        if most > MOST_SURFACES {
+            return refuse(format!(
+                "planes or surfaces is {most}: a clip has {MOST_SURFACES} at most"
+            ));
+        }
+        if self.settings.is_empty() {
+            return refuse("settings is empty: give those that frames will have".into());
+        }
+        Ok(())
+    }
+
+    /// A clip of each kind that pipelines and buffers tell apart: none, and lists of planes and combinations of one surface,
+    /// of several, and of so many that blocks have shortlists of them.
+    pub(super) fn clips(&self) -> Result<Vec<Clip>> {
+        let mut clips = vec![Clip::default()];
+        let listed = self.planes.min(Clip::MAX_SURFACES as u32);
+        for count in counts([1, 2, limits::SHORTLIST_FROM, listed], listed) {
+            clips.push(planes(count)?);
+        }
+        let combined = match self.planes > Clip::MAX_SURFACES as u32 {
+            true => self.planes.max(self.surfaces),
+            false => self.surfaces,
+        };
+        // A layer that bends beside one of many planes has its code, and shortlists.
+        let most = match self.layers > 1 && combined > 0 {
+            true => combined.max(listed.min(limits::SHORTLIST_FROM)),
+            false => combined,
+        };
+        for count in counts([1, limits::SHORTLIST_FROM, most, most], most) {
+            clips.push(spheres(count)?);
+        }
+        Ok(clips)
+    }
+}
+
+/// The most surfaces that a clip may have.
+const MOST_SURFACES: u32 = 1 << 16;
+
+/// Those of some numbers, each once, that are not 0 and not beyond the most.
+fn counts(mut counts: [u32; 4], most: u32) -> impl Iterator<Item = u32> {
+    counts.sort_unstable();
+    let mut last = 0;
+    counts.into_iter().filter(move |count| {
+        let is_new = *count > last && *count <= most;
+        last = last.max(*count);
+        is_new
+    })
+}
+
+/// So many planes, no two of them the same.
+fn planes(count: u32) -> Result<Clip> {
+    let plane = |index| Plane::new(glam::DVec3::X, f64::from(index));
+    let planes: Vec<Plane> = (0..count).map(plane).collect::<Result<_>>()?;
+    Ok(Clip::of(planes, ClipOp::And))
+}
+
+/// So many spheres, no two of them the same.
+fn spheres(count: u32) -> Result<Clip> {
+    let sphere = |index| Quadric::sphere(glam::DVec3::X * f64::from(index), 1.0);
+    let spheres: Vec<Surface> = (0..count)
+        .map(|index| Ok(Surface::Quadric(sphere(index)?)))
+        .collect::<Result<_>>()?;
+    Ok(Clip::of(spheres, ClipOp::And))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_kind_of_clip_comes_once() {
+        let limits = FrameLimits::new((64, 64), 1);
+        let sizes = |limits: &FrameLimits| -> Vec<(usize, bool)> {
+            let clips = limits.clips().expect("proper surfaces");
+            let kind = |clip: &Clip| (clip.all_surfaces().len(), clip.is_general());
+            clips.iter().map(kind).collect()
+        };
+        let few = [(0, false), (1, false), (2, false), (6, false)];
+        assert_eq!(sizes(&limits), few);
+        let none = limits.clone().planes(0);
+        assert_eq!(sizes(&none), [(0, false)]);
+        let bent = limits.clone().planes(0).surfaces(20);
+        let kinds = [(0, false), (1, true), (9, true), (20, true)];
+        assert_eq!(sizes(&bent), kinds);
+        let many = limits.planes(40);
+        assert_eq!(
+            sizes(&many).last(),
+            Some(&(40, true)),
+            "more than a list has"
+        );
+    }
+
+    #[test]
+    fn limits_that_no_frame_can_have_are_refused() {
+        let limits = FrameLimits::new((64, 64), 1);
+        assert!(limits.check().is_ok());
+        for (wrong, named) in [
+            (limits.clone().size((0, 64)), "size is 0x64"),
+            (limits.clone().layers(0), "layers is 0"),
+            (limits.clone().gaussians(u32::MAX), "beyond the 2^32"),
+            (limits.clone().surfaces(1 << 17), "131072"),
+            (limits.clone().settings(Vec::new()), "settings is empty"),
+        ] {
+            let error = wrong.check().expect_err("no frame can").to_string();
+            assert!(error.contains(named), "{error}");
+        }
+    }
+}

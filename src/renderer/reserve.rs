@@ -1,0 +1,220 @@
+//! Room for what will come, made before the first frame, and what is given back when it was not needed.
+
+use glam::DVec3;
+
+use super::choose;
+use super::frames::FramesInFlight;
+use super::limits::FrameLimits;
+use super::outcome::Submission;
+use super::pair_room::PairRoom;
+use super::{Renderer, configure};
+use crate::camera::Camera;
+use crate::clip::Clip;
+use crate::error::Result;
+use crate::limits;
+use crate::passes::{Plan, SceneBuffers, SceneFacts, SceneLayer, Sizes, Work};
+use crate::scene::{Gaussians, Layer};
+use crate::settings::Settings;
+
+impl Renderer {
+    /// Compiles the pipelines and allocates the working memory of all frames within limits: none of them then compiles or
+    /// allocates device memory, whatever their cameras, clips and modes, and whichever scenes they show. Attachments are
+    /// those of the [`RendererDesc`](super::RendererDesc) and of
+    /// [`set_color_format`](Self::set_color_format); `reuse` and `expected_depth` are reserved for where they are set.
+    /// Frames beyond the limits are configured as without them, and what was reserved stays.
+    ///
+    /// It takes as long as the driver compiles: a fraction of a second to some seconds. It submits nothing, so that any
+    /// thread may call it, as while a scene loads. Another renderer that [shares](Self::sharing) this one's pipelines may
+    /// reserve for it while this one draws: their memory is each one's own. [`configure`](Self::configure) comes after it.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for limits that no frame can have, [`Error::Budget`] and [`Error::Memory`] where there is no room;
+    /// of a budget's it is said before anything is allocated or compiled.
+    pub fn reserve(&mut self, limits: &FrameLimits) -> Result<()> {
+        limits.check()?;
+        self.forget();
+        let pairs = self.reserved_pairs(limits);
+        let mut sizes: Option<Sizes> = None;
+        let mut largest = None;
+        self.for_each_plan(limits, pairs, &mut |plan, settings| {
+            let mut more = Sizes::of(plan);
+            if plan.is_tiled() && sizes.is_none_or(|sizes| !sizes.hold_tiles_of(more)) {
+                more = of_lower_pictures(plan, settings)?;
+            }
+            let more = more.reserved(limits.layers);
+            sizes = Some(sizes.map_or(more, |sizes| sizes.or(more)));
+            largest.get_or_insert_with(|| plan.clone());
+            Ok(())
+        })?;
+        let (Some(sizes), Some(plan)) = (sizes, largest) else {
+            return Ok(());
+        };
+        let reclips = self.desc.reuse;
+        let (frames, submission) = (&self.frames, Submission::InFlight);
+        let memory = &mut self.memory;
+        memory.reserve(&self.device, (&plan, sizes, reclips), frames, submission)?;
+        memory.pairs = pairs;
+        self.compile(limits, pairs, sizes)
+    }
+
+    /// Gives back the working memory that the configured frame does not need, and what was
+    /// [reserved](Self::reserve); without a configured frame all of it. The host has waited for all of its frames, as
+    /// before dropping the renderer. [`configure`](Self::configure) comes after it, and allocates nothing for the same frame.
+    ///
+    /// # Errors
+    /// [`Error::Memory`] where the device has no memory for smaller buffers in place of the larger ones; there are none then,
+    /// and the next [`configure`](Self::configure) allocates them.
+    pub fn trim(&mut self) -> Result<()> {
+        let plan = self.configured.take().map(|configured| configured.plan);
+        self.kept = None;
+        let mut pairs = PairRoom::default();
+        let plan = plan.map(|mut plan| {
+            let needed = self.frames.newest().map_or(0, |frame| frame.pairs());
+            pairs.make(plan.gaussians(), plan.data.tiles.tile_count, needed);
+            if plan.is_tiled() {
+                pairs.expect(self.estimate.last());
+            }
+            plan.data.room.pair_capacity = pairs.room();
+            plan
+        });
+        self.memory.pairs = pairs;
+        self.memory.trim(&self.device, plan.as_ref())
+    }
+
+    /// Bytes of device memory that its working memory takes, with what frames in flight still use. Buffers that frames in
+    /// flight and the next one share count once. Scenes have their own ([`SceneBuffers::bytes`]), and
+    /// [`Device::device_bytes`](crate::gpu::Device::device_bytes) is the sum of all.
+    pub fn bytes(&self) -> u64 {
+        self.memory.bytes() + self.frames.bytes()
+    }
+
+    /// The room for pairs that limits ask for.
+    fn reserved_pairs(&self, limits: &FrameLimits) -> PairRoom {
+        if let Some(pairs) = limits.pairs {
+            return PairRoom::fixed(pairs);
+        }
+        let had = self.memory.pairs;
+        let mut pairs = match had.is_fixed() {
+            true => PairRoom::default(),
+            false => had,
+        };
+        pairs.make(limits.gaussians, tiles(limits.size), 0);
+        pairs
+    }
+
+    /// Compiles the pipelines of all frames within limits, whose largest buffers have these sizes. The lock that renderers
+    /// share is taken for one kind of frame at a time.
+    fn compile(&mut self, limits: &FrameLimits, pairs: PairRoom, sizes: Sizes) -> Result<()> {
+        let targets = self.targets();
+        let of_memory = self.bindings_of(sizes.largest());
+        let scene = SceneBuffers::largest_of(limits.gaussians, limits.sh_format);
+        let of_scene = self.bindings_of(sizes.largest().max(scene));
+        let mut pipelines = std::mem::take(&mut self.pipelines);
+        let compiled = self.for_each_plan(limits, pairs, &mut |plan, _| {
+            pipelines.ensure(&self.device, of_memory, targets, plan)?;
+            pipelines.ensure(&self.device, of_scene, targets, plan)
+        });
+        self.pipelines = pipelines;
+        compiled
+    }
+
+    /// Calls a function with a plan of each kind of frame within limits, the largest of its kind.
+    fn for_each_plan(
+        &self,
+        limits: &FrameLimits,
+        pairs: PairRoom,
+        act: &mut dyn FnMut(&Plan, &Settings) -> Result<()>,
+    ) -> Result<()> {
+        let nothing = Gaussians::default();
+        let layer = SceneLayer::new(&Layer::new("", &nothing), 0);
+        let layers = [layer.clone(), layer];
+        let clips = limits.clips()?;
+        for settings in &limits.settings {
+            for size in pictures(limits.size) {
+                for clip in &clips {
+                    for count in 1..=limits.layers.min(2) {
+                        let layers = &layers[..count as usize];
+                        let mut plan =
+                            self.plan_of(limits, pairs, (layers, clip, settings, size))?;
+                        act(&plan, settings)?;
+                        for work in self.further_work(&plan) {
+                            plan.work = work;
+                            act(&plan, settings)?;
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn plan_of(
+        &self,
+        limits: &FrameLimits,
+        pairs: PairRoom,
+        (layers, clip, settings, size): (&[SceneLayer], &Clip, &Settings, (u32, u32)),
+    ) -> Result<Plan> {
+        let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::NEG_Y, 50.0, size)?;
+        let (raster, _) = self.choose_raster(settings, tiles(size))?;
+        let facts = SceneFacts {
+            gaussians: limits.gaussians,
+            blocks: limits.gaussians.div_ceil(limits::BLOCK_SIZE),
+            sh_format: limits.sh_format,
+            pair_capacity: pairs.room(),
+            redrawn: settings.show.needs_tiles(),
+            ..self.facts(layers, limits.gaussians, raster, self.depth_map())
+        };
+        Plan::new(facts, &camera, clip, settings)
+    }
+
+    /// The parts of a frame that may be computed in place of the whole.
+    fn further_work(&self, plan: &Plan) -> Vec<Work> {
+        if !self.desc.reuse || !plan.finds_clip() || plan.occluders.is_some() {
+            return Vec::new();
+        }
+        let both = [true, false];
+        let work = both
+            .iter()
+            .flat_map(|base| both.iter().map(|fresh| (*base, *fresh)));
+        work.map(|(base, fresh)| Work::Reclip { base, fresh })
+            .collect()
+    }
+}
+
+/// The sizes of a plan and of the same for lower pictures, for which CPU drivers divide the rows into more parts.
+fn of_lower_pictures(plan: &Plan, settings: &Settings) -> Result<Sizes> {
+    let [width, height] = plan.size().map(|side| side as u32);
+    let mut sizes = Sizes::of(plan);
+    for rows in 1..height.div_ceil(limits::TILE_HEIGHT) {
+        let lower = plan.sized(width, rows * limits::TILE_HEIGHT, settings)?;
+        sizes = sizes.or(Sizes::of(&lower));
+    }
+    Ok(sizes)
+}
+
+/// The pictures whose frames differ: the largest, the smallest, and where tiles do not take the largest, the widest and the
+/// highest that they take.
+fn pictures((width, height): (u32, u32)) -> Vec<(u32, u32)> {
+    let mut pictures = vec![(width, height), (1, 1)];
+    if tiles((width, height)) > choose::MOST_TILES {
+        let [columns, rows] = [
+            width.div_ceil(limits::TILE_WIDTH),
+            height.div_ceil(limits::TILE_HEIGHT),
+        ];
+        let (low, narrow) = (choose::MOST_TILES / columns, choose::MOST_TILES / rows);
+        pictures.push((width, low * limits::TILE_HEIGHT));
+        pictures.push((narrow * limits::TILE_WIDTH, height));
+    }
+    pictures
+}
+
+fn tiles((width, height): (u32, u32)) -> u32 {
+    configure::tiles_of(width, height)
+}
+
+impl FramesInFlight {
+    /// Bytes of the slots' buffers.
+    fn bytes(&self) -> u64 {
+        self.slots().iter().map(|slot| slot.counts.size()).sum()
+    }
+}

@@ -63,8 +63,8 @@ pub struct FrameStats {
     pub counts: Counts,
     /// GPU time of each stage, in order.
     pub passes: Vec<PassTime>,
-    /// GPU time of the frame, milliseconds; 0 where [`passes`](Self::passes) is empty.
-    pub gpu_ms: f64,
+    /// GPU time of the frame, milliseconds: 0 for one that computed nothing, `None` where no times were taken.
+    pub gpu_ms: Option<f64>,
     /// From recording to the picture being ready on the device, milliseconds.
     pub wall_ms: f64,
     /// The stages that this frame did not need.

@@ -29,6 +29,7 @@ pub mod placement;
 pub mod region;
 pub mod renderer;
 pub mod renderer_desc;
+pub mod reserve;
 pub mod scene;
 pub mod settings;
 pub mod stats;

@@ -3,6 +3,7 @@
 use std::cell::Cell;
 use std::ffi::{c_char, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{OnceLock, PoisonError, RwLock};
 
 use log::{LevelFilter, Log, Metadata, Record};
@@ -42,6 +43,9 @@ unsafe impl Send for Host {}
 // SAFETY: as above, several at once.
 unsafe impl Sync for Host {}
 
+/// The level up to which the host wants lines, RARA_LOG_LEVEL_TRACE in the beginning.
+static LEVEL: AtomicUsize = AtomicUsize::new(LevelFilter::Trace as usize);
+
 /// Locked for reading while the host's function runs, so that rara_set_log returns only when nobody is in the old
 /// function.
 static HOST: RwLock<Option<Host>> = RwLock::new(None);
@@ -58,7 +62,7 @@ struct Sink;
 
 impl Log for Sink {
     fn enabled(&self, _: &Metadata<'_>) -> bool {
-        true // the host's function filters by level
+        true // the greatest level is the crate's own, log::max_level
     }
 
     fn log(&self, record: &Record<'_>) {
@@ -85,8 +89,8 @@ fn forward(record: &Record<'_>) {
     }
 }
 
-/// Sends the log of the whole process, of every level, to a function of the host's; with null, as in the beginning,
-/// nobody gets it. `user` is what the function is given.
+/// Sends the log of the whole process, up to the level of rara_set_log_level, to a function of the host's; with null, as in
+/// the beginning, nobody gets it. `user` is what the function is given.
 ///
 /// RARA_LOG_LEVEL_INFO tells of devices that were adopted and for which kernels, of scenes, and of how splats become pixels
 /// and why, where that changes. RARA_LOG_LEVEL_DEBUG tells of each pipeline that is compiled and how long that took, and of
@@ -114,11 +118,38 @@ pub unsafe extern "C" fn rara_set_log(log: RaraLog, user: *mut c_void) -> RaraRe
         let mut host = HOST.write().unwrap_or_else(PoisonError::into_inner);
         *host = log.map(|log| Host { log, user });
         if OURS.get() == Some(&true) {
-            log::set_max_level(match *host {
-                Some(_) => LevelFilter::Trace,
-                None => LevelFilter::Off,
-            });
+            filter(&host);
         }
         Ok(())
     })
+}
+
+/// Sets up to which level rara_set_log's function gets lines, now and after another rara_set_log: RARA_LOG_LEVEL_WARN for
+/// errors and warnings, say; in the beginning RARA_LOG_LEVEL_TRACE, for all. What nobody gets is not put together either, so
+/// that a host without use for RARA_LOG_LEVEL_TRACE does not pay for it in each frame. 0 stands for none.
+///
+/// May be called as rara_set_log may. RARA_ERROR_INVALID for what is no level, and if the log's function itself calls this.
+#[unsafe(no_mangle)]
+pub extern "C" fn rara_set_log_level(most: RaraLogLevel) -> RaraResult {
+    guard(|| {
+        if TELLING.get() {
+            return invalid("rara_set_log_level was called by the function that takes the log");
+        }
+        if most > RARA_LOG_LEVEL_TRACE {
+            return invalid(format!("most {most} is no RaraLogLevel"));
+        }
+        let host = HOST.write().unwrap_or_else(PoisonError::into_inner);
+        LEVEL.store(most as usize, Ordering::Relaxed);
+        if OURS.get() == Some(&true) {
+            filter(&host);
+        }
+        Ok(())
+    })
+}
+
+/// Lets lines through as the host wants them.
+fn filter(host: &Option<Host>) {
+    let levels = LevelFilter::iter().take(1 + LEVEL.load(Ordering::Relaxed));
+    let wanted = levels.last().filter(|_| host.is_some());
+    log::set_max_level(wanted.unwrap_or(LevelFilter::Off));
 }

@@ -22,6 +22,7 @@ use crate::placement::*;
 use crate::region::*;
 use crate::renderer::*;
 use crate::renderer_desc::*;
+use crate::reserve::*;
 use crate::scene::*;
 use crate::settings::*;
 use crate::stats::*;
@@ -275,6 +276,23 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
         "renderer is null"
     );
     call!(rara_set_log(None, null_mut()), ""); // null stands for nobody
+    let refused = rara_set_log_level(6);
+    called.push((refused, "rara_set_log_level", "6 is no RaraLogLevel"));
+    call!(
+        rara_frame_limits_default(null_mut(), size_of::<RaraFrameLimits>(), 1, 1, 1),
+        "limits is null"
+    );
+    call!(
+        rara_renderer_reserve(null_mut(), null()),
+        "renderer is null"
+    );
+    call!(rara_renderer_trim(null_mut()), "renderer is null");
+    call!(
+        rara_scene_buffers_estimated_pairs(null(), null(), null_mut()),
+        "pairs is null"
+    );
+    call!(rara_device_memory(null(), null_mut(), 0), "device is null");
+    call!(rara_device_set_memory_budget(null(), 0), "device is null");
     called
 }
 
@@ -288,7 +306,9 @@ fn assert_nothing_comes_of_null() {
         rara_device_destroy(null_mut());
         rara_region_destroy(null_mut());
         assert_eq!(
-            rara_device_bytes(null()) + rara_scene_buffers_bytes(null()),
+            rara_device_bytes(null())
+                + rara_scene_buffers_bytes(null())
+                + rara_renderer_bytes(null()),
             0
         );
         assert_eq!(rara_scene_buffers_layer_count(null()), 0);

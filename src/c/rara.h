@@ -644,7 +644,7 @@ typedef struct RaraFrameStats {
 // The device lacks something.
 #define RARA_ERROR_DEVICE 4
 
-// There is not enough memory, on the device or the host.
+// There is not enough memory, on the device, on the host, or in the budget of rara_device_set_memory_budget.
 #define RARA_ERROR_MEMORY 5
 
 // A Vulkan call failed for another reason.
@@ -822,8 +822,8 @@ uint32_t rara_abi_version(void);
 // until this thread's next call that fails.
 const char *rara_last_error_message(void);
 
-// Sends the log of the whole process, of every level, to a function of the host's; with null, as in the beginning,
-// nobody gets it. `user` is what the function is given.
+// Sends the log of the whole process, up to the level of rara_set_log_level, to a function of the host's; with null, as in
+// the beginning, nobody gets it. `user` is what the function is given.
 //
 // RARA_LOG_LEVEL_INFO tells of devices that were adopted and for which kernels, of scenes, and of how splats become pixels
 // and why, where that changes. RARA_LOG_LEVEL_DEBUG tells of each pipeline that is compiled and how long that took, and of
@@ -838,6 +838,13 @@ const char *rara_last_error_message(void);
 // `log` is null, or is as RaraLog says and may be called with `user` by any thread until it is replaced.
 RaraResult rara_set_log(RaraLog log,
                         void *user);
+
+// Sets up to which level rara_set_log's function gets lines, now and after another rara_set_log: RARA_LOG_LEVEL_WARN for
+// errors and warnings, say; in the beginning RARA_LOG_LEVEL_TRACE, for all. What nobody gets is not put together either, so
+// that a host without use for RARA_LOG_LEVEL_TRACE does not pay for it in each frame. 0 stands for none.
+//
+// May be called as rara_set_log may. RARA_ERROR_INVALID for what is no level, and if the log's function itself calls this.
+RaraResult rara_set_log_level(RaraLogLevel most);
 
 // A camera in perspective at `eye` that looks at `target`; each is three numbers in world units. `up` points up in the
 // picture; in the usual world, where y is down, it is 0, -1, 0. `fov_y` is the full vertical field of view in degrees.
@@ -1163,15 +1170,18 @@ RaraResult rara_camera_of_projection_floats(const float *view,
 // `renderer` is alive, was created with a depth attachment, and is not used by another thread; `seen` points to one.
 RaraResult rara_renderer_set_depth_of_projection(struct RaraRenderer *renderer, const struct RaraHostView *seen);
 
-// Loads a 3DGS .ply file: ascii or binary, spherical harmonics of degree 0 to 3.
+// Loads a scene: 3DGS .ply (ascii or binary, spherical harmonics of degree 0 to 3), .compressed.ply, .splat, .ksplat, .spz,
+// SOG (an archive, its folder or meta.json) or glTF with KHR_gaussian_splatting. The format is found by what is in the file.
 //
 // `path` is UTF-8, or on Unix whatever the file system takes.
 //
 // # Safety
 // `path` ends in NUL; `gaussians` may be overwritten.
-RaraResult rara_gaussians_load(const char *path, struct RaraGaussians **gaussians);
+RaraResult rara_gaussians_load(const char *path,
+                               struct RaraGaussians **gaussians);
 
-// Loads a 3DGS .ply file that is in memory, such as an archive's entry. `name` stands for it in messages.
+// Loads a scene that is in memory, such as an archive's entry, in any format that is one file. `name` stands for it in
+// messages.
 //
 // # Safety
 // `data` points to `size` bytes, which are not used afterwards; `name` ends in NUL; `gaussians` may be overwritten.

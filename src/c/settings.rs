@@ -153,7 +153,7 @@ impl RaraSettings {
         }
     }
 
-    fn settings(&self) -> Result<Settings> {
+    pub(crate) fn settings(&self) -> Result<Settings> {
         fn no<T>(field: &str, value: u32, kind: &str) -> Result<T> {
             invalid(format!("settings->{field} {value} is no {kind}"))
         }

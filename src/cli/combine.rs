@@ -65,7 +65,8 @@ pub(super) fn combine(frames: &[FrameStats], how: Combine) -> FrameStats {
         ms: value(&|frame| ms(name, frame)),
     });
     combined.passes = passes.collect();
-    combined.gpu_ms = value(&|frame| frame.gpu_ms);
+    let is_timed = frames.iter().any(|frame| frame.gpu_ms.is_some());
+    combined.gpu_ms = is_timed.then(|| value(&|frame| frame.gpu_ms.unwrap_or_default()));
     combined.wall_ms = value(&|frame| frame.wall_ms);
     combined.skipped = skipped;
     if let Some(last) = frames.last() {
@@ -93,7 +94,7 @@ mod tests {
 
     fn frame(gpu_ms: f64, visible: u32, sort: Option<f64>) -> FrameStats {
         let mut frame = FrameStats::default();
-        frame.gpu_ms = gpu_ms;
+        frame.gpu_ms = Some(gpu_ms);
         frame.counts.visible = visible;
         frame.counts.drawn = visible;
         frame.passes.push(PassTime {
@@ -115,7 +116,7 @@ mod tests {
             frame(2.0, 20, Some(6.0)),
         ];
         let median = combine(&frames, Combine::Median);
-        assert_eq!((median.gpu_ms, median.counts.visible), (2.0, 20));
+        assert_eq!((median.gpu_ms, median.counts.visible), (Some(2.0), 20));
         assert_eq!(
             median.passes[1],
             PassTime {
@@ -125,8 +126,12 @@ mod tests {
         );
         assert!(median.skipped.is_empty());
         let mean = combine(&frames, Combine::Mean);
-        assert_eq!((mean.gpu_ms, mean.passes[1].ms), (4.0, 3.0));
+        assert_eq!((mean.gpu_ms, mean.passes[1].ms), (Some(4.0), 3.0));
         assert_eq!(combine(&frames[1..2], Combine::Median), frames[1]);
-        assert_eq!(combine(&frames[1..], Combine::Median).gpu_ms, 1.5);
+        assert_eq!(combine(&frames[1..], Combine::Median).gpu_ms, Some(1.5));
+        assert_eq!(
+            combine(&[FrameStats::default()], Combine::Mean).gpu_ms,
+            None
+        );
     }
 }

@@ -137,7 +137,7 @@ fn print_frames(shots: &[Shot]) {
         say(format_args!(
             "{:<6} {visible:>10} {cut:>10} {clipped:>10} {culled:>10} {:>9.2}  {}",
             name(*mode),
-            stats.gpu_ms,
+            stats.gpu_ms.unwrap_or_default(),
             passes.join(", ")
         ));
     }

@@ -190,7 +190,8 @@ impl fmt::Display for Report {
         writeln!(
             f,
             "\ntime     {:.2} ms on the device, {:.2} ms in all",
-            stats.gpu_ms, stats.wall_ms
+            stats.gpu_ms.unwrap_or_default(),
+            stats.wall_ms
         )?;
         write!(
             f,

@@ -105,6 +105,7 @@ impl Renderer {
             counts: newest.map(RecordedFrame::counts).unwrap_or_default(),
             skipped,
             raster: raster.unwrap_or_default(),
+            gpu_ms: self.desc.timing.then_some(0.0),
             ..FrameStats::default()
         }
     }
@@ -152,7 +153,7 @@ impl RecordedFrame {
         let configured = self.configured.as_ref();
         FrameStats {
             counts: self.counts(),
-            gpu_ms: passes.iter().fold(0.0, |sum, pass| sum + pass.ms), // `sum` of nothing is -0
+            gpu_ms: self.gpu_ms(&passes),
             passes,
             wall_ms: 0.0,
             skipped: configured.map(Configured::skipped).unwrap_or_default(),
@@ -161,6 +162,12 @@ impl RecordedFrame {
             }),
             statistics: self.pass_statistics(),
         }
+    }
+
+    /// The sum of its times, if they were taken.
+    fn gpu_ms(&self, passes: &[PassTime]) -> Option<f64> {
+        let has_times = self.timer.is_some() && (self.recorded_nothing() || !passes.is_empty());
+        has_times.then(|| passes.iter().fold(0.0, |sum, pass| sum + pass.ms)) // `sum` of nothing is -0
     }
 
     pub(crate) fn pass_spans(&self) -> Vec<PassSpan> {

@@ -84,6 +84,22 @@ fn records_reach_the_host() {
         ];
         assert_eq!((taken(&first).len(), taken(&second)), (0, expected.into()));
 
+        // What is beyond the level is not even put together.
+        assert_eq!(rara_set_log_level(RARA_LOG_LEVEL_WARN), RARA_OK);
+        log::warn!("five");
+        log::info!("{Unwritable}");
+        assert!(!log::log_enabled!(log::Level::Info));
+        assert_eq!(taken(&second), [line(RARA_LOG_LEVEL_WARN, "five")]);
+        assert_eq!(rara_set_log(Some(keep), address(&mut first)), RARA_OK);
+        log::info!("six");
+        log::error!("seven");
+        assert_eq!(taken(&first), [line(RARA_LOG_LEVEL_ERROR, "seven")]);
+        assert_eq!(rara_set_log_level(0), RARA_OK);
+        log::error!("eight");
+        assert_eq!(taken(&first).len(), 0);
+        assert_eq!(rara_set_log_level(6), RARA_ERROR_INVALID);
+        assert_eq!(rara_set_log_level(RARA_LOG_LEVEL_TRACE), RARA_OK);
+
         let mut refused = AtomicU32::new(0);
         let user = (&raw mut refused).cast();
         assert_eq!(rara_set_log(Some(misbehave), user), RARA_OK);

@@ -76,7 +76,7 @@ pub(crate) fn column(frames: &[Timed], name: &str) -> Vec<f64> {
     let value = |timed: &Timed| match name {
         "frame" => Some(timed.frame_ms),
         "processor" => Some(timed.processor_ms),
-        "device" => Some(timed.stats.gpu_ms),
+        "device" => timed.stats.gpu_ms,
         _ => {
             let pass = timed.stats.passes.iter().find(|pass| pass.name == name)?;
             Some(pass.ms)

@@ -64,7 +64,7 @@ pub(super) fn time(
             let frame = session.frame(camera, clip, settings, 1)?;
             let after = processor_ms();
             if round > 0 {
-                samples.ms.push(frame.gpu_ms);
+                samples.ms.extend(frame.gpu_ms);
                 samples.wall.push(frame.wall_ms);
                 samples.cpu.push(after - before);
                 samples.passes.push(frame.passes);

@@ -208,6 +208,6 @@ fn measured(raster: &'static str, stats: &FrameStats) -> Measured {
     Measured {
         raster,
         stages: stages.map(|pass| (pass.name, pass.ms)).collect(),
-        ms: stats.gpu_ms,
+        ms: stats.gpu_ms.unwrap_or_default(),
     }
 }

@@ -6,6 +6,7 @@ mod layers;
 mod lent;
 mod ours;
 mod regions;
+mod reserve;
 mod staged;
 mod world;
 

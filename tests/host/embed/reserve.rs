@@ -71,7 +71,12 @@ fn made(device: &Device) -> (u64, u64) {
 
 /// The pictures of frames, alternately of a scene and of its halves as layers, and what configuring and recording them has
 /// compiled and allocated.
-fn drawn(desc: RendererDesc, scene: &Gaussians, reserve: bool) -> (Vec<Vec<[f32; 4]>>, (u64, u64)) {
+fn drawn(
+    desc: RendererDesc,
+    scene: &Gaussians,
+    reserve: bool,
+    settings: impl Fn(&Device) -> Vec<Settings>,
+) -> (Vec<Vec<[f32; 4]>>, (u64, u64)) {
     let host = open_host(FLOATS, VIEW, true);
     let mut engine = Engine::new(host, scene, ShFormat::default(), desc);
     let half = common::picked(scene, 0..scene.len() / 2);

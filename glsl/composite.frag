@@ -1,16 +1,25 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Reads the tiles' picture, which is blended onto what the host has drawn.
+// Reads the tiles' picture, which is blended onto what the host has drawn: as it is, or for a host of linear light turned
+// into that once, after the splats were blended as stored.
 struct Params {
     vec2 origin; // where the viewport begins in the attachment, px
 };
 #define PARAMS Params
 #include "frame.glsl"
 
+layout(constant_id = 0) const bool LINEAR = false;
+
 BUFFER(readonly, 1, vec4, picture)
 
 layout(location = 0) flat in uvec2 filled; // of this quad's tiles, as composite.vert says
 layout(location = 0) out vec4 colour;
+
+// The linear light of colours as sRGB stores them; beyond white the curve goes on.
+vec3 linear_light(vec3 stored) {
+    stored = max(stored, 0.0);
+    return mix(pow((stored + 0.055) / 1.055, vec3(2.4)), stored / 12.92, lessThanEqual(stored, vec3(0.04045)));
+}
 
 void main() {
     vec2 pixel_centre = gl_FragCoord.xy - push.params.origin;
@@ -22,5 +31,9 @@ void main() {
     colour = vec4(0.0);
     if (is_filled) {
         colour = picture.at[pixel.y * size.x + pixel.x];
+    }
+    // A premultiplied colour is the pixel's own times its alpha.
+    if (LINEAR && colour.a > 0.0) {
+        colour.rgb = colour.a * linear_light(colour.rgb / colour.a);
     }
 }

@@ -2,7 +2,7 @@
 
 use rara::ash::vk;
 use rara::gpu::{Bindings, Target};
-use rara::{ExpectedDepthDesc, RendererDesc, Result};
+use rara::{ColorSpace, ExpectedDepthDesc, RendererDesc, Result};
 
 use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
 use crate::depth::{self, RaraDepthDesc};
@@ -14,6 +14,15 @@ pub const RARA_BINDINGS_ADDRESS: RaraBindings = 0;
 /// Bound, so that the validation layer can watch them. Needs VK_KHR_push_descriptor; without it buffers are reached by
 /// address.
 pub const RARA_BINDINGS_BOUND: RaraBindings = 1;
+
+/// What the numbers of the colour attachment stand for.
+pub type RaraColorSpace = u32;
+/// Colours as a display stores them, as splats are trained and blended: they meet the host's pixels as they are. The default.
+pub const RARA_COLOR_SPACE_STORED: RaraColorSpace = 0;
+/// Linear light, as of a host that lights in HDR: splats are blended as stored, and the picture that they make is turned into
+/// linear light once before it is blended over the host's pixels. Only tiles do so: another raster is refused, and so is a
+/// depth that is not readable. A frame whose tiles have no room draws nothing, as RaraFrameStats::fell_back says.
+pub const RARA_COLOR_SPACE_LINEAR: RaraColorSpace = 1;
 
 /// The description of a renderer to be created.
 #[repr(C)]
@@ -49,6 +58,8 @@ pub struct RaraRendererDesc {
     pub expected_depth_render_pass: vk::RenderPass,
     /// The subpass of expected_depth_render_pass to draw in.
     pub expected_depth_subpass: u32,
+    /// What the numbers of the colour attachment stand for.
+    pub color_space: RaraColorSpace,
 }
 
 // SAFETY: repr(C), numbers, handles and a pointer, the size first.
@@ -72,6 +83,7 @@ impl RaraRendererDesc {
             expected_depth_format: vk::Format::UNDEFINED,
             expected_depth_render_pass: vk::RenderPass::null(),
             expected_depth_subpass: 0,
+            color_space: RARA_COLOR_SPACE_STORED,
         }
     }
 }
@@ -116,10 +128,16 @@ pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<Rend
         RARA_BINDINGS_BOUND => Bindings::Bound,
         other => return invalid(format!("desc->bindings {other} is no RaraBindings")),
     };
+    let color_space = match desc.color_space {
+        RARA_COLOR_SPACE_STORED => ColorSpace::Stored,
+        RARA_COLOR_SPACE_LINEAR => ColorSpace::Linear,
+        other => return invalid(format!("desc->color_space {other} is no RaraColorSpace")),
+    };
     // SAFETY: the caller's promise.
     let target = unsafe { target(desc.render_pass, desc.subpass) };
     // Statistics stay off: they need a device that rara has opened itself.
     Ok(RendererDesc::new(desc.color_format)
+        .color_space(color_space)
         .depth(depth)
         .samples(desc.samples)
         .expected_depth(expected_depth)

@@ -100,7 +100,7 @@ impl Plan {
             need(splat::draw(self, targets.colour).key());
         }
         if self.is_drawn && self.is_tiled() {
-            need(tiles::composite(targets.colour).key());
+            need(tiles::composite(self, targets).key());
         }
         if let Some(attachments) = targets.expected_depth {
             need(depth::draw(self, attachments).key());

@@ -67,6 +67,8 @@ pub(crate) struct Targets {
     pub(crate) colour: Attachments,
     /// Those of expected depths, where they are drawn.
     pub(crate) expected_depth: Option<Attachments>,
+    /// True when the host's colours are linear light.
+    pub(crate) linear: bool,
 }
 
 /// The pipeline that a plan makes of a program.

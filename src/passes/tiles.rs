@@ -4,7 +4,7 @@
 
 use std::mem::offset_of;
 
-use crate::gpu::{Attachments, DeviceShape, Drawer, Recorder};
+use crate::gpu::{DeviceShape, Drawer, Recorder};
 use crate::limits;
 use crate::passes::buffers::{Buffers, TileBuffers, buffers, indirect};
 #[cfg(feature = "lab")]
@@ -12,10 +12,11 @@ use crate::passes::cost::{self, Cost, FrameNumbers};
 use crate::passes::pipelines::{Draw, Kernel, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{composite, tiles};
-use crate::passes::stage::{Frame, Stage};
+use crate::passes::stage::{Frame, Stage, Targets};
 use crate::passes::weight::Weight;
 use crate::passes::work::Work;
 use crate::precision::TargetFormat;
+use crate::settings::Show;
 use crate::types::{self, FrameCounts};
 
 pub(crate) const STAGE: Stage = Stage {
@@ -240,9 +241,14 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     }
 }
 
-/// The draw of the tiles' picture.
-pub(crate) fn composite(attachments: Attachments) -> Draw<composite::Program> {
-    Draw::new([&composite::VERT, &composite::FRAG], (), attachments, false)
+/// The draw of the tiles' picture, in linear light where a target asks for it and colours are shown.
+pub(crate) fn composite(plan: &Plan, targets: Targets) -> Draw<composite::Program> {
+    let shows_colours = matches!(plan.way.show, Show::Colour | Show::Weight);
+    let constants = composite::Constants {
+        linear: targets.linear && shows_colours,
+    };
+    let shaders = [&composite::VERT, &composite::FRAG];
+    Draw::new(shaders, constants, targets.colour, false)
 }
 
 /// Blends the tiles' picture onto what the host has drawn, inside the host's rendering scope. `origin` is where its viewport
@@ -250,8 +256,8 @@ pub(crate) fn composite(attachments: Attachments) -> Draw<composite::Program> {
 pub(crate) fn record_composite(
     drawer: &mut Drawer<'_>,
     pipelines: &Pipelines,
-    (b, t): (&Buffers, &TileBuffers),
-    attachments: Attachments,
+    (plan, b, t): (&Plan, &Buffers, &TileBuffers),
+    targets: Targets,
     origin: [f32; 2],
 ) {
     let buffers = buffers!(composite {
@@ -261,7 +267,7 @@ pub(crate) fn record_composite(
     });
     let args = (&b.counts, offset_of!(FrameCounts, composite) as u64);
     let params = composite::Params { origin };
-    composite(attachments).draw(pipelines, drawer, buffers, params, args);
+    composite(plan, targets).draw(pipelines, drawer, buffers, params, args);
 }
 
 #[cfg(test)]

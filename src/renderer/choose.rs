@@ -14,6 +14,8 @@ pub(super) struct Targets {
     pub(super) hidden: bool,
     /// True when a pixel has several samples.
     pub(super) multisampled: bool,
+    /// True when colours become linear light once splats are blended.
+    pub(super) linear: bool,
 }
 
 /// How splats become pixels on a device, and why in that way.
@@ -28,9 +30,16 @@ pub(super) fn raster(
     } else {
         Raster::Quad
     };
-    let needs_tiles = settings.show.needs_tiles();
+    let needs_tiles = settings.show.needs_tiles() || targets.linear;
     let can_tile = !targets.hidden && matches!(settings.raster, Raster::Auto | Raster::Tiles);
     Ok(match settings.raster {
+        _ if targets.linear && !can_tile => {
+            return Err(Error::Invalid(
+                "ColorSpace::Linear is made by tiles alone, since quads blend into the host's own target; leave the raster \
+                 to itself, and make the host's depth readable (DepthDesc::readable)"
+                    .into(),
+            ));
+        }
         _ if needs_tiles && !can_tile => {
             return Err(Error::Invalid(format!(
                 "Show::{:?} is made by tiles alone; leave the raster to itself, and make the host's depth readable",
@@ -98,12 +107,33 @@ mod tests {
     }
 
     #[test]
+    fn linear_light_without_tiles_is_refused() {
+        let targets = Targets {
+            tiles: 1000,
+            hidden: false,
+            multisampled: false,
+            linear: true,
+        };
+        let hidden = Targets {
+            hidden: true,
+            ..targets
+        };
+        let (usual, support) = (Settings::default(), Support::default());
+        for (settings, targets) in [(usual.raster(Raster::Quad), targets), (usual, hidden)] {
+            let refused = raster(&settings, &support, DeviceShape::Cpu, targets);
+            let text = refused.expect_err("quads").to_string();
+            assert!(text.contains("ColorSpace::Linear"), "{text}");
+        }
+    }
+
+    #[test]
     fn tiles_are_chosen_where_they_can_draw() {
         let gpu = DeviceShape::Gpu { subgroup: 32 };
         let usual = Targets {
             tiles: 1000,
             hidden: false,
             multisampled: false,
+            linear: false,
         };
         let hidden = Targets {
             hidden: true,
@@ -128,6 +158,11 @@ mod tests {
                 assert_eq!(chosen(gpu, mesh_shader, targets), draws, "{targets:?}");
             }
             assert_eq!(chosen(DeviceShape::Cpu, mesh_shader, usual), Raster::Tiles);
+            let linear = Targets {
+                linear: true,
+                ..multisampled
+            };
+            assert_eq!(chosen(gpu, mesh_shader, linear), Raster::Tiles);
             assert_eq!(
                 chosen(DeviceShape::Cpu, mesh_shader, multisampled),
                 Raster::Tiles

@@ -4,6 +4,7 @@ use ash::vk;
 
 use super::Renderer;
 use super::choose;
+use super::desc::ColorSpace;
 use super::frames::{Configured, RecordedFrame};
 use super::outcome::Submission;
 use crate::camera::Camera;
@@ -84,7 +85,7 @@ impl Renderer {
         self.memory.free_finished(self.frames.finished(submission));
         let tiles = tiles_of(request.camera.width, request.camera.height);
         // Where no quads can take the tiles' place, nothing does.
-        let needs_tiles = request.settings.show.needs_tiles();
+        let needs_tiles = self.needs_tiles(request.settings);
         let redrawn = self.make_room(request, tiles) || needs_tiles;
         let (raster, reason) = self.choose_raster(request.settings, tiles)?;
         // Quads, which have to be drawn, take the tiles' place only in a frame that is not redrawn.
@@ -157,6 +158,7 @@ impl Renderer {
         let targets = choose::Targets {
             tiles,
             hidden: self.desc.depth.is_some_and(|depth| !depth.readable),
+            linear: self.desc.color_space == ColorSpace::Linear,
             multisampled: self.desc.samples != vk::SampleCountFlags::TYPE_1,
         };
         let device = &self.device;
@@ -174,7 +176,13 @@ impl Renderer {
         Targets {
             colour: self.desc.attachments(),
             expected_depth: self.desc.expected_depth_attachments(),
+            linear: self.desc.color_space == ColorSpace::Linear,
         }
+    }
+
+    /// True where only tiles make what settings ask for, so that no quads can take their place.
+    pub(super) fn needs_tiles(&self, settings: &Settings) -> bool {
+        settings.show.needs_tiles() || self.desc.color_space == ColorSpace::Linear
     }
 
     /// A plan's arguments for so many Gaussians of these layers, as far as they follow from device and description.

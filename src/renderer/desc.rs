@@ -7,6 +7,22 @@ use crate::error::{Error, Result};
 use crate::gpu::{Attachments, Bindings, DepthAttachment, Device, Target};
 use crate::setters::setters;
 
+/// What the numbers of a host's colour attachment stand for. Splats are trained, and blended, as a display stores colours: by
+/// the curve of sRGB. What meets the host's pixels is then theirs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+pub enum ColorSpace {
+    /// Colours as they are stored, for a host that draws its own like that: they meet its pixels as they are.
+    #[default]
+    Stored,
+    /// Linear light, as of a host that lights in HDR and encodes its picture afterwards: splats are blended as stored, the
+    /// picture that they make is turned into linear light once, and that is blended `over` the host's pixels. Only tiles do
+    /// so: another [`Raster`](crate::Raster) is refused, and so is a depth that is not [readable](DepthDesc::readable). A frame
+    /// whose tiles have no room draws nothing, as [`fell_back`](super::Renderer::fell_back) says.
+    /// [`Show::Count`](crate::Show::Count) and [`Show::Mean`](crate::Show::Mean), which are numbers, stay as they are.
+    Linear,
+}
+
 /// The description from which a renderer is created: [`RendererDesc::new`] is the usual one, and a host sets what it wants
 /// otherwise.
 #[derive(Debug, Clone, Copy)]
@@ -15,6 +31,8 @@ pub struct RendererDesc {
     /// Format of the colour attachment that [`Renderer::draw`](super::Renderer::draw) draws into. It must be blendable;
     /// splats are trained to be blended as stored, so sRGB formats, which blend in linear light, give another picture.
     pub color_format: vk::Format,
+    /// What the attachment's numbers stand for.
+    pub color_space: ColorSpace,
     /// The depth attachment of the host's scope, which splats are tested against; `None` if it has none.
     pub depth: Option<DepthDesc>,
     /// The target of [`Renderer::draw_depth`](super::Renderer::draw_depth); `None` where that is not called, and then
@@ -42,6 +60,7 @@ pub struct RendererDesc {
 
 setters!(RendererDesc {
     color_format: vk::Format,
+    color_space: ColorSpace,
     depth: Option<DepthDesc>,
     expected_depth: Option<ExpectedDepthDesc>,
     samples: vk::SampleCountFlags,
@@ -118,6 +137,7 @@ impl RendererDesc {
     pub const fn new(color_format: vk::Format) -> Self {
         Self {
             color_format,
+            color_space: ColorSpace::Stored,
             depth: None,
             expected_depth: None,
             samples: vk::SampleCountFlags::TYPE_1,

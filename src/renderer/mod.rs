@@ -34,7 +34,7 @@ mod tests;
 mod working;
 
 pub(crate) use configure::FrameRequest;
-pub use desc::{DepthDesc, ExpectedDepthDesc, RendererDesc};
+pub use desc::{ColorSpace, DepthDesc, ExpectedDepthDesc, RendererDesc};
 pub(crate) use frames::RecordedFrame;
 pub use limits::FrameLimits;
 pub(crate) use outcome::{Outcome, Submission};

@@ -123,7 +123,7 @@ impl Renderer {
         if plan.gaussians() == 0 || !plan.is_drawn {
             return Ok(());
         }
-        let (bindings, attachments) = (configured.bindings, configured.targets.colour);
+        let (bindings, targets) = (configured.bindings, configured.targets);
         let map = configured.depth_map;
         let pipelines = self.pipelines.get(bindings);
         let buffers = self.memory.buffers();
@@ -135,9 +135,9 @@ impl Renderer {
         drawer.pass("splat", |drawer| {
             drawer.picture(origin, plan.size());
             let frame = (plan, buffers);
-            passes::splat::record(drawer, pipelines, frame, attachments, origin, map);
+            passes::splat::record(drawer, pipelines, frame, targets.colour, origin, map);
             if let Some(t) = tiled {
-                tiles::record_composite(drawer, pipelines, (buffers, t), attachments, origin);
+                tiles::record_composite(drawer, pipelines, (plan, buffers, t), targets, origin);
             }
         });
         Ok(())

@@ -161,7 +161,7 @@ impl Renderer {
             blocks: limits.gaussians.div_ceil(limits::BLOCK_SIZE),
             sh_format: limits.sh_format,
             pair_capacity: pairs.room(),
-            redrawn: settings.show.needs_tiles(),
+            redrawn: self.needs_tiles(settings),
             ..self.facts(layers, limits.gaussians, raster, self.depth_map())
         };
         Plan::new(facts, &camera, clip, settings)

@@ -7,10 +7,10 @@
 
 /// Includes a chapter as the documentation of a module of its name.
 macro_rules! chapters {
-    ($($name:ident $(shows $picture:literal)?),+ $(,)?) => {
+    ($($name:ident $(shows $($picture:literal)+)?),+ $(,)?) => {
         $(
             #[doc = include_str!("links.md")]
-            $(#[cfg_attr(doc, doc = include_str!(concat!(env!("OUT_DIR"), "/", $picture, ".md")))])?
+            $($(#[cfg_attr(doc, doc = include_str!(concat!(env!("OUT_DIR"), "/", $picture, ".md")))])+)?
             #[doc = include_str!(concat!(stringify!($name), ".md"))]
             pub mod $name {}
         )+
@@ -28,7 +28,7 @@ chapters! {
     c shows "mesh",
     changes,
     command_line,
-    embedding,
+    embedding shows "linear" "stored",
     frame,
     glossary,
     gpu,

@@ -78,7 +78,9 @@ pub use picture::Channel;
 pub use picture::{Cue, Cues, Picture};
 pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
-pub use renderer::{ColorSpace, DepthDesc, ExpectedDepthDesc, FrameLimits, Renderer, RendererDesc};
+pub use renderer::{
+    ColorSpace, DepthDesc, ExpectedDepthDesc, FrameLimits, FrameToken, Renderer, RendererDesc,
+};
 #[doc(inline)]
 pub use scene::{Bounds, GaussianArrays, Gaussians, Layer, LayerState, Scene};
 #[cfg(feature = "picture")]

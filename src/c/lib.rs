@@ -37,3 +37,4 @@ pub mod support;
 #[cfg(test)]
 mod tests;
 mod text;
+pub mod token;

@@ -28,6 +28,7 @@ use crate::settings::*;
 use crate::stats::*;
 use crate::support::*;
 use crate::tests::{assert_fails, message};
+use crate::token::*;
 
 thread_local! {
     static PANIC: Cell<bool> = const { Cell::new(false) };
@@ -288,6 +289,22 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
     );
     call!(rara_renderer_trim(null_mut()), "renderer is null");
     call!(
+        rara_renderer_configure_ahead(null_mut(), null(), null(), null(), null(), null_mut()),
+        "token is null"
+    );
+    call!(
+        rara_renderer_prepare_token(null_mut(), no_cmd, null(), null(), null_mut()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_draw_token(null_mut(), no_cmd, 0.0, 0.0, null()),
+        "renderer is null"
+    );
+    call!(
+        rara_renderer_draw_token_depth(null_mut(), no_cmd, 0.0, 0.0, null()),
+        "renderer is null"
+    );
+    call!(
         rara_scene_buffers_estimated_pairs(null(), null(), null_mut()),
         "pairs is null"
     );
@@ -305,6 +322,7 @@ fn assert_nothing_comes_of_null() {
         rara_renderer_destroy(null_mut());
         rara_device_destroy(null_mut());
         rara_region_destroy(null_mut());
+        rara_frame_token_destroy(null_mut());
         assert_eq!(
             rara_device_bytes(null())
                 + rara_scene_buffers_bytes(null())

@@ -1,7 +1,7 @@
 //! The frame's working memory: one buffer per array that a stage writes. Each has room for the worst that the scene can
 //! need, except the tiles' lists, whose worst nobody could afford.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::error::Result;
 use crate::gpu::{Buffer, BufferDesc, Device, DeviceShape, Location};
@@ -49,7 +49,7 @@ pub(crate) struct Buffers {
     /// Only where a host asks for expected depths.
     pub(crate) depth: Option<DepthBuffers>,
     /// Only where the camera has stood still.
-    pub(crate) reclip: Option<ReclipBuffers>,
+    pub(crate) reclip: OnceLock<ReclipBuffers>,
     sized_for: Sizes,
 }
 
@@ -243,14 +243,14 @@ impl Buffers {
                 None
             },
             tiles,
-            reclip,
+            reclip: reclip.map(OnceLock::from).unwrap_or_default(),
             sized_for: sizes,
         })
     }
 
     /// Allocates the further buffers of a reclipped frame.
-    pub(crate) fn ensure_reclip(&mut self, device: &Device) -> Result<()> {
-        if self.reclip.is_some() {
+    pub(crate) fn ensure_reclip(&self, device: &Device) -> Result<()> {
+        if self.reclip.get().is_some() {
             return Ok(());
         }
         let sized = self.sized_for.reclip();
@@ -258,12 +258,13 @@ impl Buffers {
         device.check_budget("a frame that takes over from the one before", bytes, 0)?;
         let [revisits, reclips, recuts, dirty] =
             sized.map(|(name, size)| gpu_only(device, name, size));
-        self.reclip = Some(ReclipBuffers {
+        let made = ReclipBuffers {
             revisits: revisits?,
             reclips: reclips?,
             recuts: recuts?,
             dirty: dirty?,
-        });
+        };
+        self.reclip.get_or_init(|| made);
         Ok(())
     }
 

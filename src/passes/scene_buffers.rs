@@ -264,7 +264,7 @@ impl SceneBuffers {
     }
 
     /// An estimate of the pairs of tile and splat in the picture of a camera in the scene's space
-    /// ([`Camera::in_scene`]), without what a clip leaves out; it takes about 0.1 ms. Tiles need room for them:
+    /// ([`Camera::in_scene`]), without what a clip leaves out. Tiles need room for them:
     /// [`FrameLimits::pairs`](crate::FrameLimits::pairs).
     pub fn estimated_pairs(&self, camera: &Camera) -> u32 {
         self.sample.pairs(&self.layers, camera)

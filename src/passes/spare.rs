@@ -82,7 +82,7 @@ impl Buffers {
         Spare {
             buffers: self.single().into_iter().cloned().collect(),
             picture: tiles.map(|tiles| tiles.picture.clone()),
-            reclip: self.reclip.clone(),
+            reclip: self.reclip.get().cloned(),
         }
     }
 
@@ -127,7 +127,7 @@ impl Buffers {
         if let Some(t) = &self.tiles {
             all.extend([&t.picture.begins, &t.picture.pixels]);
         }
-        if let Some(s) = &self.reclip {
+        if let Some(s) = self.reclip.get() {
             all.extend(s.all());
         }
         all

@@ -111,7 +111,7 @@ impl<'a> Frame<'a> {
 
     /// The buffers of a reclipped frame.
     pub(crate) fn reclip(&self) -> &'a ReclipBuffers {
-        let reclip = self.buffers.reclip.as_ref();
+        let reclip = self.buffers.reclip.get();
         reclip.expect("configure() creates what a reclipped frame needs")
     }
 }

@@ -225,7 +225,7 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
             tile_splats: &t.splats,
             tile_begins: &t.picture.begins,
             // Only a reclipped frame reads which tiles are dirty.
-            dirty: b.reclip.as_ref().map_or(&b.counts, |reclip| &reclip.dirty),
+            dirty: b.reclip.get().map_or(&b.counts, |reclip| &reclip.dirty),
             occluders: plan.occluders.map_or(&b.counts, |_| &t.occluders),
             tile_list: t.scratch.tile_list().unwrap_or(&b.counts),
         });

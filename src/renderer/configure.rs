@@ -1,11 +1,13 @@
 //! Decides, allocates and compiles what a frame needs, before anything is recorded.
 
+use std::sync::Arc;
+
 use ash::vk;
 
 use super::Renderer;
 use super::choose;
 use super::desc::ColorSpace;
-use super::frames::{Configured, RecordedFrame};
+use super::frames::{Configured, Ready, RecordedFrame};
 use super::outcome::Submission;
 use crate::camera::Camera;
 use crate::clip::Clip;
@@ -61,20 +63,42 @@ impl Renderer {
 
     /// As [`configure`](Self::configure), for a frame that is submitted as the request says.
     pub(crate) fn configure_frame(&mut self, request: &FrameRequest<'_>) -> Result<()> {
-        let camera = request.camera.in_scene(&self.placement);
-        let clip = request.clip.in_scene(&self.placement);
-        self.configure_in_scene(&FrameRequest {
-            camera: &camera,
-            clip: &clip,
-            ..*request
-        })?;
+        self.configured = None;
+        self.configured = Some(self.ready(request)?);
         self.note_frame();
         Ok(())
     }
 
+    /// A frame that is ready to be recorded.
+    pub(super) fn ready(&mut self, request: &FrameRequest<'_>) -> Result<Ready> {
+        let camera = request.camera.in_scene(&self.placement);
+        let clip = request.clip.in_scene(&self.placement);
+        let frame = self.configure_in_scene(&FrameRequest {
+            camera: &camera,
+            clip: &clip,
+            ..*request
+        })?;
+        Ok(Ready {
+            buffers: self.memory.buffers().clone(),
+            pipelines: self.pipelines.get(frame.bindings).clone(),
+            basis: self.basis(),
+            number: 0,
+            frame,
+        })
+    }
+
+    /// True when a frame is the last one that was prepared.
+    pub(super) fn is_prepared(&self, ready: &Ready) -> bool {
+        ready.frame.prepared && ready.number == self.frames.prepared()
+    }
+
+    /// What a frame that is configured now may take over from.
+    pub(super) fn basis(&self) -> (u64, u64) {
+        (self.frames.prepared(), self.forgotten)
+    }
+
     /// Configures a frame whose camera and clip are in the scene's units already.
-    fn configure_in_scene(&mut self, request: &FrameRequest<'_>) -> Result<()> {
-        self.configured = None;
+    fn configure_in_scene(&mut self, request: &FrameRequest<'_>) -> Result<Configured> {
         let scene = request.scene;
         if !scene.is_on(&self.device) {
             return Err(Error::Invalid(
@@ -133,7 +157,7 @@ impl Renderer {
         let targets = self.targets();
         let pipelines = &mut self.pipelines;
         pipelines.ensure(&self.device, bindings, targets, &plan)?;
-        self.configured = Some(Configured {
+        Ok(Configured {
             scene: scene.id,
             plan,
             reason,
@@ -145,8 +169,7 @@ impl Renderer {
             redrawn,
             needs_tiles,
             prepared: false,
-        });
-        Ok(())
+        })
     }
 
     /// How splats become pixels in a picture of so many tiles, and why in that way.
@@ -217,20 +240,20 @@ impl Renderer {
     }
 
     /// Configures the same frame as quads, on a device that has no memory for so many tiles and their lists.
-    fn configure_without_tiles(&mut self, request: &FrameRequest<'_>) -> Result<()> {
+    fn configure_without_tiles(&mut self, request: &FrameRequest<'_>) -> Result<Configured> {
         self.memory.pairs.refuse();
         let quads = Settings {
             raster: Raster::Quad,
             ..*request.settings
         };
-        self.configure_in_scene(&FrameRequest {
+        let configured = self.configure_in_scene(&FrameRequest {
             settings: &quads,
             ..*request
         })?;
-        if let Some(configured) = &mut self.configured {
-            configured.reason = "the device has no memory for the tiles' lists";
-        }
-        Ok(())
+        Ok(Configured {
+            reason: "the device has no memory for the tiles' lists",
+            ..configured
+        })
     }
 
     /// Makes room for as many pairs of tile and splat as the frame before has shown to be needed, and as this one is expected
@@ -260,8 +283,10 @@ impl Renderer {
 
     /// The part of a plan that has to be computed after the frame before it.
     fn work(&mut self, scene: u64, plan: &Plan) -> Result<Work> {
-        // The host's depth may change with each frame.
-        let kept = self.kept.as_ref().filter(|_| plan.occluders.is_none());
+        // The host's depth may change with each frame, and a frame that is yet to be prepared leaves other results.
+        let is_next = Arc::strong_count(&self.pending) == 1;
+        let kept = self.kept.as_ref();
+        let kept = kept.filter(|_| is_next && plan.occluders.is_none());
         let work = Kept::work(kept, scene, plan);
         if !matches!(work, Work::Reclip { .. }) {
             return Ok(work);

@@ -1,11 +1,13 @@
 //! The frames that may be unfinished at once, and what is known of each once it was waited for.
 
+use std::sync::Arc;
+
 use super::outcome::Submission;
 use crate::depth::DepthMap;
 use crate::error::Result;
 use crate::gpu::{Bindings, Buffer, BufferDesc, Device, Location, Timer};
-use crate::passes::{Plan, Targets, Work};
-use crate::types::FrameCounts;
+use crate::passes::{Buffers, Pipelines, Plan, Targets, Work};
+use crate::types::{self, FrameCounts};
 
 /// A frame as [`Renderer::configure`](super::Renderer::configure) has decided it.
 #[derive(Debug, Clone)]
@@ -29,6 +31,27 @@ pub(super) struct Configured {
     pub(super) needs_tiles: bool,
     /// True when it has been prepared.
     pub(super) prepared: bool,
+}
+
+/// A frame that is configured, and what it is recorded with, whatever is configured after it.
+#[derive(Debug)]
+pub(super) struct Ready {
+    pub(super) frame: Configured,
+    pub(super) buffers: Arc<Buffers>,
+    pub(super) pipelines: Arc<Pipelines>,
+    /// The frames prepared, and how often all was forgotten, when it was configured: what it takes over is as it was then.
+    pub(super) basis: (u64, u64),
+    /// The number of frames that had been prepared with it; 0 before it is.
+    pub(super) number: u64,
+}
+
+impl Ready {
+    /// True when it takes something over from the frame before.
+    pub(super) fn takes_over(&self) -> bool {
+        let plan = &self.frame.plan;
+        let clip = plan.mode() != types::MODE_NONE;
+        plan.work != Work::Whole { clip }
+    }
 }
 
 impl Configured {

@@ -1,5 +1,7 @@
 //! The memory that frames compute in, and the memory that they have outgrown.
 
+use std::sync::Arc;
+
 use super::frames::FramesInFlight;
 use super::outcome::Submission;
 use super::pair_room::PairRoom;
@@ -10,9 +12,9 @@ use crate::passes::{Buffers, Plan, Sizes};
 /// The buffers that all frames share, one after the other.
 #[derive(Debug, Default)]
 pub(super) struct WorkingMemory {
-    buffers: Option<Buffers>,
+    buffers: Option<Arc<Buffers>>,
     /// Buffers that frames in flight may still use, with the number of frames prepared when they were replaced.
-    retired: Vec<(u64, Buffers)>,
+    retired: Vec<(u64, Arc<Buffers>)>,
     /// The room for pairs of tile and splat.
     pub(super) pairs: PairRoom,
 }
@@ -45,7 +47,7 @@ impl WorkingMemory {
         frames: &FramesInFlight,
         submission: Submission,
     ) -> Result<()> {
-        let had = self.buffers.as_ref();
+        let had = self.buffers.as_deref();
         let spare = had.map(|buffers| buffers.spare_for(need));
         let (mut spare, sizes) = spare.unwrap_or_default();
         // Nothing becomes smaller, so that going back to a frame before allocates nothing.
@@ -69,7 +71,7 @@ impl WorkingMemory {
             (Err(Error::Memory(_)), true) => Buffers::new(device, plan, need, Default::default()),
             (made, _) => made,
         };
-        let buffers = self.buffers.insert(made?);
+        let buffers = self.buffers.insert(Arc::new(made?));
         match reclips {
             true => buffers.ensure_reclip(device),
             false => Ok(()),
@@ -87,10 +89,10 @@ impl WorkingMemory {
         let had = self.buffers.take();
         if let Some(plan) = plan {
             let sizes = Sizes::of(plan);
-            let mut spare = had.as_ref().map(Buffers::spare).unwrap_or_default();
+            let mut spare = had.as_deref().map(Buffers::spare).unwrap_or_default();
             spare.retain_exact(sizes, plan);
             drop(had);
-            self.buffers = Some(Buffers::new(device, plan, sizes, spare)?);
+            self.buffers = Some(Arc::new(Buffers::new(device, plan, sizes, spare)?));
         }
         Ok(())
     }
@@ -100,26 +102,36 @@ impl WorkingMemory {
         let retired = self.retired.iter().map(|(_, buffers)| buffers);
         let mut all: Vec<_> = retired
             .chain(&self.buffers)
-            .flat_map(Buffers::all)
+            .flat_map(|buffers| buffers.all())
             .collect();
         all.sort_unstable_by_key(|buffer| buffer.address());
         all.dedup_by_key(|buffer| buffer.address());
         all.iter().map(|buffer| buffer.size()).sum()
     }
 
+    /// Keeps the buffers of a frame that was prepared until it is finished, if they have been replaced since it was configured.
+    /// Returns whether they have.
+    pub(super) fn keep_replaced(&mut self, buffers: &Arc<Buffers>, prepared: u64) -> bool {
+        let current = self.buffers.as_ref();
+        let is_replaced = current.is_none_or(|current| !Arc::ptr_eq(current, buffers));
+        if is_replaced {
+            self.retired.push((prepared, buffers.clone()));
+        }
+        is_replaced
+    }
+
     /// Adds the further buffers of a reclipped frame.
-    pub(super) fn ensure_reclip(&mut self, device: &Device) -> Result<()> {
-        let buffers = self.buffers.as_mut().expect("replace() allocates them");
-        buffers.ensure_reclip(device)
+    pub(super) fn ensure_reclip(&self, device: &Device) -> Result<()> {
+        self.buffers().ensure_reclip(device)
     }
 
     /// The buffers, if a frame has been configured.
     pub(super) fn allocated(&self) -> Option<&Buffers> {
-        self.buffers.as_ref()
+        self.buffers.as_deref()
     }
 
     /// The buffers of a frame that is configured.
-    pub(super) fn buffers(&self) -> &Buffers {
+    pub(super) fn buffers(&self) -> &Arc<Buffers> {
         self.buffers.as_ref().expect("replace() allocates them")
     }
 }

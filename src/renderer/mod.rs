@@ -2,6 +2,7 @@
 //! `tools/examples/embed.rs` is a whole host.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use ash::vk;
 
@@ -30,6 +31,7 @@ mod shared;
 mod stats;
 #[cfg(test)]
 mod tests;
+mod token;
 #[cfg(feature = "lab")]
 mod working;
 
@@ -38,9 +40,10 @@ pub use desc::{ColorSpace, DepthDesc, ExpectedDepthDesc, RendererDesc};
 pub(crate) use frames::RecordedFrame;
 pub use limits::FrameLimits;
 pub(crate) use outcome::{Outcome, Submission};
+pub use token::FrameToken;
 
 use estimate::PairEstimate;
-use frames::{Configured, FramesInFlight};
+use frames::{Configured, FramesInFlight, Ready};
 use memory::WorkingMemory;
 use shared::SharedPipelines;
 
@@ -80,6 +83,9 @@ use shared::SharedPipelines;
 /// order that makes no sense; then nothing was recorded. They neither submit nor wait, take no lock, and allocate nothing
 /// once a frame like it has been recorded.
 ///
+/// **Frames that overlap.** [`configure_ahead`](Self::configure_ahead) configures a frame that is recorded later, whatever is
+/// configured in between, as hosts do that record one frame while they work on the next.
+///
 /// **Several views.** Views one after the other, each with a scope of its own (`prepare`, `draw`, `prepare`, `draw`), need
 /// one renderer, whose memory they share; each counts as a frame in flight. Views in one scope need a renderer each:
 /// [`sharing`](Self::sharing) makes one that compiles nothing twice. Scenes are shared in any case.
@@ -99,14 +105,22 @@ pub struct Renderer {
     memory: WorkingMemory,
     frames: FramesInFlight,
     /// The frame that is recorded next, replaced as a whole.
-    configured: Option<Configured>,
+    configured: Option<Ready>,
     /// The results that the last prepared frame has left in the memory.
     kept: Option<Kept>,
     /// The pairs that were estimated last.
     estimate: PairEstimate,
+    /// No other renderer of this process has it.
+    id: u64,
+    /// How often all was forgotten.
+    forgotten: u64,
+    /// Shared with the tokens of frames that are configured and not prepared.
+    pending: Arc<()>,
     /// How splats become pixels, as the log was told last.
     noted: RasterChoice,
 }
+
+static NEXT_ID: AtomicU64 = AtomicU64::new(0);
 
 impl Renderer {
     /// A renderer on a device. Pipelines and buffers come with the first frame that needs them.
@@ -152,6 +166,9 @@ impl Renderer {
             configured: None,
             kept: None,
             estimate: PairEstimate::default(),
+            id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
+            forgotten: 0,
+            pending: Arc::default(),
             noted: RasterChoice::default(),
         })
     }
@@ -187,13 +204,19 @@ impl Renderer {
     /// after it.
     pub fn forget(&mut self) {
         self.kept = None;
-        // The configured frame may count on them.
+        // The configured frame may count on them, and so may those of tokens.
         self.configured = None;
+        self.forgotten += 1;
+    }
+
+    /// The frame that is recorded next.
+    fn configured(&self) -> Option<&Configured> {
+        self.configured.as_ref().map(|ready| &ready.frame)
     }
 
     /// Forgets the configured frame, which has not been submitted, prepared or not, and what it would have computed.
     pub(crate) fn abandon(&mut self) {
-        if self.configured.as_ref().is_some_and(|frame| frame.prepared)
+        if self.configured().is_some_and(|frame| frame.prepared)
             && let Some(newest) = self.frames.newest_mut()
         {
             newest.configured = None;
@@ -203,13 +226,12 @@ impl Renderer {
 
     /// True when the configured frame's pixels are those of the last prepared one.
     pub(crate) fn changes_nothing(&self) -> bool {
-        let configured = self.configured.as_ref();
-        configured.is_some_and(Configured::changes_nothing)
+        self.configured().is_some_and(Configured::changes_nothing)
     }
 
     /// The tiles' picture, if it is the configured frame's; `None` where that is drawn.
     pub(crate) fn picture(&self) -> Option<&Arc<TilePicture>> {
-        let plan = &self.configured.as_ref()?.plan;
+        let plan = &self.configured()?.plan;
         let tiles = self.memory.buffers().tiles.as_ref()?;
         (!plan.is_drawn).then_some(&tiles.picture)
     }

@@ -34,7 +34,7 @@ impl Renderer {
                 self.pairs(),
             );
         }
-        if let Some(Configured { plan, .. }) = &self.configured {
+        if let Some(Configured { plan, .. }) = self.configured() {
             let [width, height] = plan.size();
             log::trace!(
                 "frame {number} shows {} Gaussians in {width}x{height} px with {} surfaces, room for {} pairs, and without {}",

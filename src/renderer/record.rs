@@ -2,6 +2,7 @@
 
 use ash::vk;
 
+use super::frames::Ready;
 use super::{Renderer, out_of_order};
 use crate::error::Result;
 use crate::gpu::{DepthImage, Drawer, Recorder};
@@ -61,20 +62,47 @@ impl Renderer {
         scene: &SceneBuffers,
         depth: Option<&DepthImage>,
     ) -> Result<()> {
-        let Some(configured) = &mut self.configured else {
+        let Some(mut ready) = self.configured.take() else {
             return out_of_order("prepare needs a successful configure() before it");
         };
-        if configured.scene != scene.id {
+        // SAFETY: the caller's promises are those asked for.
+        let prepared = unsafe { self.prepare_ready(cmd, scene, depth, &mut ready) };
+        self.configured = Some(ready);
+        prepared
+    }
+
+    /// # Safety
+    /// As for [`prepare_with`](Self::prepare_with).
+    pub(super) unsafe fn prepare_ready(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        scene: &SceneBuffers,
+        depth: Option<&DepthImage>,
+        ready: &mut Ready,
+    ) -> Result<()> {
+        if ready.frame.scene != scene.id {
             return out_of_order("prepare was given another scene than configure()");
         }
+        if ready.takes_over() && !ready.frame.prepared && ready.basis != self.basis() {
+            return out_of_order(
+                "prepare was given a frame that takes over from another than the one before: prepare frames in the order in \
+                 which they were configured, and configure again after forget()",
+            );
+        }
+        let Ready {
+            frame: configured,
+            buffers,
+            pipelines,
+            number,
+            ..
+        } = ready;
         configured.prepared = true;
+        *number = self.frames.prepared() + 1;
         let slot = self.frames.begin(configured);
         let plan = &configured.plan;
         if plan.gaussians() == 0 {
             return Ok(());
         }
-        let pipelines = self.pipelines.get(configured.bindings);
-        let buffers = self.memory.buffers();
         // SAFETY: the caller promises that `cmd` is recording, outside a rendering scope.
         let mut recorder = unsafe { Recorder::begin(&self.device, cmd, slot.timer.as_mut()) };
         let occluders = depth.zip(plan.occluders).zip(buffers.tiles.as_ref()).map(
@@ -92,9 +120,11 @@ impl Renderer {
             copied,
         };
         passes::record(&frame, &mut recorder, &slot.counts);
+        let is_replaced = self.memory.keep_replaced(buffers, self.frames.prepared());
         if plan.work != Work::Draw {
             let before = self.kept.take();
-            let keeps = self.desc.reuse && plan.occluders.is_none();
+            // Later frames find nothing in buffers that have been replaced.
+            let keeps = self.desc.reuse && plan.occluders.is_none() && !is_replaced;
             self.kept = keeps.then(|| Kept::after(before, scene.id, plan));
         }
         Ok(())
@@ -116,17 +146,36 @@ impl Renderer {
     /// recorded then.
     pub unsafe fn draw(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) -> Result<()> {
         check_origin("draw", origin)?;
-        let Some(configured) = self.configured.as_ref().filter(|frame| frame.prepared) else {
+        if !self
+            .configured
+            .as_ref()
+            .is_some_and(|ready| self.is_prepared(ready))
+        {
             return out_of_order("draw needs a successful configure() and prepare() before it");
-        };
+        }
+        if let Some(ready) = self.configured.take() {
+            // SAFETY: the caller's promises are those asked for.
+            unsafe { self.draw_ready(cmd, origin, &ready) };
+            self.configured = Some(ready);
+        }
+        Ok(())
+    }
+
+    /// # Safety
+    /// As for [`draw`](Self::draw); the frame is prepared.
+    pub(super) unsafe fn draw_ready(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        origin: [f32; 2],
+        ready: &Ready,
+    ) {
+        let (configured, buffers) = (&ready.frame, &*ready.buffers);
         let plan = &configured.plan;
         if plan.gaussians() == 0 || !plan.is_drawn {
-            return Ok(());
+            return;
         }
-        let (bindings, targets) = (configured.bindings, configured.targets);
-        let map = configured.depth_map;
-        let pipelines = self.pipelines.get(bindings);
-        let buffers = self.memory.buffers();
+        let (map, targets) = (configured.depth_map, configured.targets);
+        let pipelines = &ready.pipelines;
         let tiled = buffers.tiles.as_ref().filter(|_| plan.is_tiled());
         let newest = self.frames.newest_mut();
         let timer = newest.and_then(|frame| frame.timer.as_mut());
@@ -140,7 +189,6 @@ impl Renderer {
                 tiles::record_composite(drawer, pipelines, (plan, buffers, t), targets, origin);
             }
         });
-        Ok(())
     }
 
     /// Records the splats' depths inside a rendering scope of their own, with the attachments of
@@ -162,21 +210,41 @@ impl Renderer {
         if self.desc.expected_depth.is_none() {
             return out_of_order("draw_depth needs RendererDesc::expected_depth");
         }
-        let Some(configured) = self.configured.as_ref().filter(|frame| frame.prepared) else {
+        if !self
+            .configured
+            .as_ref()
+            .is_some_and(|ready| self.is_prepared(ready))
+        {
             return out_of_order(
                 "draw_depth needs a successful configure() and prepare() before it",
             );
-        };
+        }
+        if let Some(ready) = self.configured.take() {
+            // SAFETY: the caller's promises are those asked for.
+            unsafe { self.draw_depth_ready(cmd, origin, &ready) };
+            self.configured = Some(ready);
+        }
+        Ok(())
+    }
+
+    /// # Safety
+    /// As for [`draw_depth`](Self::draw_depth); the frame is prepared.
+    pub(super) unsafe fn draw_depth_ready(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        origin: [f32; 2],
+        ready: &Ready,
+    ) {
+        let (configured, buffers) = (&ready.frame, &*ready.buffers);
         let plan = &configured.plan;
         if plan.gaussians() == 0 {
-            return Ok(());
+            return;
         }
-        let buffers = self.memory.buffers();
         let targets = configured.targets;
         let (Some(attachments), Some(depths)) = (targets.expected_depth, &buffers.depth) else {
-            return Ok(());
+            return;
         };
-        let pipelines = self.pipelines.get(configured.bindings);
+        let pipelines = &ready.pipelines;
         let newest = self.frames.newest_mut();
         let timer = newest.and_then(|frame| frame.timer.as_mut());
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
@@ -187,12 +255,11 @@ impl Renderer {
             let map = (configured.depth_map, configured.unit);
             passes::depth::record_draw(drawer, pipelines, frame, attachments, origin, map);
         });
-        Ok(())
     }
 }
 
 /// Refuses a corner that is nowhere, which would draw nothing without a word.
-fn check_origin(call: &str, origin: [f32; 2]) -> Result<()> {
+pub(super) fn check_origin(call: &str, origin: [f32; 2]) -> Result<()> {
     if origin.iter().all(|number| number.is_finite()) {
         return Ok(());
     }

@@ -59,13 +59,14 @@ impl Renderer {
 
     /// Gives back the working memory that the configured frame does not need, and what was
     /// [reserved](Self::reserve); without a configured frame all of it. The host has waited for all of its frames, as
-    /// before dropping the renderer. [`configure`](Self::configure) comes after it, and allocates nothing for the same frame.
+    /// before dropping the renderer; what a [`FrameToken`](super::FrameToken) holds goes with it.
+    /// [`configure`](Self::configure) comes after it, and allocates nothing for the same frame.
     ///
     /// # Errors
-    /// [`Error::Memory`] where the device has no memory for smaller buffers in place of the larger ones; there are none then,
-    /// and the next [`configure`](Self::configure) allocates them.
+    /// [`Error::Memory`] or [`Error::Budget`] where there is no memory for smaller buffers in place of the larger ones; there are
+    /// none then, and the next [`configure`](Self::configure) allocates them.
     pub fn trim(&mut self) -> Result<()> {
-        let plan = self.configured.take().map(|configured| configured.plan);
+        let plan = self.configured.take().map(|ready| ready.frame.plan);
         self.kept = None;
         let mut pairs = PairRoom::default();
         let plan = plan.map(|mut plan| {

@@ -63,8 +63,8 @@ impl SharedPipelines {
     }
 
     /// The pipelines of a frame that is configured.
-    pub(super) fn get(&self, bindings: Bindings) -> &Pipelines {
-        let pipelines = self.seen[bindings as usize].as_deref();
+    pub(super) fn get(&self, bindings: Bindings) -> &Arc<Pipelines> {
+        let pipelines = self.seen[bindings as usize].as_ref();
         pipelines.expect("ensure() compiles them")
     }
 }

@@ -12,14 +12,14 @@ use crate::types::FrameCounts;
 impl Renderer {
     /// The stages that the configured frame does not need.
     pub fn skipped(&self) -> Vec<&'static str> {
-        let configured = self.configured.as_ref();
+        let configured = self.configured();
         configured.map(Configured::skipped).unwrap_or_default()
     }
 
     /// How splats become pixels in the configured frame, or became pixels in the one that [`counts`](Self::counts) is about
     /// where its tiles had no room; and why in that way.
     pub fn raster(&self) -> RasterChoice {
-        let configured = self.configured.as_ref();
+        let configured = self.configured();
         let choice = configured.map(|configured| configured.raster(self.fell_back()));
         choice.unwrap_or_default()
     }
@@ -96,7 +96,7 @@ impl Renderer {
     pub(crate) fn unchanged_stats(&self) -> FrameStats {
         let newest = self.newest();
         let fell_back = newest.is_some_and(RecordedFrame::fell_back);
-        let raster = self.configured.as_ref().map(|c| c.raster(fell_back));
+        let raster = self.configured().map(|c| c.raster(fell_back));
         let mut skipped = self.skipped();
         if !skipped.contains(&DRAW) {
             skipped.push(DRAW);

@@ -1,5 +1,6 @@
 //! A frame by the Rust interface, and the same frame by `rara.h`.
 
+use std::cell::Cell;
 use std::ffi::CStr;
 
 use super::*;
@@ -23,6 +24,7 @@ use rara_c::region::*;
 use rara_c::renderer::*;
 use rara_c::renderer_desc::*;
 use rara_c::settings::*;
+use rara_c::token::*;
 
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const DEPTHS: vk::Format = vk::Format::R32G32_SFLOAT;
@@ -237,8 +239,25 @@ impl<'a> World<'a> {
             if let Some(text) = self.region {
                 assert_ok(rara_region_parse(text.as_ptr(), &mut region));
             }
+            // Quads are configured ahead, where there is a function for it.
+            let is_ahead = self.raster == Raster::Quad && region.is_null() && !is_flat;
+            let token = Cell::new(null_mut());
             let before = |cmd| {
                 let scene = scene(cmd);
+                if is_ahead {
+                    let mut made = null_mut();
+                    let (camera, clip) = (&camera, &clip);
+                    assert_ok(rara_renderer_configure_ahead(
+                        renderer, scene, camera, clip, &settings, &mut made,
+                    ));
+                    token.set(made);
+                    assert_ok(rara_renderer_prepare_token(
+                        renderer, cmd, scene, &shown, made,
+                    ));
+                    let again = rara_renderer_prepare_token(renderer, cmd, scene, &shown, made);
+                    assert_eq!(again, RARA_ERROR_INVALID);
+                    return;
+                }
                 assert_ok(match region.is_null() {
                     true => configure(renderer, scene, &camera, &clip, &settings),
                     false => rara_renderer_configure_region(
@@ -254,13 +273,17 @@ impl<'a> World<'a> {
             };
             let inside = |cmd| {
                 canvas.viewport(cmd, 0, 0, VIEW);
-                assert_ok(match self.depths {
-                    true => rara_renderer_draw_depth(renderer, cmd, 0.0, 0.0),
-                    false => rara_renderer_draw(renderer, cmd, 0.0, 0.0),
+                let made = token.get();
+                assert_ok(match (self.depths, is_ahead) {
+                    (true, true) => rara_renderer_draw_token_depth(renderer, cmd, 0.0, 0.0, made),
+                    (false, true) => rara_renderer_draw_token(renderer, cmd, 0.0, 0.0, made),
+                    (true, false) => rara_renderer_draw_depth(renderer, cmd, 0.0, 0.0),
+                    (false, false) => rara_renderer_draw(renderer, cmd, 0.0, 0.0),
                 });
             };
             let [pixels, _] = canvas.draw(before, inside);
             rara_region_destroy(region);
+            rara_frame_token_destroy(token.get());
             rara_renderer_destroy(renderer);
             pixels
         }

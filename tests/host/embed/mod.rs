@@ -1,6 +1,7 @@
 //! rara in a host's own engine, under the host's own validation: `tools/examples/host.rs` has instance, device, queue,
 //! targets and two frames in flight; the pictures must be the headless ones, over what the host has painted.
 
+mod ahead;
 mod frames;
 mod linear;
 mod memory;

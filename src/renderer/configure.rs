@@ -266,9 +266,7 @@ impl Renderer {
         if self.frames.newest().is_some_and(undrawn) {
             self.kept = None; // the frame before was not drawn
         }
-        let before = self.frames.awaited(request.submission);
-        let fell_back = before.is_some_and(RecordedFrame::fell_back);
-        let needed = before.map_or(0, RecordedFrame::pairs);
+        let (fell_back, needed) = self.frames.awaited(request.submission);
         let pairs = &mut self.memory.pairs;
         let had = pairs.room();
         pairs.review(self.device.memory_budget());

@@ -98,6 +98,8 @@ pub(super) struct FramesInFlight {
     slots: Box<[RecordedFrame]>,
     /// Frames prepared so far.
     prepared: u64,
+    /// Whether the frame whose slot was taken last had no room for its pairs, and how many pairs it had.
+    replaced: (bool, u32),
 }
 
 impl FramesInFlight {
@@ -106,11 +108,13 @@ impl FramesInFlight {
         Ok(Self {
             slots: slots.collect::<Result<_>>()?,
             prepared: 0,
+            replaced: (false, 0),
         })
     }
 
     /// The slot for one more frame.
     pub(super) fn begin(&mut self, configured: &Configured) -> &mut RecordedFrame {
+        self.replaced = self.oldest().map_or((false, 0), RecordedFrame::need);
         let at = self.slot(self.prepared);
         self.prepared += 1;
         let slot = &mut self.slots[at];
@@ -136,12 +140,16 @@ impl FramesInFlight {
         (self.prepared >= count).then(|| &self.slots[self.slot(self.prepared)])
     }
 
-    /// The last frame that was waited for before one of this submission.
-    pub(super) fn awaited(&self, submission: Submission) -> Option<&RecordedFrame> {
-        match submission {
+    /// Whether the last frame that was waited for before one of this submission had no room for its pairs of tile and splat,
+    /// and how many it had.
+    pub(super) fn awaited(&self, submission: Submission) -> (bool, u32) {
+        let frame = match submission {
             Submission::Awaited => self.newest(),
             Submission::InFlight => self.oldest(),
-        }
+            // The slot of the frame before that is taken, and the oldest one may not be finished.
+            Submission::Ahead => return self.replaced,
+        };
+        frame.map_or((false, 0), RecordedFrame::need)
     }
 
     /// The slots, in no order.
@@ -156,9 +164,12 @@ impl FramesInFlight {
 
     /// How many of these, counted from the first, are finished before one of this submission.
     pub(super) fn finished(&self, submission: Submission) -> u64 {
+        let slots = self.slots.len() as u64;
         match submission {
             Submission::Awaited => self.prepared,
-            Submission::InFlight => (self.prepared + 1).saturating_sub(self.slots.len() as u64),
+            Submission::InFlight => (self.prepared + 1).saturating_sub(slots),
+            // As the host has promised when it prepared the last one.
+            Submission::Ahead => self.prepared.saturating_sub(slots),
         }
     }
 

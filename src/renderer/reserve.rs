@@ -50,7 +50,7 @@ impl Renderer {
             return Ok(());
         };
         let reclips = self.desc.reuse;
-        let (frames, submission) = (&self.frames, Submission::InFlight);
+        let (frames, submission) = (&self.frames, Submission::Ahead); // a thread of its own waits for nothing
         let memory = &mut self.memory;
         memory.reserve(&self.device, (&plan, sizes, reclips), frames, submission)?;
         memory.pairs = pairs;

@@ -184,6 +184,11 @@ impl RecordedFrame {
         counts.is_some_and(|counts| counts.pairs > 0 && counts.tiled == 0)
     }
 
+    /// Whether its tiles' lists had no room, and the pairs that it had.
+    pub(super) fn need(&self) -> (bool, u32) {
+        (self.fell_back(), self.pairs())
+    }
+
     /// The pairs of tile and splat that it had, or would have had.
     pub(super) fn pairs(&self) -> u32 {
         self.read_counts().map_or(0, |counts| counts.pairs)

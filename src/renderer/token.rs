@@ -29,7 +29,8 @@ pub struct FrameToken {
 impl Renderer {
     /// As [`configure`](Self::configure), for a host that configures a frame while it records another: the frame goes with
     /// the token, and what [`configure`](Self::configure) has configured stays. Frames are prepared in the order in which they
-    /// are configured; the host has waited for frame `n - frames_in_flight` before it *prepares* frame `n` too. A frame that is
+    /// are configured. The host may configure frame `n` before it has waited for frame `n - frames_in_flight`, and waits for that
+    /// before it prepares frame `n`. A frame that is
     /// configured while another one waits to be prepared takes nothing over from it, whatever
     /// [`RendererDesc::reuse`](super::RendererDesc::reuse) says. What reports on the configured frame, as
     /// [`skipped`](Self::skipped), is about [`configure`](Self::configure)'s.
@@ -48,7 +49,7 @@ impl Renderer {
             camera,
             clip,
             settings,
-            submission: Submission::InFlight,
+            submission: Submission::Ahead,
             picture: None,
         })?;
         Ok(FrameToken {

@@ -278,6 +278,9 @@ typedef struct RaraPlacement {
 // How shaders reach buffers.
 typedef uint32_t RaraBindings;
 
+// What the numbers of the colour attachment stand for.
+typedef uint32_t RaraColorSpace;
+
 // The description of a renderer to be created.
 typedef struct RaraRendererDesc {
     // Set by rara_renderer_desc_default.
@@ -310,6 +313,8 @@ typedef struct RaraRendererDesc {
     VkRenderPass expected_depth_render_pass;
     // The subpass of expected_depth_render_pass to draw in.
     uint32_t expected_depth_subpass;
+    // What the numbers of the colour attachment stand for.
+    RaraColorSpace color_space;
 } RaraRendererDesc;
 
 // A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but must
@@ -703,6 +708,14 @@ typedef struct RaraFrameStats {
 // Bound, so that the validation layer can watch them. Needs VK_KHR_push_descriptor; without it buffers are reached by
 // address.
 #define RARA_BINDINGS_BOUND 1
+
+// Colours as a display stores them, as splats are trained and blended: they meet the host's pixels as they are. The default.
+#define RARA_COLOR_SPACE_STORED 0
+
+// Linear light, as of a host that lights in HDR: splats are blended as stored, and the picture that they make is turned into
+// linear light once before it is blended over the host's pixels. Only tiles do so: another raster is refused, and so is a
+// depth that is not readable. A frame whose tiles have no room draws nothing, as RaraFrameStats::fell_back says.
+#define RARA_COLOR_SPACE_LINEAR 1
 
 // A view's translation is in numbers 12, 13 and 14: columns one after the other, of matrices that stand before column
 // vectors (glm, Eigen), or rows, of matrices that stand behind row vectors (DirectXMath). The default.

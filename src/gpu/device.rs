@@ -37,6 +37,8 @@ pub(super) struct Inner {
     pub(super) queue: Mutex<vk::Queue>,
     queue_family: u32,
     pipeline_cache: vk::PipelineCache,
+    /// How long the driver has made pipelines.
+    pub(super) pipeline_ns: AtomicU64,
     commands: Commands,
     mesh_shader: Option<ext::mesh_shader::Device>,
     push_descriptor: Option<khr::push_descriptor::Device>,
@@ -87,6 +89,7 @@ impl Device {
                 queue: Mutex::new(desc.queue),
                 queue_family: desc.queue_family,
                 pipeline_cache: desc.pipeline_cache,
+                pipeline_ns: AtomicU64::new(0),
                 allocator: Some(allocator),
                 source: desc.memory,
                 account: Account::default(),

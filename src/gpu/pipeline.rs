@@ -50,12 +50,11 @@ impl ComputePipeline {
             .layout(layout.raw)];
         #[cfg(feature = "lab")]
         let info = info.map(|info| info.flags(device.pipeline_flags()));
-        // SAFETY: module and layout are the device's and alive; the constants outlive the call.
-        let made = unsafe {
-            device
-                .raw()
-                .create_compute_pipelines(device.pipeline_cache(), &info, None)
-        };
+        let (raw, cache) = (device.raw(), device.pipeline_cache());
+        let made = device.making_pipelines(|| {
+            // SAFETY: module and layout are the device's and alive; the constants outlive the call.
+            unsafe { raw.create_compute_pipelines(cache, &info, None) }
+        });
         let made = made.map_err(|(_, result)| result);
         let inner = Pipeline::new(device, desc.name, layout, made, "vkCreateComputePipelines")?;
         #[cfg(feature = "lab")]
@@ -224,13 +223,12 @@ impl GraphicsPipeline {
         }
         #[cfg(feature = "lab")]
         let info = info.flags(device.pipeline_flags());
-        // SAFETY: modules and layout are the device's and alive; everything pointed to outlives the call. Whoever named a
-        // render pass vouched for it in `Target::render_pass`.
-        let made = unsafe {
-            device
-                .raw()
-                .create_graphics_pipelines(device.pipeline_cache(), &[info], None)
-        };
+        let (raw, cache) = (device.raw(), device.pipeline_cache());
+        let made = device.making_pipelines(|| {
+            // SAFETY: modules and layout are the device's and alive; everything pointed to outlives the call. Whoever named
+            // a render pass vouched for it in `Target::render_pass`.
+            unsafe { raw.create_graphics_pipelines(cache, &[info], None) }
+        });
         let made = made.map_err(|(_, result)| result);
         let inner = Pipeline::new(device, desc.name, layout, made, "vkCreateGraphicsPipelines")?;
         #[cfg(feature = "lab")]

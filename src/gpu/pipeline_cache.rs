@@ -1,6 +1,9 @@
 //! A driver's compiled pipelines, as bytes to keep and to give back. Who keeps them in a file checks them first: drivers are
 //! supposed to refuse what is not theirs, but some crash.
 
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
 use ash::vk;
 
 use super::Device;
@@ -45,6 +48,21 @@ impl Device {
             driver: properties.driver_version,
             uuid: properties.pipeline_cache_uuid,
         }
+    }
+
+    /// How long the driver has taken to make this device's pipelines so far, milliseconds. Some drivers compile when they
+    /// make a pipeline, others when it is used first: then the frame that uses it first takes longer, which is not in here.
+    pub fn pipeline_ms(&self) -> f64 {
+        self.inner.pipeline_ns.load(Ordering::Relaxed) as f64 / 1e6
+    }
+
+    /// Makes pipelines, and counts how long it takes.
+    pub(super) fn making_pipelines<R>(&self, make: impl FnOnce() -> R) -> R {
+        let begin = Instant::now();
+        let made = make();
+        let ns = u64::try_from(begin.elapsed().as_nanos()).unwrap_or(u64::MAX);
+        self.inner.pipeline_ns.fetch_add(ns, Ordering::Relaxed);
+        made
     }
 
     /// Adds the pipelines that an earlier run kept, so that they need not be compiled again.

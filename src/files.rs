@@ -5,9 +5,31 @@
 
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::{Error, Result};
+
+/// The unfinished files of this process, and how many it has begun so far.
+static UNFINISHED: Mutex<(Vec<PathBuf>, u64)> = Mutex::new((Vec::new(), 0));
+
+fn unfinished() -> MutexGuard<'static, (Vec<PathBuf>, u64)> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes what [`write_atomically`] has not finished, and lets nobody begin anything more: for a process that is told to end.
+/// Returns the number of files that are gone.
+#[cfg(feature = "lab")]
+pub fn abandon() -> usize {
+    let mut files = unfinished();
+    let gone = files
+        .0
+        .drain(..)
+        .filter(|file| fs::remove_file(file).is_ok());
+    let gone = gone.count();
+    std::mem::forget(files); // who writes, waits for the end
+    gone
+}
 
 /// Writes a file beside `path` and renames it into place; if anything fails, `path` is as it was before. A link stays a
 /// link, and the file that it leads to is replaced; a pipe or a terminal is written into.
@@ -39,21 +61,34 @@ fn write_beside(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
 ) -> Result<()> {
-    let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(format!(".{}.part", std::process::id()));
-    let beside = path.with_file_name(name);
-    let written = File::create(&beside).and_then(|file| {
+    let (beside, created) = begin(path);
+    let written = created.and_then(|file| {
         let mut writer = BufWriter::new(file);
         write(&mut writer)?;
         // The content is on the disk before the file gets its name, so that after a crash the name stands for the old
         // file or the new one, never for half of one.
-        writer.into_inner()?.sync_all()?;
-        fs::rename(&beside, path)
+        writer.into_inner()?.sync_all()
     });
+    // Renamed and forgotten at once: a file that is whole is never taken for one that is not.
+    let mut files = unfinished();
+    let written = written.and_then(|()| fs::rename(&beside, path));
     if written.is_err() {
         let _ = fs::remove_file(&beside); // the caller should see the first failure
     }
+    files.0.retain(|file| *file != beside);
     written.map_err(Error::io(path))
+}
+
+/// Creates the file that becomes `path`. Its name is short, since a name that a file system just takes leaves no room for
+/// an ending.
+fn begin(path: &Path) -> (PathBuf, std::io::Result<File>) {
+    let mut files = unfinished();
+    let name = format!(".rara-{}-{}.part", std::process::id(), files.1);
+    let beside = path.with_file_name(name);
+    files.1 += 1;
+    files.0.push(beside.clone());
+    let created = File::create(&beside);
+    (beside, created)
 }
 
 #[cfg(all(test, unix))]
@@ -79,6 +114,10 @@ mod tests {
             Err(std::io::Error::other("full"))
         });
         assert!(failed.is_err() && fs::read(&file).expect("there") == b"new");
+        // As long a name as file systems take.
+        let long = folder.join("n".repeat(255));
+        write_atomically(&long, |out| out.write_all(b"new")).expect("writes");
+        fs::remove_file(&long).expect("there");
         assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 2);
         fs::remove_dir_all(&folder).expect("ours");
     }

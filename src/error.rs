@@ -11,7 +11,7 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum Error {
     /// A file could not be opened, read or written.
-    #[error("{path}: {source}", path = path.display())]
+    #[error("{path}: {source}{}", remedy(source), path = path.display())]
     Io {
         /// The file.
         path: PathBuf,
@@ -98,6 +98,20 @@ impl Error {
     /// An [`Error::Vulkan`] for `call`, to be used with `map_err`.
     pub fn vulkan(call: &'static str) -> impl FnOnce(ash::vk::Result) -> Self {
         move |result| Self::Vulkan { call, result }
+    }
+}
+
+/// What to do about an operating system's error, where that is known.
+fn remedy(error: &std::io::Error) -> &'static str {
+    use std::io::ErrorKind as Kind;
+    match error.kind() {
+        Kind::NotFound => "; check the name",
+        Kind::PermissionDenied => "; ask for the right to it, or name another place",
+        Kind::ReadOnlyFilesystem => "; name a place that can be written to",
+        Kind::StorageFull | Kind::QuotaExceeded => "; make room, or name another place",
+        Kind::InvalidFilename => "; give it a shorter or simpler name",
+        Kind::OutOfMemory => "; end other programs, or raise what this one may take",
+        _ => "",
     }
 }
 

@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, shortened};
 
 /// More than any file of cameras or planes has; it keeps a wrong path (a video, a scene) from filling the memory.
 const MAX_BYTES: u64 = 256 << 20;
@@ -32,11 +32,49 @@ pub(crate) fn bare(json: &[u8]) -> &[u8] {
         .trim_ascii_start()
 }
 
-/// A JSON error in our words; the line is what helps.
-pub(crate) fn explain(error: &serde_json::Error) -> String {
-    format!(
-        "line {} column {}: this is not the JSON expected here ({error})",
-        error.line(),
-        error.column()
-    )
+/// What a document holds. The error is in our words: the line and the field are what helps.
+pub(crate) fn parse<T: serde::de::DeserializeOwned>(json: &[u8]) -> std::result::Result<T, String> {
+    let mut deserializer = serde_json::Deserializer::from_slice(json);
+    let parsed = serde_path_to_error::deserialize(&mut deserializer);
+    let parsed = parsed.map_err(|error| {
+        let field = match error.path().to_string() {
+            path if path == "." || path.is_empty() => String::new(),
+            path => format!(", field `{}`", shortened(&path)),
+        };
+        explain(error.inner(), &field)
+    })?;
+    deserializer.end().map_err(|error| explain(&error, ""))?;
+    Ok(parsed)
+}
+
+fn explain(error: &serde_json::Error, field: &str) -> String {
+    // The library ends its texts with the place, which we say first.
+    let (line, column) = (error.line(), error.column());
+    let text = error.to_string();
+    let place = format!(" at line {line} column {column}");
+    let text = text.strip_suffix(&place).unwrap_or(&text);
+    format!("line {line} column {column}{field}: this is not the JSON expected here ({text})")
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_field_is_named() {
+        let parse = super::parse::<Vec<std::collections::BTreeMap<String, [f64; 2]>>>;
+        for (json, words) in [
+            (
+                "[{\"fx\": [1, \"a\"]}]",
+                "line 1 column 15, field `[0].fx[1]`: ",
+            ),
+            ("[{}, {\"fx\": 3}]", "field `[1].fx`"),
+            ("[{}", "line 1 column 3"),
+            (
+                "[{}] x",
+                "line 1 column 6: this is not the JSON expected here (trailing characters)",
+            ),
+        ] {
+            let message = parse(json.as_bytes()).unwrap_err();
+            assert!(message.contains(words), "{message}");
+        }
+    }
 }

@@ -27,8 +27,7 @@ struct Entry {
 type DVec3Json = [f64; 3];
 
 pub(super) fn parse(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
-    let entries: Vec<Entry> =
-        serde_json::from_slice(json).map_err(|error| json::explain(&error))?;
+    let entries: Vec<Entry> = json::parse(json)?;
     let named = |(number, entry): (usize, Entry)| {
         let name = entry.img_name.unwrap_or_else(|| match &entry.id {
             serde_json::Value::Null => number.to_string(),

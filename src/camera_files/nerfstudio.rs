@@ -115,7 +115,7 @@ impl Intrinsics {
 }
 
 pub(super) fn parse(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
-    let file: Transforms = serde_json::from_slice(json).map_err(|error| json::explain(&error))?;
+    let file: Transforms = json::parse(json)?;
     let shared = file.shared;
     let named = |(number, frame): (usize, Frame)| {
         let name = frame.file_path.unwrap_or_else(|| number.to_string());

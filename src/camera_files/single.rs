@@ -30,7 +30,7 @@ enum Name {
 }
 
 pub(super) fn parse(json: &[u8]) -> Result<Camera, String> {
-    let single: Single = serde_json::from_slice(json).map_err(|error| json::explain(&error))?;
+    let single: Single = json::parse(json)?;
     let matrix = DMat4::from_cols_array(&single.world_to_camera).transpose();
     if matrix.row(3) != DVec4::W {
         return Err(

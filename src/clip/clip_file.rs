@@ -268,8 +268,7 @@ pub fn load_clips(path: &Path) -> Result<Vec<NamedClip>> {
 /// [`Error::Format`] as there.
 pub fn clips_from_json(json: &[u8], name: &Path) -> Result<Vec<NamedClip>> {
     let format = |message: String| Error::format(name, message);
-    let List(clips) =
-        serde_json::from_slice(json::bare(json)).map_err(|error| format(json::explain(&error)))?;
+    let List(clips) = json::parse(json::bare(json)).map_err(format)?;
     if clips.is_empty() {
         let message = "there is no clip in it; save the clips again";
         return Err(format(message.into()));

@@ -7,7 +7,7 @@ use glam::DVec3;
 use rara::{Camera, Gaussians, Scene};
 
 use super::failure::Failure;
-use super::values;
+use super::{framing, output, values};
 use rara::{camera_files, scene::Bounds};
 
 /// The camera's position and lens. Without any of these it frames the scene.
@@ -280,9 +280,19 @@ impl CameraArgs {
     }
 
     fn sized(&self, camera: Camera) -> Result<Camera, Failure> {
-        self.size.map_or(Ok(camera), |size| {
-            camera.resized(size).map_err(Failure::usage)
-        })
+        let Some(size) = self.size else {
+            return Ok(camera);
+        };
+        let resized = camera.resized(size).map_err(Failure::usage)?;
+        // A pixel more or less is rounding.
+        let kept = camera.fx / camera.fy;
+        if (resized.fx / resized.fy / kept - 1.0).abs() > 1.5 / f64::from(size.0.min(size.1)) {
+            output::warn_once(format!(
+                "warning: --size {}x{} has another aspect than the camera's {}x{}: the picture is stretched to it",
+                size.0, size.1, camera.width, camera.height
+            ));
+        }
+        Ok(resized)
     }
 }
 
@@ -297,7 +307,12 @@ impl Views {
                 size,
                 depths,
             } => {
-                let camera = depths.of(lens.frame(&Bounds::of(scene), up, size)?)?;
+                let camera = lens.frame(&Bounds::of(scene), up, size)?;
+                let camera = match lens {
+                    Lens::Perspective(_) => framing::nearer(camera, scene),
+                    Lens::Orthographic(_) => camera,
+                };
+                let camera = depths.of(camera)?;
                 Ok(vec![View {
                     number: 0,
                     name: "framing".into(),
@@ -320,10 +335,11 @@ fn pick(views: Vec<View>, wanted: &str, path: &Path) -> Result<View, Failure> {
                 .iter()
                 .position(|v| stem(&v.name).is_some_and(|s| s == wanted))
         });
+    let meant = values::meant(wanted, views.iter().map(|view| view.name.as_str()));
     let found = index.and_then(|i| views.into_iter().nth(i));
     found.ok_or_else(|| {
         Failure::Usage(format!(
-            "--view {wanted}: {} has {count} cameras, and none of that number (from 0) or name",
+            "--view {wanted}: {} has {count} cameras, and none of that number (from 0) or name{meant}",
             path.display()
         ))
     })

@@ -18,7 +18,7 @@ pub(super) struct ClipArgs {
     /// begins at such a plane; box:cx,cy,cz,hx,hy,hz[,qw,qx,qy,qz] has a centre, half sizes and a rotation;
     /// sphere:cx,cy,cz,r; ellipsoid:cx,cy,cz,rx,ry,rz[,qw,qx,qy,qz]; cylinder:ax,ay,az,bx,by,bz,r lies between two discs;
     /// capsule:ax,ay,az,bx,by,bz,r is within r of a stretch of a line; cone:ax,ay,az,bx,by,bz,r has its tip at a and a disc
-    /// around b. A leading ! keeps the outside
+    /// around b. A leading ! keeps the outside, in single quotes: '!box:0,0,0,1,1,1'
     #[arg(long, value_name = "SHAPE", value_parser = shape, allow_hyphen_values = true)]
     clip: Vec<Shape>,
     /// An expression of shapes (repeatable): all(...) keeps what all of its operands keep, any(...) what any of them does,
@@ -141,16 +141,7 @@ fn from_file(text: &str) -> Result<Vec<Expression>, Failure> {
         found.extend(numbered.map(|named| named.clip.clone()));
     }
     if found.is_empty() {
-        let near = clips.iter().map(|named| {
-            let likeness = strsim::jaro_winkler(&named.name.to_lowercase(), &name.to_lowercase());
-            (likeness, &named.name)
-        });
-        let nearest = near
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .filter(|(likeness, _)| *likeness > 0.7);
-        let meant = nearest.map_or(String::new(), |(_, name)| {
-            format!("; did you mean '{name}'?")
-        });
+        let meant = values::meant(name, clips.iter().map(|named| named.name.as_str()));
         return Err(Failure::Usage(format!(
             "--clip-file {text}: {} has {} clips, and none of that name or number (from 0){meant}",
             path.display(),

@@ -1,6 +1,68 @@
 //! Medians and means over frames.
 
 use rara::{Counts, FrameStats, PassTime};
+use serde::Serialize;
+
+/// Frames of one picture that were measured.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Measured {
+    /// Their medians.
+    #[serde(flatten)]
+    pub(super) stats: FrameStats,
+    /// The number of the frames.
+    pub(super) samples: usize,
+    pub(super) least: Times,
+    pub(super) greatest: Times,
+}
+
+/// Times of a frame, milliseconds, as in [`FrameStats`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(super) struct Times {
+    gpu_ms: f64,
+    wall_ms: f64,
+}
+
+impl Times {
+    /// Of all of these the one that `better` chooses, each time by itself.
+    fn of(all: impl Iterator<Item = Self>, better: fn(f64, f64) -> f64) -> Self {
+        let both = all.reduce(|a, b| Self {
+            gpu_ms: better(a.gpu_ms, b.gpu_ms),
+            wall_ms: better(a.wall_ms, b.wall_ms),
+        });
+        both.unwrap_or(Self {
+            gpu_ms: 0.0,
+            wall_ms: 0.0,
+        })
+    }
+}
+
+impl Measured {
+    pub(super) fn of(frames: &[FrameStats]) -> Self {
+        let times = || {
+            frames.iter().map(|frame| Times {
+                gpu_ms: frame.gpu_ms,
+                wall_ms: frame.wall_ms,
+            })
+        };
+        Self {
+            stats: combine(frames, Combine::Median),
+            samples: frames.len(),
+            least: Times::of(times(), f64::min),
+            greatest: Times::of(times(), f64::max),
+        }
+    }
+
+    /// The medians of several pictures' medians.
+    pub(super) fn all<'a>(pictures: impl Iterator<Item = &'a Self> + Clone) -> Self {
+        let stats: Vec<_> = pictures.clone().map(|one| one.stats.clone()).collect();
+        Self {
+            stats: combine(&stats, Combine::Median),
+            samples: pictures.clone().map(|one| one.samples).sum(),
+            least: Times::of(pictures.clone().map(|one| one.least), f64::min),
+            greatest: Times::of(pictures.map(|one| one.greatest), f64::max),
+        }
+    }
+}
 
 /// How the values of several frames become one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -125,6 +187,10 @@ mod tests {
             }
         );
         assert!(median.skipped.is_empty());
+        let parts = [Measured::of(&frames[..1]), Measured::of(&frames[1..])];
+        let all = Measured::all(parts.iter());
+        assert_eq!((all.samples, all.stats.gpu_ms), (3, 5.25));
+        assert_eq!((all.least.gpu_ms, all.greatest.gpu_ms), (1.0, 9.0));
         let mean = combine(&frames, Combine::Mean);
         assert_eq!((mean.gpu_ms, mean.passes[1].ms), (Some(4.0), 3.0));
         assert_eq!(combine(&frames[1..2], Combine::Median), frames[1]);

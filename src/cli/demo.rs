@@ -8,9 +8,11 @@ use rara::{
 };
 use rara::{measure, reference, scene};
 
+use super::combine::{Combine, combine};
 use super::compare::Measures;
 use super::failure::Failure;
 use super::frame::ComparisonArgs;
+use super::memory;
 use super::output::{self, grouped, say};
 use super::scenes::{self, Loaded};
 use super::session::Session;
@@ -41,6 +43,9 @@ pub(super) struct Demo {
     common: ComparisonArgs,
 }
 
+/// Frames of each mode, whose median is shown.
+const FRAMES: u32 = 5;
+
 /// The result of one mode.
 struct Shot {
     mode: Mode,
@@ -64,6 +69,7 @@ impl Demo {
         let camera = views.of(&scene)?.remove(0).camera;
         let clip = Clip::of([middle(&scene, &camera)?], ClipOp::And);
 
+        memory::check_picture(&camera)?;
         let mut session = Session::open(&self.common.device.meant(), &scene, look.precision.sh)?;
         let (device, driver, _) = session.about();
         let count = grouped(scene.gaussians() as u64);
@@ -71,32 +77,58 @@ impl Demo {
             "{device} ({driver}); {count} Gaussians, {}x{}",
             camera.width, camera.height
         ));
+        let all = Mode::value_variants().iter().map(|&mode| look.mode(mode));
+        let all: Vec<Settings> = all.collect();
+        // One after the other: each is drawn once before any is measured.
+        for settings in &all {
+            session.warm_up([(&camera, &clip, settings)])?;
+        }
+        let frames = in_turns(&mut session, &camera, &clip, &all)?;
         let mut shots = Vec::new();
-        for &mode in Mode::value_variants() {
-            let settings = look.mode(mode);
-            let (picture, stats) = session.picture(&camera, &clip, &settings)?;
-            picture.save(self.output.join(format!("{}.png", name(mode))))?;
+        for (settings, frames) in all.into_iter().zip(&frames) {
+            let (picture, _) = session.picture(&camera, &clip, &settings)?;
             shots.push(Shot {
-                mode,
+                mode: settings.mode,
                 settings,
                 picture,
-                stats,
+                stats: combine(frames, Combine::Median),
             });
         }
+        let usual = shots.iter().map(|shot| shot.stats.wall_ms).sum::<f64>() / shots.len() as f64;
+        let preparing = output::preparing(session.first_use_ms(usual), session.has_kept());
         session.close()?;
-        let labelled: Vec<_> = shots
-            .iter()
-            .map(|s| (name(s.mode), s.picture.clone()))
-            .collect();
+        for Shot { mode, picture, .. } in &shots {
+            sheet::opaque(picture).save(self.output.join(format!("{}.png", name(*mode))))?;
+        }
+        let labelled = shots.iter();
+        let labelled = labelled.map(|shot| (name(shot.mode), sheet::opaque(&shot.picture)));
+        let labelled: Vec<_> = labelled.collect();
         let [_, hard, _, exact] = [0, 1, 2, 3].map(|index| &shots[index].picture);
         let corner = sheet::where_they_differ(hard, exact);
         sheet::sheet(&labelled, corner).save(self.output.join("sheet.png"))?;
+        preparing.into_iter().for_each(say);
         print_frames(&shots);
         if !self.no_reference {
             print_errors(&shots, &scene, &camera, &clip)?;
         }
         Ok(())
     }
+}
+
+/// Frames of each way of drawing, one of each in turn, so that what else the machine does meets all of them.
+fn in_turns(
+    session: &mut Session,
+    camera: &Camera,
+    clip: &Clip,
+    all: &[Settings],
+) -> rara::Result<Vec<Vec<FrameStats>>> {
+    let mut frames = vec![Vec::new(); all.len()];
+    for _ in 0..FRAMES {
+        for (settings, frames) in all.iter().zip(&mut frames) {
+            frames.push(session.one(camera, clip, settings)?);
+        }
+    }
+    Ok(frames)
 }
 
 /// The scene that is drawn if no file is given.
@@ -122,7 +154,7 @@ pub(super) fn middle(scene: &Scene<'_>, camera: &Camera) -> rara::Result<Plane> 
 
 fn print_frames(shots: &[Shot]) {
     say(format_args!(
-        "\n{:<6} {:>10} {:>10} {:>10} {:>10} {:>9}  ms a stage",
+        "\n{:<6} {:>10} {:>10} {:>10} {:>10} {:>9}  ms a stage; medians of {FRAMES} frames",
         "mode", "visible", "cut", "clipped", "culled", "ms"
     ));
     for Shot { mode, stats, .. } in shots {

@@ -5,7 +5,7 @@ use rara::Error;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::output::{self, say};
+use super::output;
 use rara::gpu::list_devices;
 
 /// List the Vulkan devices, and why one will not do
@@ -52,6 +52,7 @@ impl Devices {
             let message = "there is no Vulkan device; install a driver (tools/setup installs lavapipe, which needs no GPU)";
             return Err(Error::Device(message.into()).into());
         }
+        let mut lines = Vec::new();
         for Line {
             number,
             name,
@@ -61,11 +62,11 @@ impl Devices {
             ..
         } in list
         {
-            say(format_args!("{number}  {name} ({kind}; {driver})"));
+            lines.push(format!("{number}  {name} ({kind}; {driver})"));
             if let Some(problem) = problem {
-                say(format_args!("   will not do: {problem}"));
+                lines.push(format!("   will not do: {problem}"));
             }
         }
-        Ok(())
+        Ok(output::answer(&lines.join("\n"))?)
     }
 }

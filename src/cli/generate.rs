@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
+use super::memory;
 use super::output::{self, grouped, say};
 use super::values;
 use rara::scene;
@@ -33,6 +34,7 @@ pub(super) struct Generate {
 impl Generate {
     pub(super) fn run(self) -> Result<(), Failure> {
         output::check_file(&self.output)?;
+        memory::check_gaussians(self.count.into())?;
         let made = scene::generate(self.kind, self.count as usize, self.seed);
         scene::save_ply(&self.output, &made)?;
         say(format_args!(

@@ -5,7 +5,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::output::{self, grouped, say};
+use super::output::{self, grouped};
 use super::scenes::{LoadedLayer, SceneArgs};
 use rara::reference::classify::{Bands, bands};
 use rara::scene::Bounds;
@@ -161,12 +161,12 @@ impl Info {
         if self.json {
             return Ok(output::json(&document)?);
         }
-        print(&document);
-        Ok(())
+        Ok(output::answer(&table(&document).join("\n"))?)
     }
 }
 
-fn print(document: &Document) {
+/// The lines for people.
+fn table(document: &Document) -> Vec<String> {
     let corner = |[x, y, z]: [f64; 3]| format!("{x:.4}, {y:.4}, {z:.4}");
     let extent = |e: Extent| format!("({}) to ({})", corner(e.min), corner(e.max));
     let spread = |s: Spread| {
@@ -175,7 +175,8 @@ fn print(document: &Document) {
             s.min, s.p1, s.median, s.p99, s.max
         )
     };
-    say(format_args!(
+    let mut lines = Vec::new();
+    lines.push(format!(
         "gaussians      {}",
         grouped(document.gaussians as u64)
     ));
@@ -185,7 +186,7 @@ fn print(document: &Document) {
             (true, true) => ", with a clip of its own",
             (true, false) => "",
         };
-        say(format_args!(
+        lines.push(format!(
             "  layer        {} ({}): {}, opacity {}{state}",
             layer.name,
             layer.format,
@@ -194,37 +195,29 @@ fn print(document: &Document) {
         ));
     }
     if let [layer] = &document.layers[..] {
-        say(format_args!("format         {}", layer.format));
+        lines.push(format!("format         {}", layer.format));
     }
-    say(format_args!("SH degree      {}", document.sh_degree));
-    say(format_args!(
-        "repaired       {}",
-        grouped(document.repaired)
-    ));
-    say(format_args!("dropped        {}", grouped(document.dropped)));
-    say(format_args!("centres        {}", extent(document.centres)));
-    say(format_args!(
-        "robust bounds  {}",
-        extent(document.robust_bounds)
-    ));
-    say(format_args!(
+    lines.push(format!("SH degree      {}", document.sh_degree));
+    lines.push(format!("repaired       {}", grouped(document.repaired)));
+    lines.push(format!("dropped        {}", grouped(document.dropped)));
+    lines.push(format!("centres        {}", extent(document.centres)));
+    lines.push(format!("robust bounds  {}", extent(document.robust_bounds)));
+    lines.push(format!(
         "{:>26} {:>11} {:>11} {:>11} {:>11}",
         "min", "1 %", "median", "99 %", "max"
     ));
-    say(format_args!("opacity        {}", spread(document.opacity)));
-    say(format_args!("scale          {}", spread(document.scale)));
-    say(format_args!(
-        "elongation     {}",
-        spread(document.elongation)
-    ));
-    say(format_args!("flatness       {}", spread(document.flatness)));
+    lines.push(format!("opacity        {}", spread(document.opacity)));
+    lines.push(format!("scale          {}", spread(document.scale)));
+    lines.push(format!("elongation     {}", spread(document.elongation)));
+    lines.push(format!("flatness       {}", spread(document.flatness)));
     let Bands { ours, paper } = document.cut;
-    say(format_args!(
+    lines.push(format!(
         "cut by a plane through the middle: {:.2} %; in the paper's band of 3 max sigma: {:.2} %, {:.2} times as many",
         100.0 * ours,
         100.0 * paper,
         paper / ours.max(1e-30)
     ));
+    lines
 }
 
 #[cfg(test)]

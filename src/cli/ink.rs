@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use embedded_graphics::mono_font::MonoTextStyle;
-use embedded_graphics::mono_font::ascii::FONT_6X10;
+use embedded_graphics::mono_font::ascii::{FONT_6X10, FONT_9X18_BOLD};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::prelude::*;
 use embedded_graphics::text::Text;
@@ -69,25 +69,37 @@ pub(super) fn dot(picture: &mut Picture, at: [f64; 2], radius: f64, colour: [u8;
     paint(picture, [at, at], radius, colour, distance);
 }
 
-/// Writes with the top left corner of the first letter, if it is a capital, at (x, y). A letter is five dots wide and seven
-/// high, each dot `scale` pixels; what is not ASCII becomes a question mark.
+/// A font of fixed width.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Font {
+    /// Capitals are seven dots high and letters six wide.
+    Small,
+    /// Eleven and nine.
+    Large,
+}
+
+/// Writes with the top left corner of the first letter, if it is a capital, at (x, y). Each dot of the font is so many pixels;
+/// what is not ASCII becomes a question mark.
 pub(super) fn text(
     picture: &mut Picture,
     [x, y]: [f64; 2],
     words: &str,
-    scale: i64,
+    (font, scale): (Font, i64),
     colour: [u8; 3],
 ) {
-    /// The lowest of the seven rows, counted from 0.
-    const BASELINE: i32 = 6;
+    // The lowest row of a capital, counted from 0.
+    let (font, baseline) = match font {
+        Font::Small => (&FONT_6X10, 6),
+        Font::Large => (&FONT_9X18_BOLD, 10),
+    };
     let mut dots = Dots {
         picture,
         corner: [x, y].map(|v| v.round() as i64),
         scale,
         colour,
     };
-    let style = MonoTextStyle::new(&FONT_6X10, BinaryColor::On);
-    let Ok(_end) = Text::new(words, Point::new(0, BASELINE), style).draw(&mut dots);
+    let style = MonoTextStyle::new(font, BinaryColor::On);
+    let Ok(_end) = Text::new(words, Point::new(0, baseline), style).draw(&mut dots);
 }
 
 /// The picture that the font's dots are painted into, as squares.
@@ -148,13 +160,13 @@ mod tests {
         // Text that is partly or wholly outside does no harm.
         dot(&mut picture, [-50.0, 1e9], 4.0, [0; 3]);
         line(&mut picture, [-1e7, 20.0], [30.0, 20.0], [0; 3]);
-        text(&mut picture, [35.0, 36.0], "edge", 3, [0; 3]);
+        text(&mut picture, [35.0, 36.0], "edge", (Font::Small, 3), [0; 3]);
     }
 
     #[test]
     fn letters_are_where_they_were_put() {
         let mut picture = Picture::filled(20, 10, [1.0; 4]);
-        text(&mut picture, [1.0, 1.0], "L1", 1, [0; 3]);
+        text(&mut picture, [1.0, 1.0], "L1", (Font::Small, 1), [0; 3]);
         let black = |x, y| picture.at(x, y) == [0.0, 0.0, 0.0, 1.0];
         let left = (1..8).all(|y| black(1, y));
         assert!(left && (1..6).all(|x| black(x, 7)), "an L from (1, 1)");
@@ -166,7 +178,13 @@ mod tests {
     fn every_letter_has_a_shape_of_its_own_at_any_scale() {
         let drawn = |letter: char, scale: i64| {
             let mut picture = Picture::filled(24, 36, [1.0; 4]);
-            text(&mut picture, [3.0, 6.0], &letter.to_string(), scale, [0; 3]);
+            text(
+                &mut picture,
+                [3.0, 6.0],
+                &letter.to_string(),
+                (Font::Small, scale),
+                [0; 3],
+            );
             picture
         };
         let letters: Vec<char> = ('!'..='~').collect();

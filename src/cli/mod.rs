@@ -15,13 +15,19 @@ mod demo;
 mod devices;
 mod failure;
 mod frame;
+mod framing;
 mod generate;
 mod info;
 mod ink;
+mod memory;
 mod model;
 mod output;
+mod pattern;
 mod precision;
+#[allow(unsafe_code)]
+mod process;
 mod profile;
+mod progress;
 mod render;
 mod report;
 mod residual;
@@ -32,6 +38,7 @@ mod select;
 mod session;
 mod settings;
 mod sheet;
+mod shell;
 mod slice;
 mod stress;
 mod sweep;
@@ -63,6 +70,9 @@ Examples:
 
 Exit status: 0 done, 1 the work failed, 2 the command line is wrong.")]
 struct Cli {
+    /// Print only what was asked for, and why something failed: no notes, no warnings, no progress
+    #[arg(short, long, global = true)]
+    quiet: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -84,6 +94,8 @@ enum Command {
     Info(info::Info),
     Stress(stress::Stress),
     Devices(devices::Devices),
+    Completions(shell::Completions),
+    Man(shell::Man),
 }
 
 impl Command {
@@ -104,14 +116,22 @@ impl Command {
             Self::Info(command) => command.run(),
             Self::Stress(command) => command.run(),
             Self::Devices(command) => command.run(),
+            Self::Completions(command) => command.run(),
+            Self::Man(command) => command.run(),
         }
     }
 }
 
 /// Parses the command line, runs the command, and turns a failure into its sentence and exit status.
 pub(crate) fn main() -> ExitCode {
+    process::begin();
     let outcome = match Cli::try_parse() {
-        Ok(cli) => cli.command.run(),
+        Ok(cli) => {
+            if cli.quiet {
+                output::be_quiet();
+            }
+            cli.command.run()
+        }
         Err(error) if !error.use_stderr() => {
             // `--help` and `--version` arrive as errors too; a closed pipe is the reader's business.
             let _ = error.print();
@@ -122,8 +142,8 @@ pub(crate) fn main() -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            failure.details().for_each(output::say);
-            output::say(&failure);
+            failure.details().for_each(output::complain);
+            output::complain(&failure);
             failure.exit_code()
         }
     }

@@ -1,19 +1,62 @@
-//! Output of the program: lines for people on stderr, the table or JSON document that was asked for on stdout, pictures, and a
-//! progress bar.
+//! Output of the program: lines for people on stderr, the table or JSON document that was asked for on stdout, and files.
 
 use std::fmt::Display;
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rara::{Error, Result};
 use serde::Serialize;
 
-/// Prints a line for people. Where nobody listens (stderr closed), nothing is lost by going on.
+pub(super) use super::progress::{Progress, Spinner};
+
+/// Whether `--quiet` was typed.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// From now on only what was asked for is printed, and why something failed.
+pub(super) fn be_quiet() {
+    QUIET.store(true, Ordering::Relaxed);
+}
+
+/// True when nobody wants to be told anything.
+pub(super) fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Prints a line for people, unless they want none.
 pub(super) fn say(line: impl Display) {
+    if !is_quiet() {
+        complain(line);
+    }
+}
+
+/// Prints a line for people unless the one before it was the same, as of each of many pictures.
+pub(super) fn warn_once(line: String) {
+    static LAST: Mutex<String> = Mutex::new(String::new());
+    let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
+    if *last != line {
+        say(&line);
+        *last = line;
+    }
+}
+
+/// Prints why something failed. Where nobody listens (stderr closed), nothing is lost by going on.
+pub(super) fn complain(line: impl Display) {
     let _ = writeln!(io::stderr(), "{line}");
+}
+
+/// The line about the driver's shaders; none where preparing them has hardly taken a moment. An earlier run may have `kept`
+/// them.
+pub(super) fn preparing(first_use_ms: f64, kept: bool) -> Option<String> {
+    let seconds = first_use_ms / 1e3;
+    let first = if kept {
+        ""
+    } else {
+        ", first time on this driver"
+    };
+    (seconds >= 0.25).then(|| format!("preparing shaders{first}: {seconds:.1} s"))
 }
 
 /// Prints the document that `--json` promises.
@@ -34,13 +77,13 @@ pub(super) fn answer(text: &str) -> Result<()> {
     }
 }
 
-/// Fails early, and in plain words, where `file` could not be written.
+/// Makes the folders of `file` unless they are there, and fails early, and in plain words, where it could not be written.
 pub(super) fn check_file(file: &Path) -> Result<()> {
     if file.is_dir() {
         return Err(Error::format(file, "this is a folder; name a file in it"));
     }
     match file.parent() {
-        Some(folder) if folder != Path::new("") => check_folder(folder),
+        Some(folder) if folder != Path::new("") => make_folder(folder),
         _ => check_folder(Path::new(".")),
     }
 }
@@ -50,64 +93,20 @@ pub(super) fn text(file: &Path, text: &str) -> Result<()> {
     rara::files::write_atomically(file, |out| out.write_all(text.as_bytes()))
 }
 
-/// Makes `folder` unless it is there, and fails where files could not be written into it.
+/// Makes `folder` and those it is in unless they are there, and fails where files could not be written into it.
 pub(super) fn make_folder(folder: &Path) -> Result<()> {
-    if !folder.exists() {
-        fs::create_dir(folder).map_err(Error::io(folder))?;
+    // A file among the folders is the most likely mistake, and systems say different things of it.
+    if let Some(file) = folder.ancestors().find(|part| part.is_file()) {
+        return Err(Error::format(file, "this is not a folder"));
     }
+    fs::create_dir_all(folder).map_err(Error::io(folder))?;
     check_folder(folder)
 }
 
 fn check_folder(folder: &Path) -> Result<()> {
-    if !folder.is_dir() {
-        let problem = if folder.exists() {
-            "this is not a folder"
-        } else {
-            "this folder does not exist; make it first"
-        };
-        return Err(Error::format(folder, problem));
-    }
     let probe = folder.join(format!(".rara-{}.probe", std::process::id()));
     fs::File::create(&probe).map_err(Error::io(folder))?;
     fs::remove_file(&probe).map_err(Error::io(probe))
-}
-
-/// A bar on the terminal for work that takes longer than a moment; none elsewhere.
-pub(super) struct Progress {
-    bar: ProgressBar,
-    shown_at: Option<Instant>,
-}
-
-impl Progress {
-    /// The bar stays hidden for the first half second, so that quick work leaves no flicker.
-    const MOMENT: Duration = Duration::from_millis(500);
-
-    pub(super) fn new(what: impl Into<String>) -> Self {
-        let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %")
-            .expect("the template is valid");
-        let bar =
-            ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_style(style);
-        bar.set_message(what.into());
-        Self {
-            bar,
-            shown_at: Some(Instant::now() + Self::MOMENT),
-        }
-    }
-
-    pub(super) fn update(&mut self, done: u64, total: u64) {
-        if self.shown_at.is_some_and(|at| Instant::now() >= at) {
-            self.shown_at = None;
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
-        self.bar.set_length(total);
-        self.bar.set_position(done);
-    }
-}
-
-impl Drop for Progress {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
-    }
 }
 
 /// 1234567 as "1 234 567".

@@ -29,6 +29,11 @@ pub(super) struct Profile {
 }
 
 impl ProfileArgs {
+    /// True when a trace is wanted.
+    pub(super) fn is_traced(&self) -> bool {
+        self.trace.is_some()
+    }
+
     /// Begins the trace; fails where its file could not be written, or is one of `pictures`.
     pub(super) fn begin(&self, pictures: &[PathBuf]) -> Result<Profile, Failure> {
         if let Some(file) = &self.trace {

@@ -1,5 +1,6 @@
 //! `rara render`: pictures of a scene.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -8,12 +9,14 @@ use rara::{Aov, Clip, Picture, Scene, Settings};
 use super::camera::{View, Views};
 use super::failure::Failure;
 use super::frame::FrameArgs;
+use super::memory;
 use super::output::{self, Progress};
+use super::pattern::filled;
 use super::profile::{Profile, ProfileArgs};
-use super::report::Report;
+use super::report::{Frame, Report};
 use super::scenes::SceneArgs;
 use super::section::{Section, SectionArgs, Sections};
-use super::session::Session;
+use super::session::{Repeat, Session};
 use super::settings::name;
 use super::slice::{Cut, SliceArgs, Slicer};
 use super::values;
@@ -39,15 +42,17 @@ Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premu
 pub(super) struct Render {
     #[command(flatten)]
     scenes: SceneArgs,
-    /// The picture's file, .png or .exr; {} becomes the number of the camera or section. May be left out with --json
-    #[arg(short, long, value_name = "OUT", value_parser = values::picture_path, required_unless_present = "json")]
+    /// The picture's file, .png or .exr; its folders are made. {} becomes the number of the camera or section, {:04} the
+    /// number with zeros before it, {name} its name. May be left out with --json
+    #[arg(short, long, value_name = "OUT", value_parser = values::picture_file(), required_unless_present = "json")]
     output: Option<PathBuf>,
     /// Channels of the .exr beside its colours. Each is drawn by itself, and no time is reported of it
     #[arg(long, value_name = "LIST", value_delimiter = ',', requires = "output")]
     aov: Vec<Aov>,
-    /// Render N times, nothing carried over between them, and report the medians
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    repeat: u32,
+    /// Render N times, nothing carried over between them, and report the medians [default: as often as five frames need, but no
+    /// longer than about 2 s]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    repeat: Option<u32>,
     /// Print the statistics as JSON to stdout
     #[arg(long)]
     json: bool,
@@ -126,8 +131,10 @@ impl Render {
         let several = self.frame.camera.all() || numbers.len() > 1;
         self.check_output(&numbers, several)?;
 
-        let files = numbers.iter().map(|n| self.picture_file(*n));
-        let profile = self.profile.begin(&files.flatten().collect::<Vec<_>>())?;
+        let files = numbers
+            .iter()
+            .filter_map(|n| Some(filled(self.output.as_ref()?, *n, "")));
+        let profile = self.profile.begin(&files.collect::<Vec<_>>())?;
         let done = self.draw(&profile, pictures, several, &settings);
         profile.end_after(done)
     }
@@ -142,32 +149,41 @@ impl Render {
         let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
         let planned = pictures.of(&scene)?;
+        self.check_files(&planned)?;
+        for one in &planned {
+            memory::check_picture(&one.view.camera)?;
+        }
         let device = self.frame.device.meant();
         let mut session = profile.open(device, &scene, settings.precision.sh)?;
+        let clips = loaded.has_clips() || planned.iter().any(|one| !one.clip.is_everything());
+        let repeat = self.repeat(planned.len());
         let mut frames = Vec::new();
         let mut written = Vec::new();
         let mut slicer = Slicer::new(&self.slice, &scene, self.frame.device.meant());
         let mut progress = Progress::new("rendering");
         for (done, one) in planned.iter().enumerate() {
             progress.update(done as u64, planned.len() as u64);
+            let path = self.picture_file(&one.view);
             let sliced = one.cut.as_ref().filter(|_| self.slice.is_shown());
-            frames.push(match sliced {
-                Some(cut) => slicer.frame(&mut session, (&one.view, cut, settings), self.repeat)?,
-                None => session.frame(&one.view.camera, &one.clip, settings, self.repeat)?,
-            });
-            if let Some(path) = self.picture_file(one.view.number) {
+            let measured = match sliced {
+                Some(cut) => slicer.frame(&mut session, (&one.view, cut, settings), repeat)?,
+                None => session.measured_frame(&one.view.camera, &one.clip, settings, repeat)?,
+            };
+            if let Some(path) = &path {
                 if let Some(cut) = one.cut.as_ref().filter(|_| slicer.has_cues()) {
                     let mut picture = session.last_picture()?;
                     slicer.draw_cues(&mut picture, (&one.view, cut, settings))?;
-                    self.save(&mut session, (&scene, one, settings), &picture, &path)?;
+                    self.save(&mut session, (&scene, one, settings), &picture, path)?;
                 } else if self.aov.is_empty() {
-                    profile.save_picture(&mut session, &path)?;
+                    profile.save_picture(&mut session, path)?;
                 } else {
                     let picture = session.last_picture()?;
-                    self.save(&mut session, (&scene, one, settings), &picture, &path)?;
+                    self.save(&mut session, (&scene, one, settings), &picture, path)?;
                 }
-                written.push(path);
             }
+            let plane = one.cut.as_ref().map(|cut| &cut.plane);
+            frames.push(Frame::new(&one.view, path.as_deref(), plane, measured));
+            written.extend(path);
         }
         drop(progress);
         slicer.close()?;
@@ -182,7 +198,18 @@ impl Render {
             report
         };
         session.close()?;
-        Ok(report.print(self.json, &written)?)
+        Ok(report.print(self.json, clips, &written)?)
+    }
+
+    /// How often each of so many pictures is drawn.
+    fn repeat(&self, pictures: usize) -> Repeat {
+        match self.repeat {
+            Some(repeat) => Repeat::Exactly(repeat),
+            None if output::is_quiet() && !self.json => Repeat::Unmeasured,
+            // A trace shows what happens in a frame; more of them would be harder to read.
+            None if self.profile.is_traced() => Repeat::Exactly(1),
+            None => Repeat::of_pictures(pictures),
+        }
     }
 
     /// Writes a picture, with the channels that `--aov` asks for.
@@ -202,8 +229,25 @@ impl Render {
     }
 
     /// The file of the picture of a view.
-    fn picture_file(&self, number: usize) -> Option<PathBuf> {
-        Some(numbered(self.output.as_ref()?, number))
+    fn picture_file(&self, view: &View) -> Option<PathBuf> {
+        Some(filled(self.output.as_ref()?, view.number, &view.name))
+    }
+
+    /// Fails where two pictures would be one file.
+    fn check_files(&self, planned: &[Planned]) -> Result<(), Failure> {
+        let mut files = HashMap::new();
+        for one in planned {
+            let Some(file) = self.picture_file(&one.view) else {
+                return Ok(());
+            };
+            if let Some(other) = files.insert(file, &one.view.name) {
+                return Err(Failure::Usage(format!(
+                    "the pictures of {other} and {} would be one file: put {{}} where their number goes",
+                    one.view.name
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// Checks `-o` before any work is done.
@@ -221,7 +265,7 @@ impl Render {
             ));
         }
         let first = numbers.first().copied().unwrap_or(0);
-        if several && numbered(pattern, 0) == numbered(pattern, 1) {
+        if several && filled(pattern, 0, "a") == filled(pattern, 1, "b") {
             let what = if self.frame.camera.all() {
                 "--view all makes"
             } else {
@@ -231,14 +275,6 @@ impl Render {
                 "{what} several pictures: put {{}} where their number goes, as in -o view_{{}}.png"
             )));
         }
-        Ok(output::check_file(&numbered(pattern, first))?)
-    }
-}
-
-/// `pattern` with the number in place of `{}`.
-fn numbered(pattern: &Path, number: usize) -> PathBuf {
-    match pattern.to_str() {
-        Some(text) => PathBuf::from(text.replace("{}", &number.to_string())),
-        None => pattern.to_owned(),
+        Ok(output::check_file(&filled(pattern, first, "x"))?)
     }
 }

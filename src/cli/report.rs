@@ -1,13 +1,14 @@
 //! The statistics: the `--json` document and the table for people.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use rara::gpu::{DeviceShape, NamedBytes};
-use rara::{Counts, FrameStats};
+use rara::{Counts, FrameStats, Plane};
 use serde::Serialize;
 
-use super::combine::{Combine, combine};
+use super::camera::View;
+use super::combine::{Combine, Measured, combine};
 use super::output::{self, grouped, say};
 use super::scenes::Loaded;
 use super::session::Session;
@@ -22,11 +23,52 @@ pub(super) struct Report {
     size: [u32; 2],
     mode: String,
     #[serde(flatten)]
-    stats: FrameStats,
+    measured: Measured,
+    /// What the driver's compilation has added to frames that are not among those measured.
+    first_use_ms: f64,
+    /// Whether an earlier run has kept it.
+    #[serde(skip)]
+    has_kept: bool,
     memory: Memory,
-    frames: Vec<FrameStats>,
+    frames: Vec<Frame>,
     #[serde(skip_serializing_if = "Option::is_none")]
     mean: Option<FrameStats>,
+}
+
+/// One picture, and the frames that measured it.
+#[derive(Debug, Serialize)]
+pub(super) struct Frame {
+    /// The number of its view or section.
+    view: usize,
+    /// What that is called.
+    name: String,
+    /// Where the picture is, if it was written.
+    file: Option<String>,
+    /// The section's plane, or the one that moves: normal and offset.
+    plane: Option<[f64; 4]>,
+    #[serde(flatten)]
+    pub(super) measured: Measured,
+}
+
+impl Frame {
+    pub(super) fn new(
+        view: &View,
+        file: Option<&Path>,
+        plane: Option<&Plane>,
+        measured: Measured,
+    ) -> Self {
+        let plane = plane.map(|plane| {
+            let normal = plane.normal();
+            [normal.x, normal.y, normal.z, plane.offset()]
+        });
+        Self {
+            view: view.number,
+            name: view.name.clone(),
+            file: file.map(|file| file.display().to_string()),
+            plane,
+            measured,
+        }
+    }
 }
 
 /// The kind of machine that kernels were chosen for, and the reason.
@@ -66,8 +108,38 @@ struct Memory {
 }
 
 impl Report {
-    /// Prints it as JSON to stdout, or for people, with the pictures that were written.
-    pub(super) fn print(&self, json: bool, written: &[PathBuf]) -> rara::Result<()> {
+    /// Warns where nothing is to be seen, or a clip was given that `--mode none` ignores.
+    fn warn(&self, clips: bool) {
+        if clips && self.mode == "none" {
+            say("warning: --mode none clips nothing, whatever --clip says; leave one of them out");
+        }
+        let counts = self.measured.stats.counts;
+        let empty = self.frames.iter().map(|frame| frame.measured.stats.counts);
+        let empty = empty.filter(|counts| counts.drawn == 0).count();
+        // In the middle of several, and in the only one.
+        if counts.drawn == 0 && (self.frames.is_empty() || empty == self.frames.len()) {
+            let why = match (counts.invisible, self.scene.gaussians) {
+                (_, 0) => "the scene has no Gaussians",
+                (0, _) => "none of the Gaussians is in view; look from elsewhere",
+                _ => "the clip leaves nothing of what is in view",
+            };
+            say(format_args!("warning: the picture is empty: {why}"));
+        } else if empty > 0 && self.mean.is_none() {
+            let which = self
+                .frames
+                .iter()
+                .find(|f| f.measured.stats.counts.drawn == 0);
+            let which = which.map_or("", |frame| &frame.name);
+            say(format_args!(
+                "warning: {empty} of {} pictures are empty, as that of {which}",
+                self.frames.len()
+            ));
+        }
+    }
+
+    /// Prints it as JSON to stdout, or for people, with the pictures that were written. `clips` is true where there is a clip.
+    pub(super) fn print(&self, json: bool, clips: bool, written: &[PathBuf]) -> rara::Result<()> {
+        self.warn(clips);
         if json {
             return output::json(self);
         }
@@ -82,12 +154,13 @@ impl Report {
         loaded: &Loaded,
         size: (u32, u32),
         mode: String,
-        frames: &[FrameStats],
+        frames: &[Frame],
     ) -> Self {
         let (device, driver, device_bytes) = session.about();
         let (shape, reason) = session.shape();
         let scene_bytes = session.scene_bytes();
         let scene = loaded.scene();
+        let measured = Measured::all(frames.iter().map(|frame| &frame.measured));
         Self {
             device,
             driver,
@@ -108,7 +181,9 @@ impl Report {
             },
             size: [size.0, size.1],
             mode,
-            stats: combine(frames, Combine::Median),
+            first_use_ms: session.first_use_ms(measured.stats.wall_ms),
+            has_kept: session.has_kept(),
+            measured,
             memory: Memory {
                 device_bytes,
                 scene_bytes,
@@ -122,14 +197,15 @@ impl Report {
     }
 
     /// Adds the single frames.
-    pub(super) fn with_frames(self, frames: Vec<FrameStats>) -> Self {
+    pub(super) fn with_frames(self, frames: Vec<Frame>) -> Self {
         Self { frames, ..self }
     }
 
     /// Adds the frames' means.
     pub(super) fn with_mean(self) -> Self {
+        let frames = self.frames.iter().map(|frame| frame.measured.stats.clone());
         Self {
-            mean: Some(combine(&self.frames, Combine::Mean)),
+            mean: Some(combine(&frames.collect::<Vec<_>>(), Combine::Mean)),
             ..self
         }
     }
@@ -138,12 +214,8 @@ impl Report {
 /// The table for people.
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self {
-            scene,
-            stats,
-            memory,
-            ..
-        } = self;
+        let Self { scene, memory, .. } = self;
+        let stats = &self.measured.stats;
         let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
         writeln!(f, "device   {} ({})", self.device, self.driver)?;
         write!(
@@ -187,12 +259,19 @@ impl fmt::Display for Report {
                 grouped(pass.primitives)
             )?;
         }
-        writeln!(
+        if let Some(preparing) = output::preparing(self.first_use_ms, self.has_kept) {
+            write!(f, "\n{preparing}")?;
+        }
+        write!(
             f,
             "\ntime     {:.2} ms on the device, {:.2} ms in all",
             stats.gpu_ms.unwrap_or_default(),
             stats.wall_ms
         )?;
+        match self.measured.samples {
+            1 => writeln!(f)?,
+            frames => writeln!(f, " (the median of {frames} frames)")?,
+        }
         write!(
             f,
             "memory   {:.1} MiB on the device, {:.1} of them the scene's ({:.1} bytes a Gaussian); {:.1} MiB here at most",

@@ -201,8 +201,9 @@ pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
     }
     let text = std::fs::read(path).map_err(Error::io(path))?;
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
-    let document: Document =
-        serde_json::from_slice(text).map_err(|error| format(error.to_string()))?;
+    let mut json = serde_json::Deserializer::from_slice(text);
+    let document: Document = serde_path_to_error::deserialize(&mut json)
+        .map_err(|error| format(format!("field `{}`: {}", error.path(), error.inner())))?;
     if document.layers.is_empty() {
         return Err(format("it has no layer; name at least one".into()));
     }

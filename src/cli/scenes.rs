@@ -8,7 +8,7 @@ use rara::{Gaussians, Layer, LayerState};
 use super::failure::Failure;
 use super::output::{Progress, say};
 use super::scene_file::{self, LayerClip, LayerEntry};
-use super::select;
+use super::{select, values};
 use rara::scene::{self, Property};
 
 /// The flags that name the scene.
@@ -231,8 +231,9 @@ impl Loaded {
             .collect();
         match found.is_empty() {
             true => Err(Failure::Usage(format!(
-                "{flag}: no layer is called '{name}'; there are {}",
-                names.join(", ")
+                "{flag}: no layer is called '{name}'; there are {}{}",
+                names.join(", "),
+                values::meant(name, names.iter().map(String::as_str))
             ))),
             false => Ok(found),
         }

@@ -246,7 +246,10 @@ fn unknown<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> Failure {
     let names: Vec<_> = names.collect();
     let there = match names.is_empty() {
         true => "there is no --clip-file to take it from; across an axis a section is written as axial=0.5".into(),
-        false => format!("the planes of --clip-file are {}", names.join(", ")),
+        false => {
+            let meant = values::meant(name, names.iter().copied());
+            format!("the planes of --clip-file are {}{meant}", names.join(", "))
+        }
     };
     Failure::Usage(format!(
         "--section {name}: there is no plane of that name: {there}"

@@ -1,4 +1,9 @@
-//! A device and the scene on it.
+//! A device and the scene on it, and the frames that are measured there.
+//!
+//! What a driver compiles when a shader is used first would be in the time of the first frame, so a frame is measured
+//! after one that is not; what that one took longer is reported by itself.
+
+use std::time::{Duration, Instant};
 
 use rara::gpu::DeviceShape;
 use rara::{
@@ -6,18 +11,99 @@ use rara::{
     Settings, ShFormat,
 };
 
-use super::combine::{Combine, combine};
+use super::combine::Measured;
+use super::output::Spinner;
 
 /// A device with a scene on it.
 pub(super) struct Session {
     headless: Headless,
+    /// Times from recording to the picture of the frames that are not measured, milliseconds.
+    first_ms: Vec<f64>,
 }
+
+/// How often a frame is drawn.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Repeat {
+    /// Once, as no time is shown.
+    Unmeasured,
+    /// This often, after one that is not measured.
+    Exactly(u32),
+    /// Likewise, but no more once they have taken [`PATIENCE`] together.
+    UpTo(u32),
+}
+
+impl Repeat {
+    /// How often each of so many pictures is drawn, so that a median of at least five frames can be shown.
+    pub(super) fn of_pictures(count: usize) -> Self {
+        Self::UpTo(5_usize.div_ceil(count.max(1)) as u32)
+    }
+}
+
+/// How long somebody who wants a picture waits for a median.
+const PATIENCE: Duration = Duration::from_secs(2);
 
 impl Session {
     pub(super) fn open(desc: &HeadlessDesc, scene: &Scene<'_>, sh: ShFormat) -> Result<Self> {
         let mut headless = Headless::new(desc)?;
         headless.load_as(scene, sh)?;
-        Ok(Self { headless })
+        Ok(Self {
+            headless,
+            first_ms: Vec::new(),
+        })
+    }
+
+    /// Draws frames that are not measured, the ones after the first each from the one before, so that what the driver
+    /// compiles for them is in no frame that is.
+    pub(super) fn warm_up<'a>(
+        &mut self,
+        frames: impl IntoIterator<Item = (&'a Camera, &'a Clip, &'a Settings)>,
+    ) -> Result<()> {
+        let _spinner = Spinner::new("preparing shaders");
+        self.headless.forget();
+        for (camera, clip, settings) in frames {
+            let first = self.headless.render(camera, clip, settings)?;
+            self.first_ms.push(first.wall_ms);
+        }
+        self.headless.forget();
+        Ok(())
+    }
+
+    /// How much longer the driver took because it used its shaders for the first time, where a frame usually takes
+    /// `wall_ms`; milliseconds.
+    pub(super) fn first_use_ms(&self, wall_ms: f64) -> f64 {
+        let longer = self.first_ms.iter().map(|ms| (ms - wall_ms).max(0.0));
+        self.headless.device().pipeline_ms() + longer.sum::<f64>()
+    }
+
+    /// True when an earlier run has kept what this driver compiled.
+    pub(super) fn has_kept(&self) -> bool {
+        self.headless.kept_pipeline_bytes() > 0
+    }
+
+    /// Renders a frame that is measured, each time from nothing; the statistics are the medians.
+    pub(super) fn measured_frame(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+        repeat: Repeat,
+    ) -> Result<Measured> {
+        let most = match repeat {
+            Repeat::Unmeasured => return self.frame(camera, clip, settings, 1),
+            Repeat::Exactly(most) | Repeat::UpTo(most) => most,
+        };
+        if self.first_ms.is_empty() {
+            self.warm_up([(camera, clip, settings)])?;
+        }
+        let begin = Instant::now();
+        let mut frames = Vec::new();
+        for _ in 0..most {
+            frames.push(self.one(camera, clip, settings)?);
+            if matches!(repeat, Repeat::UpTo(_)) && begin.elapsed() > PATIENCE {
+                break;
+            }
+        }
+        Ok(Measured::of(&frames))
     }
 
     /// Uploads the scene once more, its spherical harmonics stored in another way.
@@ -35,22 +121,27 @@ impl Session {
         self.headless.render(camera, clip, settings)
     }
 
-    /// Renders the frame `repeat` times from nothing; the statistics are the medians.
+    /// Renders the frame `repeat` times from nothing.
     pub(super) fn frame(
         &mut self,
         camera: &Camera,
         clip: &Clip,
         settings: &Settings,
         repeat: u32,
+    ) -> Result<Measured> {
+        let frames = (0..repeat).map(|_| self.one(camera, clip, settings));
+        Ok(Measured::of(&frames.collect::<Result<Vec<_>>>()?))
+    }
+
+    /// Renders a frame that takes over nothing.
+    pub(super) fn one(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
     ) -> Result<FrameStats> {
-        let frames = (0..repeat).map(|_| {
-            self.headless.forget(); // nothing is carried over between them
-            self.headless.render(camera, clip, settings)
-        });
-        Ok(combine(
-            &frames.collect::<Result<Vec<_>>>()?,
-            Combine::Median,
-        ))
+        self.headless.forget();
+        self.headless.render(camera, clip, settings)
     }
 
     /// One frame and its picture.
@@ -60,7 +151,7 @@ impl Session {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<(Picture, FrameStats)> {
-        let stats = self.frame(camera, clip, settings, 1)?;
+        let stats = self.one(camera, clip, settings)?;
         Ok((self.last_picture()?, stats))
     }
 

@@ -34,8 +34,8 @@ pub(super) struct SettingsArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Drawing")]
 pub(super) struct LookArgs {
-    /// Background colour, each 0 to 1 [default: transparent]
-    #[arg(long, value_name = "R,G,B", value_parser = values::colour, allow_hyphen_values = true)]
+    /// Background colour: three numbers from 0 to 1, #rrggbb, or a name as white [default: transparent]
+    #[arg(long, value_name = "COLOUR", value_parser = values::colour, allow_hyphen_values = true)]
     background: Option<[f32; 3]>,
     /// Highest spherical-harmonics degree to evaluate [default: the scene's own]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=3))]
@@ -77,6 +77,10 @@ impl SettingsArgs {
     pub(super) fn meant(&self) -> Result<Settings, Failure> {
         if self.mode != Mode::Rara && (self.sigma.is_some() || self.miss.is_some()) {
             output::say("note: --sigma and --miss change nothing without --mode rara");
+        }
+        if matches!(self.mode, Mode::None | Mode::Hard) && (self.decay.is_some() || self.trace_all)
+        {
+            output::say("note: --decay and --trace-all change nothing with --mode none or hard");
         }
         let defaults = self.look.meant()?;
         Ok(defaults

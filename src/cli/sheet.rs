@@ -9,6 +9,8 @@ const GAP: u32 = 4;
 /// Colour of what is between the pictures.
 const MARGIN: [f32; 4] = [0.25, 0.25, 0.25, 1.0];
 const INK: [u8; 3] = [255; 3];
+/// Colour behind pictures that have no background.
+const PAPER: [f32; 3] = [1.0; 3];
 /// How far the lower row is magnified.
 const ZOOM: u32 = 6;
 
@@ -19,14 +21,18 @@ pub(super) fn sheet(pictures: &[(String, Picture)], corner: (u32, u32)) -> Pictu
         return Picture::default();
     };
     let (width, height) = (first.width, first.height);
-    let scale = (width / 128).max(1);
-    let band = 11 * scale;
+    let (label, height_of_label) = match width {
+        0..256 => (ink::Font::Small, 11),
+        _ => (ink::Font::Large, 22),
+    };
+    let scale = (width / 320).max(1);
+    let band = height_of_label * scale;
     let count = pictures.len() as u32;
     let mut sheet = Picture::filled(count * (width + GAP) - GAP, band + 2 * height + GAP, MARGIN);
-    for (column, (label, picture)) in (0..).zip(pictures) {
+    for (column, (words, picture)) in (0..).zip(pictures) {
         let left = column * (width + GAP);
         let at = [left + 2 * scale, 2 * scale].map(f64::from);
-        ink::text(&mut sheet, at, label, scale.into(), INK);
+        ink::text(&mut sheet, at, words, (label, scale.into()), INK);
         for y in 0..height {
             for x in 0..width {
                 set(&mut sheet, left + x, band + y, picture.at(x, y));
@@ -36,6 +42,20 @@ pub(super) fn sheet(pictures: &[(String, Picture)], corner: (u32, u32)) -> Pictu
         }
     }
     sheet
+}
+
+/// The picture on paper, for those who look at it: a viewer that does not know of transparency would show what is hardly
+/// there as solid.
+pub(super) fn opaque(picture: &Picture) -> Picture {
+    let mut opaque = picture.clone();
+    for pixel in &mut opaque.pixels {
+        let [.., alpha] = *pixel;
+        for (channel, paper) in pixel.iter_mut().zip(PAPER) {
+            *channel += (1.0 - alpha) * paper;
+        }
+        pixel[3] = 1.0;
+    }
+    opaque
 }
 
 /// The top left of the piece in which two pictures of one size differ most; the piece is as large as a sheet magnifies.
@@ -86,6 +106,12 @@ mod tests {
         set(&mut spotted, 33, 41, [1.0; 4]);
         let (x, y) = where_they_differ(&plain, &spotted);
         assert!((24..=33).contains(&x) && (34..=41).contains(&y), "{x} {y}");
+    }
+
+    #[test]
+    fn what_is_transparent_is_paper() {
+        let made = opaque(&Picture::filled(1, 1, [0.25, 0.0, 0.0, 0.5]));
+        assert_eq!(made.at(0, 0), [0.75, 0.5, 0.5, 1.0]);
     }
 
     #[test]

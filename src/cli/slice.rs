@@ -3,13 +3,13 @@
 use clap::Args;
 use rara::scene::cross_section;
 use rara::{
-    Clip, Cue, Cues, FrameStats, Gaussians, HeadlessDesc, Layer, Picture, Plane, Raster, Scene,
-    Settings, Show,
+    Clip, Cue, Cues, Gaussians, HeadlessDesc, Layer, Picture, Plane, Raster, Scene, Settings, Show,
 };
 
 use super::camera::View;
+use super::combine::Measured;
 use super::failure::Failure;
-use super::session::Session;
+use super::session::{Repeat, Session};
 use super::settings::name;
 use super::values;
 
@@ -97,12 +97,12 @@ impl<'a> Slicer<'a> {
         &self,
         session: &mut Session,
         (view, cut, settings): (&View, &Cut, &Settings),
-        repeat: u32,
-    ) -> Result<FrameStats, Failure> {
+        repeat: Repeat,
+    ) -> Result<Measured, Failure> {
         let flat = self.cross_sections(&cut.plane);
         session.reload(&self.flat_scene(&flat), settings.precision.sh)?;
         let shown = settings.show(Show::Mean);
-        Ok(session.frame(&view.camera, &cut.rest, &shown, repeat)?)
+        Ok(session.measured_frame(&view.camera, &cut.rest, &shown, repeat)?)
     }
 
     /// Draws the cues onto the picture of a section, if there are any.

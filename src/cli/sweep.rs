@@ -8,11 +8,13 @@ use rara::clip::Expression;
 use rara::{Clip, Plane, Settings};
 
 use super::camera::Views;
+use super::combine::Measured;
 use super::failure::Failure;
 use super::frame::FrameArgs;
+use super::memory;
 use super::output::{self, Progress};
 use super::profile::{Profile, ProfileArgs};
-use super::report::Report;
+use super::report::{Frame, Report};
 use super::scenes::SceneArgs;
 use super::settings::name;
 use super::values;
@@ -110,31 +112,47 @@ impl Sweep {
         let op = self.frame.clip.op();
         let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
-        let camera = views.of(&scene)?.remove(0).camera;
+        let view = views.of(&scene)?.remove(0);
+        let camera = view.camera;
         let range = match moving {
             Moving::Plane(normal) => extent_along(&scene, *normal),
             Moving::Region(..) => (0.0, 1.0),
         };
+        memory::check_picture(&camera)?;
         let device = self.frame.device.meant();
         let mut session = profile.open(device, &scene, settings.precision.sh)?;
+        let mut clip_of = |index| -> rara::Result<Clip> {
+            shapes.push(moving.at(position(range, index, self.frames))?);
+            let clip = Clip::joined(shapes.iter().map(Expression::clip), op);
+            shapes.pop();
+            Ok(clip)
+        };
+        // The first frames, those that cut much and take over, and the last: together they need every shader.
+        let middle = self.frames / 2;
+        let first = [0, middle, middle + 1, middle + 2, self.frames - 1]
+            .map(|index| clip_of(index.min(self.frames - 1)));
+        let first = first.into_iter().collect::<rara::Result<Vec<_>>>()?;
+        session.warm_up(first.iter().map(|clip| (&camera, clip, settings)))?;
+
         let mut frames = Vec::new();
         let mut written = Vec::new();
         let mut progress = Progress::new("sweeping");
         for index in 0..self.frames {
             progress.update(index.into(), self.frames.into());
-            shapes.push(moving.at(position(range, index, self.frames))?);
-            let clip = Clip::joined(shapes.iter().map(Expression::clip), op);
-            shapes.pop();
-            frames.push(if self.independent || self.repeat > 1 {
+            let clip = clip_of(index)?;
+            let measured = if self.independent || self.repeat > 1 {
                 session.frame(&camera, &clip, settings, self.repeat)?
             } else {
-                session.next_frame(&camera, &clip, settings)?
-            });
-            if let Some(folder) = &self.output {
-                let path = folder.join(format!("frame_{index:03}.png"));
-                profile.save_picture(&mut session, &path)?;
-                written.push(path);
+                Measured::of(&[session.next_frame(&camera, &clip, settings)?])
+            };
+            let path = self.output.as_ref();
+            let path = path.map(|folder| folder.join(format!("frame_{index:03}.png")));
+            if let Some(path) = &path {
+                profile.save_picture(&mut session, path)?;
             }
+            let plane = moving.plane(position(range, index, self.frames))?;
+            frames.push(Frame::new(&view, path.as_deref(), plane.as_ref(), measured));
+            written.extend(path);
         }
         drop(progress);
 
@@ -142,7 +160,7 @@ impl Sweep {
         let report = Report::new(&session, &loaded, size, name(settings.mode), &frames);
         let report = report.with_frames(frames).with_mean();
         session.close()?;
-        Ok(report.print(self.json, &written)?)
+        Ok(report.print(self.json, true, &written)?)
     }
 }
 
@@ -164,6 +182,14 @@ impl Moving {
             Self::Plane(normal) => Expression::Shape(Plane::new(*normal, -position)?.into()),
             Self::Region(from, to) => from.between(to, position)?,
         })
+    }
+
+    /// The plane in a position, if it is one.
+    fn plane(&self, position: f64) -> rara::Result<Option<Plane>> {
+        match self {
+            Self::Plane(normal) => Plane::new(*normal, -position).map(Some),
+            Self::Region(..) => Ok(None),
+        }
     }
 }
 

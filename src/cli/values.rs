@@ -1,7 +1,9 @@
 //! Parsers of the values that flags take.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::DVec3;
 
 /// `COUNT` numbers between commas, all finite.
@@ -38,13 +40,55 @@ pub(super) fn size(text: &str) -> Result<(u32, u32), String> {
     sides.ok_or_else(|| "expected a width and a height like 1024x768".into())
 }
 
-/// `r,g,b`, each 0 to 1.
+/// `r,g,b`, each 0 to 1, `#rgb`, `#rrggbb` or one of a few names.
 pub(super) fn colour(text: &str) -> Result<[f32; 3], String> {
-    let rgb = numbers::<3>(text)?;
+    if let Some(digits) = text.strip_prefix('#') {
+        return hexadecimal(digits)
+            .ok_or_else(|| "expected three or six hexadecimal digits, as in #fff".into());
+    }
+    if let Some((_, rgb)) = COLOURS.iter().find(|(name, _)| *name == text) {
+        return Ok(*rgb);
+    }
+    let rgb = numbers::<3>(text).map_err(|error| {
+        let names: Vec<_> = COLOURS.iter().map(|(name, _)| *name).collect();
+        format!("{error}; or #rrggbb, or one of {}", names.join(", "))
+    })?;
     if rgb.iter().any(|c| !(0.0..=1.0).contains(c)) {
         return Err("red, green and blue are each between 0 and 1".into());
     }
     Ok(rgb.map(|c| c as f32))
+}
+
+/// Colours that have a name.
+const COLOURS: [(&str, [f32; 3]); 7] = [
+    ("black", [0.0, 0.0, 0.0]),
+    ("white", [1.0, 1.0, 1.0]),
+    ("grey", [0.5, 0.5, 0.5]),
+    ("gray", [0.5, 0.5, 0.5]),
+    ("red", [1.0, 0.0, 0.0]),
+    ("green", [0.0, 1.0, 0.0]),
+    ("blue", [0.0, 0.0, 1.0]),
+];
+
+fn hexadecimal(digits: &str) -> Option<[f32; 3]> {
+    let values = digits.chars().map(|digit| digit.to_digit(16));
+    let values: Vec<u32> = values.collect::<Option<_>>()?;
+    let of = |value: u32| value as f32 / 255.0;
+    match *values.as_slice() {
+        [r, g, b] => Some([r, g, b].map(|v| of(17 * v))),
+        [r1, r0, g1, g0, b1, b0] => {
+            Some([(r1, r0), (g1, g0), (b1, b0)].map(|(h, l)| of(16 * h + l)))
+        }
+        _ => None,
+    }
+}
+
+/// A number.
+pub(super) fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err("expected a finite number".into()),
+    }
 }
 
 /// A number above zero that single precision can hold.
@@ -61,6 +105,20 @@ pub(super) fn not_negative(text: &str) -> Result<f32, String> {
         Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
         _ => Err("expected a finite number of zero or more".into()),
     }
+}
+
+/// The end of a message about a name that is not there: the one of these that is most like it, if one is.
+pub(super) fn meant<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> String {
+    let near = names.map(|name| {
+        let likeness = strsim::jaro_winkler(&name.to_lowercase(), &wanted.to_lowercase());
+        (likeness, name)
+    });
+    let nearest = near
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .filter(|(likeness, _)| *likeness > 0.7);
+    nearest.map_or(String::new(), |(_, name)| {
+        format!("; did you mean '{name}'?")
+    })
 }
 
 /// A number from 0 to 1.
@@ -84,14 +142,19 @@ pub(super) fn ply_path(text: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// A picture's file name; its ending says the format.
-pub(super) fn picture_path(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
+/// A picture's file name; its ending says the format. It need not be text.
+pub(super) fn picture_path(path: OsString) -> Result<PathBuf, String> {
+    let path = PathBuf::from(path);
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
     match ending.to_ascii_lowercase().as_str() {
         "png" | "exr" => Ok(path),
         _ => Err("a picture's name ends in .png (8 bits) or .exr (32-bit float)".into()),
     }
+}
+
+/// The parser of a picture's file name.
+pub(super) fn picture_file() -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(picture_path)
 }
 
 #[cfg(test)]
@@ -113,9 +176,13 @@ mod tests {
     fn sizes_colours_and_names() {
         assert_eq!(size("640x480"), Ok((640, 480)));
         assert!(size("640").is_err() && size("-1x5").is_err() && size("5x99999999999").is_err());
+        assert_eq!(colour("white"), Ok([1.0; 3]));
+        assert_eq!(colour("#fff"), Ok([1.0; 3]));
+        assert_eq!(colour("#ff0080"), Ok([1.0, 0.0, 128.0 / 255.0]));
+        assert!(colour("#ffff").is_err() && colour("#ggg").is_err() && colour("wite").is_err());
         assert!(colour("0,0.5,1").is_ok() && colour("0,0,1.5").is_err());
         assert!(positive("0").is_err() && positive("1e60").is_err() && positive("3").is_ok());
-        assert!(picture_path("a.PNG").is_ok() && picture_path("a.exr").is_ok());
-        assert!(picture_path("a.jpg").is_err() && picture_path("png").is_err());
+        assert!(picture_path("a.PNG".into()).is_ok() && picture_path("a.exr".into()).is_ok());
+        assert!(picture_path("a.jpg".into()).is_err() && picture_path("png".into()).is_err());
     }
 }

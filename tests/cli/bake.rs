@@ -215,9 +215,9 @@ fn what_cannot_be_baked_is_refused_and_nothing_is_written() {
             "two of the scenes",
         ),
         (
-            "bake @/scene.ply -o @/no/a.ply --clip plane:1,0,0,0",
+            "bake @/scene.ply -o @/scene.ply/a.ply --clip plane:1,0,0,0",
             1,
-            "does not exist",
+            "not a folder",
         ),
         (
             "bake @/none.ply -o @/a.ply --clip plane:1,0,0,0",

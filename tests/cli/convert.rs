@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::{document, done, folder, line, refused, scene, stderr};
+use super::{document, done, folder, line, refused, scene, stdout};
 
 fn centre(info: &Value, end: &str, axis: usize) -> f64 {
     info["centres"][end][axis].as_f64().expect("a number")
@@ -36,7 +36,7 @@ fn every_format_is_written_and_named() {
         let info = document(line(&here, &format!("info @/{name} --json")));
         assert_eq!(info["layers"][0]["format"], format);
         assert_eq!(info["gaussians"], 2000);
-        let printed = stderr(&done(line(&here, &format!("info @/{name}"))));
+        let printed = stdout(&done(line(&here, &format!("info @/{name}"))));
         assert!(
             printed.contains(&format!("format         {format}")),
             "{printed}"
@@ -205,7 +205,11 @@ fn what_cannot_be_written_is_refused_before_anything_is_read() {
         2,
         "one of the scenes",
     );
-    refused(&line(&here, "convert @/scene.ply -o @/no/a.spz"), 1, "no");
+    refused(
+        &line(&here, "convert @/scene.ply -o @/scene.ply/a.spz"),
+        1,
+        "not a folder",
+    );
     refused(
         &line(&here, "convert @/scene.ply -o @/a.spz --rotate 0,0,0,90"),
         2,

@@ -7,11 +7,14 @@ mod aov;
 mod bake;
 mod clips;
 mod convert;
+mod process;
 mod profile;
 mod refusals;
 mod sections;
 mod selections;
 mod shape;
+mod surprises;
+mod timing;
 mod work;
 
 use std::path::{Path, PathBuf};

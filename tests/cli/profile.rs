@@ -117,9 +117,12 @@ fn a_trace_has_every_stage_of_every_frame() {
         }
     }
     refused(
-        &line(&here, "render none.ply --json --trace @/no/such/trace.json"),
+        &line(
+            &here,
+            "render none.ply --json --trace @/scene.ply/trace.json",
+        ),
         1,
-        "does not exist",
+        "not a folder",
     );
 }
 

@@ -263,15 +263,15 @@ fn places_that_cannot_be_written_are_found_before_the_work() {
     fs::create_dir(here.join("folder.png")).unwrap();
     // None of the scenes exists either; a message about the place shows that it was checked first.
     for (words, what) in [
-        ("render none.ply -o @/no/such/a.png", "does not exist"),
+        ("render none.ply -o @/file/new/a.png", "not a folder"),
         ("render none.ply -o @/file/a.png", "not a folder"),
         ("render none.ply -o @/folder.png", "this is a folder"),
         (
             "sweep none.ply --clip-normal 1,0,0 -o @/file",
             "not a folder",
         ),
-        ("demo none.ply -o @/no/such", "no/such"),
-        ("generate general -o @/no/such/a.ply", "does not exist"),
+        ("demo none.ply -o @/file/such", "not a folder"),
+        ("generate general -o @/file/such/a.ply", "not a folder"),
     ] {
         refused(&line(&here, words), 1, what);
     }

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::{document, done, folder, line, rara, refused, scene, stderr};
+use super::{document, done, folder, line, rara, refused, scene, stderr, stdout};
 
 #[test]
 fn generated_scenes_can_be_looked_into() {
@@ -24,7 +24,7 @@ fn generated_scenes_can_be_looked_into() {
         assert!(info["opacity"]["max"].as_f64().unwrap() <= 1.0, "{kind}");
         let printed = done(line(&here, &format!("info @/{kind}.ply")));
         assert!(
-            printed.stdout.is_empty() && stderr(&printed).contains("1 000"),
+            printed.stderr.is_empty() && stdout(&printed).contains("1 000"),
             "{}",
             stderr(&printed)
         );
@@ -249,8 +249,8 @@ fn the_devices_are_listed() {
     );
     let printed = done(rara(["devices"]));
     assert!(
-        printed.stdout.is_empty()
-            && stderr(&printed).contains(devices[0]["name"].as_str().unwrap())
+        printed.stderr.is_empty()
+            && stdout(&printed).contains(devices[0]["name"].as_str().unwrap())
     );
 }
 

@@ -170,7 +170,13 @@ fn png(shapes: &[Mark]) -> Picture {
             Mark::Line(from, to, colour) => ink::line(&mut picture, *from, *to, *colour),
             Mark::Dot(at, radius, colour) => ink::dot(&mut picture, *at, *radius, *colour),
             Mark::Text([x, y], words, colour) => {
-                ink::text(&mut picture, [*x, y - 7.0], words, 2, *colour);
+                ink::text(
+                    &mut picture,
+                    [*x, y - 7.0],
+                    words,
+                    (ink::Font::Small, 2),
+                    *colour,
+                );
             }
         }
     }

@@ -57,11 +57,11 @@ pub(super) fn time(
             if loaded != Some(sh) {
                 session.reload(scene, sh)?;
                 // The frame after an upload finds other data in the caches, so it is not timed.
-                session.frame(camera, clip, settings, 1)?;
+                session.one(camera, clip, settings)?;
                 loaded = Some(sh);
             }
             let before = processor_ms();
-            let frame = session.frame(camera, clip, settings, 1)?;
+            let frame = session.one(camera, clip, settings)?;
             let after = processor_ms();
             if round > 0 {
                 samples.ms.extend(frame.gpu_ms);

@@ -175,7 +175,7 @@ impl Model {
                 .frame(camera, clip, &settings, 1)
                 .and_then(|_| session.frame(camera, clip, &settings, self.repeat));
             match drawn {
-                Ok(stats) => ways.push(measured(name, &stats)),
+                Ok(stats) => ways.push(measured(name, &stats.stats)),
                 // A device may have no mesh shaders.
                 Err(Error::Device(_)) if raster == Raster::Mesh => {}
                 Err(error) => return Err(error.into()),

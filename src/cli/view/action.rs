@@ -163,7 +163,7 @@ impl FromStr for Action {
                     .map_err(|_| format!("mode {rest}: none, hard, rara or exact is possible"))?,
             ),
             "screenshot" if rest.is_empty() => Self::Screenshot(None),
-            "screenshot" => Self::Screenshot(Some(values::picture_path(rest)?)),
+            "screenshot" => Self::Screenshot(Some(values::picture_path(rest.into())?)),
             "resize" => Self::Resize(values::size(rest)?),
             "minimise" | "restore" | "timings" | "flags" | "help" | "quit" if !rest.is_empty() => {
                 return Err(format!("{verb} takes nothing, found {rest}"));

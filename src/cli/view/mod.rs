@@ -71,7 +71,7 @@ pub(super) struct View {
     #[command(flatten)]
     scenes: SceneArgs,
     /// The screenshots' files, .png or .exr; {} becomes their number
-    #[arg(short, long, value_name = "OUT", default_value = "view_{}.png", value_parser = values::picture_path)]
+    #[arg(short, long, value_name = "OUT", default_value = "view_{}.png", value_parser = values::picture_file())]
     output: PathBuf,
     /// Do what a file says, or standard input for -, as for smoke tests: one action a line, see below. Without quit the
     /// window stays

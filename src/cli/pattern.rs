@@ -1,0 +1,100 @@
+//! A picture's name that stands for several: `{}` is a number, `{:04}` one with zeros before it, `{name}` a name.
+
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+
+/// What takes the place of braces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Slot {
+    /// A number of at least so many digits.
+    Number(usize),
+    Name,
+}
+
+/// The name of one picture. A pattern that is no text keeps its bytes where the system's names are bytes.
+pub(super) fn filled(pattern: &Path, number: usize, name: &str) -> PathBuf {
+    let mut made = Vec::new();
+    let mut rest = pattern.as_os_str().as_encoded_bytes();
+    while let Some((at, length, slot)) = first_slot(rest) {
+        made.extend_from_slice(&rest[..at]);
+        let text = match slot {
+            Slot::Number(digits) => format!("{number:0digits$}"),
+            Slot::Name => bare(name),
+        };
+        made.extend_from_slice(text.as_bytes());
+        rest = &rest[at + length..];
+    }
+    made.extend_from_slice(rest);
+    os_string(made, pattern.as_os_str()).into()
+}
+
+/// The first braces that stand for something: where they are, how long they are, and for what they stand.
+fn first_slot(text: &[u8]) -> Option<(usize, usize, Slot)> {
+    let begins = (0..text.len()).filter(|at| text[*at] == b'{');
+    begins.into_iter().find_map(|at| {
+        let length = text[at..].iter().position(|byte| *byte == b'}')? + 1;
+        let slot = match &text[at + 1..at + length - 1] {
+            b"" => Slot::Number(0),
+            b"name" => Slot::Name,
+            [b':', b'0', digit @ b'1'..=b'9'] => Slot::Number((digit - b'0').into()),
+            _ => return None,
+        };
+        Some((at, length, slot))
+    })
+}
+
+/// A view's name as a part of a file's name: without its ending, and without what would lead elsewhere.
+fn bare(name: &str) -> String {
+    let stem = name.rsplit_once('.').map_or(name, |(stem, ending)| {
+        let is_ending = !stem.is_empty() && ending.chars().all(|c| c.is_ascii_alphabetic());
+        if is_ending { stem } else { name }
+    });
+    let kept = |c: char| match c {
+        '/' | '\\' | ':' => '_',
+        c if c.is_control() => '_',
+        c => c,
+    };
+    stem.trim_start_matches(['.', '/'])
+        .chars()
+        .map(kept)
+        .collect()
+}
+
+#[cfg(unix)]
+fn os_string(bytes: Vec<u8>, _: &OsStr) -> OsString {
+    std::os::unix::ffi::OsStringExt::from_vec(bytes)
+}
+
+/// Elsewhere names are text, or stay as they are.
+#[cfg(not(unix))]
+fn os_string(bytes: Vec<u8>, pattern: &OsStr) -> OsString {
+    String::from_utf8(bytes).map_or_else(|_| pattern.to_owned(), Into::into)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_and_names_take_their_places() {
+        let named = |pattern: &str| {
+            let made = filled(Path::new(pattern), 7, "./images/00{}1.jpg");
+            made.to_str().expect("text").to_owned()
+        };
+        assert_eq!(named("v_{}.png"), "v_7.png");
+        assert_eq!(named("v_{:03}_{}.png"), "v_007_7.png");
+        assert_eq!(named("a/{name}.png"), "a/images_00{}1.png");
+        assert_eq!(named("{{}}{other}{:3}"), "{7}{other}{:3}");
+        assert_eq!(filled(Path::new("{name}"), 0, "z=0.5"), Path::new("z=0.5"));
+        assert_eq!(filled(Path::new("{name}"), 0, "../.x"), Path::new("_.x"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_no_text_is_filled_too() {
+        use std::os::unix::ffi::OsStrExt;
+        let pattern = Path::new(OsStr::from_bytes(b"\xff_{}.png"));
+        let made = filled(pattern, 12, "");
+        assert_eq!(made.as_os_str().as_bytes(), b"\xff_12.png");
+    }
+}

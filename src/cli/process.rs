@@ -1,0 +1,137 @@
+//! The process itself: the signals that end it, and the folder in which drivers keep what they compile.
+
+use std::ffi::OsString;
+use std::path::Path;
+
+/// Prepares the process, before it has a second thread.
+pub(super) fn begin() {
+    let variable = |name: &str| std::env::var_os(name);
+    for (name, folder) in drivers_folders(variable) {
+        // SAFETY: no other thread runs yet, so none reads the environment.
+        unsafe { std::env::set_var(name, folder) };
+    }
+    #[cfg(unix)]
+    signals::watch();
+}
+
+/// The variables that tell drivers where to keep what they compile, beside what rara keeps. They are only for a folder that
+/// was named by `RARA_CACHE`: elsewhere a driver has a folder of its own, which others share. What somebody has set, stays.
+fn drivers_folders(variable: impl Fn(&str) -> Option<OsString>) -> Vec<(&'static str, OsString)> {
+    // Mesa (lavapipe, RADV, ANV and others) and NVIDIA's driver; each set as long as no variable of its row is.
+    const ROWS: [(&str, &[&str]); 2] = [
+        (
+            "MESA_SHADER_CACHE_DIR",
+            &["MESA_SHADER_CACHE_DIR", "MESA_GLSL_CACHE_DIR"],
+        ),
+        (
+            "__GL_SHADER_DISK_CACHE_PATH",
+            &["__GL_SHADER_DISK_CACHE_PATH"],
+        ),
+    ];
+    let Some(own) = variable("RARA_CACHE").filter(|own| !own.is_empty()) else {
+        return Vec::new();
+    };
+    // A driver's process may have another working directory.
+    let Ok(own) = std::path::absolute(Path::new(&own)) else {
+        return Vec::new();
+    };
+    let folder = own.join("driver");
+    // NVIDIA's driver makes no folders. Where this one cannot be made, drivers do as they would.
+    if std::fs::create_dir_all(&folder).is_err() {
+        return Vec::new();
+    }
+    let free = ROWS
+        .iter()
+        .filter(|(_, row)| row.iter().all(|name| variable(name).is_none()));
+    free.map(|(name, _)| (*name, folder.clone().into()))
+        .collect()
+}
+
+#[cfg(unix)]
+mod signals {
+    use std::fs::File;
+    use std::io::Write;
+    use std::os::fd::AsFd;
+    use std::thread;
+
+    use signal_hook::consts::{SIGABRT, SIGINT, SIGTERM};
+    use signal_hook::iterator::Signals;
+    use signal_hook::low_level;
+
+    use super::super::output;
+
+    /// What is said when something aborts: Rust where a small piece of memory is not to be had, and drivers.
+    const ABORTED: &[u8] = b"rara: the process was aborted, as happens when memory runs out or a driver gives up; draw a \
+        smaller picture or fewer Gaussians, or let it have more memory (see ulimit -v)\n";
+
+    /// Removes unfinished files when the process is told to end, and then ends it as the signal would have.
+    pub(super) fn watch() {
+        aborts();
+        let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else {
+            return;
+        };
+        let wait = move || {
+            for signal in signals.forever() {
+                let what = match rara::files::abandon() {
+                    0 => "no unfinished file was there",
+                    _ => "the unfinished file is removed",
+                };
+                output::complain(format_args!("rara: interrupted; {what}"));
+                let _ = low_level::emulate_default_handler(signal);
+            }
+        };
+        // Without a thread signals do nothing, so that the program could not be ended: then they are as they were.
+        let _ = thread::Builder::new().name("signals".into()).spawn(wait);
+    }
+
+    /// An abort becomes a sentence and exit status 1.
+    fn aborts() {
+        let Ok(stderr) = std::io::stderr().as_fd().try_clone_to_owned() else {
+            return;
+        };
+        let stderr = File::from(stderr);
+        let explain = move || {
+            let _ = (&stderr).write_all(ABORTED);
+            low_level::exit(1);
+        };
+        // SAFETY: what runs in the signal's handler are the system calls write and _exit, which may.
+        let _ = unsafe { low_level::register(SIGABRT, explain) };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drivers_keep_theirs_beside_ours_and_nowhere_else() {
+        let own = std::env::temp_dir().join(format!("rara-process-{}", std::process::id()));
+        let with = |set: &[(&str, &str)]| {
+            let names = drivers_folders(|name| {
+                let other = set.iter().find(|(have, _)| *have == name);
+                other.map(|(_, value)| {
+                    OsString::from(value.replace('@', own.to_str().expect("text")))
+                })
+            });
+            names
+                .into_iter()
+                .map(|(name, folder)| {
+                    assert_eq!(Path::new(&folder), own.join("driver"));
+                    name
+                })
+                .collect::<Vec<_>>()
+        };
+        let both = ["MESA_SHADER_CACHE_DIR", "__GL_SHADER_DISK_CACHE_PATH"];
+        assert_eq!(with(&[("RARA_CACHE", "@")]), both);
+        assert_eq!(
+            with(&[("RARA_CACHE", "@"), ("MESA_SHADER_CACHE_DIR", "/x")]),
+            both[1..]
+        );
+        assert_eq!(
+            with(&[("RARA_CACHE", "@"), ("MESA_GLSL_CACHE_DIR", "/x")]),
+            both[1..]
+        );
+        assert!(with(&[]).is_empty() && with(&[("RARA_CACHE", "")]).is_empty());
+        std::fs::remove_dir_all(&own).expect("ours");
+    }
+}

@@ -1,0 +1,124 @@
+//! Signals, memory that runs out, and the folder in which drivers keep what they compile.
+
+#![cfg(unix)]
+
+use std::fs;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use super::{document, done, folder, line, refused, scene, stderr};
+
+fn unfinished(folder: &Path) -> usize {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let names = entries.map(|entry| entry.expect("an entry").file_name());
+    names
+        .filter(|name| name.to_string_lossy().ends_with(".part"))
+        .count()
+}
+
+#[test]
+fn a_signal_leaves_no_unfinished_file() {
+    for (name, number) in [("INT", 2), ("TERM", 15)] {
+        let here = folder(&format!("signal_{name}"));
+        let file = here.join("scene.ply");
+        let started = Command::new(env!("CARGO_BIN_EXE_rara"))
+            .args(["generate", "general", "-n", "1000000", "-o"])
+            .arg(&file)
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the rara binary runs");
+        let begin = Instant::now();
+        while unfinished(&here) == 0 && !file.exists() {
+            assert!(
+                begin.elapsed() < Duration::from_secs(120),
+                "nothing is written"
+            );
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let pid = started.id().to_string();
+        let sent = Command::new("kill").args(["-s", name, &pid]).status();
+        assert!(sent.expect("kill runs").success());
+        let output = started.wait_with_output().expect("it ends");
+        assert_eq!(unfinished(&here), 0, "{name}");
+        // A quick machine may have been done with it.
+        if !file.exists() {
+            assert_eq!(output.status.signal(), Some(number), "{:?}", output.status);
+            assert_eq!(
+                stderr(&output),
+                "rara: interrupted; the unfinished file is removed\n"
+            );
+        }
+    }
+}
+
+/// `rara` with no more addresses than this, in KiB.
+fn limited(kib: u32, words: &[&str]) -> std::process::Output {
+    Command::new("sh")
+        .args(["-c", "ulimit -v \"$0\" && exec \"$@\"", &kib.to_string()])
+        .arg(env!("CARGO_BIN_EXE_rara"))
+        .args(words)
+        .env("RARA_CACHE", "")
+        .output()
+        .expect("sh runs")
+}
+
+#[test]
+fn memory_that_is_not_there_is_a_sentence() {
+    let here = folder("memory");
+    let scene = scene(&here);
+    let text = |path: &Path| path.to_str().expect("text").to_owned();
+    let (scene, out) = (text(&scene), text(&here.join("out.ply")));
+    let many = limited(
+        400_000,
+        &["generate", "general", "-n", "2000000", "-o", &out],
+    );
+    refused(&many, 1, "no memory for 2 000 000 Gaussians");
+    assert!(!Path::new(&out).exists());
+    // Lavapipe takes three quarters of a GiB for itself.
+    for kib in [500_000, 1_000_000, 1_500_000] {
+        let large = limited(kib, &["render", &scene, "--size", "4096x4096", "--json"]);
+        refused(&large, 1, "no memory for a picture of 4096x4096");
+    }
+}
+
+#[test]
+fn drivers_keep_their_shaders_in_the_folder_that_is_named() {
+    let here = folder("driver_cache");
+    let scene = scene(&here);
+    let run = |cache: &Path| {
+        let words = [
+            "--size", "16x16", "--mode", "none", "--repeat", "1", "--json",
+        ];
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rara"));
+        command.arg("render").arg(&scene).args(words);
+        command.env("RARA_CACHE", cache).env("HOME", "/nonexistent");
+        command
+            .env_remove("MESA_SHADER_CACHE_DIR")
+            .env_remove("XDG_CACHE_HOME");
+        let report = document(command.output().expect("the rara binary runs"));
+        let is_mesa = report["driver"]
+            .as_str()
+            .is_some_and(|driver| driver.contains("Mesa"));
+        (report["first_use_ms"].as_f64().expect("a time"), is_mesa)
+    };
+    let cache = here.join("cache");
+    let (first, is_mesa) = run(&cache);
+    assert!(cache.join("driver").is_dir());
+    if is_mesa {
+        assert!(
+            fs::read_dir(cache.join("driver"))
+                .expect("a folder")
+                .count()
+                > 0
+        );
+        let (second, _) = run(&cache);
+        assert!(second < first, "{second} ms after {first} ms");
+    }
+    // Nothing is kept where nothing is to be.
+    done(line(
+        &here,
+        "render @/scene.ply --size 16x16 --mode none --json",
+    ));
+}

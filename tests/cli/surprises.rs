@@ -1,0 +1,278 @@
+//! What people are told before they are surprised.
+
+use std::fs;
+use std::path::Path;
+
+use super::{document, done, folder, line, rara, refused, scene, stderr, stdout};
+
+/// A list of cameras with these names, 48x32 pixels each.
+fn cameras(here: &Path, names: &[&str]) {
+    let camera = |name: &&str| {
+        serde_json::json!({"id": 0, "img_name": name, "width": 48, "height": 32, "position": [0.0, 0.0, -4.0],
+            "rotation": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], "fx": 40.0, "fy": 40.0})
+    };
+    let cameras: Vec<_> = names.iter().map(camera).collect();
+    fs::write(
+        here.join("cameras.json"),
+        serde_json::to_string(&cameras).expect("JSON"),
+    )
+    .expect("writes");
+}
+
+#[test]
+fn what_is_likely_a_mistake_is_warned_of_unless_nobody_wants_to_know() {
+    let here = folder("warnings");
+    scene(&here);
+    cameras(&here, &["a"]);
+    for (flags, what) in [
+        (
+            "--mode none --clip plane:1,0,0,0",
+            "--mode none clips nothing",
+        ),
+        (
+            "--mode hard --decay depth",
+            "--decay and --trace-all change nothing",
+        ),
+        (
+            "--mode exact --sigma 2",
+            "--sigma and --miss change nothing",
+        ),
+        ("--clip plane:1,0,0,-1e6", "the picture is empty: the clip"),
+        (
+            "--eye 0,0,-9 --target 0,0,-99",
+            "the picture is empty: none",
+        ),
+        (
+            "--cameras @/cameras.json --size 32x32",
+            "another aspect than the camera's 48x32",
+        ),
+    ] {
+        let words = format!("render @/scene.ply -o @/a.png --repeat 1 {flags}");
+        let printed = done(line(&here, &words));
+        assert!(
+            stderr(&printed).contains(what),
+            "{flags}: {}",
+            stderr(&printed)
+        );
+        let quiet = done(line(&here, &format!("{words} --quiet")));
+        assert_eq!(stderr(&quiet), "", "{flags}");
+    }
+    for flags in [
+        "",
+        "--clip plane:1,0,0,0 --mode hard --size 32x32",
+        "--cameras @/cameras.json --size 24x16",
+    ] {
+        let printed = done(line(
+            &here,
+            &format!("render @/scene.ply -o @/a.png {flags}"),
+        ));
+        let printed = stderr(&printed);
+        assert!(
+            !printed.contains("warning:") && !printed.contains("note:"),
+            "{printed}"
+        );
+    }
+    refused(
+        &line(&here, "--quiet render @/none.ply --json"),
+        1,
+        "none.ply",
+    );
+}
+
+#[test]
+fn a_limit_that_pictures_do_not_keep_is_status_1() {
+    let here = folder("compare_limits");
+    scene(&here);
+    for (name, flags) in [
+        ("white", "white"),
+        ("same", "#fff"),
+        ("grey", "0.5,0.5,0.5"),
+    ] {
+        let words = format!("render @/scene.ply -o @/{name}.png --size 32x32 --background {flags}");
+        done(line(&here, &words));
+    }
+    let compare = |words: &str| line(&here, &format!("compare @/white.png {words}"));
+    let table = stdout(&done(compare("@/same.png --min-psnr 99 --max-l1 0")));
+    assert!(table.contains("PSNR          equal"), "{table}");
+    let measured = document(compare("@/grey.png --min-psnr 1 --max-l1 250 --json"));
+    assert!(measured["l1"].as_f64() > Some(1.0));
+    for (limit, what) in [("--min-psnr 60", "PSNR"), ("--max-l1 0.5", "L1")] {
+        let output = compare(&format!("@/grey.png {limit}"));
+        assert_eq!(output.status.code(), Some(1), "{limit}");
+        assert!(
+            stdout(&output).contains("RMSE"),
+            "the measures are printed all the same"
+        );
+        assert!(stderr(&output).contains(what) && stderr(&output).lines().count() == 1);
+    }
+    assert_eq!(compare("@/grey.png --min-psnr none").status.code(), Some(2));
+}
+
+#[test]
+fn pictures_have_the_names_that_were_asked_for() {
+    let here = folder("names");
+    scene(&here);
+    cameras(&here, &["left/0001.jpg", "right/0001.jpg", "x"]);
+    let all = |pattern: &str| {
+        let words = "render @/scene.ply --cameras @/cameras.json --view all -o";
+        line(&here, &format!("{words} @/{pattern}"))
+    };
+    done(all("new/folders/{name}.png"));
+    done(all("v_{:03}.png"));
+    for file in [
+        "new/folders/left_0001.png",
+        "new/folders/x.png",
+        "v_002.png",
+    ] {
+        assert!(here.join(file).is_file(), "{file}");
+    }
+    // As long a name as file systems take.
+    let long = format!("{}.png", "n".repeat(251));
+    done(line(
+        &here,
+        &format!("render @/scene.ply --size 8x8 -o @/{long}"),
+    ));
+    assert!(here.join(&long).is_file());
+    cameras(&here, &["same", "same"]);
+    refused(&all("{name}.png"), 2, "would be one file");
+    refused(&all("scene.ply/a_{}.png"), 1, "not a folder");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_name_need_not_be_text() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let here = folder("no_text");
+    let scene = scene(&here);
+    let file = here.join(OsStr::from_bytes(b"\xff\xfe.png"));
+    let words = [
+        OsStr::new("render"),
+        scene.as_os_str(),
+        OsStr::new("--size"),
+        OsStr::new("8x8"),
+    ];
+    done(rara(
+        words
+            .into_iter()
+            .chain([OsStr::new("-o"), file.as_os_str()]),
+    ));
+    assert!(file.is_file());
+}
+
+#[test]
+fn names_that_are_nearly_right_get_a_suggestion() {
+    let here = folder("suggestions");
+    scene(&here);
+    cameras(&here, &["front", "back"]);
+    let view = "render @/scene.ply --cameras @/cameras.json --json --view frnot";
+    refused(&line(&here, view), 2, "did you mean 'front'?");
+    for (flags, what) in [
+        ("--preset balancd", "'balanced'"),
+        ("--mode exat", "'exact'"),
+        ("--background withe", "white"),
+    ] {
+        refused(
+            &line(&here, &format!("render x.ply --json {flags}")),
+            2,
+            what,
+        );
+    }
+    refused(
+        &line(&here, "render @/scene.ply --json --hide scen"),
+        2,
+        "did you mean 'scene'?",
+    );
+    refused(&line(&here, "info @/scnee.ply"), 1, "check the name");
+}
+
+#[test]
+fn json_that_will_not_do_is_told_by_its_field() {
+    let here = folder("json_fields");
+    scene(&here);
+    for (file, json, flag, field) in [
+        (
+            "camera.json",
+            r#"{"width": 8, "height": 8, "fx": "wide", "fy": 8, "world_to_camera": []}"#,
+            "--camera",
+            "field `fx`",
+        ),
+        (
+            "cameras.json",
+            r#"[{"id": 1, "width": [], "height": 8}]"#,
+            "--cameras",
+            "field `[0].width`",
+        ),
+        (
+            "planes.json",
+            r#"[{"normal": [1, 0, 0], "d": true}]"#,
+            "--clip-file",
+            "planes.json",
+        ),
+    ] {
+        fs::write(here.join(file), json).expect("writes");
+        refused(
+            &line(&here, &format!("render @/scene.ply --json {flag} @/{file}")),
+            1,
+            field,
+        );
+    }
+    let layers = r#"{"layers": [{"path": "scene.ply", "opacity": "half"}]}"#;
+    fs::write(here.join("layers.json"), layers).expect("writes");
+    refused(
+        &line(&here, "info @/layers.json"),
+        1,
+        "field `layers[0].opacity`",
+    );
+}
+
+/// Alpha is for those who composite; what is looked at has none.
+#[test]
+fn pictures_to_look_at_are_opaque_and_filled() {
+    let here = folder("opaque");
+    scene(&here);
+    done(line(
+        &here,
+        "demo @/scene.ply -o @/out --size 300x200 --no-reference",
+    ));
+    for name in ["none", "hard", "rara", "exact", "sheet"] {
+        let picture = rara::Picture::load(here.join(format!("out/{name}.png"))).expect("a picture");
+        assert!(picture.pixels.iter().all(|pixel| pixel[3] == 1.0), "{name}");
+    }
+    // Without a camera the scene reaches from edge to edge in one direction, and is in the middle of the other.
+    done(line(&here, "render @/scene.ply -o @/a.png --size 200x200"));
+    let picture = rara::Picture::load(here.join("a.png")).expect("a picture");
+    let is_seen = |x: u32, y: u32| picture.at(x, y)[3] > 0.5;
+    let columns: Vec<u32> = (0..200)
+        .filter(|&x| (0..200).any(|y| is_seen(x, y)))
+        .collect();
+    let rows: Vec<u32> = (0..200)
+        .filter(|&y| (0..200).any(|x| is_seen(x, y)))
+        .collect();
+    let extent = |of: &[u32]| of.last().expect("seen") - of[0];
+    assert!(
+        extent(&columns).max(extent(&rows)) > 150,
+        "{columns:?} {rows:?}"
+    );
+}
+
+#[test]
+fn shells_and_man_know_the_program() {
+    let here = folder("shell");
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = stdout(&done(rara(["completions", shell])));
+        assert!(
+            script.contains("min-psnr") && script.contains("sweep"),
+            "{shell}"
+        );
+    }
+    let page = stdout(&done(rara(["man"])));
+    assert!(
+        page.contains(".TH rara 1") && page.contains("rara\\-render"),
+        "{page}"
+    );
+    done(line(&here, "man -o @/man1"));
+    let page = fs::read_to_string(here.join("man1/rara-render.1")).expect("a page");
+    assert!(page.contains("\\-\\-clip"), "{page}");
+    assert!(here.join("man1/rara.1").is_file());
+}

@@ -7,7 +7,7 @@ use glam::DVec3;
 use rara::{Camera, Gaussians, Scene};
 
 use super::failure::Failure;
-use super::{framing, output, values};
+use super::{framing, output, training, values};
 use rara::{camera_files, scene::Bounds};
 
 /// The camera's position and lens. Without any of these it frames the scene.
@@ -21,8 +21,9 @@ pub(super) struct CameraArgs {
     /// The point that it looks at
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true, requires = "eye")]
     target: Option<DVec3>,
-    /// The direction that is up in the picture [default: 0,-1,0; a section's may be another]
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    /// The direction that is up in the picture, as 0,-1,0 or -y; where a scene is upside down, y, and where it lies on its
+    /// side, z or -z [default: -y; a section's may be another]
+    #[arg(long, value_name = "X,Y,Z|AXIS", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera"])]
     up: Option<DVec3>,
     /// Vertical field of view, degrees
@@ -38,17 +39,13 @@ pub(super) struct CameraArgs {
     #[arg(long, value_name = "HEIGHT|fit", value_parser = ortho, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera", "fov_y"])]
     ortho: Option<Ortho>,
-    /// Cameras of a 3DGS cameras.json, a nerfstudio transforms.json or a COLMAP sparse folder
+    /// Cameras of a 3DGS cameras.json, a nerfstudio transforms.json or a COLMAP sparse folder [default with --view: those
+    /// beside the scene]
     #[arg(long, value_name = "FILE", conflicts_with = "camera")]
     cameras: Option<PathBuf>,
-    /// Which of the --cameras: number from 0, name, or all
-    #[arg(
-        long,
-        value_name = "N|NAME|all",
-        default_value = "0",
-        requires = "cameras"
-    )]
-    view: String,
+    /// Which of the cameras: number from 0, name, or all [default: 0]
+    #[arg(long, value_name = "N|NAME|all", conflicts_with_all = ["eye", "camera", "ortho", "fov_y", "up"])]
+    view: Option<String>,
     /// One camera: JSON with width, height, fx, fy, cx, cy, world_to_camera (16 numbers, row-major), and perhaps
     /// "projection": "orthographic"; fx and fy are then the pixels of a world unit
     #[arg(long, value_name = "FILE")]
@@ -166,7 +163,12 @@ impl Views {
 impl CameraArgs {
     /// True when `--view all` was typed: a run of several frames, however many there are.
     pub(super) fn all(&self) -> bool {
-        self.view == "all"
+        self.view.as_deref() == Some("all")
+    }
+
+    /// True when a file places the camera.
+    fn from_file(&self) -> bool {
+        self.camera.is_some() || self.cameras.is_some() || self.view.is_some()
     }
 
     /// Refuses several cameras, where `what` needs one.
@@ -182,7 +184,7 @@ impl CameraArgs {
     /// The same flags for a command whose default size is another.
     #[cfg(feature = "view")]
     pub(super) fn sized_by_default(self, size: (u32, u32)) -> Self {
-        let from_file = self.camera.is_some() || self.cameras.is_some();
+        let from_file = self.from_file();
         Self {
             size: self.size.or((!from_file).then_some(size)),
             ..self
@@ -192,13 +194,13 @@ impl CameraArgs {
     /// The world's up direction, unless a file places the camera.
     #[cfg(feature = "view")]
     pub(super) fn up(&self) -> Option<DVec3> {
-        let from_file = self.camera.is_some() || self.cameras.is_some();
+        let from_file = self.from_file();
         (!from_file).then_some(self.up.unwrap_or(UP))
     }
 
     /// True when a flag places the camera, chooses its lens or cuts at its depths.
     pub(super) fn places(&self) -> bool {
-        let from_file = self.camera.is_some() || self.cameras.is_some();
+        let from_file = self.from_file();
         let cuts = self.clip_near.is_some() || self.clip_far.is_some();
         from_file || cuts || self.eye.is_some() || self.ortho.is_some() || self.fov_y != FOV_Y
     }
@@ -213,8 +215,26 @@ impl CameraArgs {
         self.size.unwrap_or(DEFAULT_SIZE)
     }
 
-    /// The cameras that the flags mean; reads their files.
-    pub(super) fn meant(&self) -> Result<Views, Failure> {
+    /// The file of the cameras: the one that is named, or where only a view is named, the one beside a scene.
+    fn file(&self, scenes: &[PathBuf]) -> Result<Option<PathBuf>, Failure> {
+        if self.cameras.is_some() || self.view.is_none() {
+            return Ok(self.cameras.clone());
+        }
+        let found = scenes.iter().find_map(|scene| training::cameras(scene));
+        let found = found.ok_or_else(|| {
+            Failure::Usage(
+                "--view: no cameras.json or transforms.json is beside the scene; name one by --cameras".into(),
+            )
+        })?;
+        output::say(format_args!(
+            "note: the cameras are those of {}",
+            found.display()
+        ));
+        Ok(Some(found))
+    }
+
+    /// The cameras that the flags mean, also of files beside these scenes; reads their files.
+    pub(super) fn meant(&self, scenes: &[PathBuf]) -> Result<Views, Failure> {
         let size = self.chosen_size();
         let up = self.up.unwrap_or(UP);
         let depths = Depths {
@@ -246,7 +266,7 @@ impl CameraArgs {
                 camera,
             }]));
         }
-        let Some(path) = &self.cameras else {
+        let Some(path) = &self.file(scenes)? else {
             let lens = match self.ortho {
                 None => Lens::Perspective(self.fov_y),
                 Some(Ortho::Height(height)) => Lens::Orthographic(Some(height)),
@@ -262,7 +282,9 @@ impl CameraArgs {
                 depths,
             });
         };
-        let loaded = camera_files::load_cameras(path)?.into_iter().enumerate();
+        let loaded = training::load_cameras(path, scenes)?
+            .into_iter()
+            .enumerate();
         let mut views: Vec<View> = loaded
             .map(|(number, named)| View {
                 number,
@@ -271,7 +293,8 @@ impl CameraArgs {
             })
             .collect();
         if !self.all() {
-            views = vec![pick(views, &self.view, path)?];
+            let wanted = self.view.as_deref().unwrap_or("0");
+            views = vec![pick(views, wanted, path)?];
         }
         for view in &mut views {
             view.camera = depths.of(self.sized(view.camera)?)?;

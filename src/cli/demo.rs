@@ -58,7 +58,7 @@ impl Demo {
     pub(super) fn run(self) -> Result<(), Failure> {
         let look = self.common.look.meant()?;
         self.common.camera.single("a demo")?;
-        let views = self.common.camera.meant()?;
+        let views = self.common.camera.meant(&self.scenes)?;
         output::make_folder(&self.output)?;
         let loaded = if self.scenes.is_empty() {
             made_up()

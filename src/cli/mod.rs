@@ -11,6 +11,7 @@ mod clip;
 mod combine;
 mod compare;
 mod convert;
+mod dataparser;
 mod demo;
 mod devices;
 mod failure;
@@ -42,6 +43,7 @@ mod shell;
 mod slice;
 mod stress;
 mod sweep;
+mod training;
 mod values;
 #[cfg(feature = "view")]
 mod view;

@@ -7,8 +7,10 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use rara::{Error, Result};
+use rara::{Error, Picture, Result};
 use serde::Serialize;
+
+use super::values::STANDARD;
 
 pub(super) use super::progress::{Progress, Spinner};
 
@@ -64,14 +66,23 @@ pub(super) fn json(document: &impl Serialize) -> Result<()> {
     answer(&serde_json::to_string_pretty(document).expect("the documents have string keys only"))
 }
 
-/// Prints what a command was asked for, with a line break behind. A reader that stops reading is no failure.
+/// Prints what a command was asked for, with a line break behind.
 pub(super) fn answer(text: &str) -> Result<()> {
-    let text = format!("{}\n", text.trim_end());
+    bytes(format!("{}\n", text.trim_end()).as_bytes())
+}
+
+/// Writes a picture to a file, or to standard output as PNG.
+pub(super) fn picture(picture: &Picture, file: &Path) -> Result<()> {
+    match file == Path::new(STANDARD) {
+        true => bytes(&picture.to_png()?),
+        false => picture.save(file),
+    }
+}
+
+/// Writes to standard output. A reader that stops reading is no failure.
+fn bytes(bytes: &[u8]) -> Result<()> {
     let mut stdout = io::stdout().lock();
-    match stdout
-        .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush())
-    {
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::io("stdout")(error)),
         _ => Ok(()),
     }
@@ -79,6 +90,9 @@ pub(super) fn answer(text: &str) -> Result<()> {
 
 /// Makes the folders of `file` unless they are there, and fails early, and in plain words, where it could not be written.
 pub(super) fn check_file(file: &Path) -> Result<()> {
+    if file == Path::new(STANDARD) {
+        return Ok(());
+    }
     if file.is_dir() {
         return Err(Error::format(file, "this is a folder; name a file in it"));
     }

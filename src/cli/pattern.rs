@@ -46,7 +46,9 @@ fn first_slot(text: &[u8]) -> Option<(usize, usize, Slot)> {
 /// A view's name as a part of a file's name: without its ending, and without what would lead elsewhere.
 fn bare(name: &str) -> String {
     let stem = name.rsplit_once('.').map_or(name, |(stem, ending)| {
-        let is_ending = !stem.is_empty() && ending.chars().all(|c| c.is_ascii_alphabetic());
+        let is_ending = !stem.is_empty()
+            && !stem.ends_with(['/', '.'])
+            && ending.chars().all(|c| c.is_ascii_alphabetic());
         if is_ending { stem } else { name }
     });
     let kept = |c: char| match c {
@@ -86,7 +88,7 @@ mod tests {
         assert_eq!(named("a/{name}.png"), "a/images_00{}1.png");
         assert_eq!(named("{{}}{other}{:3}"), "{7}{other}{:3}");
         assert_eq!(filled(Path::new("{name}"), 0, "z=0.5"), Path::new("z=0.5"));
-        assert_eq!(filled(Path::new("{name}"), 0, "../.x"), Path::new("_.x"));
+        assert_eq!(filled(Path::new("{name}"), 0, "../.x"), Path::new("x"));
     }
 
     #[cfg(unix)]

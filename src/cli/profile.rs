@@ -72,7 +72,7 @@ impl Profile {
     /// Writes the picture of a session's last frame to a file.
     pub(super) fn save_picture(&self, session: &mut Session, file: &Path) -> Result<(), Failure> {
         let picture = session.last_picture()?;
-        Ok(self.span("encode", || picture.save(file))?)
+        Ok(self.span("encode", || output::picture(&picture, file))?)
     }
 
     /// Records how long `act` takes.

@@ -42,7 +42,7 @@ Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premu
 pub(super) struct Render {
     #[command(flatten)]
     scenes: SceneArgs,
-    /// The picture's file, .png or .exr; its folders are made. {} becomes the number of the camera or section, {:04} the
+    /// The picture's file, .png or .exr; its folders are made; - is standard output, as PNG. {} becomes the number of the camera or section, {:04} the
     /// number with zeros before it, {name} its name. May be left out with --json
     #[arg(short, long, value_name = "OUT", value_parser = values::picture_file(), required_unless_present = "json")]
     output: Option<PathBuf>,
@@ -124,7 +124,7 @@ impl Render {
             Some(sections) => Pictures::Sections(sections),
             None => {
                 let clip = self.frame.clip.meant()?;
-                Pictures::Views(self.frame.camera.meant()?, clip)
+                Pictures::Views(self.frame.camera.meant(self.scenes.files())?, clip)
             }
         };
         let numbers = pictures.numbers();
@@ -221,7 +221,7 @@ impl Render {
         path: &Path,
     ) -> Result<(), Failure> {
         if self.aov.is_empty() {
-            return Ok(picture.save(path)?);
+            return Ok(output::picture(picture, path)?);
         }
         let drawn = (&one.view.camera, &one.clip, settings);
         let channels = session.channels(&self.aov, scene, drawn)?;
@@ -255,6 +255,11 @@ impl Render {
         let Some(pattern) = &self.output else {
             return Ok(());
         };
+        if self.json && pattern == Path::new(values::STANDARD) {
+            return Err(Failure::Usage(
+                "-o - and --json both take standard output: name a file for the picture".into(),
+            ));
+        }
         let is_exr = pattern
             .extension()
             .is_some_and(|e| e.eq_ignore_ascii_case("exr"));

@@ -1,5 +1,6 @@
 //! Scene files to the layers of a scene.
 
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -8,13 +9,13 @@ use rara::{Gaussians, Layer, LayerState};
 use super::failure::Failure;
 use super::output::{Progress, say};
 use super::scene_file::{self, LayerClip, LayerEntry};
-use super::{select, values};
+use super::{select, training, values};
 use rara::scene::{self, Property};
 
 /// The flags that name the scene.
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
-    /// Scene files (3DGS .ply, .compressed.ply, .splat, .ksplat, .spz, .sog, a folder of SOG, .glb, .gltf); several are the layers of one scene, each called by its file's name or as in NAME=FILE. A
+    /// Scene files (3DGS .ply, .compressed.ply, .splat, .ksplat, .spz, .sog, a folder of SOG, .glb, .gltf), or a folder that training left, of which the last iteration counts, or - for standard input; several are the layers of one scene, each called by its file's name or as in NAME=FILE. A
     /// .json file lists layers: {"layers":[{"path":"skin.ply","name":"skin","opacity":0.5,"visible":true,
     /// "position":[x,y,z],"rotation":[w,x,y,z],"scale":s,"clip":{...} or "clip_expr":"...",
     /// "select":[{"name":"vessels","where":"label in 3,4"}]}]}
@@ -47,6 +48,11 @@ impl SceneArgs {
             select::add(&mut entries, text)?;
         }
         Ok(entries)
+    }
+
+    /// The files, as they were typed.
+    pub(super) fn files(&self) -> &[PathBuf] {
+        &self.files
     }
 
     /// The selections, as they were typed.
@@ -313,6 +319,12 @@ fn named_file(typed: &Path) -> Result<Vec<LayerEntry>, Failure> {
         };
     }
     let mut entry = LayerEntry::of(path);
+    if let Some(trained) = training::scene_in(path)? {
+        entry.path = trained;
+    }
+    if path == Path::new(values::STANDARD) {
+        entry.name = "stdin".into();
+    }
     entry.name = name.map_or(entry.name, str::to_owned);
     Ok(vec![entry])
 }
@@ -321,6 +333,22 @@ fn load_one(entry: &LayerEntry) -> rara::Result<(scene::Loaded, Vec<Property>)> 
     let path = &entry.path;
     let mut progress = Progress::new(format!("reading {}", path.display()));
     let properties = select::properties(&entry.selected);
+    if path == Path::new(values::STANDARD) {
+        let name = Path::new("standard input");
+        let mut bytes = Vec::new();
+        io::stdin()
+            .lock()
+            .read_to_end(&mut bytes)
+            .map_err(rara::Error::io(name))?;
+        return scene::load_from_with(
+            io::Cursor::new(bytes),
+            name,
+            &properties,
+            &mut |done, total| {
+                progress.update(done, total);
+            },
+        );
+    }
     scene::load_with(path, &properties, &mut |done, total| {
         progress.update(done, total);
     })

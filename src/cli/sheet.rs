@@ -25,7 +25,7 @@ pub(super) fn sheet(pictures: &[(String, Picture)], corner: (u32, u32)) -> Pictu
         0..256 => (ink::Font::Small, 11),
         _ => (ink::Font::Large, 22),
     };
-    let scale = (width / 320).max(1);
+    let scale = (width / 200).max(1);
     let band = height_of_label * scale;
     let count = pictures.len() as u32;
     let mut sheet = Picture::filled(count * (width + GAP) - GAP, band + 2 * height + GAP, MARGIN);

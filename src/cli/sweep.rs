@@ -75,7 +75,7 @@ impl Sweep {
         let shapes = self.frame.clip.expressions()?;
         let moving = self.moving()?;
         self.frame.camera.single("a sweep")?;
-        let views = self.frame.camera.meant()?;
+        let views = self.frame.camera.meant(self.scenes.files())?;
         if let Some(folder) = &self.output {
             output::make_folder(folder)?;
         }

@@ -1,7 +1,7 @@
 //! Parsers of the values that flags take.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::DVec3;
@@ -19,8 +19,18 @@ pub(super) fn vec3(text: &str) -> Result<DVec3, String> {
     numbers::<3>(text).map(DVec3::from_array)
 }
 
-/// `x,y,z`, not all zero.
+/// `x,y,z`, not all zero, or an axis as `y` or `-z`.
 pub(super) fn direction(text: &str) -> Result<DVec3, String> {
+    let (sign, axis) = match text.strip_prefix('-') {
+        Some(axis) => (-1.0, axis),
+        None => (1.0, text.strip_prefix('+').unwrap_or(text)),
+    };
+    match axis {
+        "x" => return Ok(sign * DVec3::X),
+        "y" => return Ok(sign * DVec3::Y),
+        "z" => return Ok(sign * DVec3::Z),
+        _ => {}
+    }
     let vector = vec3(text)?;
     if vector == DVec3::ZERO {
         return Err("a direction cannot be zero".into());
@@ -148,9 +158,13 @@ pub(super) fn picture_path(path: OsString) -> Result<PathBuf, String> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
     match ending.to_ascii_lowercase().as_str() {
         "png" | "exr" => Ok(path),
+        _ if path == Path::new(STANDARD) => Ok(path),
         _ => Err("a picture's name ends in .png (8 bits) or .exr (32-bit float)".into()),
     }
 }
+
+/// In place of a file: standard input and standard output.
+pub(super) const STANDARD: &str = "-";
 
 /// The parser of a picture's file name.
 pub(super) fn picture_file() -> impl TypedValueParser<Value = PathBuf> {
@@ -169,7 +183,12 @@ mod tests {
         assert!(vec3("1,,3").is_err());
         assert!(vec3("nan,0,0").is_err());
         assert!(vec3("1e999,0,0").is_err());
-        assert!(direction("0,0,-0").is_err());
+        assert!(direction("0,0,-0").is_err() && direction("w").is_err());
+        assert_eq!(direction("-z"), Ok(DVec3::NEG_Z));
+        assert_eq!(
+            (direction("y"), direction("+y")),
+            (Ok(DVec3::Y), Ok(DVec3::Y))
+        );
     }
 
     #[test]

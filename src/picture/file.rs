@@ -5,7 +5,9 @@ use std::io::{BufReader, Cursor};
 use std::path::Path;
 
 use image::codecs::{openexr::OpenExrEncoder, png::PngEncoder};
-use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits};
+use image::{
+    DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, ImageResult, Limits,
+};
 
 use super::{Picture, premultiplied, to_bytes};
 use crate::files::write_atomically;
@@ -45,9 +47,35 @@ impl Picture {
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         let kind = Kind::of(path)?;
+        let bytes = self.encoded(kind).map_err(|error| {
+            Error::format(path, format!("the picture could not be encoded: {error}"))
+        })?;
+        write_atomically(path, |file| file.write_all(&bytes))
+    }
+
+    /// The bytes of a `.png` file, as [`save`](Self::save) writes it.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a picture with another number of pixels than its size says.
+    pub fn to_png(&self) -> Result<Vec<u8>> {
+        let count = u64::from(self.width) * u64::from(self.height);
+        if self.pixels.len() as u64 != count {
+            return Err(Error::Invalid(format!(
+                "a picture of {}x{} has {} pixels; give it one for each place",
+                self.width,
+                self.height,
+                self.pixels.len()
+            )));
+        }
+        let encoded = self.encoded(Kind::Png);
+        encoded
+            .map_err(|error| Error::Invalid(format!("the picture could not be encoded: {error}")))
+    }
+
+    fn encoded(&self, kind: Kind) -> ImageResult<Vec<u8>> {
         let mut bytes = Vec::new();
         let (width, height) = (self.width, self.height);
-        let encoded = match kind {
+        match kind {
             Kind::Png => {
                 let pixels: Vec<_> = self
                     .pixels
@@ -66,11 +94,8 @@ impl Picture {
                 let encoder = OpenExrEncoder::new(Cursor::new(&mut bytes));
                 encoder.write_image(pixels, width, height, ExtendedColorType::Rgba32F)
             }
-        };
-        encoded.map_err(|error| {
-            Error::format(path, format!("the picture could not be encoded: {error}"))
-        })?;
-        write_atomically(path, |file| file.write_all(&bytes))
+        }?;
+        Ok(bytes)
     }
 
     /// Reads a picture that [`save`](Self::save) (or anyone else) wrote. PNG pixels are premultiplied; a file without

@@ -13,8 +13,10 @@ mod refusals;
 mod sections;
 mod selections;
 mod shape;
+mod streams;
 mod surprises;
 mod timing;
+mod trained;
 mod work;
 
 use std::path::{Path, PathBuf};

@@ -60,7 +60,7 @@ mod tests {
         let command = CameraArgs::augment_args(command);
         let matches = command.try_get_matches_from(flags.split(' ')).unwrap();
         let args = CameraArgs::from_arg_matches(&matches).unwrap();
-        match args.meant().unwrap() {
+        match args.meant(&[]).unwrap() {
             Views::Given(views) => views[0].camera,
             Views::Framed { .. } => panic!("{flags}: no camera"),
         }

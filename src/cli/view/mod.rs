@@ -103,7 +103,11 @@ impl View {
         let camera = self.frame.camera.sized_by_default(SIZE);
         let begin = match self.section.meant(&camera, clip)? {
             Some(sections) => Begin::Section(single(sections)?),
-            None => Begin::Views(camera.meant()?, clip.expressions()?, clip.op()),
+            None => Begin::Views(
+                camera.meant(self.scenes.files())?,
+                clip.expressions()?,
+                clip.op(),
+            ),
         };
         let shots = shots(&self.output)?;
         let follow = self.script.as_deref() == Some(Path::new("-"));

@@ -1,0 +1,128 @@
+//! Folders that training leaves: the scene in them, and the cameras beside it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use rara::camera_files::{self, NamedCamera};
+
+use super::failure::Failure;
+use super::{dataparser, output};
+
+/// The scene in a folder that training has left, if it is one: of 3DGS the last iteration's, of nerfstudio what was exported.
+pub(super) fn scene_in(folder: &Path) -> Result<Option<PathBuf>, Failure> {
+    let is_sog = ["meta.json", "lod-meta.json"]
+        .iter()
+        .any(|name| folder.join(name).is_file());
+    if is_sog || !folder.is_dir() {
+        return Ok(None);
+    }
+    let iterations = fs::read_dir(folder.join("point_cloud"))
+        .into_iter()
+        .flatten();
+    let iterations = iterations.flatten().filter_map(|entry| {
+        let name = entry.file_name();
+        let number: u64 = name.to_str()?.strip_prefix("iteration_")?.parse().ok()?;
+        let file = entry.path().join("point_cloud.ply");
+        file.is_file().then_some((number, file))
+    });
+    if let Some((_, last)) = iterations.max_by_key(|(number, _)| *number) {
+        return Ok(Some(last));
+    }
+    let exported = ["splat.ply", "exports/splat/splat.ply"].map(|name| folder.join(name));
+    if let Some(exported) = exported.into_iter().find(|file| file.is_file()) {
+        return Ok(Some(exported));
+    }
+    if folder.join("nerfstudio_models").is_dir() {
+        return Err(rara::Error::format(
+            folder,
+            "the Gaussians are in a checkpoint that only nerfstudio reads; export them into this folder: \
+             ns-export gaussian-splat --load-config config.yml --output-dir .",
+        )
+        .into());
+    }
+    Ok(None)
+}
+
+/// The folders in which files about a scene may be, the nearest first.
+fn around(scene: &Path) -> Vec<PathBuf> {
+    if scene.is_dir() {
+        return vec![scene.to_owned()];
+    }
+    let absolute = std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned());
+    let mut folders: Vec<PathBuf> = absolute.parent().map(Path::to_owned).into_iter().collect();
+    // In a 3DGS output the scene is two folders deep, point_cloud/iteration_N, and in one of nerfstudio it may be.
+    let is_inner = |folder: &Path| {
+        let inner = folder.parent().and_then(Path::file_name);
+        inner.is_some_and(|name| name == "point_cloud" || name == "exports")
+    };
+    if let Some(output) = folders
+        .first()
+        .filter(|f| is_inner(f))
+        .and_then(|f| f.parent()?.parent())
+    {
+        folders.push(output.to_owned());
+    }
+    folders
+}
+
+/// The file of that name that is nearest to a scene.
+pub(super) fn beside(scene: &Path, name: &str) -> Option<PathBuf> {
+    let files = around(scene).into_iter().map(|folder| folder.join(name));
+    files.into_iter().find(|file| file.is_file())
+}
+
+/// The cameras beside a scene.
+pub(super) fn cameras(scene: &Path) -> Option<PathBuf> {
+    ["cameras.json", "transforms.json"]
+        .iter()
+        .find_map(|name| beside(scene, name))
+}
+
+/// The cameras of a file or a COLMAP folder, where the Gaussians of these scenes are.
+pub(super) fn load_cameras(path: &Path, scenes: &[PathBuf]) -> rara::Result<Vec<NamedCamera>> {
+    let mut cameras = camera_files::load_cameras(path)?;
+    let is_nerfstudio = path
+        .file_name()
+        .is_some_and(|name| name == "transforms.json");
+    let moved = scenes
+        .iter()
+        .find_map(|scene| beside(scene, "dataparser_transforms.json"));
+    if let Some(by) = moved.filter(|_| is_nerfstudio) {
+        dataparser::place(&mut cameras, path, &by)?;
+        output::say(format_args!(
+            "note: the cameras are placed by {}",
+            by.display()
+        ));
+    }
+    Ok(cameras)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_iteration_counts_and_its_cameras_are_found() {
+        let folder = std::env::temp_dir().join(format!("rara-training-{}", std::process::id()));
+        let write = |name: &str| {
+            let file = folder.join(name);
+            fs::create_dir_all(file.parent().expect("a folder")).expect("a folder");
+            fs::write(&file, "").expect("a file");
+            file
+        };
+        fs::create_dir_all(&folder).expect("a folder");
+        assert!(matches!(scene_in(&folder), Ok(None)));
+        write("point_cloud/iteration_7000/point_cloud.ply");
+        let last = write("point_cloud/iteration_30000/point_cloud.ply");
+        write("point_cloud/iteration_40000/other.ply");
+        write("point_cloud/iteration_x/point_cloud.ply");
+        let cameras_file = write("cameras.json");
+        assert_eq!(scene_in(&folder).ok().flatten(), Some(last.clone()));
+        assert_eq!(cameras(&folder), Some(cameras_file.clone()));
+        assert_eq!(cameras(&last), Some(cameras_file));
+        assert_eq!(beside(&last, "dataparser_transforms.json"), None);
+        write("meta.json");
+        assert!(matches!(scene_in(&folder), Ok(None)), "it is SOG");
+        fs::remove_dir_all(&folder).expect("ours");
+    }
+}

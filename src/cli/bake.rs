@@ -330,7 +330,7 @@ fn is_same(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// Cameras around the scene, equally far apart, the first where a picture without a camera is taken from.
+/// Cameras around the scene, equally far apart, the first on the side from which a picture without a camera is taken.
 fn views(
     scene: &Scene<'_>,
     up: glam::DVec3,

@@ -7,7 +7,9 @@ use glam::DVec3;
 use rara::{Camera, Gaussians, Scene};
 
 use super::failure::Failure;
-use super::{framing, output, training, values};
+#[cfg(doc)]
+use super::framing;
+use super::{output, training, values};
 use rara::{camera_files, scene::Bounds};
 
 /// The camera's position and lens. Without any of these it frames the scene.
@@ -320,7 +322,7 @@ impl CameraArgs {
 }
 
 impl Views {
-    /// The cameras, once the scene is known.
+    /// The cameras, once the scene is known; one that frames it holds the box around it. [`framing::views`] are nearer.
     pub(super) fn of(self, scene: &Scene<'_>) -> Result<Vec<View>, Failure> {
         match self {
             Self::Given(views) => Ok(views),
@@ -330,12 +332,7 @@ impl Views {
                 size,
                 depths,
             } => {
-                let camera = lens.frame(&Bounds::of(scene), up, size)?;
-                let camera = match lens {
-                    Lens::Perspective(_) => framing::nearer(camera, scene),
-                    Lens::Orthographic(_) => camera,
-                };
-                let camera = depths.of(camera)?;
+                let camera = depths.of(lens.frame(&Bounds::of(scene), up, size)?)?;
                 Ok(vec![View {
                     number: 0,
                     name: "framing".into(),

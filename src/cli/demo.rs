@@ -12,6 +12,7 @@ use super::combine::{Combine, combine};
 use super::compare::Measures;
 use super::failure::Failure;
 use super::frame::ComparisonArgs;
+use super::framing;
 use super::memory;
 use super::output::{self, grouped, say};
 use super::scenes::{self, Loaded};
@@ -66,7 +67,7 @@ impl Demo {
             scenes::load_files(&self.scenes)?
         };
         let scene = loaded.scene();
-        let camera = views.of(&scene)?.remove(0).camera;
+        let camera = framing::views(views, &scene)?.remove(0).camera;
         let clip = Clip::of([middle(&scene, &camera)?], ClipOp::And);
 
         memory::check_picture(&camera)?;

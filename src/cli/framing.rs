@@ -1,8 +1,13 @@
 //! The camera of a scene that came without one: as near as shows all of it.
+//!
+//! Commands that measure keep the camera that holds the box around the scene: the figures of the guide were taken with it.
 
 use glam::{DVec2, DVec3};
 use rara::scene::Bounds;
 use rara::{Camera, Scene};
+
+use super::camera::{Lens, View, Views};
+use super::failure::Failure;
 
 /// Share of the picture's half that the Gaussians' centres may fill; the rest is for their extents.
 const FILL: f64 = 0.9;
@@ -11,9 +16,25 @@ const NEAREST: f64 = 0.25;
 /// The most centres that are looked at.
 const SAMPLE: usize = 100_000;
 
+/// The cameras, once the scene is known; one that frames it is as near as shows all of it.
+pub(super) fn views(views: Views, scene: &Scene<'_>) -> Result<Vec<View>, Failure> {
+    let frames = matches!(
+        &views,
+        Views::Framed {
+            lens: Lens::Perspective(_),
+            ..
+        }
+    );
+    let mut views = views.of(scene)?;
+    for view in views.iter_mut().filter(|_| frames) {
+        view.camera = nearer(view.camera, scene);
+    }
+    Ok(views)
+}
+
 /// Moves a camera that frames the box around a scene towards the scene itself, which seldom reaches the box's corners, and
 /// into its middle. What lies outside of the robust bounds does not count.
-pub(super) fn nearer(camera: Camera, scene: &Scene<'_>) -> Camera {
+fn nearer(camera: Camera, scene: &Scene<'_>) -> Camera {
     let centres: Vec<DVec3> = centres(scene)
         .into_iter()
         .map(|centre| camera.rotation * (centre - camera.eye))

@@ -9,6 +9,7 @@ use rara::{Aov, Clip, Picture, Scene, Settings};
 use super::camera::{View, Views};
 use super::failure::Failure;
 use super::frame::FrameArgs;
+use super::framing;
 use super::memory;
 use super::output::{self, Progress};
 use super::pattern::filled;
@@ -94,7 +95,7 @@ impl Pictures {
     fn of(self, scene: &Scene<'_>) -> Result<Vec<Planned>, Failure> {
         Ok(match self {
             Self::Views(views, clip) => {
-                let views = views.of(scene)?.into_iter();
+                let views = framing::views(views, scene)?.into_iter();
                 let planned = |view| Planned {
                     view,
                     clip: clip.clone(),

@@ -11,6 +11,7 @@ use super::camera::Views;
 use super::combine::Measured;
 use super::failure::Failure;
 use super::frame::FrameArgs;
+use super::framing;
 use super::memory;
 use super::output::{self, Progress};
 use super::profile::{Profile, ProfileArgs};
@@ -112,7 +113,7 @@ impl Sweep {
         let op = self.frame.clip.op();
         let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
-        let view = views.of(&scene)?.remove(0);
+        let view = framing::views(views, &scene)?.remove(0);
         let camera = view.camera;
         let range = match moving {
             Moving::Plane(normal) => extent_along(&scene, *normal),

@@ -161,7 +161,9 @@ impl Begin {
         let own_up = |camera: &Camera| -camera.rotation.row(1);
         match self {
             Self::Views(views, clip, op) => {
-                let views = views.of(scene)?.into_iter().map(|view| view.camera);
+                let views = super::framing::views(views, scene)?
+                    .into_iter()
+                    .map(|view| view.camera);
                 let views = views.map(|camera| (camera, up.unwrap_or(own_up(&camera))));
                 Ok((views.collect(), Cut::new(clip, op, centre)))
             }

@@ -18,7 +18,8 @@ pub(super) struct Measured {
 /// Times of a frame, milliseconds, as in [`FrameStats`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Times {
-    gpu_ms: f64,
+    /// None where the device took no times.
+    gpu_ms: Option<f64>,
     wall_ms: f64,
 }
 
@@ -26,11 +27,11 @@ impl Times {
     /// Of all of these the one that `better` chooses, each time by itself.
     fn of(all: impl Iterator<Item = Self>, better: fn(f64, f64) -> f64) -> Self {
         let both = all.reduce(|a, b| Self {
-            gpu_ms: better(a.gpu_ms, b.gpu_ms),
+            gpu_ms: a.gpu_ms.zip(b.gpu_ms).map(|(a, b)| better(a, b)),
             wall_ms: better(a.wall_ms, b.wall_ms),
         });
         both.unwrap_or(Self {
-            gpu_ms: 0.0,
+            gpu_ms: None,
             wall_ms: 0.0,
         })
     }
@@ -189,8 +190,11 @@ mod tests {
         assert!(median.skipped.is_empty());
         let parts = [Measured::of(&frames[..1]), Measured::of(&frames[1..])];
         let all = Measured::all(parts.iter());
-        assert_eq!((all.samples, all.stats.gpu_ms), (3, 5.25));
-        assert_eq!((all.least.gpu_ms, all.greatest.gpu_ms), (1.0, 9.0));
+        assert_eq!((all.samples, all.stats.gpu_ms), (3, Some(5.25)));
+        assert_eq!(
+            (all.least.gpu_ms, all.greatest.gpu_ms),
+            (Some(1.0), Some(9.0))
+        );
         let mean = combine(&frames, Combine::Mean);
         assert_eq!((mean.gpu_ms, mean.passes[1].ms), (Some(4.0), 3.0));
         assert_eq!(combine(&frames[1..2], Combine::Median), frames[1]);

@@ -2,6 +2,7 @@
 
 use std::any::Any;
 use std::ffi::CString;
+use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ash::{ext, khr, vk};

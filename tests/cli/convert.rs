@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::{document, done, folder, line, refused, scene, stdout};
+use super::{document, done, folder, line, refused, scene, stderr, stdout};
 
 fn centre(info: &Value, end: &str, axis: usize) -> f64 {
     info["centres"][end][axis].as_f64().expect("a number")

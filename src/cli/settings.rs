@@ -60,8 +60,8 @@ pub(super) struct DeviceArgs {
     /// Load the Khronos validation layer with synchronisation checks; any message is an error
     #[arg(long)]
     validation: bool,
-    /// Compile everything anew, and keep nothing for the next run. Without this flag it is kept in the folder RARA_CACHE
-    /// (if that is empty, nowhere), else in the user's cache folder
+    /// Compile everything anew, and keep nothing for the next run, but for what a driver keeps by itself. Without this flag it is
+    /// kept in the folder RARA_CACHE (if that is empty, nowhere), else in the user's cache folder
     #[arg(long)]
     no_pipeline_cache: bool,
 }

@@ -169,7 +169,7 @@ impl CameraArgs {
     }
 
     /// True when a file places the camera.
-    fn from_file(&self) -> bool {
+    fn is_from_file(&self) -> bool {
         self.camera.is_some() || self.cameras.is_some() || self.view.is_some()
     }
 
@@ -186,7 +186,7 @@ impl CameraArgs {
     /// The same flags for a command whose default size is another.
     #[cfg(feature = "view")]
     pub(super) fn sized_by_default(self, size: (u32, u32)) -> Self {
-        let from_file = self.from_file();
+        let from_file = self.is_from_file();
         Self {
             size: self.size.or((!from_file).then_some(size)),
             ..self
@@ -196,13 +196,13 @@ impl CameraArgs {
     /// The world's up direction, unless a file places the camera.
     #[cfg(feature = "view")]
     pub(super) fn up(&self) -> Option<DVec3> {
-        let from_file = self.from_file();
+        let from_file = self.is_from_file();
         (!from_file).then_some(self.up.unwrap_or(UP))
     }
 
     /// True when a flag places the camera, chooses its lens or cuts at its depths.
     pub(super) fn places(&self) -> bool {
-        let from_file = self.from_file();
+        let from_file = self.is_from_file();
         let cuts = self.clip_near.is_some() || self.clip_far.is_some();
         from_file || cuts || self.eye.is_some() || self.ortho.is_some() || self.fov_y != FOV_Y
     }

@@ -12,7 +12,7 @@ use super::clip::ClipArgs;
 use super::failure::Failure;
 use super::output::{self, grouped, say};
 use super::scenes::{LoadedLayer, SceneArgs};
-use super::select::{self, Taken};
+use super::select::{self, Numbers, Taken};
 use super::values;
 
 /// Write a scene in another format
@@ -173,7 +173,7 @@ impl Convert {
         layer: LoadedLayer,
         clip: &Clip,
         document: &mut Document,
-    ) -> Result<(Option<(u32, Vec<u32>)>, Part), Failure> {
+    ) -> Result<(Option<Numbers>, Part), Failure> {
         let LayerState {
             placement, opacity, ..
         } = layer.state;

@@ -114,8 +114,8 @@ pub(super) struct LoadedLayer {
     pub(super) state: LayerState,
     /// Its own clip.
     pub(super) clip: Option<LayerClip>,
-    /// Where it is a part of a file: how many Gaussians are in the files before, and its Gaussians' numbers in the file.
-    pub(super) numbers: Option<(u32, Vec<u32>)>,
+    /// Where it is a part of a file.
+    pub(super) numbers: Option<select::Numbers>,
     /// What is said of it before any flag says otherwise.
     #[cfg_attr(not(feature = "view"), allow(dead_code))]
     pub(super) listed: Listed,

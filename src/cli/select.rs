@@ -112,10 +112,13 @@ pub(super) fn divide(
     gaussians.into_parts(&part_of, 1 + entry.selected.len())
 }
 
+/// How many Gaussians are in the files before a part of a file, and its Gaussians' numbers in the file.
+pub(super) type Numbers = (u32, Vec<u32>);
+
 /// What has become of a layer's Gaussians.
 pub(super) struct Taken {
     /// Of the layer before: where it is a part of a file, its place in the files, and how many Gaussians it had.
-    pub(super) numbers: Option<(u32, Vec<u32>)>,
+    pub(super) numbers: Option<Numbers>,
     pub(super) count: usize,
     pub(super) gaussians: Gaussians,
     /// For each of them, the number in the layer of the one that it comes from.

@@ -196,9 +196,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Made, Failure> {
                 let centre = centre.ok_or_else(|| {
                     format!("Gaussian {index} of a section is in bucket {bucket}, which there is not; export the scene again")
                 })?;
-                for axis in 0..SCALES {
+                for (axis, to) in row[..SCALES].iter_mut().enumerate() {
                     let steps = f64::from(u16_at(record, 2 * axis)) - section.steps;
-                    row[axis] = steps * section.step + f32_at(centre, 4 * axis);
+                    *to = steps * section.step + f32_at(centre, 4 * axis);
                 }
                 (SCALES..OPACITY).for_each(|slot| row[slot] = f16_at(record, 2 * slot));
             }

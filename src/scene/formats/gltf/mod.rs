@@ -5,6 +5,7 @@ mod buffers;
 mod nodes;
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::Path;
 
 use glam::{DQuat, DVec3};
@@ -74,10 +75,10 @@ pub(super) fn read_document(
     let (mut found, mut others) = (0_u64, 0_u64);
     let mut meshes = BTreeMap::new();
     for (number, placement) in nodes::meshes(document)? {
-        if !meshes.contains_key(&number) {
-            meshes.insert(number, Mesh::of(document, number)?);
-        }
-        let mesh = &meshes[&number];
+        let mesh = match meshes.entry(number) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(unknown) => unknown.insert(Mesh::of(document, number)?),
+        };
         found += mesh.splats.len() as u64;
         others += mesh.others;
         if found > MOST_PRIMITIVES {

@@ -38,9 +38,6 @@
 // A host's device as rara uses it. Several threads may use it at once.
 typedef struct RaraDevice RaraDevice;
 
-// A scene in the host's memory. It may be destroyed once it is on the device. Several threads may read it at once.
-typedef struct RaraGaussians RaraGaussians;
-
 // The region that stays visible, made of planes, slabs, boxes, spheres, ellipsoids, cylinders, capsules and cones. It does
 // not change; several threads, renderers and layers may use it at once.
 typedef struct RaraRegion RaraRegion;
@@ -451,25 +448,6 @@ typedef struct RaraHostView {
     double depth_scale;
 } RaraHostView;
 
-// Describes a scene, and what of its file could not be used.
-typedef struct RaraGaussiansInfo {
-    // Set by rara_gaussians_info.
-    size_t struct_size;
-    // Gaussians in the scene.
-    uint64_t count;
-    // Elements of the file that were left out: numbers that are not finite.
-    uint64_t dropped;
-    // Elements that were kept with a value put right.
-    uint64_t repaired;
-    // Degree of its spherical harmonics, 0 to 3.
-    uint32_t sh_degree;
-    // The corner of the scene's box with the smallest coordinates. The box holds all but the outermost percent of the
-    // centres at each end of each axis.
-    double bounds_min[3];
-    // The corner with the largest coordinates.
-    double bounds_max[3];
-} RaraGaussiansInfo;
-
 // How spherical harmonics lie in device memory; the sizes are of one Gaussian of degree 3.
 typedef uint32_t RaraShFormat;
 
@@ -539,7 +517,7 @@ typedef struct RaraLayer {
     // Its name: UTF-8, ends in NUL. Several layers may have the same.
     const char *name;
     // Its Gaussians. Several layers may have the same.
-    const struct RaraGaussians *gaussians;
+    const RaraGaussians *gaussians;
     // The state in which it is uploaded; null, the default, stands for that of rara_layer_state_default.
     const struct RaraLayerState *state;
 } RaraLayer;
@@ -891,7 +869,7 @@ RaraResult rara_camera_from_world_to_camera(const double *matrix,
 //
 // # Safety
 // `gaussians` is alive; `up` points to three numbers; `camera` may be overwritten.
-RaraResult rara_camera_frame(const struct RaraGaussians *gaussians,
+RaraResult rara_camera_frame(const RaraGaussians *gaussians,
                              const double *up,
                              double fov_y,
                              uint32_t width,
@@ -1183,51 +1161,13 @@ RaraResult rara_camera_of_projection_floats(const float *view,
 // `renderer` is alive, was created with a depth attachment, and is not used by another thread; `seen` points to one.
 RaraResult rara_renderer_set_depth_of_projection(struct RaraRenderer *renderer, const struct RaraHostView *seen);
 
-// Loads a scene: 3DGS .ply (ascii or binary, spherical harmonics of degree 0 to 3), .compressed.ply, .splat, .ksplat, .spz,
-// SOG (an archive, its folder or meta.json) or glTF with KHR_gaussian_splatting. The format is found by what is in the file.
-//
-// `path` is UTF-8, or on Unix whatever the file system takes.
-//
-// # Safety
-// `path` ends in NUL; `gaussians` may be overwritten.
-RaraResult rara_gaussians_load(const char *path,
-                               struct RaraGaussians **gaussians);
-
-// Loads a scene that is in memory, such as an archive's entry, in any format that is one file. `name` stands for it in
-// messages.
-//
-// # Safety
-// `data` points to `size` bytes, which are not used afterwards; `name` ends in NUL; `gaussians` may be overwritten.
-RaraResult rara_gaussians_load_from(const uint8_t *data,
-                                    size_t size,
-                                    const char *name,
-                                    struct RaraGaussians **gaussians);
-
-// Appends another scene to one, so that both are sorted and composited as one.
-//
-// # Safety
-// Both are alive and not the same; nobody else uses `gaussians` meanwhile.
-RaraResult rara_gaussians_append(struct RaraGaussians *gaussians, const struct RaraGaussians *other);
-
-// Describes a scene. `info_size` is sizeof *info.
-//
-// # Safety
-// `gaussians` is alive; `info` has room for `info_size` bytes.
-RaraResult rara_gaussians_info(const struct RaraGaussians *gaussians, struct RaraGaussiansInfo *info, size_t info_size);
-
-// Frees a scene's memory; null is ignored.
-//
-// # Safety
-// `gaussians` is null, or alive and not used any more.
-void rara_gaussians_destroy(struct RaraGaussians *gaussians);
-
 // Uploads a scene of one layer. Only this function and rara_scene_buffers_upload_layers submit to the host's queue and
 // wait.
 //
 // # Safety
 // `device` and `gaussians` are alive; nobody else uses the queue meanwhile; `scene` may be overwritten.
 RaraResult rara_scene_buffers_upload(const struct RaraDevice *device,
-                                     const struct RaraGaussians *gaussians,
+                                     const RaraGaussians *gaussians,
                                      RaraShFormat sh_format,
                                      struct RaraSceneBuffers **scene);
 
@@ -1235,9 +1175,7 @@ RaraResult rara_scene_buffers_upload(const struct RaraDevice *device,
 //
 // # Safety
 // `gaussians` is alive; `bytes` may be overwritten.
-RaraResult rara_scene_buffers_staging_bytes(const struct RaraGaussians *gaussians,
-                                            RaraShFormat sh_format,
-                                            uint64_t *bytes);
+RaraResult rara_scene_buffers_staging_bytes(const RaraGaussians *gaussians, RaraShFormat sh_format, uint64_t *bytes);
 
 // Uploads a scene of one layer by the host's own means: allocates its buffers, writes it into the host's staging memory
 // and records the copies. Nothing is submitted and nothing waits, so that a scene can come or be replaced while frames
@@ -1259,7 +1197,7 @@ RaraResult rara_scene_buffers_staging_bytes(const struct RaraGaussians *gaussian
 RaraResult rara_scene_buffers_upload_with(const struct RaraDevice *device,
                                           VkCommandBuffer cmd,
                                           const struct RaraStaging *staging,
-                                          const struct RaraGaussians *gaussians,
+                                          const RaraGaussians *gaussians,
                                           RaraShFormat sh_format,
                                           struct RaraSceneBuffers **scene);
 
@@ -1288,7 +1226,7 @@ RaraResult rara_gaussian_arrays_default(struct RaraGaussianArrays *arrays, size_
 // # Safety
 // `arrays` is as its fields say; `gaussians` may be overwritten.
 RaraResult rara_gaussians_from_arrays(const struct RaraGaussianArrays *arrays,
-                                      struct RaraGaussians **gaussians);
+                                      RaraGaussians **gaussians);
 
 // The state of a layer that stands where it was made, visible and with the opacities of its Gaussians. `state_size` is
 // sizeof *state.
@@ -1304,7 +1242,7 @@ RaraResult rara_layer_state_default(struct RaraLayerState *state, size_t state_s
 RaraResult rara_layer_default(struct RaraLayer *layer,
                               size_t layer_size,
                               const char *name,
-                              const struct RaraGaussians *gaussians);
+                              const RaraGaussians *gaussians);
 
 // Uploads a scene of several layers as rara_scene_buffers_upload does one of a single layer. The layers are sorted and
 // blended together, wherever they reach into each other. Where two Gaussians are equally deep, the earlier layer's is in
@@ -1478,10 +1416,10 @@ RaraResult rara_bake_settings_default(struct RaraBakeSettings *settings, size_t 
 // # Safety
 // `gaussians` and `region` are alive; `settings` is null or points to one; `baked` may be overwritten; `counts` is null, or has
 // room for `counts_size` bytes.
-RaraResult rara_gaussians_bake(const struct RaraGaussians *gaussians,
+RaraResult rara_gaussians_bake(const RaraGaussians *gaussians,
                                const struct RaraRegion *region,
                                const struct RaraBakeSettings *settings,
-                               struct RaraGaussians **baked,
+                               RaraGaussians **baked,
                                struct RaraBakeCounts *counts,
                                size_t counts_size);
 

@@ -142,6 +142,7 @@ impl Configured {
 
 impl RecordedFrame {
     /// True when it was submitted while earlier frames were unfinished.
+    #[cfg_attr(not(feature = "view"), allow(dead_code))]
     pub(crate) fn is_in_flight(&self) -> bool {
         let configured = self.configured.as_ref();
         configured.is_some_and(|configured| configured.submission == Submission::InFlight)

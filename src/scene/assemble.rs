@@ -37,9 +37,6 @@ pub(super) enum Stored {
     Plain,
 }
 
-/// The spherical harmonic of degree 0: the density of the colour that does not depend on the direction.
-pub(super) const SH_0: f64 = 0.282_094_791_773_878_14;
-
 /// Collects rows into [`Gaussians`].
 pub(super) struct Assembler {
     gaussians: Gaussians,

@@ -220,6 +220,7 @@ impl Gaussians {
     }
 
     /// Refuses what cannot be drawn, as [`new`](Self::new) does.
+    #[cfg_attr(not(feature = "ply"), allow(dead_code))]
     pub(super) fn check(&self) -> Result<()> {
         self.0.check().map_err(Error::Invalid)
     }

@@ -47,3 +47,6 @@ pub use {
     report::{LoadReport, Remark},
     save::{save, save_ply, saved_format},
 };
+
+/// The spherical harmonic of degree 0: the density of the colour that does not depend on the direction.
+const SH_0: f64 = 0.282_094_791_773_878_14;

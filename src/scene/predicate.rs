@@ -1,7 +1,6 @@
 //! Predicates: which Gaussians of a set a selection takes.
 
-use super::assemble::SH_0;
-use super::{Gaussians, Part, Property};
+use super::{Gaussians, Part, Property, SH_0};
 use crate::clip::Expression;
 use crate::error::{Error, Result, shortened};
 use crate::placement::Placement;

@@ -14,9 +14,9 @@ use std::io::Read;
 use std::path::Path;
 
 pub(super) use self::write::encode;
-use super::assemble::{Assembler, SH_0, Stored};
+use super::assemble::{Assembler, Stored};
 use super::load::{Found, Input, Progress};
-use super::{Format, Gaussians, LoadReport, Loaded, Property};
+use super::{Format, Gaussians, LoadReport, Loaded, Property, SH_0};
 use crate::error::{Error, Result};
 use crate::placement::Placement;
 

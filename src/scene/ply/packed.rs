@@ -6,8 +6,9 @@ use ply_rs::ply::{ElementDef, Encoding};
 
 use super::header::Header;
 use super::layout::{Field, fixed_size};
+use crate::scene::SH_0;
 use crate::scene::assemble::{
-    Assembler, OPACITY, ROTATION, SCALES, SH, SH_0, SLOTS, Stored, unit_quaternion,
+    Assembler, OPACITY, ROTATION, SCALES, SH, SLOTS, Stored, unit_quaternion,
 };
 use crate::scene::load::{Progress, Source};
 

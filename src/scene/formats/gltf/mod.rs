@@ -13,8 +13,8 @@ use serde_json::Value;
 
 use self::accessor::Accessor;
 use self::buffers::Buffers;
-use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SH_0, SLOTS, Stored};
-use super::super::sh_coefficients;
+use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored};
+use super::super::{SH_0, sh_coefficients};
 use super::bytes::Bytes;
 use super::{Failure, Made, json, room, spz};
 use crate::error::shortened;

@@ -1,7 +1,6 @@
 //! Writing `.compressed.ply`.
 
-use super::super::super::Gaussians;
-use super::super::super::assemble::SH_0;
+use super::super::super::{Gaussians, SH_0};
 use super::{ANY, Ranges, along_a_curve, byte, smallest_three};
 
 /// Gaussians in a chunk.

@@ -28,8 +28,9 @@ impl Renderer {
     /// reserve for it while this one draws: their memory is each one's own. [`configure`](Self::configure) comes after it.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for limits that no frame can have, [`Error::Budget`] and [`Error::Memory`] where there is no room;
-    /// of a budget's it is said before anything is allocated or compiled.
+    /// [`Error::Invalid`](crate::Error::Invalid) for limits that no frame can have,
+    /// [`Error::Budget`](crate::Error::Budget) and [`Error::Memory`](crate::Error::Memory) where there is no room; of a
+    /// budget's it is said before anything is allocated or compiled.
     pub fn reserve(&mut self, limits: &FrameLimits) -> Result<()> {
         limits.check()?;
         self.forget();
@@ -63,8 +64,8 @@ impl Renderer {
     /// [`configure`](Self::configure) comes after it, and allocates nothing for the same frame.
     ///
     /// # Errors
-    /// [`Error::Memory`] or [`Error::Budget`] where there is no memory for smaller buffers in place of the larger ones; there are
-    /// none then, and the next [`configure`](Self::configure) allocates them.
+    /// [`Error::Memory`](crate::Error::Memory) or [`Error::Budget`](crate::Error::Budget) where there is no memory for smaller
+    /// buffers in place of the larger ones; there are none then, and the next [`configure`](Self::configure) allocates them.
     pub fn trim(&mut self) -> Result<()> {
         let plan = self.configured.take().map(|ready| ready.frame.plan);
         self.kept = None;

@@ -167,7 +167,10 @@ impl RecordedFrame {
 
     /// The sum of its times, if they were taken.
     fn gpu_ms(&self, passes: &[PassTime]) -> Option<f64> {
-        let has_times = self.timer.is_some() && (self.recorded_nothing() || !passes.is_empty());
+        let was_submitted = self.configured.is_some();
+        let has_times = self.timer.is_some()
+            && was_submitted
+            && (self.recorded_nothing() || !passes.is_empty());
         has_times.then(|| passes.iter().fold(0.0, |sum, pass| sum + pass.ms)) // `sum` of nothing is -0
     }
 

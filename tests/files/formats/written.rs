@@ -89,7 +89,8 @@ fn what_no_reader_could_draw_is_not_written() {
 #[test]
 fn what_a_format_clamps_is_counted() {
     let folder = Folder::new("formats-clamped");
-    let plain = scene(300);
+    let mut plain = scene(300);
+    plain.scales_mut().fill(Vec3::splat(0.1));
     let mut changed = plain.clone();
     changed.scales_mut()[0].x = 2e9;
     changed.sh_mut()[48 + 5] = 2.0;

@@ -38,6 +38,12 @@
 // A host's device as rara uses it. Several threads may use it at once.
 typedef struct RaraDevice RaraDevice;
 
+// A frame that was configured ahead, to be prepared and drawn whatever is configured after it. One thread at a time uses it.
+typedef struct RaraFrameToken RaraFrameToken;
+
+// A scene in the host's memory. It may be destroyed once it is on the device. Several threads may read it at once.
+typedef struct RaraGaussians RaraGaussians;
+
 // The region that stays visible, made of planes, slabs, boxes, spheres, ellipsoids, cylinders, capsules and cones. It does
 // not change; several threads, renderers and layers may use it at once.
 typedef struct RaraRegion RaraRegion;
@@ -451,6 +457,71 @@ typedef struct RaraHostView {
 // How spherical harmonics lie in device memory; the sizes are of one Gaussian of degree 3.
 typedef uint32_t RaraShFormat;
 
+// The most that frames will ask for, for rara_renderer_reserve.
+typedef struct RaraFrameLimits {
+    // Set by rara_frame_limits_default.
+    size_t struct_size;
+    // Width of the pictures, pixels.
+    uint32_t width;
+    // Height of the pictures, pixels, which may be another picture's than the width.
+    uint32_t height;
+    // Gaussians of a scene, all of its layers together.
+    uint32_t gaussians;
+    // Layers of a scene. Default: 1.
+    uint32_t layers;
+    // How the scenes' spherical harmonics are stored. Default: RARA_SH_FORMAT_PACKED.
+    RaraShFormat sh_format;
+    // Planes of a RaraClip, or of a RaraRegion that is a list of planes. Default: 6.
+    uint32_t planes;
+    // Surfaces of a RaraRegion that bends or combines. Default: 0, for none.
+    uint32_t surfaces;
+    // Pairs of tile and splat, for which there is then exactly this room: a frame with more is drawn as quads, the same
+    // picture but slower, and RaraFrameStats::fell_back says so. rara_scene_buffers_estimated_pairs tells a camera's.
+    // Default: 0, for the usual room, 2 a Gaussian and 64 a tile of 8x8 pixels, which grows and allocates where a frame needs
+    // more.
+    uint32_t pairs;
+    // The settings that frames have, each with every kind of clip: modes, rasters, what is shown and with which laws. Only
+    // the call itself reads them. Default: null, for the default ones in all four modes.
+    const struct RaraSettings *settings;
+    // How many settings there are.
+    size_t settings_count;
+} RaraFrameLimits;
+
+// Device memory and pipelines of a device.
+typedef struct RaraDeviceMemory {
+    // Set by rara_device_memory.
+    size_t struct_size;
+    // Bytes that scenes and renderers take.
+    uint64_t bytes;
+    // The most that `bytes` has ever been.
+    uint64_t peak_bytes;
+    // The most that `bytes` may become, as rara_device_set_memory_budget has set it; 0 for no limit.
+    uint64_t budget;
+    // Allocations so far, freed or not.
+    uint64_t allocation_count;
+    // Pipelines compiled so far, destroyed or not.
+    uint64_t pipeline_count;
+} RaraDeviceMemory;
+
+// Describes a scene, and what of its file could not be used.
+typedef struct RaraGaussiansInfo {
+    // Set by rara_gaussians_info.
+    size_t struct_size;
+    // Gaussians in the scene.
+    uint64_t count;
+    // Elements of the file that were left out: numbers that are not finite.
+    uint64_t dropped;
+    // Elements that were kept with a value put right.
+    uint64_t repaired;
+    // Degree of its spherical harmonics, 0 to 3.
+    uint32_t sh_degree;
+    // The corner of the scene's box with the smallest coordinates. The box holds all but the outermost percent of the
+    // centres at each end of each axis.
+    double bounds_min[3];
+    // The corner with the largest coordinates.
+    double bounds_max[3];
+} RaraGaussiansInfo;
+
 // A part of the host's memory that the device can copy from.
 typedef struct RaraStaging {
     // A buffer created with VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
@@ -517,7 +588,7 @@ typedef struct RaraLayer {
     // Its name: UTF-8, ends in NUL. Several layers may have the same.
     const char *name;
     // Its Gaussians. Several layers may have the same.
-    const RaraGaussians *gaussians;
+    const struct RaraGaussians *gaussians;
     // The state in which it is uploaded; null, the default, stands for that of rara_layer_state_default.
     const struct RaraLayerState *state;
 } RaraLayer;
@@ -869,7 +940,7 @@ RaraResult rara_camera_from_world_to_camera(const double *matrix,
 //
 // # Safety
 // `gaussians` is alive; `up` points to three numbers; `camera` may be overwritten.
-RaraResult rara_camera_frame(const RaraGaussians *gaussians,
+RaraResult rara_camera_frame(const struct RaraGaussians *gaussians,
                              const double *up,
                              double fov_y,
                              uint32_t width,
@@ -1161,13 +1232,165 @@ RaraResult rara_camera_of_projection_floats(const float *view,
 // `renderer` is alive, was created with a depth attachment, and is not used by another thread; `seen` points to one.
 RaraResult rara_renderer_set_depth_of_projection(struct RaraRenderer *renderer, const struct RaraHostView *seen);
 
+// Limits of frames of one layer that is cut by up to six planes in any mode. `limits_size` is sizeof *limits.
+//
+// # Safety
+// `limits` has room for `limits_size` bytes.
+RaraResult rara_frame_limits_default(struct RaraFrameLimits *limits,
+                                     size_t limits_size,
+                                     uint32_t width,
+                                     uint32_t height,
+                                     uint32_t gaussians);
+
+// Compiles the pipelines and allocates the working memory of all frames within limits: rara_renderer_configure then
+// compiles and allocates nothing for them, whatever their cameras, clips, modes and scenes. Frames beyond the limits are
+// configured as without them, and what was reserved stays.
+//
+// It takes a fraction of a second to some seconds, submits nothing, and may be called on any thread, as while a scene loads;
+// the renderer is used by no other call meanwhile. A renderer of rara_renderer_create_sharing compiles for both.
+// rara_renderer_configure comes after it. RARA_ERROR_MEMORY where there is no room; of a budget's it is said before
+// anything is allocated or compiled.
+//
+// # Safety
+// `renderer` is alive; `limits` is as its fields say.
+RaraResult rara_renderer_reserve(struct RaraRenderer *renderer,
+                                 const struct RaraFrameLimits *limits);
+
+// Gives back the working memory that the configured frame does not need, and what was reserved; without a configured frame
+// all of it. The host has waited for all of the renderer's frames. rara_renderer_configure comes after it, and allocates
+// nothing for the same frame.
+//
+// # Safety
+// `renderer` is alive, no other thread uses it, and the device has finished its frames.
+RaraResult rara_renderer_trim(struct RaraRenderer *renderer);
+
+// Bytes of device memory that the renderer's working memory takes, 0 for null.
+//
+// # Safety
+// `renderer` is null or alive.
+uint64_t rara_renderer_bytes(const struct RaraRenderer *renderer);
+
+// An estimate of the pairs of tile and splat in a camera's picture, for RaraFrameLimits::pairs: without what a clip leaves
+// out, and with the scene where it was made.
+//
+// # Safety
+// `scene` is alive; `camera` points to one; `pairs` may be overwritten.
+RaraResult rara_scene_buffers_estimated_pairs(const struct RaraSceneBuffers *scene,
+                                              const struct RaraCamera *camera,
+                                              uint32_t *pairs);
+
+// The device memory that rara has allocated, and the pipelines that it has compiled. `memory_size` is sizeof *memory.
+//
+// # Safety
+// `device` is alive; `memory` has room for `memory_size` bytes.
+RaraResult rara_device_memory(const struct RaraDevice *device, struct RaraDeviceMemory *memory, size_t memory_size);
+
+// Sets the most bytes of device memory that all scenes and renderers of a device may take together; 0, as in the
+// beginning, for no limit but the device's. What would exceed it fails with RARA_ERROR_MEMORY before any of it is allocated,
+// and the message says what to do. What is there already stays. Any thread may call this at any time.
+//
+// # Safety
+// `device` is alive.
+RaraResult rara_device_set_memory_budget(const struct RaraDevice *device,
+                                         uint64_t bytes);
+
+// As rara_renderer_configure, for a host that configures a frame while it records another: the frame goes with the token, and
+// what rara_renderer_configure has configured stays. Frames are prepared in the order in which they are configured, and
+// each is drawn before the next is prepared. Before it prepares frame n, the host has waited for frame
+// n - frames_in_flight. A frame that is configured while another one waits to be prepared takes nothing over from it.
+//
+// # Safety
+// As for rara_renderer_configure, and `token` may be overwritten.
+RaraResult rara_renderer_configure_ahead(struct RaraRenderer *renderer,
+                                         const struct RaraSceneBuffers *scene,
+                                         const struct RaraCamera *camera,
+                                         const struct RaraClip *clip,
+                                         const struct RaraSettings *settings,
+                                         struct RaraFrameToken **token);
+
+// Records the stages of a token's frame, as rara_renderer_prepare does, or with `depth`, which else is null,
+// rara_renderer_prepare_behind. RARA_ERROR_INVALID for another renderer's token, for one that is prepared already, and for
+// one that takes over from another frame than the one prepared last; nothing is recorded then.
+//
+// # Safety
+// As for those; `scene` is the one given to rara_renderer_configure_ahead.
+RaraResult rara_renderer_prepare_token(struct RaraRenderer *renderer,
+                                       VkCommandBuffer cmd,
+                                       const struct RaraSceneBuffers *scene,
+                                       const struct RaraDepthImage *depth,
+                                       struct RaraFrameToken *token);
+
+// Records a token's splats, as rara_renderer_draw does, before another frame is prepared.
+//
+// # Safety
+// As for rara_renderer_draw.
+RaraResult rara_renderer_draw_token(struct RaraRenderer *renderer,
+                                    VkCommandBuffer cmd,
+                                    float x,
+                                    float y,
+                                    const struct RaraFrameToken *token);
+
+// Records a token's expected depths, as rara_renderer_draw_depth does, before another frame is prepared.
+//
+// # Safety
+// As for rara_renderer_draw_depth.
+RaraResult rara_renderer_draw_token_depth(struct RaraRenderer *renderer,
+                                          VkCommandBuffer cmd,
+                                          float x,
+                                          float y,
+                                          const struct RaraFrameToken *token);
+
+// Ends a token, prepared or not; null is ignored. The memory of a frame that the device works on stays until it is done.
+//
+// # Safety
+// `token` is null, or alive and not used any more.
+void rara_frame_token_destroy(struct RaraFrameToken *token);
+
+// Loads a scene: 3DGS .ply (ascii or binary, spherical harmonics of degree 0 to 3), .compressed.ply, .splat, .ksplat, .spz,
+// SOG (an archive, its folder or meta.json) or glTF with KHR_gaussian_splatting. The format is found by what is in the file.
+//
+// `path` is UTF-8, or on Unix whatever the file system takes.
+//
+// # Safety
+// `path` ends in NUL; `gaussians` may be overwritten.
+RaraResult rara_gaussians_load(const char *path,
+                               struct RaraGaussians **gaussians);
+
+// Loads a scene that is in memory, such as an archive's entry, in any format that is one file. `name` stands for it in
+// messages.
+//
+// # Safety
+// `data` points to `size` bytes, which are not used afterwards; `name` ends in NUL; `gaussians` may be overwritten.
+RaraResult rara_gaussians_load_from(const uint8_t *data,
+                                    size_t size,
+                                    const char *name,
+                                    struct RaraGaussians **gaussians);
+
+// Appends another scene to one, so that both are sorted and composited as one.
+//
+// # Safety
+// Both are alive and not the same; nobody else uses `gaussians` meanwhile.
+RaraResult rara_gaussians_append(struct RaraGaussians *gaussians, const struct RaraGaussians *other);
+
+// Describes a scene. `info_size` is sizeof *info.
+//
+// # Safety
+// `gaussians` is alive; `info` has room for `info_size` bytes.
+RaraResult rara_gaussians_info(const struct RaraGaussians *gaussians, struct RaraGaussiansInfo *info, size_t info_size);
+
+// Frees a scene's memory; null is ignored.
+//
+// # Safety
+// `gaussians` is null, or alive and not used any more.
+void rara_gaussians_destroy(struct RaraGaussians *gaussians);
+
 // Uploads a scene of one layer. Only this function and rara_scene_buffers_upload_layers submit to the host's queue and
 // wait.
 //
 // # Safety
 // `device` and `gaussians` are alive; nobody else uses the queue meanwhile; `scene` may be overwritten.
 RaraResult rara_scene_buffers_upload(const struct RaraDevice *device,
-                                     const RaraGaussians *gaussians,
+                                     const struct RaraGaussians *gaussians,
                                      RaraShFormat sh_format,
                                      struct RaraSceneBuffers **scene);
 
@@ -1175,7 +1398,9 @@ RaraResult rara_scene_buffers_upload(const struct RaraDevice *device,
 //
 // # Safety
 // `gaussians` is alive; `bytes` may be overwritten.
-RaraResult rara_scene_buffers_staging_bytes(const RaraGaussians *gaussians, RaraShFormat sh_format, uint64_t *bytes);
+RaraResult rara_scene_buffers_staging_bytes(const struct RaraGaussians *gaussians,
+                                            RaraShFormat sh_format,
+                                            uint64_t *bytes);
 
 // Uploads a scene of one layer by the host's own means: allocates its buffers, writes it into the host's staging memory
 // and records the copies. Nothing is submitted and nothing waits, so that a scene can come or be replaced while frames
@@ -1197,7 +1422,7 @@ RaraResult rara_scene_buffers_staging_bytes(const RaraGaussians *gaussians, Rara
 RaraResult rara_scene_buffers_upload_with(const struct RaraDevice *device,
                                           VkCommandBuffer cmd,
                                           const struct RaraStaging *staging,
-                                          const RaraGaussians *gaussians,
+                                          const struct RaraGaussians *gaussians,
                                           RaraShFormat sh_format,
                                           struct RaraSceneBuffers **scene);
 
@@ -1226,7 +1451,7 @@ RaraResult rara_gaussian_arrays_default(struct RaraGaussianArrays *arrays, size_
 // # Safety
 // `arrays` is as its fields say; `gaussians` may be overwritten.
 RaraResult rara_gaussians_from_arrays(const struct RaraGaussianArrays *arrays,
-                                      RaraGaussians **gaussians);
+                                      struct RaraGaussians **gaussians);
 
 // The state of a layer that stands where it was made, visible and with the opacities of its Gaussians. `state_size` is
 // sizeof *state.
@@ -1242,7 +1467,7 @@ RaraResult rara_layer_state_default(struct RaraLayerState *state, size_t state_s
 RaraResult rara_layer_default(struct RaraLayer *layer,
                               size_t layer_size,
                               const char *name,
-                              const RaraGaussians *gaussians);
+                              const struct RaraGaussians *gaussians);
 
 // Uploads a scene of several layers as rara_scene_buffers_upload does one of a single layer. The layers are sorted and
 // blended together, wherever they reach into each other. Where two Gaussians are equally deep, the earlier layer's is in
@@ -1416,10 +1641,10 @@ RaraResult rara_bake_settings_default(struct RaraBakeSettings *settings, size_t 
 // # Safety
 // `gaussians` and `region` are alive; `settings` is null or points to one; `baked` may be overwritten; `counts` is null, or has
 // room for `counts_size` bytes.
-RaraResult rara_gaussians_bake(const RaraGaussians *gaussians,
+RaraResult rara_gaussians_bake(const struct RaraGaussians *gaussians,
                                const struct RaraRegion *region,
                                const struct RaraBakeSettings *settings,
-                               RaraGaussians **baked,
+                               struct RaraGaussians **baked,
                                struct RaraBakeCounts *counts,
                                size_t counts_size);
 

@@ -7,6 +7,26 @@ use std::process::Command;
 use crate::compiler::{compiler, root, run};
 use crate::folder::Folder;
 
+/// The functions that the library exports, by what its files say.
+fn exported(folder: &Path) -> Vec<String> {
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("a file").path();
+        if path.extension().is_some_and(|ending| ending == "rs") {
+            let text = std::fs::read_to_string(&path).expect("a text");
+            let found = text.split("extern \"C\" fn ").skip(1);
+            let found = found.filter_map(|after| after.split('(').next());
+            names.extend(
+                found
+                    .filter(|name| name.starts_with("rara_"))
+                    .map(str::to_owned),
+            );
+        }
+    }
+    assert!(names.len() > 80, "{} functions", names.len());
+    names
+}
+
 #[test]
 fn the_header_is_current() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -28,6 +48,9 @@ fn the_header_is_current() {
         "renderer_desc",
         "orthographic",
         "matrices",
+        "reserve",
+        "token",
+        "gaussians",
         "scene",
         "arrays",
         "layer",
@@ -44,6 +67,13 @@ fn the_header_is_current() {
     let mut made = Vec::new();
     bindings.generate().expect("C has it all").write(&mut made);
     let made = String::from_utf8(made).expect("UTF-8");
+    for name in exported(folder) {
+        let call = format!("{name}(");
+        assert!(
+            made.contains(&call),
+            "{name} is in no file of the list above"
+        );
+    }
     let header = folder.join("rara.h");
     if std::env::var_os("RARA_WRITE_HEADER").is_some() {
         std::fs::write(&header, &made).expect("src/c is writable");

@@ -72,7 +72,7 @@ fn write_beside(
     // Renamed and forgotten at once: a file that is whole is never taken for one that is not.
     let mut files = unfinished();
     let written = written.and_then(|()| fs::rename(&beside, path));
-    if written.is_err() {
+    if written.is_err() && files.0.contains(&beside) {
         let _ = fs::remove_file(&beside); // the caller should see the first failure
     }
     files.0.retain(|file| *file != beside);
@@ -83,12 +83,21 @@ fn write_beside(
 /// an ending.
 fn begin(path: &Path) -> (PathBuf, std::io::Result<File>) {
     let mut files = unfinished();
-    let name = format!(".rara-{}-{}.part", std::process::id(), files.1);
-    let beside = path.with_file_name(name);
-    files.1 += 1;
-    files.0.push(beside.clone());
-    let created = File::create(&beside);
-    (beside, created)
+    loop {
+        let name = format!(".rara-{}-{}.part", std::process::id(), files.1);
+        let beside = path.with_file_name(name);
+        files.1 += 1;
+        // A process of the same number, in another container or on another machine, may have such a file here.
+        let created = File::options().write(true).create_new(true).open(&beside);
+        match created {
+            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
+            Err(error) => return (beside, Err(error)),
+            Ok(file) => {
+                files.0.push(beside.clone());
+                return (beside, Ok(file));
+            }
+        }
+    }
 }
 
 #[cfg(all(test, unix))]
@@ -114,6 +123,13 @@ mod tests {
             Err(std::io::Error::other("full"))
         });
         assert!(failed.is_err() && fs::read(&file).expect("there") == b"new");
+        // A file of another process that has the same number stays that process's.
+        let next = unfinished().1;
+        let other = folder.join(format!(".rara-{}-{next}.part", std::process::id()));
+        fs::write(&other, "theirs").expect("a file");
+        write_atomically(&link, |out| out.write_all(b"new")).expect("writes");
+        assert!(fs::read(&other).expect("there") == b"theirs");
+        fs::remove_file(&other).expect("there");
         // As long a name as file systems take.
         let long = folder.join("n".repeat(255));
         write_atomically(&long, |out| out.write_all(b"new")).expect("writes");

@@ -52,11 +52,13 @@ mod signals {
     use std::fs::File;
     use std::io::Write;
     use std::os::fd::AsFd;
+    use std::sync::Arc;
+    use std::sync::atomic::AtomicBool;
     use std::thread;
 
-    use signal_hook::consts::{SIGABRT, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM};
     use signal_hook::iterator::Signals;
-    use signal_hook::low_level;
+    use signal_hook::{flag, low_level};
 
     use super::super::output;
 
@@ -64,10 +66,26 @@ mod signals {
     const ABORTED: &[u8] = b"rara: the process was aborted, as happens when memory runs out or a driver gives up; draw a \
         smaller picture or fewer Gaussians, or let it have more memory (see ulimit -v)\n";
 
-    /// Removes unfinished files when the process is told to end, and then ends it as the signal would have.
+    /// Removes unfinished files when the process is told to end, and then ends it as the signal would have. A second signal
+    /// ends it at once. What whoever started the process has it ignore, it ignores.
     pub(super) fn watch() {
         aborts();
-        let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else {
+        let heard: Vec<i32> = [SIGHUP, SIGINT, SIGTERM]
+            .into_iter()
+            .filter(|signal| !is_ignored(*signal))
+            .collect();
+        let told = Arc::new(AtomicBool::new(false));
+        for &signal in &heard {
+            // In this order: the first signal is what makes the next one the last.
+            let last = flag::register_conditional_default(signal, told.clone());
+            if last
+                .and_then(|_| flag::register(signal, told.clone()))
+                .is_err()
+            {
+                return;
+            }
+        }
+        let Ok(mut signals) = Signals::new(heard) else {
             return;
         };
         let wait = move || {
@@ -80,8 +98,18 @@ mod signals {
                 let _ = low_level::emulate_default_handler(signal);
             }
         };
-        // Without a thread signals do nothing, so that the program could not be ended: then they are as they were.
+        // Without a thread the second signal ends the program.
         let _ = thread::Builder::new().name("signals".into()).spawn(wait);
+    }
+
+    /// True where the process was started to ignore a signal, as by nohup, or by a script in the background.
+    fn is_ignored(signal: i32) -> bool {
+        // SAFETY: all zeros are a sigaction, which the call overwrites; it changes nothing where no new one is given.
+        unsafe {
+            let mut now: libc::sigaction = std::mem::zeroed();
+            libc::sigaction(signal, std::ptr::null(), &mut now) == 0
+                && now.sa_sigaction == libc::SIG_IGN
+        }
     }
 
     /// An abort becomes a sentence and exit status 1.

@@ -152,7 +152,7 @@ impl Renderer {
                 replaced => replaced?,
             }
         }
-        plan.work = self.work(scene.id, &plan)?;
+        plan.work = self.work(scene.id, &plan, submission)?;
         let bindings = self.bindings(scene);
         let targets = self.targets();
         let pipelines = &mut self.pipelines;
@@ -280,9 +280,11 @@ impl Renderer {
     }
 
     /// The part of a plan that has to be computed after the frame before it.
-    fn work(&mut self, scene: u64, plan: &Plan) -> Result<Work> {
+    fn work(&mut self, scene: u64, plan: &Plan, submission: Submission) -> Result<Work> {
         // The host's depth may change with each frame, and a frame that is yet to be prepared leaves other results.
-        let is_next = Arc::strong_count(&self.pending) == 1;
+        let waits = |ready: &Ready| !ready.frame.prepared;
+        let is_next = Arc::strong_count(&self.pending) == 1
+            && (submission != Submission::Ahead || !self.configured.as_ref().is_some_and(waits));
         let kept = self.kept.as_ref();
         let kept = kept.filter(|_| is_next && plan.occluders.is_none());
         let work = Kept::work(kept, scene, plan);

@@ -1,5 +1,6 @@
 //! The most that frames will ask for, so that room for them is made before the first one.
 
+use super::pair_room;
 use crate::camera::Camera;
 use crate::clip::{Clip, ClipOp, Plane, Quadric, Surface};
 use crate::error::{Error, Result};
@@ -89,6 +90,12 @@ impl FrameLimits {
         if most > MOST_SURFACES {
             return refuse(format!(
                 "planes or surfaces is {most}: a clip has {MOST_SURFACES} at most"
+            ));
+        }
+        if let Some(pairs) = self.pairs.filter(|&pairs| pairs > pair_room::MOST) {
+            return refuse(format!(
+                "pairs is {pairs}: there is room for {} at most",
+                pair_room::MOST
             ));
         }
         if self.settings.is_empty() {

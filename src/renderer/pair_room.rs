@@ -6,7 +6,7 @@
 const USUAL_PER_GAUSSIAN: u32 = 2;
 const USUAL_PER_TILE: u32 = 64;
 /// The most pairs, 1.5 GiB of lists, or 2.2 GiB with the kernels for GPUs: frames with more are drawn as quads.
-const MOST: u32 = 1 << 27;
+pub(super) const MOST: u32 = 1 << 27;
 
 /// The device has had no memory for what was estimated.
 const NO_ESTIMATES: u32 = u32::MAX;

@@ -125,7 +125,7 @@ impl Render {
             Some(sections) => Pictures::Sections(sections),
             None => {
                 let clip = self.frame.clip.meant()?;
-                Pictures::Views(self.frame.camera.meant(self.scenes.files())?, clip)
+                Pictures::Views(self.frame.camera.meant(&self.scenes.places())?, clip)
             }
         };
         let numbers = pictures.numbers();

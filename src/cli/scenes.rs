@@ -50,9 +50,17 @@ impl SceneArgs {
         Ok(entries)
     }
 
-    /// The files, as they were typed.
-    pub(super) fn files(&self) -> &[PathBuf] {
-        &self.files
+    /// Where the scenes are: what was typed, or the files that it names.
+    pub(super) fn places(&self) -> Vec<PathBuf> {
+        let places = |typed: &PathBuf| {
+            if typed.exists() && !scene_file::is_list(typed) {
+                return vec![typed.clone()];
+            }
+            // What is wrong with them is said when they are read.
+            let named = entries(std::slice::from_ref(typed)).unwrap_or_default();
+            named.into_iter().map(|entry| entry.path).collect()
+        };
+        self.files.iter().flat_map(places).collect()
     }
 
     /// The selections, as they were typed.

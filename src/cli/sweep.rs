@@ -76,7 +76,7 @@ impl Sweep {
         let shapes = self.frame.clip.expressions()?;
         let moving = self.moving()?;
         self.frame.camera.single("a sweep")?;
-        let views = self.frame.camera.meant(self.scenes.files())?;
+        let views = self.frame.camera.meant(&self.scenes.places())?;
         if let Some(folder) = &self.output {
             output::make_folder(folder)?;
         }

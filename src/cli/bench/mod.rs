@@ -106,7 +106,10 @@ impl Bench {
     pub(super) fn run(self) -> Result<(), Failure> {
         let look = self.look.meant()?;
         self.camera.single("a bench")?;
-        let (clip, views) = (self.clip.meant()?, self.camera.meant(self.scenes.files())?);
+        let (clip, views) = (
+            self.clip.meant()?,
+            self.camera.meant(&self.scenes.places())?,
+        );
         if let Some(folder) = &self.output {
             output::make_folder(folder)?;
         }

@@ -104,7 +104,7 @@ impl View {
         let begin = match self.section.meant(&camera, clip)? {
             Some(sections) => Begin::Section(single(sections)?),
             None => Begin::Views(
-                camera.meant(self.scenes.files())?,
+                camera.meant(&self.scenes.places())?,
                 clip.expressions()?,
                 clip.op(),
             ),

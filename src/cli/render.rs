@@ -1,6 +1,6 @@
 //! `rara render`: pictures of a scene.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -234,13 +234,17 @@ impl Render {
         Some(filled(self.output.as_ref()?, view.number, &view.name))
     }
 
-    /// Fails where two pictures would be one file.
+    /// Makes the pictures' folders, and fails where two pictures would be one file.
     fn check_files(&self, planned: &[Planned]) -> Result<(), Failure> {
         let mut files = HashMap::new();
+        let mut folders = HashSet::new();
         for one in planned {
             let Some(file) = self.picture_file(&one.view) else {
                 return Ok(());
             };
+            if folders.insert(file.parent().map(Path::to_owned)) {
+                output::check_file(&file)?;
+            }
             if let Some(other) = files.insert(file, &one.view.name) {
                 return Err(Failure::Usage(format!(
                     "the pictures of {other} and {} would be one file: put {{}} where their number goes",
@@ -281,6 +285,11 @@ impl Render {
                 "{what} several pictures: put {{}} where their number goes, as in -o view_{{}}.png"
             )));
         }
-        Ok(output::check_file(&filled(pattern, first, "x"))?)
+        // Folders whose names have a slot are made when all names are known.
+        let is_one = |folder: &Path| filled(folder, 0, "a") == filled(folder, 1, "b");
+        match pattern.parent().is_none_or(is_one) {
+            true => Ok(output::check_file(&filled(pattern, first, "x"))?),
+            false => Ok(()),
+        }
     }
 }

@@ -93,9 +93,12 @@ fn read<T: DeserializeOwned>(path: &Path) -> Result<T> {
     let read = file.take(MOST_BYTES).read_to_end(&mut text);
     read.map_err(Error::io(path))?;
     let mut json = serde_json::Deserializer::from_slice(&text);
-    serde_path_to_error::deserialize(&mut json).map_err(|error| {
+    let document = serde_path_to_error::deserialize(&mut json).map_err(|error| {
         Error::format(path, format!("field `{}`: {}", error.path(), error.inner()))
-    })
+    })?;
+    json.end()
+        .map_err(|error| Error::format(path, error.to_string()))?;
+    Ok(document)
 }
 
 #[cfg(test)]

@@ -204,6 +204,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
     let mut json = serde_json::Deserializer::from_slice(text);
     let document: Document = serde_path_to_error::deserialize(&mut json)
         .map_err(|error| format(format!("field `{}`: {}", error.path(), error.inner())))?;
+    json.end().map_err(|error| format(error.to_string()))?;
     if document.layers.is_empty() {
         return Err(format("it has no layer; name at least one".into()));
     }

@@ -99,7 +99,7 @@ fn what_is_lost_or_clamped_is_said() {
     let info = document(line(&here, "info @/b.sog --json"));
     assert_eq!(info["gaussians"], report["written"]);
 
-    let made = done(line(&here, "convert @/scene.ply -o @/b.spz --scale 1000"));
+    let made = done(line(&here, "convert @/scene.ply -o @/b.spz --scale 100000"));
     assert!(
         stderr(&made).contains("beyond what .spz holds"),
         "{}",

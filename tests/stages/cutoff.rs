@@ -1,10 +1,8 @@
 //! Stage `cutoff`: the records of the cut splats, by which pixels weigh them.
 
 use glam::Vec3;
-use rara::clip::Expression;
 use rara::reference::{Cut, Footprint, HalfSpace, Real, Vec3 as Vector, View, cutoff, vec3};
-use rara::scene::Bounds;
-use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings, Shape};
+use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings};
 
 use crate::frame::{self, Stages};
 
@@ -14,8 +12,6 @@ const BEAM: u32 = 1;
 const FRONT: u32 = 2;
 const CURVE: u32 = 4;
 const UNION: u32 = 8;
-/// The surface may bend.
-const COMBINED: u32 = 16;
 
 /// How far apart device and twin are.
 #[derive(Debug, Default, Clone, Copy)]
@@ -73,34 +69,6 @@ fn records_are_the_twins() {
     // A plane at the edge of the band may cut in only one of the two.
     let all = worst.compared[0] + worst.compared[1];
     assert!(worst.other <= 1 + all / 1_000, "{worst:?}");
-}
-
-/// A splat that a bent surface cuts and that carries no curve is weighed in every pixel, which takes many times as long.
-#[test]
-fn most_splats_that_a_sphere_cuts_carry_a_curve() {
-    /// A header, one surface that bends, and the eye's plane.
-    const STRIDE: usize = 3 + 3 + 1;
-    let [mut all, mut rest] = [0, 0];
-    frame::for_each_scene(|stages, scene| {
-        let bounds = Bounds::of(scene);
-        if !bounds.centre().is_finite() {
-            return;
-        }
-        let sphere = Shape::sphere(bounds.centre(), 0.5 * bounds.radius()).expect("a size");
-        let clip = Expression::Shape(sphere).clip();
-        let settings = Settings::default().raster(Raster::Quad);
-        let [outside, ..] = frame::views(scene);
-        let counts = stages.draw(&outside, &clip, &settings).counts;
-        let records: Vec<[f32; 4]> = stages.read("cut_records");
-        for record in records.chunks(STRIDE).take(counts.cutoff as usize) {
-            let flags = record[0][3] as u32;
-            assert_eq!(flags >> 8, 1, "one surface");
-            all += 1;
-            rest += usize::from(flags & COMBINED != 0);
-        }
-    });
-    println!("{rest} of {all}");
-    assert!(all > 1000 && 20 * rest < all, "{rest} of {all}");
 }
 
 fn compare(

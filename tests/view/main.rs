@@ -176,11 +176,12 @@ fn a_window_outlives_a_screenshot_that_cannot_be_written() {
     }
     // It ends at once, also where the last picture is still being written.
     fs::rename(&shots, folder.join("gone")).expect("it is there");
+    fs::write(&shots, "in the way").expect("a file"); // a folder that is missing would be made
     client.press(window, c);
     client.press(window, escape);
     let printed = viewer.printed();
     assert!(
-        printed.contains("rara: ") && printed.contains("does not exist"),
+        printed.contains("rara: ") && printed.contains("not a folder"),
         "{printed}"
     );
     assert_eq!(viewer.child.0.wait().expect("it ends").code(), Some(0));

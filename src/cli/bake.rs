@@ -1,6 +1,6 @@
 //! `rara bake`: scenes that show a cut in any viewer.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use rara::scene::{self, Bounds};
@@ -190,7 +190,7 @@ impl Bake {
                 )));
             }
             let mut scenes = entries.iter().map(|entry| &entry.path);
-            if let Some(scene) = scenes.find(|scene| is_same(scene, path)) {
+            if let Some(scene) = scenes.find(|scene| output::is_same(scene, path)) {
                 return Err(Failure::Usage(format!(
                     "{} is one of the scenes to bake, and writing it would replace {}; name another file",
                     path.display(),
@@ -320,14 +320,6 @@ fn outputs(loaded: &Loaded, paths: &[PathBuf], baked: Vec<Baked>) -> Vec<Output>
 /// `pattern` with the layer's name in place of `{}`.
 fn named(pattern: &str, layer: &str) -> PathBuf {
     PathBuf::from(pattern.replace("{}", &layer.replace(['/', '\\'], "_")))
-}
-
-/// True where two paths lead to one file that is there.
-fn is_same(a: &Path, b: &Path) -> bool {
-    match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => a == b,
-    }
 }
 
 /// Cameras around the scene, equally far apart, the first on the side from which a picture without a camera is taken.

@@ -1,6 +1,6 @@
 //! `rara convert`: scenes from one format to another.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use glam::{DQuat, DVec3};
@@ -102,7 +102,7 @@ impl Convert {
             scene::saved_format(&self.output).map_err(|error| Failure::Usage(error.to_string()))?;
         output::check_file(&self.output)?;
         for entry in self.scenes.entries()? {
-            if is_same(&entry.path, &self.output) {
+            if output::is_same(&entry.path, &self.output) {
                 return Err(Failure::Usage(format!(
                     "{} is one of the scenes to convert, and would be replaced; name another file",
                     self.output.display()
@@ -245,14 +245,6 @@ impl Convert {
             grouped(document.bytes)
         ));
         Ok(())
-    }
-}
-
-/// True where two paths lead to one file that is there.
-fn is_same(a: &Path, b: &Path) -> bool {
-    match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => a == b,
     }
 }
 

@@ -102,6 +102,14 @@ pub(super) fn check_file(file: &Path) -> Result<()> {
     }
 }
 
+/// True where two paths lead to one file that is there.
+pub(super) fn is_same(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    }
+}
+
 /// Writes a text file beside `file` and renames it into place, so that nobody sees half of one.
 pub(super) fn text(file: &Path, text: &str) -> Result<()> {
     rara::files::write_atomically(file, |out| out.write_all(text.as_bytes()))

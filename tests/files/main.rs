@@ -8,3 +8,4 @@ mod formats;
 mod in_memory;
 mod ply;
 mod regressions;
+mod shared;

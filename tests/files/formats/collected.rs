@@ -3,7 +3,8 @@
 use rara::scene::{Format, load};
 
 use super::distance::Distance;
-use super::{files, shared};
+use crate::shared::{files, shared};
+
 use crate::ply::made::assert_sound;
 
 #[test]

@@ -5,32 +5,12 @@ use std::path::{Path, PathBuf};
 use rara::scene::load;
 
 use super::made::assert_sound;
+use crate::shared::{files, shared};
 
-fn shared(folder: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("RARA_SHARED").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"),
-        PathBuf::from,
-    );
-    let folder = root.join("data").join(folder);
-    if !folder.is_dir() {
-        eprintln!(
-            "SKIPPED: {} is not there (set RARA_SHARED)",
-            folder.display()
-        );
-        return None;
-    }
-    Some(folder)
-}
-
-fn ply_files(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            ply_files(&path, found);
-        } else if path.extension().is_some_and(|e| e == "ply") {
-            found.push(path);
-        }
-    }
+/// All PLY files in a folder and in those in it.
+fn ply_files(folder: &Path) -> impl Iterator<Item = PathBuf> {
+    let is_ply = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "ply");
+    files(folder).into_iter().filter(is_ply)
 }
 
 #[test]
@@ -38,8 +18,7 @@ fn collected_malformed_files() {
     let Some(folder) = shared("malformed") else {
         return;
     };
-    let mut files = Vec::new();
-    ply_files(&folder, &mut files);
+    let files: Vec<_> = ply_files(&folder).collect();
     assert!(!files.is_empty());
     for path in files {
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
@@ -87,9 +66,7 @@ fn collected_malformed_files() {
 fn collected_formats_and_scenes() {
     for folder in ["formats", "general", "medical"] {
         let Some(folder) = shared(folder) else { return };
-        let mut files = Vec::new();
-        ply_files(&folder, &mut files);
-        for path in files {
+        for path in ply_files(&folder) {
             let loaded = load(&path, &mut |_, _| ()).unwrap();
             eprintln!(
                 "{}: {} Gaussians, {}",

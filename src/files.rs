@@ -17,7 +17,7 @@ fn unfinished() -> MutexGuard<'static, (Vec<PathBuf>, u64)> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes what [`write_atomically`] has not finished, and lets nobody begin anything more: for a process that is told to end.
+/// Removes what is not finished, and lets nobody begin anything more: for a process that is told to end.
 /// Returns the number of files that are gone.
 #[cfg(feature = "lab")]
 pub fn abandon() -> usize {
@@ -37,46 +37,96 @@ pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
 ) -> Result<()> {
-    let whole = match fs::metadata(path) {
-        Ok(there) if !there.is_file() => return write_into(path, write),
-        Ok(_) => fs::canonicalize(path).map_err(Error::io(path))?,
-        Err(_) => path.to_owned(),
-    };
-    write_beside(&whole, write)
+    let mut file = Unfinished::begin(path)?;
+    write(&mut file).map_err(Error::io(path))?;
+    file.finish()
 }
 
-fn write_into(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
-) -> Result<()> {
-    let written = File::options().write(true).open(path).and_then(|file| {
-        let mut writer = BufWriter::new(file);
-        write(&mut writer)?;
-        writer.flush()
-    });
-    written.map_err(Error::io(path))
+/// A file that is written piece by piece. It stands beside the place where it goes, as [`write_atomically`] says, and is
+/// removed when it is dropped before it is finished.
+#[derive(Debug)]
+pub struct Unfinished {
+    /// What it becomes.
+    path: PathBuf,
+    /// What it is called until then; none for a pipe or a terminal.
+    beside: Option<PathBuf>,
+    file: BufWriter<File>,
 }
 
-fn write_beside(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
-) -> Result<()> {
-    let (beside, created) = begin(path);
-    let written = created.and_then(|file| {
-        let mut writer = BufWriter::new(file);
-        write(&mut writer)?;
-        // The content is on the disk before the file gets its name, so that after a crash the name stands for the old
-        // file or the new one, never for half of one.
-        writer.into_inner()?.sync_all()
-    });
-    // Renamed and forgotten at once: a file that is whole is never taken for one that is not.
-    let mut files = unfinished();
-    let written = written.and_then(|()| fs::rename(&beside, path));
-    if written.is_err() && files.0.contains(&beside) {
-        let _ = fs::remove_file(&beside); // the caller should see the first failure
+impl Unfinished {
+    /// Begins the file.
+    ///
+    /// # Errors
+    /// [`Error::Io`] where no file can be created there.
+    pub fn begin(path: &Path) -> Result<Self> {
+        let whole = match fs::metadata(path) {
+            Ok(there) if !there.is_file() => {
+                let file = File::options().write(true).open(path);
+                return Ok(Self {
+                    path: path.to_owned(),
+                    beside: None,
+                    file: BufWriter::new(file.map_err(Error::io(path))?),
+                });
+            }
+            Ok(_) => fs::canonicalize(path).map_err(Error::io(path))?,
+            Err(_) => path.to_owned(),
+        };
+        let (beside, created) = begin(&whole);
+        Ok(Self {
+            file: BufWriter::new(created.map_err(Error::io(&whole))?),
+            path: whole,
+            beside: Some(beside),
+        })
     }
-    files.0.retain(|file| *file != beside);
-    written.map_err(Error::io(path))
+
+    /// Where it is being written, for another process that writes it.
+    pub fn place(&self) -> &Path {
+        self.beside.as_deref().unwrap_or(&self.path)
+    }
+
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    /// [`Error::Io`] where not all of it can be written; the place is then as it was before.
+    pub fn finish(mut self) -> Result<()> {
+        let mut written = self.file.flush();
+        if let Some(beside) = self.beside.take() {
+            // The content is on the disk before the file gets its name, so that after a crash the name stands for the old
+            // file or the new one, never for half of one.
+            written = written.and_then(|()| self.file.get_ref().sync_all());
+            // Renamed and forgotten at once: a file that is whole is never taken for one that is not.
+            let mut files = unfinished();
+            written = written.and_then(|()| fs::rename(&beside, &self.path));
+            forget(&mut files, &beside, written.is_err());
+        }
+        written.map_err(Error::io(&self.path))
+    }
+}
+
+impl Write for Unfinished {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        if let Some(beside) = self.beside.take() {
+            forget(&mut unfinished(), &beside, true);
+        }
+    }
+}
+
+/// Takes a file from the list of those that are unfinished, and removes it where it is to `go`.
+fn forget(files: &mut (Vec<PathBuf>, u64), beside: &PathBuf, go: bool) {
+    if go && files.0.contains(beside) {
+        let _ = fs::remove_file(beside); // the caller should see the first failure
+    }
+    files.0.retain(|file| file != beside);
 }
 
 /// Creates the file that becomes `path`. Its name is short, since a name that a file system just takes leaves no room for

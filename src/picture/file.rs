@@ -72,23 +72,25 @@ impl Picture {
             .map_err(|error| Error::Invalid(format!("the picture could not be encoded: {error}")))
     }
 
+    /// The bytes of the pixels as a `.png` file has them, row by row from the top left: red, green, blue and alpha, 8 bits each,
+    /// un-premultiplied, `round(255 c)` clamped.
+    pub fn to_rgba8(&self) -> Vec<u8> {
+        self.pixels
+            .iter()
+            .flat_map(|&pixel| to_bytes(pixel))
+            .collect()
+    }
+
     fn encoded(&self, kind: Kind) -> ImageResult<Vec<u8>> {
         let mut bytes = Vec::new();
         let (width, height) = (self.width, self.height);
         match kind {
-            Kind::Png => {
-                let pixels: Vec<_> = self
-                    .pixels
-                    .iter()
-                    .flat_map(|&pixel| to_bytes(pixel))
-                    .collect();
-                PngEncoder::new(&mut bytes).write_image(
-                    &pixels,
-                    width,
-                    height,
-                    ExtendedColorType::Rgba8,
-                )
-            }
+            Kind::Png => PngEncoder::new(&mut bytes).write_image(
+                &self.to_rgba8(),
+                width,
+                height,
+                ExtendedColorType::Rgba8,
+            ),
             Kind::Exr => {
                 let pixels = bytemuck::cast_slice(&self.pixels);
                 let encoder = OpenExrEncoder::new(Cursor::new(&mut bytes));

@@ -1,14 +1,15 @@
 //! The flags that place the camera.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
-use rara::{Camera, Gaussians, Scene};
+use rara::{Camera, Gaussians};
 
 use super::failure::Failure;
-#[cfg(doc)]
-use super::framing;
+use super::lens::{Depths, Lens, Ortho, ortho};
+use super::views::pick;
+pub(super) use super::views::{View, Views};
 use super::{output, training, values};
 use rara::{camera_files, scene::Bounds};
 
@@ -18,7 +19,7 @@ use rara::{camera_files, scene::Bounds};
 pub(super) struct CameraArgs {
     /// The eye's position
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
-    #[arg(requires = "target", conflicts_with_all = ["cameras", "camera"])]
+    #[arg(conflicts_with_all = ["cameras", "camera"])]
     eye: Option<DVec3>,
     /// The point that it looks at
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true, requires = "eye")]
@@ -64,103 +65,12 @@ pub(super) struct CameraArgs {
     size: Option<(u32, u32)>,
 }
 
-/// The scale of an orthographic picture.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Ortho {
-    /// World units that it is high.
-    Height(f64),
-    /// As many as hold the scene.
-    Fit,
-}
-
-fn ortho(text: &str) -> Result<Ortho, String> {
-    match text.parse::<f64>() {
-        _ if text == "fit" => Ok(Ortho::Fit),
-        Ok(height) if height > 0.0 && height.is_finite() => Ok(Ortho::Height(height)),
-        _ => Err("expected the picture's height in world units, above zero, or `fit`".into()),
-    }
-}
-
-/// The projection of a camera that frames the scene.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Lens {
-    /// Degrees of its vertical field of view.
-    Perspective(f64),
-    /// World units that its picture is high; `None` for as many as hold the scene.
-    Orthographic(Option<f64>),
-}
-
-impl Lens {
-    fn frame(self, bounds: &Bounds, up: DVec3, size: (u32, u32)) -> rara::Result<Camera> {
-        match self {
-            Self::Perspective(fov_y) => Camera::frame(bounds, up, fov_y, size),
-            Self::Orthographic(height) => {
-                let camera = Camera::frame_orthographic(bounds, up, size)?;
-                Ok(height.map_or(camera, |height| {
-                    let scale = f64::from(size.1) / height;
-                    camera.fx(scale).fy(scale)
-                }))
-            }
-        }
-    }
-}
-
 /// The direction that is up in the world where nothing else is said.
 const UP: DVec3 = DVec3::NEG_Y;
 /// Picture size where neither a flag nor a file gives one.
 const DEFAULT_SIZE: (u32, u32) = (1024, 1024);
 /// Degrees.
 const FOV_Y: f64 = 50.0;
-
-/// A camera and what its file calls it.
-#[derive(Debug, Clone)]
-pub(super) struct View {
-    /// Its number in the file; it replaces `{}` in a picture's name.
-    pub(super) number: usize,
-    pub(super) name: String,
-    pub(super) camera: Camera,
-}
-
-/// The cameras that the flags mean.
-#[derive(Debug)]
-pub(super) enum Views {
-    /// Cameras that are known before the scene is loaded.
-    Given(Vec<View>),
-    /// A camera that the scene's bounds will place.
-    Framed {
-        up: DVec3,
-        lens: Lens,
-        size: (u32, u32),
-        depths: Depths,
-    },
-}
-
-/// The depths that `--clip-near` and `--clip-far` mean.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Depths {
-    near: Option<f64>,
-    far: Option<f64>,
-}
-
-impl Depths {
-    /// The camera with planes at these depths.
-    fn of(self, camera: Camera) -> Result<Camera, Failure> {
-        let camera = camera.clip_near(self.near).clip_far(self.far);
-        camera.clip_planes().map_err(Failure::usage)?;
-        Ok(camera)
-    }
-}
-
-impl Views {
-    /// The numbers of the cameras in their file.
-    pub(super) fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
-        let (given, framed) = match self {
-            Self::Given(views) => (views.as_slice(), None),
-            Self::Framed { .. } => (&[][..], Some(0)),
-        };
-        given.iter().map(|view| view.number).chain(framed)
-    }
-}
 
 impl CameraArgs {
     /// True when `--view all` was typed: a run of several frames, however many there are.
@@ -193,8 +103,16 @@ impl CameraArgs {
         }
     }
 
+    /// Lets a camera that has an eye and no target look straight ahead.
+    pub(super) fn look_ahead(&mut self) {
+        let up = self.up.unwrap_or(UP).normalize();
+        let ahead = if up.z.abs() < 0.9 { DVec3::Z } else { DVec3::Y };
+        if let (Some(eye), None) = (self.eye, self.target) {
+            self.target = Some(eye + (ahead - up * ahead.dot(up)).normalize());
+        }
+    }
+
     /// The world's up direction, unless a file places the camera.
-    #[cfg(feature = "view")]
     pub(super) fn up(&self) -> Option<DVec3> {
         let from_file = self.is_from_file();
         (!from_file).then_some(self.up.unwrap_or(UP))
@@ -212,37 +130,101 @@ impl CameraArgs {
         self.up
     }
 
+    /// The size of the picture, if a flag says it.
+    pub(super) fn size(&self) -> Option<(u32, u32)> {
+        self.size
+    }
+
     /// The size of a picture whose camera no file gives.
     pub(super) fn chosen_size(&self) -> (u32, u32) {
         self.size.unwrap_or(DEFAULT_SIZE)
     }
 
-    /// The file of the cameras: the one that is named, or where only a view is named, the one beside a scene.
-    fn file(&self, scenes: &[PathBuf]) -> Result<Option<PathBuf>, Failure> {
-        if self.cameras.is_some() || self.view.is_none() {
-            return Ok(self.cameras.clone());
+    /// The point that an orbit goes round and the direction of its axis, where flags place the camera.
+    pub(super) fn pivot(&self) -> Option<(DVec3, DVec3)> {
+        Some((self.target?, self.up.unwrap_or(UP)))
+    }
+
+    /// Refuses what would choose cameras of a file for `what`, which needs none.
+    pub(super) fn without_file(&self, what: &str) -> Result<(), Failure> {
+        match self.is_from_file() {
+            false => Ok(()),
+            true => Err(Failure::Usage(format!(
+                "{what} goes round the framed scene, or round --target from --eye: leave out the cameras of a file"
+            ))),
+        }
+    }
+
+    /// The file of the cameras: the one that is named, or the one beside a scene; `flag` asks for it.
+    fn file(&self, scenes: &[PathBuf], flag: &str) -> Result<PathBuf, Failure> {
+        if let Some(file) = &self.cameras {
+            return Ok(file.clone());
         }
         let found = scenes.iter().find_map(|scene| training::cameras(scene));
         let found = found.ok_or_else(|| {
-            Failure::Usage(
-                "--view: no cameras.json or transforms.json is beside the scene; name one by --cameras".into(),
-            )
+            Failure::Usage(format!(
+                "{flag}: no cameras.json or transforms.json is beside the scene; name one by --cameras"
+            ))
         })?;
         output::say(format_args!(
             "note: the cameras are those of {}",
             found.display()
         ));
-        Ok(Some(found))
+        Ok(found)
+    }
+
+    /// The cameras of a file with these numbers or names, in this order; all of them where none is `wanted`. `flag` asks for
+    /// them. Also of files beside these scenes.
+    pub(super) fn of_file(
+        &self,
+        scenes: &[PathBuf],
+        flag: &str,
+        wanted: Option<&[String]>,
+    ) -> Result<Vec<View>, Failure> {
+        if self.eye.is_some() || self.ortho.is_some() || self.up.is_some() || self.fov_y != FOV_Y {
+            return Err(Failure::Usage(format!(
+                "{flag} takes the cameras of a file: leave out --eye, --up, --fov-y and --ortho"
+            )));
+        }
+        let path = self.file(scenes, flag)?;
+        let loaded = training::load_cameras(&path, scenes)?
+            .into_iter()
+            .enumerate();
+        let mut views: Vec<View> = loaded
+            .map(|(number, named)| View {
+                number,
+                name: named.name,
+                camera: named.camera,
+            })
+            .collect();
+        if let Some(wanted) = wanted {
+            let picked = wanted.iter().map(|one| pick(&views, one, &path, flag));
+            views = picked.collect::<Result<_, _>>()?;
+        }
+        let depths = self.depths();
+        for view in &mut views {
+            view.camera = depths.of(self.sized(view.camera)?)?;
+        }
+        Ok(views)
+    }
+
+    fn depths(&self) -> Depths {
+        Depths {
+            near: self.clip_near,
+            far: self.clip_far,
+        }
     }
 
     /// The cameras that the flags mean, also of files beside these scenes; reads their files.
     pub(super) fn meant(&self, scenes: &[PathBuf]) -> Result<Views, Failure> {
         let size = self.chosen_size();
         let up = self.up.unwrap_or(UP);
-        let depths = Depths {
-            near: self.clip_near,
-            far: self.clip_far,
-        };
+        let depths = self.depths();
+        if self.eye.is_some() && self.target.is_none() {
+            return Err(Failure::Usage(
+                "--eye has no --target: give the point that the camera looks at".into(),
+            ));
+        }
         if let (Some(eye), Some(target)) = (self.eye, self.target) {
             let camera = match self.ortho {
                 None => Camera::look_at(eye, target, up, self.fov_y, size),
@@ -268,7 +250,7 @@ impl CameraArgs {
                 camera,
             }]));
         }
-        let Some(path) = &self.file(scenes)? else {
+        if self.cameras.is_none() && self.view.is_none() {
             let lens = match self.ortho {
                 None => Lens::Perspective(self.fov_y),
                 Some(Ortho::Height(height)) => Lens::Orthographic(Some(height)),
@@ -283,25 +265,10 @@ impl CameraArgs {
                 size,
                 depths,
             });
-        };
-        let loaded = training::load_cameras(path, scenes)?
-            .into_iter()
-            .enumerate();
-        let mut views: Vec<View> = loaded
-            .map(|(number, named)| View {
-                number,
-                name: named.name,
-                camera: named.camera,
-            })
-            .collect();
-        if !self.all() {
-            let wanted = self.view.as_deref().unwrap_or("0");
-            views = vec![pick(views, wanted, path)?];
         }
-        for view in &mut views {
-            view.camera = depths.of(self.sized(view.camera)?)?;
-        }
-        Ok(Views::Given(views))
+        let one = [self.view.clone().unwrap_or_else(|| "0".into())];
+        let wanted = (!self.all()).then_some(&one[..]);
+        self.of_file(scenes, "--view", wanted).map(Views::Given)
     }
 
     fn sized(&self, camera: Camera) -> Result<Camera, Failure> {
@@ -318,78 +285,5 @@ impl CameraArgs {
             ));
         }
         Ok(resized)
-    }
-}
-
-impl Views {
-    /// The cameras, once the scene is known; one that frames it holds the box around it. [`framing::views`] are nearer.
-    pub(super) fn of(self, scene: &Scene<'_>) -> Result<Vec<View>, Failure> {
-        match self {
-            Self::Given(views) => Ok(views),
-            Self::Framed {
-                up,
-                lens,
-                size,
-                depths,
-            } => {
-                let camera = depths.of(lens.frame(&Bounds::of(scene), up, size)?)?;
-                Ok(vec![View {
-                    number: 0,
-                    name: "framing".into(),
-                    camera,
-                }])
-            }
-        }
-    }
-}
-
-/// The view with the number or name `wanted`; a name may leave out its ending.
-fn pick(views: Vec<View>, wanted: &str, path: &Path) -> Result<View, Failure> {
-    let count = views.len();
-    let stem = |name: &str| Path::new(name).file_stem().map(|s| s.to_owned());
-    let by_number = wanted.parse::<usize>().ok().filter(|n| *n < count);
-    let index = by_number
-        .or_else(|| views.iter().position(|v| v.name == wanted))
-        .or_else(|| {
-            views
-                .iter()
-                .position(|v| stem(&v.name).is_some_and(|s| s == wanted))
-        });
-    let meant = values::meant(wanted, views.iter().map(|view| view.name.as_str()));
-    let found = index.and_then(|i| views.into_iter().nth(i));
-    found.ok_or_else(|| {
-        Failure::Usage(format!(
-            "--view {wanted}: {} has {count} cameras, and none of that number (from 0) or name{meant}",
-            path.display()
-        ))
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn views_are_picked_by_number_name_or_stem() {
-        let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::NEG_Y, 50.0, (8, 8)).unwrap();
-        let names = ["a.jpg", "b/7.png", "2"];
-        let views = || {
-            names.iter().enumerate().map(|(number, n)| View {
-                number,
-                name: n.to_string(),
-                camera,
-            })
-        };
-        let picked = |wanted| {
-            pick(views().collect(), wanted, Path::new("f"))
-                .map(|v| v.number)
-                .ok()
-        };
-        assert_eq!(picked("1"), Some(1));
-        assert_eq!(picked("a.jpg"), Some(0));
-        assert_eq!(picked("a"), Some(0));
-        assert_eq!(picked("7"), Some(1));
-        assert_eq!(picked("2"), Some(2));
-        assert_eq!(picked("9"), None);
     }
 }

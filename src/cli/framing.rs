@@ -6,8 +6,10 @@ use glam::{DVec2, DVec3};
 use rara::scene::Bounds;
 use rara::{Camera, Scene};
 
-use super::camera::{Lens, View, Views};
+use super::camera::{View, Views};
 use super::failure::Failure;
+use super::lens::Lens;
+use super::path::Orbit;
 
 /// Share of the picture's half that the Gaussians' centres may fill; the rest is for their extents.
 const FILL: f64 = 0.9;
@@ -63,6 +65,46 @@ fn nearer(camera: Camera, scene: &Scene<'_>) -> Camera {
         return camera;
     }
     camera.eye(camera.eye + camera.rotation.transpose() * eye)
+}
+
+/// The most places of an orbit that are looked at.
+const PLACES: usize = 64;
+
+/// An orbit round the middle of the scene's bounds that begins at `camera`, which faces it, as near as shows all of the scene
+/// from everywhere.
+pub(super) fn round(
+    orbit: Orbit,
+    camera: Camera,
+    (lens, up): (Lens, DVec3),
+    scene: &Scene<'_>,
+) -> Vec<View> {
+    let bounds = Bounds::of(scene);
+    let pivot = bounds.centre();
+    let centres = centres(scene);
+    let places = orbit.views(camera, (pivot, up));
+    let step = places.len().div_ceil(PLACES).max(1);
+    let half = DVec2::new(camera.cx / camera.fx, camera.cy / camera.fy) * FILL;
+    // How far away the eye has to be, and how much wider than now an orthographic picture.
+    let (mut distance, mut wider) = (0.0_f64, 0.0_f64);
+    for place in places.iter().step_by(step) {
+        let off = |at: DVec3| (at.truncate().abs() / half).max_element();
+        let turned = |at: &DVec3| place.camera.rotation * (*at - pivot);
+        for at in centres.iter().map(turned) {
+            distance = distance.max(off(at).max(NEAREST) - at.z);
+        }
+        for at in bounds.corners().iter().map(turned) {
+            wider = wider.max(off(at));
+        }
+    }
+    let away = (camera.eye - pivot).normalize_or_zero();
+    let camera = match lens {
+        Lens::Perspective(_) if distance > 0.0 => camera.eye(pivot + away * distance),
+        Lens::Orthographic(None) if wider > 0.0 => {
+            camera.fx(camera.fx / wider).fy(camera.fy / wider)
+        }
+        _ => camera,
+    };
+    orbit.views(camera, (pivot, up))
 }
 
 /// Centres of what is visible, within the robust bounds.

@@ -15,14 +15,18 @@ mod dataparser;
 mod demo;
 mod devices;
 mod failure;
+mod film;
 mod frame;
 mod framing;
 mod generate;
 mod info;
 mod ink;
+mod lens;
 mod memory;
 mod model;
 mod output;
+mod panorama;
+mod path;
 mod pattern;
 mod precision;
 #[allow(unsafe_code)]
@@ -47,6 +51,7 @@ mod training;
 mod values;
 #[cfg(feature = "view")]
 mod view;
+mod views;
 
 use std::process::ExitCode;
 

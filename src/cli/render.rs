@@ -4,25 +4,29 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::{Aov, Clip, Picture, Scene, Settings};
+use glam::DVec3;
+use rara::{Aov, Camera, Clip, Scene, Settings};
 
 use super::camera::{View, Views};
 use super::failure::Failure;
+use super::film::{self, FilmArgs, Kind};
 use super::frame::FrameArgs;
 use super::framing;
 use super::memory;
 use super::output::{self, Progress};
+use super::panorama::{Panorama, PanoramaArgs};
+use super::path::PathArgs;
 use super::pattern::filled;
 use super::profile::{Profile, ProfileArgs};
 use super::report::{Frame, Report};
 use super::scenes::SceneArgs;
 use super::section::{Section, SectionArgs, Sections};
-use super::session::{Repeat, Session};
+use super::session::Repeat;
 use super::settings::name;
 use super::slice::{Cut, SliceArgs, Slicer};
 use super::values;
 
-/// Draw one picture, or one for each camera of a file
+/// Draw one picture, one for each camera of a file, or a film
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -37,15 +41,19 @@ Examples:
   rara render scene.ply -o slab_{}.png --section coronal=0.1..0.9:9 --section-thickness 2
   rara render scene.ply -o slice.png --section axial=0.4 --slice --outline 1,1,0
   rara render scene.ply -o deep.exr --aov depth,normal,layer,weight,count
+  rara render scene.ply -o round.mp4 --path orbit --frames 240 --background white
+  rara render scene.ply -o way.apng --cameras cameras.json --path spline:0,7,12 --size 640x360
+  rara render scene.ply -o room.png --panorama --eye 0,0,0
   rara render scene.ply --repeat 20 --json
 
 Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premultiplied.")]
 pub(super) struct Render {
     #[command(flatten)]
     scenes: SceneArgs,
-    /// The picture's file, .png or .exr; its folders are made; - is standard output, as PNG. {} becomes the number of the camera or section, {:04} the
-    /// number with zeros before it, {name} its name. May be left out with --json
-    #[arg(short, long, value_name = "OUT", value_parser = values::picture_file(), required_unless_present = "json")]
+    /// The picture's file, .png or .exr; its folders are made; - is standard output, as --format says. {} becomes the number of
+    /// the camera or section, {:04} the number with zeros before it, {name} its name. A name that ends in .apng is a film of
+    /// all pictures; so is one in .mp4, .mov, .mkv or .webm, which ffmpeg encodes. May be left out with --json
+    #[arg(short, long, value_name = "OUT", value_parser = values::film_file(), required_unless_present = "json")]
     output: Option<PathBuf>,
     /// Channels of the .exr beside its colours. Each is drawn by itself, and no time is reported of it
     #[arg(long, value_name = "LIST", value_delimiter = ',', requires = "output")]
@@ -57,6 +65,12 @@ pub(super) struct Render {
     /// Print the statistics as JSON to stdout
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    path: PathArgs,
+    #[command(flatten)]
+    film: FilmArgs,
+    #[command(flatten)]
+    panorama: PanoramaArgs,
     #[command(flatten)]
     section: SectionArgs,
     #[command(flatten)]
@@ -72,6 +86,27 @@ enum Pictures {
     /// Of cameras, under one clip.
     Views(Views, Clip),
     Sections(Sections),
+}
+
+/// What becomes of the pictures.
+struct Run {
+    film: Option<Kind>,
+    panorama: Option<Panorama>,
+    /// True where frames are reported one by one.
+    several: bool,
+}
+
+impl Run {
+    /// Frames that make a picture.
+    fn frames_a_picture(&self) -> usize {
+        self.panorama.map_or(1, |_| Panorama::FACES)
+    }
+
+    /// The size of the picture that a camera makes.
+    fn size(&self, camera: &Camera) -> (u32, u32) {
+        let own = (camera.width, camera.height);
+        self.panorama.map_or(own, Panorama::size)
+    }
 }
 
 /// A picture that is to be drawn.
@@ -117,26 +152,46 @@ impl Pictures {
 }
 
 impl Render {
-    pub(super) fn run(self) -> Result<(), Failure> {
-        let settings = self.frame.settings.meant()?;
+    pub(super) fn run(mut self) -> Result<(), Failure> {
+        let mut settings = self.frame.settings.meant()?;
+        let film = self.film.meant(self.output.as_deref())?;
+        if film.is_some_and(Kind::is_opaque) && settings.background.is_none() {
+            film::say_opaque();
+            settings = settings.background(Some([0.0; 3]));
+        }
         self.slice.check(&settings)?;
         let sections = self.section.meant(&self.frame.camera, &self.frame.clip)?;
+        let panorama = self.panorama.meant(self.frame.camera.size())?;
+        if panorama.is_some() {
+            self.frame.camera.look_ahead();
+        }
         let pictures = match sections {
             Some(sections) => Pictures::Sections(sections),
             None => {
                 let clip = self.frame.clip.meant()?;
-                Pictures::Views(self.frame.camera.meant(&self.scenes.places())?, clip)
+                let views = self.path.views(&self.frame.camera, &self.scenes.places())?;
+                if panorama.is_some() && matches!(views, Views::Framed { .. }) {
+                    return Err(Failure::Usage(
+                        "--panorama is what is seen from one place: say which by --eye, --camera or --cameras".into(),
+                    ));
+                }
+                Pictures::Views(views, clip)
             }
         };
         let numbers = pictures.numbers();
-        let several = self.frame.camera.all() || numbers.len() > 1;
-        self.check_output(&numbers, several)?;
+        let several = self.frame.camera.all() || self.path.moves() || numbers.len() > 1;
+        self.check_output(&numbers, several && film.is_none())?;
 
         let files = numbers
             .iter()
             .filter_map(|n| Some(filled(self.output.as_ref()?, *n, "")));
         let profile = self.profile.begin(&files.collect::<Vec<_>>())?;
-        let done = self.draw(&profile, pictures, several, &settings);
+        let run = Run {
+            film,
+            panorama,
+            several: several || panorama.is_some(),
+        };
+        let done = self.draw(&profile, pictures, run, &settings);
         profile.end_after(done)
     }
 
@@ -144,62 +199,112 @@ impl Render {
         &self,
         profile: &Profile,
         pictures: Pictures,
-        several: bool,
+        run: Run,
         settings: &Settings,
     ) -> Result<(), Failure> {
         let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
         let planned = pictures.of(&scene)?;
-        self.check_files(&planned)?;
-        for one in &planned {
-            memory::check_picture(&one.view.camera)?;
+        if run.film.is_none() {
+            self.check_files(&planned)?;
         }
+        for one in &planned {
+            let (width, height) = run.size(&one.view.camera);
+            memory::check_picture(&one.view.camera.width(width).height(height))?;
+        }
+        let sizes = planned.iter().map(|one| run.size(&one.view.camera));
+        let size = match run.film {
+            Some(_) => film::one_size(sizes)?,
+            None => sizes.into_iter().next().unwrap_or((0, 0)),
+        };
         let device = self.frame.device.meant();
         let mut session = profile.open(device, &scene, settings.precision.sh)?;
         let clips = loaded.has_clips() || planned.iter().any(|one| !one.clip.is_everything());
-        let repeat = self.repeat(planned.len());
+        let repeat = self.repeat(planned.len() * run.frames_a_picture());
         let mut frames = Vec::new();
         let mut written = Vec::new();
         let mut slicer = Slicer::new(&self.slice, &scene, self.frame.device.meant());
+        let mut film = match (run.film, &self.output) {
+            (Some(kind), Some(file)) => Some(self.film.begin(kind, file, size, planned.len())?),
+            _ => None,
+        };
         let mut progress = Progress::new("rendering");
         for (done, one) in planned.iter().enumerate() {
             progress.update(done as u64, planned.len() as u64);
             let path = self.picture_file(&one.view);
             let sliced = one.cut.as_ref().filter(|_| self.slice.is_shown());
-            let measured = match sliced {
-                Some(cut) => slicer.frame(&mut session, (&one.view, cut, settings), repeat)?,
-                None => session.measured_frame(&one.view.camera, &one.clip, settings, repeat)?,
-            };
-            if let Some(path) = &path {
-                if let Some(cut) = one.cut.as_ref().filter(|_| slicer.has_cues()) {
-                    let mut picture = session.last_picture()?;
-                    slicer.draw_cues(&mut picture, (&one.view, cut, settings))?;
-                    self.save(&mut session, (&scene, one, settings), &picture, path)?;
-                } else if self.aov.is_empty() {
-                    profile.save_picture(&mut session, path)?;
-                } else {
-                    let picture = session.last_picture()?;
-                    self.save(&mut session, (&scene, one, settings), &picture, path)?;
+            let plane = one.cut.as_ref().map(|cut| &cut.plane);
+            let mut picture = None;
+            if let Some(panorama) = &run.panorama {
+                let mut faces = Vec::new();
+                for face in panorama.faces(&one.view, self.horizon()) {
+                    let drawn = (&face.camera, &one.clip, settings);
+                    let measured = session.measured_frame(drawn.0, drawn.1, drawn.2, repeat)?;
+                    frames.push(Frame::new(&face, path.as_deref(), plane, measured));
+                    if path.is_some() {
+                        faces.push(session.last_picture()?);
+                    }
+                }
+                if path.is_some() {
+                    picture = Some(profile.span("panorama", || panorama.assembled(&faces)));
+                }
+            } else {
+                let measured = match sliced {
+                    Some(cut) => slicer.frame(&mut session, (&one.view, cut, settings), repeat)?,
+                    None => {
+                        session.measured_frame(&one.view.camera, &one.clip, settings, repeat)?
+                    }
+                };
+                frames.push(Frame::new(&one.view, path.as_deref(), plane, measured));
+                if path.is_some() {
+                    picture = Some(session.last_picture()?);
                 }
             }
-            let plane = one.cut.as_ref().map(|cut| &cut.plane);
-            frames.push(Frame::new(&one.view, path.as_deref(), plane, measured));
-            written.extend(path);
+            let (Some(mut picture), Some(path)) = (picture, path) else {
+                continue;
+            };
+            if let Some(cut) = one.cut.as_ref().filter(|_| slicer.has_cues()) {
+                slicer.draw_cues(&mut picture, (&one.view, cut, settings))?;
+            }
+            if let Some(film) = &mut film {
+                if !profile.span("encode", || film.add(&picture))? {
+                    break;
+                }
+            } else if self.aov.is_empty() {
+                profile.span("encode", || output::picture(&picture, &path))?;
+            } else {
+                let drawn = (&one.view.camera, &one.clip, settings);
+                let channels = session.channels(&self.aov, &scene, drawn)?;
+                picture.save_with(&path, &channels)?;
+            }
+            if written.last() != Some(&path) {
+                written.push(path);
+            }
+        }
+        if let Some(film) = film {
+            profile.span("encode", || film.finish())?;
         }
         drop(progress);
         slicer.close()?;
 
-        let size = planned.first().map_or((0, 0), |one| {
-            (one.view.camera.width, one.view.camera.height)
-        });
         let report = Report::new(&session, &loaded, size, name(settings.mode), &frames);
-        let report = if several {
-            report.with_frames(frames)
-        } else {
-            report
+        let report = match run.several {
+            true => report.with_frames(frames),
+            false => report,
+        };
+        let report = match run.panorama {
+            // Behind one who looks at a scene there is nothing.
+            Some(_) => report.with_empty_frames(),
+            None => report,
         };
         session.close()?;
         Ok(report.print(self.json, clips, &written)?)
+    }
+
+    /// The direction that is up in a panorama; none where cameras of a file have one of their own.
+    fn horizon(&self) -> Option<DVec3> {
+        let of_file = self.path.is_of_file();
+        self.frame.camera.up().filter(|_| !of_file)
     }
 
     /// How often each of so many pictures is drawn.
@@ -211,22 +316,6 @@ impl Render {
             None if self.profile.is_traced() => Repeat::Exactly(1),
             None => Repeat::of_pictures(pictures),
         }
-    }
-
-    /// Writes a picture, with the channels that `--aov` asks for.
-    fn save(
-        &self,
-        session: &mut Session,
-        (scene, one, settings): (&Scene<'_>, &Planned, &Settings),
-        picture: &Picture,
-        path: &Path,
-    ) -> Result<(), Failure> {
-        if self.aov.is_empty() {
-            return Ok(output::picture(picture, path)?);
-        }
-        let drawn = (&one.view.camera, &one.clip, settings);
-        let channels = session.channels(&self.aov, scene, drawn)?;
-        Ok(picture.save_with(path, &channels)?)
     }
 
     /// The file of the picture of a view.
@@ -278,12 +367,20 @@ impl Render {
         if several && filled(pattern, 0, "a") == filled(pattern, 1, "b") {
             let what = if self.frame.camera.all() {
                 "--view all makes"
+            } else if self.path.moves() {
+                "--path makes"
             } else {
                 "these sections are"
             };
-            return Err(Failure::Usage(format!(
-                "{what} several pictures: put {{}} where their number goes, as in -o view_{{}}.png"
-            )));
+            let remedy = match pattern == Path::new(values::STANDARD) {
+                true => {
+                    "name a file with {} where their number goes, or give --format apng or rgba"
+                }
+                false => {
+                    "put {} where their number goes, as in -o view_{}.png, or name a film, as film.apng"
+                }
+            };
+            return Err(Failure::Usage(format!("{what} several pictures: {remedy}")));
         }
         // Folders whose names have a slot are made when all names are known.
         let is_one = |folder: &Path| filled(folder, 0, "a") == filled(folder, 1, "b");

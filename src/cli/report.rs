@@ -33,6 +33,9 @@ pub(super) struct Report {
     frames: Vec<Frame>,
     #[serde(skip_serializing_if = "Option::is_none")]
     mean: Option<FrameStats>,
+    /// Whether some frames show nothing as a matter of course.
+    #[serde(skip)]
+    some_are_empty: bool,
 }
 
 /// One picture, and the frames that measured it.
@@ -124,7 +127,7 @@ impl Report {
                 _ => "the clip leaves nothing of what is in view",
             };
             say(format_args!("warning: the picture is empty: {why}"));
-        } else if empty > 0 && self.mean.is_none() {
+        } else if empty > 0 && self.mean.is_none() && !self.some_are_empty {
             let which = self
                 .frames
                 .iter()
@@ -193,12 +196,21 @@ impl Report {
             },
             frames: Vec::new(),
             mean: None,
+            some_are_empty: false,
         }
     }
 
     /// Adds the single frames.
     pub(super) fn with_frames(self, frames: Vec<Frame>) -> Self {
         Self { frames, ..self }
+    }
+
+    /// Finds nothing wrong with frames that show nothing, unless all of them do.
+    pub(super) fn with_empty_frames(self) -> Self {
+        Self {
+            some_are_empty: true,
+            ..self
+        }
     }
 
     /// Adds the frames' means.

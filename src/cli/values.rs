@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::DVec3;
 
+use super::film;
+
 /// `COUNT` numbers between commas, all finite.
 pub(super) fn numbers<const COUNT: usize>(text: &str) -> Result<[f64; COUNT], String> {
     let list = rara::clip::numbers(text).map_err(|error| error.to_string())?;
@@ -163,12 +165,27 @@ pub(super) fn picture_path(path: OsString) -> Result<PathBuf, String> {
     }
 }
 
+/// The file name of a picture or a film; its ending says the format.
+fn film_path(path: OsString) -> Result<PathBuf, String> {
+    let is_film = film::Kind::of(Path::new(&path)).is_some();
+    match is_film {
+        true => Ok(path.into()),
+        false => picture_path(path)
+            .map_err(|error| format!("{error}, a film's in .apng, {}", film::ENDINGS)),
+    }
+}
+
 /// In place of a file: standard input and standard output.
 pub(super) const STANDARD: &str = "-";
 
 /// The parser of a picture's file name.
 pub(super) fn picture_file() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(picture_path)
+}
+
+/// The parser of the file name of a picture or a film.
+pub(super) fn film_file() -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(film_path)
 }
 
 #[cfg(test)]

@@ -62,7 +62,7 @@ mod tests {
         let args = CameraArgs::from_arg_matches(&matches).unwrap();
         match args.meant(&[]).unwrap() {
             Views::Given(views) => views[0].camera,
-            Views::Framed { .. } => panic!("{flags}: no camera"),
+            Views::Framed { .. } | Views::Round(..) => panic!("{flags}: no camera"),
         }
     }
 

@@ -1,0 +1,84 @@
+//! Animated PNGs, picture by picture.
+
+use std::cell::RefCell;
+use std::io::{self, Write};
+use std::path::Path;
+use std::rc::Rc;
+
+use png::{BitDepth, BlendOp, ColorType, Compression, Encoder, EncodingError, Writer};
+use rara::{Error, Result};
+
+use super::{Place, wanted};
+
+/// A film that is being written.
+pub(in super::super) struct Apng {
+    encoder: Writer<Shared>,
+    place: Shared,
+}
+
+/// The place that the encoder writes to, which outlives it.
+#[derive(Clone)]
+struct Shared(Rc<RefCell<Place>>);
+
+impl Write for Shared {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.borrow_mut().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.borrow_mut().flush()
+    }
+}
+
+impl Apng {
+    /// Begins a film of so many pictures, which repeats without an end.
+    pub(super) fn begin(
+        place: Place,
+        (width, height): (u32, u32),
+        frames: usize,
+        fps: u16,
+    ) -> Result<Self> {
+        let place = Shared(Rc::new(RefCell::new(place)));
+        let begin = || {
+            let mut encoder = Encoder::new(place.clone(), width, height);
+            encoder.set_color(ColorType::Rgba);
+            encoder.set_depth(BitDepth::Eight);
+            encoder.set_compression(Compression::Balanced);
+            encoder.set_animated(u32::try_from(frames).unwrap_or(u32::MAX), 0)?;
+            encoder.set_frame_delay(1, fps)?;
+            // Each picture takes the place of the one before, transparency and all.
+            encoder.set_blend_op(BlendOp::Source)?;
+            encoder.write_header()
+        };
+        let encoder = begin().or_else(|error| match io_error(error) {
+            // A reader that is gone already is noticed with the first picture.
+            error => Err(Error::io("the film")(error)),
+        })?;
+        Ok(Self { encoder, place })
+    }
+
+    /// Writes the next picture; false when its reader wants no more of them.
+    pub(super) fn add(&mut self, bytes: &[u8]) -> Result<bool> {
+        let written = self.encoder.write_image_data(bytes).map_err(io_error);
+        wanted(written, Path::new("the film"))
+    }
+
+    pub(super) fn finish(self) -> Result<()> {
+        let Self { encoder, place } = self;
+        if !wanted(encoder.finish().map_err(io_error), Path::new("the film"))? {
+            return Ok(());
+        }
+        match Rc::try_unwrap(place.0) {
+            Ok(place) => place.into_inner().finish(),
+            Err(_) => unreachable!("the encoder is gone"),
+        }
+    }
+}
+
+/// What a stream of the operating system says, or the encoder itself.
+fn io_error(error: EncodingError) -> io::Error {
+    match error {
+        EncodingError::IoError(error) => error,
+        other => io::Error::other(other),
+    }
+}

@@ -1,0 +1,235 @@
+//! Films: all pictures of a run in one file, or one after the other on standard output.
+//!
+//! Each picture goes there when it is drawn, so that no more than one is in memory.
+
+mod apng;
+mod video;
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use clap::{Args, ValueEnum};
+use rara::files::Unfinished;
+use rara::{Error, Picture, Result};
+
+use super::failure::Failure;
+use super::output;
+use super::values::STANDARD;
+use apng::Apng;
+pub(super) use video::abandon;
+use video::{Container, Video};
+
+/// How a film is written.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Camera paths, films and panoramas")]
+pub(super) struct FilmArgs {
+    /// Pictures a second of a film [default: 30]
+    #[arg(long, value_name = "N", requires = "output", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    fps: Option<u16>,
+    /// What -o - writes: a picture as png, all of them as apng, or their bare bytes one after the other as rgba
+    #[arg(long, value_name = "FORMAT", requires = "output")]
+    format: Option<Stream>,
+}
+
+/// What goes to standard output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Stream {
+    Png,
+    Apng,
+    /// 8 bits each, row by row from the top left, un-premultiplied.
+    Rgba,
+}
+
+/// Pictures a second where nothing else is said.
+const FPS: u16 = 30;
+
+/// The endings of films that are ffmpeg's.
+pub(super) const ENDINGS: &str = ".mp4, .mov, .mkv or .webm";
+
+/// The kinds of film.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// An animated PNG, without loss and with alpha.
+    Apng,
+    /// Bytes without a header.
+    Raw,
+    /// Encoded by ffmpeg, without alpha.
+    Video(Container),
+}
+
+impl Kind {
+    /// The kind of film that a file's name stands for; none for that of a picture.
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+        match ending.as_str() {
+            "apng" => Some(Self::Apng),
+            other => Container::of(other).map(Self::Video),
+        }
+    }
+
+    /// True where pixels have no alpha.
+    pub(super) fn is_opaque(self) -> bool {
+        matches!(self, Self::Video(_))
+    }
+}
+
+impl FilmArgs {
+    /// The kind of film that is asked for; none for pictures. Fails early where it could not be written.
+    pub(super) fn meant(
+        &self,
+        output: Option<&Path>,
+    ) -> std::result::Result<Option<Kind>, Failure> {
+        let is_stream = output == Some(Path::new(STANDARD));
+        let kind = match self.format {
+            Some(_) if !is_stream => {
+                return Err(Failure::Usage(
+                    "--format is what standard output gets: give it with -o -, or leave it out, as a file's name says its \
+                     format"
+                        .into(),
+                ));
+            }
+            Some(Stream::Apng) => Some(Kind::Apng),
+            Some(Stream::Rgba) => Some(Kind::Raw),
+            Some(Stream::Png) | None => output.and_then(Kind::of),
+        };
+        if self.fps.is_some() && !matches!(kind, Some(Kind::Apng | Kind::Video(_))) {
+            return Err(Failure::Usage(format!(
+                "--fps is the pace of a film: give -o a name that ends in .apng, {ENDINGS}, or leave it out"
+            )));
+        }
+        if let (Some(Kind::Video(_)), Some(file)) = (kind, output) {
+            video::encoder(file)?;
+        }
+        Ok(kind)
+    }
+
+    /// Begins a film of so many pictures, all of one size.
+    pub(super) fn begin(
+        &self,
+        kind: Kind,
+        file: &Path,
+        size: (u32, u32),
+        frames: usize,
+    ) -> Result<Film> {
+        let fps = self.fps.unwrap_or(FPS);
+        let place = match file == Path::new(STANDARD) {
+            true => Place::Stdout,
+            false => Place::File(Unfinished::begin(file)?),
+        };
+        Ok(match (kind, place) {
+            (Kind::Apng, place) => Film::Apng(Apng::begin(place, size, frames, fps)?),
+            (Kind::Video(container), Place::File(place)) => {
+                Film::Video(Video::begin(place, file, container, (size, fps))?)
+            }
+            (_, place) => Film::Raw(place),
+        })
+    }
+}
+
+/// A film that is being written.
+pub(super) enum Film {
+    Apng(Apng),
+    Raw(Place),
+    Video(Video),
+}
+
+impl Film {
+    /// Writes the next picture; false when its reader wants no more of them.
+    pub(super) fn add(&mut self, picture: &Picture) -> Result<bool> {
+        let bytes = picture.to_rgba8();
+        match self {
+            Self::Apng(film) => film.add(&bytes),
+            Self::Raw(place) => wanted(place.write_all(&bytes), Path::new("stdout")),
+            Self::Video(film) => film.add(&bytes).map(|()| true),
+        }
+    }
+
+    /// Ends the film and gives its file its name.
+    pub(super) fn finish(self) -> Result<()> {
+        match self {
+            Self::Apng(film) => film.finish(),
+            Self::Raw(place) => place.finish(),
+            Self::Video(film) => film.finish(),
+        }
+    }
+}
+
+/// Where a film's bytes go.
+#[derive(Debug)]
+pub(super) enum Place {
+    Stdout,
+    File(Unfinished),
+}
+
+impl Place {
+    fn finish(self) -> Result<()> {
+        match self {
+            Self::Stdout => wanted(io::stdout().flush(), Path::new("stdout")).map(|_| ()),
+            Self::File(file) => file.finish(),
+        }
+    }
+}
+
+impl Write for Place {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::Stdout => io::stdout().write(bytes),
+            Self::File(file) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::Stdout => io::stdout().flush(),
+            Self::File(file) => file.flush(),
+        }
+    }
+}
+
+/// True for what was written, and false where a reader has stopped reading, which is no failure.
+fn wanted(written: io::Result<()>, place: &Path) -> Result<bool> {
+    match written {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),
+        Err(error) => Err(Error::io(place)(error)),
+    }
+}
+
+/// Fails unless all pictures have one size, which is returned.
+pub(super) fn one_size(
+    sizes: impl IntoIterator<Item = (u32, u32)>,
+) -> std::result::Result<(u32, u32), Failure> {
+    let mut sizes = sizes.into_iter();
+    let first = sizes.next().unwrap_or((1, 1));
+    match sizes.find(|size| *size != first) {
+        None => Ok(first),
+        Some(other) => Err(Failure::Usage(format!(
+            "the pictures of a film have one size, and these are {}x{} and {}x{}: give --size",
+            first.0, first.1, other.0, other.1
+        ))),
+    }
+}
+
+/// Says once what becomes of transparency where a film has none.
+pub(super) fn say_opaque() {
+    output::say(
+        "note: such a film has no transparency: it is drawn on black; --background chooses another colour",
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_say_what_is_a_film() {
+        let kind = |name: &str| Kind::of(Path::new(name));
+        assert_eq!(kind("a.APNG"), Some(Kind::Apng));
+        assert!(kind("a.mp4").is_some_and(Kind::is_opaque));
+        assert!(kind("a.webm").is_some() && kind("a.mov").is_some() && kind("a.mkv").is_some());
+        for picture in ["a.png", "a.exr", "-", "mp4", "a.gif"] {
+            assert_eq!(kind(picture), None, "{picture}");
+        }
+        assert!(one_size([(4, 3), (4, 3)]).is_ok() && one_size([(4, 3), (3, 4)]).is_err());
+    }
+}

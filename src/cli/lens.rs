@@ -1,0 +1,71 @@
+//! The lens of a camera that no file gives, and the depths at which a camera cuts.
+
+use glam::DVec3;
+use rara::Camera;
+use rara::scene::Bounds;
+
+use super::failure::Failure;
+
+/// The scale of an orthographic picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Ortho {
+    /// World units that it is high.
+    Height(f64),
+    /// As many as hold the scene.
+    Fit,
+}
+
+/// The value of `--ortho`.
+pub(super) fn ortho(text: &str) -> Result<Ortho, String> {
+    match text.parse::<f64>() {
+        _ if text == "fit" => Ok(Ortho::Fit),
+        Ok(height) if height > 0.0 && height.is_finite() => Ok(Ortho::Height(height)),
+        _ => Err("expected the picture's height in world units, above zero, or `fit`".into()),
+    }
+}
+
+/// The projection of a camera that frames the scene.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Lens {
+    /// Degrees of its vertical field of view.
+    Perspective(f64),
+    /// World units that its picture is high; `None` for as many as hold the scene.
+    Orthographic(Option<f64>),
+}
+
+impl Lens {
+    /// A camera that holds the bounds, seen from their front, the right and above.
+    pub(super) fn frame(
+        self,
+        bounds: &Bounds,
+        up: DVec3,
+        size: (u32, u32),
+    ) -> rara::Result<Camera> {
+        match self {
+            Self::Perspective(fov_y) => Camera::frame(bounds, up, fov_y, size),
+            Self::Orthographic(height) => {
+                let camera = Camera::frame_orthographic(bounds, up, size)?;
+                Ok(height.map_or(camera, |height| {
+                    let scale = f64::from(size.1) / height;
+                    camera.fx(scale).fy(scale)
+                }))
+            }
+        }
+    }
+}
+
+/// The depths that `--clip-near` and `--clip-far` mean.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Depths {
+    pub(super) near: Option<f64>,
+    pub(super) far: Option<f64>,
+}
+
+impl Depths {
+    /// The camera with planes at these depths.
+    pub(super) fn of(self, camera: Camera) -> Result<Camera, Failure> {
+        let camera = camera.clip_near(self.near).clip_far(self.far);
+        camera.clip_planes().map_err(Failure::usage)?;
+        Ok(camera)
+    }
+}

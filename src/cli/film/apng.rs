@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use png::{BitDepth, BlendOp, ColorType, Compression, Encoder, EncodingError, Writer};
@@ -14,6 +14,8 @@ use super::{Place, wanted};
 pub(in super::super) struct Apng {
     encoder: Writer<Shared>,
     place: Shared,
+    /// What it becomes, for messages.
+    file: PathBuf,
 }
 
 /// The place that the encoder writes to, which outlives it.
@@ -34,6 +36,7 @@ impl Apng {
     /// Begins a film of so many pictures, which repeats without an end.
     pub(super) fn begin(
         place: Place,
+        file: &Path,
         (width, height): (u32, u32),
         frames: usize,
         fps: u16,
@@ -50,22 +53,27 @@ impl Apng {
             encoder.set_blend_op(BlendOp::Source)?;
             encoder.write_header()
         };
-        let encoder = begin().or_else(|error| match io_error(error) {
-            // A reader that is gone already is noticed with the first picture.
-            error => Err(Error::io("the film")(error)),
-        })?;
-        Ok(Self { encoder, place })
+        let encoder = begin().map_err(|error| Error::io(file)(io_error(error)))?;
+        Ok(Self {
+            encoder,
+            place,
+            file: file.to_owned(),
+        })
     }
 
     /// Writes the next picture; false when its reader wants no more of them.
     pub(super) fn add(&mut self, bytes: &[u8]) -> Result<bool> {
         let written = self.encoder.write_image_data(bytes).map_err(io_error);
-        wanted(written, Path::new("the film"))
+        wanted(written, &self.file)
     }
 
     pub(super) fn finish(self) -> Result<()> {
-        let Self { encoder, place } = self;
-        if !wanted(encoder.finish().map_err(io_error), Path::new("the film"))? {
+        let Self {
+            encoder,
+            place,
+            file,
+        } = self;
+        if !wanted(encoder.finish().map_err(io_error), &file)? {
             return Ok(());
         }
         match Rc::try_unwrap(place.0) {

@@ -16,6 +16,7 @@ use super::failure::Failure;
 use super::output;
 use super::values::STANDARD;
 use apng::Apng;
+#[cfg(unix)]
 pub(super) use video::abandon;
 use video::{Container, Video};
 
@@ -117,7 +118,7 @@ impl FilmArgs {
             false => Place::File(Unfinished::begin(file)?),
         };
         Ok(match (kind, place) {
-            (Kind::Apng, place) => Film::Apng(Apng::begin(place, size, frames, fps)?),
+            (Kind::Apng, place) => Film::Apng(Apng::begin(place, file, size, frames, fps)?),
             (Kind::Video(container), Place::File(place)) => {
                 Film::Video(Video::begin(place, file, container, (size, fps))?)
             }

@@ -53,6 +53,7 @@ fn running() -> MutexGuard<'static, Option<Child>> {
 }
 
 /// Ends the encoder, and lets nobody begin another: for a process that is told to end.
+#[cfg(unix)]
 pub(in super::super) fn abandon() {
     let mut encoder = running();
     if let Some(child) = encoder.as_mut() {

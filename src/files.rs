@@ -80,6 +80,7 @@ impl Unfinished {
     }
 
     /// Where it is being written, for another process that writes it.
+    #[cfg(feature = "lab")]
     pub fn place(&self) -> &Path {
         self.beside.as_deref().unwrap_or(&self.path)
     }
@@ -173,6 +174,17 @@ mod tests {
             Err(std::io::Error::other("full"))
         });
         assert!(failed.is_err() && fs::read(&file).expect("there") == b"new");
+        // So does one that is given up.
+        let mut given_up = Unfinished::begin(&link).expect("begins");
+        given_up.write_all(b"half").expect("writes");
+        assert!(
+            given_up
+                .beside
+                .as_ref()
+                .is_some_and(|beside| beside.is_file())
+        );
+        drop(given_up);
+        assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 2);
         // A file of another process that has the same number stays that process's.
         let next = unfinished().1;
         let other = folder.join(format!(".rara-{}-{next}.part", std::process::id()));

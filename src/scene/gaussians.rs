@@ -33,6 +33,8 @@ pub struct GaussianArrays {
     pub sh_degree: u32,
     /// Spherical harmonics, `[Gaussian][coefficient][r, g, b]`, `(sh_degree + 1)^2` coefficients a Gaussian.
     pub sh: Vec<f32>,
+    /// Whether they were trained antialiased: see [`Gaussians::is_antialiased`].
+    pub antialiased: bool,
 }
 
 impl Gaussians {
@@ -112,6 +114,20 @@ impl Gaussians {
         &self.0.sh
     }
 
+    /// True for Gaussians that were trained antialiased, as by `--antialiasing` of 3DGS, `rasterize_mode antialiased` of
+    /// gsplat and nerfstudio, or Mip-Splatting. Each is then drawn with its opacity multiplied by
+    /// `sqrt(max(det S / det (S + 0.3 I), 0.000025))`, with the covariance `S` of its footprint in square pixels: what the
+    /// low-pass makes larger than it is gets no brighter for it. Others are drawn as opaque as they are. Loaders find it in
+    /// files that say so.
+    pub fn is_antialiased(&self) -> bool {
+        self.0.antialiased
+    }
+
+    /// Says whether they were trained antialiased, which holds for all of a set.
+    pub fn set_antialiased(&mut self, antialiased: bool) {
+        self.0.antialiased = antialiased;
+    }
+
     /// Centres, to be moved. Nothing checks what is written here and through the methods below: a number that
     /// [`new`](Self::new) would refuse makes its Gaussian, and no other, look like anything or nothing.
     pub fn positions_mut(&mut self) -> &mut [Vec3] {
@@ -179,8 +195,12 @@ impl Gaussians {
         self.0.sh.truncate(numbers);
     }
 
-    /// Appends `other`, raising both to the higher spherical-harmonics degree (the missing coefficients are zero).
+    /// Appends `other`, raising both to the higher spherical-harmonics degree (the missing coefficients are zero). A set is
+    /// [antialiased](Self::is_antialiased) as a whole: the first Gaussians say whether it is, and others are drawn like them.
     pub fn append(&mut self, other: &Gaussians) {
+        if self.is_empty() {
+            self.0.antialiased = other.0.antialiased;
+        }
         let degree = if self.is_empty() {
             other.0.sh_degree
         } else {
@@ -332,6 +352,7 @@ mod tests {
             opacities: vec![0.0, 1.0],
             sh_degree: 1,
             sh: vec![-0.5; 24],
+            antialiased: true,
         }
     }
 
@@ -388,6 +409,19 @@ mod tests {
         assert_eq!(made.len(), 3);
         made.truncate(2);
         assert_eq!(made.into_arrays(), arrays());
+    }
+
+    #[test]
+    fn the_first_gaussians_say_whether_a_set_is_antialiased() {
+        let antialiased = Gaussians::new(arrays()).expect("they fit");
+        let mut plain = antialiased.clone();
+        plain.set_antialiased(false);
+        for (first, second) in [(&antialiased, &plain), (&plain, &antialiased)] {
+            let mut set = Gaussians::default();
+            set.append(first);
+            set.append(second);
+            assert_eq!(set.is_antialiased(), first.is_antialiased());
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@ use rara::scene::{self, Part};
 use rara::{Clip, LayerState, Placement};
 use serde::Serialize;
 
+use super::antialiasing;
 use super::clip::ClipArgs;
 use super::failure::Failure;
 use super::output::{self, grouped, say};
@@ -112,6 +113,7 @@ impl Convert {
         let placement = self.placement()?;
         let clip = self.clip.meant()?;
         let mut loaded = self.scenes.load()?;
+        antialiasing::check_alike(&loaded)?;
         let mut document = Document {
             file: self.output.clone(),
             format: format.to_string(),
@@ -149,6 +151,11 @@ impl Convert {
             whole.set_sh_degree(degree);
         }
         document.clamped = scene::save(&self.output, &whole)?;
+        if whole.is_antialiased() && format == scene::Format::Gltf {
+            let note = "glTF cannot say that the scene was trained antialiased; draw the file with --antialiasing on";
+            say(format_args!("warning: {note}"));
+            document.notes.push(note.into());
+        }
         document.written = whole.len();
         document.sh_degree = whole.sh_degree();
         document.bytes = std::fs::metadata(&self.output).map_or(0, |metadata| metadata.len());

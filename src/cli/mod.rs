@@ -4,6 +4,7 @@
 //! the work. Only [`output::answer`] writes to stdout what a command was asked for; everything else goes to stderr.
 
 mod ablate;
+mod antialiasing;
 mod bake;
 mod bench;
 mod camera;

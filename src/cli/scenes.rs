@@ -9,7 +9,7 @@ use rara::{Gaussians, Layer, LayerState};
 use super::failure::Failure;
 use super::output::{Progress, say};
 use super::scene_file::{self, LayerClip, LayerEntry};
-use super::{select, training, values};
+use super::{antialiasing, select, training, values};
 use rara::scene::{self, Property};
 
 /// The flags that name the scene.
@@ -17,7 +17,7 @@ use rara::scene::{self, Property};
 pub(super) struct SceneArgs {
     /// Scene files (3DGS .ply, .compressed.ply, .splat, .ksplat, .spz, .sog, a folder of SOG, .glb, .gltf), or a folder that training left, of which the last iteration counts, or - for standard input; several are the layers of one scene, each called by its file's name or as in NAME=FILE. A
     /// .json file lists layers: {"layers":[{"path":"skin.ply","name":"skin","opacity":0.5,"visible":true,
-    /// "position":[x,y,z],"rotation":[w,x,y,z],"scale":s,"clip":{...} or "clip_expr":"...",
+    /// "antialiased":true,"position":[x,y,z],"rotation":[w,x,y,z],"scale":s,"clip":{...} or "clip_expr":"...",
     /// "select":[{"name":"vessels","where":"label in 3,4"}]}]}
     #[arg(value_name = "SCENE", required = true)]
     files: Vec<PathBuf>,
@@ -32,6 +32,11 @@ pub(super) struct SceneArgs {
     /// that no clip cuts, or frame for one that the frame's cuts although its list gives it another
     #[arg(long, value_name = "NAME=EXPRESSION")]
     layer_clip: Vec<String>,
+    /// Whether splats that the low-pass makes larger than they are get no brighter for it, as scenes need it that were trained
+    /// antialiased (3DGS --antialiasing, gsplat, Mip-Splatting): on, off, or auto, which goes by what files and the training's
+    /// settings beside them say [default: auto]; NAME=on says it of one layer (repeatable)
+    #[arg(long, value_name = "on|off|auto")]
+    antialiasing: Vec<String>,
     /// Leaves a layer out of the picture (repeatable)
     #[arg(long, value_name = "NAME")]
     hide: Vec<String>,
@@ -63,10 +68,16 @@ impl SceneArgs {
         self.files.iter().flat_map(places).collect()
     }
 
-    /// The selections, as they were typed.
+    /// The flags that say what the layers are before anything changes them, with what was typed behind each.
     #[cfg(feature = "view")]
-    pub(super) fn selections(&self) -> &[String] {
-        &self.select
+    pub(super) fn typed(&self) -> Vec<(&'static str, &str)> {
+        let all = [
+            ("--select", &self.select),
+            ("--antialiasing", &self.antialiasing),
+        ];
+        let all = all.iter();
+        all.flat_map(|(flag, texts)| texts.iter().map(|text| (*flag, text.as_str())))
+            .collect()
     }
 
     /// True when one of the layers that are named may have a clip of its own, once they are read.
@@ -98,6 +109,7 @@ impl SceneArgs {
                 layer.clip = clip.clone();
             }
         }
+        antialiasing::apply(&self.antialiasing, &mut loaded)?;
         for name in &self.hide {
             for layer in loaded.named("--hide", name)? {
                 layer.state = layer.state.visible(false);
@@ -236,7 +248,11 @@ impl Loaded {
     }
 
     /// The layers of a name, which `flag` asks for.
-    fn named(&mut self, flag: &str, name: &str) -> Result<Vec<&mut LoadedLayer>, Failure> {
+    pub(super) fn named(
+        &mut self,
+        flag: &str,
+        name: &str,
+    ) -> Result<Vec<&mut LoadedLayer>, Failure> {
         let names: Vec<_> = self.layers.iter().map(|layer| layer.name.clone()).collect();
         let found: Vec<_> = self
             .layers
@@ -286,8 +302,20 @@ fn load(entries: Vec<LayerEntry>) -> Result<Loaded, Failure> {
     };
     let mut before = 0;
     for entry in entries {
-        let (loaded, properties) = load_one(&entry)?;
+        let (mut loaded, properties) = load_one(&entry)?;
         let path = &entry.path;
+        if let Some(antialiased) = entry.antialiased {
+            loaded.gaussians.set_antialiased(antialiased);
+        } else if !loaded.gaussians.is_antialiased()
+            && let Some(by) = training::antialiased_by(path)
+        {
+            loaded.gaussians.set_antialiased(true);
+            all.notes.push(format!(
+                "{}: it is drawn antialiased, as {} says that it was trained; --antialiasing off draws it as it is",
+                path.display(),
+                by.display()
+            ));
+        }
         all.repaired += loaded.report.repaired;
         all.dropped += loaded.report.dropped;
         let lines = loaded.report.lines();

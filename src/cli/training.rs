@@ -51,6 +51,9 @@ fn around(scene: &Path) -> Vec<PathBuf> {
     let absolute = std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned());
     let mut folders: Vec<PathBuf> = absolute.parent().map(Path::to_owned).into_iter().collect();
     // In a 3DGS output the scene is two folders deep, point_cloud/iteration_N, and in one of nerfstudio it may be.
+    // gsplat's are in a folder of their own.
+    let of_gsplat = folders.first().filter(|folder| folder.ends_with("ply"));
+    let of_gsplat = of_gsplat.and_then(|folder| Some(folder.parent()?.to_owned()));
     let is_inner = |folder: &Path| {
         let inner = folder.parent().and_then(Path::file_name);
         inner.is_some_and(|name| name == "point_cloud" || name == "exports")
@@ -62,6 +65,7 @@ fn around(scene: &Path) -> Vec<PathBuf> {
     {
         folders.push(output.to_owned());
     }
+    folders.extend(of_gsplat);
     folders
 }
 
@@ -69,6 +73,32 @@ fn around(scene: &Path) -> Vec<PathBuf> {
 pub(super) fn beside(scene: &Path, name: &str) -> Option<PathBuf> {
     let files = around(scene).into_iter().map(|folder| folder.join(name));
     files.into_iter().find(|file| file.is_file())
+}
+
+/// The file beside a scene whose settings say that it was trained antialiased: `cfg_args` of 3DGS, `config.yml` of nerfstudio
+/// or `cfg.yml` of gsplat.
+pub(super) fn antialiased_by(scene: &Path) -> Option<PathBuf> {
+    /// The longest file that is searched.
+    const MOST_BYTES: u64 = 1 << 20;
+    const SAYINGS: [(&str, &str); 3] = [
+        ("cfg_args", "antialiasing=True"),
+        ("config.yml", "rasterize_mode:antialiased"),
+        ("cfg.yml", "antialiased:true"),
+    ];
+    SAYINGS.iter().find_map(|(name, saying)| {
+        let file = beside(scene, name)?;
+        let is_short = fs::metadata(&file).is_ok_and(|metadata| metadata.len() <= MOST_BYTES);
+        let text = fs::read(&file).ok().filter(|_| is_short)?;
+        let text = String::from_utf8_lossy(&text);
+        // cfg_args is one line of many settings, the others have a line for each.
+        let mut settings = text.split([',', '(', ')', '\n']).map(|setting| {
+            let signs = setting
+                .chars()
+                .filter(|c| !c.is_whitespace() && *c != '\'' && *c != '"');
+            signs.collect::<String>()
+        });
+        settings.any(|setting| setting == *saying).then_some(file)
+    })
 }
 
 /// The cameras beside a scene.
@@ -121,6 +151,37 @@ mod tests {
         assert_eq!(cameras(&folder), Some(cameras_file.clone()));
         assert_eq!(cameras(&last), Some(cameras_file));
         assert_eq!(beside(&last, "dataparser_transforms.json"), None);
+        for (name, text, says) in [
+            (
+                "cfg_args",
+                "Namespace(sh_degree=3, antialiasing=False, white_background=False)",
+                false,
+            ),
+            (
+                "cfg_args",
+                "Namespace(sh_degree=3, antialiasing=True, white_background=False)",
+                true,
+            ),
+            (
+                "config.yml",
+                "  model: !!python/object\n    not_rasterize_mode: antialiased\n",
+                false,
+            ),
+            (
+                "config.yml",
+                "  model: !!python/object\n    rasterize_mode: antialiased\n",
+                true,
+            ),
+            ("cfg.yml", "antialiased: false\n", false),
+            ("cfg.yml", "antialiased: true\n", true),
+        ] {
+            let file = folder.join(name);
+            fs::write(&file, text).expect("a file");
+            let by = antialiased_by(&last);
+            assert_eq!(by, says.then_some(file.clone()), "{text}");
+            assert_eq!(antialiased_by(&folder.join("ply/a.ply")), by);
+            fs::remove_file(&file).expect("ours");
+        }
         write("meta.json");
         assert!(matches!(scene_in(&folder), Ok(None)), "it is SOG");
         fs::remove_dir_all(&folder).expect("ours");

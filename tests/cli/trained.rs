@@ -105,3 +105,70 @@ fn nerfstudios_cameras_go_where_its_gaussians_are() {
         "dataparser_transforms.json: field `transform`",
     );
 }
+
+#[test]
+fn what_was_trained_antialiased_is_drawn_so() {
+    let here = folder("antialiased");
+    scene(&here);
+    // Both are rounded alike.
+    for (name, kind) in [("plain", "off"), ("smooth", "on")] {
+        let words = format!("convert @/scene.ply -o @/{name}.ply --antialiasing {kind}");
+        done(line(&here, &words));
+    }
+    let drawn = |scene: &str| {
+        let words = format!("render {scene} --size 64x48 -o @/a.exr --repeat 1");
+        done(line(&here, &words));
+        fs::read(here.join("a.exr")).expect("a picture")
+    };
+    let (plain, smooth) = (drawn("@/plain.ply"), drawn("@/smooth.ply"));
+    assert!(plain != smooth);
+    assert!(drawn("@/plain.ply --antialiasing on") == smooth);
+    assert!(drawn("@/plain.ply --antialiasing off --antialiasing plain=on") == smooth);
+    assert!(drawn("@/smooth.ply --antialiasing off") == plain);
+    let list = json!({"layers": [{"path": "smooth.ply", "antialiased": false}]});
+    fs::write(here.join("list.json"), list.to_string()).expect("writes");
+    assert!(drawn("@/list.json") == plain);
+    assert!(drawn("@/list.json --antialiasing smooth=on") == smooth);
+    for (words, says) in [
+        ("--antialiasing maybe", "expected on, off or auto"),
+        ("--antialiasing hair=on", "no layer is called 'hair'"),
+    ] {
+        refused(&line(&here, &format!("info @/plain.ply {words}")), 2, says);
+    }
+
+    // A file is of one kind.
+    let both = "@/smooth.ply @/plain.ply";
+    let words = format!("convert {both} -o @/both.ply");
+    refused(
+        &line(&here, &words),
+        2,
+        "'smooth' was trained antialiased and 'plain' was not",
+    );
+    done(line(&here, &format!("{words} --antialiasing on")));
+    let words = format!("bake {both} -o @/baked.ply --clip plane:1,0,0,0 --views 0");
+    refused(&line(&here, &words), 2, "'smooth' was trained antialiased");
+    done(line(
+        &here,
+        "bake @/smooth.ply -o @/baked.ply --clip plane:1,0,0,0 --views 0",
+    ));
+    for (file, antialiased) in [("both", true), ("baked", true), ("plain", false)] {
+        let info = document(line(&here, &format!("info @/{file}.ply --json")));
+        assert_eq!(info["layers"][0]["antialiased"], antialiased, "{file}");
+    }
+    let lost = done(line(&here, "convert @/smooth.ply -o @/smooth.glb"));
+    assert!(
+        stderr(&lost).contains("glTF cannot say"),
+        "{}",
+        stderr(&lost)
+    );
+
+    // The settings of the training count where the file says nothing.
+    done(line(&here, "generate general -n 100 -o @/few.ply"));
+    trained(&here);
+    let settings = "Namespace(sh_degree=3, antialiasing=True)";
+    fs::write(here.join("trained/cfg_args"), settings).expect("writes");
+    let said = done(line(&here, "info @/trained"));
+    assert!(stderr(&said).contains("cfg_args says"), "{}", stderr(&said));
+    let info = document(line(&here, "info @/trained --json --antialiasing off"));
+    assert_eq!(info["layers"][0]["antialiased"], false);
+}

@@ -230,7 +230,7 @@ fn what_is_antialiased_has_the_light_that_it_has_without_the_low_pass() {
     let view = View::<f64>::new(&camera(64, 48, 100.0));
     let mut darkest = 1.0_f64;
     for round in 0..200 {
-        let one = dice.one([0.002, 0.02, 0.5][round % 3], 4.0);
+        let one = dice.one([0.012, 0.03, 0.5][round % 3], 4.0);
         let mut scene = scene(&[one]);
         let plain = Footprint::new(&scene, 0, &view);
         scene.set_antialiased(true);
@@ -259,6 +259,7 @@ fn what_is_antialiased_has_the_light_that_it_has_without_the_low_pass() {
 fn what_makes_up_for_the_low_pass_leaves_a_share() {
     // A splat without any extent has no light of its own. Trainers leave it 0.005 of its opacity.
     let one = One {
+        position: [0.02, 0.02, 4.0], // the middle of a pixel
         scale: [0.0; 3],
         opacity: 1.0,
         ..One::default()

@@ -136,7 +136,7 @@ pub(super) enum Views {
 }
 
 /// The depths that `--clip-near` and `--clip-far` mean.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Depths {
     near: Option<f64>,
     far: Option<f64>,

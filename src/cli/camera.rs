@@ -9,7 +9,7 @@ use rara::{Camera, Gaussians, Scene};
 use super::failure::Failure;
 #[cfg(doc)]
 use super::framing;
-use super::{output, training, values};
+use super::{aspect, output, training, values};
 use rara::{camera_files, scene::Bounds};
 
 /// The camera's position and lens. Without any of these it frames the scene.
@@ -59,7 +59,8 @@ pub(super) struct CameraArgs {
     /// Keep what is at this depth or nearer, likewise
     #[arg(long, value_name = "DEPTH", allow_hyphen_values = true)]
     clip_far: Option<f64>,
-    /// Picture size [default: 1024x1024, or the camera file's own; a window's: 1280x720]
+    /// Picture size [default: 1024x1024, or the camera file's own; a window's: 1280x720]. Of another aspect than the camera
+    /// file's it shows all that the camera sees, undistorted, and more beside it
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     size: Option<(u32, u32)>,
 }
@@ -305,19 +306,10 @@ impl CameraArgs {
     }
 
     fn sized(&self, camera: Camera) -> Result<Camera, Failure> {
-        let Some(size) = self.size else {
-            return Ok(camera);
-        };
-        let resized = camera.resized(size).map_err(Failure::usage)?;
-        // A pixel more or less is rounding.
-        let kept = camera.fx / camera.fy;
-        if (resized.fx / resized.fy / kept - 1.0).abs() > 1.5 / f64::from(size.0.min(size.1)) {
-            output::warn_once(format!(
-                "warning: --size {}x{} has another aspect than the camera's {}x{}: the picture is stretched to it",
-                size.0, size.1, camera.width, camera.height
-            ));
+        match self.size {
+            Some(size) => aspect::sized(camera, size),
+            None => Ok(camera),
         }
-        Ok(resized)
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod ablate;
 mod antialiasing;
+mod aspect;
 mod bake;
 mod bench;
 mod camera;

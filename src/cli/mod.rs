@@ -22,10 +22,12 @@ mod framing;
 mod generate;
 mod info;
 mod ink;
+mod layer_clip;
 mod memory;
 mod model;
 mod output;
 mod pattern;
+mod place;
 mod precision;
 #[allow(unsafe_code)]
 mod process;

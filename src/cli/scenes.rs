@@ -9,7 +9,7 @@ use rara::{Gaussians, Layer, LayerState};
 use super::failure::Failure;
 use super::output::{Progress, say};
 use super::scene_file::{self, LayerClip, LayerEntry};
-use super::{antialiasing, select, training, values};
+use super::{antialiasing, layer_clip, place, select, training, values};
 use rara::scene::{self, Property};
 
 /// The flags that name the scene.
@@ -37,6 +37,11 @@ pub(super) struct SceneArgs {
     /// settings beside them say [default: auto]; NAME=on says it of one layer (repeatable)
     #[arg(long, value_name = "on|off|auto")]
     antialiasing: Vec<String>,
+    /// Where a layer stands (repeatable), in place of what its list says: move:X,Y,Z, turn:X,Y,Z,DEGREES or rotation:W,X,Y,Z,
+    /// and scale:S, with blanks between several. It is scaled, then turned about its own origin, then moved; without NAME= all
+    /// layers are
+    #[arg(long, value_name = "[NAME=]PLACE")]
+    place: Vec<String>,
     /// Leaves a layer out of the picture (repeatable)
     #[arg(long, value_name = "NAME")]
     hide: Vec<String>,
@@ -74,6 +79,7 @@ impl SceneArgs {
         let all = [
             ("--select", &self.select),
             ("--antialiasing", &self.antialiasing),
+            ("--place", &self.place),
         ];
         let all = all.iter();
         all.flat_map(|(flag, texts)| texts.iter().map(|text| (*flag, text.as_str())))
@@ -88,28 +94,9 @@ impl SceneArgs {
     /// Reads the files.
     pub(super) fn load(&self) -> Result<Loaded, Failure> {
         let mut loaded = load(self.entries()?)?;
-        for text in &self.layer_clip {
-            // A name may hold the sign that ends it.
-            let signs: Vec<usize> = text.match_indices('=').map(|(at, _)| at).collect();
-            let of_a_layer = |at: &&usize| loaded.layers.iter().any(|l| l.name == text[..**at]);
-            let Some(&at) = signs.iter().find(of_a_layer).or(signs.first()) else {
-                return Err(Failure::Usage(format!(
-                    "--layer-clip {text}: expected NAME=EXPRESSION, as in skin=plane:1,0,0,0"
-                )));
-            };
-            let (name, region) = (&text[..at], &text[at + 1..]);
-            let clip = match region.trim() {
-                "frame" => None,
-                region => Some(
-                    LayerClip::parse(region)
-                        .map_err(|error| Failure::Usage(format!("--layer-clip {name}: {error}")))?,
-                ),
-            };
-            for layer in loaded.named("--layer-clip", name)? {
-                layer.clip = clip.clone();
-            }
-        }
+        layer_clip::apply(&self.layer_clip, &mut loaded)?;
         antialiasing::apply(&self.antialiasing, &mut loaded)?;
+        place::apply(&self.place, &mut loaded)?;
         for name in &self.hide {
             for layer in loaded.named("--hide", name)? {
                 layer.state = layer.state.visible(false);
@@ -247,6 +234,13 @@ impl Loaded {
         Ok(())
     }
 
+    /// Where the name ends in the text of a flag, `NAME=` and more; none in a text without the sign. A name may hold it too.
+    pub(super) fn end_of_name(&self, text: &str) -> Option<usize> {
+        let signs = || text.match_indices('=').map(|(at, _)| at);
+        let of_a_layer = |at: &usize| self.layers.iter().any(|l| l.name == text[..*at]);
+        signs().find(of_a_layer).or(signs().next())
+    }
+
     /// The layers of a name, which `flag` asks for.
     pub(super) fn named(
         &mut self,
@@ -269,9 +263,13 @@ impl Loaded {
         }
     }
 
-    /// All files' Gaussians as one set.
+    /// All files' Gaussians as one set, where they are placed.
     pub(super) fn merged(self) -> Gaussians {
-        let mut layers = self.layers.into_iter().map(|layer| layer.gaussians);
+        let mut layers = self.layers.into_iter().map(|mut layer| {
+            // What single precision cannot hold there is in no picture either.
+            let _ = layer.gaussians.place(&layer.state.placement);
+            layer.gaussians
+        });
         let mut merged = layers.next().unwrap_or_default();
         layers.for_each(|more| merged.append(&more));
         merged

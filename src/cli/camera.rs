@@ -45,7 +45,7 @@ pub(super) struct CameraArgs {
     /// beside the scene]
     #[arg(long, value_name = "FILE", conflicts_with = "camera")]
     cameras: Option<PathBuf>,
-    /// Which of the cameras: number from 0, name, or all [default: 0]
+    /// Which of the cameras: number from 0, name, or all [default with --cameras: 0; without it the camera frames the scene]
     #[arg(long, value_name = "N|NAME|all", conflicts_with_all = ["eye", "camera", "ortho", "fov_y", "up"])]
     view: Option<String>,
     /// One camera: JSON with width, height, fx, fy, cx, cy, world_to_camera (16 numbers, row-major), and perhaps
@@ -278,6 +278,11 @@ impl CameraArgs {
             // Errors that do not depend on the scene are found before it is read.
             let unframed = lens.frame(&Bounds::of(&Gaussians::default()), up, size);
             depths.of(unframed.map_err(Failure::usage)?)?;
+            if self.up.is_none() {
+                scenes
+                    .iter()
+                    .find_map(|scene| training::hint_of_up(scene, UP));
+            }
             return Ok(Views::Framed {
                 up,
                 lens,

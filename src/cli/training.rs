@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
+use rara::Camera;
 use rara::camera_files::{self, NamedCamera};
 
 use super::failure::Failure;
@@ -127,9 +129,79 @@ pub(super) fn load_cameras(path: &Path, scenes: &[PathBuf]) -> rara::Result<Vec<
     Ok(cameras)
 }
 
+/// Says so where the cameras of 3DGS beside a scene have the world the other way up, or on its side, than a picture whose
+/// up this is. Nothing is said where there are none, or where they are upright in no direction that they share.
+pub(super) fn hint_of_up(scene: &Path, up: DVec3) -> Option<()> {
+    let file = beside(scene, "cameras.json")?;
+    let cameras = camera_files::load_cameras(&file).ok()?;
+    let theirs = common_up(cameras.iter().map(|named| &named.camera))?;
+    let how = match theirs.dot(up.normalize()) {
+        along if along < -0.5 => "upside down",
+        along if along < 0.5 => "on its side",
+        _ => return None,
+    };
+    output::say(format_args!(
+        "note: by the cameras of {} the picture is {how}; --up {} turns it",
+        file.display(),
+        direction_text(theirs)
+    ));
+    Some(())
+}
+
+/// The direction that is up for most of these cameras: the mean of theirs, where they agree well enough to have one.
+fn common_up<'a>(cameras: impl Iterator<Item = &'a Camera>) -> Option<DVec3> {
+    let (mut sum, mut count) = (DVec3::ZERO, 0_u32);
+    for camera in cameras {
+        sum -= camera.rotation.row(1); // down in the picture
+        count += 1;
+    }
+    let mean = sum / f64::from(count.max(1));
+    (mean.length() > 0.7).then(|| mean.normalize())
+}
+
+/// A direction as --up takes it: the axis that it is near, or its numbers.
+fn direction_text(direction: DVec3) -> String {
+    let axes = [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)];
+    let near = axes
+        .iter()
+        .find(|(_, axis)| direction.dot(*axis).abs() > 0.9);
+    match near {
+        Some((name, axis)) if direction.dot(*axis) > 0.0 => (*name).into(),
+        Some((name, _)) => format!("-{name}"),
+        None => {
+            let DVec3 { x, y, z } = direction;
+            format!("{x:.2},{y:.2},{z:.2}")
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn cameras_that_agree_have_a_common_up() {
+        let ring = |up: DVec3| {
+            let camera = |turn: u32| {
+                let eye =
+                    glam::DQuat::from_axis_angle(up, f64::from(turn)) * up.any_orthonormal_vector();
+                Camera::look_at(5.0 * eye + up, DVec3::ZERO, up, 50.0, (8, 8)).expect("a view")
+            };
+            (0..6).map(camera).collect::<Vec<_>>()
+        };
+        for (up, text) in [(DVec3::Y, "y"), (DVec3::NEG_Y, "-y"), (DVec3::Z, "z")] {
+            let found = common_up(ring(up).iter()).expect("they agree");
+            assert!(found.dot(up) > 0.99, "{found}");
+            assert_eq!(direction_text(found), text);
+        }
+        let mut all = ring(DVec3::Y);
+        all.extend(ring(DVec3::NEG_Y));
+        assert_eq!(common_up(all.iter()), None);
+        assert_eq!(
+            direction_text(DVec3::new(0.6, -0.8, 0.0)),
+            "0.60,-0.80,0.00"
+        );
+    }
 
     #[test]
     fn the_last_iteration_counts_and_its_cameras_are_found() {

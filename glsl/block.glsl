@@ -86,8 +86,9 @@ uint block_view_side(Block block) {
     if (x == SIDE_CULLED || y == SIDE_CULLED) {
         return SIDE_CULLED;
     }
-    // A layer's opacity may leave some of them fainter than the block knows.
-    bool drawable = sigma >= 0.0 && LAYER.content.opacity == 1.0 && nearest > 1.0001 * NEAR_Z
+    // A layer's opacity and what makes up for the low-pass may leave some of them fainter than the block knows.
+    bool is_as_opaque = LAYER.content.opacity == 1.0 && LAYER.content.antialiased == 0u;
+    bool drawable = sigma >= 0.0 && is_as_opaque && nearest > 1.0001 * NEAR_Z
         && 4.0 * sigma * max(focal.x, focal.y) < DRAWABLE_DEVIATION * homogeneous(nearest);
     return x == SIDE_VISIBLE && y == SIDE_VISIBLE && drawable ? SIDE_VISIBLE : SIDE_CUTOFF;
 }

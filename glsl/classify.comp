@@ -45,18 +45,18 @@ uint clip_stage_side(uint block, uint local) {
 uint classify(uint block, uint local) {
     uint index = block * BLOCK_SIZE + local;
     Gaussian gaussian = gaussians.at[index];
-    float opacity = opacity_in_layer(gaussian);
     // The depth comes first: it is cheap and culls what is behind the eye. The test is negated to cull a NaN too.
     float depth = dot(LAYER.view.rotation_z.xyz, eye_relative(gaussian.position_opacity.xyz));
-    if (!(depth >= NEAR_Z) || opacity < ALPHA_MIN) {
+    if (!(depth >= NEAR_Z) || opacity_in_layer(gaussian) < ALPHA_MIN) {
         return SIDE_CULLED;
     }
     Footprint f = footprint(gaussian);
-    float extent = opacity_extent(opacity);
+    float opacity = opacity_on_screen(f, gaussian);
     // Deviations beyond the range of single precision have no footprint. Each number is tested by itself, since max()
     // may drop a NaN.
     bool drawable = all(lessThan(abs(conic_of(f)), vec3(3e38))) && all(lessThan(abs(f.screen_centre), vec2(3e38)));
-    if (!drawable || !covers_a_pixel(f.screen_centre, box_half_sides(f, extent))) {
+    bool shows = opacity >= ALPHA_MIN && covers_a_pixel(f.screen_centre, box_half_sides(f, opacity_extent(opacity)));
+    if (!drawable || !shows) {
         return SIDE_CULLED;
     }
     if (!CLIP) {
@@ -64,6 +64,7 @@ uint classify(uint block, uint local) {
     }
     float sigma = largest(gaussian.scale.xyz);
     if (FRAME.region.mode == MODE_EXACT && is_beam(f, sigma)) {
+        float extent = opacity_extent(opacity_in_layer(gaussian));
         float deviations = beam_band(f, extent);
         enter_shortlist(block, deviations / extent);
         return gaussian_side(f.axes, gaussian.position_opacity.xyz, deviations);

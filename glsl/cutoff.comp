@@ -50,7 +50,8 @@ void write_carried(uint base, vec3 linear, vec3 curvature) {
 }
 
 // Writes the weight of one surface as a polynomial, if one is as good as the exact form.
-bool write_curve(uint base, CurveSource source, float opacity, float extent) {
+bool write_curve(uint base, CurveSource source, float opacity) {
+    float extent = opacity_extent(opacity);
     CurveSamples samples = sampled(source, extent);
     Curve square;
     Curve quartic;
@@ -131,8 +132,7 @@ void main() {
     Gaussian gaussian = gaussians.at[index];
     vec3 position = gaussian.position_opacity.xyz;
     Footprint f = footprint(gaussian);
-    float opacity = opacity_in_layer(gaussian);
-    float extent = opacity_extent(opacity);
+    float extent = opacity_extent(opacity_in_layer(gaussian));
     float sigma = largest(gaussian.scale.xyz);
     float deviations = band_in_view(f, sigma, extent);
     enter_shortlist(index / BLOCK_SIZE, deviations / band(extent));
@@ -200,7 +200,7 @@ void main() {
             write_carried(base, linear, curvature);
             return;
         }
-        if (write_curve(base, source, opacity, extent)) {
+        if (write_curve(base, source, opacity_on_screen(f, gaussian))) {
             return;
         }
     }
@@ -235,7 +235,7 @@ void main() {
         }
         source.centre = f.screen_centre - FRAME.view.focal.zw;
         source.conic = conic_of(f);
-        if (write_curve(base, source, opacity, extent)) {
+        if (write_curve(base, source, opacity_on_screen(f, gaussian))) {
             return;
         }
     }

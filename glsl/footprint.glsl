@@ -114,6 +114,18 @@ vec3 conic_of(Footprint f) {
     return vec3(inversesqrt(f.xx), -k2 * (f.xy / f.xx), k2) * f.scale;
 }
 
+// The opacity on the screen. The low-pass makes a splat larger; where its Gaussians are antialiased, it gets no brighter: its
+// opacity is multiplied by the root of the ratio of the determinants without the low-pass, |b1 x b2|^2, and with it (the 2D
+// Mip filter of Yu et al. 2024). Whatever does not depend on the camera takes the opacity in the layer, which is no less.
+float opacity_on_screen(Footprint f, Gaussian gaussian) {
+    float opacity = opacity_in_layer(gaussian);
+    if (LAYER.content.antialiased != 0u) {
+        vec3 c = cross(f.b1, f.b2);
+        opacity *= sqrt(max(dot(c, c) / f.det, COMPENSATION_SQUARE_MIN));
+    }
+    return opacity;
+}
+
 // Half the sides of the bounding box of the splat's contour at q = extent^2, px.
 vec2 box_half_sides(Footprint f, float extent) {
     return extent * sqrt(vec2(f.xx, f.yy)) / f.scale;

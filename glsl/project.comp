@@ -65,7 +65,7 @@ void main() {
     enter_layer_of_block(index / BLOCK_SIZE);
     Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
-    float opacity = opacity_in_layer(gaussian);
+    float opacity = opacity_on_screen(f, gaussian);
     float extent = opacity_extent(opacity);
 
     Splat splat;

@@ -83,7 +83,7 @@ void main() {
         // The quad holds nothing to rasterise; tiles look at z.
         weight.linear.x = Z_CUT_AWAY;
     } else if (QUADS) {
-        quad = quad_around(f, opacity_extent(opacity_in_layer(gaussian)), weight);
+        quad = quad_around(f, opacity_extent(opacity_on_screen(f, gaussian)), weight);
     }
     SPLAT_CONIC(survivor).zw = weight.linear.xy;
     SPLAT_COLOUR(survivor).w = weight.linear.z;

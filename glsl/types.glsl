@@ -98,6 +98,8 @@ struct LayerContent {
     uint gaussian_end; // its Gaussians fill its blocks up to this number
     float opacity; // what its Gaussians' opacities are multiplied by, 0 to 1
     uint visible; // 0: nothing of it is drawn
+    uint antialiased; // 1: its splats' opacities make up for the low-pass
+    uint pad[3]; // unused
 };
 
 // The region of a layer that is kept.

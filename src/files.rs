@@ -32,7 +32,7 @@ pub fn abandon() -> usize {
 }
 
 /// Writes a file beside `path` and renames it into place; if anything fails, `path` is as it was before. A link stays a
-/// link, and the file that it leads to is replaced; a pipe or a terminal is written into.
+/// link, and the file that it leads to is replaced, or made where it leads to none; a pipe or a terminal is written into.
 pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
@@ -40,6 +40,21 @@ pub fn write_atomically(
     let mut file = Unfinished::begin(path)?;
     write(&mut file).map_err(Error::io(path))?;
     file.finish()
+}
+
+/// The file that does not exist to which links lead from `path`, or `path` itself; none where they lead in a circle.
+fn end_of_links(path: &Path) -> Option<PathBuf> {
+    /// Systems follow no more.
+    const MOST: usize = 40;
+    let mut at = path.to_owned();
+    for _ in 0..MOST {
+        let Ok(to) = fs::read_link(&at) else {
+            return Some(at);
+        };
+        // What is not absolute is so from the folder that the link is in.
+        at = at.parent().unwrap_or(Path::new("")).join(to);
+    }
+    None
 }
 
 /// A file that is written piece by piece. It stands beside the place where it goes, as [`write_atomically`] says, and is
@@ -69,7 +84,7 @@ impl Unfinished {
                 });
             }
             Ok(_) => fs::canonicalize(path).map_err(Error::io(path))?,
-            Err(_) => path.to_owned(),
+            Err(error) => end_of_links(path).ok_or(error).map_err(Error::io(path))?,
         };
         let (beside, created) = begin(&whole);
         Ok(Self {
@@ -168,6 +183,23 @@ mod tests {
         let null = Path::new("/dev/null");
         write_atomically(null, |out| out.write_all(b"new")).expect("writes");
         assert!(!fs::metadata(null).expect("there").is_file());
+        // A link to what is not there yet, by way of another, makes it.
+        let (inner, outer) = (folder.join("inner"), folder.join("outer"));
+        std::os::unix::fs::symlink("made", &inner).expect("a link");
+        std::os::unix::fs::symlink(&inner, &outer).expect("a link");
+        write_atomically(&outer, |out| out.write_all(b"first")).expect("writes");
+        let made = folder.join("made");
+        assert!(fs::symlink_metadata(&made).expect("there").is_file());
+        assert!(fs::read(&outer).expect("there") == b"first");
+        fs::remove_file(&made).expect("there");
+        // Links in a circle lead nowhere.
+        fs::remove_file(&inner).expect("there");
+        std::os::unix::fs::symlink("outer", &inner).expect("a link");
+        assert!(write_atomically(&outer, |out| out.write_all(b"first")).is_err());
+        for link in [&inner, &outer] {
+            assert!(fs::symlink_metadata(link).expect("there").is_symlink());
+            fs::remove_file(link).expect("there");
+        }
         // A write that fails leaves the old file.
         let failed = write_atomically(&link, |out| {
             out.write_all(b"half")?;

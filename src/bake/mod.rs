@@ -230,6 +230,8 @@ fn fates(region: &Region<'_>, count: usize, children: usize) -> Vec<Fate> {
 fn collect(gaussians: &Gaussians, fates: &[Fate]) -> Baked {
     let mut baked = Baked::default();
     baked.gaussians.set_sh_degree(gaussians.sh_degree());
+    let antialiased = gaussians.is_antialiased();
+    baked.gaussians.set_antialiased(antialiased);
     let counts = &mut baked.counts;
     for (index, fate) in fates.iter().enumerate() {
         let children = match fate {

@@ -2,6 +2,7 @@
 
 use std::ptr::null;
 
+use rara::ash::vk;
 use rara::glam::{Quat, Vec3};
 use rara::{Error, GaussianArrays, Gaussians, Result};
 
@@ -42,6 +43,8 @@ pub struct RaraGaussianArrays {
     pub sh: *const f32,
     /// Bytes from one Gaussian's to the next one's; 0 stands for 12 (sh_degree + 1)^2.
     pub sh_stride: usize,
+    /// Whether they were trained antialiased: see rara_gaussians_set_antialiased. Default: false.
+    pub antialiased: vk::Bool32,
 }
 
 // SAFETY: repr(C), numbers and pointers, the size first.
@@ -63,6 +66,7 @@ const NOTHING: RaraGaussianArrays = RaraGaussianArrays {
     sh_degree: 0,
     sh: null(),
     sh_stride: 0,
+    antialiased: vk::FALSE,
 };
 
 /// No Gaussians, of degree 0, in arrays without gaps. `arrays_size` is sizeof *arrays.
@@ -136,6 +140,7 @@ impl RaraGaussianArrays {
             sh_degree: self.sh_degree,
             // SAFETY: as above.
             sh: unsafe { sh.copied(floats, floats, |to, v| to.extend_from_slice(v)) }?,
+            antialiased: self.antialiased != vk::FALSE,
         })
     }
 }

@@ -4,6 +4,7 @@ use std::ffi::c_char;
 use std::io::Cursor;
 
 use rara::Gaussians;
+use rara::ash::vk;
 use rara::scene::{Bounds, LoadReport, Loaded, load, load_from};
 
 use crate::boundary::{RaraResult, Versioned, guard, invalid, list, write};
@@ -54,6 +55,8 @@ pub struct RaraGaussiansInfo {
     pub bounds_min: [f64; 3],
     /// The corner with the largest coordinates.
     pub bounds_max: [f64; 3],
+    /// Whether they are drawn antialiased: see rara_gaussians_set_antialiased.
+    pub antialiased: vk::Bool32,
 }
 
 // SAFETY: repr(C), plain numbers, the size first.
@@ -125,6 +128,26 @@ pub unsafe extern "C" fn rara_gaussians_append(
     })
 }
 
+/// Says whether Gaussians were trained antialiased, as by Mip-Splatting or gsplat's rasterize_mode antialiased: what the
+/// low-pass makes larger on the screen then gets no brighter for it. Files that say so are loaded so. It holds for a whole
+/// scene; what is appended to one is drawn like it. A scene that is on the device already stays as it is.
+///
+/// # Safety
+/// `gaussians` is alive; nobody else uses it meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_gaussians_set_antialiased(
+    gaussians: *mut RaraGaussians,
+    antialiased: vk::Bool32,
+) -> RaraResult {
+    guard(|| {
+        let mut gaussians = alone(gaussians, "gaussians")?;
+        gaussians
+            .gaussians
+            .set_antialiased(antialiased != vk::FALSE);
+        Ok(())
+    })
+}
+
 /// Describes a scene. `info_size` is sizeof *info.
 ///
 /// # Safety
@@ -147,6 +170,7 @@ pub unsafe extern "C" fn rara_gaussians_info(
             sh_degree: gaussians.sh_degree(),
             bounds_min: bounds.min.into(),
             bounds_max: bounds.max.into(),
+            antialiased: gaussians.is_antialiased().into(),
         };
         // SAFETY: the caller's promise.
         unsafe { write(info, info_size, &found, "info") }

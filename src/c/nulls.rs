@@ -94,6 +94,10 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
         "gaussians is null"
     );
     call!(
+        rara_gaussians_set_antialiased(null_mut(), 0),
+        "gaussians is null"
+    );
+    call!(
         rara_scene_buffers_upload(null(), null(), 0, null_mut()),
         "scene is null"
     );

@@ -520,6 +520,8 @@ typedef struct RaraGaussiansInfo {
     double bounds_min[3];
     // The corner with the largest coordinates.
     double bounds_max[3];
+    // Whether they are drawn antialiased: see rara_gaussians_set_antialiased.
+    VkBool32 antialiased;
 } RaraGaussiansInfo;
 
 // A part of the host's memory that the device can copy from.
@@ -565,6 +567,8 @@ typedef struct RaraGaussianArrays {
     const float *sh;
     // Bytes from one Gaussian's to the next one's; 0 stands for 12 (sh_degree + 1)^2.
     size_t sh_stride;
+    // Whether they were trained antialiased: see rara_gaussians_set_antialiased. Default: false.
+    VkBool32 antialiased;
 } RaraGaussianArrays;
 
 // The state of a layer, which may change from frame to frame.
@@ -1371,6 +1375,15 @@ RaraResult rara_gaussians_load_from(const uint8_t *data,
 // # Safety
 // Both are alive and not the same; nobody else uses `gaussians` meanwhile.
 RaraResult rara_gaussians_append(struct RaraGaussians *gaussians, const struct RaraGaussians *other);
+
+// Says whether Gaussians were trained antialiased, as by Mip-Splatting or gsplat's rasterize_mode antialiased: what the
+// low-pass makes larger on the screen then gets no brighter for it. Files that say so are loaded so. It holds for a whole
+// scene; what is appended to one is drawn like it. A scene that is on the device already stays as it is.
+//
+// # Safety
+// `gaussians` is alive; nobody else uses it meanwhile.
+RaraResult rara_gaussians_set_antialiased(struct RaraGaussians *gaussians,
+                                          VkBool32 antialiased);
 
 // Describes a scene. `info_size` is sizeof *info.
 //

@@ -266,6 +266,11 @@ fn scenes() {
             (size, 100, made.sh_degree())
         );
         assert!(info.bounds_min[0] < info.bounds_max[0]);
+        // The file says nothing of it.
+        assert_eq!(info.antialiased, 0);
+        assert_eq!(rara_gaussians_set_antialiased(scene, 1), RARA_OK);
+        assert_eq!(rara_gaussians_info(scene, &mut info, size), RARA_OK);
+        assert_eq!(info.antialiased, 1);
         let mut camera: RaraCamera = std::mem::zeroed();
         let framed = rara_camera_frame(scene, [0.0, -1.0, 0.0].as_ptr(), 50.0, 90, 60, &mut camera);
         assert_eq!(framed, RARA_OK);

@@ -10,6 +10,7 @@ use rara::{
 };
 use serde::Serialize;
 
+use super::antialiasing;
 use super::clip::ClipArgs;
 use super::compare::Measures;
 use super::failure::Failure;
@@ -106,6 +107,10 @@ impl Bake {
         let clip = self.meant_clip(&entries)?;
         let paths = self.check_output(&entries)?;
         let loaded = self.scenes.load()?;
+        let is_merged = !self.output.to_string_lossy().contains("{}");
+        if is_merged {
+            antialiasing::check_alike(&loaded)?;
+        }
         // What --layer-clip says of a layer may also be that nothing cuts it.
         if clip.is_everything() && !loaded.has_clips() {
             return Err(no_clip());
@@ -123,7 +128,6 @@ impl Bake {
         let mut counts = BakeCounts::default();
         let mut baked: Vec<Baked> = Vec::new();
         let mut progress = Progress::new("baking");
-        let is_merged = !self.output.to_string_lossy().contains("{}");
         let scene = loaded.scene();
         for (done, layer) in scene.layers().iter().enumerate() {
             progress.update(done as u64, scene.layers().len() as u64);

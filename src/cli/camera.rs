@@ -7,10 +7,12 @@ use glam::DVec3;
 use rara::{Camera, Gaussians};
 
 use super::failure::Failure;
+#[cfg(doc)]
+use super::framing;
 use super::lens::{Depths, Lens, Ortho, ortho};
 use super::views::pick;
 pub(super) use super::views::{View, Views};
-use super::{output, training, values};
+use super::{aspect, output, training, values};
 use rara::{camera_files, scene::Bounds};
 
 /// The camera's position and lens. Without any of these it frames the scene.
@@ -46,7 +48,7 @@ pub(super) struct CameraArgs {
     /// beside the scene]
     #[arg(long, value_name = "FILE", conflicts_with = "camera")]
     cameras: Option<PathBuf>,
-    /// Which of the cameras: number from 0, name, or all [default: 0]
+    /// Which of the cameras: number from 0, name, or all [default with --cameras: 0; without it the camera frames the scene]
     #[arg(long, value_name = "N|NAME|all", conflicts_with_all = ["eye", "camera", "ortho", "fov_y", "up"])]
     view: Option<String>,
     /// One camera: JSON with width, height, fx, fy, cx, cy, world_to_camera (16 numbers, row-major), and perhaps
@@ -60,7 +62,8 @@ pub(super) struct CameraArgs {
     /// Keep what is at this depth or nearer, likewise
     #[arg(long, value_name = "DEPTH", allow_hyphen_values = true)]
     clip_far: Option<f64>,
-    /// Picture size [default: 1024x1024, or the camera file's own; a window's: 1280x720]
+    /// Picture size [default: 1024x1024, or the camera file's own; a window's: 1280x720]. Of another aspect than the camera
+    /// file's it shows all that the camera sees, undistorted, and more beside it
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     size: Option<(u32, u32)>,
 }
@@ -259,6 +262,11 @@ impl CameraArgs {
             // Errors that do not depend on the scene are found before it is read.
             let unframed = lens.frame(&Bounds::of(&Gaussians::default()), up, size);
             depths.of(unframed.map_err(Failure::usage)?)?;
+            if self.up.is_none() {
+                scenes
+                    .iter()
+                    .find_map(|scene| training::hint_of_up(scene, UP));
+            }
             return Ok(Views::Framed {
                 up,
                 lens,
@@ -272,18 +280,9 @@ impl CameraArgs {
     }
 
     fn sized(&self, camera: Camera) -> Result<Camera, Failure> {
-        let Some(size) = self.size else {
-            return Ok(camera);
-        };
-        let resized = camera.resized(size).map_err(Failure::usage)?;
-        // A pixel more or less is rounding.
-        let kept = camera.fx / camera.fy;
-        if (resized.fx / resized.fy / kept - 1.0).abs() > 1.5 / f64::from(size.0.min(size.1)) {
-            output::warn_once(format!(
-                "warning: --size {}x{} has another aspect than the camera's {}x{}: the picture is stretched to it",
-                size.0, size.1, camera.width, camera.height
-            ));
+        match self.size {
+            Some(size) => aspect::sized(camera, size),
+            None => Ok(camera),
         }
-        Ok(resized)
     }
 }

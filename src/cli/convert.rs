@@ -8,6 +8,7 @@ use rara::scene::{self, Part};
 use rara::{Clip, LayerState, Placement};
 use serde::Serialize;
 
+use super::antialiasing;
 use super::clip::ClipArgs;
 use super::failure::Failure;
 use super::output::{self, grouped, say};
@@ -47,7 +48,7 @@ pub(super) struct Convert {
     #[arg(long, value_name = "K", value_parser = values::positive, allow_hyphen_values = true)]
     scale: Option<f32>,
     /// Turns the scene about an axis through the origin, by degrees
-    #[arg(long, value_name = "X,Y,Z,DEGREES", value_parser = turn, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z,DEGREES", value_parser = values::turn, allow_hyphen_values = true)]
     rotate: Option<DQuat>,
     /// Moves the scene
     #[arg(long = "move", value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
@@ -78,24 +79,6 @@ struct Document {
     notes: Vec<String>,
 }
 
-/// An axis and an angle in degrees.
-fn turn(text: &str) -> Result<DQuat, String> {
-    let [x, y, z, degrees] = values::numbers::<4>(text)?;
-    let axis = DVec3::new(x, y, z).try_normalize();
-    let axis = axis.ok_or("an axis cannot be zero")?;
-    // Half a turn is exact, which its angle in radians is not.
-    let (sin, cos) = match degrees.rem_euclid(360.0) {
-        180.0 => (1.0, 0.0),
-        degrees => (0.5 * degrees).to_radians().sin_cos(),
-    };
-    Ok(DQuat::from_xyzw(
-        axis.x * sin,
-        axis.y * sin,
-        axis.z * sin,
-        cos,
-    ))
-}
-
 impl Convert {
     pub(super) fn run(self) -> Result<(), Failure> {
         let format =
@@ -112,6 +95,7 @@ impl Convert {
         let placement = self.placement()?;
         let clip = self.clip.meant()?;
         let mut loaded = self.scenes.load()?;
+        antialiasing::check_alike(&loaded)?;
         let mut document = Document {
             file: self.output.clone(),
             format: format.to_string(),
@@ -149,6 +133,11 @@ impl Convert {
             whole.set_sh_degree(degree);
         }
         document.clamped = scene::save(&self.output, &whole)?;
+        if whole.is_antialiased() && format == scene::Format::Gltf {
+            let note = "glTF cannot say that the scene was trained antialiased; draw the file with --antialiasing on";
+            say(format_args!("warning: {note}"));
+            document.notes.push(note.into());
+        }
         document.written = whole.len();
         document.sh_degree = whole.sh_degree();
         document.bytes = std::fs::metadata(&self.output).map_or(0, |metadata| metadata.len());
@@ -245,19 +234,5 @@ impl Convert {
             grouped(document.bytes)
         ));
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn turns_are_about_an_axis_by_degrees() {
-        let half = turn("0,0,2,180").expect("an axis");
-        assert_eq!(half * DVec3::X, DVec3::NEG_X);
-        let back = turn("0,1,0,-90").expect("an axis");
-        assert!((back * DVec3::X).distance(DVec3::Z) < 1e-15);
-        assert!(turn("0,0,0,90").is_err() && turn("1,2,3").is_err());
     }
 }

@@ -73,6 +73,8 @@ struct LayerFacts {
     gaussians: usize,
     opacity: f32,
     visible: bool,
+    /// Whether it was trained antialiased and is drawn so.
+    antialiased: bool,
     /// Whether it has a clip of its own.
     clipped: bool,
 }
@@ -87,6 +89,7 @@ impl LayerFacts {
             gaussians: layer.gaussians.len(),
             opacity: layer.state.opacity,
             visible: layer.state.visible,
+            antialiased: layer.gaussians.is_antialiased(),
             clipped: layer.clip.is_some(),
         }
     }
@@ -186,8 +189,13 @@ fn table(document: &Document) -> Vec<String> {
             (true, true) => ", with a clip of its own",
             (true, false) => "",
         };
+        let trained = if layer.antialiased {
+            ", antialiased"
+        } else {
+            ""
+        };
         lines.push(format!(
-            "  layer        {} ({}): {}, opacity {}{state}",
+            "  layer        {} ({}): {}, opacity {}{trained}{state}",
             layer.name,
             layer.format,
             grouped(layer.gaussians as u64),
@@ -196,6 +204,8 @@ fn table(document: &Document) -> Vec<String> {
     }
     if let [layer] = &document.layers[..] {
         lines.push(format!("format         {}", layer.format));
+        let trained = if layer.antialiased { "yes" } else { "no" };
+        lines.push(format!("antialiased    {trained}"));
     }
     lines.push(format!("SH degree      {}", document.sh_degree));
     lines.push(format!("repaired       {}", grouped(document.repaired)));

@@ -55,7 +55,7 @@ impl Lens {
 }
 
 /// The depths that `--clip-near` and `--clip-far` mean.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Depths {
     pub(super) near: Option<f64>,
     pub(super) far: Option<f64>,

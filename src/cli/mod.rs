@@ -4,6 +4,8 @@
 //! the work. Only [`output::answer`] writes to stdout what a command was asked for; everything else goes to stderr.
 
 mod ablate;
+mod antialiasing;
+mod aspect;
 mod bake;
 mod bench;
 mod camera;
@@ -21,6 +23,7 @@ mod framing;
 mod generate;
 mod info;
 mod ink;
+mod layer_clip;
 mod lens;
 mod memory;
 mod model;
@@ -28,6 +31,7 @@ mod output;
 mod panorama;
 mod path;
 mod pattern;
+mod place;
 mod precision;
 #[allow(unsafe_code)]
 mod process;

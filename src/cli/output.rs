@@ -2,9 +2,9 @@
 
 use std::fmt::Display;
 use std::fs;
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use rara::{Error, Picture, Result};
@@ -126,9 +126,22 @@ pub(super) fn make_folder(folder: &Path) -> Result<()> {
 }
 
 fn check_folder(folder: &Path) -> Result<()> {
-    let probe = folder.join(format!(".rara-{}.probe", std::process::id()));
-    fs::File::create(&probe).map_err(Error::io(folder))?;
-    fs::remove_file(&probe).map_err(Error::io(probe))
+    /// Several threads may ask at once.
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    loop {
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let probe = folder.join(format!(".rara-{}-{number}.probe", std::process::id()));
+        match fs::File::options()
+            .write(true)
+            .create_new(true)
+            .open(&probe)
+        {
+            // A process of the same number, in another container or on another machine, may have such a file here.
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(Error::io(folder)(error)),
+            Ok(_) => return fs::remove_file(&probe).map_err(Error::io(probe)),
+        }
+    }
 }
 
 /// 1234567 as "1 234 567".
@@ -146,7 +159,35 @@ pub(super) fn grouped(number: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::grouped;
+    use super::{check_folder, grouped};
+    use std::fs;
+
+    #[test]
+    fn a_probe_leaves_nothing_and_touches_no_other() {
+        let folder = std::env::temp_dir().join(format!("rara-probes-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a folder");
+        let probe =
+            |number: u64| folder.join(format!(".rara-{}-{number}.probe", std::process::id()));
+        // Other tests of this process may take some of these numbers meanwhile.
+        let theirs: Vec<_> = (0..64).map(probe).collect();
+        theirs
+            .iter()
+            .for_each(|file| fs::write(file, "theirs").expect("a file"));
+        std::thread::scope(|scope| {
+            let threads =
+                [(); 4].map(|()| scope.spawn(|| (0..50).all(|_| check_folder(&folder).is_ok())));
+            assert!(
+                threads
+                    .into_iter()
+                    .all(|thread| thread.join().expect("no panic"))
+            );
+        });
+        for file in &theirs {
+            assert_eq!(fs::read(file).expect("it is there"), b"theirs");
+            fs::remove_file(file).expect("ours");
+        }
+        fs::remove_dir(&folder).expect("nothing is left in it");
+    }
 
     #[test]
     fn digits_stand_in_groups_of_three() {

@@ -36,8 +36,12 @@ fn drivers_folders(variable: impl Fn(&str) -> Option<OsString>) -> Vec<(&'static
         return Vec::new();
     };
     let folder = own.join("driver");
-    // NVIDIA's driver makes no folders. Where this one cannot be made, drivers do as they would.
-    if std::fs::create_dir_all(&folder).is_err() {
+    // Where it cannot be made, drivers do as they would.
+    if folder
+        .ancestors()
+        .find(|part| part.exists())
+        .is_none_or(|part| !part.is_dir())
+    {
         return Vec::new();
     }
     let free = ROWS
@@ -45,6 +49,16 @@ fn drivers_folders(variable: impl Fn(&str) -> Option<OsString>) -> Vec<(&'static
         .filter(|(_, row)| row.iter().all(|name| variable(name).is_none()));
     free.map(|(name, _)| (*name, folder.clone().into()))
         .collect()
+}
+
+/// Makes the folder in which drivers keep what they compile, which NVIDIA's does not do by itself: before a device is opened,
+/// and not by commands that need none.
+pub(super) fn make_drivers_folder() {
+    let Some(own) = std::env::var_os("RARA_CACHE").filter(|own| !own.is_empty()) else {
+        return;
+    };
+    // A driver that finds none keeps nothing.
+    let _ = std::fs::create_dir_all(Path::new(&own).join("driver"));
 }
 
 #[cfg(unix)]
@@ -161,6 +175,9 @@ mod tests {
             both[1..]
         );
         assert!(with(&[]).is_empty() && with(&[("RARA_CACHE", "")]).is_empty());
-        std::fs::remove_dir_all(&own).expect("ours");
+        assert!(!own.exists(), "nothing is made before a device is opened");
+        std::fs::write(&own, "a file").expect("a file");
+        assert!(with(&[("RARA_CACHE", "@")]).is_empty());
+        std::fs::remove_file(&own).expect("ours");
     }
 }

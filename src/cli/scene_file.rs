@@ -21,6 +21,8 @@ pub(super) struct LayerEntry {
     /// Its file.
     pub(super) path: PathBuf,
     pub(super) state: LayerState,
+    /// Whether it was trained antialiased; none where its file says that.
+    pub(super) antialiased: Option<bool>,
     pub(super) clip: Option<LayerClip>,
     /// The layers that take their splats from it, in the order in which they do so.
     pub(super) selected: Vec<Selected>,
@@ -69,6 +71,7 @@ impl LayerEntry {
             name: stem(path),
             path: path.into(),
             state: LayerState::default(),
+            antialiased: None,
             clip: None,
             selected: Vec::new(),
         }
@@ -119,6 +122,7 @@ struct Entry {
     scale: Option<f64>,
     opacity: Option<f32>,
     visible: Option<bool>,
+    antialiased: Option<bool>,
     /// An expression as a tree.
     clip: Option<Expression>,
     /// An expression as text; `whole` keeps everything.
@@ -226,6 +230,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
             name: entry.name.unwrap_or_else(|| stem(&path)),
             path,
             state,
+            antialiased: entry.antialiased,
             clip,
             selected: Vec::new(),
         };

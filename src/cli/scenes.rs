@@ -9,7 +9,7 @@ use rara::{Gaussians, Layer, LayerState};
 use super::failure::Failure;
 use super::output::{Progress, say};
 use super::scene_file::{self, LayerClip, LayerEntry};
-use super::{select, training, values};
+use super::{antialiasing, layer_clip, place, select, training, values};
 use rara::scene::{self, Property};
 
 /// The flags that name the scene.
@@ -17,7 +17,7 @@ use rara::scene::{self, Property};
 pub(super) struct SceneArgs {
     /// Scene files (3DGS .ply, .compressed.ply, .splat, .ksplat, .spz, .sog, a folder of SOG, .glb, .gltf), or a folder that training left, of which the last iteration counts, or - for standard input; several are the layers of one scene, each called by its file's name or as in NAME=FILE. A
     /// .json file lists layers: {"layers":[{"path":"skin.ply","name":"skin","opacity":0.5,"visible":true,
-    /// "position":[x,y,z],"rotation":[w,x,y,z],"scale":s,"clip":{...} or "clip_expr":"...",
+    /// "antialiased":true,"position":[x,y,z],"rotation":[w,x,y,z],"scale":s,"clip":{...} or "clip_expr":"...",
     /// "select":[{"name":"vessels","where":"label in 3,4"}]}]}
     #[arg(value_name = "SCENE", required = true)]
     files: Vec<PathBuf>,
@@ -32,6 +32,16 @@ pub(super) struct SceneArgs {
     /// that no clip cuts, or frame for one that the frame's cuts although its list gives it another
     #[arg(long, value_name = "NAME=EXPRESSION")]
     layer_clip: Vec<String>,
+    /// Whether splats that the low-pass makes larger than they are get no brighter for it, as scenes need it that were trained
+    /// antialiased (3DGS --antialiasing, gsplat, Mip-Splatting): on, off, or auto, which goes by what files and the training's
+    /// settings beside them say [default: auto]; NAME=on says it of one layer (repeatable)
+    #[arg(long, value_name = "on|off|auto")]
+    antialiasing: Vec<String>,
+    /// Where a layer stands (repeatable), in place of what its list says: move:X,Y,Z, turn:X,Y,Z,DEGREES or rotation:W,X,Y,Z,
+    /// and scale:S, with blanks between several. It is scaled, then turned about its own origin, then moved; without NAME= all
+    /// layers are
+    #[arg(long, value_name = "[NAME=]PLACE")]
+    place: Vec<String>,
     /// Leaves a layer out of the picture (repeatable)
     #[arg(long, value_name = "NAME")]
     hide: Vec<String>,
@@ -63,10 +73,17 @@ impl SceneArgs {
         self.files.iter().flat_map(places).collect()
     }
 
-    /// The selections, as they were typed.
+    /// The flags that say what the layers are before anything changes them, with what was typed behind each.
     #[cfg(feature = "view")]
-    pub(super) fn selections(&self) -> &[String] {
-        &self.select
+    pub(super) fn typed(&self) -> Vec<(&'static str, &str)> {
+        let all = [
+            ("--select", &self.select),
+            ("--antialiasing", &self.antialiasing),
+            ("--place", &self.place),
+        ];
+        let all = all.iter();
+        all.flat_map(|(flag, texts)| texts.iter().map(|text| (*flag, text.as_str())))
+            .collect()
     }
 
     /// True when one of the layers that are named may have a clip of its own, once they are read.
@@ -77,27 +94,9 @@ impl SceneArgs {
     /// Reads the files.
     pub(super) fn load(&self) -> Result<Loaded, Failure> {
         let mut loaded = load(self.entries()?)?;
-        for text in &self.layer_clip {
-            // A name may hold the sign that ends it.
-            let signs: Vec<usize> = text.match_indices('=').map(|(at, _)| at).collect();
-            let of_a_layer = |at: &&usize| loaded.layers.iter().any(|l| l.name == text[..**at]);
-            let Some(&at) = signs.iter().find(of_a_layer).or(signs.first()) else {
-                return Err(Failure::Usage(format!(
-                    "--layer-clip {text}: expected NAME=EXPRESSION, as in skin=plane:1,0,0,0"
-                )));
-            };
-            let (name, region) = (&text[..at], &text[at + 1..]);
-            let clip = match region.trim() {
-                "frame" => None,
-                region => Some(
-                    LayerClip::parse(region)
-                        .map_err(|error| Failure::Usage(format!("--layer-clip {name}: {error}")))?,
-                ),
-            };
-            for layer in loaded.named("--layer-clip", name)? {
-                layer.clip = clip.clone();
-            }
-        }
+        layer_clip::apply(&self.layer_clip, &mut loaded)?;
+        antialiasing::apply(&self.antialiasing, &mut loaded)?;
+        place::apply(&self.place, &mut loaded)?;
         for name in &self.hide {
             for layer in loaded.named("--hide", name)? {
                 layer.state = layer.state.visible(false);
@@ -235,8 +234,19 @@ impl Loaded {
         Ok(())
     }
 
+    /// Where the name ends in the text of a flag, `NAME=` and more; none in a text without the sign. A name may hold it too.
+    pub(super) fn end_of_name(&self, text: &str) -> Option<usize> {
+        let signs = || text.match_indices('=').map(|(at, _)| at);
+        let of_a_layer = |at: &usize| self.layers.iter().any(|l| l.name == text[..*at]);
+        signs().find(of_a_layer).or(signs().next())
+    }
+
     /// The layers of a name, which `flag` asks for.
-    fn named(&mut self, flag: &str, name: &str) -> Result<Vec<&mut LoadedLayer>, Failure> {
+    pub(super) fn named(
+        &mut self,
+        flag: &str,
+        name: &str,
+    ) -> Result<Vec<&mut LoadedLayer>, Failure> {
         let names: Vec<_> = self.layers.iter().map(|layer| layer.name.clone()).collect();
         let found: Vec<_> = self
             .layers
@@ -253,9 +263,13 @@ impl Loaded {
         }
     }
 
-    /// All files' Gaussians as one set.
+    /// All files' Gaussians as one set, where they are placed.
     pub(super) fn merged(self) -> Gaussians {
-        let mut layers = self.layers.into_iter().map(|layer| layer.gaussians);
+        let mut layers = self.layers.into_iter().map(|mut layer| {
+            // What single precision cannot hold there is in no picture either.
+            let _ = layer.gaussians.place(&layer.state.placement);
+            layer.gaussians
+        });
         let mut merged = layers.next().unwrap_or_default();
         layers.for_each(|more| merged.append(&more));
         merged
@@ -286,8 +300,20 @@ fn load(entries: Vec<LayerEntry>) -> Result<Loaded, Failure> {
     };
     let mut before = 0;
     for entry in entries {
-        let (loaded, properties) = load_one(&entry)?;
+        let (mut loaded, properties) = load_one(&entry)?;
         let path = &entry.path;
+        if let Some(antialiased) = entry.antialiased {
+            loaded.gaussians.set_antialiased(antialiased);
+        } else if !loaded.gaussians.is_antialiased()
+            && let Some(by) = training::antialiased_by(path)
+        {
+            loaded.gaussians.set_antialiased(true);
+            all.notes.push(format!(
+                "{}: it is drawn antialiased, as {} says that it was trained; --antialiasing off draws it as it is",
+                path.display(),
+                by.display()
+            ));
+        }
         all.repaired += loaded.report.repaired;
         all.dropped += loaded.report.dropped;
         let lines = loaded.report.lines();

@@ -150,6 +150,9 @@ pub(super) fn joined(layers: Vec<Taken>) -> Gaussians {
     places.sort_unstable();
     let degree = layers.iter().map(|layer| layer.gaussians.sh_degree()).max();
     joined.set_sh_degree(degree.unwrap_or(0));
+    // All are alike: see antialiasing::check_alike.
+    let mut all = layers.iter().map(|layer| &layer.gaussians);
+    joined.set_antialiased(all.any(|layer| !layer.is_empty() && layer.is_antialiased()));
     let mut sh = vec![0.0; 3 * joined.sh_coefficients()];
     for (_, at, index) in places {
         let from = &layers[at].gaussians;

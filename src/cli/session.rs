@@ -13,6 +13,7 @@ use rara::{
 
 use super::combine::Measured;
 use super::output::Spinner;
+use super::process;
 
 /// A device with a scene on it.
 pub(super) struct Session {
@@ -44,6 +45,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 
 impl Session {
     pub(super) fn open(desc: &HeadlessDesc, scene: &Scene<'_>, sh: ShFormat) -> Result<Self> {
+        process::make_drivers_folder();
         let mut headless = Headless::new(desc)?;
         headless.load_as(scene, sh)?;
         Ok(Self {

@@ -48,6 +48,7 @@ impl Stress {
                 "no regime has such a name; run without names to see all".into(),
             ));
         }
+        super::process::make_drivers_folder();
         let mut headless = Headless::new(&self.device.meant())?;
         if !self.json {
             say(format_args!(

@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
+use rara::Camera;
 use rara::camera_files::{self, NamedCamera};
 
 use super::failure::Failure;
@@ -51,6 +53,9 @@ fn around(scene: &Path) -> Vec<PathBuf> {
     let absolute = std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned());
     let mut folders: Vec<PathBuf> = absolute.parent().map(Path::to_owned).into_iter().collect();
     // In a 3DGS output the scene is two folders deep, point_cloud/iteration_N, and in one of nerfstudio it may be.
+    // gsplat's are in a folder of their own.
+    let of_gsplat = folders.first().filter(|folder| folder.ends_with("ply"));
+    let of_gsplat = of_gsplat.and_then(|folder| Some(folder.parent()?.to_owned()));
     let is_inner = |folder: &Path| {
         let inner = folder.parent().and_then(Path::file_name);
         inner.is_some_and(|name| name == "point_cloud" || name == "exports")
@@ -62,6 +67,7 @@ fn around(scene: &Path) -> Vec<PathBuf> {
     {
         folders.push(output.to_owned());
     }
+    folders.extend(of_gsplat);
     folders
 }
 
@@ -69,6 +75,32 @@ fn around(scene: &Path) -> Vec<PathBuf> {
 pub(super) fn beside(scene: &Path, name: &str) -> Option<PathBuf> {
     let files = around(scene).into_iter().map(|folder| folder.join(name));
     files.into_iter().find(|file| file.is_file())
+}
+
+/// The file beside a scene whose settings say that it was trained antialiased: `cfg_args` of 3DGS, `config.yml` of nerfstudio
+/// or `cfg.yml` of gsplat.
+pub(super) fn antialiased_by(scene: &Path) -> Option<PathBuf> {
+    /// The longest file that is searched.
+    const MOST_BYTES: u64 = 1 << 20;
+    const SAYINGS: [(&str, &str); 3] = [
+        ("cfg_args", "antialiasing=True"),
+        ("config.yml", "rasterize_mode:antialiased"),
+        ("cfg.yml", "antialiased:true"),
+    ];
+    SAYINGS.iter().find_map(|(name, saying)| {
+        let file = beside(scene, name)?;
+        let is_short = fs::metadata(&file).is_ok_and(|metadata| metadata.len() <= MOST_BYTES);
+        let text = fs::read(&file).ok().filter(|_| is_short)?;
+        let text = String::from_utf8_lossy(&text);
+        // cfg_args is one line of many settings, the others have a line for each.
+        let mut settings = text.split([',', '(', ')', '\n']).map(|setting| {
+            let signs = setting
+                .chars()
+                .filter(|c| !c.is_whitespace() && *c != '\'' && *c != '"');
+            signs.collect::<String>()
+        });
+        settings.any(|setting| setting == *saying).then_some(file)
+    })
 }
 
 /// The cameras beside a scene.
@@ -97,9 +129,79 @@ pub(super) fn load_cameras(path: &Path, scenes: &[PathBuf]) -> rara::Result<Vec<
     Ok(cameras)
 }
 
+/// Says so where the cameras of 3DGS beside a scene have the world the other way up, or on its side, than a picture whose
+/// up this is. Nothing is said where there are none, or where they are upright in no direction that they share.
+pub(super) fn hint_of_up(scene: &Path, up: DVec3) -> Option<()> {
+    let file = beside(scene, "cameras.json")?;
+    let cameras = camera_files::load_cameras(&file).ok()?;
+    let theirs = common_up(cameras.iter().map(|named| &named.camera))?;
+    let how = match theirs.dot(up.normalize()) {
+        along if along < -0.5 => "upside down",
+        along if along < 0.5 => "on its side",
+        _ => return None,
+    };
+    output::say(format_args!(
+        "note: by the cameras of {} the picture is {how}; --up {} turns it",
+        file.display(),
+        direction_text(theirs)
+    ));
+    Some(())
+}
+
+/// The direction that is up for most of these cameras: the mean of theirs, where they agree well enough to have one.
+fn common_up<'a>(cameras: impl Iterator<Item = &'a Camera>) -> Option<DVec3> {
+    let (mut sum, mut count) = (DVec3::ZERO, 0_u32);
+    for camera in cameras {
+        sum -= camera.rotation.row(1); // down in the picture
+        count += 1;
+    }
+    let mean = sum / f64::from(count.max(1));
+    (mean.length() > 0.7).then(|| mean.normalize())
+}
+
+/// A direction as --up takes it: the axis that it is near, or its numbers.
+fn direction_text(direction: DVec3) -> String {
+    let axes = [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)];
+    let near = axes
+        .iter()
+        .find(|(_, axis)| direction.dot(*axis).abs() > 0.9);
+    match near {
+        Some((name, axis)) if direction.dot(*axis) > 0.0 => (*name).into(),
+        Some((name, _)) => format!("-{name}"),
+        None => {
+            let DVec3 { x, y, z } = direction;
+            format!("{x:.2},{y:.2},{z:.2}")
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn cameras_that_agree_have_a_common_up() {
+        let ring = |up: DVec3| {
+            let camera = |turn: u32| {
+                let eye =
+                    glam::DQuat::from_axis_angle(up, f64::from(turn)) * up.any_orthonormal_vector();
+                Camera::look_at(5.0 * eye + up, DVec3::ZERO, up, 50.0, (8, 8)).expect("a view")
+            };
+            (0..6).map(camera).collect::<Vec<_>>()
+        };
+        for (up, text) in [(DVec3::Y, "y"), (DVec3::NEG_Y, "-y"), (DVec3::Z, "z")] {
+            let found = common_up(ring(up).iter()).expect("they agree");
+            assert!(found.dot(up) > 0.99, "{found}");
+            assert_eq!(direction_text(found), text);
+        }
+        let mut all = ring(DVec3::Y);
+        all.extend(ring(DVec3::NEG_Y));
+        assert_eq!(common_up(all.iter()), None);
+        assert_eq!(
+            direction_text(DVec3::new(0.6, -0.8, 0.0)),
+            "0.60,-0.80,0.00"
+        );
+    }
 
     #[test]
     fn the_last_iteration_counts_and_its_cameras_are_found() {
@@ -121,6 +223,37 @@ mod tests {
         assert_eq!(cameras(&folder), Some(cameras_file.clone()));
         assert_eq!(cameras(&last), Some(cameras_file));
         assert_eq!(beside(&last, "dataparser_transforms.json"), None);
+        for (name, text, says) in [
+            (
+                "cfg_args",
+                "Namespace(sh_degree=3, antialiasing=False, white_background=False)",
+                false,
+            ),
+            (
+                "cfg_args",
+                "Namespace(sh_degree=3, antialiasing=True, white_background=False)",
+                true,
+            ),
+            (
+                "config.yml",
+                "  model: !!python/object\n    not_rasterize_mode: antialiased\n",
+                false,
+            ),
+            (
+                "config.yml",
+                "  model: !!python/object\n    rasterize_mode: antialiased\n",
+                true,
+            ),
+            ("cfg.yml", "antialiased: false\n", false),
+            ("cfg.yml", "antialiased: true\n", true),
+        ] {
+            let file = folder.join(name);
+            fs::write(&file, text).expect("a file");
+            let by = antialiased_by(&last);
+            assert_eq!(by, says.then_some(file.clone()), "{text}");
+            assert_eq!(antialiased_by(&folder.join("ply/a.ply")), by);
+            fs::remove_file(&file).expect("ours");
+        }
         write("meta.json");
         assert!(matches!(scene_in(&folder), Ok(None)), "it is SOG");
         fs::remove_dir_all(&folder).expect("ours");

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use super::film;
 
@@ -19,6 +19,24 @@ pub(super) fn numbers<const COUNT: usize>(text: &str) -> Result<[f64; COUNT], St
 /// `x,y,z`.
 pub(super) fn vec3(text: &str) -> Result<DVec3, String> {
     numbers::<3>(text).map(DVec3::from_array)
+}
+
+/// An axis and an angle in degrees.
+pub(super) fn turn(text: &str) -> Result<DQuat, String> {
+    let [x, y, z, degrees] = numbers::<4>(text)?;
+    let axis = DVec3::new(x, y, z).try_normalize();
+    let axis = axis.ok_or("an axis cannot be zero")?;
+    // Half a turn is exact, which its angle in radians is not.
+    let (sin, cos) = match degrees.rem_euclid(360.0) {
+        180.0 => (1.0, 0.0),
+        degrees => (0.5 * degrees).to_radians().sin_cos(),
+    };
+    Ok(DQuat::from_xyzw(
+        axis.x * sin,
+        axis.y * sin,
+        axis.z * sin,
+        cos,
+    ))
 }
 
 /// `x,y,z`, not all zero, or an axis as `y` or `-z`.
@@ -207,6 +225,15 @@ mod tests {
             (direction("y"), direction("+y")),
             (Ok(DVec3::Y), Ok(DVec3::Y))
         );
+    }
+
+    #[test]
+    fn turns_are_about_an_axis_by_degrees() {
+        let half = turn("0,0,2,180").expect("an axis");
+        assert_eq!(half * DVec3::X, DVec3::NEG_X);
+        let back = turn("0,1,0,-90").expect("an axis");
+        assert!((back * DVec3::X).distance(DVec3::Z) < 1e-15);
+        assert!(turn("0,0,0,90").is_err() && turn("1,2,3").is_err());
     }
 
     #[test]

@@ -152,6 +152,7 @@ mod tests {
             opacities: (0..count).map(|_| next()).collect(),
             sh_degree: 0,
             sh: vec![0.0; 3 * count],
+            antialiased: false,
         };
         Gaussians::new(arrays).expect("arrays that fit")
     }

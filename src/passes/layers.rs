@@ -71,6 +71,8 @@ impl Layers {
                     gaussian_end: layer.gaussian_end(),
                     opacity: layer.state.opacity,
                     visible: layer.is_visible().into(),
+                    antialiased: layer.antialiased.into(),
+                    ..bytemuck::Zeroable::zeroed()
                 },
                 ..bytemuck::Zeroable::zeroed()
             };

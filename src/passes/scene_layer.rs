@@ -24,6 +24,8 @@ pub struct SceneLayer {
     box_around: [Vec3; 2],
     /// The same of the set that the layer is a part of, or its own: what depends on it is alike in all parts of a set.
     pub(super) corners: [Vec3; 2],
+    /// Whether its Gaussians were trained antialiased.
+    pub(super) antialiased: bool,
     pub(super) state: LayerState,
     pub(super) clip: Option<Clip>,
 }
@@ -38,6 +40,7 @@ impl SceneLayer {
             first_block,
             box_around: corners,
             corners,
+            antialiased: layer.gaussians().is_antialiased(),
             state: layer.state(),
             clip: layer.clip().cloned(),
         }
@@ -51,6 +54,11 @@ impl SceneLayer {
     /// Gaussians in it.
     pub fn gaussians(&self) -> u32 {
         self.gaussians
+    }
+
+    /// True where they are drawn [antialiased](Gaussians::is_antialiased).
+    pub fn is_antialiased(&self) -> bool {
+        self.antialiased
     }
 
     /// How the next frame that is configured shows it.

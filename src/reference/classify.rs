@@ -103,7 +103,7 @@ fn band<T: Real>(
     if settings.mode == Mode::Exact && is_beam(scene, index, footprint, settings) {
         return beam_band(footprint);
     }
-    clip::band(footprint.extent, settings)
+    clip::band(footprint.reach, settings)
 }
 
 /// Half width of the band of a splat whose weight follows each pixel's true ray. The footprint is linear: a pixel at
@@ -113,9 +113,9 @@ fn band<T: Real>(
 /// no bound, but all rays pass through the eye; [`BEYOND_EYE`] deviations beyond it nothing counts.
 fn beam_band<T: Real>(footprint: &Footprint<T>) -> T {
     let depth_share = footprint.rows[2].length() / footprint.view_centre.z;
-    let rest = T::one() - footprint.extent * footprint.stretch * depth_share;
+    let rest = T::one() - footprint.reach * footprint.stretch * depth_share;
     if rest > T::of(f64::from(WIDENING_REST)) {
-        return footprint.extent * footprint.stretch / rest;
+        return footprint.reach * footprint.stretch / rest;
     }
     let eye = footprint
         .axes

@@ -12,7 +12,7 @@ use glam::{Quat, Vec3 as Point};
 
 use super::real::{Real, Vec3, vec3};
 use super::view::View;
-use crate::limits::{ALPHA_MIN_INVERSE, LOW_PASS, NEAR_Z};
+use crate::limits::{ALPHA_MIN_INVERSE, COMPENSATION_SQUARE_MIN, LOW_PASS, NEAR_Z};
 use crate::{Gaussians, Projection};
 
 /// A Gaussian in view, from which every later stage computes.
@@ -41,10 +41,13 @@ pub struct Footprint<T> {
     pub screen_centre: [T; 2],
     /// The Cholesky factor k0, k1, k2 of the footprint's inverse covariance, 1/pixels: see [`power`](Self::power).
     pub conic: [T; 3],
-    /// Opacity at the centre, 0 to 1.
+    /// Opacity at the centre, 0 to 1; of antialiased Gaussians as much as makes up for the low-pass.
     pub opacity: T,
     /// K: the standard deviations out to which the splat counts, `opacity exp(-K^2 / 2) = 1/255`.
     pub extent: T,
+    /// The same with the Gaussian's own opacity, which decides what cuts it. It is `extent` where nothing makes up for the
+    /// low-pass, and no less.
+    pub reach: T,
     /// Half the sides of the footprint's box, pixels.
     pub half_sides: [T; 2],
 }
@@ -52,12 +55,16 @@ pub struct Footprint<T> {
 impl<T: Real> Footprint<T> {
     /// The footprint of one Gaussian, or nothing if it is culled: it is nearer than [`NEAR_Z`] or behind the eye, or
     /// fainter than 1/255 even at its centre, or its box holds no pixel centre of the picture.
+    ///
+    /// The opacity of an antialiased one is multiplied by the root of `det B B^T / det (B B^T + LOW_PASS I)`: then the
+    /// footprint that the low-pass has made larger has as much light in it as the one without (the 2D Mip filter of
+    /// Yu et al. 2024). Trainers bound the ratio from below ([`COMPENSATION_SQUARE_MIN`]).
     pub fn new(scene: &Gaussians, index: usize, view: &View<T>) -> Option<Self> {
         let relative = view.relative(scene.positions()[index]);
         let view_centre = view.turn(relative);
-        let opacity = T::of(f64::from(scene.opacities()[index]));
-        let brightness = opacity * T::of(f64::from(ALPHA_MIN_INVERSE));
-        if !(view_centre.z >= T::of(f64::from(NEAR_Z)) && brightness >= T::one()) {
+        let whole = T::of(f64::from(scene.opacities()[index]));
+        let brightness = |opacity: T| opacity * T::of(f64::from(ALPHA_MIN_INVERSE));
+        if !(view_centre.z >= T::of(f64::from(NEAR_Z)) && brightness(whole) >= T::one()) {
             return None;
         }
 
@@ -76,7 +83,15 @@ impl<T: Real> Footprint<T> {
         let gradients = seen.gradients(view.focal, clamped);
         let (conic, deviations) = factorise(gradients);
 
-        let extent = (T::of(2.0) * brightness.ln()).sqrt();
+        let opacity = match scene.is_antialiased() {
+            true => whole * compensation(gradients),
+            false => whole,
+        };
+        if brightness(opacity) < T::one() {
+            return None;
+        }
+        let contour = |opacity: T| (T::of(2.0) * brightness(opacity).ln()).sqrt();
+        let extent = contour(opacity);
         let footprint = Self {
             axes,
             rows,
@@ -96,6 +111,7 @@ impl<T: Real> Footprint<T> {
             conic,
             opacity,
             extent,
+            reach: contour(whole),
             half_sides: deviations.map(|deviation| extent * deviation),
         };
         let holds_a_pixel =
@@ -122,7 +138,7 @@ impl<T: Real> Footprint<T> {
     /// have no eye.
     pub fn holds_the_eye(&self) -> bool {
         self.projection == Projection::Perspective
-            && self.view_centre.z < self.extent * self.rows[2].length()
+            && self.view_centre.z < self.reach * self.rows[2].length()
     }
 
     fn seen(&self) -> Seen<T> {
@@ -237,6 +253,14 @@ pub(super) fn scaled<T: Real>([b1, b2]: [Vec3<T>; 2]) -> ([Vec3<T>; 2], T, T) {
 /// product `c = b1 x b2` as a sum of terms that are not negative.
 pub(super) fn determinant<T: Real>([b1, b2]: [Vec3<T>; 2], c: Vec3<T>, low_pass: T) -> T {
     c.squared() + low_pass * (b1.squared() + b2.squared()) + low_pass * low_pass
+}
+
+/// What keeps the light of a footprint as it is without the low-pass.
+fn compensation<T: Real>(gradients: [Vec3<T>; 2]) -> T {
+    let ([b1, b2], _, low_pass) = scaled(gradients);
+    let across = b1.cross(b2);
+    let share = across.squared() / determinant([b1, b2], across, low_pass);
+    share.max(T::of(f64::from(COMPENSATION_SQUARE_MIN))).sqrt()
 }
 
 /// The conic, the factors of `q = (k0 dx)^2 + (k1 dx + k2 dy)^2`, and the standard deviations along x and y, pixels.

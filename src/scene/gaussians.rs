@@ -33,6 +33,8 @@ pub struct GaussianArrays {
     pub sh_degree: u32,
     /// Spherical harmonics, `[Gaussian][coefficient][r, g, b]`, `(sh_degree + 1)^2` coefficients a Gaussian.
     pub sh: Vec<f32>,
+    /// Whether they were trained antialiased: see [`Gaussians::is_antialiased`].
+    pub antialiased: bool,
 }
 
 impl Gaussians {
@@ -112,6 +114,20 @@ impl Gaussians {
         &self.0.sh
     }
 
+    /// True for Gaussians that were trained antialiased, as by `--antialiasing` of 3DGS, `rasterize_mode antialiased` of
+    /// gsplat and nerfstudio, or Mip-Splatting. Each is then drawn with its opacity multiplied by
+    /// `sqrt(max(det S / det (S + 0.3 I), 0.000025))`, with the covariance `S` of its footprint in square pixels: what the
+    /// low-pass makes larger than it is gets no brighter for it. Others are drawn as opaque as they are. Loaders find it in
+    /// files that say so.
+    pub fn is_antialiased(&self) -> bool {
+        self.0.antialiased
+    }
+
+    /// Says whether they were trained antialiased, which holds for all of a set.
+    pub fn set_antialiased(&mut self, antialiased: bool) {
+        self.0.antialiased = antialiased;
+    }
+
     /// Centres, to be moved. Nothing checks what is written here and through the methods below: a number that
     /// [`new`](Self::new) would refuse makes its Gaussian, and no other, look like anything or nothing.
     pub fn positions_mut(&mut self) -> &mut [Vec3] {
@@ -179,8 +195,12 @@ impl Gaussians {
         self.0.sh.truncate(numbers);
     }
 
-    /// Appends `other`, raising both to the higher spherical-harmonics degree (the missing coefficients are zero).
+    /// Appends `other`, raising both to the higher spherical-harmonics degree (the missing coefficients are zero). A set is
+    /// [antialiased](Self::is_antialiased) as a whole: the first Gaussians say whether it is, and others are drawn like them.
     pub fn append(&mut self, other: &Gaussians) {
+        if self.is_empty() {
+            self.0.antialiased = other.0.antialiased;
+        }
         let degree = if self.is_empty() {
             other.0.sh_degree
         } else {
@@ -321,79 +341,4 @@ pub const fn sh_coefficients(degree: u32) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn arrays() -> GaussianArrays {
-        GaussianArrays {
-            positions: vec![Vec3::ZERO, Vec3::X],
-            scales: vec![Vec3::ONE, Vec3::ZERO],
-            rotations: vec![Quat::IDENTITY, Quat::from_rotation_x(1.0)],
-            opacities: vec![0.0, 1.0],
-            sh_degree: 1,
-            sh: vec![-0.5; 24],
-        }
-    }
-
-    #[test]
-    fn arrays_that_fit_are_taken_and_given_back() {
-        let made = Gaussians::new(arrays()).expect("they fit");
-        assert_eq!((made.len(), made.sh_coefficients()), (2, 4));
-        assert_eq!(made.into_arrays(), arrays());
-        let none = Gaussians::new(GaussianArrays::default()).expect("nothing fits nothing");
-        assert!(none.is_empty());
-    }
-
-    #[test]
-    fn the_array_that_does_not_fit_is_named() {
-        type Spoil = fn(&mut GaussianArrays);
-        let cases: [(&str, Spoil); 15] = [
-            ("scales has 1 elements", |a| a.scales.truncate(1)),
-            ("rotations has 3", |a| a.rotations.push(Quat::IDENTITY)),
-            ("opacities has 0", |a| a.opacities.clear()),
-            (
-                "sh has 23 elements, which do not fit 2 positions, each 12",
-                |a| a.sh.truncate(23),
-            ),
-            ("scales has 2 elements, which do not fit 3", |a| {
-                a.positions.push(Vec3::Y)
-            }),
-            ("sh has 24", |a| a.sh_degree = 3),
-            ("sh_degree is 4", |a| a.sh_degree = 4),
-            ("sh_degree is 4294967295", |a| a.sh_degree = u32::MAX),
-            ("positions[1]", |a| a.positions[1].z = f32::NAN),
-            ("scales[0]", |a| a.scales[0].y = -1e-9),
-            ("scales[1]", |a| a.scales[1].y = f32::INFINITY),
-            ("rotations[1]", |a| {
-                a.rotations[1] = Quat::from_xyzw(1.0, 1.0, 0.0, 0.0)
-            }),
-            ("opacities[0]", |a| a.opacities[0] = 1.1),
-            ("opacities[1]", |a| a.opacities[1] = f32::NAN),
-            ("sh[7]", |a| a.sh[7] = f32::NEG_INFINITY),
-        ];
-        for (says, spoil) in cases {
-            let mut spoilt = arrays();
-            spoil(&mut spoilt);
-            let error = Gaussians::new(spoilt).expect_err(says).to_string();
-            assert!(error.starts_with(says), "{error}, not {says}");
-        }
-    }
-
-    #[test]
-    fn pushing_and_truncating_keep_the_arrays_in_step() {
-        let mut made = Gaussians::new(arrays()).expect("they fit");
-        made.push(Vec3::Y, Vec3::ONE, Quat::IDENTITY, 0.5, &[1.0; 12]);
-        assert_eq!((made.len(), made.sh_of(2)), (3, &[1.0; 12][..]));
-        made.truncate(9);
-        assert_eq!(made.len(), 3);
-        made.truncate(2);
-        assert_eq!(made.into_arrays(), arrays());
-    }
-
-    #[test]
-    #[should_panic(expected = "3 numbers are no spherical harmonics of degree 1")]
-    fn harmonics_of_another_degree_are_misuse() {
-        let mut made = Gaussians::new(arrays()).expect("they fit");
-        made.push(Vec3::Y, Vec3::ONE, Quat::IDENTITY, 0.5, &[1.0; 3]);
-    }
-}
+mod tests;

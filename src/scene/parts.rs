@@ -45,6 +45,7 @@ impl Gaussians {
             // The first part is what the others leave in place.
             let count = if part == 0 { 0 } else { count };
             made.gaussians = Gaussians::with_room(count, self.sh_degree())?;
+            made.gaussians.set_antialiased(self.is_antialiased());
             Some(made)
         };
         let made: Option<Vec<Part>> = counts.iter().enumerate().map(room).collect();
@@ -110,7 +111,8 @@ mod tests {
 
     #[test]
     fn parts_hold_every_gaussian_once_and_in_order() {
-        let whole = generate(Kind::General, 1_000, 3);
+        let mut whole = generate(Kind::General, 1_000, 3);
+        whole.set_antialiased(true);
         let part_of: Vec<u32> = (0..1_000_u32)
             .map(|i| i.wrapping_mul(2_654_435_761) % 3)
             .collect();
@@ -120,6 +122,7 @@ mod tests {
         for (number, part) in parts.iter().enumerate() {
             assert!(part.numbers.is_sorted());
             assert_eq!(part.gaussians.sh_degree(), whole.sh_degree());
+            assert!(part.gaussians.is_antialiased());
             for (index, &source) in part.numbers.iter().enumerate() {
                 let source = source as usize;
                 assert_eq!(part_of[source] as usize, number);

@@ -57,7 +57,6 @@ impl LoadReport {
     }
 
     /// Says what was left out.
-    #[cfg_attr(not(feature = "formats"), allow(dead_code))]
     pub(crate) fn note(&mut self, note: String) {
         self.notes.push(note);
     }

@@ -78,11 +78,20 @@ fn check(path: &Path, gaussians: &Gaussians) -> Result<()> {
         .map_err(|error| Error::Invalid(format!("{} is not written: {error}", path.display())))
 }
 
+/// The line of a PLY's header by which readers, this one too, know Gaussians that were trained antialiased.
+pub(super) fn antialiased_comment(gaussians: &Gaussians) -> &'static str {
+    match gaussians.is_antialiased() {
+        true => "comment SplatRenderMode: mip\n",
+        false => "",
+    }
+}
+
 fn write_header(out: &mut dyn Write, gaussians: &Gaussians) -> io::Result<()> {
     let rest = 3 * (gaussians.sh_coefficients() - 1);
     write!(
         out,
-        "ply\nformat binary_little_endian 1.0\nelement vertex {}\n",
+        "ply\nformat binary_little_endian 1.0\n{}element vertex {}\n",
+        antialiased_comment(gaussians),
         gaussians.len()
     )?;
     let fixed = |names: &'static [&'static str]| names.iter().map(|name| name.to_string());

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::{document, done, folder, line, refused, scene, stderr};
+use super::{document, done, folder, line, rara_with, refused, scene, stderr};
 
 /// A 3DGS training folder `@/trained` of `@/scene.ply`.
 fn trained(here: &Path) {
@@ -104,4 +104,176 @@ fn nerfstudios_cameras_go_where_its_gaussians_are() {
         1,
         "dataparser_transforms.json: field `transform`",
     );
+}
+
+#[test]
+fn what_was_trained_antialiased_is_drawn_so() {
+    let here = folder("antialiased");
+    scene(&here);
+    // Both are rounded alike.
+    for (name, kind) in [("plain", "off"), ("smooth", "on")] {
+        let words = format!("convert @/scene.ply -o @/{name}.ply --antialiasing {kind}");
+        done(line(&here, &words));
+    }
+    let drawn = |scene: &str| {
+        let words = format!("render {scene} --size 64x48 -o @/a.exr --repeat 1");
+        done(line(&here, &words));
+        fs::read(here.join("a.exr")).expect("a picture")
+    };
+    let (plain, smooth) = (drawn("@/plain.ply"), drawn("@/smooth.ply"));
+    assert!(plain != smooth);
+    assert!(drawn("@/plain.ply --antialiasing on") == smooth);
+    assert!(drawn("@/plain.ply --antialiasing off --antialiasing plain=on") == smooth);
+    assert!(drawn("@/smooth.ply --antialiasing off") == plain);
+    let list = json!({"layers": [{"path": "smooth.ply", "antialiased": false}]});
+    fs::write(here.join("list.json"), list.to_string()).expect("writes");
+    assert!(drawn("@/list.json") == plain);
+    assert!(drawn("@/list.json --antialiasing smooth=on") == smooth);
+    for (words, says) in [
+        ("--antialiasing maybe", "expected on, off or auto"),
+        ("--antialiasing hair=on", "no layer is called 'hair'"),
+    ] {
+        refused(&line(&here, &format!("info @/plain.ply {words}")), 2, says);
+    }
+
+    // A file is of one kind.
+    let both = "@/smooth.ply @/plain.ply";
+    let words = format!("convert {both} -o @/both.ply");
+    refused(
+        &line(&here, &words),
+        2,
+        "'smooth' was trained antialiased and 'plain' was not",
+    );
+    done(line(&here, &format!("{words} --antialiasing on")));
+    let words = format!("bake {both} -o @/baked.ply --clip plane:1,0,0,0 --views 0");
+    refused(&line(&here, &words), 2, "'smooth' was trained antialiased");
+    done(line(
+        &here,
+        "bake @/smooth.ply -o @/baked.ply --clip plane:1,0,0,0 --views 0",
+    ));
+    for (file, antialiased) in [("both", true), ("baked", true), ("plain", false)] {
+        let info = document(line(&here, &format!("info @/{file}.ply --json")));
+        assert_eq!(info["layers"][0]["antialiased"], antialiased, "{file}");
+    }
+    let lost = done(line(&here, "convert @/smooth.ply -o @/smooth.glb"));
+    assert!(
+        stderr(&lost).contains("glTF cannot say"),
+        "{}",
+        stderr(&lost)
+    );
+
+    // The settings of the training count where the file says nothing.
+    done(line(&here, "generate general -n 100 -o @/few.ply"));
+    trained(&here);
+    let settings = "Namespace(sh_degree=3, antialiasing=True)";
+    fs::write(here.join("trained/cfg_args"), settings).expect("writes");
+    let said = done(line(&here, "info @/trained"));
+    assert!(stderr(&said).contains("cfg_args says"), "{}", stderr(&said));
+    let info = document(line(&here, "info @/trained --json --antialiasing off"));
+    assert_eq!(info["layers"][0]["antialiased"], false);
+}
+
+#[test]
+fn a_picture_that_the_cameras_have_the_other_way_up_says_so() {
+    let here = folder("upright");
+    scene(&here);
+    done(line(&here, "generate general -n 100 -o @/few.ply"));
+    trained(&here);
+    let words = "render @/trained --size 8x8 -o @/a.png --repeat 1";
+    let printed = stderr(&done(line(&here, words)));
+    assert!(!printed.contains("--up"), "{printed}");
+    let cameras = json!([{"id": 0, "img_name": "a", "width": 48, "height": 32, "position": [0.0, 0.0, -3.0],
+        "rotation": [[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]], "fx": 40.0, "fy": 40.0}]);
+    fs::write(here.join("trained/cameras.json"), cameras.to_string()).expect("writes");
+    let printed = stderr(&done(line(&here, words)));
+    assert!(
+        printed.contains("upside down; --up y turns it"),
+        "{printed}"
+    );
+    for up in ["y", "-y"] {
+        let printed = stderr(&done(line(&here, &format!("{words} --up {up}"))));
+        assert!(!printed.contains("upside down"), "{printed}");
+    }
+}
+
+/// Of another aspect than the camera a picture shows all that the camera sees, in its middle and as it is.
+#[test]
+fn a_size_of_another_aspect_shows_more() {
+    let here = folder("aspect");
+    scene(&here);
+    let camera = json!({"width": 64, "height": 48, "fx": 50.0, "fy": 50.0, "cx": 32.0, "cy": 24.0,
+        "world_to_camera": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4, 0, 0, 0, 1]});
+    fs::write(here.join("camera.json"), camera.to_string()).expect("writes");
+    let drawn = |size: &str| {
+        let words = "render @/scene.ply --camera @/camera.json -o @/a.exr --repeat 1 --raster quad";
+        let printed = done(line(&here, &format!("{words} --size {size}")));
+        let picture = rara::Picture::load(here.join("a.exr")).expect("a picture");
+        (picture, stderr(&printed))
+    };
+    let (own, printed) = drawn("64x48");
+    assert!(!printed.contains("another aspect"), "{printed}");
+    for (size, says, [left, above]) in [
+        ("80x48", "more at its sides", [8, 0]),
+        ("64x60", "more above and below", [0, 6]),
+    ] {
+        let (wider, printed) = drawn(size);
+        assert!(printed.contains(says), "{printed}");
+        let pixel = |picture: &rara::Picture, x: usize, y: usize| {
+            picture.pixels[y * picture.width as usize + x]
+        };
+        for y in 0..48 {
+            for x in 0..64 {
+                let (a, b) = (pixel(&own, x, y), pixel(&wider, x + left, y + above));
+                let apart = (0..4).map(|c| (a[c] - b[c]).abs()).fold(0.0, f32::max);
+                assert!(apart < 2e-3, "{size}: {x}, {y}: {a:?} {b:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn layers_stand_where_they_are_placed() {
+    let here = folder("placed");
+    scene(&here);
+    let drawn = |words: &str| {
+        let words = format!(
+            "render {words} --size 48x32 -o @/a.exr --repeat 1 --eye 0,0,-6 --target 0,0,0"
+        );
+        done(line(&here, &words));
+        fs::read(here.join("a.exr")).expect("a picture")
+    };
+    let list = json!({"layers": [{"path": "scene.ply", "position": [0.5, 0.0, 0.0],
+        "rotation": [0.0, 0.0, 0.0, 1.0], "scale": 0.5}]});
+    fs::write(here.join("list.json"), list.to_string()).expect("writes");
+    let listed = drawn("@/list.json");
+    let place = |prefix: &str| {
+        let flag = format!("--place={prefix}move:0.5,0,0 turn:0,0,1,180 scale:0.5");
+        let at = |name: &str| here.join(name).display().to_string();
+        let words = ["render", &at("scene.ply"), "-o", &at("a.exr"), &flag];
+        let rest = "--size 48x32 --repeat 1 --eye 0,0,-6 --target 0,0,0".split(' ');
+        done(rara_with(words.into_iter().chain(rest), None));
+        fs::read(here.join("a.exr")).expect("a picture")
+    };
+    assert!(place("") == listed && place("scene=") == listed);
+    // In place of what the list says.
+    assert!(drawn("@/list.json --place scene=scale:1") == drawn("@/scene.ply"));
+    let centre = |words: &str| {
+        let info = document(line(&here, &format!("info {words} --json")));
+        let axis = |end: &str| info["centres"][end][0].as_f64().expect("a number");
+        (axis("min") + axis("max")) / 2.0
+    };
+    let moved = centre("@/scene.ply --place move:7,0,0") - centre("@/scene.ply");
+    assert!((moved - 7.0).abs() < 1e-5, "{moved}");
+    done(line(
+        &here,
+        "convert @/scene.ply -o @/moved.ply --place move:7,0,0",
+    ));
+    assert!((centre("@/moved.ply") - centre("@/scene.ply") - 7.0).abs() < 1e-5);
+    for (words, says) in [
+        ("--place hair=scale:2", "no layer is called 'hair'"),
+        ("--place scene=size:2", "'size:2' is none of move:X,Y,Z"),
+        ("--place scale:0", "scale above zero"),
+    ] {
+        refused(&line(&here, &format!("info @/scene.ply {words}")), 2, says);
+    }
 }

@@ -200,6 +200,7 @@ pub fn generated_scenes(count: usize) -> Vec<(String, Gaussians)> {
 pub fn picked(scene: &Gaussians, indices: impl IntoIterator<Item = usize>) -> Gaussians {
     let mut picked = Gaussians::default();
     picked.set_sh_degree(scene.sh_degree());
+    picked.set_antialiased(scene.is_antialiased());
     for index in indices {
         picked.push(
             scene.positions()[index],

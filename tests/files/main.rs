@@ -9,3 +9,4 @@ mod in_memory;
 mod ply;
 mod regressions;
 mod shared;
+mod trained;

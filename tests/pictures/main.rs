@@ -5,6 +5,7 @@ mod common;
 
 mod accuracy;
 mod agreement;
+mod antialiased;
 mod aov;
 mod bake;
 mod camera_planes;

@@ -55,6 +55,30 @@ fn classes_are_the_twins() {
     });
 }
 
+/// Gaussians of which many are smaller than a pixel, so that what makes up for the low-pass leaves some too faint.
+#[test]
+fn classes_of_antialiased_gaussians_are_the_twins() {
+    let mut scene = frame::scene(3_000);
+    scene
+        .scales_mut()
+        .iter_mut()
+        .for_each(|scale| *scale *= 0.1);
+    let mut stages = Stages::new();
+    let camera = frame::views(&scene)[0];
+    let mut culled = [0; 2];
+    for (antialiased, culled) in [false, true].into_iter().zip(&mut culled) {
+        scene.set_antialiased(antialiased);
+        stages.load(&scene);
+        for (mode, planes) in [(Mode::None, 0), (Mode::Exact, 1), (Mode::Rara, 2)] {
+            let settings = Settings::default().mode(mode).raster(Raster::Quad);
+            let planes = frame::clip(&scene, planes, ClipOp::And);
+            *culled = stages.draw(&camera, &planes, &settings).counts.culled;
+            check(&mut stages, &camera, &planes, &settings);
+        }
+    }
+    assert!(culled[1] > culled[0], "{culled:?}");
+}
+
 fn check(stages: &mut Stages, camera: &Camera, planes: &Clip, settings: &Settings) {
     let ours = sides(stages);
     let twin = classify::classify(&stages.scene, &View::<f32>::new(camera), planes, settings);

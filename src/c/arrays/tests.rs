@@ -104,6 +104,11 @@ fn what_is_wrong_with_arrays_is_named() {
         change(&mut arrays);
         assert_fails(made(&arrays).0, RARA_ERROR_INVALID, says);
     };
+    let mut antialiased = packed(&gaussians);
+    antialiased.antialiased = 1;
+    let (code, made_of_it) = made(&antialiased);
+    let is_antialiased = made_of_it.is_some_and(|made| made.is_antialiased());
+    assert!(code == RARA_OK && is_antialiased);
     refused(&|a| a.struct_size = 12, "arrays->struct_size is 12");
     refused(&|a| a.sh_degree = 4, "arrays->sh_degree is 4");
     refused(&|a| a.positions = null(), "arrays->positions is null");

@@ -142,6 +142,7 @@ impl App {
             ))
         })?;
         let window = Arc::new(window);
+        crate::cli::process::make_drivers_folder();
         let mut windowed = Windowed::new(&start.device, window.clone())?;
         windowed.load_as(start.loaded.scene(), start.sh)?;
         say(format_args!(

@@ -20,8 +20,8 @@ pub(super) struct Clips {
     layers: Vec<NamedLayer>,
     /// The number of the layer whose own clip is edited; `None` for the frame's.
     edited: Option<usize>,
-    /// The selections that were typed, which make layers of files.
-    selections: Vec<String>,
+    /// The flags that were typed, which make layers of files.
+    typed: Vec<String>,
     /// The scene's middle.
     centre: DVec3,
     /// True when the window's scene is not yet as these say.
@@ -83,16 +83,17 @@ impl Clips {
             frame,
             layers,
             edited: None,
-            selections: Vec::new(),
+            typed: Vec::new(),
             centre,
             changed: false,
         }
     }
 
-    /// The same with the selections that made its layers, as they were typed.
-    pub(super) fn selected(self, selections: &[String]) -> Self {
+    /// The same with the flags that made its layers, as they were typed.
+    pub(super) fn typed(self, flags: &[(&str, &str)]) -> Self {
+        let typed = |(flag, text): &(&str, &str)| format!("{flag}={}", quoted(text));
         Self {
-            selections: selections.into(),
+            typed: flags.iter().map(typed).collect(),
             ..self
         }
     }
@@ -177,10 +178,7 @@ impl Clips {
 
     /// The flags that make the layers of the same files what they are.
     pub(super) fn flags(&self) -> Vec<String> {
-        let selections = self.selections.iter();
-        let mut flags: Vec<String> = selections
-            .map(|text| format!("--select={}", quoted(text)))
-            .collect();
+        let mut flags = self.typed.clone();
         flags.extend(layer_flags::flags(&self.layers));
         flags
     }
@@ -352,7 +350,7 @@ pub(super) mod tests {
         assert_eq!(clips.in_force().count(), 2);
         clips.act(HeldAction::On(false), &camera(), 1.0);
         assert_eq!(clips.flags(), ["--layer-clip=bone=whole"]);
-        let selected = clips.clone().selected(&["bone=label in 3".into()]);
+        let selected = clips.clone().typed(&[("--select", "bone=label in 3")]);
         assert_eq!(
             selected.flags(),
             ["--select='bone=label in 3'", "--layer-clip=bone=whole"]

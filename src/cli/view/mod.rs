@@ -133,7 +133,7 @@ impl View {
                 scenery: Scenery {
                     name: name(&scene),
                     clips: Clips::new(cut, &loaded.layers, bounds.centre())
-                        .selected(self.scenes.selections()),
+                        .typed(&self.scenes.typed()),
                     outlined: !self.no_outline,
                     settings,
                     centre: bounds.centre(),

@@ -224,6 +224,56 @@ proptest! {
 }
 
 #[test]
+fn what_is_antialiased_has_the_light_that_it_has_without_the_low_pass() {
+    // The integral of alpha over the picture is the opacity times 2 pi times the root of the covariance's determinant.
+    let mut dice = Dice(5);
+    let view = View::<f64>::new(&camera(64, 48, 100.0));
+    let mut darkest = 1.0_f64;
+    for round in 0..200 {
+        let one = dice.one([0.012, 0.03, 0.5][round % 3], 4.0);
+        let mut scene = scene(&[one]);
+        let plain = Footprint::new(&scene, 0, &view);
+        scene.set_antialiased(true);
+        let Some(footprint) = Footprint::new(&scene, 0, &view) else {
+            continue;
+        };
+        let plain = plain.expect("what is fainter is in view");
+        let [b1, b2] = footprint.gradients;
+        let [k0, _, k2] = footprint.conic;
+        let (without, with) = (b1.cross(b2).length(), 1.0 / (k0 * k2));
+        let light = |opacity: f64, deviations: f64| opacity * deviations;
+        let expected = light(plain.opacity, without);
+        assert!((light(footprint.opacity, with) - expected).abs() <= 1e-12 * expected.max(1e-3));
+        assert_eq!(footprint.conic, plain.conic);
+        assert_eq!(footprint.reach, plain.extent);
+        assert!(footprint.extent <= plain.extent);
+        darkest = darkest.min(footprint.opacity / plain.opacity);
+    }
+    assert!(
+        darkest < 0.1,
+        "{darkest}: a splat of less than a pixel loses most"
+    );
+}
+
+#[test]
+fn what_makes_up_for_the_low_pass_leaves_a_share() {
+    // A splat without any extent has no light of its own. Trainers leave it 0.005 of its opacity.
+    let one = One {
+        position: [0.02, 0.02, 4.0], // the middle of a pixel
+        scale: [0.0; 3],
+        opacity: 1.0,
+        ..One::default()
+    };
+    let mut scene = scene(&[one]);
+    scene.set_antialiased(true);
+    let view = View::<f64>::new(&camera(64, 64, 100.0));
+    let footprint = Footprint::new(&scene, 0, &view).expect("0.005 is above 1/255");
+    assert!((footprint.opacity - 0.005).abs() < 1e-6);
+    scene.opacities_mut()[0] = 0.7;
+    assert!(Footprint::new(&scene, 0, &view).is_none(), "0.0035 is not");
+}
+
+#[test]
 fn a_picture_twice_as_large_is_another_picture_of_small_splats() {
     // The low-pass is 0.3 square pixels whatever a pixel covers: it widens the smaller picture's splats by more.
     let one = One {

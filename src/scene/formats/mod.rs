@@ -70,6 +70,13 @@ impl Made {
     /// Appends what another part of the file has become.
     fn append(&mut self, other: Self) -> std::result::Result<(), Failure> {
         let before = self.elements;
+        let differs = self.gaussians.is_antialiased() != other.gaussians.is_antialiased();
+        if differs && !self.gaussians.is_empty() && !other.gaussians.is_empty() {
+            self.report.note(format!(
+                "some parts were trained antialiased and some not; all are drawn {}, as the first is",
+                if self.gaussians.is_antialiased() { "antialiased" } else { "as they are" }
+            ));
+        }
         self.gaussians
             .try_append(&other.gaussians)
             .ok_or_else(|| Failure::Memory(format!("{} Gaussians", other.elements + before)))?;

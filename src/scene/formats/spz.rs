@@ -10,6 +10,8 @@ const MAGIC: &[u8; 4] = b"NGSP";
 /// Bytes of the header that all versions have, and of version 4's.
 const HEADER: u64 = 16;
 const HEADER_4: u64 = 32;
+/// The flag for Gaussians that were trained antialiased.
+pub(super) const ANTIALIASED: u8 = 1;
 /// The flag for records after the Gaussians.
 const HAS_EXTENSIONS: u8 = 2;
 /// The record that says which way the axes point.
@@ -137,7 +139,10 @@ impl Header {
             made.report
                 .note("left out the spherical harmonics of degree 4, which are not drawn".into());
         }
-        Ok(made.into())
+        let mut made = Made::from(made);
+        made.gaussians
+            .set_antialiased(self.flags & ANTIALIASED != 0);
+        Ok(made)
     }
 }
 

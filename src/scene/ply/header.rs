@@ -8,6 +8,7 @@ use std::collections::HashSet;
 use ply_rs::parser::{Parser, Reader};
 use ply_rs::ply::{DefaultElement, ElementDef, Encoding, PropertyType, ScalarType};
 
+use super::trained::Kind;
 use crate::error::shortened;
 
 /// Headers of real files are below 5 kB; this leaves room for long comments. No more is read before the header is known.
@@ -28,6 +29,8 @@ pub(super) struct Header {
     pub(super) lines: u64,
     /// The byte that ends each line of an ascii payload.
     pub(super) line_end: u8,
+    /// What the comments say of the Gaussians.
+    pub(super) kind: Kind,
 }
 
 impl Header {
@@ -58,6 +61,7 @@ impl Header {
             size: size as u64,
             lines: lines.len() as u64,
             line_end,
+            kind: Kind::of(&lines),
         })
     }
 }

@@ -4,6 +4,7 @@ use ply_rs::ply::{ElementDef, Encoding, PropertyType};
 
 use super::header::Header;
 use super::number::Number;
+use super::trained::{self, FILTER};
 use crate::error::shortened;
 use crate::scene::Property;
 use crate::scene::assemble::{FIXED, SH, SLOTS};
@@ -26,7 +27,8 @@ pub(super) struct Layout<'a> {
     pub(super) count: u64,
     pub(super) fields: Vec<Field>,
     pub(super) sh_degree: u32,
-    /// The properties that were asked for, in the order of their slots from [`SLOTS`] on; without values.
+    /// The properties that were asked for and the Gaussians' filters, in the order of their slots from [`SLOTS`] on; without
+    /// values.
     pub(super) properties: Vec<Property>,
     /// Bytes of all elements after the Gaussians, if no list makes that unknowable.
     pub(super) after: Option<u64>,
@@ -64,6 +66,7 @@ impl<'a> Layout<'a> {
             .copied()
             .filter(|name| !vertex.properties.contains_key(*name))
             .collect();
+        trained::check(header.kind, vertex, &missing)?;
         if missing.iter().any(|name| name.len() > 1) && missing.len() > 8 {
             return Err(
                 "the file holds points or a mesh, not Gaussians: it has no scale_*, rot_*, opacity and f_dc_* \
@@ -77,7 +80,9 @@ impl<'a> Layout<'a> {
                 missing.join(", ")
             ));
         }
-        let properties = asked_properties(vertex, asked, rest)?;
+        let mut asked = asked.to_vec();
+        asked.extend(trained::has_filter(vertex).then_some(FILTER));
+        let properties = asked_properties(vertex, &asked, rest)?;
         let asked_slot = |name: &str| {
             let at = properties.iter().position(|asked| asked.name == name);
             at.map(|at| SLOTS + at)

@@ -6,6 +6,7 @@ mod header;
 mod layout;
 mod number;
 mod packed;
+mod trained;
 
 use std::io::{Read, SeekFrom};
 
@@ -14,6 +15,7 @@ use ply_rs::ply::Encoding;
 use self::binary::Failure;
 use self::header::Header;
 use self::layout::Layout;
+use self::trained::Kind;
 use super::assemble::Assembler;
 use super::load::{Input, Loaded, Progress};
 use super::{Format, Property};
@@ -53,6 +55,9 @@ pub(super) fn read(
                 crate::error::shortened(property)
             )));
         }
+        if header.kind == Kind::Discs {
+            return Err(format(trained::DISCS.into()));
+        }
         let start = SeekFrom::Start(header.size);
         source.seek(start).map_err(Error::io(name))?;
         let made = packed::read(source, &header, left, progress);
@@ -63,6 +68,8 @@ pub(super) fn read(
         });
         let (mut loaded, properties) = made?.finish();
         loaded.format = Format::CompressedPly;
+        let is_antialiased = header.kind == Kind::Antialiased;
+        loaded.gaussians.set_antialiased(is_antialiased);
         return Ok((loaded, properties));
     }
     let layout = Layout::of(&header, asked).map_err(format)?;
@@ -84,5 +91,28 @@ pub(super) fn read(
             Failure::Format(message) => format(message),
         },
     )?;
-    Ok(assembler.finish())
+    let (mut loaded, mut properties) = assembler.finish();
+    let mut is_antialiased = header.kind == Kind::Antialiased;
+    if let Some(at) = properties
+        .iter()
+        .position(|property| property.name == trained::FILTER)
+    {
+        let unusable = trained::smooth(&mut loaded.gaussians, &properties[at].values);
+        is_antialiased = true;
+        loaded.report.note(format!(
+            "smoothed the Gaussians by {}, and draws them antialiased, as Mip-Splatting does",
+            trained::FILTER
+        ));
+        if unusable > 0 {
+            loaded.report.note(format!(
+                "{unusable} of {} are no finite numbers, and smooth nothing",
+                trained::FILTER
+            ));
+        }
+        if !asked.contains(&trained::FILTER) {
+            properties.remove(at);
+        }
+    }
+    loaded.gaussians.set_antialiased(is_antialiased);
+    Ok((loaded, properties))
 }

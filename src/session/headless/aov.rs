@@ -176,6 +176,7 @@ fn weight(&[_, green, blue, alpha]: &[f32; 4]) -> f32 {
 /// Gaussians that are seen in the same colour from everywhere.
 fn in_colours(from: &Gaussians, colour: impl Fn(usize) -> Vec3) -> Gaussians {
     let mut painted = Gaussians::default();
+    painted.set_antialiased(from.is_antialiased());
     for index in 0..from.len() {
         // The renderer adds one half.
         let sh = ((colour(index) - 0.5) / SH_0).to_array();

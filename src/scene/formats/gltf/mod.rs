@@ -191,6 +191,16 @@ fn read_primitive(
             shortened(kernel)
         ));
     }
+    let projection = extension
+        .get("projection")
+        .and_then(Value::as_str)
+        .unwrap_or("perspective");
+    if projection != "perspective" {
+        notes.push(format!(
+            "the projection \"{}\" is drawn as perspective",
+            shortened(projection)
+        ));
+    }
     let space = extension
         .get("colorSpace")
         .and_then(Value::as_str)

@@ -99,6 +99,8 @@ pub(super) struct Meta<'a> {
     /// Whether opacities are logits, as version 1 has them.
     pub(super) is_first: bool,
     pub(super) count: u64,
+    /// Whether they were trained antialiased.
+    pub(super) is_antialiased: bool,
     /// The ends of the logarithms of each axis.
     pub(super) bounds: Vec<[f64; 2]>,
     /// The pictures of the low and of the high bytes.
@@ -142,6 +144,16 @@ impl<'a> Meta<'a> {
                     u32::MAX
                 )
             })?;
+        // The format's own word, and the one that splat-transform writes.
+        let model = document.get("model").and_then(Value::as_str);
+        if model == Some("2dgs") {
+            return Err(
+                "it holds discs of 2D Gaussian Splatting, which are intersected with each line of sight, not projected as \
+                 3D Gaussians are; train the scene with 3DGS"
+                    .into(),
+            );
+        }
+        let antialias = document.get("antialias").and_then(Value::as_bool);
         let harmonics = match document.get("shN").filter(|part| !part.is_null()) {
             None => None,
             Some(part) => {
@@ -183,6 +195,7 @@ impl<'a> Meta<'a> {
         Ok(Self {
             is_first: is_first && sh0.get("codebook").is_none(),
             count,
+            is_antialiased: antialias == Some(true) || model == Some("antialiased"),
             bounds: ends(means, "means", 3)?,
             means: [means_low, means_high],
             scales: (scales_file, Range::of(scales, "scales", 3)?),

@@ -156,5 +156,7 @@ fn read(document: &Value, get: &dyn Fn(&str) -> Result<Vec<u8>, Failure>) -> Res
         }
         made.push(&row);
     }
-    Ok(made.into())
+    let mut made = Made::from(made);
+    made.gaussians.set_antialiased(meta.is_antialiased);
+    Ok(made)
 }

@@ -99,6 +99,11 @@ pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
         "quats": { "files": ["quats.webp"] },
         "sh0": { "codebook": colours.0, "files": ["sh0.webp"] },
     });
+    if gaussians.is_antialiased() {
+        // Readers know one or the other.
+        meta["antialias"] = json!(true);
+        meta["model"] = json!("antialiased");
+    }
     let coefficients = gaussians.sh_coefficients() - 1;
     if coefficients > 0 && !order.is_empty() {
         let size = 3 * coefficients;

@@ -6,7 +6,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 
 use super::super::super::Gaussians;
-use super::super::spz::{COLOUR, RIGHT_UP_BACK, signs};
+use super::super::spz::{ANTIALIASED, COLOUR, RIGHT_UP_BACK, signs};
 use super::{Ranges, byte, smallest_three};
 use crate::error::{Error, Result};
 
@@ -33,7 +33,11 @@ pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
     let mut plain = b"NGSP".to_vec();
     plain.extend(3_u32.to_le_bytes());
     plain.extend((count as u32).to_le_bytes());
-    plain.extend([gaussians.sh_degree() as u8, bits as u8, 0, 0]);
+    let flags = match gaussians.is_antialiased() {
+        true => ANTIALIASED,
+        false => 0,
+    };
+    plain.extend([gaussians.sh_degree() as u8, bits as u8, flags, 0]);
     for position in gaussians.positions() {
         for (value, sign) in position.to_array().into_iter().zip(RIGHT_UP_BACK) {
             let steps = (f64::from(value) * sign * f64::from(1 << bits)).round() as i32;

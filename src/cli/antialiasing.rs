@@ -1,0 +1,72 @@
+//! `--antialiasing`: whether layers are drawn as Gaussians that were trained antialiased.
+
+use super::failure::Failure;
+use super::scenes::Loaded;
+
+/// What a text says of the layers of a name, or of all.
+struct Said<'a> {
+    /// The name of the layers; none for all.
+    name: Option<&'a str>,
+    /// What they are; none where that is found by the files.
+    antialiased: Option<bool>,
+}
+
+impl<'a> Said<'a> {
+    fn parse(text: &'a str) -> Result<Self, Failure> {
+        // A name may hold the sign that ends it.
+        let (name, value) = match text.rsplit_once('=') {
+            Some((name, value)) => (Some(name), value),
+            None => (None, text),
+        };
+        let antialiased = match value.trim() {
+            "on" => Some(true),
+            "off" => Some(false),
+            "auto" => None,
+            _ => {
+                return Err(Failure::Usage(format!(
+                    "--antialiasing {text}: expected on, off or auto, or NAME=on for one layer"
+                )));
+            }
+        };
+        Ok(Self { name, antialiased })
+    }
+}
+
+/// Does what the flags say. Of several that say something of a layer the last one counts.
+pub(super) fn apply(texts: &[String], loaded: &mut Loaded) -> Result<(), Failure> {
+    let mut all = Vec::new();
+    for text in texts {
+        let said = Said::parse(text)?;
+        if let Some(name) = said.name {
+            loaded.named("--antialiasing", name)?;
+        }
+        all.push(said);
+    }
+    for layer in &mut loaded.layers {
+        let is_of = |said: &&Said<'_>| said.name.is_none_or(|name| name == layer.name);
+        let said = all.iter().rev().find(is_of);
+        if let Some(antialiased) = said.and_then(|said| said.antialiased) {
+            layer.gaussians.set_antialiased(antialiased);
+        }
+    }
+    Ok(())
+}
+
+/// Refuses layers of both kinds where they become one set, which is antialiased as a whole or not at all. Hidden ones are left
+/// out of it.
+pub(super) fn check_alike(loaded: &Loaded) -> Result<(), Failure> {
+    let shown = loaded.layers.iter();
+    let shown = shown.filter(|layer| layer.state.visible && !layer.gaussians.is_empty());
+    let of = |antialiased: bool| {
+        let mut all = shown.clone();
+        all.find(|layer| layer.gaussians.is_antialiased() == antialiased)
+    };
+    match (of(true), of(false)) {
+        (Some(antialiased), Some(plain)) => Err(Failure::Usage(format!(
+            "the layer '{}' was trained antialiased and '{}' was not, and a file of both can say only one of it: write them \
+             to a file each, or say --antialiasing on or off for all",
+            antialiased.name, plain.name
+        ))),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,146 @@
+//! How the Gaussians of a PLY were trained, in so far as that changes how they are drawn: by its comments, and by properties
+//! that only some trainers write.
+
+use ply_rs::ply::{ElementDef, PropertyType};
+
+use crate::scene::Gaussians;
+
+/// The property in which Mip-Splatting and its descendants leave a deviation that each Gaussian has in all directions beside
+/// its scales: the finest detail that the training pictures show of it.
+pub(super) const FILTER: &str = "filter_3D";
+
+/// What is wrong with the Gaussians of 2DGS.
+pub(super) const DISCS: &str = "the file holds discs of 2D Gaussian Splatting, which have the two scales scale_0 and scale_1 \
+    and are intersected with each line of sight, not projected as 3D Gaussians are; train the scene with 3DGS";
+
+/// The kinds of Gaussians that comments tell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Kind {
+    #[default]
+    Plain,
+    Antialiased,
+    /// Discs, as 2DGS has them.
+    Discs,
+}
+
+impl Kind {
+    /// The kind by the last comment of a header that says one: `SplatRenderMode: mip` of Brush, which others write too, or
+    /// `antialiased 1` of Postshot.
+    pub(super) fn of(lines: &[String]) -> Self {
+        let said = lines.iter().rev().find_map(|line| {
+            let line = line.trim().to_ascii_lowercase();
+            let comment = line
+                .strip_prefix("comment")
+                .or_else(|| line.strip_prefix("obj_info"))?;
+            let mut words = comment.split_ascii_whitespace();
+            match (words.next()?.trim_end_matches(':'), words.next()?) {
+                ("splatrendermode", "mip") | ("antialiased", "1") => Some(Self::Antialiased),
+                ("splatrendermode", "2dgs") => Some(Self::Discs),
+                ("splatrendermode", "default") | ("antialiased", "0") => Some(Self::Plain),
+                _ => None,
+            }
+        });
+        said.unwrap_or_default()
+    }
+}
+
+/// Refuses Gaussians that are drawn in another way than those of 3DGS. `missing` are the properties that these have and the
+/// file has not.
+pub(super) fn check(kind: Kind, vertex: &ElementDef, missing: &[&str]) -> Result<(), String> {
+    let has = |name: &str| vertex.properties.contains_key(name);
+    if missing == ["scale_2"] || kind == Kind::Discs {
+        return Err(DISCS.into());
+    }
+    if has("f_offset_0") && has("f_anchor_feat_0") {
+        return Err(
+            "the file holds anchors of Scaffold-GS or one of its kin (f_offset_*, f_anchor_feat_*), of which networks that \
+             are not in it make Gaussians for each view; train the scene with 3DGS"
+                .into(),
+        );
+    }
+    Ok(())
+}
+
+/// True when the Gaussians have filters of their own.
+pub(super) fn has_filter(vertex: &ElementDef) -> bool {
+    let property = vertex.properties.get(FILTER);
+    property.is_some_and(|property| matches!(property.data_type, PropertyType::Scalar(_)))
+}
+
+/// Smooths each Gaussian by its filter, a standard deviation: the variance along each axis grows by the filter's, and the
+/// opacity falls so that its mass is what it was (the 3D smoothing filter of Yu et al. 2024). Returns how many filters are
+/// no finite number, whose Gaussians stay as they are.
+pub(super) fn smooth(gaussians: &mut Gaussians, filters: &[f64]) -> u64 {
+    let mut unusable = 0;
+    for (index, filter) in filters.iter().enumerate() {
+        let before = gaussians.scales()[index].as_dvec3();
+        let after = (before * before + filter * filter).map(f64::sqrt);
+        if !after.as_vec3().is_finite() {
+            unusable += 1;
+            continue;
+        }
+        // A scale of zero that stays zero has lost nothing.
+        let shares = glam::DVec3::select(
+            after.cmpgt(glam::DVec3::ZERO),
+            before / after,
+            glam::DVec3::ONE,
+        );
+        let opacity = f64::from(gaussians.opacities()[index]) * shares.element_product();
+        gaussians.opacities_mut()[index] = opacity as f32;
+        gaussians.scales_mut()[index] = after.as_vec3();
+    }
+    unusable
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Quat, Vec3};
+
+    use super::*;
+
+    #[test]
+    fn the_last_comment_that_says_a_kind_counts() {
+        let kind =
+            |lines: &[&str]| Kind::of(&lines.iter().map(|l| l.to_string()).collect::<Vec<_>>());
+        for (lines, expected) in [
+            (&["comment SplatRenderMode: mip"][..], Kind::Antialiased),
+            (&["comment  splatrendermode:  MIP "], Kind::Antialiased),
+            (&["comment SplatRenderMode: 2dgs"], Kind::Discs),
+            (&["comment SplatRenderMode: new"], Kind::Plain),
+            (&["comment antialiased 1"], Kind::Antialiased),
+            (
+                &["comment antialiased 1", "comment SplatRenderMode: default"],
+                Kind::Plain,
+            ),
+            (
+                &["comment antialiased 0", "comment SplatRenderMode: mip"],
+                Kind::Antialiased,
+            ),
+            (
+                &["property float antialiased 1", "comment SH degree: 3"],
+                Kind::Plain,
+            ),
+            (&[], Kind::Plain),
+        ] {
+            assert_eq!(kind(lines), expected, "{lines:?}");
+        }
+    }
+
+    #[test]
+    fn smoothing_widens_and_keeps_the_mass() {
+        let mut set = Gaussians::default();
+        for scale in [Vec3::new(0.3, 0.4, 0.0), Vec3::ZERO, Vec3::ONE] {
+            set.push(Vec3::ZERO, scale, Quat::IDENTITY, 0.8, &[0.0; 3]);
+        }
+        let unusable = smooth(&mut set, &[0.4, 0.0, f64::NAN]);
+        assert_eq!(unusable, 1);
+        assert!((set.scales()[0] - Vec3::new(0.5, 0.4 * 2.0_f32.sqrt(), 0.4)).length() < 1e-6);
+        assert_eq!(set.opacities()[0], 0.0, "a disc has no mass");
+        assert_eq!((set.scales()[1], set.opacities()[1]), (Vec3::ZERO, 0.8));
+        assert_eq!((set.scales()[2], set.opacities()[2]), (Vec3::ONE, 0.8));
+        let mut round = Gaussians::default();
+        round.push(Vec3::ZERO, Vec3::splat(0.3), Quat::IDENTITY, 0.5, &[0.0; 3]);
+        smooth(&mut round, &[0.4]);
+        assert!((round.opacities()[0] - 0.5 * 0.6_f32.powi(3)).abs() < 1e-6);
+    }
+}

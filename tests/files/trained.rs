@@ -1,0 +1,103 @@
+//! Files that say how their Gaussians were trained are drawn so.
+
+use std::path::Path;
+
+use rara::Gaussians;
+use rara::glam::Vec3;
+use rara::scene::{Kind, Loaded, generate, load, load_from, load_from_with, save};
+
+use crate::folder::Folder;
+use crate::ply::made::{FIXED, Format, floats, scene_file};
+
+fn antialiased() -> Gaussians {
+    let mut scene = generate(Kind::General, 300, 7);
+    scene.set_antialiased(true);
+    scene
+}
+
+fn loaded(bytes: Vec<u8>) -> Loaded {
+    let name = Path::new("made up");
+    load_from(std::io::Cursor::new(bytes), name, &mut |_, _| ()).expect("it is a scene")
+}
+
+#[test]
+fn formats_that_can_say_it_keep_what_is_antialiased() {
+    let folder = Folder::new("formats-antialiased");
+    let mut scene = antialiased();
+    for antialiased in [true, false] {
+        scene.set_antialiased(antialiased);
+        for name in ["a.ply", "a.compressed.ply", "a.spz", "a.sog"] {
+            let path = folder.join(name);
+            save(&path, &scene).expect("it is written");
+            let read = load(&path, &mut |_, _| ()).expect("it is read");
+            assert_eq!(read.gaussians.is_antialiased(), antialiased, "{name}");
+        }
+    }
+    // No property of the glTF extension is for it.
+    let path = folder.join("a.glb");
+    scene.set_antialiased(true);
+    save(&path, &scene).expect("it is written");
+    assert!(
+        !load(&path, &mut |_, _| ())
+            .expect("it is read")
+            .gaussians
+            .is_antialiased()
+    );
+}
+
+#[test]
+fn comments_of_trainers_are_read() {
+    let said = |comment: &str| {
+        let mut file = scene_file(Format::Little, 2, &floats(FIXED));
+        file.header = file
+            .header
+            .replace("element", &format!("comment {comment}\nelement"));
+        loaded(file.bytes()).gaussians.is_antialiased()
+    };
+    for (comment, expected) in [
+        ("SplatRenderMode: mip", true),
+        ("SplatRenderMode: default", false),
+        ("antialiased 1", true),
+        ("antialiased 0", false),
+        ("antialiasing is a word", false),
+    ] {
+        assert_eq!(said(comment), expected, "{comment}");
+    }
+}
+
+#[test]
+fn filters_of_mip_splatting_smooth() {
+    let mut names = FIXED.to_vec();
+    names.push("filter_3D");
+    let plain = loaded(scene_file(Format::Ascii, 8, &floats(FIXED)).bytes());
+    let bytes = scene_file(Format::Ascii, 8, &floats(&names)).bytes();
+    let made = loaded(bytes.clone());
+    assert!(made.gaussians.is_antialiased() && !plain.gaussians.is_antialiased());
+    assert!(
+        made.report.to_string().contains("filter_3D"),
+        "{}",
+        made.report
+    );
+    // Who asks for the property gets it as well.
+    let source = std::io::Cursor::new(bytes);
+    let asked = load_from_with(source, Path::new("made up"), &["filter_3D"], &mut |_, _| ());
+    let (asked, properties) = asked.expect("it is a scene");
+    assert_eq!(asked, made);
+    let [filters] = &properties[..] else {
+        panic!("{properties:?} is not one property");
+    };
+    for (at, filter) in filters.values.iter().enumerate() {
+        let squares = plain.gaussians.scales()[at].as_dvec3().powf(2.0) + filter * filter;
+        let scale = squares.map(f64::sqrt).as_vec3();
+        let found = made.gaussians.scales()[at];
+        assert!(
+            (found - scale)
+                .abs()
+                .cmple(1e-6 * scale + Vec3::splat(f32::MIN_POSITIVE))
+                .all()
+        );
+        let mass = |set: &Gaussians| set.opacities()[at] * set.scales()[at].element_product();
+        let (before, after) = (mass(&plain.gaussians), mass(&made.gaussians));
+        assert!((before - after).abs() <= 1e-5 * before, "{before} {after}");
+    }
+}

@@ -1,0 +1,150 @@
+//! Gaussians that were trained antialiased, whose opacities make up for the low-pass: against the reference, whole and cut.
+
+use crate::common;
+use rara::clip::Expression;
+use rara::scene::{self, Kind};
+use rara::{
+    Camera, Clip, ClipOp, Gaussians, Headless, Layer, LayerState, Mode, Picture, Raster, Scene,
+    Settings, reference,
+};
+
+const SIZE: (u32, u32) = (64, 48);
+
+/// Gaussians of less than a pixel, of about one and of many.
+fn small_and_large() -> Gaussians {
+    let mut scene = scene::generate(Kind::General, 900, 7);
+    for (index, scale) in scene.scales_mut().iter_mut().enumerate() {
+        *scale *= [0.03, 0.3, 1.0][index % 3];
+    }
+    scene.set_antialiased(true);
+    scene
+}
+
+fn plain(scene: &Gaussians) -> Gaussians {
+    let mut plain = scene.clone();
+    plain.set_antialiased(false);
+    plain
+}
+
+fn view(scene: &Gaussians) -> Camera {
+    common::views(scene, 3, SIZE)[0]
+}
+
+fn of(expression: &str) -> Clip {
+    let parsed = expression.parse::<Expression>();
+    parsed.expect("an expression").clip()
+}
+
+fn drawn(headless: &mut Headless, camera: &Camera, clip: &Clip, settings: &Settings) -> Picture {
+    headless.render(camera, clip, settings).expect("renders");
+    headless.picture().expect("reads back")
+}
+
+fn light(picture: &Picture) -> f64 {
+    picture.pixels.iter().map(|pixel| f64::from(pixel[3])).sum()
+}
+
+#[test]
+fn antialiased_pictures_are_the_references() {
+    let scene = small_and_large();
+    let mut headless = common::headless();
+    headless.load(&scene).expect("uploads");
+    let camera = view(&scene);
+    let rasters = common::rasters(headless.device());
+    let mut check = |mode: Mode, raster: Raster, clip: &Clip, camera: &Camera| {
+        let settings = Settings::default().mode(mode).raster(raster);
+        let name = format!("antialiased by {raster:?}");
+        common::check(&mut headless, &name, &scene, camera, clip, &settings);
+    };
+    let planes = |count: usize, op: ClipOp| common::clip(&scene, count, op);
+    let one = planes(1, ClipOp::And);
+    let shapes = of("any(box:-0.4,0,0,0.3,0.3,0.3, !sphere:0.1,0,0,0.5)");
+    for (mode, clip) in [
+        (Mode::None, &Clip::default()),
+        (Mode::Hard, &one),
+        (Mode::Rara, &one),
+        (Mode::Exact, &planes(3, ClipOp::Or)),
+    ] {
+        check(mode, Raster::Tiles, clip, &camera);
+    }
+    for raster in rasters {
+        check(Mode::Exact, raster, &one, &camera);
+        check(Mode::Exact, raster, &shapes, &camera);
+    }
+    let flat = common::flattened(&camera, &scene);
+    check(Mode::Exact, Raster::Tiles, &one, &flat);
+}
+
+/// The comparison above would hold too if nothing made up for anything on either side.
+#[test]
+fn small_splats_are_darker_antialiased() {
+    let mut scene = small_and_large();
+    scene
+        .scales_mut()
+        .iter_mut()
+        .for_each(|scale| *scale *= 0.1);
+    let camera = view(&scene);
+    let mut headless = common::headless();
+    let mut lights = [0.0; 2];
+    for (scene, light_of) in [&scene, &plain(&scene)].into_iter().zip(&mut lights) {
+        headless.load(scene).expect("uploads");
+        *light_of = light(&drawn(
+            &mut headless,
+            &camera,
+            &Clip::default(),
+            &Settings::default(),
+        ));
+    }
+    let [antialiased, plain] = lights;
+    assert!(antialiased > 0.0 && antialiased < 0.3 * plain, "{lights:?}");
+}
+
+/// A scene may have layers of both kinds, each of which is drawn as it was trained.
+#[test]
+fn layers_are_antialiased_one_by_one() {
+    let whole = small_and_large();
+    let half = |parity: usize| common::picked(&whole, (parity..whole.len()).step_by(2));
+    let (antialiased, plain) = (half(0), plain(&half(1)));
+    let camera = view(&whole);
+    let clip = common::clip(&whole, 1, ClipOp::And);
+    let mut headless = common::headless();
+    let mixed = |visible: bool| {
+        let layer = Layer::new("antialiased", &antialiased);
+        let layer = layer.with(LayerState::default().visible(visible));
+        Scene::from_iter([layer, Layer::new("plain", &plain)])
+    };
+    for raster in common::rasters(headless.device()) {
+        let settings = Settings::default().raster(raster);
+        headless.load(mixed(true)).expect("uploads");
+        let picture = drawn(&mut headless, &camera, &clip, &settings);
+        let truth = reference::render::<f64>(mixed(true), &camera, &clip, &settings);
+        common::assert_agrees("mixed layers", &picture, &truth.picture);
+        // The layer that is not antialiased is drawn to the bit as it is in a scene without any that is.
+        headless.load(mixed(false)).expect("uploads");
+        let beside = drawn(&mut headless, &camera, &clip, &settings);
+        headless.load(&plain).expect("uploads");
+        let alone = drawn(&mut headless, &camera, &clip, &settings);
+        assert!(beside.pixels == alone.pixels, "{raster:?}");
+    }
+}
+
+/// A frame after a moved clip takes over what does not depend on it.
+#[test]
+fn moved_clips_leave_the_same_antialiased_pictures() {
+    let scene = small_and_large();
+    let camera = view(&scene);
+    let mut headless = common::headless();
+    headless.load(&scene).expect("uploads");
+    let clips = [0.0, 0.05, 0.2].map(|by| of(&format!("plane:0.9,0.3,0.2,{by}")));
+    for raster in [Raster::Tiles, Raster::Quad] {
+        let settings = Settings::default().raster(raster);
+        let kept = clips
+            .each_ref()
+            .map(|clip| drawn(&mut headless, &camera, clip, &settings));
+        for (clip, kept) in clips.iter().zip(kept) {
+            headless.forget();
+            let whole = drawn(&mut headless, &camera, clip, &settings);
+            assert!(kept.pixels == whole.pixels, "{raster:?} {clip:?}");
+        }
+    }
+}

@@ -15,17 +15,22 @@ void hand_over(Seen splat) {
     mine = splat;
 }
 
-Seen taken_over(uint i) {
+// True when the clip has nothing to do with any splat of the batch in this tile.
+bool is_whole_batch() {
+    return CLIP_MODE >= MODE_RARA && subgroupAll(mine.linear.x == Z_WHOLE);
+}
+
+Seen taken_over(uint i, bool may_be_cut) {
     Seen splat;
     splat.centre_conic = OF(i, mine.centre_conic);
     splat.conic_opacity = OF(i, mine.conic_opacity);
     splat.colour = OF(i, mine.colour);
     splat.linear = vec3(Z_WHOLE, 0.0, 0.0);
     splat.curvature = vec3(0.0);
-    if (CLIP_MODE >= MODE_RARA || RECLIPPED) {
+    if (may_be_cut && (CLIP_MODE >= MODE_RARA || RECLIPPED)) {
         splat.linear = OF(i, mine.linear);
     }
-    if (CLIP_MODE == MODE_EXACT) {
+    if (may_be_cut && CLIP_MODE == MODE_EXACT) {
         splat.curvature = OF(i, mine.curvature);
     }
     splat.far = DEPTH_FORM != DEPTH_NONE ? OF(i, mine.far) : 0.0;
@@ -49,7 +54,12 @@ void hand_over(Seen splat) {
     barrier();
 }
 
-Seen taken_over(uint i) {
+// A vote would cost a barrier.
+bool is_whole_batch() {
+    return false;
+}
+
+Seen taken_over(uint i, bool may_be_cut) {
     Seen splat = batch[i];
     if (CLIP_MODE < MODE_RARA && !RECLIPPED) {
         splat.linear = vec3(Z_WHOLE, 0.0, 0.0);

@@ -93,7 +93,8 @@ bool hide(float far, inout float alpha[ROWS]) {
     return behind;
 }
 
-void blend(Seen splat, vec2 delta) {
+// `may_be_cut` is a constant where it is called, and false where nothing weighs splats.
+void blend(Seen splat, vec2 delta, bool may_be_cut) {
     float u = splat.centre_conic.z * delta.x;
     float v = splat.centre_conic.w * delta.x;
     float alpha[ROWS];
@@ -112,7 +113,7 @@ void blend(Seen splat, vec2 delta) {
                 weight[row] = WEIGHT_WHOLE;
             }
         }
-        if (CLIP_MODE >= MODE_RARA && splat.linear.x < Z_RANGE) {
+        if (may_be_cut && CLIP_MODE >= MODE_RARA && splat.linear.x < Z_RANGE) {
             weigh(splat, delta, vec2(u, v + splat.conic_opacity.x * delta.y), alpha, weight);
         }
         float most = 0.0;
@@ -207,12 +208,22 @@ void main() {
         uint number = tile_splats.at[min(first + IN_BATCH, end - 1u)];
         hand_over(load(number, tile_middle));
         uint count = min(end - first, BATCH);
+        // Most batches of a cut scene hold no cut splat, and without the code for weights the loop keeps more in registers.
+        if (is_whole_batch()) {
+            for (uint i = 0u; i < count; i++) {
+                Seen splat = taken_over(i, false);
+                if (!done) {
+                    blend(splat, pixel_centre - splat.centre_conic.xy, false);
+                }
+            }
+            continue;
+        }
         for (uint i = 0u; i < count; i++) {
             // All invocations run this, also those that are done: subgroup operations need every one.
-            Seen splat = taken_over(i);
+            Seen splat = taken_over(i, true);
             vec2 delta = pixel_centre - splat.centre_conic.xy;
             if (!done && !((RECLIPPED || CLIP_MODE >= MODE_RARA) && is_away(splat, delta))) {
-                blend(splat, delta);
+                blend(splat, delta, true);
             }
         }
     }

@@ -1,7 +1,10 @@
 //! `--antialiasing`: whether layers are drawn as Gaussians that were trained antialiased.
 
+use std::path::Path;
+
 use super::failure::Failure;
 use super::scenes::Loaded;
+use super::training;
 
 /// What a text says of the layers of a name, or of all.
 struct Said<'a> {
@@ -32,7 +35,18 @@ impl<'a> Said<'a> {
     }
 }
 
-/// Does what the flags say. Of several that say something of a layer the last one counts.
+/// What to say of a file, which says nothing itself, where the settings beside it say that it was trained antialiased.
+pub(super) fn trained(file: &Path) -> Option<String> {
+    let by = training::antialiased_by(file)?;
+    Some(format!(
+        "{}: it is drawn antialiased, as {} says that it was trained; --antialiasing off draws it as it is",
+        file.display(),
+        by.display()
+    ))
+}
+
+/// Does what the flags say, and otherwise what the settings of the training say, with a note of it. Of several flags that say
+/// something of a layer the last one counts.
 pub(super) fn apply(texts: &[String], loaded: &mut Loaded) -> Result<(), Failure> {
     let mut all = Vec::new();
     for text in texts {
@@ -45,8 +59,15 @@ pub(super) fn apply(texts: &[String], loaded: &mut Loaded) -> Result<(), Failure
     for layer in &mut loaded.layers {
         let is_of = |said: &&Said<'_>| said.name.is_none_or(|name| name == layer.name);
         let said = all.iter().rev().find(is_of);
+        let trained = layer.trained.take();
         if let Some(antialiased) = said.and_then(|said| said.antialiased) {
             layer.gaussians.set_antialiased(antialiased);
+        } else if let Some(note) = trained {
+            layer.gaussians.set_antialiased(true);
+            // Selections make several layers of a file.
+            if loaded.notes.last() != Some(&note) {
+                loaded.notes.push(note);
+            }
         }
     }
     Ok(())

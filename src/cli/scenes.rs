@@ -93,9 +93,8 @@ impl SceneArgs {
 
     /// Reads the files.
     pub(super) fn load(&self) -> Result<Loaded, Failure> {
-        let mut loaded = load(self.entries()?)?;
+        let mut loaded = load(self.entries()?, &self.antialiasing)?;
         layer_clip::apply(&self.layer_clip, &mut loaded)?;
-        antialiasing::apply(&self.antialiasing, &mut loaded)?;
         place::apply(&self.place, &mut loaded)?;
         for name in &self.hide {
             for layer in loaded.named("--hide", name)? {
@@ -123,6 +122,8 @@ pub(super) struct LoadedLayer {
     pub(super) clip: Option<LayerClip>,
     /// Where it is a part of a file.
     pub(super) numbers: Option<select::Numbers>,
+    /// What to say where it is antialiased because its training's settings say so, and its file says nothing.
+    pub(super) trained: Option<String>,
     /// What is said of it before any flag says otherwise.
     #[cfg_attr(not(feature = "view"), allow(dead_code))]
     pub(super) listed: Listed,
@@ -151,6 +152,7 @@ impl LoadedLayer {
             },
             clip,
             numbers: None,
+            trained: None,
         }
     }
 }
@@ -278,7 +280,7 @@ impl Loaded {
 
 /// Reads the layers that these files are or list.
 pub(super) fn load_files(paths: &[PathBuf]) -> Result<Loaded, Failure> {
-    load(entries(paths)?)
+    load(entries(paths)?, &[])
 }
 
 /// The layers that files are or list.
@@ -290,8 +292,8 @@ fn entries(files: &[PathBuf]) -> Result<Vec<LayerEntry>, Failure> {
     Ok(entries)
 }
 
-/// Reads the files in order, and prints what had to be repaired.
-fn load(entries: Vec<LayerEntry>) -> Result<Loaded, Failure> {
+/// Reads the files in order, and prints what had to be repaired. `flags` are those of `--antialiasing`.
+fn load(entries: Vec<LayerEntry>, flags: &[String]) -> Result<Loaded, Failure> {
     let mut all = Loaded {
         layers: Vec::new(),
         repaired: 0,
@@ -304,16 +306,9 @@ fn load(entries: Vec<LayerEntry>) -> Result<Loaded, Failure> {
         let path = &entry.path;
         if let Some(antialiased) = entry.antialiased {
             loaded.gaussians.set_antialiased(antialiased);
-        } else if !loaded.gaussians.is_antialiased()
-            && let Some(by) = training::antialiased_by(path)
-        {
-            loaded.gaussians.set_antialiased(true);
-            all.notes.push(format!(
-                "{}: it is drawn antialiased, as {} says that it was trained; --antialiasing off draws it as it is",
-                path.display(),
-                by.display()
-            ));
         }
+        let is_said = entry.antialiased.is_some() || loaded.gaussians.is_antialiased();
+        let trained = (!is_said).then(|| antialiasing::trained(path)).flatten();
         all.repaired += loaded.report.repaired;
         all.dropped += loaded.report.dropped;
         let lines = loaded.report.lines();
@@ -327,9 +322,11 @@ fn load(entries: Vec<LayerEntry>) -> Result<Loaded, Failure> {
         all.add(entry, loaded.gaussians, &properties, before)?;
         for layer in &mut all.layers[first..] {
             layer.format = Some(loaded.format);
+            layer.trained.clone_from(&trained);
         }
         before = before.saturating_add(count);
     }
+    antialiasing::apply(flags, &mut all)?;
     for note in &all.notes {
         say(format_args!("note: {note}"));
     }

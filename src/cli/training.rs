@@ -8,6 +8,7 @@ use rara::Camera;
 use rara::camera_files::{self, NamedCamera};
 
 use super::failure::Failure;
+use super::values::STANDARD;
 use super::{dataparser, output};
 
 /// The scene in a folder that training has left, if it is one: of 3DGS the last iteration's, of nerfstudio what was exported.
@@ -45,8 +46,11 @@ pub(super) fn scene_in(folder: &Path) -> Result<Option<PathBuf>, Failure> {
     Ok(None)
 }
 
-/// The folders in which files about a scene may be, the nearest first.
+/// The folders in which files about a scene may be, the nearest first; none of standard input's.
 fn around(scene: &Path) -> Vec<PathBuf> {
+    if scene == Path::new(STANDARD) {
+        return Vec::new();
+    }
     if scene.is_dir() {
         return vec![scene.to_owned()];
     }
@@ -223,6 +227,8 @@ mod tests {
         assert_eq!(cameras(&folder), Some(cameras_file.clone()));
         assert_eq!(cameras(&last), Some(cameras_file));
         assert_eq!(beside(&last, "dataparser_transforms.json"), None);
+        // Standard input is beside nothing, whatever folder the program runs in.
+        assert!(around(Path::new(STANDARD)).is_empty());
         for (name, text, says) in [
             (
                 "cfg_args",

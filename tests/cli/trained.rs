@@ -169,8 +169,15 @@ fn what_was_trained_antialiased_is_drawn_so() {
     fs::write(here.join("trained/cfg_args"), settings).expect("writes");
     let said = done(line(&here, "info @/trained"));
     assert!(stderr(&said).contains("cfg_args says"), "{}", stderr(&said));
-    let info = document(line(&here, "info @/trained --json --antialiasing off"));
-    assert_eq!(info["layers"][0]["antialiased"], false);
+    for (flags, antialiased) in [("", true), (" --antialiasing off", false)] {
+        let said = done(line(&here, &format!("info @/trained --json{flags}")));
+        // A note that is not so is not made.
+        assert_eq!(stderr(&said).contains("cfg_args says"), antialiased);
+        let info = document(said);
+        assert_eq!(info["layers"][0]["antialiased"], antialiased);
+        let notes = info["notes"].as_array().expect("notes");
+        assert_eq!(notes.len(), usize::from(antialiased), "{notes:?}");
+    }
 }
 
 #[test]

@@ -158,6 +158,8 @@ fn what_does_not_go_together_is_refused_by_name() {
             "--fps is the pace of a film",
         ),
         ("-o @/a.gif", ".apng, .mp4"),
+        ("-o @/a_{}.apng --path orbit", "a film is one file"),
+        ("-o @/{name}/a.mp4 --path orbit", "a film is one file"),
         ("-o @/a.apng --path circle", "orbit[:TURNS]"),
         (
             "-o @/a.apng --path orbit --cameras @/cameras.json",

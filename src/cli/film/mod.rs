@@ -14,6 +14,7 @@ use rara::{Error, Picture, Result};
 
 use super::failure::Failure;
 use super::output;
+use super::pattern::filled;
 use super::values::STANDARD;
 use apng::Apng;
 #[cfg(unix)]
@@ -98,8 +99,15 @@ impl FilmArgs {
                 "--fps is the pace of a film: give -o a name that ends in .apng, {ENDINGS}, or leave it out"
             )));
         }
-        if let (Some(Kind::Video(_)), Some(file)) = (kind, output) {
-            video::encoder(file)?;
+        if let (Some(kind), Some(file)) = (kind, output) {
+            if filled(file, 0, "a") != filled(file, 1, "b") {
+                return Err(Failure::Usage(
+                    "a film is one file: leave the braces out of its name, or name numbered pictures, as frame_{:04}.png".into(),
+                ));
+            }
+            if kind.is_opaque() {
+                video::encoder(file)?;
+            }
         }
         Ok(kind)
     }

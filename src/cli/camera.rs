@@ -66,6 +66,9 @@ pub(super) struct CameraArgs {
     /// file's it shows all that the camera sees, undistorted, and more beside it
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     size: Option<(u32, u32)>,
+    /// Whether only the camera's place and its axes count.
+    #[arg(skip)]
+    is_around: bool,
 }
 
 /// The direction that is up in the world where nothing else is said.
@@ -106,12 +109,14 @@ impl CameraArgs {
         }
     }
 
-    /// Lets a camera that has an eye and no target look straight ahead.
-    pub(super) fn look_ahead(&mut self) {
+    /// Means cameras whose pictures show all directions, of this size. Where none is said the camera may look straight `ahead`.
+    pub(super) fn look_around(&mut self, size: (u32, u32), ahead: bool) {
+        self.is_around = true;
+        self.size = Some(size);
         let up = self.up.unwrap_or(UP).normalize();
-        let ahead = if up.z.abs() < 0.9 { DVec3::Z } else { DVec3::Y };
-        if let (Some(eye), None) = (self.eye, self.target) {
-            self.target = Some(eye + (ahead - up * ahead.dot(up)).normalize());
+        let level = if up.z.abs() < 0.9 { DVec3::Z } else { DVec3::Y };
+        if let (Some(eye), None, true) = (self.eye, self.target, ahead) {
+            self.target = Some(eye + (level - up * level.dot(up)).normalize());
         }
     }
 
@@ -281,6 +286,7 @@ impl CameraArgs {
 
     fn sized(&self, camera: Camera) -> Result<Camera, Failure> {
         match self.size {
+            Some(size) if self.is_around => camera.resized(size).map_err(Failure::usage),
             Some(size) => aspect::sized(camera, size),
             None => Ok(camera),
         }

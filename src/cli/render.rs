@@ -162,8 +162,9 @@ impl Render {
         self.slice.check(&settings)?;
         let sections = self.section.meant(&self.frame.camera, &self.frame.clip)?;
         let panorama = self.panorama.meant(self.frame.camera.size())?;
-        if panorama.is_some() {
-            self.frame.camera.look_ahead();
+        if let Some(panorama) = &panorama {
+            let ahead = !self.path.moves();
+            self.frame.camera.look_around(panorama.size(), ahead);
         }
         let pictures = match sections {
             Some(sections) => Pictures::Sections(sections),

@@ -7,7 +7,7 @@ use rara::Picture;
 
 use super::films::decoded;
 use super::paths::frames;
-use super::{document, done, folder, line};
+use super::{document, done, folder, line, scene, stderr};
 
 /// A splat: where it is, its colour, and the logarithm of its size.
 type Splat = ([f64; 3], [f64; 3], f64);
@@ -91,6 +91,24 @@ fn a_panorama_has_every_direction_in_its_place() {
         "render @/compass.ply -o @/p.apng --panorama --size 32x16 --path orbit --frames 2 --json";
     assert_eq!(frames(&document(line(&here, words))).len(), 12);
     assert_eq!(decoded(&here.join("p.apng"))[1].len(), 32 * 16 * 4);
+}
+
+/// The cameras of a file have a place and axes in a panorama, and no aspect.
+#[test]
+fn cameras_of_any_size_make_panoramas() {
+    let here = folder("panorama_cameras");
+    scene(&here);
+    let camera = |number: u32| {
+        let (width, eye) = (48 + 16 * number, [f64::from(number), 0.0, -4.0]);
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        serde_json::json!({"id": number, "img_name": "a", "width": width, "height": 32, "position": eye, "rotation": axes,
+            "fx": 40.0, "fy": 40.0})
+    };
+    let json = serde_json::json!([camera(0), camera(1)]);
+    fs::write(here.join("cameras.json"), json.to_string()).expect("writes");
+    let words = "render @/scene.ply -o @/a.apng --panorama --path spline --frames 2 --size 32x16";
+    let printed = stderr(&done(line(&here, words)));
+    assert!(!printed.contains("aspect"), "{printed}");
 }
 
 /// How far apart two panoramas are of which one is turned by half a picture, so that its seams are where the other has none:

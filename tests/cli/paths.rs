@@ -192,6 +192,11 @@ fn what_does_not_go_together_is_refused_by_name() {
             "twice as wide as high",
         ),
         ("-o @/a.png --panorama --eye 0,0,0 --fov-y 60", "--fov-y"),
+        // What lies ahead is nothing to go round.
+        (
+            "-o @/a.apng --panorama --eye 0,0,0 --path orbit",
+            "--eye has no --target",
+        ),
         (
             "-o @/a.png --panorama --eye 0,0,0 --clip-near 1",
             "--clip-near",

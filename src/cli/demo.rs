@@ -70,7 +70,7 @@ impl Demo {
         let camera = framing::views(views, &scene)?.remove(0).camera;
         let clip = Clip::of([middle(&scene, &camera)?], ClipOp::And);
 
-        memory::check_picture(&camera)?;
+        memory::check_picture((camera.width, camera.height), 0)?;
         let mut session = Session::open(&self.common.device.meant(), &scene, look.precision.sh)?;
         let (device, driver, _) = session.about();
         let count = grouped(scene.gaussians() as u64);

@@ -1,6 +1,6 @@
 //! Host memory: what will not fit is known before it is taken.
 
-use rara::{Camera, Error, Result};
+use rara::{Error, Result};
 
 use super::output::grouped;
 
@@ -8,6 +8,8 @@ use super::output::grouped;
 const GAUSSIAN: u64 = 4 * (3 + 3 + 4 + 1 + 48);
 /// Bytes of a pixel while a picture is drawn, read back and written, on a device that is this machine's processor.
 const PIXEL: u64 = 64;
+/// Bytes of a pixel of a picture that is kept while others are drawn.
+const KEPT_PIXEL: u64 = 16;
 /// Address space that drivers take for themselves: lavapipe with its compiler.
 const DRIVER: u64 = 800 << 20;
 
@@ -20,20 +22,20 @@ pub(super) fn check_gaussians(count: u64) -> Result<()> {
     )
 }
 
-/// Fails where a picture does not fit beside the driver. Of a machine without a limit of address space the driver has its
-/// own to say.
-pub(super) fn check_picture(camera: &Camera) -> Result<()> {
-    let pixels = u64::from(camera.width) * u64::from(camera.height);
+/// Fails where a picture of this size does not fit beside the driver and so many pixels of others that are kept for it. Of a
+/// machine without a limit of address space the driver has its own to say.
+pub(super) fn check_picture((width, height): (u32, u32), kept: u64) -> Result<()> {
+    let pixels = u64::from(width) * u64::from(height);
     let driver = if address_space_is_limited() {
         DRIVER
     } else {
         0
     };
     check(
-        pixels * PIXEL + driver,
+        pixels * PIXEL + kept * KEPT_PIXEL + driver,
         || {
             let beside = if driver > 0 { " beside a driver" } else { "" };
-            format!("a picture of {}x{}{beside}", camera.width, camera.height)
+            format!("a picture of {width}x{height}{beside}")
         },
         "draw a smaller one, or allow more (ulimit -v)",
     )

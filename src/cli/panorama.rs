@@ -77,6 +77,13 @@ impl Panorama {
         (self.width, self.width / 2)
     }
 
+    /// Pixels of the pictures that one is made of.
+    pub(super) fn kept_pixels(self) -> u64 {
+        let (half, margin) = self.half();
+        let side = 2 * (half + margin) as u64;
+        Self::FACES as u64 * side * side
+    }
+
     /// Half of a picture's pixels that are within 45 degrees of its middle, and all beyond them on one side.
     fn half(self) -> (f64, f64) {
         let half = (f64::from(self.width) / 4.0).max(1.0).ceil();
@@ -279,6 +286,11 @@ mod tests {
                 .all(|one| one.abs() < 1e-12)
         );
         assert_eq!(faces[5].name, "v down");
+        let pixels = |face: &View| u64::from(face.camera.width) * u64::from(face.camera.height);
+        assert_eq!(
+            panorama.kept_pixels(),
+            faces.iter().map(pixels).sum::<u64>()
+        );
         let args = PanoramaArgs { panorama: true };
         assert_eq!(args.meant(None).unwrap().unwrap().size(), (2048, 1024));
         for wrong in [(64, 64), (0, 0), (32768, 16384), (63, 31)] {

@@ -209,11 +209,12 @@ impl Render {
         if run.film.is_none() {
             self.check_files(&planned)?;
         }
-        for one in &planned {
-            let (width, height) = run.size(&one.view.camera);
-            memory::check_picture(&one.view.camera.width(width).height(height))?;
-        }
         let sizes = planned.iter().map(|one| run.size(&one.view.camera));
+        let kept = run.panorama.map_or(0, Panorama::kept_pixels);
+        // A path has many pictures of one size.
+        for size in sizes.clone().collect::<HashSet<_>>() {
+            memory::check_picture(size, kept)?;
+        }
         let size = match run.film {
             Some(_) => film::one_size(sizes)?,
             None => sizes.into_iter().next().unwrap_or((0, 0)),

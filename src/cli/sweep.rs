@@ -119,7 +119,7 @@ impl Sweep {
             Moving::Plane(normal) => extent_along(&scene, *normal),
             Moving::Region(..) => (0.0, 1.0),
         };
-        memory::check_picture(&camera)?;
+        memory::check_picture((camera.width, camera.height), 0)?;
         let device = self.frame.device.meant();
         let mut session = profile.open(device, &scene, settings.precision.sh)?;
         let mut clip_of = |index| -> rara::Result<Clip> {

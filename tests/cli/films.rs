@@ -193,8 +193,9 @@ fn a_signal_ends_the_encoder_and_removes_the_film() {
         );
         std::thread::sleep(Duration::from_millis(1));
     }
+    // A shell has what it runs in the background ignore interrupts, and tests may be run so.
     let sent = Command::new("kill")
-        .args(["-s", "INT", &child.id().to_string()])
+        .args(["-s", "TERM", &child.id().to_string()])
         .status();
     assert!(sent.expect("kill runs").success());
     let output = child.wait_with_output().expect("it ends");

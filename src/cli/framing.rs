@@ -56,7 +56,7 @@ struct Seen {
 /// Moves a camera that frames the box around a scene towards the scene itself, which seldom reaches the box's corners, and
 /// into its middle. What lies outside of the robust bounds does not count.
 fn nearer(camera: Camera, scene: &Scene<'_>) -> Camera {
-    let all = seen(&camera, scene);
+    let all = seen(&camera, scene, &Bounds::of(scene));
     let whole = DVec2::new(camera.cx / camera.fx, camera.cy / camera.fy);
     // The eye in its own axes: x and y are in the middle of what is seen from there, which z moves.
     let mut eye = DVec3::ZERO;
@@ -107,7 +107,7 @@ pub(super) fn round(
     let (mut distance, mut wider) = (0.0_f64, 0.0_f64);
     for place in places.iter().step_by(step) {
         // Places relative to the pivot, as if the eye were there.
-        let all = seen(&place.camera.eye(pivot), scene);
+        let all = seen(&place.camera.eye(pivot), scene, &bounds);
         let off = |at: DVec3, filled: DVec2| (at.truncate().abs() / filled).max_element();
         for Seen { centre, .. } in &all {
             distance = distance.max(off(*centre, whole * FILL).max(NEAREST) - centre.z);
@@ -142,7 +142,8 @@ fn wider(camera: Camera, scene: &Scene<'_>) -> Camera {
         let off = one.centre.truncate().abs() + one.reach.truncate();
         (half / off).min_element()
     };
-    let mut scales: Vec<f64> = seen(&camera, scene).iter().map(scale_of).collect();
+    let all = seen(&camera, scene, &Bounds::of(scene));
+    let mut scales: Vec<f64> = all.iter().map(scale_of).collect();
     let scale = camera.fx.min(least_but_few(&mut scales));
     match scale.is_finite() && scale > 0.0 {
         true => camera.fx(scale).fy(scale),
@@ -150,9 +151,8 @@ fn wider(camera: Camera, scene: &Scene<'_>) -> Camera {
     }
 }
 
-/// What is visible and has its centre within the robust bounds.
-fn seen(camera: &Camera, scene: &Scene<'_>) -> Vec<Seen> {
-    let bounds = Bounds::of(scene);
+/// What is visible and has its centre within the robust bounds, which take longer to find than what is within.
+fn seen(camera: &Camera, scene: &Scene<'_>, bounds: &Bounds) -> Vec<Seen> {
     let step = scene.gaussians().div_ceil(SAMPLE).max(1);
     let layers = scene.layers().iter();
     let visible = layers.filter(|layer| layer.state().visible);
@@ -199,7 +199,8 @@ mod tests {
     /// How much of the picture's halves the centres within the bounds fill: the least and the most of both axes.
     fn filled(camera: &Camera, gaussians: &Gaussians) -> (DVec2, DVec2) {
         let scene = Scene::from(gaussians);
-        let seen = seen(camera, &scene).into_iter().map(|one| {
+        let seen = seen(camera, &scene, &Bounds::of(&scene));
+        let seen = seen.into_iter().map(|one| {
             let p = one.centre;
             assert!(p.z > 0.2);
             let half = DVec2::new(camera.cx / camera.fx, camera.cy / camera.fy);
@@ -243,8 +244,8 @@ mod tests {
     /// How much of the picture's halves the Gaussians reach, out to two deviations.
     fn reached(camera: &Camera, gaussians: &Gaussians) -> f64 {
         let half = DVec2::new(camera.cx / camera.fx, camera.cy / camera.fy);
-        let all = seen(camera, &gaussians.into()).into_iter();
-        let reached = all.map(|Seen { centre, reach }| {
+        let all = seen(camera, &gaussians.into(), &Bounds::of(gaussians));
+        let reached = all.into_iter().map(|Seen { centre, reach }| {
             let w = match camera.projection {
                 Projection::Perspective => centre.z,
                 _ => 1.0,

@@ -87,11 +87,12 @@ impl Error {
         move |source| Self::Io { path, source }
     }
 
-    /// An [`Error::Format`] for `path`.
+    /// An [`Error::Format`] for `path`. It is one line of at most a thousand characters, whatever the message quotes of a file:
+    /// control characters are escaped, and of a longer message the middle is left out.
     pub fn format(path: impl Into<PathBuf>, message: impl Into<String>) -> Self {
         Self::Format {
             path: path.into(),
-            message: message.into(),
+            message: on_a_line(&message.into(), 1000),
         }
     }
 
@@ -117,6 +118,27 @@ fn remedy(error: &std::io::Error) -> &'static str {
 
 /// The crate's result type.
 pub type Result<T> = std::result::Result<T, Error>;
+
+/// A text without control characters, of which the middle is left out where it has more than so many characters.
+pub(crate) fn on_a_line(text: &str, most: usize) -> String {
+    let mut line = Vec::new();
+    for c in text.chars() {
+        match c.is_control() {
+            true => line.extend(c.escape_debug()),
+            false => line.push(c),
+        }
+    }
+    if line.len() <= most {
+        return line.iter().collect();
+    }
+    let (first, last) = (most * 2 / 3, most / 3 - 5);
+    let text = |part: &[char]| part.iter().collect::<String>();
+    format!(
+        "{} ... {}",
+        text(&line[..first]),
+        text(&line[line.len() - last..])
+    )
+}
 
 /// At most the first 60 characters of what a file says, control characters escaped, to quote in a message.
 pub(crate) fn shortened(text: &str) -> String {

@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use crate::error::{Error, Result, shortened};
+use crate::error::{Error, Result, on_a_line, shortened};
 
 /// More than any file of cameras or planes has; it keeps a wrong path (a video, a scene) from filling the memory.
 const MAX_BYTES: u64 = 256 << 20;
@@ -52,7 +52,7 @@ fn explain(error: &serde_json::Error, field: &str) -> String {
     let (line, column) = (error.line(), error.column());
     let text = error.to_string();
     let place = format!(" at line {line} column {column}");
-    let text = text.strip_suffix(&place).unwrap_or(&text);
+    let text = on_a_line(text.strip_suffix(&place).unwrap_or(&text), 240);
     format!("line {line} column {column}{field}: this is not the JSON expected here ({text})")
 }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use rara::camera_files::{ColmapFormat, camera_from_json, cameras_from_colmap, cameras_from_json};
+use rara::clip::planes_from_json;
 
 /// Asserts that an error is one line, whatever names the file contains.
 fn assert_one_line<T: std::fmt::Debug>(result: rara::Result<T>) {
@@ -37,6 +38,26 @@ fn names_with_control_characters_in_errors() {
     ] {
         assert_one_line(cameras_from_json(String::as_bytes(&json), name));
     }
+}
+
+#[test]
+fn words_that_json_does_not_know_in_errors() {
+    let name = Path::new("file");
+    for word in ["\u{7f}", "\u{9b}31m", &"a".repeat(4000)] {
+        assert_one_line(planes_from_json(
+            format!(r#"[["{word}",1]]"#).as_bytes(),
+            name,
+        ));
+    }
+}
+
+#[test]
+fn whatever_an_error_quotes_of_a_file_is_one_line() {
+    let long = format!("a\nb\u{1b}[31m{}, and the remedy", "c".repeat(5000));
+    let text = rara::Error::format("file", long).to_string();
+    assert!(!text.chars().any(char::is_control), "{text:?}");
+    assert!(text.starts_with(r"file: a\nb\u{1b}[31mccc") && text.ends_with("c, and the remedy"));
+    assert!(text.len() < 1020, "{text:?}");
 }
 
 #[test]

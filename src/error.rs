@@ -87,8 +87,8 @@ impl Error {
         move |source| Self::Io { path, source }
     }
 
-    /// An [`Error::Format`] for `path`. It is one line of at most a thousand characters, whatever the message quotes of a file:
-    /// control characters are escaped, and of a longer message the middle is left out.
+    /// An [`Error::Format`] for `path`. It is one line of bounded length, whatever the message quotes of a file: of more than a
+    /// thousand characters the middle is left out, and control characters are escaped.
     pub fn format(path: impl Into<PathBuf>, message: impl Into<String>) -> Self {
         Self::Format {
             path: path.into(),
@@ -119,25 +119,24 @@ fn remedy(error: &std::io::Error) -> &'static str {
 /// The crate's result type.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// A text without control characters, of which the middle is left out where it has more than so many characters.
+/// A text whose control characters are escaped, of which the middle is left out where it has more than so many characters.
 pub(crate) fn on_a_line(text: &str, most: usize) -> String {
-    let mut line = Vec::new();
-    for c in text.chars() {
-        match c.is_control() {
-            true => line.extend(c.escape_debug()),
-            false => line.push(c),
-        }
+    let count = text.chars().count();
+    let (first, last) = match count > most {
+        true => (most * 2 / 3, most / 3 - 5),
+        false => (count, 0),
+    };
+    let mut line = String::new();
+    let mut add = |c: char| match c.is_control() {
+        true => line.extend(c.escape_debug()),
+        false => line.push(c),
+    };
+    text.chars().take(first).for_each(&mut add);
+    if count > most {
+        " ... ".chars().for_each(&mut add);
+        text.chars().skip(count - last).for_each(&mut add);
     }
-    if line.len() <= most {
-        return line.iter().collect();
-    }
-    let (first, last) = (most * 2 / 3, most / 3 - 5);
-    let text = |part: &[char]| part.iter().collect::<String>();
-    format!(
-        "{} ... {}",
-        text(&line[..first]),
-        text(&line[line.len() - last..])
-    )
+    line
 }
 
 /// At most the first 60 characters of what a file says, control characters escaped, to quote in a message.

@@ -87,7 +87,7 @@ pub use scene::{Bounds, GaussianArrays, Gaussians, Layer, LayerState, Scene};
 pub use session::Aov;
 pub use session::{Headless, HeadlessDesc};
 #[cfg(feature = "view")]
-pub use session::{Line, Redraw, Windowed};
+pub use session::{Line, Panel, Redraw, Windowed};
 pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
 pub use stats::{Counts, FrameStats, PassStatistics, PassTime, RasterChoice};
 pub use trace::Trace;

@@ -5,7 +5,7 @@ use ash::{khr, vk};
 use super::failure::failed;
 use super::image::{WHOLE, barrier, begin_rendering, to_be_drawn};
 use super::surface::{Surface, lost};
-use super::{Device, Drawer};
+use super::{Buffer, Device, Drawer};
 use crate::Result;
 
 /// A window's images; none while the window has no size.
@@ -29,6 +29,8 @@ struct Chain {
     outdated: bool,
     /// True when another might fit better, although it works.
     suboptimal: bool,
+    /// True when its images can be copied to.
+    takes_copies: bool,
 }
 
 struct Presented {
@@ -110,6 +112,8 @@ impl Swapchain {
             0 => u32::MAX,
             most => most,
         };
+        // Every window system that is known offers this, and none has to.
+        let copied_to = offered.supported_usage_flags & vk::ImageUsageFlags::TRANSFER_DST;
         let info = vk::SwapchainCreateInfoKHR::default()
             .surface(self.surface.handle())
             // There is one more than the window system holds on to, so that a frame can be drawn meanwhile.
@@ -118,7 +122,7 @@ impl Swapchain {
             .image_color_space(self.format.color_space)
             .image_extent(extent)
             .image_array_layers(1)
-            .image_usage(vk::ImageUsageFlags::COLOR_ATTACHMENT)
+            .image_usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | copied_to)
             .image_sharing_mode(vk::SharingMode::EXCLUSIVE)
             .pre_transform(offered.current_transform)
             .composite_alpha(alpha)
@@ -140,6 +144,7 @@ impl Swapchain {
             images: Vec::new(),
             outdated: true,
             suboptimal: false,
+            takes_copies: !copied_to.is_empty(),
         });
         // SAFETY: the swapchain was created just now.
         let images = unsafe { self.loader.get_swapchain_images(chain.handle) }
@@ -227,22 +232,53 @@ impl Swapchain {
         }
     }
 
-    /// Records the end of rendering, and makes the image ready to be shown.
+    /// The size of the images, if they can be copied to.
+    pub(crate) fn copied_to(&self) -> Option<(u32, u32)> {
+        let chain = self.chain.as_ref().filter(|chain| chain.takes_copies)?;
+        Some((chain.extent.width, chain.extent.height))
+    }
+
+    /// Records the end of rendering, copies to the image what `panels` say, and makes the image ready to be shown.
     ///
     /// # Safety
-    /// `cmd` is the one of [`begin_rendering`](Self::begin_rendering), still inside its rendering.
-    pub(crate) unsafe fn end_rendering(&self, cmd: vk::CommandBuffer, image: usize) {
-        let to_show = vk::ImageMemoryBarrier2::default()
+    /// `cmd` is the one of [`begin_rendering`](Self::begin_rendering), still inside its rendering. The copies are within the
+    /// image and the buffer, no two of them in one place of the image, the images [can be copied to](Self::copied_to), and the
+    /// host has written the buffer, which outlives the execution.
+    pub(crate) unsafe fn end_rendering(
+        &self,
+        cmd: vk::CommandBuffer,
+        image: usize,
+        panels: Option<(&Buffer, &[vk::BufferImageCopy])>,
+    ) {
+        let image = self.chain().images[image].image;
+        let drawn = vk::ImageMemoryBarrier2::default()
             .src_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)
             .src_access_mask(vk::AccessFlags2::COLOR_ATTACHMENT_WRITE)
-            // Presentation waits for a semaphore, which does the rest.
-            .dst_stage_mask(vk::PipelineStageFlags2::NONE)
-            .old_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
-            .new_layout(vk::ImageLayout::PRESENT_SRC_KHR);
-        // SAFETY: the caller vouches for `cmd`, and that the image is being rendered to.
+            .old_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
+        // Presentation waits for a semaphore, which does the rest.
+        let to_show = |from: vk::ImageMemoryBarrier2<'static>| {
+            from.dst_stage_mask(vk::PipelineStageFlags2::NONE)
+                .new_layout(vk::ImageLayout::PRESENT_SRC_KHR)
+        };
+        // SAFETY: the caller vouches for `cmd`, that the image is being rendered to, and for buffer and copies.
         unsafe {
             self.device.commands().end_rendering(cmd);
-            barrier(&self.device, cmd, self.chain().images[image].image, to_show);
+            let Some((buffer, copies)) = panels else {
+                return barrier(&self.device, cmd, image, to_show(drawn));
+            };
+            let copied_to = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+            let to_copy = drawn
+                .dst_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
+                .dst_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+                .new_layout(copied_to);
+            barrier(&self.device, cmd, image, to_copy);
+            let raw = self.device.raw();
+            raw.cmd_copy_buffer_to_image(cmd, buffer.handle(), image, copied_to, copies);
+            let copied = vk::ImageMemoryBarrier2::default()
+                .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
+                .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+                .old_layout(copied_to);
+            barrier(&self.device, cmd, image, to_show(copied));
         }
     }
 

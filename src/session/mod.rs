@@ -19,6 +19,8 @@ mod desc;
 mod headless;
 #[cfg(feature = "view")]
 mod lines;
+#[cfg(feature = "view")]
+mod panels;
 mod spans;
 mod target;
 #[cfg(feature = "view")]
@@ -30,6 +32,8 @@ pub use headless::Aov;
 pub use headless::Headless;
 #[cfg(feature = "view")]
 pub use lines::Line;
+#[cfg(feature = "view")]
+pub use panels::Panel;
 #[cfg(feature = "view")]
 pub use windowed::{Redraw, Windowed};
 

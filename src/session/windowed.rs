@@ -6,6 +6,7 @@ use ash::vk;
 use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 
 use super::lines::Line;
+use super::panels::{self, Panel, Panels};
 use super::target::Target;
 use super::{HeadlessDesc, Session, loaded};
 use crate::camera::Camera;
@@ -34,6 +35,7 @@ pub struct Windowed {
     /// What the next frames show over their pictures, and its way there.
     lines: Vec<Line>,
     overlay: Lines,
+    panels: Panels,
     session: Session,
     /// The statistics of the last frame that was waited for and has computed anything.
     stats: Option<FrameStats>,
@@ -79,6 +81,7 @@ impl Windowed {
             swapchain,
             lines: Vec::new(),
             overlay: Lines::new(desc.bindings_on(&device), FRAMES),
+            panels: Panels::default(),
             session: Session::new(device, desc, renderer)?,
             stats: None,
             broken: false,
@@ -136,6 +139,19 @@ impl Windowed {
         self.lines = lines;
     }
 
+    /// Shows these panels over the window's next pictures and their lines, in place of those before. Of panels that overlap the
+    /// first is shown. [`picture`](Self::picture) does not have them, and neither has a window that does not
+    /// [show panels](Self::shows_panels).
+    pub fn set_panels(&mut self, panels: &[Panel]) {
+        self.panels.set(panels, self.swapchain.format());
+    }
+
+    /// True where the window system lets panels be copied into the window. It is known once [`fit`](Self::fit) has given a
+    /// size, and false before.
+    pub fn shows_panels(&self) -> bool {
+        self.swapchain.copied_to().is_some() && panels::are_possible(self.swapchain.format())
+    }
+
     /// Makes the window's images fit a window of this many pixels. Returns the size that the next frame's camera needs,
     /// which may be another one while the window changes; `None` if there is nothing to draw into, as when it is minimised.
     pub fn fit(&mut self, window: (u32, u32)) -> Result<Option<(u32, u32)>> {
@@ -153,6 +169,7 @@ impl Windowed {
             frames,
             lines,
             overlay,
+            panels,
             ..
         } = self;
         let renderer = &mut self.session.renderer;
@@ -174,6 +191,10 @@ impl Windowed {
         let (device, attachments) = (&self.session.device, Attachments::color(swapchain.format()));
         let frame = frames.next();
         overlay.write(device, frame, &seen, attachments)?;
+        let panels = panels.write(device, frame, swapchain.copied_to())?;
+        let panels = panels
+            .as_ref()
+            .map(|(buffer, copies)| (*buffer, &copies[..]));
         // SAFETY: the semaphore's last frame was waited for, and with it the wait for the semaphore.
         let Some(image) = (unsafe { swapchain.acquire(frames.acquired()) })? else {
             return Ok(Redraw::Now);
@@ -181,8 +202,9 @@ impl Windowed {
         let [r, g, b] = settings.background.unwrap_or_default();
         // SAFETY: the frame before the last was waited for, and its image acquired; scene, renderer, swapchain and lines live
         // until all frames were waited for. The rendering scope is opened and closed here around the draws, on an
-        // attachment of the renderer's format, and the submission waits for its image. The lines' buffer is that of this
-        // frame's slot, and the host wrote it before the submission.
+        // attachment of the renderer's format, and the submission waits for its image. The buffers of lines and panels are
+        // those of this frame's slot, and the host wrote them before the submission; `write` keeps the copies within the
+        // image and apart from each other.
         let shown = unsafe {
             let submitted = frames.submit(swapchain.drawn(image), |cmd| {
                 renderer.prepare(cmd, scene)?;
@@ -193,7 +215,7 @@ impl Windowed {
                     let size = (camera.width, camera.height);
                     overlay.record(&mut drawer, frame, size, attachments);
                 }
-                swapchain.end_rendering(cmd, image);
+                swapchain.end_rendering(cmd, image, panels);
                 Ok(())
             });
             submitted.and_then(|()| swapchain.present(image))
@@ -211,6 +233,43 @@ impl Windowed {
             Some(Outcome::NoRoom) => return Err(super::no_room(settings)),
             Some(Outcome::Drawn | Outcome::Unchanged) | None => Redraw::NotNeeded,
         })
+    }
+
+    /// Shows the panels on a colour and nothing else, as while there is no scene yet.
+    ///
+    /// # Errors
+    /// As of [`show`](Self::show).
+    pub fn show_panels(&mut self, background: [f32; 3]) -> Result<Redraw> {
+        self.unbroken()?;
+        self.frames.wait_for_all()?;
+        let Self {
+            swapchain,
+            frames,
+            panels,
+            ..
+        } = self;
+        let panels = panels.write(&self.session.device, frames.next(), swapchain.copied_to())?;
+        let panels = panels
+            .as_ref()
+            .map(|(buffer, copies)| (*buffer, &copies[..]));
+        // SAFETY: all frames were waited for, and with them the waits for the semaphore.
+        let Some(image) = (unsafe { swapchain.acquire(frames.acquired()) })? else {
+            return Ok(Redraw::Now);
+        };
+        let [r, g, b] = background;
+        // SAFETY: as in `show`, without a scene.
+        let shown = unsafe {
+            let submitted = frames.submit(swapchain.drawn(image), |cmd| {
+                swapchain.begin_rendering(cmd, image, [r, g, b, 1.0]);
+                swapchain.end_rendering(cmd, image, panels);
+                Ok(())
+            });
+            submitted.and_then(|()| swapchain.present(image))
+        };
+        self.broken = shown.is_err();
+        shown.map_err(|error| self.session.explain(error))?;
+        self.session.check_validation()?;
+        Ok(Redraw::NotNeeded)
     }
 
     /// Draws a frame beside the window, as [`Headless`](crate::Headless) would, in any size and without the window's

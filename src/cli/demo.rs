@@ -64,7 +64,7 @@ impl Demo {
         let loaded = if self.scenes.is_empty() {
             made_up()
         } else {
-            scenes::load_files(&self.scenes)?
+            scenes::load_files(&self.scenes, &mut |_| ())?
         };
         let scene = loaded.scene();
         let camera = framing::views(views, &scene)?.remove(0).camera;

@@ -37,6 +37,7 @@ mod precision;
 mod process;
 mod profile;
 mod progress;
+mod reading;
 mod render;
 mod report;
 mod residual;

@@ -2,7 +2,7 @@
 
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -11,53 +11,18 @@ use super::output;
 /// Bars and spinners stay hidden for the first half second, so that quick work leaves no flicker.
 const MOMENT: Duration = Duration::from_millis(500);
 
-/// A bar on the terminal for work that takes longer than a moment; none elsewhere.
-pub(super) struct Progress {
-    bar: ProgressBar,
-    shown_at: Option<Instant>,
-}
+/// How often what moves moves, also where the work says nothing for long.
+const TICK: Duration = Duration::from_millis(100);
 
-impl Progress {
-    pub(super) fn new(what: impl Into<String>) -> Self {
-        let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %")
-            .expect("the template is valid");
-        let bar =
-            ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_style(style);
-        bar.set_message(what.into());
-        Self {
-            bar,
-            shown_at: Some(Instant::now() + MOMENT),
-        }
-    }
-
-    pub(super) fn update(&mut self, done: u64, total: u64) {
-        if output::is_quiet() {
-            return;
-        }
-        if self.shown_at.is_some_and(|at| Instant::now() >= at) {
-            self.shown_at = None;
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
-        self.bar.set_length(total);
-        self.bar.set_position(done);
-    }
-}
-
-impl Drop for Progress {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
-    }
-}
-
-/// A sign of life beside work of unknown length.
-pub(super) struct Spinner {
+/// A thread that shows a bar once the work has taken a moment, and moves it from then on.
+struct Sign {
     /// Dropped to end it.
     alive: Option<Sender<()>>,
     shown: Option<JoinHandle<()>>,
 }
 
-impl Spinner {
-    pub(super) fn new(what: &'static str) -> Self {
+impl Sign {
+    fn new(bar: ProgressBar) -> Self {
         if output::is_quiet() {
             return Self {
                 alive: None,
@@ -70,11 +35,8 @@ impl Spinner {
             if !waits(MOMENT) {
                 return;
             }
-            let style = ProgressStyle::with_template("{spinner} {msg} ({elapsed})")
-                .expect("the template is valid");
-            let bar = ProgressBar::new_spinner().with_style(style);
-            bar.set_message(what);
-            while waits(Duration::from_millis(100)) {
+            bar.set_draw_target(ProgressDrawTarget::stderr());
+            while waits(TICK) {
                 bar.tick();
             }
             bar.finish_and_clear();
@@ -87,11 +49,54 @@ impl Spinner {
     }
 }
 
-impl Drop for Spinner {
+impl Drop for Sign {
     fn drop(&mut self) {
         self.alive = None;
         if let Some(shown) = self.shown.take() {
             let _ = shown.join();
+        }
+    }
+}
+
+fn hidden(template: &str, what: String) -> ProgressBar {
+    let style = ProgressStyle::with_template(template).expect("the template is valid");
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_style(style);
+    bar.set_message(what);
+    bar
+}
+
+/// A bar on the terminal for work that takes longer than a moment; none elsewhere.
+pub(super) struct Progress {
+    bar: ProgressBar,
+    _sign: Sign,
+}
+
+impl Progress {
+    pub(super) fn new(what: impl Into<String>) -> Self {
+        let bar = hidden("{spinner} {msg} {wide_bar} {percent:>3} %", what.into());
+        // Without a length the bar would be full.
+        bar.set_length(1);
+        Self {
+            _sign: Sign::new(bar.clone()),
+            bar,
+        }
+    }
+
+    pub(super) fn update(&mut self, done: u64, total: u64) {
+        self.bar.set_length(total);
+        self.bar.set_position(done);
+    }
+}
+
+/// A sign of life beside work of unknown length.
+pub(super) struct Spinner {
+    _sign: Sign,
+}
+
+impl Spinner {
+    pub(super) fn new(what: &'static str) -> Self {
+        Self {
+            _sign: Sign::new(hidden("{spinner} {msg} ({elapsed})", what.into())),
         }
     }
 }

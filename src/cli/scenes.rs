@@ -1,16 +1,16 @@
 //! Scene files to the layers of a scene.
 
-use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rara::{Gaussians, Layer, LayerState};
 
 use super::failure::Failure;
-use super::output::{Progress, say};
+use super::output::say;
+use super::reading::{self, Watch};
 use super::scene_file::{self, LayerClip, LayerEntry};
 use super::{antialiasing, layer_clip, place, select, training, values};
-use rara::scene::{self, Property};
+use rara::scene::{Format, Property};
 
 /// The flags that name the scene.
 #[derive(Debug, Args)]
@@ -93,7 +93,12 @@ impl SceneArgs {
 
     /// Reads the files.
     pub(super) fn load(&self) -> Result<Loaded, Failure> {
-        let mut loaded = load(self.entries()?, &self.antialiasing)?;
+        self.load_watched(&mut |_| ())
+    }
+
+    /// Reads the files, and tells how far it has come.
+    pub(super) fn load_watched(&self, watch: Watch<'_>) -> Result<Loaded, Failure> {
+        let mut loaded = load(self.entries()?, &self.antialiasing, watch)?;
         layer_clip::apply(&self.layer_clip, &mut loaded)?;
         place::apply(&self.place, &mut loaded)?;
         for name in &self.hide {
@@ -116,7 +121,7 @@ pub(super) struct LoadedLayer {
     pub(super) name: String,
     pub(super) gaussians: Gaussians,
     /// Its file's format; none where it comes from no file.
-    pub(super) format: Option<scene::Format>,
+    pub(super) format: Option<Format>,
     pub(super) state: LayerState,
     /// Its own clip.
     pub(super) clip: Option<LayerClip>,
@@ -278,9 +283,9 @@ impl Loaded {
     }
 }
 
-/// Reads the layers that these files are or list.
-pub(super) fn load_files(paths: &[PathBuf]) -> Result<Loaded, Failure> {
-    load(entries(paths)?, &[])
+/// Reads the layers that these files are or list, and tells how far it has come.
+pub(super) fn load_files(paths: &[PathBuf], watch: Watch<'_>) -> Result<Loaded, Failure> {
+    load(entries(paths)?, &[], watch)
 }
 
 /// The layers that files are or list.
@@ -293,16 +298,16 @@ fn entries(files: &[PathBuf]) -> Result<Vec<LayerEntry>, Failure> {
 }
 
 /// Reads the files in order, and prints what had to be repaired. `flags` are those of `--antialiasing`.
-fn load(entries: Vec<LayerEntry>, flags: &[String]) -> Result<Loaded, Failure> {
+fn load(entries: Vec<LayerEntry>, flags: &[String], watch: Watch<'_>) -> Result<Loaded, Failure> {
     let mut all = Loaded {
         layers: Vec::new(),
         repaired: 0,
         dropped: 0,
         notes: Vec::new(),
     };
-    let mut before = 0;
-    for entry in entries {
-        let (mut loaded, properties) = load_one(&entry)?;
+    let (mut before, files) = (0, entries.len());
+    for (number, entry) in (1..).zip(entries) {
+        let (mut loaded, properties) = reading::read(&entry, (number, files), watch)?;
         let path = &entry.path;
         if let Some(antialiased) = entry.antialiased {
             loaded.gaussians.set_antialiased(antialiased);
@@ -358,29 +363,4 @@ fn named_file(typed: &Path) -> Result<Vec<LayerEntry>, Failure> {
     }
     entry.name = name.map_or(entry.name, str::to_owned);
     Ok(vec![entry])
-}
-
-fn load_one(entry: &LayerEntry) -> rara::Result<(scene::Loaded, Vec<Property>)> {
-    let path = &entry.path;
-    let mut progress = Progress::new(format!("reading {}", path.display()));
-    let properties = select::properties(&entry.selected);
-    if path == Path::new(values::STANDARD) {
-        let name = Path::new("standard input");
-        let mut bytes = Vec::new();
-        io::stdin()
-            .lock()
-            .read_to_end(&mut bytes)
-            .map_err(rara::Error::io(name))?;
-        return scene::load_from_with(
-            io::Cursor::new(bytes),
-            name,
-            &properties,
-            &mut |done, total| {
-                progress.update(done, total);
-            },
-        );
-    }
-    scene::load_with(path, &properties, &mut |done, total| {
-        progress.update(done, total);
-    })
 }

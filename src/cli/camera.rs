@@ -72,11 +72,11 @@ pub(super) struct CameraArgs {
 }
 
 /// The direction that is up in the world where nothing else is said.
-const UP: DVec3 = DVec3::NEG_Y;
+pub(super) const UP: DVec3 = DVec3::NEG_Y;
 /// Picture size where neither a flag nor a file gives one.
 const DEFAULT_SIZE: (u32, u32) = (1024, 1024);
 /// Degrees.
-const FOV_Y: f64 = 50.0;
+pub(super) const FOV_Y: f64 = 50.0;
 
 impl CameraArgs {
     /// True when `--view all` was typed: a run of several frames, however many there are.

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use embedded_graphics::mono_font::MonoTextStyle;
-use embedded_graphics::mono_font::ascii::{FONT_6X10, FONT_9X18_BOLD};
+use embedded_graphics::mono_font::ascii::{FONT_6X10, FONT_8X13, FONT_9X18_BOLD};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::prelude::*;
 use embedded_graphics::text::Text;
@@ -74,6 +74,9 @@ pub(super) fn dot(picture: &mut Picture, at: [f64; 2], radius: f64, colour: [u8;
 pub(super) enum Font {
     /// Capitals are seven dots high and letters six wide.
     Small,
+    /// Nine and eight.
+    #[cfg_attr(not(feature = "view"), allow(dead_code))]
+    Middle,
     /// Eleven and nine.
     Large,
 }
@@ -90,6 +93,7 @@ pub(super) fn text(
     // The lowest row of a capital, counted from 0.
     let (font, baseline) = match font {
         Font::Small => (&FONT_6X10, 6),
+        Font::Middle => (&FONT_8X13, 8),
         Font::Large => (&FONT_9X18_BOLD, 10),
     };
     let mut dots = Dots {

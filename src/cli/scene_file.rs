@@ -11,7 +11,7 @@ use serde::Deserialize;
 use super::select::Selected;
 
 /// The longest list that is read.
-const MOST_BYTES: u64 = 16 << 20;
+pub(super) const MOST_BYTES: u64 = 16 << 20;
 
 /// A layer that is to be read.
 #[derive(Debug)]

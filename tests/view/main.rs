@@ -3,9 +3,11 @@
 #![cfg(all(feature = "view", unix))]
 
 mod display;
+mod drag;
 #[path = "../common/folder.rs"]
 mod folder;
 mod shapes;
+mod text;
 mod viewer;
 mod x11;
 

@@ -29,7 +29,12 @@ impl<'a> Viewer<'a> {
         )
     }
 
+    /// Without text over the picture.
     pub(super) fn open(display: &'a Display, folder: &'a Path, words: &str) -> Self {
+        Self::with_text(display, folder, &format!("--no-text {words}"))
+    }
+
+    pub(super) fn with_text(display: &'a Display, folder: &'a Path, words: &str) -> Self {
         let mut command = rara(folder, &format!("view --script - --validation {words}"));
         command
             .env("DISPLAY", &display.name)

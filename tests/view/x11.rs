@@ -5,8 +5,10 @@ use std::os::unix::net::UnixStream;
 
 /// A client of an X server.
 pub(super) struct Client {
-    stream: UnixStream,
-    root: u32,
+    pub(super) stream: UnixStream,
+    pub(super) root: u32,
+    /// The last number of a thing of the client's own.
+    pub(super) base: u32,
 }
 
 impl Client {
@@ -24,8 +26,8 @@ impl Client {
         stream.read_exact(&mut setup).expect("the whole answer");
         let vendor = usize::from(u16::from_le_bytes([setup[16], setup[17]]));
         let screen = 32 + vendor.next_multiple_of(4) + 8 * usize::from(setup[21]);
-        let root = word(&setup, screen);
-        Self { stream, root }
+        let (root, base) = (word(&setup, screen), word(&setup, 4));
+        Self { stream, root, base }
     }
 
     /// The largest window that is open.
@@ -76,7 +78,7 @@ impl Client {
         }
     }
 
-    fn request(&mut self, opcode: u8, detail: u8, words: &[u32]) {
+    pub(super) fn request(&mut self, opcode: u8, detail: u8, words: &[u32]) {
         let length = u16::try_from(words.len() + 1).expect("a short request");
         let mut request = vec![opcode, detail];
         request.extend(length.to_le_bytes());
@@ -86,14 +88,14 @@ impl Client {
 
     /// Sends a request without a reply and waits until it is done, as the server forgets the requests of a client that
     /// has left.
-    fn send(&mut self, opcode: u8, detail: u8, words: &[u32]) {
+    pub(super) fn send(&mut self, opcode: u8, detail: u8, words: &[u32]) {
         self.request(opcode, detail, words);
         self.request(43, 0, &[]); // GetInputFocus
         self.reply();
     }
 
     /// A reply's first 32 bytes.
-    fn reply(&mut self) -> [u8; 32] {
+    pub(super) fn reply(&mut self) -> [u8; 32] {
         let mut head = [0; 32];
         self.stream.read_exact(&mut head).expect("a reply");
         while head[0] > 1 {
@@ -105,6 +107,6 @@ impl Client {
     }
 }
 
-fn word(bytes: &[u8], at: usize) -> u32 {
+pub(super) fn word(bytes: &[u8], at: usize) -> u32 {
     u32::from_le_bytes(bytes[at..][..4].try_into().expect("four bytes"))
 }

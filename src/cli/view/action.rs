@@ -37,6 +37,12 @@ pub(super) enum Action {
     Edit(Edit),
     /// Outline the shapes that clip, or not; whichever it is not where that is not said.
     Outline(Option<bool>),
+    /// Show the list of keys, or not, likewise.
+    Keys(Option<bool>),
+    /// Show the clip's numbers, or not, likewise.
+    Numbers(Option<bool>),
+    /// Open a file as if it were dropped on the window.
+    Drop(PathBuf),
     Mode(Mode),
     /// Write a screenshot to this file, or to the next free number.
     Screenshot(Option<PathBuf>),
@@ -105,6 +111,21 @@ pub(super) enum HeldAction {
 }
 
 impl Action {
+    /// True when the action is one on the scene that is shown.
+    pub(super) fn needs_a_scene(&self) -> bool {
+        !matches!(
+            self,
+            Self::Keys(_)
+                | Self::Numbers(_)
+                | Self::Drop(_)
+                | Self::Resize(_)
+                | Self::Minimise
+                | Self::Restore
+                | Self::Help
+                | Self::Quit
+        )
+    }
+
     /// True when the action only changes what the next frame shows, so that it need not wait for the last frame's
     /// numbers.
     pub(super) fn moves(&self) -> bool {
@@ -154,10 +175,17 @@ impl FromStr for Action {
                 "" => return Err("edit takes next, frame, release, or a layer".into()),
                 which => Edit::Layer(Which::Typed(which.into())),
             }),
-            "outline" => match switch(rest) {
-                Some(on) => Self::Outline(Some(on)),
-                None => return Err(format!("outline {rest}: on or off is possible")),
-            },
+            "outline" | "keys" | "numbers" => {
+                let on = switch(rest);
+                let on = Some(on.ok_or_else(|| format!("{verb} {rest}: on or off is possible"))?);
+                match verb {
+                    "outline" => Self::Outline(on),
+                    "keys" => Self::Keys(on),
+                    _ => Self::Numbers(on),
+                }
+            }
+            "drop" if rest.is_empty() => return Err("drop takes a file".into()),
+            "drop" => Self::Drop(rest.into()),
             "mode" => Self::Mode(
                 Mode::from_str(rest, false)
                     .map_err(|_| format!("mode {rest}: none, hard, rara or exact is possible"))?,
@@ -177,8 +205,8 @@ impl FromStr for Action {
             other => {
                 return Err(format!(
                     "\"{other}\" is no action; there are turn, shift, zoom, move, camera, shape, plane, drag, tilt, \
-                     scale, layer, edit, outline, mode, screenshot, resize, minimise, restore, timings, flags, repeat \
-                     and quit"
+                     scale, layer, edit, outline, keys, numbers, drop, mode, screenshot, resize, minimise, restore, \
+                     timings, flags, repeat and quit"
                 ));
             }
         };
@@ -293,6 +321,9 @@ mod tests {
             Action::Edit(Edit::Layer(which("skin")))
         );
         assert_eq!(parsed("outline off"), Action::Outline(Some(false)));
+        assert_eq!(parsed("keys on"), Action::Keys(Some(true)));
+        assert_eq!(parsed("numbers off"), Action::Numbers(Some(false)));
+        assert_eq!(parsed("drop a b.ply"), Action::Drop("a b.ply".into()));
         assert_eq!(parsed("mode hard"), Action::Mode(Mode::Hard));
         assert_eq!(parsed("camera fly"), Action::Walk(Walk::Fly));
         assert_eq!(
@@ -324,6 +355,8 @@ mod tests {
             ("layer  off", "number from 1"),
             ("edit", "next, frame"),
             ("outline", "on or off"),
+            ("keys 1", "keys 1: on or off"),
+            ("drop", "takes a file"),
             ("turn 5", "expected 2 numbers"),
             ("mode soft", "none, hard"),
             ("screenshot a.jpg", ".png"),

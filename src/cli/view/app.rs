@@ -8,32 +8,38 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
-use rara::{Error, HeadlessDesc, ShFormat, Windowed};
+use rara::{Error, HeadlessDesc, Windowed};
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::WindowEvent;
-use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
 use super::action::Action;
 use super::input::Input;
+use super::loading::{Fresh, Load};
 use super::lost;
+use super::scenery::Manner;
 use super::script;
-use super::stage::{Scenery, Viewer};
+use super::stage::Viewer;
 use crate::cli::failure::Failure;
 use crate::cli::output::say;
-use crate::cli::scenes::Loaded;
 
-/// A message to the event loop from the thread that follows standard input as a script.
-pub(super) type Sent = Result<Vec<Action>, Failure>;
+/// A message to the event loop from another thread.
+pub(super) enum Sent {
+    /// What standard input says as a script.
+    Script(Result<Vec<Action>, Failure>),
+    /// A scene that has been read, or why it could not be.
+    Read(Box<Result<Fresh, Failure>>),
+}
 
 /// The description of a window to be opened.
 pub(super) struct Start {
     pub(super) device: HeadlessDesc,
-    pub(super) loaded: Loaded,
-    pub(super) sh: ShFormat,
     pub(super) size: (u32, u32),
-    pub(super) scenery: Scenery,
+    pub(super) manner: Manner,
+    /// How its first scene is read.
+    pub(super) load: Load,
     /// The actions of a script, which come first.
     pub(super) script: Vec<Action>,
     /// True when standard input is followed as a script afterwards.
@@ -42,6 +48,7 @@ pub(super) struct Start {
 
 struct App {
     start: Option<Start>,
+    proxy: EventLoopProxy<Sent>,
     stage: Option<Viewer>,
     input: Input,
     script: VecDeque<Action>,
@@ -94,14 +101,18 @@ fn without_place(message: &str) -> &str {
 
 /// Opens the window and stays until it is closed.
 pub(super) fn run(events: EventLoop<Sent>, mut start: Start) -> Result<(), Failure> {
+    let proxy = events.create_proxy();
     if start.follow {
-        let proxy = events.create_proxy();
+        let proxy = proxy.clone();
         // The thread ends with standard input, or with the program.
-        thread::spawn(move || script::follow(|actions| proxy.send_event(actions).is_ok()));
+        thread::spawn(move || {
+            script::follow(|actions| proxy.send_event(Sent::Script(actions)).is_ok())
+        });
     }
     let mut app = App {
         script: std::mem::take(&mut start.script).into(),
         start: Some(start),
+        proxy,
         stage: None,
         input: Input::default(),
         resizing: None,
@@ -143,16 +154,15 @@ impl App {
         })?;
         let window = Arc::new(window);
         crate::cli::process::make_drivers_folder();
-        let mut windowed = Windowed::new(&start.device, window.clone())?;
-        windowed.load_as(start.loaded.scene(), start.sh)?;
+        let windowed = Windowed::new(&start.device, window.clone())?;
         say(format_args!(
             "device   {} ({}), {:?}; H lists the keys",
             windowed.device().info().name,
             windowed.device().info().driver,
             windowed.format()
         ));
-        self.stage = Some(Viewer::new(windowed, window, start.scenery));
-        Ok(())
+        let stage = Viewer::new(windowed, window, self.proxy.clone(), start.manner)?;
+        self.stage.insert(stage).load(start.load)
     }
 
     /// Keeps a failure and ends the loop; of several failures the first is kept.
@@ -197,12 +207,20 @@ impl App {
                 self.input.modifiers(modifiers.state());
                 None
             }
-            WindowEvent::KeyboardInput { event, .. } => self.input.key(
-                &event.logical_key,
-                event.physical_key,
-                event.state,
-                event.repeat,
-            ),
+            WindowEvent::ScaleFactorChanged { scale_factor, .. } => {
+                stage.rescaled(scale_factor);
+                None
+            }
+            WindowEvent::DroppedFile(file) => Some(Action::Drop(file)),
+            WindowEvent::KeyboardInput { event, .. } => {
+                stage.dirty |= event.state.is_pressed() && stage.overlay.hush();
+                self.input.key(
+                    &event.logical_key,
+                    event.physical_key,
+                    event.state,
+                    event.repeat,
+                )
+            }
             WindowEvent::MouseInput { state, button, .. } => {
                 self.input.button(button, state);
                 None
@@ -218,12 +236,12 @@ impl App {
             Some(Action::Quit) => events.exit(),
             Some(action @ Action::Screenshot(_)) => match stage.act(action) {
                 // A full disk is no reason to close the window.
-                Err(failure) if concerns_a_file(&failure) => say(failure),
+                Err(failure) if concerns_a_file(&failure) => stage.warn(&failure),
                 outcome => outcome?,
             },
             Some(action) => match stage.act(action) {
                 // A key may ask for a layer that is not there.
-                Err(failure @ Failure::Usage(_)) => say(failure),
+                Err(failure @ Failure::Usage(_)) => stage.warn(&failure),
                 outcome => outcome?,
             },
             None => {}
@@ -236,7 +254,10 @@ impl App {
         let Some(stage) = &mut self.stage else {
             return Ok(());
         };
-        while self.resizing.is_none() && !(stage.dirty && stage.visible()) {
+        while self.resizing.is_none()
+            && !stage.waits_for_files()
+            && !(stage.dirty && stage.visible())
+        {
             let waits = |action: &Action| stage.unsettled && stage.visible() && !action.moves();
             if self.script.front().is_some_and(waits) {
                 break;
@@ -295,9 +316,14 @@ impl ApplicationHandler<Sent> for App {
     }
 
     fn user_event(&mut self, events: &ActiveEventLoop, sent: Sent) {
-        match sent {
-            Ok(actions) => self.script.extend(actions),
-            Err(failure) => self.end(events, Err(failure)),
+        match (sent, &mut self.stage) {
+            (Sent::Script(Ok(actions)), _) => self.script.extend(actions),
+            (Sent::Script(Err(failure)), _) => self.end(events, Err(failure)),
+            (Sent::Read(outcome), Some(stage)) => {
+                let arrived = stage.arrive(*outcome);
+                self.end(events, arrived);
+            }
+            (Sent::Read(_), None) => {}
         }
     }
 
@@ -310,19 +336,24 @@ impl ApplicationHandler<Sent> for App {
         if events.exiting() {
             return;
         }
+        if let Some(stage) = &mut self.stage {
+            let opened = stage.open_dropped();
+            self.end(events, opened);
+        }
         self.fly();
         let followed = self.follow(events);
         self.end(events, followed);
-        if let Some(stage) = &self.stage
+        let mut until = self.resizing.map(|(_, until)| until);
+        if let Some(stage) = &mut self.stage
             && stage.visible()
-            && (stage.dirty || stage.unsettled)
         {
-            stage.window.request_redraw();
+            let changes = stage.changes_by_itself(Instant::now());
+            until = until.into_iter().chain(changes).min();
+            if stage.dirty || stage.unsettled {
+                stage.window.request_redraw();
+            }
         }
-        events.set_control_flow(match self.resizing {
-            Some((_, until)) => ControlFlow::WaitUntil(until),
-            None => ControlFlow::Wait,
-        });
+        events.set_control_flow(until.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
     }
 
     /// Frees everything while the display is still there.

@@ -9,7 +9,7 @@ use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
 use super::action::{Action, Edit, HeldAction, Which};
 
-/// The text that `--help` and the key H print.
+/// The text that `--help` prints and the key H shows.
 pub(super) const KEYS: &str = "\
 Mouse:
   left drag                    turn the view
@@ -35,11 +35,15 @@ Keys:
   F1 to F9                     layer 1 to 9 on or off
   L                            edit the next layer's clip, after the last the frame's again
   U                            the edited layer has no clip of its own any more
+  M                            the mode and the clip's numbers on the screen, or not
   C or F12                     screenshot
   F                            the flags that draw this, on the terminal
   T                            stage times and counts on the terminal
-  H                            this list
-  Esc                          quit";
+  H                            this list, or not
+  Esc                          quit
+Files dropped on the window:
+  a scene                      in place of this one; several are its layers
+  clips, cameras (.json)       the clip that is edited; cameras to choose from";
 
 /// How many degrees an arrow key turns.
 const ARROW: f64 = 5.0;
@@ -227,6 +231,7 @@ fn letter(text: &str) -> Option<Action> {
         "j" => held(HeldAction::Scale(1.0 / LARGER)),
         "k" => held(HeldAction::Scale(LARGER)),
         "b" => Action::Outline(None),
+        "m" => Action::Numbers(None),
         "l" => Action::Edit(Edit::Next),
         "u" => Action::Edit(Edit::Release),
         "f" => Action::Flags,
@@ -235,7 +240,7 @@ fn letter(text: &str) -> Option<Action> {
         "n" => Action::NextView,
         "c" => Action::Screenshot(None),
         "t" => Action::Timings,
-        "h" => Action::Help,
+        "h" => Action::Keys(None),
         _ => return None,
     })
 }

@@ -116,6 +116,17 @@ impl Clips {
         frame.into_iter().chain(own).filter(|cut| cut.on)
     }
 
+    /// Puts these expressions in place of the clip that is edited.
+    pub(super) fn replace(&mut self, clip: Vec<Expression>) {
+        match self.edited {
+            None => self.frame = Cut::new(clip, self.frame.op(), self.centre),
+            Some(layer) => {
+                self.layers[layer].own = Some(Cut::new(clip, ClipOp::And, self.centre));
+                self.changed = true;
+            }
+        }
+    }
+
     /// Does what is asked of the held shape. What changes the clip of a layer without one gives it one, whose only shape is a
     /// plane through the middle of the scene.
     pub(super) fn act(&mut self, action: HeldAction, camera: &Camera, radius: f64) {

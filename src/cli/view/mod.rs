@@ -4,16 +4,23 @@ mod action;
 mod app;
 mod camera_flags;
 mod cut;
+mod dropped;
 mod flags;
 mod grip;
 mod input;
 mod layer_flags;
 mod layers;
+mod loading;
 mod lost;
+mod numbers;
+mod opening;
 mod outlines;
+mod overlay;
+mod scenery;
 mod script;
 mod shots;
 mod stage;
+mod text;
 mod title;
 mod viewpoint;
 
@@ -22,15 +29,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use glam::DVec3;
 use rara::clip::Expression;
-use rara::scene::Bounds;
 use rara::{Camera, ClipOp, Scene};
 
 use self::cut::Cut;
 use self::input::KEYS;
-use self::layers::Clips;
+use self::loading::Fresh;
+use self::scenery::Manner;
 use self::shots::Shots;
-use self::stage::Scenery;
-use super::camera::Views;
+use super::camera::{CameraArgs, UP, Views};
 use super::failure::Failure;
 use super::frame::FrameArgs;
 use super::scenes::SceneArgs;
@@ -58,7 +64,9 @@ Scripts, a line an action, # begins a comment; each is on the screen before the 
   resize WxH                              layer N|NAME [on|off]
   minimise, restore                       edit next, frame, N|NAME, release
   timings, flags                          outline on, off
-  repeat N ACTION                         quit
+  keys on, off                            numbers on, off
+  drop FILE                               repeat N ACTION
+  quit
 
 Examples:
   rara view scene.ply
@@ -80,6 +88,10 @@ pub(super) struct View {
     /// Begin without the outlines of the shapes that clip, which the key B brings
     #[arg(long)]
     no_outline: bool,
+    /// Begin without text over the picture: without the hint, and without the clip's numbers, which the key M brings. What
+    /// fails is written there all the same, and how far the reading of a scene has come
+    #[arg(long)]
+    no_text: bool,
     #[command(flatten)]
     section: SectionArgs,
     #[command(flatten)]
@@ -115,33 +127,27 @@ impl View {
             Some(file) if !follow => script::read(file)?,
             _ => Vec::new(),
         };
+        let size = begin.size(&camera)?;
         let events = app::connect()?;
 
-        let loaded = self.scenes.load()?;
-        let scene = loaded.scene();
-        let bounds = Bounds::of(&scene);
-        let (views, cut) = begin.of(&scene, camera.up(), bounds.centre())?;
-        let Some((first, _)) = views.first() else {
-            return Err(Failure::Usage("--cameras: the file has no camera".into()));
-        };
+        let (scenes, up) = (self.scenes, camera.up());
         app::run(
             events,
             app::Start {
                 device: self.frame.device.meant(),
-                sh: settings.precision.sh,
-                size: (first.width, first.height),
-                scenery: Scenery {
-                    name: name(&scene),
-                    clips: Clips::new(cut, &loaded.layers, bounds.centre())
-                        .typed(&self.scenes.typed()),
-                    outlined: !self.no_outline,
+                size,
+                manner: Manner {
+                    sh: settings.precision.sh,
                     settings,
-                    centre: bounds.centre(),
-                    radius: bounds.radius(),
+                    up: camera.chosen_up().unwrap_or(UP),
+                    outlined: !self.no_outline,
+                    text: !self.no_text,
                     shots,
-                    views,
                 },
-                loaded,
+                load: Box::new(move |watch| {
+                    let loaded = scenes.load_watched(watch)?;
+                    Fresh::new(loaded, begin, up, &scenes.typed())
+                }),
                 script,
                 follow,
             },
@@ -150,6 +156,25 @@ impl View {
 }
 
 impl Begin {
+    /// Cameras without a clip.
+    fn unclipped(views: Views) -> Self {
+        Self::Views(views, Vec::new(), ClipOp::And)
+    }
+
+    /// The size of the window.
+    fn size(&self, camera: &CameraArgs) -> Result<(u32, u32), Failure> {
+        match self {
+            Self::Views(Views::Given(views), ..) => {
+                let first = views
+                    .first()
+                    .map(|view| (view.camera.width, view.camera.height));
+                first.ok_or_else(|| Failure::Usage("--cameras: the file has no camera".into()))
+            }
+            Self::Views(Views::Framed { size, .. }, ..) => Ok(*size),
+            _ => Ok(camera.chosen_size()),
+        }
+    }
+
     /// The cameras, each with its up direction, and the clip, once the scene is known.
     fn of(
         self,

@@ -5,49 +5,52 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use rara::{Camera, Redraw, Settings, Windowed};
+use rara::{Redraw, Windowed};
 use winit::dpi::PhysicalSize;
+use winit::event_loop::EventLoopProxy;
 use winit::window::Window;
 
 use super::action::Action;
+use super::app::Sent;
+use super::dropped::Dropped;
 use super::flags;
 use super::input::KEYS;
-use super::layers::Clips;
+use super::loading::Loading;
 use super::outlines;
-use super::shots::{self, Shots};
+use super::overlay::{Overlay, Seen};
+use super::scenery::{Manner, Scenery};
+use super::shots;
 use super::title;
 use super::viewpoint::{Viewpoint, Walk};
 use crate::cli::failure::Failure;
 use crate::cli::output::say;
 use crate::cli::settings;
 
-/// The scene that is shown, and how it is moved.
-#[derive(Debug)]
-pub(super) struct Scenery {
-    /// The scene's name, for the title.
-    pub(super) name: String,
-    /// The cameras to choose from, each with its up direction; the first is the start.
-    pub(super) views: Vec<(Camera, DVec3)>,
-    pub(super) clips: Clips,
-    /// True when the shapes that clip are outlined.
-    pub(super) outlined: bool,
-    pub(super) settings: Settings,
-    pub(super) centre: DVec3,
-    pub(super) radius: f64,
-    pub(super) shots: Shots,
-}
-
 /// The open window.
 pub(super) struct Viewer {
-    windowed: Windowed,
+    pub(super) windowed: Windowed,
     pub(super) window: Arc<Window>,
-    scenery: Scenery,
-    view: usize,
-    viewpoint: Viewpoint,
+    pub(super) proxy: EventLoopProxy<Sent>,
+    pub(super) manner: Manner,
+    pub(super) scenery: Scenery,
+    /// True where there is a scene.
+    pub(super) loaded: bool,
+    /// True once there was one.
+    pub(super) began: bool,
+    pub(super) loading: Option<Loading>,
+    /// Files that are yet to be opened.
+    pub(super) dropped: Vec<PathBuf>,
+    /// What was dropped with the scene that is being read.
+    pub(super) beside: Vec<Dropped>,
+    pub(super) overlay: Overlay,
+    pub(super) view: usize,
+    pub(super) viewpoint: Viewpoint,
     /// Share of the scene's radius that flying covers in a second.
     speed: f64,
     /// The window's size in pixels, from its events: winit panics when it is asked for the size and the window is gone.
     size: (u32, u32),
+    /// How many of them are as long as one on an ordinary screen.
+    scale_factor: f64,
     minimised: bool,
     /// True when nothing of the window is visible.
     occluded: bool,
@@ -69,13 +72,29 @@ const INTERVALS: usize = 10_000;
 const SPEEDS: (f64, f64) = (1e-6, 1e6);
 
 impl Viewer {
-    pub(super) fn new(windowed: Windowed, window: Arc<Window>, scenery: Scenery) -> Self {
+    /// A window without a scene.
+    pub(super) fn new(
+        windowed: Windowed,
+        window: Arc<Window>,
+        proxy: EventLoopProxy<Sent>,
+        manner: Manner,
+    ) -> rara::Result<Self> {
+        let scenery = Scenery::nothing(manner.up)?;
         let viewpoint = scenery.viewpoint(0);
-        Self {
+        Ok(Self {
             windowed,
             size: window.inner_size().into(),
+            scale_factor: window.scale_factor(),
             window,
+            proxy,
+            overlay: Overlay::new(manner.text),
+            manner,
             scenery,
+            loaded: false,
+            began: false,
+            loading: None,
+            dropped: Vec::new(),
+            beside: Vec::new(),
             view: 0,
             viewpoint,
             speed: 0.5,
@@ -86,7 +105,7 @@ impl Viewer {
             shown_at: None,
             intervals: Vec::new(),
             titled_at: None,
-        }
+        })
     }
 
     /// The window's size in pixels; zero while it is minimised.
@@ -107,6 +126,12 @@ impl Viewer {
     pub(super) fn resized(&mut self, size: (u32, u32)) -> Result<(), Failure> {
         self.size = size;
         self.changed()
+    }
+
+    /// Handles another size of an ordinary screen's pixels.
+    pub(super) fn rescaled(&mut self, scale_factor: f64) {
+        self.scale_factor = scale_factor;
+        self.dirty = true;
     }
 
     /// Handles that other windows hide all of it, or no longer do.
@@ -144,6 +169,9 @@ impl Viewer {
 
     /// Does what an action asks, except for quitting and resizing, which need the event loop.
     pub(super) fn act(&mut self, action: Action) -> Result<(), Failure> {
+        if !self.loaded && action.needs_a_scene() {
+            return Ok(());
+        }
         let height = self.picture_size().1;
         match action {
             Action::Turn(degrees) => self.viewpoint.turn(degrees),
@@ -181,8 +209,12 @@ impl Viewer {
             }
             Action::Layer(which, visible) => self.scenery.clips.show(&which, visible)?,
             Action::Edit(edit) => self.scenery.clips.edit(&edit)?,
-            Action::Outline(on) => self.scenery.outlined = on.unwrap_or(!self.scenery.outlined),
-            Action::Mode(mode) => self.scenery.settings.mode = mode,
+            Action::Outline(on) => self.manner.outlined = on.unwrap_or(!self.manner.outlined),
+            Action::Keys(_) if !self.windowed.shows_panels() => say(KEYS),
+            Action::Keys(on) => self.overlay.set_keys(on),
+            Action::Numbers(on) => self.overlay.set_numbers(on),
+            Action::Drop(file) => self.dropped.push(file),
+            Action::Mode(mode) => self.manner.settings.mode = mode,
             Action::Screenshot(path) => return self.screenshot(path),
             Action::Minimise | Action::Restore => {
                 self.minimised = action == Action::Minimise;
@@ -198,10 +230,8 @@ impl Viewer {
             }
             Action::Flags => {
                 let camera = self.viewpoint.camera(self.picture_size());
-                let Scenery {
-                    clips, settings, ..
-                } = &self.scenery;
-                say(flags::lines(&camera, clips, settings));
+                let clips = &self.scenery.clips;
+                say(flags::lines(&camera, clips, &self.manner.settings));
                 return Ok(());
             }
             Action::Help => {
@@ -215,18 +245,18 @@ impl Viewer {
     }
 
     /// The size of the picture that is shown, or would be if the window were not minimised.
-    fn picture_size(&self) -> (u32, u32) {
+    pub(super) fn picture_size(&self) -> (u32, u32) {
         (self.size.0.max(1), self.size.1.max(1))
     }
 
     fn screenshot(&mut self, path: Option<PathBuf>) -> Result<(), Failure> {
         let camera = self.viewpoint.camera(self.picture_size());
-        let Scenery {
+        let (
             clips,
-            settings,
-            shots,
-            ..
-        } = &mut self.scenery;
+            Manner {
+                settings, shots, ..
+            },
+        ) = (&mut self.scenery.clips, &mut self.manner);
         let path = path.unwrap_or_else(|| shots.next());
         clips.apply(&mut self.windowed)?;
         let clip = clips.frame.clip();
@@ -234,6 +264,8 @@ impl Viewer {
         shots::save(&picture, &camera, &path)?;
         say(shots::wrote(&path, &flags::flags(&camera, clips, settings)));
         clips.note().into_iter().for_each(say);
+        self.overlay.tell(format!("wrote {}", path.display()));
+        self.dirty = true;
         self.shown_at = None; // the next frame does not follow at once
         Ok(())
     }
@@ -245,15 +277,25 @@ impl Viewer {
             (self.dirty, self.unsettled) = (false, false);
             return Ok(());
         };
+        if let Some(panels) = self.overlay.panels(self.overlay.content(&self.seen(size))) {
+            self.windowed.set_panels(&panels);
+        }
+        if !self.loaded {
+            let background = self.manner.settings.background.unwrap_or_default();
+            let redraw = self.windowed.show_panels(background)?;
+            (self.dirty, self.unsettled) = (redraw == Redraw::Now, false);
+            return Ok(());
+        }
         let camera = self.viewpoint.camera(size);
         let Scenery {
             clips,
-            outlined,
-            settings,
             centre,
             radius,
             ..
         } = &mut self.scenery;
+        let Manner {
+            outlined, settings, ..
+        } = &self.manner;
         clips.apply(&mut self.windowed)?;
         self.windowed.set_lines(match outlined {
             true => outlines::lines(clips, &camera, (*centre, *radius)),
@@ -273,6 +315,11 @@ impl Viewer {
         if self.unsettled {
             self.shown_at = Some(now);
         }
+        if redraw == Redraw::NotNeeded {
+            self.overlay.scene_is_seen();
+        }
+        // The numbers that are known now may be others than those over the picture.
+        self.dirty |= redraw == Redraw::NotNeeded && self.overlay.is_old(&self.seen(size));
         if redraw == Redraw::NotNeeded || self.titled_at.is_none_or(|at| now - at >= TITLE_PAUSE) {
             self.titled_at = Some(now);
             self.entitle();
@@ -280,14 +327,26 @@ impl Viewer {
         Ok(())
     }
 
+    /// What there is to say of the picture.
+    fn seen(&self, size: (u32, u32)) -> Seen<'_> {
+        Seen {
+            clips: self.loaded.then_some(&self.scenery.clips),
+            mode: self.manner.settings.mode,
+            stats: self.windowed.stats(),
+            progress: self.loading.as_ref().map(Loading::progress),
+            size,
+            scale_factor: self.scale_factor,
+        }
+    }
+
+    /// True when there is something else to say than what is written over the picture.
+    pub(super) fn is_behind(&self) -> bool {
+        self.overlay.is_old(&self.seen(self.size))
+    }
+
     fn entitle(&self) {
-        let Scenery {
-            name,
-            settings,
-            clips,
-            ..
-        } = &self.scenery;
-        let mode = settings::name(settings.mode);
+        let Scenery { name, clips, .. } = &self.scenery;
+        let mode = settings::name(self.manner.settings.mode);
         let stats = self.windowed.stats();
         let text = title::title(name, &mode, clips.words().as_deref(), stats);
         self.window.set_title(&text);
@@ -316,12 +375,5 @@ impl Viewer {
         // then end the process before the failure is reported.
         std::mem::forget(self.window);
         drop(self.windowed);
-    }
-}
-
-impl Scenery {
-    fn viewpoint(&self, view: usize) -> Viewpoint {
-        let (camera, up) = &self.views[view];
-        Viewpoint::new(camera, *up, self.centre, self.radius)
     }
 }

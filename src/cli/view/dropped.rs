@@ -1,0 +1,149 @@
+//! Files that are dropped on the window: scenes, clips and cameras.
+
+use std::path::Path;
+
+use rara::camera_files::load_cameras;
+use rara::clip::{Expression, load_clips};
+use rara::{Camera, Error};
+use serde_json::Value;
+
+use crate::cli::failure::Failure;
+use crate::cli::{scene_file, training};
+
+/// What a file has.
+#[derive(Debug)]
+pub(super) enum Dropped {
+    /// A scene, which is yet to be read.
+    Scene,
+    Clip(Vec<Expression>),
+    /// At least one.
+    Cameras(Vec<Camera>),
+}
+
+impl Dropped {
+    /// Finds out what a file is, and reads it unless it is a scene.
+    pub(super) fn of(path: &Path) -> Result<Self, Failure> {
+        std::fs::metadata(path).map_err(Error::io(path))?;
+        Ok(match kind(path) {
+            Kind::Scene => Self::Scene,
+            Kind::Clip => {
+                let clips = load_clips(path)?;
+                Self::Clip(clips.into_iter().map(|named| named.clip).collect())
+            }
+            Kind::Cameras => {
+                let cameras = load_cameras(path)?;
+                Self::Cameras(cameras.into_iter().map(|named| named.camera).collect())
+            }
+        })
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    Scene,
+    Clip,
+    Cameras,
+}
+
+/// What a file seems to be; the messages of what is none of all this are those of a scene.
+fn kind(path: &Path) -> Kind {
+    let is_of_colmap = |ending: &str| path.join("cameras").with_extension(ending).is_file();
+    if path.is_dir() {
+        let is_trained = matches!(training::scene_in(path), Ok(Some(_)));
+        let has_cameras =
+            is_of_colmap("bin") || is_of_colmap("txt") || path.join("sparse").is_dir();
+        return match has_cameras && !is_trained {
+            true => Kind::Cameras,
+            false => Kind::Scene,
+        };
+    }
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    match ending {
+        Some("bin" | "txt") => return Kind::Cameras,
+        Some("json") => {}
+        _ => return Kind::Scene,
+    }
+    if !scene_file::is_list(path) {
+        return Kind::Scene;
+    }
+    let is_short = |size: u64| size <= scene_file::MOST_BYTES;
+    if !std::fs::metadata(path).is_ok_and(|facts| is_short(facts.len())) {
+        // No list is so long, but the cameras of many pictures may be.
+        return Kind::Cameras;
+    }
+    let text = std::fs::read(path).unwrap_or_default();
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
+    match serde_json::from_slice(text) {
+        Ok(document) => kind_of_json(&document),
+        Err(_) => Kind::Scene,
+    }
+}
+
+fn kind_of_json(document: &Value) -> Kind {
+    let has = |value: &Value, keys: &[&str]| keys.iter().any(|key| value.get(key).is_some());
+    match document {
+        Value::Array(all) => match all.first() {
+            Some(first) if has(first, &["position", "fx", "img_name"]) => Kind::Cameras,
+            _ => Kind::Clip,
+        },
+        document if has(document, &["frames", "world_to_camera"]) => Kind::Cameras,
+        _ => Kind::Scene,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_json_file_is_what_it_says() {
+        for (text, is) in [
+            (r#"[{"normal":[1,0,0],"d":0}]"#, Kind::Clip),
+            (
+                r#"[{"name":"a","clip":{"sphere":{"centre":[0,0,0],"radius":1}}}]"#,
+                Kind::Clip,
+            ),
+            ("[]", Kind::Clip),
+            (
+                r#"[{"id":0,"img_name":"a","width":8,"height":8,"position":[0,0,0]}]"#,
+                Kind::Cameras,
+            ),
+            (r#"{"frames":[]}"#, Kind::Cameras),
+            (r#"{"width":8,"world_to_camera":[]}"#, Kind::Cameras),
+            (r#"{"layers":[]}"#, Kind::Scene),
+            ("{}", Kind::Scene),
+            ("7", Kind::Scene),
+        ] {
+            let document = serde_json::from_str(text).expect("JSON");
+            assert_eq!(kind_of_json(&document), is, "{text}");
+        }
+    }
+
+    #[test]
+    fn files_are_told_apart_by_their_names_and_what_is_in_them() {
+        let folder = std::env::temp_dir().join(format!("rara-dropped-{}", std::process::id()));
+        let sog = folder.join("sog");
+        std::fs::create_dir_all(folder.join("colmap/sparse")).unwrap();
+        std::fs::create_dir_all(&sog).unwrap();
+        let put = |name: &str, text: &str| {
+            let path = folder.join(name);
+            std::fs::write(&path, text).unwrap();
+            path
+        };
+        let clip = put("clip.json", "\u{feff}[{\"normal\":[0,0,1],\"d\":2}]");
+        assert!(matches!(Dropped::of(&clip), Ok(Dropped::Clip(all)) if all.len() == 1));
+        let scene = |path: &Path| matches!(Dropped::of(path), Ok(Dropped::Scene));
+        assert!(scene(&put("a.splat", "")) && scene(&put("broken.json", "{")));
+        assert!(scene(&put("meta.json", "{}")) && scene(&sog));
+        assert_eq!(kind(&folder.join("colmap")), Kind::Cameras);
+        assert_eq!(kind(&folder.join("colmap/cameras.txt")), Kind::Cameras);
+        let error = Dropped::of(&folder.join("none.ply"))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("none.ply"), "{error}");
+        let empty = put("empty.json", "[]");
+        let error = Dropped::of(&empty).unwrap_err().to_string();
+        assert!(error.contains("no clip in it"), "{error}");
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}

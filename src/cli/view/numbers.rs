@@ -1,0 +1,149 @@
+//! The numbers of a shape, for people: each with its name.
+
+use std::fmt::Write;
+
+use glam::{DQuat, DVec3};
+use rara::Shape;
+use rara::clip::Solid;
+
+/// The numbers of a shape, a line each. Lengths are world units, and rotations an axis and degrees about it.
+pub(super) fn lines(shape: &Shape) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut say = |name: &str, numbers: &[f64]| lines.push(named(name, numbers));
+    let point = |at: DVec3| at.to_array();
+    match shape.solid() {
+        Solid::Plane(plane) => {
+            say("normal", &point(plane.normal()));
+            say("offset", &[plane.offset()]);
+        }
+        Solid::Slab { plane, thickness } => {
+            say("normal", &point(plane.normal()));
+            say("offset", &[plane.offset()]);
+            say("thickness", &[thickness]);
+        }
+        Solid::Cuboid {
+            centre,
+            half,
+            rotation,
+        } => {
+            say("centre", &point(centre));
+            say("half size", &point(half));
+            lines.extend(turned(rotation));
+        }
+        Solid::Sphere { centre, radius } => {
+            say("centre", &point(centre));
+            say("radius", &[radius]);
+        }
+        Solid::Ellipsoid {
+            centre,
+            radii,
+            rotation,
+        } => {
+            say("centre", &point(centre));
+            say("radii", &point(radii));
+            lines.extend(turned(rotation));
+        }
+        Solid::Cylinder { from, to, radius } | Solid::Capsule { from, to, radius } => {
+            say("from", &point(from));
+            say("to", &point(to));
+            say("radius", &[radius]);
+        }
+        Solid::Cone { apex, base, radius } => {
+            say("tip", &point(apex));
+            say("base", &point(base));
+            say("radius", &[radius]);
+        }
+        _ => lines.push(shape.to_string()),
+    }
+    lines
+}
+
+fn turned(rotation: DQuat) -> Option<String> {
+    // Either sign is the same rotation; this one is less than half a turn.
+    let rotation = if rotation.w < 0.0 {
+        -rotation
+    } else {
+        rotation
+    };
+    let (axis, angle) = rotation.to_axis_angle();
+    let degrees = angle.to_degrees();
+    (degrees > 5e-3).then(|| {
+        let [x, y, z] = axis.to_array();
+        named("turned", &[x, y, z, degrees])
+    })
+}
+
+/// A name and its numbers, in columns.
+fn named(name: &str, numbers: &[f64]) -> String {
+    let mut line = format!("{name:<9}");
+    for number in numbers {
+        let _ = write!(line, " {:>10}", shown(*number));
+    }
+    line
+}
+
+/// Four digits behind the point, or four digits of what is too large or too small for that.
+fn shown(number: f64) -> String {
+    let size = number.abs();
+    if size >= 1e5 || size != 0.0 && size < 1e-3 {
+        return format!("{number:.3e}");
+    }
+    format!("{:.4}", number + 0.0) // -0 is 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Vec<String> {
+        let lines = lines(&text.parse().expect("a shape"));
+        let words = |line: String| line.split_whitespace().collect::<Vec<_>>().join(" ");
+        lines.into_iter().map(words).collect()
+    }
+
+    #[test]
+    fn every_shape_says_its_numbers_by_their_names() {
+        assert_eq!(
+            of("plane:0,0,-2,1"),
+            ["normal 0.0000 0.0000 -1.0000", "offset 0.5000"]
+        );
+        assert_eq!(of("slab:1,0,0,0,0.25")[2], "thickness 0.2500");
+        assert_eq!(
+            of("!sphere:1,2,3,4e-5"),
+            ["centre 1.0000 2.0000 3.0000", "radius 4.000e-5"]
+        );
+        assert_eq!(
+            of("box:1,2,3,4,5,123456,1,0,0,1"),
+            [
+                "centre 1.0000 2.0000 3.0000",
+                "half size 4.0000 5.0000 1.235e5",
+                "turned 0.0000 0.0000 1.0000 90.0000"
+            ]
+        );
+        assert_eq!(of("ellipsoid:0,0,0,1,2,3")[1], "radii 1.0000 2.0000 3.0000");
+        assert_eq!(of("ellipsoid:0,0,0,1,2,3").len(), 2, "it is not turned");
+        for text in ["cylinder:0,0,0,1,0,0,2", "capsule:0,0,0,1,0,0,2"] {
+            assert_eq!(
+                of(text),
+                [
+                    "from 0.0000 0.0000 0.0000",
+                    "to 1.0000 0.0000 0.0000",
+                    "radius 2.0000"
+                ]
+            );
+        }
+        assert_eq!(of("cone:0,0,0,1,0,0,2")[0], "tip 0.0000 0.0000 0.0000");
+    }
+
+    #[test]
+    fn columns_stay_where_they_are_while_a_shape_is_moved() {
+        let line = |text: &str| lines(&text.parse().expect("a shape"))[0].len();
+        for text in [
+            "sphere:-1,2,3,1",
+            "sphere:99999,-0.00001,1e300,1",
+            "sphere:0,0,0,1",
+        ] {
+            assert_eq!(line(text), 9 + 3 * 11, "{text}");
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! How a viewer opens files: those it begins with, and those that are dropped on its window.
+
+use std::time::Instant;
+
+use rara::Error;
+
+use super::app::Sent;
+use super::dropped::Dropped;
+use super::loading::{Fresh, Load, Loading, TICK};
+use super::stage::Viewer;
+use crate::cli::failure::Failure;
+use crate::cli::output;
+
+impl Viewer {
+    /// Begins to read a scene.
+    pub(super) fn load(&mut self, load: Load) -> Result<(), Failure> {
+        let proxy = self.proxy.clone();
+        // Where the event loop has ended nobody waits for the scene.
+        let done = move |outcome| drop(proxy.send_event(Sent::Read(Box::new(outcome))));
+        self.loading = Some(Loading::begin(load, done)?);
+        self.dirty = true;
+        Ok(())
+    }
+
+    /// True while what is shown is not yet what was asked for.
+    pub(super) fn waits_for_files(&self) -> bool {
+        self.loading.is_some() || !self.dropped.is_empty()
+    }
+
+    /// Opens what was dropped, unless a scene is being read. Scenes that are dropped at once are one scene. What cannot be
+    /// opened is said, and what is shown stays.
+    pub(super) fn open_dropped(&mut self) -> Result<(), Failure> {
+        if self.loading.is_some() {
+            return Ok(());
+        }
+        let mut scenes = Vec::new();
+        let files = std::mem::take(&mut self.dropped);
+        if !files.is_empty() {
+            self.dirty |= self.overlay.hush();
+        }
+        for file in files {
+            match Dropped::of(&file) {
+                Ok(Dropped::Scene) => scenes.push(file),
+                Ok(other) => self.beside.push(other),
+                Err(failure) => self.warn(&failure),
+            }
+        }
+        if scenes.is_empty() {
+            self.take_up_what_is_beside();
+            return Ok(());
+        }
+        let load = Fresh::of_files(scenes, self.manner.up, self.picture_size());
+        self.load(load)
+    }
+
+    /// Shows a scene that has been read. Only the first one has to be readable.
+    pub(super) fn arrive(&mut self, outcome: Result<Fresh, Failure>) -> Result<(), Failure> {
+        let is_first = !self.began;
+        let shown = outcome.and_then(|fresh| self.show(fresh));
+        self.loading = None;
+        self.dirty = true;
+        match shown {
+            Ok(()) => self.began = true,
+            Err(failure) if is_first || !is_of_the_scene(&failure) => return Err(failure),
+            Err(failure) => {
+                self.beside.clear();
+                self.warn(&failure);
+            }
+        }
+        self.take_up_what_is_beside();
+        Ok(())
+    }
+
+    fn show(&mut self, fresh: Fresh) -> Result<(), Failure> {
+        if let Some(loading) = &mut self.loading {
+            loading.uploading(&fresh.loaded, !self.began);
+            // The window does nothing else meanwhile, so that it says so before.
+            if self.visible() {
+                self.draw()?;
+            }
+        }
+        let uploaded = self.windowed.load_as(fresh.loaded.scene(), self.manner.sh);
+        // Where it does not fit there is none, and one that is refused leaves the one before.
+        self.loaded = !self.windowed.layers().is_empty();
+        uploaded?;
+        self.scenery = fresh.scenery;
+        self.view = 0;
+        self.viewpoint = self.scenery.viewpoint(0);
+        Ok(())
+    }
+
+    /// Clips and cameras that were dropped, once the scene that they are for is there.
+    fn take_up_what_is_beside(&mut self) {
+        for dropped in std::mem::take(&mut self.beside) {
+            if !self.loaded {
+                continue;
+            }
+            match dropped {
+                Dropped::Scene => {}
+                Dropped::Clip(clip) => self.scenery.clips.replace(clip),
+                Dropped::Cameras(cameras) => {
+                    let count = cameras.len();
+                    // What is up is what is up in the camera's own picture.
+                    let up = |camera: rara::Camera| (camera, -camera.rotation.row(1));
+                    self.scenery.views = cameras.into_iter().map(up).collect();
+                    self.view = 0;
+                    self.viewpoint = self.scenery.viewpoint(0);
+                    if count > 1 {
+                        self.overlay
+                            .tell(format!("camera 1 of {count}; N takes the next"));
+                    }
+                }
+            }
+            self.dirty = true;
+        }
+    }
+
+    /// Says why something failed, on the terminal and over the picture.
+    pub(super) fn warn(&mut self, failure: &Failure) {
+        output::complain(failure);
+        self.overlay.warn(failure.to_string());
+        self.dirty = true;
+    }
+
+    /// Notices what has changed without anybody's doing, and says when something will.
+    pub(super) fn changes_by_itself(&mut self, now: Instant) -> Option<Instant> {
+        self.dirty |= self.overlay.pass(now) || self.loading.is_some() && self.is_behind();
+        let tick = self.loading.as_ref().map(|_| now + TICK);
+        self.overlay.until().into_iter().chain(tick).min()
+    }
+}
+
+/// True when a failure is one of a scene, so that another may be shown.
+fn is_of_the_scene(failure: &Failure) -> bool {
+    matches!(
+        failure,
+        Failure::Usage(_)
+            | Failure::Work(
+                Error::Io { .. } | Error::Format { .. } | Error::Invalid(_) | Error::Memory(_)
+            )
+    )
+}

@@ -312,7 +312,7 @@ fn load(entries: Vec<LayerEntry>, flags: &[String], watch: Watch<'_>) -> Result<
         if let Some(antialiased) = entry.antialiased {
             loaded.gaussians.set_antialiased(antialiased);
         }
-        let is_said = entry.antialiased.is_some() || loaded.gaussians.is_antialiased();
+        let is_said = entry.antialiased.or(loaded.antialiased).is_some();
         let trained = (!is_said).then(|| antialiasing::trained(path)).flatten();
         all.repaired += loaded.report.repaired;
         all.dropped += loaded.report.dropped;

@@ -175,6 +175,7 @@ impl Assembler {
             gaussians: self.gaussians,
             report: self.report,
             format: Format::Ply,
+            antialiased: None,
         };
         (loaded, self.properties)
     }

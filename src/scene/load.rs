@@ -55,6 +55,17 @@ pub struct Loaded {
     pub report: LoadReport,
     /// The file's format.
     pub format: Format,
+    /// What the file says of whether its Gaussians were trained [antialiased](Gaussians::is_antialiased); `None` where it
+    /// says nothing.
+    pub antialiased: Option<bool>,
+}
+
+impl Loaded {
+    /// Notes what the file says of how its Gaussians were trained; they are drawn so.
+    pub(super) fn says(&mut self, antialiased: Option<bool>) {
+        self.antialiased = antialiased;
+        self.gaussians.set_antialiased(antialiased == Some(true));
+    }
 }
 
 /// Loads a scene from a file of any [format](Format), which is found by what is in the file, whatever its name.

@@ -178,6 +178,22 @@ fn what_was_trained_antialiased_is_drawn_so() {
         let notes = info["notes"].as_array().expect("notes");
         assert_eq!(notes.len(), usize::from(antialiased), "{notes:?}");
     }
+    // The file's own word counts before that of the settings.
+    let at = here.join("trained/point_cloud/iteration_30000/point_cloud.ply");
+    let file = fs::read(&at).expect("the scene");
+    let line_end = file
+        .iter()
+        .position(|&byte| byte == b'\n')
+        .expect("a header");
+    let (magic, rest) = file.split_at(line_end + 1);
+    fs::write(&at, [magic, b"comment antialiased 0\n", rest].concat()).expect("writes");
+    let said = done(line(&here, "info @/trained --json"));
+    assert!(
+        !stderr(&said).contains("cfg_args says"),
+        "{}",
+        stderr(&said)
+    );
+    assert_eq!(document(said)["layers"][0]["antialiased"], false);
 }
 
 #[test]

@@ -202,6 +202,8 @@ fn whole(
         ));
     }
     let loaded = Loaded {
+        // Writers that know nothing of it leave the flag of their format unset.
+        antialiased: made.gaussians.is_antialiased().then_some(true),
         gaussians: made.gaussians,
         report: made.report,
         format,

@@ -30,7 +30,7 @@ pub(super) struct Header {
     /// The byte that ends each line of an ascii payload.
     pub(super) line_end: u8,
     /// What the comments say of the Gaussians.
-    pub(super) kind: Kind,
+    pub(super) kind: Option<Kind>,
 }
 
 impl Header {

@@ -55,7 +55,7 @@ pub(super) fn read(
                 crate::error::shortened(property)
             )));
         }
-        if header.kind == Kind::Discs {
+        if header.kind == Some(Kind::Discs) {
             return Err(format(trained::DISCS.into()));
         }
         let start = SeekFrom::Start(header.size);
@@ -68,8 +68,7 @@ pub(super) fn read(
         });
         let (mut loaded, properties) = made?.finish();
         loaded.format = Format::CompressedPly;
-        let is_antialiased = header.kind == Kind::Antialiased;
-        loaded.gaussians.set_antialiased(is_antialiased);
+        loaded.says(header.kind.map(|kind| kind == Kind::Antialiased));
         return Ok((loaded, properties));
     }
     let layout = Layout::of(&header, asked).map_err(format)?;
@@ -92,13 +91,13 @@ pub(super) fn read(
         },
     )?;
     let (mut loaded, mut properties) = assembler.finish();
-    let mut is_antialiased = header.kind == Kind::Antialiased;
+    let mut antialiased = header.kind.map(|kind| kind == Kind::Antialiased);
     if let Some(at) = properties
         .iter()
         .position(|property| property.name == trained::FILTER)
     {
         let unusable = trained::smooth(&mut loaded.gaussians, &properties[at].values);
-        is_antialiased = true;
+        antialiased = Some(true);
         loaded.report.note(format!(
             "smoothed the Gaussians by {}, and draws them antialiased, as Mip-Splatting does",
             trained::FILTER
@@ -113,6 +112,6 @@ pub(super) fn read(
             properties.remove(at);
         }
     }
-    loaded.gaussians.set_antialiased(is_antialiased);
+    loaded.says(antialiased);
     Ok((loaded, properties))
 }

@@ -14,9 +14,8 @@ pub(super) const DISCS: &str = "the file holds discs of 2D Gaussian Splatting, w
     and are intersected with each line of sight, not projected as 3D Gaussians are; train the scene with 3DGS";
 
 /// The kinds of Gaussians that comments tell.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
-    #[default]
     Plain,
     Antialiased,
     /// Discs, as 2DGS has them.
@@ -24,10 +23,10 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// The kind by the last comment of a header that says one: `SplatRenderMode: mip` of Brush, which others write too, or
+    /// The kind by the last comment of a header that says one, if any does: `SplatRenderMode: mip` of Brush, which others write too, or
     /// `antialiased 1` of Postshot.
-    pub(super) fn of(lines: &[String]) -> Self {
-        let said = lines.iter().rev().find_map(|line| {
+    pub(super) fn of(lines: &[String]) -> Option<Self> {
+        lines.iter().rev().find_map(|line| {
             let line = line.trim().to_ascii_lowercase();
             let comment = line
                 .strip_prefix("comment")
@@ -39,16 +38,19 @@ impl Kind {
                 ("splatrendermode", "default") | ("antialiased", "0") => Some(Self::Plain),
                 _ => None,
             }
-        });
-        said.unwrap_or_default()
+        })
     }
 }
 
 /// Refuses Gaussians that are drawn in another way than those of 3DGS. `missing` are the properties that these have and the
 /// file has not.
-pub(super) fn check(kind: Kind, vertex: &ElementDef, missing: &[&str]) -> Result<(), String> {
+pub(super) fn check(
+    kind: Option<Kind>,
+    vertex: &ElementDef,
+    missing: &[&str],
+) -> Result<(), String> {
     let has = |name: &str| vertex.properties.contains_key(name);
-    if missing == ["scale_2"] || kind == Kind::Discs {
+    if missing == ["scale_2"] || kind == Some(Kind::Discs) {
         return Err(DISCS.into());
     }
     if has("f_offset_0") && has("f_anchor_feat_0") {
@@ -103,24 +105,30 @@ mod tests {
         let kind =
             |lines: &[&str]| Kind::of(&lines.iter().map(|l| l.to_string()).collect::<Vec<_>>());
         for (lines, expected) in [
-            (&["comment SplatRenderMode: mip"][..], Kind::Antialiased),
-            (&["comment  splatrendermode:  MIP "], Kind::Antialiased),
-            (&["comment SplatRenderMode: 2dgs"], Kind::Discs),
-            (&["comment SplatRenderMode: new"], Kind::Plain),
-            (&["comment antialiased 1"], Kind::Antialiased),
+            (
+                &["comment SplatRenderMode: mip"][..],
+                Some(Kind::Antialiased),
+            ),
+            (
+                &["comment  splatrendermode:  MIP "],
+                Some(Kind::Antialiased),
+            ),
+            (&["comment SplatRenderMode: 2dgs"], Some(Kind::Discs)),
+            (&["comment SplatRenderMode: new"], None),
+            (&["comment antialiased 1"], Some(Kind::Antialiased)),
             (
                 &["comment antialiased 1", "comment SplatRenderMode: default"],
-                Kind::Plain,
+                Some(Kind::Plain),
             ),
             (
                 &["comment antialiased 0", "comment SplatRenderMode: mip"],
-                Kind::Antialiased,
+                Some(Kind::Antialiased),
             ),
             (
                 &["property float antialiased 1", "comment SH degree: 3"],
-                Kind::Plain,
+                None,
             ),
-            (&[], Kind::Plain),
+            (&[], None),
         ] {
             assert_eq!(kind(lines), expected, "{lines:?}");
         }

@@ -39,6 +39,10 @@ impl Panels {
         let stored = |panel: &Panel| {
             let Picture { width, height, .. } = panel.picture;
             let pixels = panel.picture.pixels.iter();
+            // A copy reads as many pixels as the size says.
+            if pixels.len() as u64 != u64::from(width) * u64::from(height) {
+                return None;
+            }
             Some(Stored {
                 at: panel.at,
                 size: (width, height),
@@ -187,6 +191,21 @@ mod tests {
             Some(3 << 30 | 1023 << 20 | 512 << 10)
         );
         assert!(!are_possible(vk::Format::R16G16B16A16_SFLOAT));
+    }
+
+    #[test]
+    fn a_picture_without_its_pixels_is_left_out() {
+        let mut picture = Picture::filled(4, 4, [0.0; 4]);
+        picture.pixels.pop();
+        let mut panels = Panels::default();
+        panels.set(
+            &[Panel {
+                at: (0, 0),
+                picture,
+            }],
+            vk::Format::B8G8R8A8_UNORM,
+        );
+        assert!(panels.stored.is_empty());
     }
 
     #[test]

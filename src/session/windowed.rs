@@ -140,7 +140,7 @@ impl Windowed {
     }
 
     /// Shows these panels over the window's next pictures and their lines, in place of those before. Of panels that overlap the
-    /// first is shown. [`picture`](Self::picture) does not have them, and neither has a window that does not
+    /// first is shown, and one whose picture has not as many pixels as its size says is left out. [`picture`](Self::picture) does not have them, and neither has a window that does not
     /// [show panels](Self::shows_panels).
     pub fn set_panels(&mut self, panels: &[Panel]) {
         self.panels.set(panels, self.swapchain.format());

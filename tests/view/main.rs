@@ -262,6 +262,7 @@ fn what_cannot_work_is_said_in_a_line() {
             "wrong.txt, line 2",
         ),
         ("view @/scene.ply --script @/none.txt", 1, "none.txt"),
+        ("view - --script -", 2, "give the script as a file"),
         ("view @/scene.ply -o @/one.png", 2, "{}"),
         (
             "view @/scene.ply --section axial=0.1..0.9:3",

@@ -151,9 +151,13 @@ fn what_is_dropped_is_shown_and_what_cannot_be_read_changes_nothing() {
     }
     // A file that can be read goes on from there, and two of them are one scene.
     viewer.say("drop @/scene.ply");
-    viewer.screenshot("back");
+    let back = viewer.screenshot("back");
+    viewer.shows("back", &back);
     client.drop_files(window, &[&more, &folder.join("scene.ply")]);
-    sleep(Duration::from_millis(500));
+    // A bar is another picture too, and from then on the script waits by itself.
+    until("the dropped scenes", || {
+        (apart(&display.corner(160, 120), &back) > 1.01).then_some(())
+    });
     viewer.say("layer 2 off");
     viewer.screenshot("both");
     let printed = viewer.quit();

@@ -272,7 +272,11 @@ impl App {
                     self.resizing = Some((size, Instant::now() + RESIZE_PATIENCE));
                 }
                 Some(Action::Resize(_)) => stage.changed()?,
-                Some(action) => stage.act(action)?,
+                Some(action) => {
+                    stage.act(action)?;
+                    // A hidden window has no frame after which what is dropped is opened.
+                    stage.open_dropped()?;
+                }
             }
         }
         match self.resizing {

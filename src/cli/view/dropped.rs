@@ -23,11 +23,24 @@ pub(super) enum Dropped {
 impl Dropped {
     /// Finds out what a file is, and reads it unless it is a scene.
     pub(super) fn of(path: &Path) -> Result<Self, Failure> {
-        std::fs::metadata(path).map_err(Error::io(path))?;
+        let facts = std::fs::metadata(path).map_err(Error::io(path))?;
+        if !facts.is_file() && !facts.is_dir() {
+            let message = "this is neither a file nor a folder; drop one of these";
+            return Err(Error::format(path, message).into());
+        }
         Ok(match kind(path) {
             Kind::Scene => Self::Scene,
             Kind::Clip => {
                 let clips = load_clips(path)?;
+                let surfaces = clips.iter().map(|one| one.clip.clip().all_surfaces().len());
+                let count: usize = surfaces.sum();
+                if count > MOST_SURFACES {
+                    return Err(Error::format(
+                        path,
+                        format!("{count} surfaces are beyond the {MOST_SURFACES} that a clip may have; use fewer"),
+                    )
+                    .into());
+                }
                 Self::Clip(clips.into_iter().map(|named| named.clip).collect())
             }
             Kind::Cameras => {
@@ -37,6 +50,9 @@ impl Dropped {
         })
     }
 }
+
+/// The surfaces of a clip that a frame takes.
+const MOST_SURFACES: usize = 1 << 16;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
@@ -144,6 +160,20 @@ mod tests {
         let empty = put("empty.json", "[]");
         let error = Dropped::of(&empty).unwrap_err().to_string();
         assert!(error.contains("no clip in it"), "{error}");
+        let planes = vec![r#"{"normal":[0,0,1],"d":2}"#; MOST_SURFACES + 1].join(",");
+        let many = put("many.json", &format!("[{planes}]"));
+        let error = Dropped::of(&many).unwrap_err().to_string();
+        assert!(
+            error.contains("many.json") && error.contains("65537 surfaces"),
+            "{error}"
+        );
         std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn nobody_waits_for_a_device() {
+        let error = Dropped::of(Path::new("/dev/null")).unwrap_err().to_string();
+        assert!(error.contains("neither a file nor a folder"), "{error}");
     }
 }

@@ -1,5 +1,6 @@
 //! Scenes that are read on a thread of their own, while the window goes on.
 
+use std::panic::{self, AssertUnwindSafe};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
@@ -86,7 +87,8 @@ impl Fresh {
 }
 
 impl Loading {
-    /// Begins to read; `done` is called with the outcome, on the thread that has read.
+    /// Begins to read; `done` is called with the outcome, on the thread that has read. That ends with the program where nobody
+    /// waits for it any more.
     pub(super) fn begin(
         load: Load,
         done: impl FnOnce(Result<Fresh, Failure>) + Send + 'static,
@@ -94,10 +96,17 @@ impl Loading {
         let now = Arc::new(Mutex::new(Now::default()));
         let told = now.clone();
         let work = move || {
-            let outcome = load(&mut |reading| {
-                *told.lock().unwrap_or_else(PoisonError::into_inner) = Now::of(reading);
-            });
-            done(outcome);
+            let outcome = panic::catch_unwind(AssertUnwindSafe(|| {
+                load(&mut |reading| {
+                    *told.lock().unwrap_or_else(PoisonError::into_inner) = Now::of(reading);
+                })
+            }));
+            // Nobody would end the waiting otherwise.
+            done(outcome.unwrap_or_else(|_| {
+                let what =
+                    "the thread that reads scenes has panicked, as said above; please report it";
+                Err(Error::Device(what.into()).into())
+            }));
         };
         let named = thread::Builder::new().name("reading".into());
         named

@@ -123,6 +123,12 @@ impl View {
         };
         let shots = shots(&self.output)?;
         let follow = self.script.as_deref() == Some(Path::new("-"));
+        let is_streamed = |place: &PathBuf| place == Path::new(values::STANDARD);
+        if follow && self.scenes.places().iter().any(is_streamed) {
+            return Err(Failure::Usage(
+                "--script -: standard input is the scene's; give the script as a file".into(),
+            ));
+        }
         let script = match &self.script {
             Some(file) if !follow => script::read(file)?,
             _ => Vec::new(),

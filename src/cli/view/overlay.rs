@@ -357,7 +357,14 @@ mod tests {
                 ..seen(&clips, size)
             });
             for panel in laid_out(&content) {
-                assert!(panel.picture.width <= size.0 && panel.picture.height <= size.1);
+                let Picture { width, height, .. } = panel.picture;
+                assert!(width <= size.0 && height <= size.1, "{size:?}");
+                let is_nothing = width == 0 || height == 0;
+                let end = (panel.at.0 + width, panel.at.1 + height);
+                assert!(
+                    is_nothing || end.0 <= size.0 && end.1 <= size.1,
+                    "{size:?}: {end:?}"
+                );
             }
         }
         let mut overlay = Overlay::new(true);

@@ -210,7 +210,11 @@ impl Viewer {
             Action::Layer(which, visible) => self.scenery.clips.show(&which, visible)?,
             Action::Edit(edit) => self.scenery.clips.edit(&edit)?,
             Action::Outline(on) => self.manner.outlined = on.unwrap_or(!self.manner.outlined),
-            Action::Keys(_) if !self.windowed.shows_panels() => say(KEYS),
+            Action::Keys(on) if self.visible() && !self.windowed.shows_panels() => {
+                if on != Some(false) {
+                    say(KEYS);
+                }
+            }
             Action::Keys(on) => self.overlay.set_keys(on),
             Action::Numbers(on) => self.overlay.set_numbers(on),
             Action::Drop(file) => self.dropped.push(file),

@@ -14,6 +14,8 @@ layout(constant_id = 2) const bool TILES = false;
 layout(constant_id = 3) const bool QUADS = false;
 // True when rectangles of tiles are wanted, and masks only where these do not tell everything.
 layout(constant_id = 5) const bool RECTS = false;
+// True when splats have the numbers of their Gaussian and its layer in place of colours.
+layout(constant_id = 6) const bool NUMBERED = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uint, sh)
@@ -56,6 +58,11 @@ vec3 colour(uint index, vec3 direction) {
     return clamp(sum, vec3(0.0), vec3(3e38));
 }
 
+// A number takes two floats, since one holds only 24 bits.
+vec3 numbers(uint number) {
+    return vec3(float(number & 0xffffu), float(number >> 16), float(layer_number));
+}
+
 void main() {
     uint survivor = LINEAR_GROUP * SURVIVOR_GROUP_SIZE + gl_LocalInvocationIndex;
     if (survivor >= counts.at[0].visible + counts.at[0].cutoff) {
@@ -79,7 +86,9 @@ void main() {
     splat.centre_conic = vec4(f.screen_centre, conic.xy);
     splat.conic_cut = vec4(conic.z, opacity, weight.linear.xy);
     vec3 direction = is_orthographic() ? LAYER.view.rotation_z.xyz : f.relative;
-    splat.colour_cut = vec4(colour(index, normalize(direction / largest(direction))), weight.linear.z);
+    vec3 shown = NUMBERED ? numbers(floatBitsToUint(gaussian.scale.w))
+                          : colour(index, normalize(direction / largest(direction)));
+    splat.colour_cut = vec4(shown, weight.linear.z);
     splat.curvature_depth = vec4(weight.curvature, f.view_centre.z);
     SPLAT_CENTRE(survivor) = splat.centre_conic;
     SPLAT_CONIC(survivor) = splat.conic_cut;

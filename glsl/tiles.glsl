@@ -50,7 +50,7 @@ const uint NO_TILE = ~0u;
 vec2 pixel_centre; // the first one's
 vec3 sum[ROWS];
 float transmittance[ROWS];
-float alphas[SHOW == SHOW_MEAN ? ROWS : 1u]; // their sum
+float alphas[SHOW >= SHOW_MEAN ? ROWS : 1u]; // their sum, or the most that one splat has added
 float occluder[ROWS]; // the farness beyond which splats are hidden
 bool done; // no splat changes them any more
 
@@ -126,6 +126,12 @@ void blend(Seen splat, vec2 delta, bool may_be_cut) {
             } else if (SHOW == SHOW_MEAN) {
                 sum[row] += alpha[row] * splat.colour;
                 alphas[row] += alpha[row];
+            } else if (SHOW == SHOW_STRONGEST) {
+                // Of equal ones the first, which is in front.
+                if (added > alphas[row]) {
+                    alphas[row] = added;
+                    sum[row] = splat.colour;
+                }
             } else {
                 sum[row] += added * (SHOW == SHOW_WEIGHT ? weight_colour(weight[row]) : splat.colour);
             }
@@ -199,7 +205,7 @@ void main() {
     for (uint row = 0u; row < ROWS; row++) {
         sum[row] = vec3(0.0);
         transmittance[row] = pixel.y + row < size.y ? 1.0 : 0.0;
-        if (SHOW == SHOW_MEAN) {
+        if (SHOW >= SHOW_MEAN) {
             alphas[row] = 0.0;
         }
         occluder[row] = DEPTH_FORM != DEPTH_NONE ? occluder_farness(pixel + uvec2(0u, row)) : 0.0;
@@ -229,7 +235,7 @@ void main() {
     }
     for (uint row = 0u; row < ROWS; row++) {
         if (pixel.x < size.x && pixel.y + row < size.y) {
-            float alpha = 1.0 - transmittance[row];
+            float alpha = SHOW == SHOW_STRONGEST ? alphas[row] : 1.0 - transmittance[row];
             vec3 colour = SHOW == SHOW_MEAN ? sum[row] * (alpha / max(alphas[row], 1e-30)) : sum[row];
             write_pixel((pixel.y + row) * size.x + pixel.x, vec4(colour, alpha));
         }

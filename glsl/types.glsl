@@ -218,6 +218,7 @@ const uint SHOW_COLOUR = 0u;
 const uint SHOW_WEIGHT = 1u;
 const uint SHOW_COUNT = 2u;
 const uint SHOW_MEAN = 3u;
+const uint SHOW_STRONGEST = 4u;
 const uint DECAY_LINEAR = 0u;
 const uint DECAY_DEPTH = 1u;
 const uint MISS_KEEP = 0u;

@@ -79,7 +79,8 @@ pub use picture::{Cue, Cues, Picture};
 pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 pub use renderer::{
-    ColorSpace, DepthDesc, ExpectedDepthDesc, FrameLimits, FrameToken, Renderer, RendererDesc,
+    ColorSpace, DepthDesc, ExpectedDepthDesc, FrameLimits, FrameToken, Pick, PickTicket, Picker,
+    Picks, Renderer, RendererDesc,
 };
 #[doc(inline)]
 pub use scene::{Bounds, GaussianArrays, Gaussians, Layer, LayerState, Scene};

@@ -77,12 +77,17 @@ pub enum Show {
     /// The mean of the splats' colours, each weighted by its alpha, in no order, while alpha is as ever: the colours that lie
     /// on a plane where the splats are [cross-sections](crate::scene::cross_section). Only tiles make it.
     Mean,
+    /// The splat that adds most to the pixel's alpha: red and 65536 times green are its Gaussian's number in the scene, blue is
+    /// its layer's, and alpha is what it adds; all are 0 where there is none. Only tiles make it, and only pictures of 32-bit
+    /// floats hold it, without a background. [`Picker`](crate::Picker) reads it.
+    #[cfg_attr(feature = "cli", value(skip))]
+    Strongest,
 }
 
 impl Show {
     /// True for what no draw of quads shows.
     pub(crate) fn needs_tiles(self) -> bool {
-        matches!(self, Self::Count | Self::Mean)
+        matches!(self, Self::Count | Self::Mean | Self::Strongest)
     }
 }
 

@@ -9,6 +9,7 @@ use crate::passes::bin;
 use crate::passes::plan::Plan;
 use crate::passes::sizes::{Sized, Sizes};
 use crate::passes::spare::Spare;
+use crate::passes::tile_picture::TilePicture;
 
 /// Everything the stages hand to each other. No stage reads a count on the CPU, so each array but the
 /// tiles' lists has room for every Gaussian of the scene; drivers back untouched memory lazily.
@@ -63,13 +64,6 @@ pub(crate) struct TileBuffers {
     pub(crate) picture: Arc<TilePicture>,
     /// The host's depth; empty where it hides nothing.
     pub(crate) occluders: Buffer,
-}
-
-/// The picture that tiles make. A tile that begins where the next one does holds nothing, and its pixels are not written.
-#[derive(Debug)]
-pub(crate) struct TilePicture {
-    pub(crate) begins: Buffer,
-    pub(crate) pixels: Buffer,
 }
 
 /// The further buffers of expected depths.

@@ -34,6 +34,7 @@ mod sort;
 mod spare;
 pub(crate) mod splat;
 mod stage;
+mod tile_picture;
 pub(crate) mod tiles;
 mod view;
 mod weight;
@@ -41,7 +42,7 @@ mod work;
 #[cfg(feature = "lab")]
 mod working;
 
-pub(crate) use buffers::{Buffers, TilePicture};
+pub(crate) use buffers::Buffers;
 pub(crate) use frame::{DRAW, record};
 #[cfg(feature = "view")]
 pub(crate) use lines::{Lines, PictureLine};
@@ -52,5 +53,6 @@ pub use scene_buffers::{SceneBuffers, Staging};
 pub use scene_layer::SceneLayer;
 pub(crate) use sizes::Sizes;
 pub(crate) use stage::{Frame, Targets};
+pub(crate) use tile_picture::TilePicture;
 pub(crate) use tiles::{TilePixels, TileWork};
 pub(crate) use work::{Kept, Work};

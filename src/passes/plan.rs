@@ -92,6 +92,8 @@ pub(crate) struct SceneFacts<'a> {
     pub(crate) occluders: Option<Occluders>,
     /// True when the splats' depths are wanted.
     pub(crate) expects_depth: bool,
+    /// The camera of whose picture the frame shows a part; `None` where it shows all of it.
+    pub(crate) whole: Option<&'a Camera>,
 }
 
 impl Plan {
@@ -143,7 +145,12 @@ impl Plan {
                     sh_coefficients: (scene.sh_degree + 1) * (scene.sh_degree + 1),
                     layer_count: scene.layers.len() as u32,
                 },
-                view: view_data(camera, keys.farthest(), degree.min(scene.sh_degree)),
+                view: view_data(
+                    camera,
+                    scene.whole.unwrap_or(camera),
+                    keys.farthest(),
+                    degree.min(scene.sh_degree),
+                ),
                 order: OrderData {
                     key_near: keys.near,
                     key_span: keys.span,

@@ -9,6 +9,7 @@ use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::shaders::project;
 use crate::passes::stage::{Frame, Stage, key};
+use crate::settings::Show;
 use crate::types::FrameCounts;
 
 pub(crate) const STAGE: Stage = Stage::when_finding_view(
@@ -27,6 +28,7 @@ impl OfPlan for project::Constants {
             tiles: plan.is_tiled(),
             quads: plan.needs_quads(),
             rects: plan.keeps_rects(),
+            numbered: plan.way.show == Show::Strongest,
         }
     }
 }

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::gpu::{Buffer, Device};
-use crate::passes::buffers::{Buffers, ReclipBuffers, TilePicture, gpu_only};
+use crate::passes::buffers::{Buffers, ReclipBuffers, gpu_only};
 use crate::passes::plan::Plan;
 use crate::passes::sizes::{Sized, Sizes};
+use crate::passes::tile_picture::TilePicture;
 
 /// Buffers that may be used again. Those that are not are dropped, and go when the frames that use them are done.
 #[derive(Debug, Default)]

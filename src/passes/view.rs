@@ -6,9 +6,14 @@ use crate::camera::{Camera, Projection};
 use crate::limits;
 use crate::types::{self, LayerView, ViewData};
 
-/// The picture of a camera, and the degree up to which colours are evaluated. No centre is deeper than `farthest`, the
-/// scene's units.
-pub(super) fn view_data(camera: &Camera, farthest: f64, sh_degree: u32) -> ViewData {
+/// The picture of a camera, which is a part of that of `whole`, and the degree up to which colours are evaluated. No centre is
+/// deeper than `farthest`, the scene's units.
+pub(super) fn view_data(
+    camera: &Camera,
+    whole: &Camera,
+    farthest: f64,
+    sh_degree: u32,
+) -> ViewData {
     let (width, height) = (f64::from(camera.width), f64::from(camera.height));
     let margin = f64::from(limits::CLAMP_MARGIN);
     let bounds = |size: f64, centre: f64, focal: f64| match camera.projection {
@@ -19,8 +24,9 @@ pub(super) fn view_data(camera: &Camera, farthest: f64, sh_degree: u32) -> ViewD
         // The Jacobian is the same everywhere, so that there is nothing to clamp.
         Projection::Orthographic => (f64::from(f32::MIN), f64::from(f32::MAX)),
     };
-    let (x_low, x_high) = bounds(width, camera.cx, camera.fx);
-    let (y_low, y_high) = bounds(height, camera.cy, camera.fy);
+    // A splat has the same shape in each part of a picture.
+    let (x_low, x_high) = bounds(f64::from(whole.width), whole.cx, whole.fx);
+    let (y_low, y_high) = bounds(f64::from(whole.height), whole.cy, whole.fy);
     let longest_focal = match camera.projection {
         Projection::Perspective => camera.fx.max(camera.fy),
         // Of the perspective camera that shows what is deepest at this scale.

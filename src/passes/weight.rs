@@ -42,6 +42,7 @@ impl Show {
             Self::Weight => types::SHOW_WEIGHT,
             Self::Count => types::SHOW_COUNT,
             Self::Mean => types::SHOW_MEAN,
+            Self::Strongest => types::SHOW_STRONGEST,
         }
     }
 }

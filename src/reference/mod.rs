@@ -79,7 +79,7 @@ fn in_order<T: Real>(
     settings: &Settings,
 ) -> Vec<project::Splat<T>> {
     let mut splats = Vec::new();
-    for (layer, sides) in layers.iter().zip(sides) {
+    for ((layer_number, layer), sides) in (0..).zip(layers).zip(sides) {
         let SeenLayer {
             gaussians: scene,
             view,
@@ -93,6 +93,7 @@ fn in_order<T: Real>(
             let mut splat = project::project(scene, index, view, settings)?;
             splat.cut = cutoff::cutoff(scene, index, &splat.footprint, view, clip, settings);
             splat.index = numbers.of(number);
+            splat.layer = layer_number;
             Some(splat)
         }));
     }

@@ -12,6 +12,8 @@ use crate::{Gaussians, Settings};
 pub struct Splat<T> {
     /// Its number in the scene, where the layers' Gaussians stand one after the other.
     pub index: u32,
+    /// Its layer's number.
+    pub layer: u32,
     /// Its position, size and opacity.
     pub footprint: Footprint<T>,
     /// Red, green and blue, not negative.
@@ -34,6 +36,7 @@ pub fn project<T: Real>(
         .min(scene.sh_degree());
     Some(Splat {
         index: u32::try_from(index).expect("scenes have fewer than 2^32 Gaussians"),
+        layer: 0,
         colour: harmonics::colour(
             scene.sh_of(index),
             degree,

@@ -87,6 +87,16 @@ fn draw_band<T: Real>(
                             *alphas = *alphas + alpha;
                             add(pixel, alpha, splat.colour.map(|c| alpha * c));
                         }
+                        Show::Strongest => {
+                            let added = (T::one() - *alphas) * alpha;
+                            *alphas = *alphas + added;
+                            if added > pixel[3] {
+                                let [low, high] = [splat.index & 0xffff, splat.index >> 16];
+                                let [low, high, layer] =
+                                    [low, high, splat.layer].map(|n| T::of(f64::from(n)));
+                                *pixel = [low, high, layer, added];
+                            }
+                        }
                     }
                 }
             }

@@ -36,6 +36,8 @@ pub(crate) struct FrameRequest<'a> {
     /// The target's format, where nothing lies below, so that the tiles' picture may be the picture; `None` where it has to
     /// be drawn.
     pub(crate) picture: Option<TargetFormat>,
+    /// The camera of whose picture `camera` shows a part; `None` where it shows all of it.
+    pub(crate) whole: Option<&'a Camera>,
 }
 
 impl Renderer {
@@ -58,6 +60,7 @@ impl Renderer {
             settings,
             submission: Submission::InFlight,
             picture: None,
+            whole: None,
         })
     }
 
@@ -129,6 +132,7 @@ impl Renderer {
             picture,
             pair_capacity: self.memory.pairs.room(),
             redrawn,
+            whole: request.whole,
             ..self.facts(scene.layers(), scene.count, raster, depth_map)
         };
         let mut plan = Plan::new(facts, request.camera, request.clip, request.settings)?;
@@ -236,6 +240,7 @@ impl Renderer {
                 .zip(depth_map)
                 .map(|(depth, map)| Occluders::new(depth.format, map)),
             expects_depth: self.desc.expected_depth.is_some(),
+            whole: None,
         }
     }
 

@@ -140,6 +140,12 @@ impl FramesInFlight {
         (self.prepared >= count).then(|| &self.slots[self.slot(self.prepared)])
     }
 
+    /// The frame before which so many were prepared; `None` where a later one has its slot.
+    pub(super) fn recorded(&self, number: u64) -> Option<&RecordedFrame> {
+        let is_held = number < self.prepared && number + self.slots.len() as u64 >= self.prepared;
+        is_held.then(|| &self.slots[self.slot(number)])
+    }
+
     /// Whether the last frame that was waited for before one of this submission had no room for its pairs of tile and splat,
     /// and how many it had.
     pub(super) fn awaited(&self, submission: Submission) -> (bool, u32) {

@@ -25,6 +25,7 @@ mod memory;
 mod notes;
 mod outcome;
 mod pair_room;
+mod pick;
 mod record;
 mod reserve;
 mod shared;
@@ -40,6 +41,7 @@ pub use desc::{ColorSpace, DepthDesc, ExpectedDepthDesc, RendererDesc};
 pub(crate) use frames::RecordedFrame;
 pub use limits::FrameLimits;
 pub(crate) use outcome::{Outcome, Submission};
+pub use pick::{Pick, PickTicket, Picker, Picks};
 pub use token::FrameToken;
 
 use estimate::PairEstimate;

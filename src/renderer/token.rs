@@ -51,6 +51,7 @@ impl Renderer {
             settings,
             submission: Submission::Ahead,
             picture: None,
+            whole: None,
         })?;
         Ok(FrameToken {
             ready,

@@ -175,6 +175,7 @@ impl Headless {
 #[cfg(feature = "picture")]
 mod aov;
 mod depth;
+mod pick;
 #[cfg(feature = "lab")]
 mod working;
 

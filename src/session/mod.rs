@@ -124,6 +124,7 @@ impl Session {
             settings,
             submission: Submission::Awaited,
             picture: target.of_tiles_on(settings.background),
+            whole: None,
         };
         let configure = |renderer: &mut Renderer, target: &mut Target| {
             trace::span(trace, "configure", || renderer.configure_frame(&request))?;

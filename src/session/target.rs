@@ -8,7 +8,6 @@ use ash::vk;
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::gpu::{Buffer, BufferDesc, Device, Image, ImageDesc, Location};
-use crate::limits;
 use crate::passes::TilePicture;
 use crate::picture::Picture;
 use crate::precision::TargetFormat;
@@ -158,37 +157,17 @@ impl Target {
         Ok(picture(extent, pixels))
     }
 
-    /// Reads the tiles' picture back. Where a tile holds nothing, nothing has been written.
+    /// Reads the tiles' picture back.
     fn read_tiles(
         &self,
         device: &Device,
         tiles: &TilePicture,
         extent: vk::Extent2D,
     ) -> Result<Picture> {
-        let [width, height] = [extent.width, extent.height].map(|side| side as usize);
-        let (tile_width, tile_height) = (limits::TILE_WIDTH as usize, limits::TILE_HEIGHT as usize);
-        let columns = width.div_ceil(tile_width);
-        let count = columns * height.div_ceil(tile_height);
-        let begins = read(device, &tiles.begins, (count as u64 + 1) * 4)?;
-        let begins: Vec<&[u8]> = begins.chunks_exact(4).collect();
-        let is_empty: Vec<bool> = begins.windows(2).map(|pair| pair[0] == pair[1]).collect();
-        let bytes = read(device, &tiles.pixels, self.bytes(extent))?;
-        let pixel_bytes = self.format.pixel_bytes() as usize;
-        let mut pixels = Vec::with_capacity(width * height);
-        for y in 0..height {
-            let row = &is_empty[y / tile_height * columns..][..columns];
-            let mut x = 0;
-            for alike in row.chunk_by(|a, b| a == b) {
-                let end = width.min(x + alike.len() * tile_width);
-                if alike[0] {
-                    pixels.resize(y * width + end, [0.0; 4]);
-                } else {
-                    let [first, last] = [x, end].map(|x| (y * width + x) * pixel_bytes);
-                    pixels.extend(self.format.decode(&bytes[first..last]));
-                }
-                x = end;
-            }
-        }
+        let [begins, pixels] = TilePicture::sizes(extent, self.format);
+        let begins = read(device, &tiles.begins, begins)?;
+        let bytes = read(device, &tiles.pixels, pixels)?;
+        let pixels = TilePicture::decode(&begins, &bytes, extent, self.format);
         Ok(picture(extent, pixels))
     }
 

@@ -53,6 +53,7 @@ fn show(session: &mut Session, camera: &Camera, settings: &Settings) -> Outcome 
         settings,
         submission: Submission::InFlight,
         picture: None,
+        whole: None,
     };
     renderer.configure_frame(&request).expect("configures");
     let mut target = Target::default();

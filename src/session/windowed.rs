@@ -182,6 +182,7 @@ impl Windowed {
             settings,
             submission: Submission::InFlight,
             picture: None,
+            whole: None,
         })?;
         let changes_nothing = renderer.changes_nothing();
         let seen: Vec<_> = lines

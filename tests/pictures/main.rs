@@ -19,6 +19,7 @@ mod layers;
 mod memory;
 mod orthographic;
 mod paper;
+mod picking;
 mod pipeline_cache;
 mod precision;
 mod quadrature;

@@ -29,6 +29,7 @@ fn plan(mode: Mode, planes: usize) -> Plan {
         redrawn: false,
         occluders: None,
         expects_depth: false,
+        whole: None,
     };
     let eye = DVec3::new(0.0, 0.0, -4.0);
     let camera = Camera::look_at(eye, DVec3::ZERO, -DVec3::Y, 50.0, (64, 64));

@@ -1,0 +1,317 @@
+//! Picking: the Gaussians that a part of a picture shows most of, found on the device and read when the frame is finished.
+
+use std::collections::HashMap;
+
+use ash::vk;
+
+use super::Renderer;
+use super::configure::FrameRequest;
+use super::desc::{ColorSpace, RendererDesc};
+use super::outcome::Submission;
+use crate::camera::Camera;
+use crate::clip::Clip;
+use crate::error::{Error, Result};
+use crate::gpu::{Buffer, BufferDesc, Device, Location, Recorder};
+use crate::limits;
+use crate::passes::{SceneBuffers, TilePicture};
+use crate::placement::Placement;
+use crate::precision::TargetFormat;
+use crate::settings::{Raster, Settings, Show};
+
+/// Finds the Gaussians that pixels show most of, for a host that selects by a click or a rectangle.
+///
+/// [`record`](Self::record) draws the part of the picture that is asked about into memory of the picker's own, with the stages
+/// of a frame: it takes the clip, layers and weights into account, and what lies outside the part is culled. Nothing of the
+/// host's targets, of a [`Renderer`] or of the scene changes, and nothing waits. [`read`](Self::read) gives the answer once the
+/// submission has finished. The host's depth is not looked at: splats are picked through what hides them.
+///
+/// ```no_run
+/// # use rara::{Camera, Clip, Picker, Renderer, Result, SceneBuffers, Settings, ash::vk};
+/// # fn clicked(renderer: &Renderer, scene: &SceneBuffers, camera: &Camera, clip: &Clip, cmd: vk::CommandBuffer) -> Result<()> {
+/// let mut picker = Picker::new(renderer, 2)?; // kept as long as the renderer
+/// let under_the_mouse = vk::Rect2D {
+///     offset: vk::Offset2D { x: 320, y: 200 },
+///     extent: vk::Extent2D { width: 1, height: 1 },
+/// };
+/// // SAFETY: `cmd` is recording outside a rendering scope, and is submitted with the frame.
+/// let ticket = unsafe { picker.record(cmd, scene, camera, clip, &Settings::default(), under_the_mouse)? };
+/// // ... two frames later, whose fence has been waited for:
+/// // SAFETY: the submission has finished.
+/// if let Some(picks) = unsafe { picker.read(ticket)? }
+///     && let Some(pick) = picks.strongest()
+/// {
+///     println!("Gaussian {} of layer {}", pick.number, pick.layer);
+/// }
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct Picker {
+    renderer: Renderer,
+    slots: Box<[Slot]>,
+    /// Requests recorded so far.
+    recorded: u64,
+}
+
+/// A request that a [`Picker`] has recorded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PickTicket {
+    picker: u64,
+    request: u64,
+}
+
+/// The splat that adds most to a pixel's alpha.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Pick {
+    /// Its Gaussian's number in the scene: that in its layer, behind all Gaussians of the layers before it, or as
+    /// [`Layer::numbered`](crate::Layer::numbered) says.
+    pub number: u32,
+    /// The number of its layer, in [`SceneBuffers::layers`].
+    pub layer: usize,
+    /// What it adds to the alpha of the pixel, from 1/255 to 1; of several pixels, the sum.
+    pub alpha: f32,
+}
+
+/// What the pixels of a rectangle show most of.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Picks {
+    /// The rectangle that was asked about, px.
+    pub rect: vk::Rect2D,
+    /// A pick for each of its pixels, row by row from the upper left; `None` where no splat adds 1/255, the least that shows.
+    pub pixels: Vec<Option<Pick>>,
+}
+
+/// The memory of one request.
+#[derive(Debug, Default)]
+struct Slot {
+    readback: Option<Buffer>,
+    /// The rectangle, if the request was recorded; and whether it has any splat to find.
+    asked: Option<(vk::Rect2D, bool)>,
+}
+
+impl Picker {
+    /// A picker beside a renderer, whose compiled pipelines it shares. So many requests, from 1 to
+    /// [`RendererDesc::MAX_FRAMES`], may be unfinished at once.
+    ///
+    /// # Errors
+    /// As for [`Renderer::sharing`].
+    pub fn new(renderer: &Renderer, in_flight: u32) -> Result<Self> {
+        let renderer = renderer.sharing(RendererDesc {
+            color_space: ColorSpace::Stored,
+            depth: None,
+            expected_depth: None,
+            samples: vk::SampleCountFlags::TYPE_1,
+            timing: false,
+            statistics: false,
+            reuse: false,
+            frames_in_flight: in_flight,
+            ..renderer.desc
+        })?;
+        Ok(Self {
+            renderer,
+            slots: (0..in_flight).map(|_| Slot::default()).collect(),
+            recorded: 0,
+        })
+    }
+
+    /// Places the scene in the world, as [`Renderer::set_placement`] does for what is drawn.
+    pub fn set_placement(&mut self, placement: Placement) {
+        self.renderer.set_placement(placement);
+    }
+
+    /// Records the question what the pixels of `rect` show most of, in the picture of `camera`. Of the settings, those that
+    /// say how splats are cut and projected count. This allocates where it asks for more than any request before it.
+    ///
+    /// # Safety
+    /// As for [`Renderer::prepare`], with requests in place of frames: of so many as [`new`](Self::new) was told the first one
+    /// has finished before one more is recorded.
+    ///
+    /// # Errors
+    /// As for [`Renderer::configure`], and [`Error::Invalid`] for a rectangle that has no pixels or reaches out of the
+    /// picture. Nothing is recorded then.
+    pub unsafe fn record(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        scene: &SceneBuffers,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+        rect: vk::Rect2D,
+    ) -> Result<PickTicket> {
+        let part = part_of(camera, rect)?;
+        let settings = settings
+            .show(Show::Strongest)
+            .raster(Raster::Auto)
+            .background(None);
+        self.renderer.configure_frame(&FrameRequest {
+            scene,
+            camera: &part,
+            clip,
+            settings: &settings,
+            submission: Submission::InFlight,
+            picture: Some(TargetFormat::Float),
+            whole: Some(camera),
+        })?;
+        let device = self.renderer.device.clone();
+        let slot = &mut self.slots[(self.recorded % self.slots.len() as u64) as usize];
+        slot.asked = None;
+        let readback = slot.room(&device, rect.extent)?;
+        // SAFETY: the caller's promises are those asked for.
+        unsafe { self.renderer.prepare(cmd, scene) }?;
+        let tiles = self.renderer.picture().filter(|_| scene.count > 0);
+        if let Some(tiles) = tiles {
+            // SAFETY: the caller's promises are those of `prepare`, and the buffers live as the frame's do.
+            let mut recorder = unsafe { Recorder::begin(&device, cmd, None) };
+            let [begins, pixels] = TilePicture::sizes(rect.extent, TargetFormat::Float);
+            let [to, _] = sizes(rect.extent);
+            let copy = |size, to| [vk::BufferCopy::default().size(size).dst_offset(to)];
+            recorder.label("pick", |recorder| {
+                recorder.copy(&tiles.begins, readback, &copy(begins, 0));
+                recorder.copy(&tiles.pixels, readback, &copy(pixels, to));
+                recorder.ready_for_host(&[readback]);
+            });
+        }
+        slot.asked = Some((rect, tiles.is_some()));
+        self.recorded += 1;
+        Ok(PickTicket {
+            picker: self.renderer.id,
+            request: self.recorded - 1,
+        })
+    }
+
+    /// The answer to a request; `None` where there was no room for what its pixels show, for which later requests make it.
+    ///
+    /// # Safety
+    /// The submission in which the request was recorded has finished.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for another picker's request, and for one whose memory a later one has taken.
+    pub unsafe fn read(&self, ticket: PickTicket) -> Result<Option<Picks>> {
+        let slots = self.slots.len() as u64;
+        if ticket.picker != self.renderer.id {
+            return Err(Error::Invalid(
+                "Picker::read was given another picker's request".into(),
+            ));
+        }
+        let slot = &self.slots[(ticket.request % slots) as usize];
+        let is_held = ticket.request + slots >= self.recorded;
+        let (Some((rect, has_splats)), Some(readback), true) =
+            (slot.asked, &slot.readback, is_held)
+        else {
+            return Err(Error::Invalid(format!(
+                "Picker::read was given request {}, whose memory a later one has taken: read each before {slots} more are recorded",
+                ticket.request
+            )));
+        };
+        let frame = self.renderer.frames.recorded(ticket.request);
+        if frame.is_some_and(|frame| has_splats && frame.fell_back()) {
+            return Ok(None);
+        }
+        let pixels = match has_splats {
+            true => decoded(rect.extent, readback.mapped()),
+            false => vec![None; (rect.extent.width * rect.extent.height) as usize],
+        };
+        Ok(Some(Picks { rect, pixels }))
+    }
+}
+
+impl Slot {
+    /// The buffer in which the host reads the answer about so many pixels.
+    fn room(&mut self, device: &Device, extent: vk::Extent2D) -> Result<&Buffer> {
+        let size = sizes(extent).iter().sum();
+        if self.readback.as_ref().is_none_or(|held| held.size() < size) {
+            self.readback = None; // first: both together may not fit
+            self.readback = Some(device.create_buffer(&BufferDesc {
+                name: "pick_readback",
+                size,
+                location: Location::Readback,
+            })?);
+        }
+        self.readback
+            .as_ref()
+            .ok_or_else(|| Error::Memory("there is no memory for picks".into()))
+    }
+}
+
+impl Picks {
+    /// The pick of a pixel of the picture; `None` also outside of the rectangle.
+    pub fn at(&self, x: u32, y: u32) -> Option<Pick> {
+        let (vk::Offset2D { x: left, y: top }, extent) = (self.rect.offset, self.rect.extent);
+        let (x, y) = (
+            x.checked_sub(left.try_into().ok()?)?,
+            y.checked_sub(top.try_into().ok()?)?,
+        );
+        let is_inside = x < extent.width && y < extent.height;
+        let at = y as usize * extent.width as usize + x as usize;
+        self.pixels.get(at).copied().flatten().filter(|_| is_inside)
+    }
+
+    /// The Gaussians that some pixel shows most of, each once with the sum of what it adds to these pixels: the one of most
+    /// first, and of equal ones that of the lower number.
+    pub fn gaussians(&self) -> Vec<Pick> {
+        let mut sums: HashMap<u32, Pick> = HashMap::new();
+        for pick in self.pixels.iter().flatten() {
+            let of_none = Pick {
+                alpha: 0.0,
+                ..*pick
+            };
+            sums.entry(pick.number).or_insert(of_none).alpha += pick.alpha;
+        }
+        let mut all: Vec<Pick> = sums.into_values().collect();
+        all.sort_by(|a, b| b.alpha.total_cmp(&a.alpha).then(a.number.cmp(&b.number)));
+        all
+    }
+
+    /// The first of [`gaussians`](Self::gaussians).
+    pub fn strongest(&self) -> Option<Pick> {
+        self.gaussians().first().copied()
+    }
+}
+
+/// The camera of a part of a picture.
+fn part_of(camera: &Camera, rect: vk::Rect2D) -> Result<Camera> {
+    let vk::Extent2D { width, height } = rect.extent;
+    let along = |from: i32, length: u32, whole: u32| {
+        let is_inside = i64::from(from) + i64::from(length) <= i64::from(whole);
+        from >= 0 && length > 0 && is_inside
+    };
+    let (x, y) = (rect.offset.x, rect.offset.y);
+    if !along(x, width, camera.width) || !along(y, height, camera.height) {
+        return Err(Error::Invalid(format!(
+            "a pick of {width}x{height} px at {x}, {y} is no part of a picture of {}x{}",
+            camera.width, camera.height
+        )));
+    }
+    Ok(Camera {
+        width,
+        height,
+        cx: camera.cx - f64::from(x),
+        cy: camera.cy - f64::from(y),
+        ..*camera
+    })
+}
+
+/// Bytes of what is read back about so many pixels: of the tiles' begins, padded so that pixels begin at a multiple of their
+/// own size, and of the pixels.
+fn sizes(extent: vk::Extent2D) -> [u64; 2] {
+    let [begins, pixels] = TilePicture::sizes(extent, TargetFormat::Float);
+    let pixel = TargetFormat::Float.pixel_bytes();
+    [begins.next_multiple_of(pixel), pixels]
+}
+
+/// The picks of what was read back.
+fn decoded(extent: vk::Extent2D, bytes: &[u8]) -> Vec<Option<Pick>> {
+    let (begins, pixels) = bytes.split_at(sizes(extent)[0] as usize);
+    let [length, _] = TilePicture::sizes(extent, TargetFormat::Float);
+    let begins = &begins[..length as usize];
+    let pixels = TilePicture::decode(begins, pixels, extent, TargetFormat::Float);
+    let pick = |[low, high, layer, alpha]: [f32; 4]| Pick {
+        number: low as u32 | (high as u32) << 16,
+        layer: layer as usize,
+        alpha,
+    };
+    let shown = |pixel: [f32; 4]| (pixel[3] >= limits::ALPHA_MIN).then(|| pick(pixel));
+    pixels.into_iter().map(shown).collect()
+}

@@ -1,0 +1,62 @@
+//! The Gaussians that pixels show most of.
+
+use ash::vk;
+
+use super::super::loaded;
+use super::super::no_room;
+use super::Headless;
+use crate::camera::Camera;
+use crate::clip::Clip;
+use crate::error::{Error, Result};
+use crate::renderer::{Picker, Picks};
+use crate::settings::{Settings, Show};
+
+/// Room for the tiles' lists is known to suffice, or not to be had, after so many requests.
+const TRIES: u32 = 8;
+
+impl Headless {
+    /// Finds the Gaussians that the pixels of a part of the picture show most of, and waits for them. [`Picker`] does the same
+    /// without waiting.
+    ///
+    /// # Errors
+    /// As [`Picker::record`], [`Error::Memory`] without room for what the pixels show, and [`Error::Invalid`] without a scene.
+    pub fn pick(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+        rect: vk::Rect2D,
+    ) -> Result<Picks> {
+        let picked = self.picked(camera, clip, settings, rect);
+        picked.map_err(|error| self.session.explain(error))
+    }
+
+    fn picked(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+        rect: vk::Rect2D,
+    ) -> Result<Picks> {
+        let session = &self.session;
+        let (device, scene) = (&session.device, loaded(&session.scene, "pick from")?);
+        let mut picker = Picker::new(&session.renderer, 1)?;
+        for _ in 0..TRIES {
+            let mut ticket = None;
+            device.submit_and_wait(|cmd| {
+                // SAFETY: `cmd` is recording outside a rendering scope, all earlier submissions were waited for, and scene
+                // and picker outlive the wait for this one.
+                let recorded = unsafe { picker.record(cmd, scene, camera, clip, settings, rect) };
+                ticket = Some(recorded?);
+                Ok(())
+            })?;
+            Error::validated(device.validation_messages())?;
+            // SAFETY: the submission was waited for.
+            let picks = ticket.map(|ticket| unsafe { picker.read(ticket) });
+            if let Some(picks) = picks.transpose()?.flatten() {
+                return Ok(picks);
+            }
+        }
+        Err(no_room(&settings.show(Show::Strongest)))
+    }
+}

@@ -77,7 +77,7 @@ uint block_view_side(Block block) {
     vec2 depth = depth_range(relative, half_box);
     float farthest = depth.x + depth.y;
     float nearest = depth.x - depth.y;
-    if (farthest < NEAR_Z) {
+    if (farthest < FRAME.view.near_cut) {
         return SIDE_CULLED;
     }
     vec4 focal = FRAME.view.focal;
@@ -88,7 +88,7 @@ uint block_view_side(Block block) {
     }
     // A layer's opacity and what makes up for the low-pass may leave some of them fainter than the block knows.
     bool is_as_opaque = LAYER.content.opacity == 1.0 && LAYER.content.antialiased == 0u;
-    bool drawable = sigma >= 0.0 && is_as_opaque && nearest > 1.0001 * NEAR_Z
+    bool drawable = sigma >= 0.0 && is_as_opaque && nearest > 1.0001 * FRAME.view.near_cut
         && 4.0 * sigma * max(focal.x, focal.y) < DRAWABLE_DEVIATION * homogeneous(nearest);
     return x == SIDE_VISIBLE && y == SIDE_VISIBLE && drawable ? SIDE_VISIBLE : SIDE_CUTOFF;
 }

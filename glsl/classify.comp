@@ -47,7 +47,7 @@ uint classify(uint block, uint local) {
     Gaussian gaussian = gaussians.at[index];
     // The depth comes first: it is cheap and culls what is behind the eye. The test is negated to cull a NaN too.
     float depth = dot(LAYER.view.rotation_z.xyz, eye_relative(gaussian.position_opacity.xyz));
-    if (!(depth >= NEAR_Z) || opacity_in_layer(gaussian) < ALPHA_MIN) {
+    if (!(depth >= FRAME.view.near_cut) || opacity_in_layer(gaussian) < ALPHA_MIN) {
         return SIDE_CULLED;
     }
     Footprint f = footprint(gaussian);

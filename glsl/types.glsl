@@ -24,7 +24,7 @@ struct ViewData {
     uint precise_view; // 1: positions in the camera's frame are computed in two floats
     uint sh_degree; // highest degree to evaluate
     uint projection; // PROJECTION_*
-    uint pad; // unused
+    float near_cut; // the depth from which centres are drawn, the scene's units
 };
 
 // The order of the survivors.

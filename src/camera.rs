@@ -8,6 +8,7 @@ use glam::{DMat3, DMat4, DVec3};
 
 use crate::clip::{Clip, ClipOp, Plane};
 use crate::error::{Error, Result};
+use crate::limits;
 use crate::setters::setters;
 pub use matrices::Ndc;
 
@@ -40,7 +41,7 @@ pub struct Camera {
     /// Principal point, pixels from the picture's top edge (`height / 2` is the middle).
     pub cy: f64,
     /// The eye's position, world units. An orthographic camera sees the same from every point of a line along its view
-    /// axis, but for what is nearer than 0.2, which no camera sees. Depths count from the eye here too, in single precision:
+    /// axis, but for what is nearer than its [near cut](Self::near_cut). Depths count from the eye here too, in single precision:
     /// an eye not much farther away than the scene is large keeps what lies close together in order.
     pub eye: DVec3,
     /// World to camera rotation (rows are the camera's right, down and forward axes in the world). With a determinant of -1,
@@ -54,6 +55,9 @@ pub struct Camera {
     pub clip_near: Option<f64>,
     /// The depth up to which the scene is kept, likewise.
     pub clip_far: Option<f64>,
+    /// The depth, world units, from which on splats are drawn: those whose centres are nearer are left out whole. Without one it is 0.2 units
+    /// of the scene, as in 3DGS, however large these are in the world.
+    pub near_cut: Option<f64>,
 }
 
 setters!(Camera {
@@ -68,6 +72,7 @@ setters!(Camera {
     projection: Projection,
     clip_near: Option<f64>,
     clip_far: Option<f64>,
+    near_cut: Option<f64>,
 });
 
 impl Camera {
@@ -140,6 +145,7 @@ impl Camera {
             projection: Projection::Perspective,
             clip_near: None,
             clip_far: None,
+            near_cut: None,
         }
     }
 
@@ -174,6 +180,7 @@ impl Camera {
             projection: Projection::Perspective,
             clip_near: None,
             clip_far: None,
+            near_cut: None,
         }
         .checked()
     }
@@ -243,6 +250,22 @@ impl Camera {
             .clip_far
             .map(|far| Plane::new(-forward, far - depth_of_origin));
         near.into_iter().chain(far).collect()
+    }
+
+    /// The depth from which splats are drawn, the scene's units, of which one of the camera's has so many.
+    pub(crate) fn nearest(&self, unit: f64) -> f64 {
+        self.near_cut
+            .map_or(f64::from(limits::NEAR_Z), |depth| depth * unit)
+    }
+
+    /// That splats can be drawn from its near cut on.
+    pub fn check_near_cut(&self) -> Result<()> {
+        match self.near_cut {
+            Some(depth) if !(depth.is_finite() && depth > 0.0) => Err(Error::Invalid(format!(
+                "a near cut at a depth of {depth} is not in front of the eye; give a depth above 0"
+            ))),
+            _ => Ok(()),
+        }
     }
 
     /// True when a plane that moves with the camera cuts the scene.

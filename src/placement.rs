@@ -96,6 +96,7 @@ impl Camera {
             rotation: self.rotation * DMat3::from_quat(placement.rotation),
             clip_near: self.clip_near.map(|depth| depth / placement.scale),
             clip_far: self.clip_far.map(|depth| depth / placement.scale),
+            near_cut: self.near_cut.map(|depth| depth / placement.scale),
             ..*self
         }
     }

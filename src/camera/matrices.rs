@@ -125,6 +125,7 @@ impl Camera {
             projection: lens.projection,
             clip_near: None,
             clip_far: None,
+            near_cut: None,
         };
         Ok((camera.checked()?, depth))
     }

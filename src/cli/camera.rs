@@ -62,6 +62,9 @@ pub(super) struct CameraArgs {
     /// Keep what is at this depth or nearer, likewise
     #[arg(long, value_name = "DEPTH", allow_hyphen_values = true)]
     clip_far: Option<f64>,
+    /// Draw splats whose centres are at this depth or deeper, each whole, world units [default: 0.2]
+    #[arg(long, value_name = "DEPTH")]
+    near_cut: Option<f64>,
     /// Picture size [default: 1024x1024, or the camera file's own; a window's: 1280x720]. Of another aspect than the camera
     /// file's it shows all that the camera sees, undistorted, and more beside it
     #[arg(long, value_name = "WxH", value_parser = values::size)]
@@ -129,7 +132,8 @@ impl CameraArgs {
     /// True when a flag places the camera, chooses its lens or cuts at its depths.
     pub(super) fn places(&self) -> bool {
         let from_file = self.is_from_file();
-        let cuts = self.clip_near.is_some() || self.clip_far.is_some();
+        let cuts = [self.clip_near, self.clip_far, self.near_cut];
+        let cuts = cuts.iter().any(Option::is_some);
         from_file || cuts || self.eye.is_some() || self.ortho.is_some() || self.fov_y != FOV_Y
     }
 
@@ -220,6 +224,7 @@ impl CameraArgs {
         Depths {
             near: self.clip_near,
             far: self.clip_far,
+            cut: self.near_cut,
         }
     }
 

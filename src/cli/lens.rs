@@ -54,17 +54,20 @@ impl Lens {
     }
 }
 
-/// The depths that `--clip-near` and `--clip-far` mean.
+/// The depths that `--clip-near`, `--clip-far` and `--near-cut` mean.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Depths {
     pub(super) near: Option<f64>,
     pub(super) far: Option<f64>,
+    pub(super) cut: Option<f64>,
 }
 
 impl Depths {
-    /// The camera with planes at these depths.
+    /// The camera with planes, and a near cut, at these depths.
     pub(super) fn of(self, camera: Camera) -> Result<Camera, Failure> {
         let camera = camera.clip_near(self.near).clip_far(self.far);
+        let camera = camera.near_cut(self.cut);
+        camera.check_near_cut().map_err(Failure::usage)?;
         camera.clip_planes().map_err(Failure::usage)?;
         Ok(camera)
     }

@@ -21,7 +21,7 @@ use super::failure::Failure;
 pub(super) struct PanoramaArgs {
     /// Draw all that is seen from --eye, or from a camera of a file or path: an equirectangular picture, twice as wide as high
     /// [default: 2048x1024], with what the camera looks at in its middle
-    #[arg(long, conflicts_with_all = ["ortho", "fov_y", "section", "aov", "clip_near", "clip_far"])]
+    #[arg(long, conflicts_with_all = ["ortho", "fov_y", "section", "aov", "clip_near", "clip_far", "near_cut"])]
     panorama: bool,
 }
 

@@ -190,7 +190,7 @@ impl SectionArgs {
         }
         if camera.places() {
             return Err(Failure::Usage(
-                "--section places the camera itself: leave out --eye, --target, --fov-y, --ortho, --camera, --cameras, --clip-near and --clip-far; \
+                "--section places the camera itself: leave out --eye, --target, --fov-y, --ortho, --camera, --cameras, --clip-near, --clip-far and --near-cut; \
                  --up, --size and --section-scale change what it shows"
                     .into(),
             ));

@@ -66,7 +66,7 @@ fn depths(bounds: [Vec3; 2], camera: &Camera, unit: f64) -> Option<[f32; 2]> {
     let forward = unit * camera.rotation.row(2);
     let (a, b) = (forward * low, forward * high);
     let slack = unit * 1e-5 * low.abs().max(high.abs()).element_sum();
-    let near = (a.min(b).element_sum() - slack).max(f64::from(limits::NEAR_Z));
+    let near = (a.min(b).element_sum() - slack).max(camera.nearest(unit));
     let far = (a.max(b).element_sum() + slack).max(near);
     // A depth beyond a 32-bit float's range becomes infinite; the clamp keeps the difference of the bits right.
     Some([near as f32, far as f32].map(|depth| depth.min(f32::MAX)))

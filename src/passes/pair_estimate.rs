@@ -131,7 +131,7 @@ impl<'a> Eye<'a> {
         let opacity = f64::from(gaussian.opacity) * self.opacity;
         let brightness = opacity * f64::from(limits::ALPHA_MIN_INVERSE);
         // A depth that is none is not in view either.
-        if !(centre.z >= f64::from(limits::NEAR_Z) && brightness > 1.0) {
+        if !(centre.z >= camera.nearest(1.0) && brightness > 1.0) {
             return 0.0;
         }
         let axes = gaussian.axes.map(|axis| self.turn * axis.as_dvec3());

@@ -105,6 +105,7 @@ impl Plan {
         settings: &Settings,
     ) -> Result<Self> {
         let visible = scene.layers.iter().filter(|layer| layer.is_visible());
+        camera.check_near_cut()?;
         let own = visible.filter_map(SceneLayer::clip);
         let of_camera = Clip::of(camera.clip_planes()?, ClipOp::And);
         let region = region_data(own.chain([clip, &of_camera]), settings)?;

@@ -42,7 +42,7 @@ pub(super) fn view_data(
             Projection::Perspective => types::PROJECTION_PERSPECTIVE,
             Projection::Orthographic => types::PROJECTION_ORTHOGRAPHIC,
         },
-        pad: 0,
+        near_cut: camera.nearest(1.0) as f32,
     }
 }
 

@@ -12,7 +12,7 @@ use glam::{Quat, Vec3 as Point};
 
 use super::real::{Real, Vec3, vec3};
 use super::view::View;
-use crate::limits::{ALPHA_MIN_INVERSE, COMPENSATION_SQUARE_MIN, LOW_PASS, NEAR_Z};
+use crate::limits::{ALPHA_MIN_INVERSE, COMPENSATION_SQUARE_MIN, LOW_PASS};
 use crate::{Gaussians, Projection};
 
 /// A Gaussian in view, from which every later stage computes.
@@ -53,7 +53,7 @@ pub struct Footprint<T> {
 }
 
 impl<T: Real> Footprint<T> {
-    /// The footprint of one Gaussian, or nothing if it is culled: it is nearer than [`NEAR_Z`] or behind the eye, or
+    /// The footprint of one Gaussian, or nothing if it is culled: it is nearer than the [near cut](View::near_cut) or behind the eye, or
     /// fainter than 1/255 even at its centre, or its box holds no pixel centre of the picture.
     ///
     /// The opacity of an antialiased one is multiplied by the root of `det B B^T / det (B B^T + LOW_PASS I)`: then the
@@ -64,7 +64,7 @@ impl<T: Real> Footprint<T> {
         let view_centre = view.turn(relative);
         let whole = T::of(f64::from(scene.opacities()[index]));
         let brightness = |opacity: T| opacity * T::of(f64::from(ALPHA_MIN_INVERSE));
-        if !(view_centre.z >= T::of(f64::from(NEAR_Z)) && brightness(whole) >= T::one()) {
+        if !(view_centre.z >= view.near_cut && brightness(whole) >= T::one()) {
             return None;
         }
 

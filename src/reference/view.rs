@@ -28,6 +28,8 @@ pub struct View<T> {
     pub eye_low: Vec3<T>,
     /// Units of the scene in one of the layer's.
     pub unit: T,
+    /// The depth from which centres are drawn, the scene's units.
+    pub near_cut: T,
 }
 
 impl<T: Real> View<T> {
@@ -61,6 +63,7 @@ impl<T: Real> View<T> {
             eye_high,
             eye_low: Vec3::of(placed.eye - rounded),
             unit: T::of(unit),
+            near_cut: T::of(camera.nearest(1.0)),
         }
     }
 

@@ -38,11 +38,12 @@ pub(super) fn flags(camera: &Camera) -> Option<String> {
     ))
 }
 
-/// The flags of the planes that move with this camera, of which no file says anything.
+/// The flags of the planes and the near cut that move with this camera, of which no file says anything.
 pub(super) fn planes(camera: &Camera) -> Vec<String> {
     let planes = [
         ("--clip-near", camera.clip_near),
         ("--clip-far", camera.clip_far),
+        ("--near-cut", camera.near_cut),
     ];
     let flag = |(flag, depth): (&str, Option<f64>)| depth.map(|depth| format!("{flag} {depth}"));
     planes.into_iter().filter_map(flag).collect()

@@ -97,6 +97,7 @@ impl Viewpoint {
         camera
             .clip_near(camera.clip_near.map(farther))
             .clip_far(camera.clip_far.map(farther))
+            .near_cut(camera.near_cut.map(farther))
             .fx(camera.fx / self.pose.distance)
             .fy(camera.fy / self.pose.distance)
             .eye(camera.eye - forward * back)

@@ -45,6 +45,7 @@ fn camera(width: u32, height: u32, focal: f64) -> Camera {
         projection: Projection::Perspective,
         clip_near: None,
         clip_far: None,
+        near_cut: None,
     }
 }
 

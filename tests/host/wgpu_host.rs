@@ -72,6 +72,6 @@ fn pictures_are_the_headless_ones_byte_for_byte_and_the_layer_is_silent() {
 }
 
 #[test]
-fn a_transition_that_is_left_out_is_seen() {
+fn a_transition_and_a_barrier_that_are_left_out_are_seen() {
     checked("--check-careless");
 }

@@ -1,9 +1,11 @@
 //! Compares the host's pictures with those that rara draws without a host, while the validation layer watches.
 
 use half::f16;
+use rara::glam::DMat4;
 use rara::gpu::{Bindings, PipelineCache};
 use rara::scene::{Kind, generate};
 use rara::{Gaussians, Headless, HeadlessDesc, Picture, Precision, TargetFormat};
+use wgpu::hal::api::Vulkan;
 
 use crate::Failure;
 use crate::host::Host;
@@ -11,7 +13,6 @@ use crate::meshes::{Meshes, Wall};
 use crate::splats::Splats;
 use crate::target::Target;
 use crate::world::{BACKGROUND, World};
-use rara::glam::DMat4;
 
 /// No multiple of anything, so that nothing is right by chance.
 const SIZE: (u32, u32) = (189, 131);
@@ -62,17 +63,39 @@ pub(crate) fn check(device: &str) -> Result<(), Failure> {
     }
 }
 
-/// Leaves out a transition, to see that the validation layer watches what is recorded beside wgpu.
+/// Leaves out a transition, and a barrier between two writes, to see that the validation layer watches what is recorded beside
+/// wgpu: layouts across command buffers, and synchronisation at least inside of them.
 pub(crate) fn careless(device: &str) -> Result<(), Failure> {
     let world = World::new(generate(Kind::General, 300, 5), SIZE)?;
     let host = Host::new(device, true)?;
     draw(&host, &world, FORMATS[0].0, world.furniture(), false)?;
+    let buffer = host.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("written twice"),
+        size: 16,
+        usage: wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let ((), never_submitted) = host.raw("careless", |cmd| {
+        // SAFETY: nothing of what is shown is destroyed, and `cmd` is recording outside any scope.
+        unsafe {
+            let hal = buffer.as_hal::<Vulkan>().expect("a buffer of Vulkan's");
+            for value in 0..2 {
+                let device = host.rara.raw();
+                device.cmd_fill_buffer(cmd, hal.raw_handle(), 0, 16, value);
+            }
+        }
+    });
+    drop((buffer, never_submitted));
     let said = host.close();
-    let seen = |text: &String| text.contains("splats") && text.contains("LAYOUT_TRANSFER_SRC");
-    match said.iter().any(seen) {
-        true => Ok(()),
-        false => Err(format!("a transition is missing and nobody sees it: {said:?}").into()),
+    for (missing, part) in [
+        ("transition", "VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL"),
+        ("barrier", "SYNC-HAZARD-WRITE-AFTER-WRITE"),
+    ] {
+        if !said.iter().any(|text| text.contains(part)) {
+            return Err(format!("a {missing} is missing and nobody sees it: {said:?}").into());
+        }
     }
+    Ok(())
 }
 
 /// The bytes of the third frame in the host.

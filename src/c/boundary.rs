@@ -5,8 +5,10 @@ use std::cell::RefCell;
 use std::ffi::{CString, c_char, c_void};
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ptr::NonNull;
 
 use rara::ash::vk;
+use rara::gpu::WriteOnly;
 use rara::{Error, Result};
 
 use crate::text::c_string;
@@ -151,15 +153,15 @@ pub(crate) unsafe fn memory<'a>(
     first: *mut c_void,
     size: usize,
     name: &str,
-) -> Result<&'a mut [u8]> {
+) -> Result<WriteOnly<'a>> {
     if size == 0 {
-        return Ok(&mut []);
+        return Ok((&mut [][..]).into());
     }
     check_count::<u8>(size, name)?;
+    let first = NonNull::new(first.cast());
+    let first = first.ok_or_else(|| Error::Invalid(format!("{name} is null")))?;
     // SAFETY: the caller's promise.
-    let first = unsafe { exclusive(first.cast::<u8>(), name) }?;
-    // SAFETY: as above, and not null.
-    Ok(unsafe { std::slice::from_raw_parts_mut(first, size) })
+    Ok(unsafe { WriteOnly::new(NonNull::slice_from_raw_parts(first, size)) })
 }
 
 fn check_count<T>(count: usize, name: &str) -> Result<()> {

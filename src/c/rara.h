@@ -530,7 +530,7 @@ typedef struct RaraStaging {
     VkBuffer buffer;
     // The offset of the part in the buffer, bytes.
     uint64_t offset;
-    // The part, mapped for writing.
+    // The part, mapped for writing: it is never read.
     void *mapped;
     // Its length in bytes; it may be longer than what is needed.
     size_t size;

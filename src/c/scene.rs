@@ -169,7 +169,7 @@ pub struct RaraStaging {
     pub buffer: vk::Buffer,
     /// The offset of the part in the buffer, bytes.
     pub offset: u64,
-    /// The part, mapped for writing.
+    /// The part, mapped for writing: it is never read.
     pub mapped: *mut c_void,
     /// Its length in bytes; it may be longer than what is needed.
     pub size: usize,

@@ -43,72 +43,21 @@ impl Support {
     ///
     /// `p_next` is null, or a chain of Vulkan's structs that nobody else uses meanwhile.
     pub unsafe fn set_features(&self, p_next: *mut c_void) -> Result<()> {
-        use vk::StructureType as Type;
-        let (mut address, mut synchronization, mut rendering) = (false, false, false);
-        let full_subgroups = self.full_subgroups[1] > 0;
-        let mut next = p_next.cast::<vk::BaseOutStructure<'_>>();
-        // SAFETY: each struct of the caller's chain begins with its type, which says what it is, and with a pointer to the
-        // next one.
-        unsafe {
-            while !next.is_null() {
-                match (*next).s_type {
-                    Type::PHYSICAL_DEVICE_VULKAN_1_2_FEATURES => {
-                        let all = &mut *next.cast::<vk::PhysicalDeviceVulkan12Features<'_>>();
-                        all.buffer_device_address = vk::TRUE;
-                        address = true;
-                    }
-                    Type::PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES => {
-                        let one = next.cast::<vk::PhysicalDeviceBufferDeviceAddressFeatures<'_>>();
-                        (*one).buffer_device_address = vk::TRUE;
-                        address = true;
-                    }
-                    Type::PHYSICAL_DEVICE_VULKAN_1_3_FEATURES => {
-                        let all = &mut *next.cast::<vk::PhysicalDeviceVulkan13Features<'_>>();
-                        (all.synchronization2, all.dynamic_rendering) = (vk::TRUE, vk::TRUE);
-                        (synchronization, rendering) = (true, true);
-                        if full_subgroups {
-                            (all.subgroup_size_control, all.compute_full_subgroups) =
-                                (vk::TRUE, vk::TRUE);
-                        }
-                    }
-                    Type::PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES => {
-                        let one = next.cast::<vk::PhysicalDeviceSynchronization2Features<'_>>();
-                        (*one).synchronization2 = vk::TRUE;
-                        synchronization = true;
-                    }
-                    Type::PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES => {
-                        let one = next.cast::<vk::PhysicalDeviceDynamicRenderingFeatures<'_>>();
-                        (*one).dynamic_rendering = vk::TRUE;
-                        rendering = true;
-                    }
-                    Type::PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_FEATURES if full_subgroups => {
-                        let all = next.cast::<vk::PhysicalDeviceSubgroupSizeControlFeatures<'_>>();
-                        let all = &mut *all;
-                        (all.subgroup_size_control, all.compute_full_subgroups) =
-                            (vk::TRUE, vk::TRUE);
-                    }
-                    Type::PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT if self.mesh_shader => {
-                        let all = &mut *next.cast::<vk::PhysicalDeviceMeshShaderFeaturesEXT<'_>>();
-                        (all.mesh_shader, all.task_shader) = (vk::TRUE, vk::TRUE);
-                    }
-                    _ => {}
-                }
-                next = (*next).p_next;
-            }
-        }
+        // SAFETY: the caller's promise.
+        let found = unsafe { self.set_in(p_next) };
         for (found, feature, holder) in [
             (
-                address,
+                found.address,
                 "bufferDeviceAddress",
                 "VkPhysicalDeviceVulkan12Features or VkPhysicalDeviceBufferDeviceAddressFeatures",
             ),
             (
-                synchronization,
+                found.synchronization,
                 "synchronization2",
                 "VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceSynchronization2Features",
             ),
             (
-                rendering,
+                found.rendering,
                 "dynamicRendering",
                 "VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceDynamicRenderingFeatures",
             ),
@@ -121,6 +70,122 @@ impl Support {
         }
         Ok(())
     }
+
+    /// Sets the features in those structs of a chain that have them.
+    ///
+    /// # Safety
+    /// As for [`set_features`](Self::set_features).
+    unsafe fn set_in(&self, p_next: *mut c_void) -> Found {
+        use vk::StructureType as Type;
+        let mut found = Found::default();
+        let full_subgroups = self.full_subgroups[1] > 0;
+        let mut next = p_next.cast::<vk::BaseOutStructure<'_>>();
+        // SAFETY: each struct of the caller's chain begins with its type, which says what it is, and with a pointer to the
+        // next one.
+        unsafe {
+            while !next.is_null() {
+                match (*next).s_type {
+                    Type::PHYSICAL_DEVICE_VULKAN_1_2_FEATURES => {
+                        let all = &mut *next.cast::<vk::PhysicalDeviceVulkan12Features<'_>>();
+                        all.buffer_device_address = vk::TRUE;
+                        found.address = true;
+                    }
+                    Type::PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES => {
+                        let one = next.cast::<vk::PhysicalDeviceBufferDeviceAddressFeatures<'_>>();
+                        (*one).buffer_device_address = vk::TRUE;
+                        found.address = true;
+                    }
+                    Type::PHYSICAL_DEVICE_VULKAN_1_3_FEATURES => {
+                        let all = &mut *next.cast::<vk::PhysicalDeviceVulkan13Features<'_>>();
+                        (all.synchronization2, all.dynamic_rendering) = (vk::TRUE, vk::TRUE);
+                        (found.synchronization, found.rendering) = (true, true);
+                        found.subgroup_size = true;
+                        if full_subgroups {
+                            (all.subgroup_size_control, all.compute_full_subgroups) =
+                                (vk::TRUE, vk::TRUE);
+                        }
+                    }
+                    Type::PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES => {
+                        let one = next.cast::<vk::PhysicalDeviceSynchronization2Features<'_>>();
+                        (*one).synchronization2 = vk::TRUE;
+                        found.synchronization = true;
+                    }
+                    Type::PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES => {
+                        let one = next.cast::<vk::PhysicalDeviceDynamicRenderingFeatures<'_>>();
+                        (*one).dynamic_rendering = vk::TRUE;
+                        found.rendering = true;
+                    }
+                    Type::PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_FEATURES if full_subgroups => {
+                        found.subgroup_size = true;
+                        let all = next.cast::<vk::PhysicalDeviceSubgroupSizeControlFeatures<'_>>();
+                        let all = &mut *all;
+                        (all.subgroup_size_control, all.compute_full_subgroups) =
+                            (vk::TRUE, vk::TRUE);
+                    }
+                    Type::PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT if self.mesh_shader => {
+                        found.mesh = true;
+                        let all = &mut *next.cast::<vk::PhysicalDeviceMeshShaderFeaturesEXT<'_>>();
+                        (all.mesh_shader, all.task_shader) = (vk::TRUE, vk::TRUE);
+                    }
+                    _ => {}
+                }
+                next = (*next).p_next;
+            }
+        }
+        found
+    }
+
+    /// Completes a host's create info, whatever structs are chained to it, as they are by an engine that does not say which:
+    /// features are set where a struct has them, and the structs of `ours` are chained for the others. All features are
+    /// enabled then, the optional ones too.
+    ///
+    /// ```no_run
+    /// # use rara::{ash::vk, gpu::Support};
+    /// fn completed(support: &Support, engine: vk::DeviceCreateInfo<'_>, create: impl FnOnce(&vk::DeviceCreateInfo<'_>)) {
+    ///     let mut ours = support.features();
+    ///     // SAFETY: what the engine has chained is its own and ours until the device is created.
+    ///     create(&unsafe { support.complete(&mut ours, engine) });
+    /// }
+    /// ```
+    ///
+    /// # Safety
+    ///
+    /// `info.p_next` is null, or a chain of Vulkan's structs that may be changed and that nobody else uses meanwhile.
+    pub unsafe fn complete<'a>(
+        &self,
+        ours: &'a mut Features,
+        info: vk::DeviceCreateInfo<'a>,
+    ) -> vk::DeviceCreateInfo<'a> {
+        // SAFETY: the caller's promise.
+        let found = unsafe { self.set_in(info.p_next.cast_mut()) };
+        let mut info = info;
+        if !found.address {
+            info = info.push_next(&mut ours.buffer_device_address);
+        }
+        if !found.synchronization {
+            info = info.push_next(&mut ours.synchronization2);
+        }
+        if !found.rendering {
+            info = info.push_next(&mut ours.dynamic_rendering);
+        }
+        if let Some(mesh) = ours.mesh.as_mut().filter(|_| !found.mesh) {
+            info = info.push_next(mesh);
+        }
+        if let Some(sizes) = ours.subgroup_size.as_mut().filter(|_| !found.subgroup_size) {
+            info = info.push_next(sizes);
+        }
+        info
+    }
+}
+
+/// Which features a chain has structs for.
+#[derive(Default)]
+struct Found {
+    address: bool,
+    synchronization: bool,
+    rendering: bool,
+    mesh: bool,
+    subgroup_size: bool,
 }
 
 /// The feature structs that a device is created with, in 1.2 as in 1.3, each of one feature or one extension: they go

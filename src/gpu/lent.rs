@@ -1,14 +1,15 @@
 //! Device memory: from an allocator, or from the functions of a host that has one of its own.
 
 use std::ffi::c_void;
+use std::ptr::NonNull;
 use std::sync::{MutexGuard, PoisonError};
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, Allocator};
 
-use super::Device;
 use super::memory::Location;
+use super::{Device, WriteOnly};
 
 /// What a [`MemorySource`] is asked for.
 #[derive(Debug, Clone, Copy)]
@@ -46,7 +47,8 @@ unsafe impl Sync for LentMemory {}
 /// # Safety
 /// What [`allocate`](Self::allocate) lends is of the device that was adopted, allocated with
 /// `VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT`, of a type and a size that will do, and nobody else's until it is
-/// [freed](Self::free). For [`Location::Upload`] and [`Location::Readback`] its type is host-coherent, and it is mapped.
+/// [freed](Self::free). For [`Location::Upload`] and [`Location::Readback`] its type is host-coherent, and it is mapped: what is
+/// for `Upload` for writing alone, since rara never reads it.
 pub unsafe trait MemorySource: Send + Sync {
     /// Lends memory.
     ///
@@ -105,15 +107,15 @@ impl Memory {
         }
     }
 
-    pub(super) fn mapped_mut(&mut self) -> Option<&mut [u8]> {
-        match self {
-            Self::Own(allocation) => allocation.mapped_slice_mut(),
-            Self::Lent { lent, size } => (!lent.mapped.is_null()).then(|| {
-                let (first, size) = (lent.mapped.cast(), *size as usize);
-                // SAFETY: the source's promise, and the memory is borrowed as a whole.
-                unsafe { std::slice::from_raw_parts_mut(first, size) }
-            }),
-        }
+    pub(super) fn mapped_mut(&mut self) -> Option<WriteOnly<'_>> {
+        let first = match self {
+            Self::Own(allocation) => allocation.mapped_ptr(),
+            Self::Lent { lent, .. } => NonNull::new(lent.mapped),
+        };
+        let bytes = NonNull::slice_from_raw_parts(first?.cast(), self.size() as usize);
+        // SAFETY: the mapped part is as long as the memory, by the allocator's or the source's promise, and is borrowed as a
+        // whole.
+        Some(unsafe { WriteOnly::new(bytes) })
     }
 }
 

@@ -6,9 +6,9 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme};
 
-use super::Device;
 use super::failure::failed;
 use super::lent::Memory;
+use super::{Device, WriteOnly};
 use crate::{Error, Result};
 
 /// Allocations from this size on get memory of their own; smaller ones share blocks. With a lower limit small buffers would
@@ -168,13 +168,17 @@ impl Buffer {
         self.0.location
     }
 
-    /// The bytes, for [`Location::Upload`] and [`Location::Readback`]. Read them when the device is done writing and
-    /// the recording ended with [`Recorder::ready_for_host`](super::Recorder::ready_for_host).
+    /// The bytes, for [`Location::Readback`] alone. Read them when the device is done writing and the recording ended with
+    /// [`Recorder::ready_for_host`](super::Recorder::ready_for_host).
+    ///
+    /// # Panics
+    /// If the memory is not for the host to read.
     pub fn mapped(&self) -> &[u8] {
         assert!(
-            self.0.location != Location::GpuOnly,
-            "buffer \"{}\" is not mapped: it is GpuOnly",
-            self.0.name
+            self.0.location == Location::Readback,
+            "buffer \"{}\" is not for the host to read: it is {:?}",
+            self.0.name,
+            self.0.location
         );
         let bytes = self
             .0
@@ -188,7 +192,7 @@ impl Buffer {
     ///
     /// # Panics
     /// If the memory is the device's alone, or the buffer has a clone.
-    pub fn mapped_mut(&mut self) -> &mut [u8] {
+    pub fn mapped_mut(&mut self) -> WriteOnly<'_> {
         assert!(
             self.0.location != Location::GpuOnly,
             "buffer \"{}\" is not mapped: it is GpuOnly",
@@ -197,9 +201,9 @@ impl Buffer {
         let size = self.0.size as usize;
         let owned = Arc::get_mut(&mut self.0).expect("what the host writes has no clones");
         let allocation = owned.allocation.as_mut().expect("taken only by drop");
-        &mut allocation
-            .mapped_mut()
-            .expect("host-visible memory is mapped while it lives")[..size]
+        let mapped = allocation.mapped_mut();
+        let mapped = mapped.expect("host-visible memory is mapped while it lives");
+        mapped.first(size)
     }
 
     /// Panics with a sentence unless `size` bytes at `offset` lie inside.

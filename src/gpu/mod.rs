@@ -55,6 +55,7 @@ mod timer;
 mod tracker;
 mod upload;
 mod validation;
+mod write_only;
 
 pub use account::NamedBytes;
 pub use attachments::Target;
@@ -72,6 +73,7 @@ pub use requirements::{Support, check};
 pub use shape::DeviceShape;
 pub(crate) use shape::LEAST_SUBGROUP;
 pub use timer::PassSpan;
+pub use write_only::WriteOnly;
 
 #[cfg(not(feature = "lab"))]
 pub(crate) use inner::*;

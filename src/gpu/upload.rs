@@ -13,37 +13,21 @@ impl Device {
     /// Writes `data` at `offset` in a buffer and waits until it is there.
     #[cfg_attr(not(feature = "lab"), doc(hidden))]
     pub fn upload(&self, buffer: &Buffer, offset: u64, data: &[u8]) -> Result<()> {
-        self.upload_with(buffer, offset, data.len() as u64, |at, chunk| {
-            chunk.copy_from_slice(&data[at as usize..][..chunk.len()]);
-            Ok(())
-        })
-    }
-
-    /// Writes `size` bytes at `offset` in a buffer and waits until they are there. `fill` is called for one chunk after
-    /// the other, with the chunk's first byte among the `size`, and writes all of it: at most 32 MiB, and a multiple of
-    /// 1 MiB except for the last. The chunk is mapped memory that is slow to read.
-    #[cfg_attr(not(feature = "lab"), doc(hidden))]
-    pub fn upload_with(
-        &self,
-        buffer: &Buffer,
-        offset: u64,
-        size: u64,
-        mut fill: impl FnMut(u64, &mut [u8]) -> Result<()>,
-    ) -> Result<()> {
-        buffer.check_range(offset, size);
-        if size == 0 {
+        buffer.check_range(offset, data.len() as u64);
+        if data.is_empty() {
             return Ok(());
         }
-        let mut staging = self.staging(size, Location::Upload)?;
-        for at in (0..size).step_by(STAGING as usize) {
-            let length = STAGING.min(size - at);
-            fill(at, &mut staging.mapped_mut()[..length as usize])?;
+        let mut staging = self.staging(data.len() as u64, Location::Upload)?;
+        let mut at = offset;
+        for chunk in data.chunks(STAGING as usize) {
+            staging.mapped_mut().write(0, chunk);
             let region = vk::BufferCopy {
                 src_offset: 0,
-                dst_offset: offset + at,
-                size: length,
+                dst_offset: at,
+                size: chunk.len() as u64,
             };
             self.copy_and_wait(&staging, buffer, region)?;
+            at += region.size;
         }
         Ok(())
     }

@@ -38,6 +38,7 @@ chapters! {
     profiling,
     speed,
     testing,
+    wgpu,
 }
 
 #[cfg(test)]

@@ -65,11 +65,11 @@ impl Lines {
                 location: Location::Upload,
             })?,
         };
-        let mapped = place.insert(buffer).mapped_mut();
+        let mut mapped = place.insert(buffer).mapped_mut();
         // A strip of four corners for each line.
         let command = [4, lines.len() as u32, 0, 0];
-        mapped[..COMMAND].copy_from_slice(bytemuck::cast_slice(&command));
-        mapped[COMMAND..][..bytes.len()].copy_from_slice(bytes);
+        mapped.write(0, bytemuck::cast_slice(&command));
+        mapped.write(COMMAND, bytes);
         Ok(())
     }
 

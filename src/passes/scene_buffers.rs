@@ -8,7 +8,7 @@ use bytemuck::cast_slice;
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
-use crate::gpu::{Buffer, Device, Recorder};
+use crate::gpu::{Buffer, Device, Recorder, WriteOnly};
 use crate::limits;
 use crate::passes::buffers::gpu_only;
 use crate::passes::pair_estimate::PairSample;
@@ -163,28 +163,25 @@ impl SceneBuffers {
         let scene = scene.into();
         let sizes = sizes(&scene, format);
         let needed = sizes.iter().sum::<u64>();
-        if (staging.bytes.len() as u64) < needed {
+        if (staging.bytes.size() as u64) < needed {
             return Err(Error::Invalid(format!(
                 "this scene needs {needed} bytes of staging memory and {} were lent; SceneBuffers::staging_bytes says",
-                staging.bytes.len()
+                staging.bytes.size()
             )));
         }
         let (buffers, packed) = Self::allocate(device, &scene, format)?;
         let [gaussians, sh, blocks] = sizes.map(|size| size as usize);
-        let (first, rest) = staging.bytes.split_at_mut(gaussians);
-        let (second, rest) = rest.split_at_mut(sh);
-        let third = &mut rest[..blocks];
+        let mut bytes = staging.bytes;
         for layer in &packed {
-            let [gaussians, sh, blocks] = layer.offsets().map(|offset| offset as usize);
             // The places between the layers hold no Gaussian, and nothing reads them.
-            write_in_chunks(&mut first[gaussians..], &layer.order, |i, out| {
+            let [first, second, third] = layer.offsets().map(|offset| offset as usize);
+            write_in_chunks(&mut bytes, first, &layer.order, |i, out| {
                 out.push(layer.gaussian(i));
             });
-            write_in_chunks(&mut second[sh..], &layer.order, |i, out| {
+            write_in_chunks(&mut bytes, gaussians + second, &layer.order, |i, out| {
                 layer.append_sh(i, out);
             });
-            let own: &[u8] = cast_slice(&layer.blocks);
-            third[blocks..][..own.len()].copy_from_slice(own);
+            bytes.write(gaussians + sh + third, cast_slice(&layer.blocks));
         }
         // SAFETY: the caller vouches for `cmd`, and keeps the buffers alive until it has executed.
         let mut recorder = unsafe { Recorder::begin(device, cmd, None) };
@@ -312,13 +309,14 @@ pub struct Staging<'a> {
     pub buffer: vk::Buffer,
     /// The offset of the part in it, bytes.
     pub offset: u64,
-    /// The part, mapped for writing; it may be longer than what is needed.
-    pub bytes: &'a mut [u8],
+    /// The part, mapped for writing; it may be longer than what is needed. A slice becomes it by `into()`.
+    pub bytes: WriteOnly<'a>,
 }
 
-/// Writes what `append` makes of each Gaussian, in an order, to memory that is slow to read.
+/// Writes what `append` makes of each Gaussian, in an order, from an offset on.
 fn write_in_chunks<T: bytemuck::NoUninit>(
-    mut target: &mut [u8],
+    target: &mut WriteOnly<'_>,
+    mut offset: usize,
     order: &[u32],
     mut append: impl FnMut(u32, &mut Vec<T>),
 ) {
@@ -329,9 +327,8 @@ fn write_in_chunks<T: bytemuck::NoUninit>(
             append(index, &mut packed);
         }
         let bytes: &[u8] = cast_slice(&packed);
-        let (here, rest) = target.split_at_mut(bytes.len());
-        here.copy_from_slice(bytes);
-        target = rest;
+        target.write(offset, bytes);
+        offset += bytes.len();
     }
 }
 

@@ -83,7 +83,8 @@ impl RecordedFrame {
             (Ok(timer), true) => timer.with_statistics(),
             (timer, _) => timer,
         };
-        counts.mapped_mut().fill(0); // these are read for a frame that is never submitted
+        let nothing = [0; size_of::<FrameCounts>()];
+        counts.mapped_mut().write(0, &nothing); // these are read for a frame that is never submitted
         Ok(Self {
             timer: timing.then(timer).transpose()?,
             counts,

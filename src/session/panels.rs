@@ -91,10 +91,9 @@ impl Panels {
             })?,
         };
         let buffer = place.insert(buffer);
-        let mapped = buffer.mapped_mut();
+        let mut mapped = buffer.mapped_mut();
         for (panel, copy) in shown.iter().zip(&copies) {
-            mapped[copy.buffer_offset as usize..][..panel.bytes.len()]
-                .copy_from_slice(&panel.bytes);
+            mapped.write(copy.buffer_offset as usize, &panel.bytes);
         }
         Ok(Some((buffer, copies)))
     }

@@ -124,6 +124,49 @@ fn a_hosts_own_structs_take_what_is_needed() {
     );
 }
 
+/// An engine's chain has some of the structs, with other features of theirs set or none: what is missing is chained, and no
+/// struct twice, which the layer would say.
+#[test]
+fn a_chain_is_completed_whatever_it_has() {
+    for of_1_2 in [false, true] {
+        with_device(
+            |instance, physical, support, info| {
+                let mut all = vk::PhysicalDeviceVulkan12Features::default();
+                let mut timeline = vk::PhysicalDeviceTimelineSemaphoreFeatures::default();
+                let mut sizes = vk::PhysicalDeviceSubgroupSizeControlFeatures::default()
+                    .subgroup_size_control(support.full_subgroups[1] > 0);
+                let mut mesh = vk::PhysicalDeviceMeshShaderFeaturesEXT::default();
+                let mut rendering = vk::PhysicalDeviceDynamicRenderingFeatures::default();
+                (all.timeline_semaphore, timeline.timeline_semaphore) = (vk::TRUE, vk::TRUE);
+                let mut ours = support.features();
+                let info = match of_1_2 {
+                    true => info.push_next(&mut all).push_next(&mut rendering),
+                    false => info.push_next(&mut timeline).push_next(&mut sizes),
+                };
+                let info = match !of_1_2 && support.mesh_shader {
+                    true => info.push_next(&mut mesh),
+                    false => info,
+                };
+                // SAFETY: each chain holds structs that are alive, and nobody else uses them; the device offers all that is
+                // asked for.
+                let made = unsafe {
+                    let info = support.complete(&mut ours, info);
+                    instance.create_device(physical, &info, None)
+                };
+                let subgroups = vk::Bool32::from(support.full_subgroups[1] > 0);
+                if of_1_2 {
+                    assert_eq!(all.buffer_device_address + rendering.dynamic_rendering, 2);
+                } else {
+                    assert_eq!(sizes.compute_full_subgroups, subgroups);
+                    assert_eq!(mesh.task_shader, vk::Bool32::from(support.mesh_shader));
+                }
+                made.expect("a device")
+            },
+            upload,
+        );
+    }
+}
+
 #[test]
 fn what_a_host_claims_and_has_not_enabled_is_refused_by_name() {
     with_device(

@@ -16,3 +16,4 @@ mod formats;
 mod gpu;
 mod streaming;
 mod views;
+mod wgpu_host;

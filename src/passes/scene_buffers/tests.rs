@@ -34,7 +34,7 @@ fn a_host_uploads_the_same_bytes() {
             .expect("a buffer");
         let buffer = lent.handle();
         let ours = device.submit_and_wait(|cmd| {
-            fn lend(buffer: vk::Buffer, bytes: &mut [u8]) -> Staging<'_> {
+            fn lend(buffer: vk::Buffer, bytes: WriteOnly<'_>) -> Staging<'_> {
                 let offset = 32;
                 Staging {
                     buffer,
@@ -42,16 +42,16 @@ fn a_host_uploads_the_same_bytes() {
                     bytes,
                 }
             }
-            let bytes = &mut lent.mapped_mut()[32..];
+            let mut bytes = lent.mapped_mut();
             // SAFETY: `cmd` is recording, and everything outlives the wait for it.
             unsafe {
                 if needed > 0 {
-                    let short = lend(buffer, &mut bytes[..needed - 1]);
+                    let short = lend(buffer, bytes.part(32..32 + needed - 1));
                     let error = SceneBuffers::upload_with(&device, cmd, short, &scene, format);
                     let text = error.expect_err("a byte is missing").to_string();
                     assert!(text.contains("staging_bytes"), "{text}");
                 }
-                let fitting = lend(buffer, &mut bytes[..needed]);
+                let fitting = lend(buffer, bytes.part(32..32 + needed));
                 SceneBuffers::upload_with(&device, cmd, fitting, &scene, format)
             }
         });

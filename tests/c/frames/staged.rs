@@ -95,7 +95,16 @@ pub(super) fn staging(device: &Device, bytes: u64) -> (Buffer, RaraStaging) {
     let staging = RaraStaging {
         buffer: memory.handle(),
         offset,
-        mapped: memory.mapped_mut()[offset as usize..].as_mut_ptr().cast(),
+        // SAFETY: the offset lies inside.
+        mapped: unsafe {
+            memory
+                .mapped_mut()
+                .pointer()
+                .cast::<u8>()
+                .add(offset as usize)
+        }
+        .as_ptr()
+        .cast(),
         size: bytes as usize,
     };
     (memory, staging)

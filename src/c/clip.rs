@@ -3,10 +3,10 @@
 use rara::glam::DVec3;
 use rara::{Clip, ClipOp, Error, Plane, Result};
 
-use crate::boundary::{invalid, list};
+use crate::boundary::{RaraResult, Versioned, guard, invalid, list, read, write};
 
 /// A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but must
-/// not be zero.
+/// not be zero. It never grows.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraPlane {
@@ -27,21 +27,49 @@ pub const RARA_CLIP_OP_OR: RaraClipOp = 1;
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraClip {
+    /// Set by rara_clip_default.
+    pub struct_size: usize,
     /// The half-spaces; only the call itself reads them.
     pub planes: *const RaraPlane,
-    /// How many planes there are, at most 32. With 0 everything is visible.
+    /// How many planes there are, at most 32. With 0, the default, they keep everything.
     pub plane_count: usize,
-    /// How they combine.
+    /// How they combine. Default: RARA_CLIP_OP_AND.
     pub op: RaraClipOp,
+}
+
+// SAFETY: repr(C), numbers and pointers, the size first.
+unsafe impl Versioned for RaraClip {
+    const NAME: &'static str = "RaraClip";
+}
+
+impl RaraClip {
+    /// Everything.
+    pub(crate) const WHOLE: Self = Self {
+        struct_size: size_of::<Self>(),
+        planes: std::ptr::null(),
+        plane_count: 0,
+        op: RARA_CLIP_OP_AND,
+    };
+}
+
+/// A clip that keeps everything. `clip_size` is sizeof *clip.
+///
+/// # Safety
+/// `clip` has room for `clip_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_clip_default(clip: *mut RaraClip, clip_size: usize) -> RaraResult {
+    // SAFETY: the caller's promise.
+    guard(|| unsafe { write(clip, clip_size, &RaraClip::WHOLE, "clip") })
 }
 
 /// # Safety
 /// `clip` is null, or points to one whose planes are there.
 pub(crate) unsafe fn clip(clip: *const RaraClip) -> Result<Clip> {
-    // SAFETY: the caller's promise.
-    let Some(clip) = (unsafe { clip.as_ref() }) else {
+    if clip.is_null() {
         return Ok(Clip::default());
-    };
+    }
+    // SAFETY: the caller's promise.
+    let clip = unsafe { read(clip, RaraClip::WHOLE, "clip") }?;
     if clip.plane_count > Clip::MAX_SURFACES {
         return invalid(format!(
             "clip->plane_count is {}, and a clip has at most {} planes",

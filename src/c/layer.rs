@@ -13,7 +13,8 @@ use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, alone};
 use crate::layer_info::check_index;
 use crate::placement::RaraPlacement;
-use crate::scene::{self, GivenLayer, RaraSceneBuffers, RaraShFormat, RaraStaging};
+use crate::scene::{self, GivenLayer, RaraSceneBuffers, RaraShFormat};
+use crate::staging::RaraStaging;
 use crate::text::text;
 
 /// The state of a layer, which may change from frame to frame.

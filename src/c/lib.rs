@@ -32,9 +32,12 @@ pub mod renderer_desc;
 pub mod reserve;
 pub mod scene;
 pub mod settings;
+pub mod staging;
 pub mod stats;
 pub mod support;
 #[cfg(test)]
 mod tests;
 mod text;
 pub mod token;
+#[cfg(test)]
+mod versions;

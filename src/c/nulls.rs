@@ -10,6 +10,7 @@ use crate::bake::*;
 use crate::boundary::*;
 use crate::camera::*;
 use crate::camera_files::*;
+use crate::clip::*;
 use crate::depth::*;
 use crate::device::*;
 use crate::gaussians::*;
@@ -25,6 +26,7 @@ use crate::renderer_desc::*;
 use crate::reserve::*;
 use crate::scene::*;
 use crate::settings::*;
+use crate::staging::*;
 use crate::stats::*;
 use crate::support::*;
 use crate::tests::{assert_fails, message};
@@ -108,6 +110,14 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
     call!(
         rara_scene_buffers_upload_with(null(), no_cmd, null(), null(), 0, null_mut()),
         "scene is null"
+    );
+    call!(
+        rara_staging_default(null_mut(), size_of::<RaraStaging>()),
+        "staging is null"
+    );
+    call!(
+        rara_clip_default(null_mut(), size_of::<RaraClip>()),
+        "clip is null"
     );
     call!(
         rara_layer_state_default(null_mut(), size_of::<RaraLayerState>()),
@@ -197,6 +207,11 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
     call!(
         rara_depth_desc_default(null_mut(), size_of::<RaraDepthDesc>(), format, map),
         "desc is null"
+    );
+    let image_size = size_of::<RaraDepthImage>();
+    call!(
+        rara_depth_image_default(null_mut(), image_size, vk::Image::null(), 1, 1),
+        "depth is null"
     );
     call!(
         rara_settings_default(null_mut(), size_of::<RaraSettings>(), 0),

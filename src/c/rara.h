@@ -4,9 +4,10 @@
  *
  * Every function that can fail returns a RaraResult; rara_last_error_message says what is wrong. Nothing is thrown and
  * nothing panics across this boundary. Structs that begin with struct_size may grow in later versions: those that go in
- * are filled by their rara_..._default first, those that come out are asked for with their size. Handles come from a
- * function that makes them and end with their rara_..._destroy; "alive" is the time between. A handle that is not alive is
- * refused with RARA_ERROR_INVALID, as is one of another kind, and one that another thread's call changes at the same time.
+ * are filled by their rara_..._default first, those that come out are asked for with their size. The others are parts of
+ * structs, elements of arrays or given by value, and never grow. Handles come from a function that makes them and end with
+ * their rara_..._destroy; "alive" is the time between. A handle that is not alive is refused with RARA_ERROR_INVALID, as is
+ * one of another kind, and one that another thread's call changes at the same time.
  */
 
 #ifndef RARA_H
@@ -18,7 +19,7 @@
 
 // The version of this header. It changes when a host must be compiled anew; structs that grow at their end and functions
 // that are added do not change it.
-#define RARA_ABI_VERSION 2
+#define RARA_ABI_VERSION 3
 
 // Room for a camera's name in RaraNamedCamera, the NUL included.
 #define RARA_MAX_CAMERA_NAME 256
@@ -84,7 +85,7 @@ typedef uint32_t RaraLogLevel;
 typedef void (*RaraLog)(RaraLogLevel level, const char *text, void *user);
 
 // A camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers. It is a pinhole, unless
-// rara_renderer_configure_orthographic takes it.
+// rara_renderer_configure_orthographic takes it. It never grows.
 typedef struct RaraCamera {
     // Picture width, pixels.
     uint32_t width;
@@ -105,7 +106,7 @@ typedef struct RaraCamera {
     double rotation[9];
 } RaraCamera;
 
-// A camera and what its file calls it.
+// A camera and what its file calls it. It never grows.
 typedef struct RaraNamedCamera {
     // The picture's name in the file, or the camera's number there: UTF-8, cut off where it does not fit.
     char name[RARA_MAX_CAMERA_NAME];
@@ -113,7 +114,31 @@ typedef struct RaraNamedCamera {
     struct RaraCamera camera;
 } RaraNamedCamera;
 
-// The values in a depth buffer, for any perspective projection into depths from 0 to 1.
+// A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but must
+// not be zero. It never grows.
+typedef struct RaraPlane {
+    // Points to the visible side.
+    double normal[3];
+    // World units times the normal's length.
+    double offset;
+} RaraPlane;
+
+// How several planes combine.
+typedef uint32_t RaraClipOp;
+
+// The region that stays visible. Where a function takes one, null means everything.
+typedef struct RaraClip {
+    // Set by rara_clip_default.
+    size_t struct_size;
+    // The half-spaces; only the call itself reads them.
+    const struct RaraPlane *planes;
+    // How many planes there are, at most 32. With 0, the default, they keep everything.
+    size_t plane_count;
+    // How they combine. Default: RARA_CLIP_OP_AND.
+    RaraClipOp op;
+} RaraClip;
+
+// The values in a depth buffer, for any perspective projection into depths from 0 to 1. It never grows.
 typedef struct RaraDepthMap {
     // Depth along the view axis that becomes 0, or 1 if reversed, world units above 0.
     double z_near;
@@ -138,6 +163,26 @@ typedef struct RaraDepthDesc {
     // The buffer's value for a depth; rara_renderer_set_depth_map changes it from frame to frame.
     struct RaraDepthMap map;
 } RaraDepthDesc;
+
+// A host's depth image, of one sample and created with VK_IMAGE_USAGE_TRANSFER_SRC_BIT.
+typedef struct RaraDepthImage {
+    // Set by rara_depth_image_default.
+    size_t struct_size;
+    // The image, whose level 0 is read.
+    VkImage image;
+    // Its layout when the copy runs: TRANSFER_SRC_OPTIMAL, the default, or GENERAL.
+    VkImageLayout layout;
+    // Its width, pixels.
+    uint32_t width;
+    // Its height, pixels.
+    uint32_t height;
+    // The array layer that is read. Default: 0.
+    uint32_t layer;
+    // The viewport's left edge in the image, pixels. Default: 0.
+    int32_t x;
+    // The viewport's top edge in the image, pixels. Default: 0.
+    int32_t y;
+} RaraDepthImage;
 
 // The features of a suitable physical device beyond the requirements. Required are Vulkan 1.3, or 1.2 with
 // VK_KHR_synchronization2 and VK_KHR_dynamic_rendering, the features bufferDeviceAddress, synchronization2 and
@@ -198,6 +243,8 @@ typedef struct RaraMemoryRequest {
 
 // A part of device memory that a host lends.
 typedef struct RaraMemory {
+    // Its size in the library, which may be larger than in the host's header; the host leaves it as it is.
+    size_t struct_size;
     // The memory, allocated with VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT.
     VkDeviceMemory memory;
     // Where the part begins in it, bytes.
@@ -208,8 +255,9 @@ typedef struct RaraMemory {
     void *user;
 } RaraMemory;
 
-// Lends memory, with `allocator_user` of RaraAdoptDesc: fills `*memory`, which is all zero before, and returns VK_SUCCESS, or
-// returns why there is none; the call that needs it then fails with RARA_ERROR_MEMORY. It must throw nothing.
+// Lends memory, with `allocator_user` of RaraAdoptDesc: fills `*memory`, which is all zero before but for its size, and
+// returns VK_SUCCESS, or returns why there is none; the call that needs it then fails with RARA_ERROR_MEMORY. It must throw
+// nothing.
 typedef VkResult (*RaraAllocate)(void *user, const struct RaraMemoryRequest *request, struct RaraMemory *memory);
 
 // Takes back what RaraAllocate has lent, as it was lent. The device is done with it. It must throw nothing.
@@ -268,7 +316,7 @@ typedef struct RaraAdoptDesc {
 } RaraAdoptDesc;
 
 // The placement of a scene in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1}
-// leaves it where it was made.
+// leaves it where it was made. It never grows.
 typedef struct RaraPlacement {
     // The position of the scene's origin, world units.
     double position[3];
@@ -319,28 +367,6 @@ typedef struct RaraRendererDesc {
     // What the numbers of the colour attachment stand for.
     RaraColorSpace color_space;
 } RaraRendererDesc;
-
-// A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but must
-// not be zero.
-typedef struct RaraPlane {
-    // Points to the visible side.
-    double normal[3];
-    // World units times the normal's length.
-    double offset;
-} RaraPlane;
-
-// How several planes combine.
-typedef uint32_t RaraClipOp;
-
-// The region that stays visible. Where a function takes one, null means everything.
-typedef struct RaraClip {
-    // The half-spaces; only the call itself reads them.
-    const struct RaraPlane *planes;
-    // How many planes there are, at most 32. With 0 everything is visible.
-    size_t plane_count;
-    // How they combine.
-    RaraClipOp op;
-} RaraClip;
 
 // How a clip treats the Gaussians that it cuts.
 typedef uint32_t RaraMode;
@@ -395,24 +421,6 @@ typedef struct RaraSettings {
     // Tiles only: a pixel with less transmittance than this is saturated. Zero blends everything.
     float transmittance_min;
 } RaraSettings;
-
-// A host's depth image, of one sample and created with VK_IMAGE_USAGE_TRANSFER_SRC_BIT.
-typedef struct RaraDepthImage {
-    // The image, whose level 0 is read.
-    VkImage image;
-    // Its layout when the copy runs: TRANSFER_SRC_OPTIMAL or GENERAL.
-    VkImageLayout layout;
-    // Its width, pixels.
-    uint32_t width;
-    // Its height, pixels.
-    uint32_t height;
-    // The array layer that is read.
-    uint32_t layer;
-    // The viewport's left edge in the image, pixels.
-    int32_t x;
-    // The viewport's top edge in the image, pixels.
-    int32_t y;
-} RaraDepthImage;
 
 // How the 16 numbers of a matrix lie in memory.
 typedef uint32_t RaraMatrixOrder;
@@ -526,9 +534,11 @@ typedef struct RaraGaussiansInfo {
 
 // A part of the host's memory that the device can copy from.
 typedef struct RaraStaging {
+    // Set by rara_staging_default.
+    size_t struct_size;
     // A buffer created with VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
     VkBuffer buffer;
-    // The offset of the part in the buffer, bytes.
+    // The offset of the part in the buffer, bytes. Default: 0.
     uint64_t offset;
     // The part, mapped for writing.
     void *mapped;
@@ -645,7 +655,7 @@ typedef struct RaraBakeCounts {
     uint64_t children;
 } RaraBakeCounts;
 
-// GPU time of one stage.
+// GPU time of one stage. It never grows.
 typedef struct RaraPassTime {
     // The stage: the same name as its shader and its debug label.
     char name[RARA_NAME_SIZE];
@@ -962,6 +972,12 @@ RaraResult rara_camera_frame(const struct RaraGaussians *gaussians,
 // `path` ends in NUL; `count` points to a number; `cameras` is null, or has room for `*count` cameras.
 RaraResult rara_cameras_load(const char *path, struct RaraNamedCamera *cameras, size_t *count);
 
+// A clip that keeps everything. `clip_size` is sizeof *clip.
+//
+// # Safety
+// `clip` has room for `clip_size` bytes.
+RaraResult rara_clip_default(struct RaraClip *clip, size_t clip_size);
+
 // A depth attachment without stencil, not readable. `desc_size` is sizeof *desc.
 //
 // # Safety
@@ -970,6 +986,16 @@ RaraResult rara_depth_desc_default(struct RaraDepthDesc *desc,
                                    size_t desc_size,
                                    VkFormat format,
                                    struct RaraDepthMap map);
+
+// An image of `width` x `height` pixels, whose upper left corner is the viewport's. `depth_size` is sizeof *depth.
+//
+// # Safety
+// `depth` has room for `depth_size` bytes.
+RaraResult rara_depth_image_default(struct RaraDepthImage *depth,
+                                    size_t depth_size,
+                                    VkImage image,
+                                    uint32_t width,
+                                    uint32_t height);
 
 // Checks whether a physical device will do, before there is a device. If it will not, the result is RARA_ERROR_DEVICE
 // and the message names what is missing.
@@ -1396,6 +1422,12 @@ RaraResult rara_gaussians_info(const struct RaraGaussians *gaussians, struct Rar
 // # Safety
 // `gaussians` is null, or alive and not used any more.
 void rara_gaussians_destroy(struct RaraGaussians *gaussians);
+
+// No memory; the host replaces the buffer and what follows. `staging_size` is sizeof *staging.
+//
+// # Safety
+// `staging` has room for `staging_size` bytes.
+RaraResult rara_staging_default(struct RaraStaging *staging, size_t staging_size);
 
 // Uploads a scene of one layer. Only this function and rara_scene_buffers_upload_layers submit to the host's queue and
 // wait.

@@ -1,15 +1,16 @@
 //! Scenes onto the device.
 
-use std::ffi::{CString, c_void};
+use std::ffi::CString;
 use std::sync::Arc;
 
 use rara::ash::vk;
-use rara::{Layer, LayerState, Result, Scene, SceneBuffers, ShFormat, Staging};
+use rara::{Layer, LayerState, Result, Scene, SceneBuffers, ShFormat};
 
-use crate::boundary::{RaraResult, exclusive, guard, invalid, memory, recording, shared};
+use crate::boundary::{RaraResult, exclusive, guard, invalid, recording};
 use crate::device::RaraDevice;
 use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, create, destroy, number};
+use crate::staging::{self, RaraStaging};
 use crate::text::c_string;
 
 /// A scene in device memory: one layer or several. Several threads and renderers may use it at once, but nobody else
@@ -152,27 +153,13 @@ pub(crate) unsafe fn upload_with(
         create(scene, "scene", || {
             let device = alive(device, "device")?;
             let cmd = recording(cmd)?;
-            let staging = shared(staging, "staging")?.staging()?;
+            let staging = staging::staging(staging)?;
             let layers = layers()?;
             let format = self::sh_format(sh_format)?;
             SceneBuffers::upload_with(&device.0, cmd, staging, of_layers(&layers), format)
                 .map(RaraSceneBuffers::new)
         })
     })
-}
-
-/// A part of the host's memory that the device can copy from.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct RaraStaging {
-    /// A buffer created with VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
-    pub buffer: vk::Buffer,
-    /// The offset of the part in the buffer, bytes.
-    pub offset: u64,
-    /// The part, mapped for writing.
-    pub mapped: *mut c_void,
-    /// Its length in bytes; it may be longer than what is needed.
-    pub size: usize,
 }
 
 /// Bytes of staging memory that rara_scene_buffers_upload_with needs for a scene of one layer.
@@ -219,25 +206,6 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_with(
     unsafe {
         upload_with(device, cmd, staging, sh_format, scene, || {
             one_layer(gaussians)
-        })
-    }
-}
-
-impl RaraStaging {
-    /// # Safety
-    /// It is as its fields say, and nobody else uses its range for `'a`.
-    pub(crate) unsafe fn staging<'a>(&self) -> Result<Staging<'a>> {
-        if self.buffer == vk::Buffer::null() {
-            return invalid("staging->buffer is null");
-        }
-        if self.offset.checked_add(self.size as u64).is_none() {
-            return invalid("staging->offset and staging->size are beyond any buffer");
-        }
-        Ok(Staging {
-            buffer: self.buffer,
-            offset: self.offset,
-            // SAFETY: the caller's promise.
-            bytes: unsafe { memory(self.mapped, self.size, "staging->mapped") }?,
         })
     }
 }

@@ -148,7 +148,7 @@ fn planes() {
     let mut given = RaraClip {
         planes: planes.as_ptr(),
         plane_count: 2,
-        op: RARA_CLIP_OP_AND,
+        ..RaraClip::WHOLE
     };
     // SAFETY: the planes are there, or the pointer is null.
     let clip =

@@ -5,9 +5,10 @@ use std::ffi::CStr;
 
 use super::*;
 use crate::canvas::{CanvasDesc, Frame};
+use crate::clips::clip_of;
 use rara::clip::Expression;
 use rara::glam::DMat4;
-use rara::gpu::Bindings;
+use rara::gpu::{Bindings, DepthImage};
 use rara::scene::Bounds;
 use rara::{
     Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, Ndc, Plane, Projection, Renderer,
@@ -202,22 +203,11 @@ impl<'a> World<'a> {
                 normal: self.plane.normal().into(),
                 offset: self.plane.offset(),
             };
-            let clip = RaraClip {
-                planes: &plane,
-                plane_count: 1,
-                op: RARA_CLIP_OP_AND,
-            };
+            let planes = [plane];
+            let clip = clip_of(&planes);
             let mut camera = RaraCamera::from(self.camera);
             let shown = canvas.depth_image(0, 0);
-            let shown = RaraDepthImage {
-                image: shown.image,
-                layout: shown.layout,
-                width: shown.extent.width,
-                height: shown.extent.height,
-                layer: shown.layer,
-                x: shown.origin.x,
-                y: shown.origin.y,
-            };
+            let shown = depth_image_in_c(&shown);
             let is_flat = self.camera.projection == Projection::Orthographic;
             if is_flat && self.matrices.is_none() {
                 let [zero, one] = FLAT;
@@ -287,6 +277,20 @@ impl<'a> World<'a> {
             rara_renderer_destroy(renderer);
             pixels
         }
+    }
+}
+
+fn depth_image_in_c(shown: &DepthImage) -> RaraDepthImage {
+    // SAFETY: the struct may hold any bytes, and has the room that the call is given.
+    unsafe {
+        let mut image: RaraDepthImage = std::mem::zeroed();
+        let (size, extent) = (size_of_val(&image), shown.extent);
+        let (width, height) = (extent.width, extent.height);
+        let filled = rara_depth_image_default(&mut image, size, shown.image, width, height);
+        assert_ok(filled);
+        (image.layout, image.layer) = (shown.layout, shown.layer);
+        (image.x, image.y) = (shown.origin.x, shown.origin.y);
+        image
     }
 }
 

@@ -271,8 +271,9 @@ pub unsafe extern "C" fn rara_scene_buffers_set_layer_state(
 
 /// Sets a clip for a layer alone, in place of the clip of rara_renderer_configure, which then has no say in it: a clip
 /// without planes keeps the whole layer. Null gives the layer the frame's clip again. The clip stands in the scene: neither
-/// the layer's placement nor that of rara_renderer_set_placement moves it. It holds from the next rara_renderer_configure of
-/// every renderer on. RARA_ERROR_INVALID for what is no clip; the layer's clip then stays as it was.
+/// the layer's placement nor that of rara_renderer_set_placement moves it, and the camera's planes are no part of it. It holds
+/// from the next rara_renderer_configure of every renderer on. RARA_ERROR_INVALID for what is no clip; the layer's clip then
+/// stays as it was.
 ///
 /// # Safety
 /// `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;

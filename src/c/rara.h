@@ -136,6 +136,14 @@ typedef struct RaraClip {
     size_t plane_count;
     // How they combine. Default: RARA_CLIP_OP_AND.
     RaraClipOp op;
+    // A region in place of planes; null, the default, for none. Only the call itself reads it.
+    const struct RaraRegion *region;
+    // The depth along the view axis, world units, from which on the scene is kept: a plane across the axis that moves with
+    // the camera and cuts every layer, whatever else cuts it, those with a clip of their own too. Splats are cut exactly, as
+    // by any other plane; RARA_MODE_NONE does not ask. Default: -INFINITY, for no such plane.
+    double clip_near;
+    // The depth up to which the scene is kept, likewise. Default: INFINITY, for no such plane.
+    double clip_far;
 } RaraClip;
 
 // The values in a depth buffer, for any perspective projection into depths from 0 to 1. It never grows.
@@ -479,7 +487,8 @@ typedef struct RaraFrameLimits {
     uint32_t layers;
     // How the scenes' spherical harmonics are stored. Default: RARA_SH_FORMAT_PACKED.
     RaraShFormat sh_format;
-    // Planes of a RaraClip, or of a RaraRegion that is a list of planes. Default: 6.
+    // Planes of a RaraClip, or of a RaraRegion that is a list of planes; RaraClip::clip_near and clip_far add one each.
+    // Default: 6.
     uint32_t planes;
     // Surfaces of a RaraRegion that bends or combines. Default: 0, for none.
     uint32_t surfaces;
@@ -1572,8 +1581,9 @@ RaraResult rara_scene_buffers_set_layer_state(struct RaraSceneBuffers *scene,
 
 // Sets a clip for a layer alone, in place of the clip of rara_renderer_configure, which then has no say in it: a clip
 // without planes keeps the whole layer. Null gives the layer the frame's clip again. The clip stands in the scene: neither
-// the layer's placement nor that of rara_renderer_set_placement moves it. It holds from the next rara_renderer_configure of
-// every renderer on. RARA_ERROR_INVALID for what is no clip; the layer's clip then stays as it was.
+// the layer's placement nor that of rara_renderer_set_placement moves it, and the camera's planes are no part of it. It holds
+// from the next rara_renderer_configure of every renderer on. RARA_ERROR_INVALID for what is no clip; the layer's clip then
+// stays as it was.
 //
 // # Safety
 // `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;
@@ -1643,8 +1653,8 @@ RaraResult rara_region_load(const char *path, const char *name, struct RaraRegio
 // `region` is null, or alive and not used any more.
 void rara_region_destroy(struct RaraRegion *region);
 
-// As rara_renderer_configure or rara_renderer_configure_orthographic, with a region in place of planes; null keeps
-// everything.
+// As rara_renderer_configure or rara_renderer_configure_orthographic, with a region in place of a clip; null keeps
+// everything. A region with planes that move with the camera is a RaraClip.
 //
 // # Safety
 // As for rara_renderer_configure; `region` is null or alive.

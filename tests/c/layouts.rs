@@ -52,7 +52,7 @@ fn growing() -> Vec<Layout> {
         RaraAdoptDesc: allocator_user,
         RaraBakeCounts: children,
         RaraBakeSettings: leave,
-        RaraClip: op,
+        RaraClip: clip_far,
         RaraDepthDesc: map,
         RaraDepthImage: y,
         RaraDeviceMemory: pipeline_count,

@@ -204,7 +204,15 @@ impl<'a> World<'a> {
                 offset: self.plane.offset(),
             };
             let planes = [plane];
-            let clip = clip_of(&planes);
+            let mut clip = clip_of(&planes);
+            let (near, far) = (self.camera.clip_near, self.camera.clip_far);
+            let is_between = near.is_some() || far.is_some();
+            if let Some(near) = near {
+                clip.clip_near = near;
+            }
+            if let Some(far) = far {
+                clip.clip_far = far;
+            }
             let mut camera = RaraCamera::from(self.camera);
             let shown = canvas.depth_image(0, 0);
             let shown = depth_image_in_c(&shown);
@@ -229,8 +237,12 @@ impl<'a> World<'a> {
             if let Some(text) = self.region {
                 assert_ok(rara_region_parse(text.as_ptr(), &mut region));
             }
+            if is_between && !region.is_null() {
+                (clip.region, clip.plane_count) = (region, 0);
+            }
             // Quads are configured ahead, where there is a function for it.
-            let is_ahead = self.raster == Raster::Quad && region.is_null() && !is_flat;
+            let is_ahead =
+                self.raster == Raster::Quad && !is_flat && (region.is_null() || is_between);
             let token = Cell::new(null_mut());
             let before = |cmd| {
                 let scene = scene(cmd);
@@ -248,7 +260,7 @@ impl<'a> World<'a> {
                     assert_eq!(again, RARA_ERROR_INVALID);
                     return;
                 }
-                assert_ok(match region.is_null() {
+                assert_ok(match region.is_null() || is_between {
                     true => configure(renderer, scene, &camera, &clip, &settings),
                     false => rara_renderer_configure_region(
                         renderer,

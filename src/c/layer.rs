@@ -13,6 +13,7 @@ use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, alone};
 use crate::layer_info::check_index;
 use crate::placement::RaraPlacement;
+use crate::region::{self, RaraRegion};
 use crate::scene::{self, GivenLayer, RaraSceneBuffers, RaraShFormat};
 use crate::staging::RaraStaging;
 use crate::text::text;
@@ -79,9 +80,11 @@ pub struct RaraLayer {
     pub gaussians: *const RaraGaussians,
     /// The state in which it is uploaded; null, the default, stands for that of rara_layer_state_default.
     pub state: *const RaraLayerState,
+    /// Its own region, as rara_scene_buffers_set_layer_region sets it; null, the default, for the frame's clip.
+    pub region: *const RaraRegion,
 }
 
-// SAFETY: repr(C), a number and pointers, the size first.
+// SAFETY: repr(C), a number, pointers and handles, the size first.
 unsafe impl Versioned for RaraLayer {
     const NAME: &'static str = "RaraLayer";
 }
@@ -93,6 +96,7 @@ impl RaraLayer {
             name,
             gaussians,
             state: null(),
+            region: null(),
         }
     }
 
@@ -107,6 +111,7 @@ impl RaraLayer {
             gaussians: alive(self.gaussians, &format!("{place}.gaussians"))?,
             name: name.to_owned(),
             state: LayerState::default(),
+            clip: region::clip(self.region, &format!("{place}.region"))?,
         };
         if !self.state.is_null() {
             // SAFETY: as above.
@@ -118,7 +123,10 @@ impl RaraLayer {
 
 /// # Safety
 /// `layers` is null, or points to `layer_count` layers, which are as their fields say.
-unsafe fn given(layers: *const RaraLayer, layer_count: usize) -> Result<Vec<GivenLayer>> {
+pub(crate) unsafe fn given(
+    layers: *const RaraLayer,
+    layer_count: usize,
+) -> Result<Vec<GivenLayer>> {
     if layer_count == 0 {
         return invalid("layer_count is 0, and a scene has at least one layer: give one or more");
     }
@@ -170,7 +178,7 @@ pub unsafe extern "C" fn rara_layer_default(
 
 /// Uploads a scene of several layers as rara_scene_buffers_upload does one of a single layer. The layers are sorted and
 /// blended together, wherever they reach into each other. Where two Gaussians are equally deep, the earlier layer's is in
-/// front.
+/// front, unless rara_gaussians_select has divided them: then the one is that was before the other.
 ///
 /// # Safety
 /// `device` is alive; `layers` points to `layer_count` layers, which are as their fields say and all of one struct_size;

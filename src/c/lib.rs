@@ -24,6 +24,7 @@ pub mod logging;
 pub mod matrices;
 #[cfg(test)]
 mod nulls;
+mod numbering;
 pub mod orthographic;
 pub mod placement;
 pub mod region;
@@ -31,6 +32,7 @@ pub mod renderer;
 pub mod renderer_desc;
 pub mod reserve;
 pub mod scene;
+pub mod selection;
 pub mod settings;
 pub mod staging;
 pub mod stats;

@@ -614,6 +614,8 @@ typedef struct RaraLayer {
     const struct RaraGaussians *gaussians;
     // The state in which it is uploaded; null, the default, stands for that of rara_layer_state_default.
     const struct RaraLayerState *state;
+    // Its own region, as rara_scene_buffers_set_layer_region sets it; null, the default, for the frame's clip.
+    const struct RaraRegion *region;
 } RaraLayer;
 
 // A layer of a scene in device memory.
@@ -1405,7 +1407,7 @@ RaraResult rara_gaussians_load_from(const uint8_t *data,
                                     const char *name,
                                     struct RaraGaussians **gaussians);
 
-// Appends another scene to one, so that both are sorted and composited as one.
+// Appends another scene to one, so that both are sorted and composited as one. Properties that both have stay.
 //
 // # Safety
 // Both are alive and not the same; nobody else uses `gaussians` meanwhile.
@@ -1507,6 +1509,61 @@ RaraResult rara_gaussian_arrays_default(struct RaraGaussianArrays *arrays, size_
 RaraResult rara_gaussians_from_arrays(const struct RaraGaussianArrays *arrays,
                                       struct RaraGaussians **gaussians);
 
+// Loads a scene as rara_gaussians_load does, with what rara_gaussians_select will ask for: the properties that the file's
+// `vertex` element has beside those of a Gaussian, such as labels, and that any of these predicates compares. Each takes 8
+// bytes a Gaussian. RARA_ERROR_FORMAT where the file has no such property.
+//
+// # Safety
+// `path` ends in NUL; `predicates` points to `predicate_count` texts that end in NUL; `gaussians` may be overwritten.
+RaraResult rara_gaussians_load_with(const char *path,
+                                    const char *const *predicates,
+                                    size_t predicate_count,
+                                    struct RaraGaussians **gaussians);
+
+// Loads a scene that is in memory as rara_gaussians_load_from does, with properties as rara_gaussians_load_with does.
+//
+// # Safety
+// As for both.
+RaraResult rara_gaussians_load_from_with(const uint8_t *data,
+                                         size_t size,
+                                         const char *name,
+                                         const char *const *predicates,
+                                         size_t predicate_count,
+                                         struct RaraGaussians **gaussians);
+
+// Gives each Gaussian a number of the host's own, such as a label, for the predicates of rara_gaussians_select: a property
+// of this name, in place of one that it had. `count` is that of the Gaussians. The values are copied; one that is no number
+// fulfils no comparison.
+//
+// # Safety
+// `gaussians` is alive, and nobody else uses it meanwhile; `name` ends in NUL; `values` points to `count` numbers.
+RaraResult rara_gaussians_set_property(struct RaraGaussians *gaussians,
+                                       const char *name,
+                                       const double *values,
+                                       size_t count);
+
+// Takes the Gaussians that fulfil a predicate out of others: `gaussians` keeps the rest, and `*taken`, which the host
+// destroys as any, has those that were taken; there may be none. Each becomes a layer of a scene, with a state (hidden,
+// faded, moved) and a region of its own. In that scene, Gaussians of both that are equally deep are drawn in the order in
+// which they were before, whichever layer they are in, so that a selection by itself changes no picture. Either may be
+// selected from again.
+//
+// `predicate` is what the program's `--select` takes: comparisons as "opacity>0.5", "size<=0.01", "red>0.6" and "label in
+// 3,4,7..9", where label is a property of rara_gaussians_load_with or rara_gaussians_set_property, and
+// "inside(sphere:0,0,0,1)", which takes any expression of rara_region_parse; joined by `and`, `or`, `not` and ( ).
+// RARA_ERROR_INVALID says what is wrong and in which column, and names a property that is not there.
+//
+// Regions and sizes are the scene's: `placement` is that of the layer that the Gaussians will be, and null leaves it where
+// it was made. After an error `gaussians` is as it was.
+//
+// # Safety
+// `gaussians` is alive, and nobody else uses it meanwhile; `predicate` ends in NUL; `placement` is null or points to one;
+// `taken` may be overwritten.
+RaraResult rara_gaussians_select(struct RaraGaussians *gaussians,
+                                 const char *predicate,
+                                 const struct RaraPlacement *placement,
+                                 struct RaraGaussians **taken);
+
 // The state of a layer that stands where it was made, visible and with the opacities of its Gaussians. `state_size` is
 // sizeof *state.
 //
@@ -1525,7 +1582,7 @@ RaraResult rara_layer_default(struct RaraLayer *layer,
 
 // Uploads a scene of several layers as rara_scene_buffers_upload does one of a single layer. The layers are sorted and
 // blended together, wherever they reach into each other. Where two Gaussians are equally deep, the earlier layer's is in
-// front.
+// front, unless rara_gaussians_select has divided them: then the one is that was before the other.
 //
 // # Safety
 // `device` is alive; `layers` points to `layer_count` layers, which are as their fields say and all of one struct_size;

@@ -4,12 +4,13 @@ use std::ffi::CString;
 use std::sync::Arc;
 
 use rara::ash::vk;
-use rara::{Layer, LayerState, Result, Scene, SceneBuffers, ShFormat};
+use rara::{Clip, Layer, LayerState, Result, Scene, SceneBuffers, ShFormat};
 
 use crate::boundary::{RaraResult, exclusive, guard, invalid, recording};
 use crate::device::RaraDevice;
 use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, create, destroy, number};
+use crate::numbering::{Numbers, numbers};
 use crate::staging::{self, RaraStaging};
 use crate::text::c_string;
 
@@ -73,6 +74,8 @@ pub(crate) struct GivenLayer {
     pub(crate) gaussians: Arc<RaraGaussians>,
     pub(crate) name: String,
     pub(crate) state: LayerState,
+    /// Its own; `None` where the frame's holds.
+    pub(crate) clip: Option<Clip>,
 }
 
 /// The one layer that a set of Gaussians is.
@@ -81,20 +84,35 @@ fn one_layer(gaussians: *const RaraGaussians) -> Result<Vec<GivenLayer>> {
         gaussians: alive(gaussians, "gaussians")?,
         name: "scene".into(),
         state: LayerState::default(),
+        clip: None,
     }])
 }
 
-/// The scene of these layers.
-fn of_layers(given: &[GivenLayer]) -> Scene<'_> {
-    let layer = |given| {
-        let GivenLayer {
-            gaussians,
-            name,
-            state,
-        }: &GivenLayer = given;
-        Layer::new(name.as_str(), &gaussians.gaussians).with(*state)
+/// What the Gaussians of these layers are numbered by.
+pub(crate) fn numbers_of(given: &[GivenLayer]) -> Vec<Numbers<'_>> {
+    let layers = given.iter().map(|given| {
+        let RaraGaussians {
+            gaussians, part, ..
+        } = &*given.gaussians;
+        (gaussians.len(), part.as_ref())
+    });
+    numbers(&layers.collect::<Vec<_>>())
+}
+
+/// The scene of these layers, whose numbers are those of [`numbers_of`].
+pub(crate) fn of_layers<'a>(given: &'a [GivenLayer], numbers: &'a [Numbers<'_>]) -> Scene<'a> {
+    let layer = |(given, numbers): (&'a GivenLayer, &'a Numbers<'_>)| {
+        let mut layer =
+            Layer::new(given.name.as_str(), &given.gaussians.gaussians).with(given.state);
+        if let Some(clip) = &given.clip {
+            layer = layer.clipped(clip.clone());
+        }
+        match numbers {
+            Some((first, in_set)) => layer.numbered(*first, in_set),
+            None => layer,
+        }
     };
-    given.iter().map(layer).collect()
+    given.iter().zip(numbers).map(layer).collect()
 }
 
 /// Uploads the scene that `layers` gives.
@@ -112,8 +130,10 @@ pub(crate) unsafe fn upload(
         create(scene, "scene", || {
             let device = alive(device, "device")?;
             let layers = layers()?;
+            let numbers = numbers_of(&layers);
+            let scene = of_layers(&layers, &numbers);
             let format = self::sh_format(sh_format)?;
-            SceneBuffers::upload(&device.0, of_layers(&layers), format).map(RaraSceneBuffers::new)
+            SceneBuffers::upload(&device.0, scene, format).map(RaraSceneBuffers::new)
         })
     })
 }
@@ -131,7 +151,9 @@ pub(crate) unsafe fn staging_bytes(
         // SAFETY: the caller's promise.
         let bytes = unsafe { exclusive(bytes, "bytes") }?;
         let layers = layers()?;
-        *bytes = SceneBuffers::staging_bytes(of_layers(&layers), self::sh_format(sh_format)?);
+        let numbers = numbers_of(&layers);
+        let scene = of_layers(&layers, &numbers);
+        *bytes = SceneBuffers::staging_bytes(scene, self::sh_format(sh_format)?);
         Ok(())
     })
 }
@@ -155,8 +177,10 @@ pub(crate) unsafe fn upload_with(
             let cmd = recording(cmd)?;
             let staging = staging::staging(staging)?;
             let layers = layers()?;
+            let numbers = numbers_of(&layers);
+            let scene = of_layers(&layers, &numbers);
             let format = self::sh_format(sh_format)?;
-            SceneBuffers::upload_with(&device.0, cmd, staging, of_layers(&layers), format)
+            SceneBuffers::upload_with(&device.0, cmd, staging, scene, format)
                 .map(RaraSceneBuffers::new)
         })
     })

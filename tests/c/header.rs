@@ -54,6 +54,7 @@ fn the_header_is_current() {
         "staging",
         "scene",
         "arrays",
+        "selection",
         "layer",
         "layer_info",
         "settings",

@@ -61,7 +61,7 @@ fn growing() -> Vec<Layout> {
         RaraGaussianArrays: antialiased,
         RaraGaussiansInfo: antialiased,
         RaraHostView: depth_scale,
-        RaraLayer: state,
+        RaraLayer: region,
         RaraLayerInfo: count,
         RaraLayerState: visible,
         RaraMemory: user,

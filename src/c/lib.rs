@@ -12,6 +12,7 @@ pub mod bake;
 pub mod boundary;
 pub mod camera;
 pub mod camera_files;
+pub mod channels;
 pub mod clip;
 pub mod depth;
 pub mod device;

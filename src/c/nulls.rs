@@ -10,6 +10,7 @@ use crate::bake::*;
 use crate::boundary::*;
 use crate::camera::*;
 use crate::camera_files::*;
+use crate::channels::*;
 use crate::clip::*;
 use crate::depth::*;
 use crate::device::*;
@@ -188,6 +189,14 @@ fn calls() -> Vec<Called> {
         "renderer is null"
     );
     call!(rara_renderer_forget(null_mut()), "renderer is null");
+    call!(
+        rara_channels_default(null_mut(), size_of::<RaraChannels>(), 1, 1, 1),
+        "channels is null"
+    );
+    call!(
+        rara_renderer_channels(null(), null(), 0, null(), 0, null(), null(), null()),
+        "renderer is null"
+    );
     call!(
         rara_renderer_stats(null(), null_mut(), 0),
         "renderer is null"

@@ -666,6 +666,27 @@ typedef struct RaraBakeCounts {
     uint64_t children;
 } RaraBakeCounts;
 
+// Quantities that a pixel can have beside its colour (arbitrary output variables), one bit each. Means are over the pixel's
+// splats, by what each adds to alpha.
+typedef uint32_t RaraAovs;
+
+// Room for channels of numbers, which rara_renderer_channels fills.
+typedef struct RaraChannels {
+    // Set by rara_channels_default.
+    size_t struct_size;
+    // Which quantities: one bit or more.
+    RaraAovs aovs;
+    // The camera's picture width, pixels.
+    uint32_t width;
+    // The camera's picture height, pixels.
+    uint32_t height;
+    // Where the numbers go: one channel after the other, in the order of the bits, and each row by row from the top left.
+    float *values;
+    // How many numbers there is room for, which is how many there are: width times height for each channel, of which
+    // RARA_AOV_NORMAL has three and the others one. Set by rara_channels_default.
+    size_t value_count;
+} RaraChannels;
+
 // GPU time of one stage. It never grows.
 typedef struct RaraPassTime {
     // The stage: the same name as its shader and its debug label.
@@ -898,6 +919,22 @@ typedef struct RaraFrameStats {
 // Without, as rara_renderer_configure_orthographic.
 #define RARA_PROJECTION_ORTHOGRAPHIC 1
 
+// The mean depth of what is left, along the view axis, world units; 0 where nothing is.
+#define RARA_AOV_DEPTH 1
+
+// Three channels, x, y and z: the mean direction of the splats' thinnest axes, turned to the eye, in the world, of length one;
+// 0 where nothing is. On a cut it is still the splats' own, not the surface's.
+#define RARA_AOV_NORMAL 2
+
+// The number of the layer, from 0, whose splats add most to alpha; -1 where nothing is.
+#define RARA_AOV_LAYER 4
+
+// The mean share that the clip leaves of the splats, 1 where it cuts none; 0 where nothing is.
+#define RARA_AOV_WEIGHT 8
+
+// How many splats make the pixel, until it is saturated.
+#define RARA_AOV_COUNT 16
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -1040,15 +1077,16 @@ RaraResult rara_support_features(const struct RaraSupport *support,
 // `desc` has room for `desc_size` bytes.
 RaraResult rara_adopt_desc_default(struct RaraAdoptDesc *desc, size_t desc_size);
 
-// Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload and
-// rara_scene_buffers_upload_layers submit to the queue. RARA_ERROR_INVALID names an extension that the description
-// claims and whose functions the device does not have. Features that are claimed cannot be checked.
+// Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload,
+// rara_scene_buffers_upload_layers and rara_renderer_channels submit to the queue. RARA_ERROR_INVALID names an extension that
+// the description claims and whose functions the device does not have. Features that are claimed cannot be checked.
 //
 // # Safety
 // The handles belong together, are as the description says, and outlive all that is made from the RaraDevice, of which
 // `release` tells the end. It may be called with `release_user` by any thread, and so may `allocate` and `free` with
 // `allocator_user`; they keep what their types say.
-RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc, struct RaraDevice **device);
+RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc,
+                             struct RaraDevice **device);
 
 // Bytes of device memory that rara has allocated on the device, 0 for null.
 //
@@ -1440,8 +1478,8 @@ void rara_gaussians_destroy(struct RaraGaussians *gaussians);
 // `staging` has room for `staging_size` bytes.
 RaraResult rara_staging_default(struct RaraStaging *staging, size_t staging_size);
 
-// Uploads a scene of one layer. Only this function and rara_scene_buffers_upload_layers submit to the host's queue and
-// wait.
+// Uploads a scene of one layer. Only this function, rara_scene_buffers_upload_layers and rara_renderer_channels submit to the
+// host's queue and wait.
 //
 // # Safety
 // `device` and `gaussians` are alive; nobody else uses the queue meanwhile; `scene` may be overwritten.
@@ -1759,6 +1797,41 @@ RaraResult rara_gaussians_bake(const struct RaraGaussians *gaussians,
                                struct RaraGaussians **baked,
                                struct RaraBakeCounts *counts,
                                size_t counts_size);
+
+// Channels of these quantities, of pictures of `width` x `height` pixels; the host gives `values`, with room for
+// `value_count` numbers. `channels_size` is sizeof *channels.
+//
+// # Safety
+// `channels` has room for `channels_size` bytes.
+RaraResult rara_channels_default(struct RaraChannels *channels,
+                                 size_t channels_size,
+                                 RaraAovs aovs,
+                                 uint32_t width,
+                                 uint32_t height);
+
+// Draws what a frame's pixels are made of, and waits for it: depths, normals, layers, weights and counts, as the program's
+// `--aov` does. It is for editors and measurements, not for each frame: every quantity takes a frame or more of its own, and
+// the scene is uploaded for the call, for normals and layers in other colours once more. All of its memory is freed again.
+//
+// The renderer lends its device, its compiled pipelines and its placement; its frames, attachments and depths have no say,
+// and stay as they are. The scene is given as layers because one that is on the device has no colours that could be changed:
+// states and regions that were set there are given with them. What `settings` show is ignored.
+//
+// RARA_ERROR_INVALID where the sizes of `channels` are not the camera's, or too few or too many; after an error `values` are as
+// they were.
+//
+// # Safety
+// `renderer` is alive, and no other thread changes it; nobody else uses the queue meanwhile; `layers` points to
+// `layer_count` layers, which are as their fields say and all of one struct_size; the other pointers are as for
+// rara_renderer_configure; `channels` is as its fields say, and nobody else uses its values.
+RaraResult rara_renderer_channels(const struct RaraRenderer *renderer,
+                                  const struct RaraLayer *layers,
+                                  size_t layer_count,
+                                  const struct RaraCamera *camera,
+                                  RaraProjection projection,
+                                  const struct RaraClip *clip,
+                                  const struct RaraSettings *settings,
+                                  const struct RaraChannels *channels);
 
 // The statistics of a frame, to be asked for after waiting for it and before the next rara_renderer_prepare.
 // `stats_size` is sizeof *stats.

@@ -53,8 +53,8 @@ pub(crate) fn sh_format(value: RaraShFormat) -> Result<ShFormat> {
     })
 }
 
-/// Uploads a scene of one layer. Only this function and rara_scene_buffers_upload_layers submit to the host's queue and
-/// wait.
+/// Uploads a scene of one layer. Only this function, rara_scene_buffers_upload_layers and rara_renderer_channels submit to the
+/// host's queue and wait.
 ///
 /// # Safety
 /// `device` and `gaussians` are alive; nobody else uses the queue meanwhile; `scene` may be overwritten.

@@ -7,6 +7,7 @@ use rara::ash::vk;
 use crate::arrays::*;
 use crate::bake::*;
 use crate::boundary::*;
+use crate::channels::*;
 use crate::clip::*;
 use crate::depth::*;
 use crate::device::*;
@@ -37,6 +38,7 @@ fn filled() -> Vec<(&'static str, usize, Fill)> {
     let filled: Vec<(&'static str, usize, Fill)> = filled![
         RaraAdoptDesc: rara_adopt_desc_default(),
         RaraBakeSettings: rara_bake_settings_default(),
+        RaraChannels: rara_channels_default(RARA_AOV_DEPTH, 1, 1),
         RaraClip: rara_clip_default(),
         RaraDepthDesc: rara_depth_desc_default(vk::Format::D32_SFLOAT, MAP),
         RaraDepthImage: rara_depth_image_default(vk::Image::null(), 1, 1),

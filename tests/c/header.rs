@@ -60,6 +60,7 @@ fn the_header_is_current() {
         "settings",
         "region",
         "bake",
+        "channels",
         "stats",
     ];
     let add = |bindings: cbindgen::Builder, file: &&str| {

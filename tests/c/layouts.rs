@@ -8,6 +8,7 @@ use rara_c::arrays::*;
 use rara_c::bake::*;
 use rara_c::camera::*;
 use rara_c::camera_files::*;
+use rara_c::channels::*;
 use rara_c::clip::*;
 use rara_c::depth::*;
 use rara_c::device::*;
@@ -52,6 +53,7 @@ fn growing() -> Vec<Layout> {
         RaraAdoptDesc: allocator_user,
         RaraBakeCounts: children,
         RaraBakeSettings: leave,
+        RaraChannels: value_count,
         RaraClip: clip_far,
         RaraDepthDesc: map,
         RaraDepthImage: y,

@@ -2,6 +2,7 @@
 //! behind what the host has drawn, expected depths, a scene placed in a world, a scene by the host's own staging memory,
 //! layers that are hidden, moved and faded.
 
+mod channels;
 mod layers;
 mod lent;
 mod ours;

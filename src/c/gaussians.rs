@@ -114,7 +114,8 @@ pub unsafe extern "C" fn rara_gaussians_load_from(
     })
 }
 
-/// Appends another scene to one, so that both are sorted and composited as one. Properties that both have stay.
+/// Appends another scene to one, so that both are sorted and composited as one. Properties that both have
+/// stay, for rara_gaussians_select.
 ///
 /// # Safety
 /// Both are alive and not the same; nobody else uses `gaussians` meanwhile.
@@ -128,11 +129,16 @@ pub unsafe extern "C" fn rara_gaussians_append(
             return invalid("gaussians and other are the same scene");
         }
         let (mut to, from) = (alone(gaussians, "gaussians")?, alive(other, "other")?);
+        let was_empty = to.gaussians.is_empty();
         to.gaussians.append(&from.gaussians);
         to.report.dropped += from.report.dropped;
         to.report.repaired += from.report.repaired;
-        if !from.gaussians.is_empty() {
+        if was_empty {
+            to.properties.clone_from(&from.properties);
+        } else if !from.gaussians.is_empty() {
             to.append_properties(&from);
+        }
+        if !from.gaussians.is_empty() {
             to.part = None;
         }
         Ok(())

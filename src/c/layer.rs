@@ -178,7 +178,7 @@ pub unsafe extern "C" fn rara_layer_default(
 
 /// Uploads a scene of several layers as rara_scene_buffers_upload does one of a single layer. The layers are sorted and
 /// blended together, wherever they reach into each other. Where two Gaussians are equally deep, the earlier layer's is in
-/// front, unless rara_gaussians_select has divided them: then the one is that was before the other.
+/// front; of those that rara_gaussians_select has divided the one is that was before the other.
 ///
 /// # Safety
 /// `device` is alive; `layers` points to `layer_count` layers, which are as their fields say and all of one struct_size;

@@ -1445,7 +1445,8 @@ RaraResult rara_gaussians_load_from(const uint8_t *data,
                                     const char *name,
                                     struct RaraGaussians **gaussians);
 
-// Appends another scene to one, so that both are sorted and composited as one. Properties that both have stay.
+// Appends another scene to one, so that both are sorted and composited as one. Properties that both have
+// stay, for rara_gaussians_select.
 //
 // # Safety
 // Both are alive and not the same; nobody else uses `gaussians` meanwhile.
@@ -1620,7 +1621,7 @@ RaraResult rara_layer_default(struct RaraLayer *layer,
 
 // Uploads a scene of several layers as rara_scene_buffers_upload does one of a single layer. The layers are sorted and
 // blended together, wherever they reach into each other. Where two Gaussians are equally deep, the earlier layer's is in
-// front, unless rara_gaussians_select has divided them: then the one is that was before the other.
+// front; of those that rara_gaussians_select has divided the one is that was before the other.
 //
 // # Safety
 // `device` is alive; `layers` points to `layer_count` layers, which are as their fields say and all of one struct_size;
@@ -1785,6 +1786,7 @@ RaraResult rara_bake_settings_default(struct RaraBakeSettings *settings, size_t 
 // leaves whole are kept, and each that it cuts is replaced by one with the mass, the mean and the covariance of what is left.
 // A Gaussian has no edge, so that this is a preview: against the exact cut, 12 to 17 % of the light of cut Gaussians is off,
 // where a cut by centres is off by 35 %. It needs no device; all processors work at it.
+// Properties, for rara_gaussians_select, stay those of the Gaussians that they come from.
 //
 // Null `settings` are the defaults. `counts` says what has been done; it may be null, and `counts_size` is sizeof *counts.
 //

@@ -174,6 +174,18 @@ impl RaraGaussians {
         })
     }
 
+    /// The properties of Gaussians that come from these.
+    pub(crate) fn properties_of(&self, sources: &[u32]) -> Vec<Property> {
+        let of = |property: &Property| {
+            let value = |&source: &u32| property.values[source as usize];
+            let values = sources.iter().map(value).collect();
+            let mut made = Property::new(property.name.clone(), values);
+            made.single = property.single;
+            made
+        };
+        self.properties.iter().map(of).collect()
+    }
+
     /// Appends the values of another set's properties; one that either of them has not goes.
     pub(crate) fn append_properties(&mut self, other: &Self) {
         self.properties.retain_mut(|own| {

@@ -5,9 +5,11 @@ use std::ptr::{null, null_mut};
 
 use super::*;
 use crate::arrays::*;
+use crate::bake::*;
 use crate::boundary::*;
 use crate::gaussians::*;
 use crate::handles::alive;
+use crate::region::{rara_region_destroy, rara_region_parse};
 use crate::tests::assert_fails;
 
 /// Five Gaussians with a label each.
@@ -96,12 +98,51 @@ fn what_fulfils_a_predicate_becomes_gaussians_of_its_own() {
         let set = rara_gaussians_set_property(faint, name, values.as_ptr(), 1);
         assert_eq!(set, RARA_OK);
         assert_eq!(rara_gaussians_append(faint, threes), RARA_OK);
+        // Nothing has all properties.
+        assert_eq!(rara_gaussians_append(none, faint), RARA_OK);
+        let joined = alive(none, "none").expect("is alive");
+        assert_eq!(joined.properties.len(), 1);
+        drop(joined);
         let joined = alive(faint, "faint").expect("is alive");
         assert!(joined.part.is_none());
         assert_eq!(joined.properties.len(), 1);
         assert_eq!(joined.properties[0].values, [3.0, 3.0, 5.0]);
         drop(joined);
         for handle in [whole, threes, faint, near, none] {
+            rara_gaussians_destroy(handle);
+        }
+    }
+}
+
+#[test]
+fn what_is_baked_keeps_its_properties() {
+    let (_, whole) = load_for(&[c"label=3"]);
+    let (mut region, mut baked) = (null_mut(), null_mut());
+    // SAFETY: a string that ends in NUL, handles that are alive, pointers that may be overwritten.
+    unsafe {
+        assert_eq!(
+            rara_region_parse(c"plane:1,0,0,-2.5".as_ptr(), &mut region),
+            RARA_OK
+        );
+        let result = rara_gaussians_bake(whole, region, null(), &mut baked, null_mut(), 0);
+        assert_eq!(result, RARA_OK);
+    }
+    let made = alive(baked, "baked").expect("is alive");
+    let region_of = alive(region, "region").expect("is alive");
+    let of = alive(whole, "whole").expect("is alive");
+    let truth = rara::bake(&of.gaussians, &region_of.0, &rara::BakeSettings::default());
+    let sources = truth.expect("bakes").sources;
+    let label = |&source: &u32| of.properties[0].values[source as usize];
+    let labels: Vec<f64> = sources.iter().map(label).collect();
+    assert!((2..5).contains(&labels.len()), "{labels:?}");
+    assert_eq!(made.properties[0].values, labels);
+    drop((made, of, region_of));
+    let (result, threes) = select(baked, c"label=3");
+    assert_eq!(result, RARA_OK);
+    // SAFETY: they are alive.
+    unsafe {
+        rara_region_destroy(region);
+        for handle in [whole, baked, threes] {
             rara_gaussians_destroy(handle);
         }
     }

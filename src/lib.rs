@@ -73,9 +73,7 @@ pub use error::{Error, Result};
 #[doc(inline)]
 pub use gpu::PipelineCache;
 pub use passes::{SceneBuffers, SceneLayer, Staging};
-#[cfg(feature = "picture")]
-pub use picture::Channel;
-pub use picture::{Cue, Cues, Picture};
+pub use picture::{Channel, Cue, Cues, Picture};
 pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 pub use renderer::{
@@ -84,9 +82,7 @@ pub use renderer::{
 };
 #[doc(inline)]
 pub use scene::{Bounds, GaussianArrays, Gaussians, Layer, LayerState, Scene};
-#[cfg(feature = "picture")]
-pub use session::Aov;
-pub use session::{Headless, HeadlessDesc};
+pub use session::{Aov, Headless, HeadlessDesc};
 #[cfg(feature = "view")]
 pub use session::{Line, Panel, Redraw, Windowed};
 pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};

@@ -10,7 +10,7 @@ use crate::gaussians::RaraGaussians;
 use crate::handles::alive;
 
 /// A camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers. It is a pinhole, unless
-/// rara_renderer_configure_orthographic takes it.
+/// rara_renderer_configure_orthographic takes it. It never grows.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraCamera {

@@ -12,7 +12,7 @@ use crate::text::{self, fixed};
 /// Room for a camera's name in RaraNamedCamera, the NUL included.
 pub const RARA_MAX_CAMERA_NAME: usize = 256;
 
-/// A camera and what its file calls it.
+/// A camera and what its file calls it. It never grows.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraNamedCamera {

@@ -1,12 +1,13 @@
 //! Clips: planes and how they combine.
 
 use rara::glam::DVec3;
-use rara::{Clip, ClipOp, Error, Plane, Result};
+use rara::{Camera, Clip, ClipOp, Error, Plane, Result};
 
-use crate::boundary::{invalid, list};
+use crate::boundary::{RaraResult, Versioned, guard, invalid, list, read, write};
+use crate::region::{self, RaraRegion};
 
 /// A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but must
-/// not be zero.
+/// not be zero. It never grows.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraPlane {
@@ -27,21 +28,130 @@ pub const RARA_CLIP_OP_OR: RaraClipOp = 1;
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraClip {
+    /// Set by rara_clip_default.
+    pub struct_size: usize,
     /// The half-spaces; only the call itself reads them.
     pub planes: *const RaraPlane,
-    /// How many planes there are, at most 32. With 0 everything is visible.
+    /// How many planes there are, at most 32. With 0, the default, they keep everything.
     pub plane_count: usize,
-    /// How they combine.
+    /// How they combine. Default: RARA_CLIP_OP_AND.
     pub op: RaraClipOp,
+    /// A region in place of planes; null, the default, for none. Only the call itself reads it.
+    pub region: *const RaraRegion,
+    /// The depth along the view axis, world units, from which on the scene is kept: a plane across the axis that moves with
+    /// the camera and cuts every layer, whatever else cuts it, those with a clip of their own too. Splats are cut exactly, as
+    /// by any other plane; RARA_MODE_NONE does not ask. Default: -INFINITY, for no such plane.
+    pub clip_near: f64,
+    /// The depth up to which the scene is kept, likewise. Default: INFINITY, for no such plane.
+    pub clip_far: f64,
 }
 
+// SAFETY: repr(C), numbers, pointers and a handle, the size first.
+unsafe impl Versioned for RaraClip {
+    const NAME: &'static str = "RaraClip";
+}
+
+impl RaraClip {
+    /// Everything.
+    pub(crate) const WHOLE: Self = Self {
+        struct_size: size_of::<Self>(),
+        planes: std::ptr::null(),
+        plane_count: 0,
+        op: RARA_CLIP_OP_AND,
+        region: std::ptr::null(),
+        clip_near: f64::NEG_INFINITY,
+        clip_far: f64::INFINITY,
+    };
+}
+
+/// A clip that keeps everything. `clip_size` is sizeof *clip.
+///
+/// # Safety
+/// `clip` has room for `clip_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_clip_default(clip: *mut RaraClip, clip_size: usize) -> RaraResult {
+    // SAFETY: the caller's promise.
+    guard(|| unsafe { write(clip, clip_size, &RaraClip::WHOLE, "clip") })
+}
+
+/// What a frame keeps: a clip in the world, between planes that move with the camera.
+pub(crate) struct Kept {
+    pub(crate) clip: Clip,
+    pub(crate) near: Option<f64>,
+    pub(crate) far: Option<f64>,
+}
+
+/// All that a clip keeps.
+impl From<Clip> for Kept {
+    fn from(clip: Clip) -> Self {
+        let (near, far) = (None, None);
+        Self { clip, near, far }
+    }
+}
+
+impl Kept {
+    /// The camera with its planes, and the clip.
+    pub(crate) fn seen_by(self, camera: Camera) -> (Camera, Clip) {
+        (camera.clip_near(self.near).clip_far(self.far), self.clip)
+    }
+}
+
+/// Reads a frame's clip.
+///
 /// # Safety
 /// `clip` is null, or points to one whose planes are there.
+pub(crate) unsafe fn kept(clip: *const RaraClip) -> Result<Kept> {
+    if clip.is_null() {
+        return Ok(Clip::default().into());
+    }
+    // SAFETY: the caller's promise.
+    let given = unsafe { read(clip, RaraClip::WHOLE, "clip") }?;
+    let depth = |depth: f64, none: f64, field: &str| {
+        let is_none = depth == none;
+        match is_none || depth.is_finite() {
+            true => Ok((!is_none).then_some(depth)),
+            false => invalid(format!(
+                "clip->{field} is {depth}: give a depth, or for none what rara_clip_default sets"
+            )),
+        }
+    };
+    Ok(Kept {
+        near: depth(given.clip_near, f64::NEG_INFINITY, "clip_near")?,
+        far: depth(given.clip_far, f64::INFINITY, "clip_far")?,
+        // SAFETY: as above.
+        clip: unsafe { in_place(&given) }?,
+    })
+}
+
+/// Reads a layer's clip.
+///
+/// # Safety
+/// As for [`kept`].
 pub(crate) unsafe fn clip(clip: *const RaraClip) -> Result<Clip> {
     // SAFETY: the caller's promise.
-    let Some(clip) = (unsafe { clip.as_ref() }) else {
-        return Ok(Clip::default());
-    };
+    let kept = unsafe { kept(clip) }?;
+    if kept.near.is_some() || kept.far.is_some() {
+        return invalid(
+            "clip->clip_near and clip_far are the camera's, and a layer's clip stands in the scene: give them to \
+             rara_renderer_configure",
+        );
+    }
+    Ok(kept.clip)
+}
+
+/// What a clip keeps wherever the camera is.
+///
+/// # Safety
+/// Its planes are there.
+unsafe fn in_place(clip: &RaraClip) -> Result<Clip> {
+    if let Some(region) = region::clip(clip.region, "clip->region")? {
+        if clip.plane_count > 0 {
+            return invalid(
+                "clip->region and clip->planes are both given: make one region of them, or set plane_count to 0",
+            );
+        }
+        return Ok(region);
+    }
     if clip.plane_count > Clip::MAX_SURFACES {
         return invalid(format!(
             "clip->plane_count is {}, and a clip has at most {} planes",
@@ -63,3 +173,6 @@ pub(crate) unsafe fn clip(clip: *const RaraClip) -> Result<Clip> {
     };
     Ok(Clip::of(planes, op))
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,9 +4,9 @@ use rara::ash::vk;
 use rara::gpu::DepthImage;
 use rara::{DepthDesc, DepthMap, Result};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, read, shared, write};
+use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
 
-/// The values in a depth buffer, for any perspective projection into depths from 0 to 1.
+/// The values in a depth buffer, for any perspective projection into depths from 0 to 1. It never grows.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraDepthMap {
@@ -101,27 +101,67 @@ pub unsafe extern "C" fn rara_depth_desc_default(
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraDepthImage {
+    /// Set by rara_depth_image_default.
+    pub struct_size: usize,
     /// The image, whose level 0 is read.
     pub image: vk::Image,
-    /// Its layout when the copy runs: TRANSFER_SRC_OPTIMAL or GENERAL.
+    /// Its layout when the copy runs: TRANSFER_SRC_OPTIMAL, the default, or GENERAL.
     pub layout: vk::ImageLayout,
     /// Its width, pixels.
     pub width: u32,
     /// Its height, pixels.
     pub height: u32,
-    /// The array layer that is read.
+    /// The array layer that is read. Default: 0.
     pub layer: u32,
-    /// The viewport's left edge in the image, pixels.
+    /// The viewport's left edge in the image, pixels. Default: 0.
     pub x: i32,
-    /// The viewport's top edge in the image, pixels.
+    /// The viewport's top edge in the image, pixels. Default: 0.
     pub y: i32,
+}
+
+// SAFETY: repr(C), a handle and numbers, the size first.
+unsafe impl Versioned for RaraDepthImage {
+    const NAME: &'static str = "RaraDepthImage";
+}
+
+impl RaraDepthImage {
+    fn new(image: vk::Image, width: u32, height: u32) -> Self {
+        Self {
+            struct_size: size_of::<Self>(),
+            image,
+            layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+            width,
+            height,
+            layer: 0,
+            x: 0,
+            y: 0,
+        }
+    }
+}
+
+/// An image of `width` x `height` pixels, whose upper left corner is the viewport's. `depth_size` is sizeof *depth.
+///
+/// # Safety
+/// `depth` has room for `depth_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_depth_image_default(
+    depth: *mut RaraDepthImage,
+    depth_size: usize,
+    image: vk::Image,
+    width: u32,
+    height: u32,
+) -> RaraResult {
+    let default = RaraDepthImage::new(image, width, height);
+    // SAFETY: the caller's promise.
+    guard(|| unsafe { write(depth, depth_size, &default, "depth") })
 }
 
 /// # Safety
 /// `image` is null or points to one.
 pub(crate) unsafe fn depth_image(image: *const RaraDepthImage) -> Result<DepthImage> {
+    let default = RaraDepthImage::new(vk::Image::null(), 0, 0);
     // SAFETY: the caller's promise.
-    let image = unsafe { shared(image, "depth") }?;
+    let image = unsafe { read(image, default, "depth") }?;
     if image.image == vk::Image::null() {
         return invalid("depth->image is null");
     }

@@ -5,10 +5,11 @@ use std::io::Cursor;
 
 use rara::Gaussians;
 use rara::ash::vk;
-use rara::scene::{Bounds, LoadReport, Loaded, load, load_from};
+use rara::scene::{Bounds, LoadReport, Loaded, Property, load, load_from};
 
 use crate::boundary::{RaraResult, Versioned, guard, invalid, list, write};
 use crate::handles::{alive, alone, create, destroy};
+use crate::numbering::Part;
 use crate::text;
 
 /// A scene in the host's memory. It may be destroyed once it is on the device. Several threads may read it at once.
@@ -16,13 +17,17 @@ pub struct RaraGaussians {
     pub(crate) gaussians: Gaussians,
     /// What of the file could not be used; nothing where there was none.
     pub(crate) report: LoadReport,
+    /// Numbers that each of them has beside what it is drawn with, for selections.
+    pub(crate) properties: Vec<Property>,
+    /// Where selections have divided a set, which part of it they are.
+    pub(crate) part: Option<Part>,
 }
 
 impl From<Loaded> for RaraGaussians {
     fn from(loaded: Loaded) -> Self {
         Self {
-            gaussians: loaded.gaussians,
             report: loaded.report,
+            ..loaded.gaussians.into()
         }
     }
 }
@@ -32,6 +37,8 @@ impl From<Gaussians> for RaraGaussians {
         Self {
             gaussians,
             report: LoadReport::default(),
+            properties: Vec::new(),
+            part: None,
         }
     }
 }
@@ -107,7 +114,8 @@ pub unsafe extern "C" fn rara_gaussians_load_from(
     })
 }
 
-/// Appends another scene to one, so that both are sorted and composited as one.
+/// Appends another scene to one, so that both are sorted and composited as one. Properties that both have
+/// stay, for rara_gaussians_select.
 ///
 /// # Safety
 /// Both are alive and not the same; nobody else uses `gaussians` meanwhile.
@@ -121,9 +129,18 @@ pub unsafe extern "C" fn rara_gaussians_append(
             return invalid("gaussians and other are the same scene");
         }
         let (mut to, from) = (alone(gaussians, "gaussians")?, alive(other, "other")?);
+        let was_empty = to.gaussians.is_empty();
         to.gaussians.append(&from.gaussians);
         to.report.dropped += from.report.dropped;
         to.report.repaired += from.report.repaired;
+        if was_empty {
+            to.properties.clone_from(&from.properties);
+        } else if !from.gaussians.is_empty() {
+            to.append_properties(&from);
+        }
+        if !from.gaussians.is_empty() {
+            to.part = None;
+        }
         Ok(())
     })
 }
@@ -160,7 +177,9 @@ pub unsafe extern "C" fn rara_gaussians_info(
 ) -> RaraResult {
     guard(|| {
         let gaussians = alive(gaussians, "gaussians")?;
-        let RaraGaussians { gaussians, report } = &*gaussians;
+        let RaraGaussians {
+            gaussians, report, ..
+        } = &*gaussians;
         let bounds = Bounds::of(gaussians);
         let found = RaraGaussiansInfo {
             struct_size: size_of::<RaraGaussiansInfo>(),

@@ -13,7 +13,9 @@ use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, alone};
 use crate::layer_info::check_index;
 use crate::placement::RaraPlacement;
-use crate::scene::{self, GivenLayer, RaraSceneBuffers, RaraShFormat, RaraStaging};
+use crate::region::{self, RaraRegion};
+use crate::scene::{self, GivenLayer, RaraSceneBuffers, RaraShFormat};
+use crate::staging::RaraStaging;
 use crate::text::text;
 
 /// The state of a layer, which may change from frame to frame.
@@ -78,9 +80,11 @@ pub struct RaraLayer {
     pub gaussians: *const RaraGaussians,
     /// The state in which it is uploaded; null, the default, stands for that of rara_layer_state_default.
     pub state: *const RaraLayerState,
+    /// Its own region, as rara_scene_buffers_set_layer_region sets it; null, the default, for the frame's clip.
+    pub region: *const RaraRegion,
 }
 
-// SAFETY: repr(C), a number and pointers, the size first.
+// SAFETY: repr(C), a number, pointers and handles, the size first.
 unsafe impl Versioned for RaraLayer {
     const NAME: &'static str = "RaraLayer";
 }
@@ -92,6 +96,7 @@ impl RaraLayer {
             name,
             gaussians,
             state: null(),
+            region: null(),
         }
     }
 
@@ -106,6 +111,7 @@ impl RaraLayer {
             gaussians: alive(self.gaussians, &format!("{place}.gaussians"))?,
             name: name.to_owned(),
             state: LayerState::default(),
+            clip: region::clip(self.region, &format!("{place}.region"))?,
         };
         if !self.state.is_null() {
             // SAFETY: as above.
@@ -117,7 +123,10 @@ impl RaraLayer {
 
 /// # Safety
 /// `layers` is null, or points to `layer_count` layers, which are as their fields say.
-unsafe fn given(layers: *const RaraLayer, layer_count: usize) -> Result<Vec<GivenLayer>> {
+pub(crate) unsafe fn given(
+    layers: *const RaraLayer,
+    layer_count: usize,
+) -> Result<Vec<GivenLayer>> {
     if layer_count == 0 {
         return invalid("layer_count is 0, and a scene has at least one layer: give one or more");
     }
@@ -169,7 +178,7 @@ pub unsafe extern "C" fn rara_layer_default(
 
 /// Uploads a scene of several layers as rara_scene_buffers_upload does one of a single layer. The layers are sorted and
 /// blended together, wherever they reach into each other. Where two Gaussians are equally deep, the earlier layer's is in
-/// front.
+/// front; of those that rara_gaussians_select has divided the one is that was before the other.
 ///
 /// # Safety
 /// `device` is alive; `layers` points to `layer_count` layers, which are as their fields say and all of one struct_size;
@@ -270,8 +279,9 @@ pub unsafe extern "C" fn rara_scene_buffers_set_layer_state(
 
 /// Sets a clip for a layer alone, in place of the clip of rara_renderer_configure, which then has no say in it: a clip
 /// without planes keeps the whole layer. Null gives the layer the frame's clip again. The clip stands in the scene: neither
-/// the layer's placement nor that of rara_renderer_set_placement moves it. It holds from the next rara_renderer_configure of
-/// every renderer on. RARA_ERROR_INVALID for what is no clip; the layer's clip then stays as it was.
+/// the layer's placement nor that of rara_renderer_set_placement moves it, and the camera's planes are no part of it. It holds
+/// from the next rara_renderer_configure of every renderer on. RARA_ERROR_INVALID for what is no clip; the layer's clip then
+/// stays as it was.
 ///
 /// # Safety
 /// `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;

@@ -40,6 +40,8 @@ pub struct RaraMemoryRequest {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraMemory {
+    /// Its size in the library, which may be larger than in the host's header; the host leaves it as it is.
+    pub struct_size: usize,
     /// The memory, allocated with VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT.
     pub memory: vk::DeviceMemory,
     /// Where the part begins in it, bytes.
@@ -50,8 +52,9 @@ pub struct RaraMemory {
     pub user: *mut c_void,
 }
 
-/// Lends memory, with `allocator_user` of RaraAdoptDesc: fills `*memory`, which is all zero before, and returns VK_SUCCESS, or
-/// returns why there is none; the call that needs it then fails with RARA_ERROR_MEMORY. It must throw nothing.
+/// Lends memory, with `allocator_user` of RaraAdoptDesc: fills `*memory`, which is all zero before but for its size, and
+/// returns VK_SUCCESS, or returns why there is none; the call that needs it then fails with RARA_ERROR_MEMORY. It must throw
+/// nothing.
 pub type RaraAllocate = Option<
     unsafe extern "C" fn(
         user: *mut c_void,
@@ -113,6 +116,7 @@ unsafe impl MemorySource for Lender {
             },
         };
         let mut lent = RaraMemory {
+            struct_size: size_of::<RaraMemory>(),
             memory: vk::DeviceMemory::null(),
             offset: 0,
             mapped: null_mut(),
@@ -132,6 +136,7 @@ unsafe impl MemorySource for Lender {
 
     fn free(&self, memory: LentMemory) {
         let lent = RaraMemory {
+            struct_size: size_of::<RaraMemory>(),
             memory: memory.memory,
             offset: memory.offset,
             mapped: memory.mapped,

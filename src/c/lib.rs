@@ -12,6 +12,7 @@ pub mod bake;
 pub mod boundary;
 pub mod camera;
 pub mod camera_files;
+pub mod channels;
 pub mod clip;
 pub mod depth;
 pub mod device;
@@ -24,6 +25,7 @@ pub mod logging;
 pub mod matrices;
 #[cfg(test)]
 mod nulls;
+mod numbering;
 pub mod orthographic;
 pub mod placement;
 pub mod region;
@@ -31,10 +33,14 @@ pub mod renderer;
 pub mod renderer_desc;
 pub mod reserve;
 pub mod scene;
+pub mod selection;
 pub mod settings;
+pub mod staging;
 pub mod stats;
 pub mod support;
 #[cfg(test)]
 mod tests;
 mod text;
 pub mod token;
+#[cfg(test)]
+mod versions;

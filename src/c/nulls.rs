@@ -10,6 +10,8 @@ use crate::bake::*;
 use crate::boundary::*;
 use crate::camera::*;
 use crate::camera_files::*;
+use crate::channels::*;
+use crate::clip::*;
 use crate::depth::*;
 use crate::device::*;
 use crate::gaussians::*;
@@ -24,7 +26,9 @@ use crate::renderer::*;
 use crate::renderer_desc::*;
 use crate::reserve::*;
 use crate::scene::*;
+use crate::selection::*;
 use crate::settings::*;
+use crate::staging::*;
 use crate::stats::*;
 use crate::support::*;
 use crate::tests::{assert_fails, message};
@@ -39,20 +43,29 @@ pub(crate) fn panic_if_asked() {
     assert!(!PANIC.get(), "injected");
 }
 
-/// Calls each function with null for every pointer and handle: its result, its name, and what its message says.
-fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
+/// What a call with null for every pointer and handle has given: its result, its name, and what its message says.
+type Called = (RaraResult, &'static str, &'static str);
+
+macro_rules! call_in {
+    ($called:expr, $function:ident($($argument:expr),*), $says:literal) => {
+        // SAFETY: every function must stand null.
+        $called.push((unsafe { $function($($argument),*) }, stringify!($function), $says));
+        assert!($called.last().is_none_or(|(_, name, _)| PANIC.get() || {
+            let says = message();
+            let is_right = says.contains($says);
+            if !is_right { eprintln!("{name}: {says}"); }
+            is_right
+        }));
+    };
+}
+
+mod scenes;
+
+/// Calls each function.
+fn calls() -> Vec<Called> {
     let mut called = Vec::new();
     macro_rules! call {
-        ($function:ident($($argument:expr),*), $says:literal) => {
-            // SAFETY: every function must stand null.
-            called.push((unsafe { $function($($argument),*) }, stringify!($function), $says));
-            assert!(called.last().is_none_or(|(_, name, _)| PANIC.get() || {
-                let says = message();
-                let is_right = says.contains($says);
-                if !is_right { eprintln!("{name}: {says}"); }
-                is_right
-            }));
-        };
+        ($($call:tt)*) => { call_in!(called, $($call)*); };
     }
     let map = RaraDepthMap {
         z_near: 1.0,
@@ -72,112 +85,7 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
         "desc is null"
     );
     call!(rara_device_adopt(null(), null_mut()), "device is null");
-    call!(rara_gaussians_load(null(), null_mut()), "gaussians is null");
-    call!(
-        rara_gaussians_load_from(null(), 0, null(), null_mut()),
-        "gaussians is null"
-    );
-    call!(
-        rara_gaussian_arrays_default(null_mut(), size_of::<RaraGaussianArrays>()),
-        "arrays is null"
-    );
-    call!(
-        rara_gaussians_from_arrays(null(), null_mut()),
-        "gaussians is null"
-    );
-    call!(
-        rara_gaussians_append(null_mut(), null()),
-        "gaussians is null"
-    );
-    call!(
-        rara_gaussians_info(null(), null_mut(), 0),
-        "gaussians is null"
-    );
-    call!(
-        rara_gaussians_set_antialiased(null_mut(), 0),
-        "gaussians is null"
-    );
-    call!(
-        rara_scene_buffers_upload(null(), null(), 0, null_mut()),
-        "scene is null"
-    );
-    call!(
-        rara_scene_buffers_staging_bytes(null(), 0, null_mut()),
-        "bytes is null"
-    );
-    call!(
-        rara_scene_buffers_upload_with(null(), no_cmd, null(), null(), 0, null_mut()),
-        "scene is null"
-    );
-    call!(
-        rara_layer_state_default(null_mut(), size_of::<RaraLayerState>()),
-        "state is null"
-    );
-    call!(
-        rara_layer_default(null_mut(), size_of::<RaraLayer>(), null(), null()),
-        "layer is null"
-    );
-    call!(
-        rara_scene_buffers_upload_layers(null(), null(), 0, 0, null_mut()),
-        "scene is null"
-    );
-    call!(
-        rara_scene_buffers_staging_bytes_of_layers(null(), 0, 0, null_mut()),
-        "bytes is null"
-    );
-    call!(
-        rara_scene_buffers_upload_layers_with(null(), no_cmd, null(), null(), 0, 0, null_mut()),
-        "scene is null"
-    );
-    call!(
-        rara_scene_buffers_layer_info(null(), 0, null_mut(), 0),
-        "scene is null"
-    );
-    call!(
-        rara_scene_buffers_layer_state(null(), 0, null_mut(), 0),
-        "scene is null"
-    );
-    call!(
-        rara_scene_buffers_set_layer_state(null_mut(), 0, null()),
-        "scene is null"
-    );
-    call!(
-        rara_scene_buffers_set_layer_clip(null_mut(), 0, null()),
-        "scene is null"
-    );
-    call!(
-        rara_scene_buffers_layer_by_name(null(), null(), null_mut()),
-        "scene is null"
-    );
-    call!(
-        rara_scene_buffers_set_layer_region(null_mut(), 0, null()),
-        "scene is null"
-    );
-    call!(rara_region_parse(null(), null_mut()), "region is null");
-    call!(
-        rara_region_from_json(null(), 0, null(), null_mut()),
-        "region is null"
-    );
-    call!(
-        rara_region_load(null(), null(), null_mut()),
-        "region is null"
-    );
-    call!(
-        rara_region_keeps(null(), null(), null_mut()),
-        "kept is null"
-    );
-    call!(
-        rara_renderer_configure_region(null_mut(), null(), null(), 0, null(), null()),
-        "renderer is null"
-    );
-    call!(
-        rara_bake_settings_default(null_mut(), size_of::<RaraBakeSettings>()),
-        "settings is null"
-    );
-    call!(
-        rara_gaussians_bake(null(), null(), null(), null_mut(), null_mut(), 0),
-        "baked is null"
-    );
+    scenes::calls(&mut called);
     call!(
         rara_cameras_load(null(), null_mut(), null_mut()),
         "count is null"
@@ -197,6 +105,11 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
     call!(
         rara_depth_desc_default(null_mut(), size_of::<RaraDepthDesc>(), format, map),
         "desc is null"
+    );
+    let image_size = size_of::<RaraDepthImage>();
+    call!(
+        rara_depth_image_default(null_mut(), image_size, vk::Image::null(), 1, 1),
+        "depth is null"
     );
     call!(
         rara_settings_default(null_mut(), size_of::<RaraSettings>(), 0),
@@ -276,6 +189,14 @@ fn calls() -> Vec<(RaraResult, &'static str, &'static str)> {
         "renderer is null"
     );
     call!(rara_renderer_forget(null_mut()), "renderer is null");
+    call!(
+        rara_channels_default(null_mut(), size_of::<RaraChannels>(), 1, 1, 1),
+        "channels is null"
+    );
+    call!(
+        rara_renderer_channels(null(), null(), 0, null(), 0, null(), null(), null()),
+        "renderer is null"
+    );
     call!(
         rara_renderer_stats(null(), null_mut(), 0),
         "renderer is null"

@@ -50,7 +50,7 @@ pub unsafe extern "C" fn rara_renderer_configure_orthographic(
 ) -> RaraResult {
     // SAFETY: the caller's promises.
     unsafe {
-        let seen = || Ok((Projection::Orthographic, clip::clip(clip)?));
+        let seen = || Ok((Projection::Orthographic, clip::kept(clip)?));
         configure(renderer, scene, camera, seen, settings)
     }
 }

@@ -8,7 +8,7 @@ use crate::handles::alone;
 use crate::renderer::RaraRenderer;
 
 /// The placement of a scene in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1}
-/// leaves it where it was made.
+/// leaves it where it was made. It never grows.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraPlacement {

@@ -4,9 +4,10 @@
  *
  * Every function that can fail returns a RaraResult; rara_last_error_message says what is wrong. Nothing is thrown and
  * nothing panics across this boundary. Structs that begin with struct_size may grow in later versions: those that go in
- * are filled by their rara_..._default first, those that come out are asked for with their size. Handles come from a
- * function that makes them and end with their rara_..._destroy; "alive" is the time between. A handle that is not alive is
- * refused with RARA_ERROR_INVALID, as is one of another kind, and one that another thread's call changes at the same time.
+ * are filled by their rara_..._default first, those that come out are asked for with their size. The others are parts of
+ * structs, elements of arrays or given by value, and never grow. Handles come from a function that makes them and end with
+ * their rara_..._destroy; "alive" is the time between. A handle that is not alive is refused with RARA_ERROR_INVALID, as is
+ * one of another kind, and one that another thread's call changes at the same time.
  */
 
 #ifndef RARA_H
@@ -18,7 +19,7 @@
 
 // The version of this header. It changes when a host must be compiled anew; structs that grow at their end and functions
 // that are added do not change it.
-#define RARA_ABI_VERSION 2
+#define RARA_ABI_VERSION 3
 
 // Room for a camera's name in RaraNamedCamera, the NUL included.
 #define RARA_MAX_CAMERA_NAME 256
@@ -84,7 +85,7 @@ typedef uint32_t RaraLogLevel;
 typedef void (*RaraLog)(RaraLogLevel level, const char *text, void *user);
 
 // A camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers. It is a pinhole, unless
-// rara_renderer_configure_orthographic takes it.
+// rara_renderer_configure_orthographic takes it. It never grows.
 typedef struct RaraCamera {
     // Picture width, pixels.
     uint32_t width;
@@ -105,7 +106,7 @@ typedef struct RaraCamera {
     double rotation[9];
 } RaraCamera;
 
-// A camera and what its file calls it.
+// A camera and what its file calls it. It never grows.
 typedef struct RaraNamedCamera {
     // The picture's name in the file, or the camera's number there: UTF-8, cut off where it does not fit.
     char name[RARA_MAX_CAMERA_NAME];
@@ -113,7 +114,39 @@ typedef struct RaraNamedCamera {
     struct RaraCamera camera;
 } RaraNamedCamera;
 
-// The values in a depth buffer, for any perspective projection into depths from 0 to 1.
+// A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but must
+// not be zero. It never grows.
+typedef struct RaraPlane {
+    // Points to the visible side.
+    double normal[3];
+    // World units times the normal's length.
+    double offset;
+} RaraPlane;
+
+// How several planes combine.
+typedef uint32_t RaraClipOp;
+
+// The region that stays visible. Where a function takes one, null means everything.
+typedef struct RaraClip {
+    // Set by rara_clip_default.
+    size_t struct_size;
+    // The half-spaces; only the call itself reads them.
+    const struct RaraPlane *planes;
+    // How many planes there are, at most 32. With 0, the default, they keep everything.
+    size_t plane_count;
+    // How they combine. Default: RARA_CLIP_OP_AND.
+    RaraClipOp op;
+    // A region in place of planes; null, the default, for none. Only the call itself reads it.
+    const struct RaraRegion *region;
+    // The depth along the view axis, world units, from which on the scene is kept: a plane across the axis that moves with
+    // the camera and cuts every layer, whatever else cuts it, those with a clip of their own too. Splats are cut exactly, as
+    // by any other plane; RARA_MODE_NONE does not ask. Default: -INFINITY, for no such plane.
+    double clip_near;
+    // The depth up to which the scene is kept, likewise. Default: INFINITY, for no such plane.
+    double clip_far;
+} RaraClip;
+
+// The values in a depth buffer, for any perspective projection into depths from 0 to 1. It never grows.
 typedef struct RaraDepthMap {
     // Depth along the view axis that becomes 0, or 1 if reversed, world units above 0.
     double z_near;
@@ -138,6 +171,26 @@ typedef struct RaraDepthDesc {
     // The buffer's value for a depth; rara_renderer_set_depth_map changes it from frame to frame.
     struct RaraDepthMap map;
 } RaraDepthDesc;
+
+// A host's depth image, of one sample and created with VK_IMAGE_USAGE_TRANSFER_SRC_BIT.
+typedef struct RaraDepthImage {
+    // Set by rara_depth_image_default.
+    size_t struct_size;
+    // The image, whose level 0 is read.
+    VkImage image;
+    // Its layout when the copy runs: TRANSFER_SRC_OPTIMAL, the default, or GENERAL.
+    VkImageLayout layout;
+    // Its width, pixels.
+    uint32_t width;
+    // Its height, pixels.
+    uint32_t height;
+    // The array layer that is read. Default: 0.
+    uint32_t layer;
+    // The viewport's left edge in the image, pixels. Default: 0.
+    int32_t x;
+    // The viewport's top edge in the image, pixels. Default: 0.
+    int32_t y;
+} RaraDepthImage;
 
 // The features of a suitable physical device beyond the requirements. Required are Vulkan 1.3, or 1.2 with
 // VK_KHR_synchronization2 and VK_KHR_dynamic_rendering, the features bufferDeviceAddress, synchronization2 and
@@ -198,6 +251,8 @@ typedef struct RaraMemoryRequest {
 
 // A part of device memory that a host lends.
 typedef struct RaraMemory {
+    // Its size in the library, which may be larger than in the host's header; the host leaves it as it is.
+    size_t struct_size;
     // The memory, allocated with VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT.
     VkDeviceMemory memory;
     // Where the part begins in it, bytes.
@@ -208,8 +263,9 @@ typedef struct RaraMemory {
     void *user;
 } RaraMemory;
 
-// Lends memory, with `allocator_user` of RaraAdoptDesc: fills `*memory`, which is all zero before, and returns VK_SUCCESS, or
-// returns why there is none; the call that needs it then fails with RARA_ERROR_MEMORY. It must throw nothing.
+// Lends memory, with `allocator_user` of RaraAdoptDesc: fills `*memory`, which is all zero before but for its size, and
+// returns VK_SUCCESS, or returns why there is none; the call that needs it then fails with RARA_ERROR_MEMORY. It must throw
+// nothing.
 typedef VkResult (*RaraAllocate)(void *user, const struct RaraMemoryRequest *request, struct RaraMemory *memory);
 
 // Takes back what RaraAllocate has lent, as it was lent. The device is done with it. It must throw nothing.
@@ -268,7 +324,7 @@ typedef struct RaraAdoptDesc {
 } RaraAdoptDesc;
 
 // The placement of a scene in a world: its points are scaled, then turned, then moved. {{0, 0, 0}, {0, 0, 0, 1}, 1}
-// leaves it where it was made.
+// leaves it where it was made. It never grows.
 typedef struct RaraPlacement {
     // The position of the scene's origin, world units.
     double position[3];
@@ -319,28 +375,6 @@ typedef struct RaraRendererDesc {
     // What the numbers of the colour attachment stand for.
     RaraColorSpace color_space;
 } RaraRendererDesc;
-
-// A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but must
-// not be zero.
-typedef struct RaraPlane {
-    // Points to the visible side.
-    double normal[3];
-    // World units times the normal's length.
-    double offset;
-} RaraPlane;
-
-// How several planes combine.
-typedef uint32_t RaraClipOp;
-
-// The region that stays visible. Where a function takes one, null means everything.
-typedef struct RaraClip {
-    // The half-spaces; only the call itself reads them.
-    const struct RaraPlane *planes;
-    // How many planes there are, at most 32. With 0 everything is visible.
-    size_t plane_count;
-    // How they combine.
-    RaraClipOp op;
-} RaraClip;
 
 // How a clip treats the Gaussians that it cuts.
 typedef uint32_t RaraMode;
@@ -395,24 +429,6 @@ typedef struct RaraSettings {
     // Tiles only: a pixel with less transmittance than this is saturated. Zero blends everything.
     float transmittance_min;
 } RaraSettings;
-
-// A host's depth image, of one sample and created with VK_IMAGE_USAGE_TRANSFER_SRC_BIT.
-typedef struct RaraDepthImage {
-    // The image, whose level 0 is read.
-    VkImage image;
-    // Its layout when the copy runs: TRANSFER_SRC_OPTIMAL or GENERAL.
-    VkImageLayout layout;
-    // Its width, pixels.
-    uint32_t width;
-    // Its height, pixels.
-    uint32_t height;
-    // The array layer that is read.
-    uint32_t layer;
-    // The viewport's left edge in the image, pixels.
-    int32_t x;
-    // The viewport's top edge in the image, pixels.
-    int32_t y;
-} RaraDepthImage;
 
 // How the 16 numbers of a matrix lie in memory.
 typedef uint32_t RaraMatrixOrder;
@@ -471,7 +487,8 @@ typedef struct RaraFrameLimits {
     uint32_t layers;
     // How the scenes' spherical harmonics are stored. Default: RARA_SH_FORMAT_PACKED.
     RaraShFormat sh_format;
-    // Planes of a RaraClip, or of a RaraRegion that is a list of planes. Default: 6.
+    // Planes of a RaraClip, or of a RaraRegion that is a list of planes; RaraClip::clip_near and clip_far add one each.
+    // Default: 6.
     uint32_t planes;
     // Surfaces of a RaraRegion that bends or combines. Default: 0, for none.
     uint32_t surfaces;
@@ -526,9 +543,11 @@ typedef struct RaraGaussiansInfo {
 
 // A part of the host's memory that the device can copy from.
 typedef struct RaraStaging {
+    // Set by rara_staging_default.
+    size_t struct_size;
     // A buffer created with VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
     VkBuffer buffer;
-    // The offset of the part in the buffer, bytes.
+    // The offset of the part in the buffer, bytes. Default: 0.
     uint64_t offset;
     // The part, mapped for writing: it is never read.
     void *mapped;
@@ -595,6 +614,8 @@ typedef struct RaraLayer {
     const struct RaraGaussians *gaussians;
     // The state in which it is uploaded; null, the default, stands for that of rara_layer_state_default.
     const struct RaraLayerState *state;
+    // Its own region, as rara_scene_buffers_set_layer_region sets it; null, the default, for the frame's clip.
+    const struct RaraRegion *region;
 } RaraLayer;
 
 // A layer of a scene in device memory.
@@ -645,7 +666,28 @@ typedef struct RaraBakeCounts {
     uint64_t children;
 } RaraBakeCounts;
 
-// GPU time of one stage.
+// Quantities that a pixel can have beside its colour (arbitrary output variables), one bit each. Means are over the pixel's
+// splats, by what each adds to alpha.
+typedef uint32_t RaraAovs;
+
+// Room for channels of numbers, which rara_renderer_channels fills.
+typedef struct RaraChannels {
+    // Set by rara_channels_default.
+    size_t struct_size;
+    // Which quantities: one bit or more.
+    RaraAovs aovs;
+    // The camera's picture width, pixels.
+    uint32_t width;
+    // The camera's picture height, pixels.
+    uint32_t height;
+    // Where the numbers go: one channel after the other, in the order of the bits, and each row by row from the top left.
+    float *values;
+    // How many numbers there is room for, which is how many there are: width times height for each channel, of which
+    // RARA_AOV_NORMAL has three and the others one. Set by rara_channels_default.
+    size_t value_count;
+} RaraChannels;
+
+// GPU time of one stage. It never grows.
 typedef struct RaraPassTime {
     // The stage: the same name as its shader and its debug label.
     char name[RARA_NAME_SIZE];
@@ -877,6 +919,22 @@ typedef struct RaraFrameStats {
 // Without, as rara_renderer_configure_orthographic.
 #define RARA_PROJECTION_ORTHOGRAPHIC 1
 
+// The mean depth of what is left, along the view axis, world units; 0 where nothing is.
+#define RARA_AOV_DEPTH 1
+
+// Three channels, x, y and z: the mean direction of the splats' thinnest axes, turned to the eye, in the world, of length one;
+// 0 where nothing is. On a cut it is still the splats' own, not the surface's.
+#define RARA_AOV_NORMAL 2
+
+// The number of the layer, from 0, whose splats add most to alpha; -1 where nothing is.
+#define RARA_AOV_LAYER 4
+
+// The mean share that the clip leaves of the splats, 1 where it cuts none; 0 where nothing is.
+#define RARA_AOV_WEIGHT 8
+
+// How many splats make the pixel, until it is saturated.
+#define RARA_AOV_COUNT 16
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -962,6 +1020,12 @@ RaraResult rara_camera_frame(const struct RaraGaussians *gaussians,
 // `path` ends in NUL; `count` points to a number; `cameras` is null, or has room for `*count` cameras.
 RaraResult rara_cameras_load(const char *path, struct RaraNamedCamera *cameras, size_t *count);
 
+// A clip that keeps everything. `clip_size` is sizeof *clip.
+//
+// # Safety
+// `clip` has room for `clip_size` bytes.
+RaraResult rara_clip_default(struct RaraClip *clip, size_t clip_size);
+
 // A depth attachment without stencil, not readable. `desc_size` is sizeof *desc.
 //
 // # Safety
@@ -970,6 +1034,16 @@ RaraResult rara_depth_desc_default(struct RaraDepthDesc *desc,
                                    size_t desc_size,
                                    VkFormat format,
                                    struct RaraDepthMap map);
+
+// An image of `width` x `height` pixels, whose upper left corner is the viewport's. `depth_size` is sizeof *depth.
+//
+// # Safety
+// `depth` has room for `depth_size` bytes.
+RaraResult rara_depth_image_default(struct RaraDepthImage *depth,
+                                    size_t depth_size,
+                                    VkImage image,
+                                    uint32_t width,
+                                    uint32_t height);
 
 // Checks whether a physical device will do, before there is a device. If it will not, the result is RARA_ERROR_DEVICE
 // and the message names what is missing.
@@ -1003,15 +1077,16 @@ RaraResult rara_support_features(const struct RaraSupport *support,
 // `desc` has room for `desc_size` bytes.
 RaraResult rara_adopt_desc_default(struct RaraAdoptDesc *desc, size_t desc_size);
 
-// Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload and
-// rara_scene_buffers_upload_layers submit to the queue. RARA_ERROR_INVALID names an extension that the description
-// claims and whose functions the device does not have. Features that are claimed cannot be checked.
+// Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload,
+// rara_scene_buffers_upload_layers and rara_renderer_channels submit to the queue. RARA_ERROR_INVALID names an extension that
+// the description claims and whose functions the device does not have. Features that are claimed cannot be checked.
 //
 // # Safety
 // The handles belong together, are as the description says, and outlive all that is made from the RaraDevice, of which
 // `release` tells the end. It may be called with `release_user` by any thread, and so may `allocate` and `free` with
 // `allocator_user`; they keep what their types say.
-RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc, struct RaraDevice **device);
+RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc,
+                             struct RaraDevice **device);
 
 // Bytes of device memory that rara has allocated on the device, 0 for null.
 //
@@ -1370,7 +1445,8 @@ RaraResult rara_gaussians_load_from(const uint8_t *data,
                                     const char *name,
                                     struct RaraGaussians **gaussians);
 
-// Appends another scene to one, so that both are sorted and composited as one.
+// Appends another scene to one, so that both are sorted and composited as one. Properties that both have
+// stay, for rara_gaussians_select.
 //
 // # Safety
 // Both are alive and not the same; nobody else uses `gaussians` meanwhile.
@@ -1397,8 +1473,14 @@ RaraResult rara_gaussians_info(const struct RaraGaussians *gaussians, struct Rar
 // `gaussians` is null, or alive and not used any more.
 void rara_gaussians_destroy(struct RaraGaussians *gaussians);
 
-// Uploads a scene of one layer. Only this function and rara_scene_buffers_upload_layers submit to the host's queue and
-// wait.
+// No memory; the host replaces the buffer and what follows. `staging_size` is sizeof *staging.
+//
+// # Safety
+// `staging` has room for `staging_size` bytes.
+RaraResult rara_staging_default(struct RaraStaging *staging, size_t staging_size);
+
+// Uploads a scene of one layer. Only this function, rara_scene_buffers_upload_layers and rara_renderer_channels submit to the
+// host's queue and wait.
 //
 // # Safety
 // `device` and `gaussians` are alive; nobody else uses the queue meanwhile; `scene` may be overwritten.
@@ -1466,6 +1548,61 @@ RaraResult rara_gaussian_arrays_default(struct RaraGaussianArrays *arrays, size_
 RaraResult rara_gaussians_from_arrays(const struct RaraGaussianArrays *arrays,
                                       struct RaraGaussians **gaussians);
 
+// Loads a scene as rara_gaussians_load does, with what rara_gaussians_select will ask for: the properties that the file's
+// `vertex` element has beside those of a Gaussian, such as labels, and that any of these predicates compares. Each takes 8
+// bytes a Gaussian. RARA_ERROR_FORMAT where the file has no such property.
+//
+// # Safety
+// `path` ends in NUL; `predicates` points to `predicate_count` texts that end in NUL; `gaussians` may be overwritten.
+RaraResult rara_gaussians_load_with(const char *path,
+                                    const char *const *predicates,
+                                    size_t predicate_count,
+                                    struct RaraGaussians **gaussians);
+
+// Loads a scene that is in memory as rara_gaussians_load_from does, with properties as rara_gaussians_load_with does.
+//
+// # Safety
+// As for both.
+RaraResult rara_gaussians_load_from_with(const uint8_t *data,
+                                         size_t size,
+                                         const char *name,
+                                         const char *const *predicates,
+                                         size_t predicate_count,
+                                         struct RaraGaussians **gaussians);
+
+// Gives each Gaussian a number of the host's own, such as a label, for the predicates of rara_gaussians_select: a property
+// of this name, in place of one that it had. `count` is that of the Gaussians. The values are copied; one that is no number
+// fulfils no comparison.
+//
+// # Safety
+// `gaussians` is alive, and nobody else uses it meanwhile; `name` ends in NUL; `values` points to `count` numbers.
+RaraResult rara_gaussians_set_property(struct RaraGaussians *gaussians,
+                                       const char *name,
+                                       const double *values,
+                                       size_t count);
+
+// Takes the Gaussians that fulfil a predicate out of others: `gaussians` keeps the rest, and `*taken`, which the host
+// destroys as any, has those that were taken; there may be none. Each becomes a layer of a scene, with a state (hidden,
+// faded, moved) and a region of its own. In that scene, Gaussians of both that are equally deep are drawn in the order in
+// which they were before, whichever layer they are in, so that a selection by itself changes no picture. Either may be
+// selected from again.
+//
+// `predicate` is what the program's `--select` takes: comparisons as "opacity>0.5", "size<=0.01", "red>0.6" and "label in
+// 3,4,7..9", where label is a property of rara_gaussians_load_with or rara_gaussians_set_property, and
+// "inside(sphere:0,0,0,1)", which takes any expression of rara_region_parse; joined by `and`, `or`, `not` and ( ).
+// RARA_ERROR_INVALID says what is wrong and in which column, and names a property that is not there.
+//
+// Regions and sizes are the scene's: `placement` is that of the layer that the Gaussians will be, and null leaves it where
+// it was made. After an error `gaussians` is as it was.
+//
+// # Safety
+// `gaussians` is alive, and nobody else uses it meanwhile; `predicate` ends in NUL; `placement` is null or points to one;
+// `taken` may be overwritten.
+RaraResult rara_gaussians_select(struct RaraGaussians *gaussians,
+                                 const char *predicate,
+                                 const struct RaraPlacement *placement,
+                                 struct RaraGaussians **taken);
+
 // The state of a layer that stands where it was made, visible and with the opacities of its Gaussians. `state_size` is
 // sizeof *state.
 //
@@ -1484,7 +1621,7 @@ RaraResult rara_layer_default(struct RaraLayer *layer,
 
 // Uploads a scene of several layers as rara_scene_buffers_upload does one of a single layer. The layers are sorted and
 // blended together, wherever they reach into each other. Where two Gaussians are equally deep, the earlier layer's is in
-// front.
+// front; of those that rara_gaussians_select has divided the one is that was before the other.
 //
 // # Safety
 // `device` is alive; `layers` points to `layer_count` layers, which are as their fields say and all of one struct_size;
@@ -1540,8 +1677,9 @@ RaraResult rara_scene_buffers_set_layer_state(struct RaraSceneBuffers *scene,
 
 // Sets a clip for a layer alone, in place of the clip of rara_renderer_configure, which then has no say in it: a clip
 // without planes keeps the whole layer. Null gives the layer the frame's clip again. The clip stands in the scene: neither
-// the layer's placement nor that of rara_renderer_set_placement moves it. It holds from the next rara_renderer_configure of
-// every renderer on. RARA_ERROR_INVALID for what is no clip; the layer's clip then stays as it was.
+// the layer's placement nor that of rara_renderer_set_placement moves it, and the camera's planes are no part of it. It holds
+// from the next rara_renderer_configure of every renderer on. RARA_ERROR_INVALID for what is no clip; the layer's clip then
+// stays as it was.
 //
 // # Safety
 // `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;
@@ -1611,8 +1749,8 @@ RaraResult rara_region_load(const char *path, const char *name, struct RaraRegio
 // `region` is null, or alive and not used any more.
 void rara_region_destroy(struct RaraRegion *region);
 
-// As rara_renderer_configure or rara_renderer_configure_orthographic, with a region in place of planes; null keeps
-// everything.
+// As rara_renderer_configure or rara_renderer_configure_orthographic, with a region in place of a clip; null keeps
+// everything. A region with planes that move with the camera is a RaraClip.
 //
 // # Safety
 // As for rara_renderer_configure; `region` is null or alive.
@@ -1648,6 +1786,7 @@ RaraResult rara_bake_settings_default(struct RaraBakeSettings *settings, size_t 
 // leaves whole are kept, and each that it cuts is replaced by one with the mass, the mean and the covariance of what is left.
 // A Gaussian has no edge, so that this is a preview: against the exact cut, 12 to 17 % of the light of cut Gaussians is off,
 // where a cut by centres is off by 35 %. It needs no device; all processors work at it.
+// Properties, for rara_gaussians_select, stay those of the Gaussians that they come from.
 //
 // Null `settings` are the defaults. `counts` says what has been done; it may be null, and `counts_size` is sizeof *counts.
 //
@@ -1660,6 +1799,41 @@ RaraResult rara_gaussians_bake(const struct RaraGaussians *gaussians,
                                struct RaraGaussians **baked,
                                struct RaraBakeCounts *counts,
                                size_t counts_size);
+
+// Channels of these quantities, of pictures of `width` x `height` pixels; the host gives `values`, with room for
+// `value_count` numbers. `channels_size` is sizeof *channels.
+//
+// # Safety
+// `channels` has room for `channels_size` bytes.
+RaraResult rara_channels_default(struct RaraChannels *channels,
+                                 size_t channels_size,
+                                 RaraAovs aovs,
+                                 uint32_t width,
+                                 uint32_t height);
+
+// Draws what a frame's pixels are made of, and waits for it: depths, normals, layers, weights and counts, as the program's
+// `--aov` does. It is for editors and measurements, not for each frame: every quantity takes a frame or more of its own, and
+// the scene is uploaded for the call, for normals and layers in other colours once more. All of its memory is freed again.
+//
+// The renderer lends its device, its compiled pipelines and its placement; its frames, attachments and depths have no say,
+// and stay as they are. The scene is given as layers because one that is on the device has no colours that could be changed:
+// states and regions that were set there are given with them. What `settings` show is ignored.
+//
+// RARA_ERROR_INVALID where the sizes of `channels` are not the camera's, or too few or too many; after an error `values` are as
+// they were.
+//
+// # Safety
+// `renderer` is alive, and no other thread changes it; nobody else uses the queue meanwhile; `layers` points to
+// `layer_count` layers, which are as their fields say and all of one struct_size; the other pointers are as for
+// rara_renderer_configure; `channels` is as its fields say, and nobody else uses its values.
+RaraResult rara_renderer_channels(const struct RaraRenderer *renderer,
+                                  const struct RaraLayer *layers,
+                                  size_t layer_count,
+                                  const struct RaraCamera *camera,
+                                  RaraProjection projection,
+                                  const struct RaraClip *clip,
+                                  const struct RaraSettings *settings,
+                                  const struct RaraChannels *channels);
 
 // The statistics of a frame, to be asked for after waiting for it and before the next rara_renderer_prepare.
 // `stats_size` is sizeof *stats.

@@ -130,8 +130,8 @@ pub unsafe extern "C" fn rara_region_destroy(region: *mut RaraRegion) {
     destroy(region);
 }
 
-/// As rara_renderer_configure or rara_renderer_configure_orthographic, with a region in place of planes; null keeps
-/// everything.
+/// As rara_renderer_configure or rara_renderer_configure_orthographic, with a region in place of a clip; null keeps
+/// everything. A region with planes that move with the camera is a RaraClip.
 ///
 /// # Safety
 /// As for rara_renderer_configure; `region` is null or alive.
@@ -149,19 +149,19 @@ pub unsafe extern "C" fn rara_renderer_configure_region(
         let seen = || {
             Ok((
                 self::projection(projection)?,
-                clip(region)?.unwrap_or_default(),
+                clip(region, "region")?.unwrap_or_default().into(),
             ))
         };
         configure(renderer, scene, camera, seen, settings)
     }
 }
 
-/// The clip that a region is; `None` for null.
-fn clip(region: *const RaraRegion) -> Result<Option<Clip>> {
+/// The clip that a region is, which messages call so; `None` for null.
+pub(crate) fn clip(region: *const RaraRegion, name: &str) -> Result<Option<Clip>> {
     if region.is_null() {
         return Ok(None);
     }
-    Ok(Some(alive(region, "region")?.0.clone()))
+    Ok(Some(alive(region, name)?.0.clone()))
 }
 
 /// As rara_scene_buffers_set_layer_clip, with a region in place of planes; null gives the layer the frame's clip again.
@@ -178,7 +178,7 @@ pub unsafe extern "C" fn rara_scene_buffers_set_layer_region(
     guard(|| {
         let mut scene = alone(scene, "scene")?;
         check_index(&scene, index)?;
-        scene.buffers.set_layer_clip(index, clip(region)?)
+        scene.buffers.set_layer_clip(index, clip(region, "region")?)
     })
 }
 

@@ -1,11 +1,11 @@
 //! The renderer: a host's frame in three calls.
 
 use rara::ash::vk;
-use rara::{Clip, Projection, Renderer, Result};
+use rara::{Projection, Renderer, Result};
 
 use crate::boundary::{RaraResult, guard, invalid, recording, shared};
 use crate::camera::RaraCamera;
-use crate::clip::{self, RaraClip};
+use crate::clip::{self, Kept, RaraClip};
 use crate::depth::{self, RaraDepthImage, RaraDepthMap};
 use crate::device::RaraDevice;
 use crate::handles::{alive, alone, create, destroy};
@@ -130,7 +130,7 @@ pub unsafe extern "C" fn rara_renderer_configure(
 ) -> RaraResult {
     // SAFETY: the caller's promises.
     unsafe {
-        let seen = || Ok((Projection::Perspective, clip::clip(clip)?));
+        let seen = || Ok((Projection::Perspective, clip::kept(clip)?));
         configure(renderer, scene, camera, seen, settings)
     }
 }
@@ -143,7 +143,7 @@ pub(crate) unsafe fn configure(
     renderer: *mut RaraRenderer,
     scene: *const RaraSceneBuffers,
     camera: *const RaraCamera,
-    seen: impl FnOnce() -> Result<(Projection, Clip)>,
+    seen: impl FnOnce() -> Result<(Projection, Kept)>,
     settings: *const RaraSettings,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
@@ -151,8 +151,9 @@ pub(crate) unsafe fn configure(
         with(renderer, |renderer| {
             let scene = alive(scene, "scene")?;
             let camera = shared(camera, "camera")?.camera()?;
-            let (projection, clip) = seen()?;
-            let (camera, settings) = (camera.projection(projection), settings::settings(settings)?);
+            let (projection, kept) = seen()?;
+            let (camera, clip) = kept.seen_by(camera.projection(projection));
+            let settings = settings::settings(settings)?;
             renderer.configure(&scene.buffers, &camera, &clip, &settings)
         })
     }

@@ -26,7 +26,8 @@ pub struct RaraFrameLimits {
     pub layers: u32,
     /// How the scenes' spherical harmonics are stored. Default: RARA_SH_FORMAT_PACKED.
     pub sh_format: RaraShFormat,
-    /// Planes of a RaraClip, or of a RaraRegion that is a list of planes. Default: 6.
+    /// Planes of a RaraClip, or of a RaraRegion that is a list of planes; RaraClip::clip_near and clip_far add one each.
+    /// Default: 6.
     pub planes: u32,
     /// Surfaces of a RaraRegion that bends or combines. Default: 0, for none.
     pub surfaces: u32,

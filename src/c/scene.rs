@@ -1,15 +1,17 @@
 //! Scenes onto the device.
 
-use std::ffi::{CString, c_void};
+use std::ffi::CString;
 use std::sync::Arc;
 
 use rara::ash::vk;
-use rara::{Layer, LayerState, Result, Scene, SceneBuffers, ShFormat, Staging};
+use rara::{Clip, Layer, LayerState, Result, Scene, SceneBuffers, ShFormat};
 
-use crate::boundary::{RaraResult, exclusive, guard, invalid, memory, recording, shared};
+use crate::boundary::{RaraResult, exclusive, guard, invalid, recording};
 use crate::device::RaraDevice;
 use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, create, destroy, number};
+use crate::numbering::{Numbers, numbers};
+use crate::staging::{self, RaraStaging};
 use crate::text::c_string;
 
 /// A scene in device memory: one layer or several. Several threads and renderers may use it at once, but nobody else
@@ -51,8 +53,8 @@ pub(crate) fn sh_format(value: RaraShFormat) -> Result<ShFormat> {
     })
 }
 
-/// Uploads a scene of one layer. Only this function and rara_scene_buffers_upload_layers submit to the host's queue and
-/// wait.
+/// Uploads a scene of one layer. Only this function, rara_scene_buffers_upload_layers and rara_renderer_channels submit to the
+/// host's queue and wait.
 ///
 /// # Safety
 /// `device` and `gaussians` are alive; nobody else uses the queue meanwhile; `scene` may be overwritten.
@@ -72,6 +74,8 @@ pub(crate) struct GivenLayer {
     pub(crate) gaussians: Arc<RaraGaussians>,
     pub(crate) name: String,
     pub(crate) state: LayerState,
+    /// Its own; `None` where the frame's holds.
+    pub(crate) clip: Option<Clip>,
 }
 
 /// The one layer that a set of Gaussians is.
@@ -80,20 +84,35 @@ fn one_layer(gaussians: *const RaraGaussians) -> Result<Vec<GivenLayer>> {
         gaussians: alive(gaussians, "gaussians")?,
         name: "scene".into(),
         state: LayerState::default(),
+        clip: None,
     }])
 }
 
-/// The scene of these layers.
-fn of_layers(given: &[GivenLayer]) -> Scene<'_> {
-    let layer = |given| {
-        let GivenLayer {
-            gaussians,
-            name,
-            state,
-        }: &GivenLayer = given;
-        Layer::new(name.as_str(), &gaussians.gaussians).with(*state)
+/// What the Gaussians of these layers are numbered by.
+pub(crate) fn numbers_of(given: &[GivenLayer]) -> Vec<Numbers<'_>> {
+    let layers = given.iter().map(|given| {
+        let RaraGaussians {
+            gaussians, part, ..
+        } = &*given.gaussians;
+        (gaussians.len(), part.as_ref())
+    });
+    numbers(&layers.collect::<Vec<_>>())
+}
+
+/// The scene of these layers, whose numbers are those of [`numbers_of`].
+pub(crate) fn of_layers<'a>(given: &'a [GivenLayer], numbers: &'a [Numbers<'_>]) -> Scene<'a> {
+    let layer = |(given, numbers): (&'a GivenLayer, &'a Numbers<'_>)| {
+        let mut layer =
+            Layer::new(given.name.as_str(), &given.gaussians.gaussians).with(given.state);
+        if let Some(clip) = &given.clip {
+            layer = layer.clipped(clip.clone());
+        }
+        match numbers {
+            Some((first, in_set)) => layer.numbered(*first, in_set),
+            None => layer,
+        }
     };
-    given.iter().map(layer).collect()
+    given.iter().zip(numbers).map(layer).collect()
 }
 
 /// Uploads the scene that `layers` gives.
@@ -111,8 +130,10 @@ pub(crate) unsafe fn upload(
         create(scene, "scene", || {
             let device = alive(device, "device")?;
             let layers = layers()?;
+            let numbers = numbers_of(&layers);
+            let scene = of_layers(&layers, &numbers);
             let format = self::sh_format(sh_format)?;
-            SceneBuffers::upload(&device.0, of_layers(&layers), format).map(RaraSceneBuffers::new)
+            SceneBuffers::upload(&device.0, scene, format).map(RaraSceneBuffers::new)
         })
     })
 }
@@ -130,7 +151,9 @@ pub(crate) unsafe fn staging_bytes(
         // SAFETY: the caller's promise.
         let bytes = unsafe { exclusive(bytes, "bytes") }?;
         let layers = layers()?;
-        *bytes = SceneBuffers::staging_bytes(of_layers(&layers), self::sh_format(sh_format)?);
+        let numbers = numbers_of(&layers);
+        let scene = of_layers(&layers, &numbers);
+        *bytes = SceneBuffers::staging_bytes(scene, self::sh_format(sh_format)?);
         Ok(())
     })
 }
@@ -152,27 +175,15 @@ pub(crate) unsafe fn upload_with(
         create(scene, "scene", || {
             let device = alive(device, "device")?;
             let cmd = recording(cmd)?;
-            let staging = shared(staging, "staging")?.staging()?;
+            let staging = staging::staging(staging)?;
             let layers = layers()?;
+            let numbers = numbers_of(&layers);
+            let scene = of_layers(&layers, &numbers);
             let format = self::sh_format(sh_format)?;
-            SceneBuffers::upload_with(&device.0, cmd, staging, of_layers(&layers), format)
+            SceneBuffers::upload_with(&device.0, cmd, staging, scene, format)
                 .map(RaraSceneBuffers::new)
         })
     })
-}
-
-/// A part of the host's memory that the device can copy from.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct RaraStaging {
-    /// A buffer created with VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
-    pub buffer: vk::Buffer,
-    /// The offset of the part in the buffer, bytes.
-    pub offset: u64,
-    /// The part, mapped for writing: it is never read.
-    pub mapped: *mut c_void,
-    /// Its length in bytes; it may be longer than what is needed.
-    pub size: usize,
 }
 
 /// Bytes of staging memory that rara_scene_buffers_upload_with needs for a scene of one layer.
@@ -219,25 +230,6 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_with(
     unsafe {
         upload_with(device, cmd, staging, sh_format, scene, || {
             one_layer(gaussians)
-        })
-    }
-}
-
-impl RaraStaging {
-    /// # Safety
-    /// It is as its fields say, and nobody else uses its range for `'a`.
-    pub(crate) unsafe fn staging<'a>(&self) -> Result<Staging<'a>> {
-        if self.buffer == vk::Buffer::null() {
-            return invalid("staging->buffer is null");
-        }
-        if self.offset.checked_add(self.size as u64).is_none() {
-            return invalid("staging->offset and staging->size are beyond any buffer");
-        }
-        Ok(Staging {
-            buffer: self.buffer,
-            offset: self.offset,
-            // SAFETY: the caller's promise.
-            bytes: unsafe { memory(self.mapped, self.size, "staging->mapped") }?,
         })
     }
 }

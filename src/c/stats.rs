@@ -19,7 +19,7 @@ pub const RARA_REASON_SIZE: usize = 96;
 /// Room for the stages of a frame.
 pub const RARA_MAX_PASSES: usize = 32;
 
-/// GPU time of one stage.
+/// GPU time of one stage. It never grows.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraPassTime {

@@ -6,7 +6,6 @@ use std::ptr::{null, null_mut};
 use crate::boundary::*;
 use crate::camera::*;
 use crate::camera_files::*;
-use crate::clip::*;
 use crate::gaussians::*;
 use crate::placement::*;
 use crate::scene::*;
@@ -136,42 +135,6 @@ fn structs_of_no_version() {
         room.settings.struct_size = ours;
         assert!(crate::settings::settings(&room.settings).is_ok());
     }
-}
-
-#[test]
-fn planes() {
-    let plane = |x| RaraPlane {
-        normal: [x, 0.0, 0.0],
-        offset: 1.0,
-    };
-    let planes = [plane(1.0), plane(0.0)];
-    let mut given = RaraClip {
-        planes: planes.as_ptr(),
-        plane_count: 2,
-        op: RARA_CLIP_OP_AND,
-    };
-    // SAFETY: the planes are there, or the pointer is null.
-    let clip =
-        |given: &RaraClip| unsafe { super::clip::clip(given) }.map_err(|error| error.to_string());
-    let error = clip(&given).expect_err("a plane without a normal");
-    assert!(
-        error.starts_with("clip->planes[1]: the clip plane 0,0,0,1"),
-        "{error}"
-    );
-    given.plane_count = 1;
-    assert_eq!(clip(&given).expect("one plane").surfaces.len(), 1);
-    given.op = 2;
-    assert_eq!(
-        clip(&given).expect_err("no op"),
-        "clip->op 2 is no RaraClipOp"
-    );
-    given.plane_count = 33;
-    assert!(clip(&given).expect_err("too many").contains("at most 32"));
-    (given.plane_count, given.planes) = (1, null());
-    assert_eq!(clip(&given).expect_err("no planes"), "clip->planes is null");
-    // SAFETY: null stands for no clip.
-    let none = unsafe { super::clip::clip(null()) };
-    assert!(none.expect("everything").surfaces.is_empty());
 }
 
 #[test]

@@ -37,7 +37,8 @@ pub unsafe extern "C" fn rara_renderer_configure_ahead(
             let mut renderer = alone(renderer, "renderer")?;
             let scene = alive(scene, "scene")?;
             let camera = shared(camera, "camera")?.camera()?;
-            let (clip, settings) = (clip::clip(clip)?, settings::settings(settings)?);
+            let (camera, clip) = clip::kept(clip)?.seen_by(camera);
+            let settings = settings::settings(settings)?;
             let renderer = &mut renderer.0;
             let token = renderer.configure_ahead(&scene.buffers, &camera, &clip, &settings)?;
             Ok(RaraFrameToken(token))

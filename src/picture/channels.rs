@@ -8,18 +8,9 @@ use exr::prelude::{
     WritableImage,
 };
 
-use super::Picture;
+use super::{Channel, Picture};
 use crate::error::{Error, Result};
 use crate::files::write_atomically;
-
-/// A number for each pixel of a picture.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Channel {
-    /// Its name in the file, not one of `R`, `G`, `B` and `A`.
-    pub name: String,
-    /// Row by row from the top left.
-    pub values: Vec<f32>,
-}
 
 impl Picture {
     /// Writes the picture to an `.exr` file as [`save`](Self::save) does, with more channels beside its own. All are of

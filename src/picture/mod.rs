@@ -8,8 +8,6 @@ mod cues;
 #[cfg(feature = "picture")]
 mod file;
 
-#[cfg(feature = "picture")]
-pub use channels::Channel;
 pub use cues::{Cue, Cues};
 
 /// RGBA pixels, 32-bit float, premultiplied, blended values as they are (no transfer function).
@@ -21,6 +19,15 @@ pub struct Picture {
     pub height: u32,
     /// `width * height` pixels, row by row from the top left.
     pub pixels: Vec<[f32; 4]>,
+}
+
+/// A number for each pixel of a picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Channel {
+    /// Its name in a file, not one of `R`, `G`, `B` and `A`.
+    pub name: String,
+    /// Row by row from the top left.
+    pub values: Vec<f32>,
 }
 
 impl Picture {

@@ -143,15 +143,40 @@ impl Renderer {
         Self::with(&self.device, desc, self.pipelines.sharing())
     }
 
-    /// Another renderer that draws expected depths too, into attachments of this format, and shares this one's pipelines.
+    /// Another renderer that draws expected depths too, into attachments of this format, shares this one's pipelines and has
+    /// its placement.
     pub(crate) fn with_expected_depth(&self, format: vk::Format) -> Result<Self> {
-        self.sharing(RendererDesc {
+        self.alike(RendererDesc {
             expected_depth: Some(ExpectedDepthDesc::new(format)),
             timing: false,
             statistics: false,
             reuse: false,
             ..self.desc
         })
+    }
+
+    /// Another renderer for pictures of this format alone, which shares this one's pipelines and has its placement.
+    pub(crate) fn beside(&self, format: vk::Format) -> Result<Self> {
+        self.alike(RendererDesc {
+            bindings: self.desc.bindings,
+            reuse: true,
+            ..RendererDesc::new(format)
+        })
+    }
+
+    fn alike(&self, desc: RendererDesc) -> Result<Self> {
+        let mut made = self.sharing(desc)?;
+        made.placement = self.placement;
+        Ok(made)
+    }
+
+    pub(crate) fn device(&self) -> &Device {
+        &self.device
+    }
+
+    /// Where the next frame's scene stands.
+    pub(crate) fn placement(&self) -> &Placement {
+        &self.placement
     }
 
     fn with(device: &Device, desc: RendererDesc, pipelines: SharedPipelines) -> Result<Self> {

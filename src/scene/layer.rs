@@ -118,7 +118,6 @@ impl<'a> Layer<'a> {
     }
 
     /// The same layer of other Gaussians, one in place of each, which are shown and drawn in the same order.
-    #[cfg(feature = "picture")]
     pub(crate) fn of<'b>(&self, gaussians: &'b Gaussians) -> Layer<'b>
     where
         'a: 'b,

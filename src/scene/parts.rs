@@ -21,6 +21,15 @@ impl Gaussians {
     /// [`Error::Invalid`] unless `part_of` has one number for each Gaussian, all of them below `parts`; [`Error::Memory`] for
     /// parts that do not fit.
     pub fn into_parts(self, part_of: &[u32], parts: usize) -> Result<Vec<Part>> {
+        let mut set = self;
+        set.divide(part_of, parts)
+    }
+
+    /// Divides the set as [`into_parts`](Self::into_parts) does, and leaves it empty; after an error it is as it was.
+    ///
+    /// # Errors
+    /// As of that.
+    pub fn divide(&mut self, part_of: &[u32], parts: usize) -> Result<Vec<Part>> {
         if part_of.len() != self.len() {
             return Err(Error::Invalid(format!(
                 "{} Gaussians cannot be divided by {} numbers of parts; give one each",
@@ -59,11 +68,11 @@ impl Gaussians {
             let part_of_it = &mut made[part as usize];
             part_of_it.numbers.push(index as u32);
             if part > 0 {
-                part_of_it.gaussians.push_from(&self, index);
+                part_of_it.gaussians.push_from(self, index);
             }
         }
         if let Some(first) = made.first_mut() {
-            let mut arrays = self.into_arrays();
+            let mut arrays = std::mem::take(self).into_arrays();
             arrays.keep(&first.numbers);
             first.gaussians = Gaussians::of_fitting(arrays);
         }
@@ -146,8 +155,10 @@ mod tests {
             (&[0, 1], 1, "Gaussian 1 goes to part 1 of 1"),
             (&[0, 0], 0, "part 0 of 0"),
         ] {
-            let error = whole.clone().into_parts(part_of, parts).expect_err(words);
+            let mut set = whole.clone();
+            let error = set.divide(part_of, parts).expect_err(words);
             assert!(error.to_string().contains(words), "{error}");
+            assert_eq!(set, whole, "as it was");
         }
         let none = Gaussians::default().into_parts(&[], 2).unwrap();
         assert_eq!(none, vec![Part::default(); 2]);

@@ -9,12 +9,11 @@ use crate::gpu::{Device, DeviceDesc, PipelineFile};
 use crate::passes::{SceneBuffers, SceneLayer};
 use crate::picture::Picture;
 use crate::precision::{ShFormat, TargetFormat};
-use crate::renderer::RendererDesc;
+use crate::renderer::{Renderer, RendererDesc};
 use crate::scene::{LayerState, Scene};
 use crate::settings::Settings;
 use crate::stats::FrameStats;
 use crate::trace;
-#[cfg(feature = "picture")]
 pub use aov::Aov;
 
 /// A renderer that owns its device and draws into an offscreen picture, of 32-bit floats unless the settings say
@@ -42,6 +41,22 @@ impl Headless {
             })
         };
         Self::on(trace::span(desc.trace.as_ref(), "open", open)?, desc)
+    }
+
+    /// Makes it on the device of a host's renderer, whose compiled pipelines it shares and whose
+    /// [placement](Renderer::set_placement) it takes: for what a host wants in its own memory beside its frames, as
+    /// [`channels`](Self::channels). What it draws it submits to the host's queue and waits for; nobody else uses the queue
+    /// meanwhile. The validation layer's messages stay the host's.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn beside(renderer: &Renderer) -> Result<Self> {
+        let format = blendable_on(renderer.device(), TargetFormat::default())?;
+        Ok(Self {
+            target: Target::of_tiles(),
+            kept_pipeline_bytes: 0,
+            session: Session::beside(renderer, format.vulkan())?,
+        })
     }
 
     /// Makes it on a device that is open.
@@ -172,7 +187,6 @@ impl Headless {
     }
 }
 
-#[cfg(feature = "picture")]
 mod aov;
 mod depth;
 mod pick;

@@ -3,6 +3,8 @@
 
 use std::time::Instant;
 
+use ash::vk;
+
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
@@ -27,9 +29,7 @@ mod target;
 mod windowed;
 
 pub use desc::HeadlessDesc;
-#[cfg(feature = "picture")]
-pub use headless::Aov;
-pub use headless::Headless;
+pub use headless::{Aov, Headless};
 #[cfg(feature = "view")]
 pub use lines::Line;
 #[cfg(feature = "view")]
@@ -72,6 +72,17 @@ impl Session {
             pipelines,
             trace: desc.trace.clone(),
             device,
+        })
+    }
+
+    /// Makes it on the device of a host's renderer, which keeps its compiled pipelines itself.
+    fn beside(renderer: &Renderer, format: vk::Format) -> Result<Self> {
+        Ok(Self {
+            renderer: renderer.beside(format)?,
+            scene: None,
+            pipelines: None,
+            trace: None,
+            device: renderer.device().clone(),
         })
     }
 

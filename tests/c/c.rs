@@ -11,8 +11,10 @@ mod folder;
 mod host;
 
 mod calls;
+mod clips;
 mod cpp_host;
 mod frames;
 mod header;
 mod install;
+mod layouts;
 mod results;

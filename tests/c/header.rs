@@ -51,13 +51,16 @@ fn the_header_is_current() {
         "reserve",
         "token",
         "gaussians",
+        "staging",
         "scene",
         "arrays",
+        "selection",
         "layer",
         "layer_info",
         "settings",
         "region",
         "bake",
+        "channels",
         "stats",
     ];
     let add = |bindings: cbindgen::Builder, file: &&str| {
@@ -86,7 +89,7 @@ fn the_header_is_current() {
 }
 
 /// Asserts that code compiles without a warning; the compiler writes no file.
-fn assert_compiles(compiler: &str, flags: &[&str], name: &str, code: &str) {
+pub(crate) fn assert_compiles(compiler: &str, flags: &[&str], name: &str, code: &str) {
     let own = Folder::new("c-header");
     let path = own.join(name);
     std::fs::write(&path, code).expect("a temporary file");

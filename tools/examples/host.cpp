@@ -101,7 +101,9 @@ int main(int count, char **arguments) {
     }
     push.centre_radius[3] = float(0.4 * size);
     RaraPlane plane{{-0.28, 0, 0.96}, -(-0.28 * centre[0] + 0.96 * centre[2])};
-    RaraClip clip{&plane, 1, RARA_CLIP_OP_AND};
+    RaraClip clip;
+    RARA(rara_clip_default(&clip, sizeof clip));
+    clip.planes = &plane, clip.plane_count = 1;
     for (int column = 0; column < 4; column++) {
         double p[3]{};
         for (int row = 0; row < 3; row++)

@@ -92,7 +92,7 @@ fn regions_are_made_of_text_and_json() {
         let result = rara_region_load(c"no/such.json".as_ptr(), null(), &mut region);
         assert_fails(result, RARA_ERROR_IO, "no/such.json");
         // Without a region all is kept.
-        assert!(clip(null()).expect("everything").is_none());
+        assert!(clip(null(), "region").expect("everything").is_none());
     }
     std::fs::remove_file(&path).expect("is there");
     assert!(projection(RARA_PROJECTION_ORTHOGRAPHIC).is_ok());

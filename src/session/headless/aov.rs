@@ -8,6 +8,7 @@ use crate::clip::Clip;
 use crate::error::Result;
 use crate::passes::SceneBuffers;
 use crate::picture::{Channel, Picture};
+use crate::placement::Placement;
 use crate::precision::{ShFormat, TargetFormat};
 use crate::scene::{Gaussians, Layer, Scene};
 use crate::settings::{Settings, Show};
@@ -75,10 +76,11 @@ impl Headless {
                     channels.push(channel("count", counts.collect()));
                 }
                 Aov::Normal => {
+                    let world = *self.session.renderer.placement();
                     let painted: Vec<_> = scene
                         .layers()
                         .iter()
-                        .map(|l| in_normals(l, camera))
+                        .map(|layer| in_normals(layer, camera, &world))
                         .collect();
                     let picture = self.painted(scene, &painted, frame)?;
                     channels.extend(normals(&picture));
@@ -192,9 +194,11 @@ fn in_colours(from: &Gaussians, colour: impl Fn(usize) -> Vec3) -> Gaussians {
     painted
 }
 
-/// The Gaussians of a layer in colours that are their normals: 0 to 1 stand for -1 to 1.
-fn in_normals(layer: &Layer<'_>, camera: &Camera) -> Gaussians {
+/// The Gaussians of a layer in colours that are their normals in a world where the scene is placed: 0 to 1 stand for -1 to 1.
+fn in_normals(layer: &Layer<'_>, camera: &Camera, world: &Placement) -> Gaussians {
     let (from, placement) = (layer.gaussians(), layer.state().placement);
+    let camera = camera.in_scene(world);
+    let turn = world.rotation() * placement.rotation();
     let eye = placement.to_scene(camera.eye);
     let axis = placement.rotation().inverse() * (camera.rotation.transpose() * DVec3::Z);
     in_colours(from, |index| {
@@ -204,7 +208,7 @@ fn in_normals(layer: &Layer<'_>, camera: &Camera) -> Gaussians {
             Projection::Perspective => from.positions()[index].as_dvec3() - eye,
         };
         let away = normal.dot(sight) > 0.0;
-        let normal = placement.rotation() * if away { -normal } else { normal };
+        let normal = turn * if away { -normal } else { normal };
         0.5 + 0.5 * normal.as_vec3()
     })
 }
@@ -256,7 +260,8 @@ mod tests {
         let scene = Scene::from(&discs);
         for eye in [DVec3::Z * 5.0, DVec3::Z * -5.0] {
             let camera = Camera::look_at(eye, DVec3::ZERO, -DVec3::Y, 40.0, (8, 8));
-            let painted = in_normals(&scene.layers()[0], &camera.expect("a view"));
+            let (camera, world) = (camera.expect("a view"), Placement::IDENTITY);
+            let painted = in_normals(&scene.layers()[0], &camera, &world);
             // The colour that such a splat is drawn in, with an alpha of 0.7.
             let colour = painted.sh_of(0).iter().map(|v| 0.7 * (v * SH_0 + 0.5));
             let colour: Vec<f32> = colour.collect();

@@ -60,11 +60,8 @@ pub(super) unsafe fn what_is_wrong_is_said(
         let set = |index, state: *const RaraLayerState| {
             rara_scene_buffers_set_layer_state(scene, index, state)
         };
-        let clip = RaraClip {
-            planes: null(),
-            plane_count: 33,
-            op: RARA_CLIP_OP_AND,
-        };
+        let mut clip = clip_of(&[]);
+        clip.plane_count = 33;
         let failed = rara_scene_buffers_set_layer_clip(scene, 0, &clip);
         assert_fails(failed, RARA_ERROR_INVALID, "clip->plane_count is 33");
         let failed = rara_scene_buffers_set_layer_region(scene, 1, null());

@@ -9,6 +9,7 @@ use std::ffi::{CStr, c_void};
 use std::ptr::{null, null_mut};
 
 use crate::canvas::{ONE_PIXEL, open_host};
+use crate::clips::clip_of;
 use crate::host::Host;
 use crate::results::{assert_fails, assert_ok};
 use rara::ash::{Entry, vk};
@@ -190,11 +191,8 @@ fn what_is_wrong_is_said() {
             normal: [0.0; 3],
             offset: 0.0,
         };
-        let clip = RaraClip {
-            planes: &plane,
-            plane_count: 1,
-            op: RARA_CLIP_OP_AND,
-        };
+        let planes = [plane];
+        let clip = clip_of(&planes);
         let failed = rara_renderer_configure(renderer, scene, &camera, &clip, null());
         assert_fails(failed, RARA_ERROR_INVALID, "clip->planes[0]");
         let configured = rara_renderer_configure(renderer, scene, &camera, null(), null());

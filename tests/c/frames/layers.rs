@@ -7,8 +7,8 @@ use std::ptr::null;
 use super::ours::loaded_in_c;
 use super::staged::staging;
 use super::*;
+use crate::clips::clip_of;
 use rara::{Clip, Layer, LayerState};
-use rara_c::clip::*;
 use rara_c::layer::*;
 use rara_c::layer_info::*;
 
@@ -140,11 +140,7 @@ fn layers_are_the_same_bytes() {
         let canvas = world.canvas(lent, device);
         let truth = world.drawn(device, &canvas);
         assert!(truth != seen[0], "the frame's clip cuts it otherwise");
-        let whole = RaraClip {
-            planes: null(),
-            plane_count: 0,
-            op: RARA_CLIP_OP_AND,
-        };
+        let whole = clip_of(&[]);
         // SAFETY: as above.
         unsafe {
             let given = RaraLayerState::from(shown);

@@ -47,6 +47,7 @@ unsafe extern "C" fn allocate(
     assert_eq!(asked.struct_size, size_of::<RaraMemoryRequest>());
     // SAFETY: it ends in NUL.
     assert!(!unsafe { CStr::from_ptr(asked.name) }.is_empty());
+    assert_eq!(memory.struct_size, size_of::<RaraMemory>());
     let mapped = asked.memory_use != RARA_MEMORY_USE_DEVICE;
     let needed = match mapped {
         true => vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT,

@@ -2,11 +2,13 @@
 //! behind what the host has drawn, expected depths, a scene placed in a world, a scene by the host's own staging memory,
 //! layers that are hidden, moved and faded.
 
+mod channels;
 mod layers;
 mod lent;
 mod ours;
 mod regions;
 mod reserve;
+mod selections;
 mod staged;
 mod world;
 
@@ -15,12 +17,12 @@ use std::ptr::null_mut;
 use crate::canvas::{Canvas, with_host};
 use crate::folder::Folder;
 use crate::results::assert_ok;
-use ours::{Ours, saved};
+use ours::{Ours, saved, saved_as};
 use rara::ash::{Entry, vk};
 use rara::glam::dcamera::lh;
 use rara::glam::{DQuat, DVec3};
 use rara::gpu::{AdoptDesc, Device, DeviceShape};
-use rara::scene::Kind;
+use rara::scene::{Kind, generate};
 use rara::{Gaussians, Placement, Projection, Raster, Scene, SceneBuffers, ShFormat};
 use rara_c::device::*;
 use rara_c::gaussians::*;
@@ -31,8 +33,18 @@ type Pixels = Vec<[f32; 4]>;
 
 /// Draws with a scene of this many Gaussians, on the example host's device by both interfaces.
 fn with_both(count: usize, test: impl FnOnce(&Gaussians, &AdoptDesc, &Device, &Ours)) {
-    let folder = Folder::new(&format!("c-frames-{count}"));
-    let (path, scene) = saved(&folder, Kind::General, count);
+    let made = generate(Kind::General, count, 5);
+    with_saved(&format!("c-frames-{count}"), &made, test);
+}
+
+/// The same with these Gaussians, saved in a folder of this name.
+fn with_saved(
+    name: &str,
+    made: &Gaussians,
+    test: impl FnOnce(&Gaussians, &AdoptDesc, &Device, &Ours),
+) {
+    let folder = Folder::new(name);
+    let (path, scene) = saved_as(&folder, made);
     with_host(true, |host, device| {
         // SAFETY: the system's loader; the host outlives what is made here.
         unsafe {

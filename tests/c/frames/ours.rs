@@ -79,8 +79,13 @@ impl Ours {
 
 /// Writes so many made-up Gaussians to a file, and loads them from it: a file has opacities and scales in another form.
 pub(super) fn saved(folder: &Folder, kind: Kind, count: usize) -> (PathBuf, Gaussians) {
+    saved_as(folder, &generate(kind, count, 5))
+}
+
+/// The same of these Gaussians.
+pub(super) fn saved_as(folder: &Folder, made: &Gaussians) -> (PathBuf, Gaussians) {
     let path = folder.join("scene.ply");
-    save_ply(&path, &generate(kind, count, 5)).expect("a temporary file");
+    save_ply(&path, made).expect("a temporary file");
     let loaded = load(&path, &mut |_, _| ()).expect("loads");
     (path, loaded.gaussians)
 }

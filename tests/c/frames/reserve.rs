@@ -1,6 +1,7 @@
 //! Room that a host in C reserves: frames within it compile and allocate nothing, and a budget is kept.
 
 use super::*;
+use crate::clips::clip_of;
 use crate::results::assert_fails;
 use rara_c::boundary::{RARA_ERROR_INVALID, RARA_ERROR_MEMORY};
 use rara_c::camera::*;
@@ -107,11 +108,7 @@ fn a_host_in_c_reserves_within_a_budget_and_gives_back() {
                     uploaded, &camera, &mut pairs,
                 ));
                 assert!((1..200_000).contains(&pairs), "{pairs}");
-                let clip = RaraClip {
-                    planes: planes.as_ptr(),
-                    plane_count: index,
-                    op: RARA_CLIP_OP_AND,
-                };
+                let clip = clip_of(&planes[..index]);
                 for settings in &all {
                     let configured =
                         rara_renderer_configure(renderer, uploaded, &camera, &clip, settings);

@@ -6,6 +6,7 @@ use super::*;
 use crate::results::assert_fails;
 use rara::gpu::{Buffer, BufferDesc, Location};
 use rara_c::boundary::*;
+use rara_c::staging::*;
 
 /// # Safety
 /// As for `rara_scene_buffers_upload_with`.
@@ -49,6 +50,11 @@ unsafe fn upload_with(
         ..*staging
     });
     assert_fails(beyond, RARA_ERROR_INVALID, "beyond any buffer");
+    let newer = upload(RaraStaging {
+        struct_size: size_of::<RaraStaging>() + 8,
+        ..*staging
+    });
+    assert_fails(newer, RARA_ERROR_INVALID, "staging->struct_size is");
     assert_ok(upload(*staging));
 }
 
@@ -92,20 +98,17 @@ pub(super) fn staging(device: &Device, bytes: u64) -> (Buffer, RaraStaging) {
             location: Location::Upload,
         })
         .expect("a buffer");
-    let staging = RaraStaging {
-        buffer: memory.handle(),
-        offset,
-        // SAFETY: the offset lies inside.
-        mapped: unsafe {
-            memory
-                .mapped_mut()
-                .pointer()
-                .cast::<u8>()
-                .add(offset as usize)
-        }
-        .as_ptr()
-        .cast(),
-        size: bytes as usize,
+    // SAFETY: the struct may hold any bytes, and has the room that the call is given.
+    let mut staging = unsafe {
+        let mut staging: RaraStaging = std::mem::zeroed();
+        let size = size_of_val(&staging);
+        assert_ok(rara_staging_default(&mut staging, size));
+        staging
     };
+    (staging.buffer, staging.offset) = (memory.handle(), offset);
+    let first = memory.mapped_mut().pointer().cast::<u8>();
+    // SAFETY: the offset lies inside.
+    staging.mapped = unsafe { first.add(offset as usize) }.as_ptr().cast();
+    staging.size = bytes as usize;
     (memory, staging)
 }

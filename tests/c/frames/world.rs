@@ -5,9 +5,10 @@ use std::ffi::CStr;
 
 use super::*;
 use crate::canvas::{CanvasDesc, Frame};
+use crate::clips::clip_of;
 use rara::clip::Expression;
 use rara::glam::DMat4;
-use rara::gpu::Bindings;
+use rara::gpu::{Bindings, DepthImage};
 use rara::scene::Bounds;
 use rara::{
     Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, Ndc, Plane, Projection, Renderer,
@@ -202,22 +203,19 @@ impl<'a> World<'a> {
                 normal: self.plane.normal().into(),
                 offset: self.plane.offset(),
             };
-            let clip = RaraClip {
-                planes: &plane,
-                plane_count: 1,
-                op: RARA_CLIP_OP_AND,
-            };
+            let planes = [plane];
+            let mut clip = clip_of(&planes);
+            let (near, far) = (self.camera.clip_near, self.camera.clip_far);
+            let is_between = near.is_some() || far.is_some();
+            if let Some(near) = near {
+                clip.clip_near = near;
+            }
+            if let Some(far) = far {
+                clip.clip_far = far;
+            }
             let mut camera = RaraCamera::from(self.camera);
             let shown = canvas.depth_image(0, 0);
-            let shown = RaraDepthImage {
-                image: shown.image,
-                layout: shown.layout,
-                width: shown.extent.width,
-                height: shown.extent.height,
-                layer: shown.layer,
-                x: shown.origin.x,
-                y: shown.origin.y,
-            };
+            let shown = depth_image_in_c(&shown);
             let is_flat = self.camera.projection == Projection::Orthographic;
             if is_flat && self.matrices.is_none() {
                 let [zero, one] = FLAT;
@@ -239,8 +237,12 @@ impl<'a> World<'a> {
             if let Some(text) = self.region {
                 assert_ok(rara_region_parse(text.as_ptr(), &mut region));
             }
+            if is_between && !region.is_null() {
+                (clip.region, clip.plane_count) = (region, 0);
+            }
             // Quads are configured ahead, where there is a function for it.
-            let is_ahead = self.raster == Raster::Quad && region.is_null() && !is_flat;
+            let is_ahead =
+                self.raster == Raster::Quad && !is_flat && (region.is_null() || is_between);
             let token = Cell::new(null_mut());
             let before = |cmd| {
                 let scene = scene(cmd);
@@ -258,7 +260,7 @@ impl<'a> World<'a> {
                     assert_eq!(again, RARA_ERROR_INVALID);
                     return;
                 }
-                assert_ok(match region.is_null() {
+                assert_ok(match region.is_null() || is_between {
                     true => configure(renderer, scene, &camera, &clip, &settings),
                     false => rara_renderer_configure_region(
                         renderer,
@@ -287,6 +289,20 @@ impl<'a> World<'a> {
             rara_renderer_destroy(renderer);
             pixels
         }
+    }
+}
+
+fn depth_image_in_c(shown: &DepthImage) -> RaraDepthImage {
+    // SAFETY: the struct may hold any bytes, and has the room that the call is given.
+    unsafe {
+        let mut image: RaraDepthImage = std::mem::zeroed();
+        let (size, extent) = (size_of_val(&image), shown.extent);
+        let (width, height) = (extent.width, extent.height);
+        let filled = rara_depth_image_default(&mut image, size, shown.image, width, height);
+        assert_ok(filled);
+        (image.layout, image.layer) = (shown.layout, shown.layer);
+        (image.x, image.y) = (shown.origin.x, shown.origin.y);
+        image
     }
 }
 

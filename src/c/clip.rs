@@ -44,6 +44,9 @@ pub struct RaraClip {
     pub clip_near: f64,
     /// The depth up to which the scene is kept, likewise. Default: INFINITY, for no such plane.
     pub clip_far: f64,
+    /// The depth along the view axis, world units, from which on splats are drawn: those whose centres are nearer are left out
+    /// whole. 0, the default, stands for 0.2 units of the scene, as in 3DGS.
+    pub near_cut: f64,
 }
 
 // SAFETY: repr(C), numbers, pointers and a handle, the size first.
@@ -61,6 +64,7 @@ impl RaraClip {
         region: std::ptr::null(),
         clip_near: f64::NEG_INFINITY,
         clip_far: f64::INFINITY,
+        near_cut: 0.0,
     };
 }
 
@@ -79,20 +83,26 @@ pub(crate) struct Kept {
     pub(crate) clip: Clip,
     pub(crate) near: Option<f64>,
     pub(crate) far: Option<f64>,
+    pub(crate) cut: Option<f64>,
 }
 
 /// All that a clip keeps.
 impl From<Clip> for Kept {
     fn from(clip: Clip) -> Self {
-        let (near, far) = (None, None);
-        Self { clip, near, far }
+        Self {
+            clip,
+            near: None,
+            far: None,
+            cut: None,
+        }
     }
 }
 
 impl Kept {
-    /// The camera with its planes, and the clip.
+    /// The camera with its planes and its near cut, and the clip.
     pub(crate) fn seen_by(self, camera: Camera) -> (Camera, Clip) {
-        (camera.clip_near(self.near).clip_far(self.far), self.clip)
+        let camera = camera.clip_near(self.near).clip_far(self.far);
+        (camera.near_cut(self.cut), self.clip)
     }
 }
 
@@ -118,6 +128,7 @@ pub(crate) unsafe fn kept(clip: *const RaraClip) -> Result<Kept> {
     Ok(Kept {
         near: depth(given.clip_near, f64::NEG_INFINITY, "clip_near")?,
         far: depth(given.clip_far, f64::INFINITY, "clip_far")?,
+        cut: depth(given.near_cut, 0.0, "near_cut")?,
         // SAFETY: as above.
         clip: unsafe { in_place(&given) }?,
     })
@@ -130,9 +141,9 @@ pub(crate) unsafe fn kept(clip: *const RaraClip) -> Result<Kept> {
 pub(crate) unsafe fn clip(clip: *const RaraClip) -> Result<Clip> {
     // SAFETY: the caller's promise.
     let kept = unsafe { kept(clip) }?;
-    if kept.near.is_some() || kept.far.is_some() {
+    if kept.near.is_some() || kept.far.is_some() || kept.cut.is_some() {
         return invalid(
-            "clip->clip_near and clip_far are the camera's, and a layer's clip stands in the scene: give them to \
+            "clip->clip_near, clip_far and near_cut are the camera's, and a layer's clip stands in the scene: give them to \
              rara_renderer_configure",
         );
     }

@@ -27,6 +27,7 @@ pub mod matrices;
 mod nulls;
 mod numbering;
 pub mod orthographic;
+pub mod picker;
 pub mod placement;
 pub mod region;
 pub mod renderer;

@@ -20,6 +20,7 @@ use crate::layer_info::*;
 use crate::logging::*;
 use crate::matrices::*;
 use crate::orthographic::*;
+use crate::picker::*;
 use crate::placement::*;
 use crate::region::*;
 use crate::renderer::*;
@@ -233,6 +234,32 @@ fn calls() -> Vec<Called> {
         rara_scene_buffers_estimated_pairs(null(), null(), null_mut()),
         "pairs is null"
     );
+    call!(rara_picker_create(null(), 1, null_mut()), "picker is null");
+    call!(
+        rara_picker_set_placement(null_mut(), null()),
+        "picker is null"
+    );
+    call!(
+        rara_picker_record(
+            null_mut(),
+            no_cmd,
+            null(),
+            null(),
+            0,
+            null(),
+            null(),
+            0,
+            0,
+            1,
+            1,
+            null_mut()
+        ),
+        "ticket is null"
+    );
+    call!(
+        rara_picker_read(null(), RaraPickTicket::default(), null_mut(), 0, null_mut()),
+        "answered is null"
+    );
     call!(rara_device_memory(null(), null_mut(), 0), "device is null");
     call!(rara_device_set_memory_budget(null(), 0), "device is null");
     called
@@ -248,6 +275,7 @@ fn assert_nothing_comes_of_null() {
         rara_device_destroy(null_mut());
         rara_region_destroy(null_mut());
         rara_frame_token_destroy(null_mut());
+        rara_picker_destroy(null_mut());
         assert_eq!(
             rara_device_bytes(null())
                 + rara_scene_buffers_bytes(null())

@@ -60,6 +60,18 @@ pub struct PickTicket {
     request: u64,
 }
 
+impl PickTicket {
+    /// The picker's number and the request's, for a host that keeps numbers.
+    pub const fn numbers(self) -> [u64; 2] {
+        [self.picker, self.request]
+    }
+
+    /// The ticket of such numbers.
+    pub const fn of_numbers([picker, request]: [u64; 2]) -> Self {
+        Self { picker, request }
+    }
+}
+
 /// The splat that adds most to a pixel's alpha.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]

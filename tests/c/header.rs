@@ -50,6 +50,7 @@ fn the_header_is_current() {
         "matrices",
         "reserve",
         "token",
+        "picker",
         "gaussians",
         "staging",
         "scene",

@@ -17,6 +17,7 @@ use rara_c::layer::*;
 use rara_c::layer_info::*;
 use rara_c::lent::*;
 use rara_c::matrices::*;
+use rara_c::picker::*;
 use rara_c::placement::*;
 use rara_c::renderer_desc::*;
 use rara_c::reserve::*;
@@ -54,7 +55,7 @@ fn growing() -> Vec<Layout> {
         RaraBakeCounts: children,
         RaraBakeSettings: leave,
         RaraChannels: value_count,
-        RaraClip: clip_far,
+        RaraClip: near_cut,
         RaraDepthDesc: map,
         RaraDepthImage: y,
         RaraDeviceMemory: pipeline_count,
@@ -84,6 +85,8 @@ fn fixed() -> Vec<Layout> {
         RaraDepthMap: reversed,
         RaraNamedCamera: camera,
         RaraPassTime: ms,
+        RaraPick: alpha,
+        RaraPickTicket: request,
         RaraPlacement: scale,
         RaraPlane: offset,
     ]

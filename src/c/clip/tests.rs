@@ -70,17 +70,26 @@ fn planes_of_the_camera_are_depths() {
         let error = read(near, far).expect_err(says);
         assert!(error.starts_with(says), "{error}");
     }
-    let given = RaraClip {
-        clip_far: 2.0,
+    let nearer = RaraClip {
+        near_cut: 0.05,
         ..RaraClip::WHOLE
     };
     // SAFETY: there are no planes.
-    let error = unsafe { clip(&given) }.expect_err("it is a layer's");
-    let text = error.to_string();
-    assert!(
-        text.contains("a layer's clip stands in the scene"),
-        "{text}"
-    );
+    let seen = unsafe { kept(&nearer) }.expect("a clip").seen_by(camera).0;
+    assert_eq!(seen, camera.near_cut(Some(0.05)));
+    let farther = RaraClip {
+        clip_far: 2.0,
+        ..RaraClip::WHOLE
+    };
+    for given in [nearer, farther] {
+        // SAFETY: there are no planes.
+        let error = unsafe { clip(&given) }.expect_err("it is a layer's");
+        let text = error.to_string();
+        assert!(
+            text.contains("a layer's clip stands in the scene"),
+            "{text}"
+        );
+    }
 }
 
 #[test]

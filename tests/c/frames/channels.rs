@@ -19,7 +19,7 @@ use rara_c::region::*;
 use rara_c::renderer::*;
 use rara_c::renderer_desc::*;
 
-const SIZE: (u32, u32) = (61, 43);
+pub(super) const SIZE: (u32, u32) = (61, 43);
 const PIXELS: usize = (SIZE.0 * SIZE.1) as usize;
 const ALL: RaraAovs =
     RARA_AOV_DEPTH | RARA_AOV_NORMAL | RARA_AOV_LAYER | RARA_AOV_WEIGHT | RARA_AOV_COUNT;
@@ -64,7 +64,7 @@ fn layer_in_c(gaussians: *mut RaraGaussians) -> RaraLayer {
 }
 
 /// Makes a renderer, which `test` uses.
-fn with_renderer(device: *mut RaraDevice, test: impl FnOnce(*mut RaraRenderer)) {
+pub(super) fn with_renderer(device: *mut RaraDevice, test: impl FnOnce(*mut RaraRenderer)) {
     let mut renderer = null_mut();
     // SAFETY: the device is alive, and the struct may hold any bytes.
     unsafe {
@@ -78,7 +78,7 @@ fn with_renderer(device: *mut RaraDevice, test: impl FnOnce(*mut RaraRenderer)) 
     }
 }
 
-fn camera(scene: &Gaussians) -> Camera {
+pub(super) fn camera(scene: &Gaussians) -> Camera {
     Camera::frame(&Bounds::of(scene), DVec3::NEG_Y, 50.0, SIZE).expect("a view")
 }
 

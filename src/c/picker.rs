@@ -1,0 +1,180 @@
+//! Picking: the Gaussians that a part of a picture shows most of.
+
+use rara::ash::vk;
+use rara::{PickTicket, Picker};
+
+use crate::boundary::{RaraResult, exclusive, guard, invalid, recording, shared};
+use crate::camera::RaraCamera;
+use crate::clip::{self, RaraClip};
+use crate::handles::{alive, alone, create, destroy};
+use crate::placement::RaraPlacement;
+use crate::region::{self, RaraProjection};
+use crate::renderer::RaraRenderer;
+use crate::scene::RaraSceneBuffers;
+use crate::settings::{self, RaraSettings};
+
+/// Finds the Gaussians that pixels show most of. One thread at a time uses it.
+pub struct RaraPicker(Picker);
+
+/// A request that a picker has recorded. It never grows.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default)]
+pub struct RaraPickTicket {
+    /// The picker's number.
+    pub picker: u64,
+    /// The request's.
+    pub request: u64,
+}
+
+/// The splat that adds most to a pixel's alpha. It never grows.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default)]
+pub struct RaraPick {
+    /// Its Gaussian's number in the scene: that in its layer, behind all Gaussians of the layers before it; of layers that
+    /// rara_gaussians_select has divided, that which it had before.
+    pub number: u32,
+    /// The number of its layer.
+    pub layer: u32,
+    /// What it adds to the alpha of the pixel, from 1/255 to 1; 0 where no splat adds as much, and then all is 0.
+    pub alpha: f32,
+}
+
+/// Makes a picker beside a renderer, whose compiled pipelines it shares. So many requests, from 1 to 16, may be unfinished at
+/// once. It is placed where the scene is by rara_picker_set_placement, whatever the renderer's placement is.
+///
+/// # Safety
+/// `renderer` is alive, and no other thread changes it; `picker` may be overwritten.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_picker_create(
+    renderer: *const RaraRenderer,
+    in_flight: u32,
+    picker: *mut *mut RaraPicker,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        create(picker, "picker", || {
+            let renderer = alive(renderer, "renderer")?;
+            Ok(RaraPicker(Picker::new(&renderer.0, in_flight)?))
+        })
+    })
+}
+
+/// Places the scene in the world, as rara_renderer_set_placement does for what is drawn.
+///
+/// # Safety
+/// `picker` is alive, and nobody else uses it meanwhile; `placement` points to one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_picker_set_placement(
+    picker: *mut RaraPicker,
+    placement: *const RaraPlacement,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let mut picker = alone(picker, "picker")?;
+        let placement = shared(placement, "placement")?.placement()?;
+        picker.0.set_placement(placement);
+        Ok(())
+    })
+}
+
+/// Records the question what the pixels of a rectangle show most of, in the picture of a camera, outside a rendering scope. The
+/// part of the picture is drawn into memory of the picker's own, with the clip, layers and weights of the whole; nothing of the
+/// host's targets, of a renderer or of the scene changes, and nothing waits. The host's depth hides nothing from it.
+/// RARA_ERROR_INVALID for a rectangle without pixels, or one that reaches out of the picture.
+///
+/// # Safety
+/// As for rara_renderer_configure and rara_renderer_prepare, with requests in place of frames: of so many as
+/// rara_picker_create was told the first one has finished before one more is recorded. `ticket` may be overwritten.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_picker_record(
+    picker: *mut RaraPicker,
+    cmd: vk::CommandBuffer,
+    scene: *const RaraSceneBuffers,
+    camera: *const RaraCamera,
+    projection: RaraProjection,
+    clip: *const RaraClip,
+    settings: *const RaraSettings,
+    x: i32,
+    y: i32,
+    width: u32,
+    height: u32,
+    ticket: *mut RaraPickTicket,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let ticket = exclusive(ticket, "ticket")?;
+        let mut picker = alone(picker, "picker")?;
+        let scene = alive(scene, "scene")?;
+        let camera = shared(camera, "camera")?.camera()?;
+        let camera = camera.projection(region::projection(projection)?);
+        let (camera, clip) = clip::kept(clip)?.seen_by(camera);
+        let settings = settings::settings(settings)?;
+        let rect = vk::Rect2D {
+            offset: vk::Offset2D { x, y },
+            extent: vk::Extent2D { width, height },
+        };
+        let cmd = recording(cmd)?;
+        let picker = &mut picker.0;
+        let made = picker.record(cmd, &scene.buffers, &camera, &clip, &settings, rect)?;
+        let [picker, request] = made.numbers();
+        *ticket = RaraPickTicket { picker, request };
+        Ok(())
+    })
+}
+
+/// Writes the answer to a request: a pick for each pixel of the rectangle, row by row from the upper left. `*answered` is
+/// VK_TRUE then. It is VK_FALSE, and nothing is written, where there was no room for what the pixels show, for which later
+/// requests make it.
+/// RARA_ERROR_INVALID for another picker's request, for one whose memory a later one has taken, and where `pick_count` is not
+/// the number of pixels.
+///
+/// # Safety
+/// `picker` is alive, and no other thread changes it; the submission in which the request was recorded has finished; `picks`
+/// has room for `pick_count`; `answered` may be overwritten.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_picker_read(
+    picker: *const RaraPicker,
+    ticket: RaraPickTicket,
+    picks: *mut RaraPick,
+    pick_count: usize,
+    answered: *mut vk::Bool32,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let answered = exclusive(answered, "answered")?;
+        *answered = vk::FALSE;
+        let picker = alive(picker, "picker")?;
+        if picks.is_null() {
+            return invalid("picks is null");
+        }
+        let ticket = PickTicket::of_numbers([ticket.picker, ticket.request]);
+        let Some(found) = picker.0.read(ticket)? else {
+            return Ok(());
+        };
+        if found.pixels.len() != pick_count {
+            return invalid(format!(
+                "pick_count is {pick_count}, and the rectangle has {} pixels",
+                found.pixels.len()
+            ));
+        }
+        for (at, pick) in found.pixels.iter().enumerate() {
+            let pick = pick.map_or(RaraPick::default(), |pick| RaraPick {
+                number: pick.number,
+                layer: pick.layer as u32,
+                alpha: pick.alpha,
+            });
+            picks.add(at).write_unaligned(pick);
+        }
+        *answered = vk::TRUE;
+        Ok(())
+    })
+}
+
+/// Ends a picker; null is ignored. The device is done with its requests.
+///
+/// # Safety
+/// `picker` is null, or alive and not used any more.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_picker_destroy(picker: *mut RaraPicker) {
+    destroy(picker);
+}

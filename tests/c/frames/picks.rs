@@ -1,0 +1,111 @@
+//! Picks through the functions of `rara.h` are those of a headless renderer.
+
+use std::ptr::null;
+
+use super::channels::{SIZE, camera, with_renderer};
+use super::*;
+use crate::clips::clip_of;
+use crate::results::assert_fails;
+use rara::{Clip, Headless, Settings};
+use rara_c::boundary::*;
+use rara_c::camera::*;
+use rara_c::picker::*;
+
+/// A rectangle of the picture: its left and upper edge, its width and height.
+const PART: (i32, i32, u32, u32) = (20, 11, 17, 13);
+const PIXELS: usize = (PART.2 * PART.3) as usize;
+
+#[test]
+fn picks_are_those_of_a_headless_renderer() {
+    with_both(1_200, |scene, _, device, ours| {
+        let camera = camera(scene).near_cut(Some(0.3));
+        let uploaded = ours.uploaded();
+        let (x, y, width, height) = PART;
+        with_renderer(ours.device, |renderer| {
+            // SAFETY: the handles are alive, the pointers are null, or point to what they say, and each submission is waited for.
+            unsafe {
+                let mut picker = null_mut();
+                assert_ok(rara_picker_create(renderer, 1, &mut picker));
+                let mut clip = clip_of(&[]);
+                clip.near_cut = 0.3;
+                let seen = RaraCamera::from(camera);
+                let ask = |x: i32| {
+                    let mut ticket = RaraPickTicket::default();
+                    let mut result = RARA_OK;
+                    let submitted = device.submit_and_wait(|cmd| {
+                        let (clip, to) = (&raw const clip, &mut ticket);
+                        result = rara_picker_record(
+                            picker,
+                            cmd,
+                            uploaded,
+                            &seen,
+                            0,
+                            clip,
+                            null(),
+                            x,
+                            y,
+                            width,
+                            height,
+                            to,
+                        );
+                        Ok(())
+                    });
+                    submitted.expect("submits");
+                    (result, ticket)
+                };
+                let mut picks = [RaraPick::default(); PIXELS];
+                let mut answered = vk::FALSE;
+                let mut read = |ticket, count| {
+                    rara_picker_read(picker, ticket, picks.as_mut_ptr(), count, &mut answered)
+                };
+                let (result, first) = ask(x);
+                assert_ok(result);
+                assert_ok(read(first, PIXELS));
+                // The first one may have lacked room.
+                let (result, second) = ask(x);
+                assert_ok(result);
+                assert_fails(
+                    read(first, PIXELS),
+                    RARA_ERROR_INVALID,
+                    "a later one has taken",
+                );
+                let other = RaraPickTicket {
+                    picker: second.picker + 1,
+                    ..second
+                };
+                assert_fails(read(other, PIXELS), RARA_ERROR_INVALID, "another picker's");
+                assert_fails(
+                    read(second, 1),
+                    RARA_ERROR_INVALID,
+                    "the rectangle has 221 pixels",
+                );
+                assert_ok(read(second, PIXELS));
+                assert_eq!(answered, vk::TRUE);
+                let outside = ask(SIZE.0 as i32 - 3).0;
+                assert_fails(outside, RARA_ERROR_INVALID, "no part of a picture of 61x43");
+                rara_picker_destroy(picker);
+
+                let headless = Headless::new(&Default::default());
+                let mut headless = headless.expect("a device");
+                headless.load(scene).expect("uploads");
+                let rect = vk::Rect2D {
+                    offset: vk::Offset2D { x, y },
+                    extent: vk::Extent2D { width, height },
+                };
+                let expected = headless.pick(&camera, &Clip::default(), &Settings::default(), rect);
+                let expected = expected.expect("picks").pixels;
+                let shown = expected.iter().flatten().count();
+                assert!(shown > PIXELS / 2, "{shown}");
+                for (pick, expected) in picks.iter().zip(expected) {
+                    let expected = expected.map_or((0, 0, 0.0), |expected| {
+                        (expected.number, expected.layer as u32, expected.alpha)
+                    });
+                    assert_eq!((pick.number, pick.layer), (expected.0, expected.1));
+                    assert!((pick.alpha - expected.2).abs() < 1e-5);
+                }
+            }
+        });
+        // SAFETY: nothing uses it any more.
+        unsafe { rara_scene_buffers_destroy(uploaded) };
+    });
+}

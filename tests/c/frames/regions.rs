@@ -48,44 +48,43 @@ fn planes_of_the_camera_are_the_same_bytes() {
         let mut seen: Vec<Pixels> = Vec::new();
         let uploaded = ours.uploaded();
         let whole = clip_of(&[]);
-        for made in [
-            World::new(scene, Raster::Tiles),
-            World::new(scene, Raster::Quad),
-            World::flat(scene, Raster::Tiles),
+        let middle = Bounds::of(scene).centre();
+        let bitten = Some(c"!sphere:0.2,0,0,0.5");
+        let [tiles, quads] = [Raster::Tiles, Raster::Quad].map(|way| World::new(scene, way));
+        let flat = World::flat(scene, Raster::Tiles);
+        for (made, [is_near, is_far], region, own) in [
+            (&tiles, [true, false], None, false),
+            (&tiles, [false, true], None, true),
+            (&quads, [true, true], bitten, false),
+            (&flat, [true, true], bitten, false),
         ] {
-            let middle = Bounds::of(scene).centre();
             let depth = (made.camera.rotation * (middle - made.camera.eye)).z;
-            let (near, far) = (Some(depth - 0.3), Some(depth + 0.2));
-            for (near, far, region, own) in [
-                (near, None, None, false),
-                (None, far, None, true),
-                (near, far, Some(c"!sphere:0.2,0,0,0.5"), false),
-            ] {
-                let layer = Layer::new("scene", scene);
-                let world = World {
-                    camera: made.camera.clip_near(near).clip_far(far),
-                    region,
-                    layers: Scene::from_iter([match own {
-                        true => layer.clipped(Clip::default()),
-                        false => layer,
-                    }]),
-                    ..made
-                };
-                let canvas = world.canvas(lent, device);
-                let truth = world.drawn(device, &canvas);
-                let own = if own { &raw const whole } else { null() };
-                // SAFETY: the handles are alive, and nobody else uses the scene.
-                let drawn = unsafe {
-                    assert_ok(rara_scene_buffers_set_layer_clip(uploaded, 0, own));
-                    world.drawn_in_c(ours.device, &canvas, |_| uploaded)
-                };
-                let what = format!("{near:?} {far:?} {region:?} {:?}", made.raster);
-                assert!(drawn == truth, "{what}");
-                let filled = drawn.iter().filter(|pixel| pixel[1] > 0.05).count();
-                assert!(filled > 500, "{what}: {filled} pixels");
-                assert!(seen.iter().all(|before| *before != drawn), "{what}");
-                seen.push(drawn);
-            }
+            let near = is_near.then_some(depth - 0.3);
+            let far = is_far.then_some(depth + 0.2);
+            let layer = Layer::new("scene", scene);
+            let world = World {
+                camera: made.camera.clip_near(near).clip_far(far),
+                region,
+                layers: Scene::from_iter([match own {
+                    true => layer.clipped(Clip::default()),
+                    false => layer,
+                }]),
+                ..World::new(scene, made.raster)
+            };
+            let canvas = world.canvas(lent, device);
+            let truth = world.drawn(device, &canvas);
+            let own = if own { &raw const whole } else { null() };
+            // SAFETY: the handles are alive, and nobody else uses the scene.
+            let drawn = unsafe {
+                assert_ok(rara_scene_buffers_set_layer_clip(uploaded, 0, own));
+                world.drawn_in_c(ours.device, &canvas, |_| uploaded)
+            };
+            let what = format!("{near:?} {far:?} {region:?} {:?}", made.raster);
+            assert!(drawn == truth, "{what}");
+            let filled = drawn.iter().filter(|pixel| pixel[1] > 0.05).count();
+            assert!(filled > 500, "{what}: {filled} pixels");
+            assert!(seen.iter().all(|before| *before != drawn), "{what}");
+            seen.push(drawn);
         }
         // SAFETY: all frames were waited for.
         unsafe { rara_scene_buffers_destroy(uploaded) };

@@ -23,14 +23,17 @@ fn run(command: &mut Command) -> (Output, String) {
 
 /// The example, built. `None`, with a message, where what it depends on can be had neither here nor from its registry.
 fn example() -> Option<PathBuf> {
-    // Where everything is here already, this asks nobody.
-    let (fetched, said) = run(&mut cargo("fetch"));
+    let (_, rustc) = run(Command::new("rustc").arg("-vV"));
+    let host = rustc.lines().find_map(|line| line.strip_prefix("host: "));
+    // Where everything that this system needs is here already, this asks nobody.
+    let (fetched, said) = run(cargo("fetch").args(["--target", host.expect("a system")]));
     assert!(
         !said.contains("--locked was passed"),
         "rara's dependencies have changed: `cargo update --workspace` in tools/examples/wgpu notes them: {said}"
     );
     if !fetched.status.success() {
-        let why = said.lines().last().unwrap_or_default();
+        let why = said.lines().find(|line| line.starts_with("error"));
+        let why = why.unwrap_or(&said);
         eprintln!(
             "SKIPPED: NO WGPU: rara was not drawn in a host on wgpu, which cannot be fetched: {why}"
         );

@@ -45,6 +45,9 @@ typedef struct RaraFrameToken RaraFrameToken;
 // A scene in the host's memory. It may be destroyed once it is on the device. Several threads may read it at once.
 typedef struct RaraGaussians RaraGaussians;
 
+// Finds the Gaussians that pixels show most of. One thread at a time uses it.
+typedef struct RaraPicker RaraPicker;
+
 // The region that stays visible, made of planes, slabs, boxes, spheres, ellipsoids, cylinders, capsules and cones. It does
 // not change; several threads, renderers and layers may use it at once.
 typedef struct RaraRegion RaraRegion;
@@ -144,6 +147,9 @@ typedef struct RaraClip {
     double clip_near;
     // The depth up to which the scene is kept, likewise. Default: INFINITY, for no such plane.
     double clip_far;
+    // The depth along the view axis, world units, from which on splats are drawn: those whose centres are nearer are left out
+    // whole. 0, the default, stands for 0.2 units of the scene, as in 3DGS.
+    double near_cut;
 } RaraClip;
 
 // The values in a depth buffer, for any perspective projection into depths from 0 to 1. It never grows.
@@ -519,6 +525,25 @@ typedef struct RaraDeviceMemory {
     // Pipelines compiled so far, destroyed or not.
     uint64_t pipeline_count;
 } RaraDeviceMemory;
+
+// A request that a picker has recorded. It never grows.
+typedef struct RaraPickTicket {
+    // The picker's number.
+    uint64_t picker;
+    // The request's.
+    uint64_t request;
+} RaraPickTicket;
+
+// The splat that adds most to a pixel's alpha. It never grows.
+typedef struct RaraPick {
+    // Its Gaussian's number in the scene: that in its layer, behind all Gaussians of the layers before it; of layers that
+    // rara_gaussians_select has divided, that which it had before.
+    uint32_t number;
+    // The number of its layer.
+    uint32_t layer;
+    // What it adds to the alpha of the pixel, from 1/255 to 1; 0 where no splat adds as much, and then all is 0.
+    float alpha;
+} RaraPick;
 
 // Describes a scene, and what of its file could not be used.
 typedef struct RaraGaussiansInfo {
@@ -1424,6 +1449,63 @@ RaraResult rara_renderer_draw_token_depth(struct RaraRenderer *renderer,
 // # Safety
 // `token` is null, or alive and not used any more.
 void rara_frame_token_destroy(struct RaraFrameToken *token);
+
+// Makes a picker beside a renderer, whose compiled pipelines it shares. So many requests, from 1 to 16, may be unfinished at
+// once. It is placed where the scene is by rara_picker_set_placement, whatever the renderer's placement is.
+//
+// # Safety
+// `renderer` is alive, and no other thread changes it; `picker` may be overwritten.
+RaraResult rara_picker_create(const struct RaraRenderer *renderer,
+                              uint32_t in_flight,
+                              struct RaraPicker **picker);
+
+// Places the scene in the world, as rara_renderer_set_placement does for what is drawn.
+//
+// # Safety
+// `picker` is alive, and nobody else uses it meanwhile; `placement` points to one.
+RaraResult rara_picker_set_placement(struct RaraPicker *picker, const struct RaraPlacement *placement);
+
+// Records the question what the pixels of a rectangle show most of, in the picture of a camera, outside a rendering scope. The
+// part of the picture is drawn into memory of the picker's own, with the clip, layers and weights of the whole; nothing of the
+// host's targets, of a renderer or of the scene changes, and nothing waits. The host's depth hides nothing from it.
+// RARA_ERROR_INVALID for a rectangle without pixels, or one that reaches out of the picture.
+//
+// # Safety
+// As for rara_renderer_configure and rara_renderer_prepare, with requests in place of frames: of so many as
+// rara_picker_create was told the first one has finished before one more is recorded. `ticket` may be overwritten.
+RaraResult rara_picker_record(struct RaraPicker *picker,
+                              VkCommandBuffer cmd,
+                              const struct RaraSceneBuffers *scene,
+                              const struct RaraCamera *camera,
+                              RaraProjection projection,
+                              const struct RaraClip *clip,
+                              const struct RaraSettings *settings,
+                              int32_t x,
+                              int32_t y,
+                              uint32_t width,
+                              uint32_t height,
+                              struct RaraPickTicket *ticket);
+
+// Writes the answer to a request: a pick for each pixel of the rectangle, row by row from the upper left. `*answered` is
+// VK_TRUE then. It is VK_FALSE, and nothing is written, where there was no room for what the pixels show, for which later
+// requests make it.
+// RARA_ERROR_INVALID for another picker's request, for one whose memory a later one has taken, and where `pick_count` is not
+// the number of pixels.
+//
+// # Safety
+// `picker` is alive, and no other thread changes it; the submission in which the request was recorded has finished; `picks`
+// has room for `pick_count`; `answered` may be overwritten.
+RaraResult rara_picker_read(const struct RaraPicker *picker,
+                            struct RaraPickTicket ticket,
+                            struct RaraPick *picks,
+                            size_t pick_count,
+                            VkBool32 *answered);
+
+// Ends a picker; null is ignored. The device is done with its requests.
+//
+// # Safety
+// `picker` is null, or alive and not used any more.
+void rara_picker_destroy(struct RaraPicker *picker);
 
 // Loads a scene: 3DGS .ply (ascii or binary, spherical harmonics of degree 0 to 3), .compressed.ply, .splat, .ksplat, .spz,
 // SOG (an archive, its folder or meta.json) or glTF with KHR_gaussian_splatting. The format is found by what is in the file.

@@ -159,6 +159,7 @@ impl Support {
         // SAFETY: the caller's promise.
         let found = unsafe { self.set_in(info.p_next.cast_mut()) };
         let mut info = info;
+        ours.unchain();
         if !found.address {
             info = info.push_next(&mut ours.buffer_device_address);
         }
@@ -208,6 +209,7 @@ pub struct Features {
 impl Features {
     /// Chains the structs to `info`.
     pub fn chain<'a>(&'a mut self, info: vk::DeviceCreateInfo<'a>) -> vk::DeviceCreateInfo<'a> {
+        self.unchain();
         let info = info
             .push_next(&mut self.buffer_device_address)
             .push_next(&mut self.synchronization2)
@@ -219,6 +221,54 @@ impl Features {
         match &mut self.subgroup_size {
             Some(subgroup_size) => info.push_next(subgroup_size),
             None => info,
+        }
+    }
+
+    /// Forgets what the structs were chained to: another create info may have ended since.
+    fn unchain(&mut self) {
+        self.buffer_device_address.p_next = std::ptr::null_mut();
+        self.synchronization2.p_next = std::ptr::null_mut();
+        self.dynamic_rendering.p_next = std::ptr::null_mut();
+        if let Some(mesh) = &mut self.mesh {
+            mesh.p_next = std::ptr::null_mut();
+        }
+        if let Some(sizes) = &mut self.subgroup_size {
+            sizes.p_next = std::ptr::null_mut();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The structs that are chained to a create info; more than there are where they are chained in a ring.
+    fn chained(info: &vk::DeviceCreateInfo<'_>) -> usize {
+        let mut next = info.p_next.cast::<vk::BaseInStructure<'_>>();
+        let mut count = 0;
+        while !next.is_null() && count < 100 {
+            // SAFETY: the structs that are chained are alive, and each begins with its type and the next one's place.
+            next = unsafe { (*next).p_next };
+            count += 1;
+        }
+        count
+    }
+
+    /// A host that fails to create a device tries again, with another create info.
+    #[test]
+    fn features_are_chained_to_one_create_info_after_another() {
+        let support = Support {
+            mesh_shader: true,
+            ..Support::default()
+        };
+        let mut ours = support.features();
+        for _ in 0..2 {
+            assert_eq!(chained(&ours.chain(vk::DeviceCreateInfo::default())), 4);
+            let mut theirs = vk::PhysicalDeviceVulkan13Features::default().synchronization2(true);
+            let info = vk::DeviceCreateInfo::default().push_next(&mut theirs);
+            // SAFETY: the chain is of one struct that nobody else uses.
+            let info = unsafe { support.complete(&mut ours, info) };
+            assert_eq!(chained(&info), 3, "theirs, addresses and meshes");
         }
     }
 }

@@ -30,6 +30,18 @@ pub(crate) struct Splats {
     scene: SceneBuffers,
     /// The submissions of the last frames, the oldest first.
     in_flight: Vec<wgpu::SubmissionIndex>,
+    device: wgpu::Device,
+}
+
+/// What rara records with is freed here, which the device is done with before, whichever way the host got here.
+impl Drop for Splats {
+    fn drop(&mut self) {
+        let last = wgpu::PollType::Wait {
+            submission_index: self.in_flight.pop(),
+            timeout: None,
+        };
+        let _ = self.device.poll(last); // of a lost device nothing runs any more
+    }
 }
 
 impl Splats {
@@ -49,6 +61,7 @@ impl Splats {
             renderer: Renderer::new(&host.rara, desc)?,
             scene: upload(host, scene)?,
             in_flight: Vec::new(),
+            device: host.device.clone(),
         })
     }
 

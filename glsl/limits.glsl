@@ -7,7 +7,7 @@
 const float LOW_PASS = 0.3;
 // Least square of the factor by which the opacity of antialiased Gaussians makes up for that. Scenes are trained with it.
 const float COMPENSATION_SQUARE_MIN = 0.000025;
-// Centres nearer than this along the view axis are culled, the scene's units.
+// Centres nearer than this along the view axis are culled where a camera has no near cut of its own, the scene's units.
 const float NEAR_Z = 0.2;
 // The projection's Jacobian is evaluated with x/z and y/z clamped this share of the picture beyond each edge.
 const float CLAMP_MARGIN = 0.15;

@@ -55,8 +55,8 @@ pub struct Camera {
     pub clip_near: Option<f64>,
     /// The depth up to which the scene is kept, likewise.
     pub clip_far: Option<f64>,
-    /// The depth, world units, from which on splats are drawn: those whose centres are nearer are left out whole. Without one it is 0.2 units
-    /// of the scene, as in 3DGS, however large these are in the world.
+    /// The depth, world units, from which on splats are drawn: those whose centres are nearer are left out whole. Without one
+    /// it is 0.2 units of the scene, as in 3DGS, however large these are in the world.
     pub near_cut: Option<f64>,
 }
 
@@ -258,10 +258,14 @@ impl Camera {
             .map_or(f64::from(limits::NEAR_Z), |depth| depth * unit)
     }
 
-    /// That splats can be drawn from its near cut on.
+    /// Checks that splats can be drawn from its [near cut](Self::near_cut) on.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a depth that is not above 0, or not finite, in single precision.
     pub fn check_near_cut(&self) -> Result<()> {
+        let is_depth = |depth: f32| depth.is_finite() && depth > 0.0;
         match self.near_cut {
-            Some(depth) if !(depth.is_finite() && depth > 0.0) => Err(Error::Invalid(format!(
+            Some(depth) if !is_depth(depth as f32) => Err(Error::Invalid(format!(
                 "a near cut at a depth of {depth} is not in front of the eye; give a depth above 0"
             ))),
             _ => Ok(()),

@@ -79,7 +79,7 @@ pub unsafe extern "C" fn rara_clip_default(clip: *mut RaraClip, clip_size: usize
 }
 
 /// What a frame keeps: a clip in the world, between planes that move with the camera.
-pub(crate) struct Kept {
+pub(crate) struct FrameClip {
     pub(crate) clip: Clip,
     pub(crate) near: Option<f64>,
     pub(crate) far: Option<f64>,
@@ -87,7 +87,7 @@ pub(crate) struct Kept {
 }
 
 /// All that a clip keeps.
-impl From<Clip> for Kept {
+impl From<Clip> for FrameClip {
     fn from(clip: Clip) -> Self {
         Self {
             clip,
@@ -98,7 +98,7 @@ impl From<Clip> for Kept {
     }
 }
 
-impl Kept {
+impl FrameClip {
     /// The camera with its planes and its near cut, and the clip.
     pub(crate) fn seen_by(self, camera: Camera) -> (Camera, Clip) {
         let camera = camera.clip_near(self.near).clip_far(self.far);
@@ -110,7 +110,7 @@ impl Kept {
 ///
 /// # Safety
 /// `clip` is null, or points to one whose planes are there.
-pub(crate) unsafe fn kept(clip: *const RaraClip) -> Result<Kept> {
+pub(crate) unsafe fn kept(clip: *const RaraClip) -> Result<FrameClip> {
     if clip.is_null() {
         return Ok(Clip::default().into());
     }
@@ -125,7 +125,7 @@ pub(crate) unsafe fn kept(clip: *const RaraClip) -> Result<Kept> {
             )),
         }
     };
-    Ok(Kept {
+    Ok(FrameClip {
         near: depth(given.clip_near, f64::NEG_INFINITY, "clip_near")?,
         far: depth(given.clip_far, f64::INFINITY, "clip_far")?,
         cut: depth(given.near_cut, 0.0, "near_cut")?,

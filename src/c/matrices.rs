@@ -114,7 +114,7 @@ const NOWHERE: RaraHostView = RaraHostView {
 /// that is singular or looks transposed, a view that shears or scales unevenly, a projection that shears, or whose depth is
 /// not a function of the distance alone (as with an oblique near plane).
 ///
-/// What is nearer than 0.2 is not drawn, whatever the projection's near plane. An orthographic camera's eye is moved back
+/// RaraClip::near_cut says from which depth on splats are drawn, whatever the projection's near plane. An orthographic camera's eye is moved back
 /// where that would leave out what lies behind the near plane; depths count from there.
 ///
 /// # Safety

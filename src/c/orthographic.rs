@@ -10,8 +10,8 @@ use crate::scene::RaraSceneBuffers;
 use crate::settings::RaraSettings;
 
 /// A camera for rara_renderer_configure_orthographic at `eye` that looks at `target`, whose picture of `width` x `height`
-/// pixels is `view_height` world units high. `eye`, `target` and `up` are as for rara_camera_look_at; nothing nearer to the eye
-/// than 0.2 along the view axis is drawn.
+/// pixels is `view_height` world units high. `eye`, `target` and `up` are as for rara_camera_look_at; RaraClip::near_cut
+/// says from which depth on splats are drawn.
 ///
 /// # Safety
 /// `eye`, `target` and `up` point to three numbers each; `camera` may be overwritten.

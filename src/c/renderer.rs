@@ -5,7 +5,7 @@ use rara::{Projection, Renderer, Result};
 
 use crate::boundary::{RaraResult, guard, invalid, recording, shared};
 use crate::camera::RaraCamera;
-use crate::clip::{self, Kept, RaraClip};
+use crate::clip::{self, FrameClip, RaraClip};
 use crate::depth::{self, RaraDepthImage, RaraDepthMap};
 use crate::device::RaraDevice;
 use crate::handles::{alive, alone, create, destroy};
@@ -143,7 +143,7 @@ pub(crate) unsafe fn configure(
     renderer: *mut RaraRenderer,
     scene: *const RaraSceneBuffers,
     camera: *const RaraCamera,
-    seen: impl FnOnce() -> Result<(Projection, Kept)>,
+    seen: impl FnOnce() -> Result<(Projection, FrameClip)>,
     settings: *const RaraSettings,
 ) -> RaraResult {
     // SAFETY: the caller's promises.

@@ -152,7 +152,7 @@ pub unsafe extern "C" fn rara_renderer_bytes(renderer: *const RaraRenderer) -> u
 }
 
 /// An estimate of the pairs of tile and splat in a camera's picture, for RaraFrameLimits::pairs: without what a clip leaves
-/// out, and with the scene where it was made.
+/// out, with the scene where it was made, and with the usual near cut. Splats that are nearer have the most pairs of all.
 ///
 /// # Safety
 /// `scene` is alive; `camera` points to one; `pairs` may be overwritten.

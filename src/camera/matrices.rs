@@ -65,7 +65,7 @@ impl Camera {
     /// included. The projection may be reversed, infinite, off-centre, jittered, turned by quarters (as for a display's
     /// pre-rotation) or orthographic; `ndc` has what that leaves open. `size` is that of the viewport, pixels.
     ///
-    /// What is nearer than 0.2 is not drawn, whatever the projection's near plane. An orthographic camera's eye is moved back
+    /// The camera has the usual [near cut](Self::near_cut), whatever the projection's near plane. An orthographic camera's eye is moved back
     /// where that would leave out what lies behind the near plane, and the depth map counts from there.
     ///
     /// ```

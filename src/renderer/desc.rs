@@ -19,7 +19,8 @@ pub enum ColorSpace {
     /// picture that they make is turned into linear light once, and that is blended `over` the host's pixels. Only tiles do
     /// so: another [`Raster`](crate::Raster) is refused, and so is a depth that is not [readable](DepthDesc::readable). A frame
     /// whose tiles have no room draws nothing, as [`fell_back`](super::Renderer::fell_back) says.
-    /// [`Show::Count`](crate::Show::Count) and [`Show::Mean`](crate::Show::Mean), which are numbers, stay as they are.
+    /// [`Show::Count`](crate::Show::Count), [`Show::Mean`](crate::Show::Mean) and [`Show::Strongest`](crate::Show::Strongest),
+    /// which are numbers, stay as they are.
     Linear,
 }
 

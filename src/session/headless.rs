@@ -46,7 +46,7 @@ impl Headless {
     /// Makes it on the device of a host's renderer, whose compiled pipelines it shares and whose
     /// [placement](Renderer::set_placement) it takes: for what a host wants in its own memory beside its frames, as
     /// [`channels`](Self::channels). What it draws it submits to the host's queue and waits for; nobody else uses the queue
-    /// meanwhile. The validation layer's messages stay the host's.
+    /// meanwhile. Of a device that was adopted, the validation layer's messages stay the host's.
     ///
     /// # Errors
     /// As [`Renderer::new`].

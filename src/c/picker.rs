@@ -30,8 +30,9 @@ pub struct RaraPickTicket {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RaraPick {
-    /// Its Gaussian's number in the scene: that in its layer, behind all Gaussians of the layers before it; of layers that
-    /// rara_gaussians_select has divided, that which it had before.
+    /// Its Gaussian's number in the scene: that in its layer, behind all Gaussians of the layers before it. Layers that
+    /// rara_gaussians_select has divided number as the set did where all of them are in the scene, else without those that are
+    /// missing.
     pub number: u32,
     /// The number of its layer.
     pub layer: u32,
@@ -39,8 +40,8 @@ pub struct RaraPick {
     pub alpha: f32,
 }
 
-/// Makes a picker beside a renderer, whose compiled pipelines it shares. So many requests, from 1 to 16, may be unfinished at
-/// once. It is placed where the scene is by rara_picker_set_placement, whatever the renderer's placement is.
+/// Makes a picker beside a renderer, whose compiled pipelines it shares, and whose placement of this moment it takes. So many
+/// requests, from 1 to 16, may be unfinished at once.
 ///
 /// # Safety
 /// `renderer` is alive, and no other thread changes it; `picker` may be overwritten.
@@ -79,12 +80,14 @@ pub unsafe extern "C" fn rara_picker_set_placement(
 
 /// Records the question what the pixels of a rectangle show most of, in the picture of a camera, outside a rendering scope. The
 /// part of the picture is drawn into memory of the picker's own, with the clip, layers and weights of the whole; nothing of the
-/// host's targets, of a renderer or of the scene changes, and nothing waits. The host's depth hides nothing from it.
+/// host's targets, of a renderer or of the scene changes, and nothing waits. The host's depth hides nothing from it. The first
+/// request compiles what no frame needs: make one that nobody waits for.
 /// RARA_ERROR_INVALID for a rectangle without pixels, or one that reaches out of the picture.
 ///
 /// # Safety
 /// As for rara_renderer_configure and rara_renderer_prepare, with requests in place of frames: of so many as
-/// rara_picker_create was told the first one has finished before one more is recorded. `ticket` may be overwritten.
+/// rara_picker_create was told the first one has finished before one more is recorded, and all of them before the picker ends.
+/// `ticket` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_picker_record(
     picker: *mut RaraPicker,

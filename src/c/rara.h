@@ -536,8 +536,9 @@ typedef struct RaraPickTicket {
 
 // The splat that adds most to a pixel's alpha. It never grows.
 typedef struct RaraPick {
-    // Its Gaussian's number in the scene: that in its layer, behind all Gaussians of the layers before it; of layers that
-    // rara_gaussians_select has divided, that which it had before.
+    // Its Gaussian's number in the scene: that in its layer, behind all Gaussians of the layers before it. Layers that
+    // rara_gaussians_select has divided number as the set did where all of them are in the scene, else without those that are
+    // missing.
     uint32_t number;
     // The number of its layer.
     uint32_t layer;
@@ -1132,7 +1133,8 @@ void rara_device_destroy(struct RaraDevice *device);
 //
 // The picture is that of the placed Gaussians, spherical harmonics turn with the scene, and no Gaussian is touched: a
 // scene can be moved in every frame, and one RaraSceneBuffers can be drawn in several places, by a renderer each. All
-// lengths are then in the scene's units, also the depth of 0.2 below which 3DGS culls centres.
+// lengths are then in the scene's units, also the depth of 0.2 below which centres are culled where RaraClip::near_cut
+// says no other, in world units.
 //
 // # Safety
 // `renderer` is alive, and no other thread uses it; `placement` points to one.
@@ -1252,8 +1254,8 @@ RaraResult rara_renderer_desc_default(struct RaraRendererDesc *desc,
                                       VkFormat color_format);
 
 // A camera for rara_renderer_configure_orthographic at `eye` that looks at `target`, whose picture of `width` x `height`
-// pixels is `view_height` world units high. `eye`, `target` and `up` are as for rara_camera_look_at; nothing nearer to the eye
-// than 0.2 along the view axis is drawn.
+// pixels is `view_height` world units high. `eye`, `target` and `up` are as for rara_camera_look_at; RaraClip::near_cut
+// says from which depth on splats are drawn.
 //
 // # Safety
 // `eye`, `target` and `up` point to three numbers each; `camera` may be overwritten.
@@ -1304,7 +1306,7 @@ RaraResult rara_ndc_default(struct RaraNdc *ndc,
 // that is singular or looks transposed, a view that shears or scales unevenly, a projection that shears, or whose depth is
 // not a function of the distance alone (as with an oblique near plane).
 //
-// What is nearer than 0.2 is not drawn, whatever the projection's near plane. An orthographic camera's eye is moved back
+// RaraClip::near_cut says from which depth on splats are drawn, whatever the projection's near plane. An orthographic camera's eye is moved back
 // where that would leave out what lies behind the near plane; depths count from there.
 //
 // # Safety
@@ -1375,7 +1377,7 @@ RaraResult rara_renderer_trim(struct RaraRenderer *renderer);
 uint64_t rara_renderer_bytes(const struct RaraRenderer *renderer);
 
 // An estimate of the pairs of tile and splat in a camera's picture, for RaraFrameLimits::pairs: without what a clip leaves
-// out, and with the scene where it was made.
+// out, with the scene where it was made, and with the usual near cut. Splats that are nearer have the most pairs of all.
 //
 // # Safety
 // `scene` is alive; `camera` points to one; `pairs` may be overwritten.
@@ -1450,8 +1452,8 @@ RaraResult rara_renderer_draw_token_depth(struct RaraRenderer *renderer,
 // `token` is null, or alive and not used any more.
 void rara_frame_token_destroy(struct RaraFrameToken *token);
 
-// Makes a picker beside a renderer, whose compiled pipelines it shares. So many requests, from 1 to 16, may be unfinished at
-// once. It is placed where the scene is by rara_picker_set_placement, whatever the renderer's placement is.
+// Makes a picker beside a renderer, whose compiled pipelines it shares, and whose placement of this moment it takes. So many
+// requests, from 1 to 16, may be unfinished at once.
 //
 // # Safety
 // `renderer` is alive, and no other thread changes it; `picker` may be overwritten.
@@ -1467,12 +1469,14 @@ RaraResult rara_picker_set_placement(struct RaraPicker *picker, const struct Rar
 
 // Records the question what the pixels of a rectangle show most of, in the picture of a camera, outside a rendering scope. The
 // part of the picture is drawn into memory of the picker's own, with the clip, layers and weights of the whole; nothing of the
-// host's targets, of a renderer or of the scene changes, and nothing waits. The host's depth hides nothing from it.
+// host's targets, of a renderer or of the scene changes, and nothing waits. The host's depth hides nothing from it. The first
+// request compiles what no frame needs: make one that nobody waits for.
 // RARA_ERROR_INVALID for a rectangle without pixels, or one that reaches out of the picture.
 //
 // # Safety
 // As for rara_renderer_configure and rara_renderer_prepare, with requests in place of frames: of so many as
-// rara_picker_create was told the first one has finished before one more is recorded. `ticket` may be overwritten.
+// rara_picker_create was told the first one has finished before one more is recorded, and all of them before the picker ends.
+// `ticket` may be overwritten.
 RaraResult rara_picker_record(struct RaraPicker *picker,
                               VkCommandBuffer cmd,
                               const struct RaraSceneBuffers *scene,

@@ -49,13 +49,14 @@ impl PairSample {
         }
     }
 
-    /// The pairs of a picture of these layers, which are the sample's, without what a clip leaves out.
-    pub(super) fn pairs(&self, layers: &[SceneLayer], camera: &Camera) -> u32 {
+    /// The pairs of a picture of these layers, which are the sample's, without what a clip leaves out. The picture is a part of
+    /// that of `whole`.
+    pub(super) fn pairs(&self, layers: &[SceneLayer], camera: &Camera, whole: &Camera) -> u32 {
         let seen = self.layers.iter().zip(layers);
         let pairs = seen
             .filter(|(_, layer)| layer.is_visible())
             .map(|(own, layer)| {
-                let eye = Eye::new(camera, layer);
+                let eye = Eye::new(camera, whole, layer);
                 let tiles = |of: &[Sampled]| of.iter().map(|one| eye.tiles(one)).sum::<f64>();
                 tiles(&own.largest) + own.weight * tiles(&own.rest)
             });
@@ -106,6 +107,8 @@ impl Sampled {
 /// A camera as a layer sees it.
 struct Eye<'a> {
     camera: &'a Camera,
+    /// The camera of whose picture it shows a part.
+    whole: &'a Camera,
     position: DVec3,
     /// From the layer's axes and units to the camera's axes and the scene's units.
     turn: DMat3,
@@ -113,11 +116,12 @@ struct Eye<'a> {
 }
 
 impl<'a> Eye<'a> {
-    fn new(camera: &'a Camera, layer: &SceneLayer) -> Self {
+    fn new(camera: &'a Camera, whole: &'a Camera, layer: &SceneLayer) -> Self {
         let placement = &layer.state.placement;
         let own = camera.in_scene(placement);
         Self {
             camera,
+            whole,
             position: own.eye,
             turn: own.rotation * placement.scale(),
             opacity: layer.state.opacity.into(),
@@ -138,6 +142,8 @@ impl<'a> Eye<'a> {
         let size = [f64::from(camera.width), f64::from(camera.height)];
         let focal = [camera.fx, camera.fy];
         let principal = [camera.cx, camera.cy];
+        let whole_size = [self.whole.width, self.whole.height].map(f64::from);
+        let whole_principal = [self.whole.cx, self.whole.cy];
         let (w, leans) = match camera.projection {
             Projection::Perspective => (centre.z, 1.0),
             Projection::Orthographic => (1.0, 0.0),
@@ -146,8 +152,8 @@ impl<'a> Eye<'a> {
         let margin = f64::from(limits::CLAMP_MARGIN);
         // By how many pixels each half axis moves the image along x and along y.
         let moved = [0, 1].map(|at| {
-            let low = (-margin * size[at] - principal[at]) / focal[at];
-            let high = ((1.0 + margin) * size[at] - principal[at]) / focal[at];
+            let low = (-margin * whole_size[at] - whole_principal[at]) / focal[at];
+            let high = ((1.0 + margin) * whole_size[at] - whole_principal[at]) / focal[at];
             let clamped = slope[at].max(low).min(high);
             let by = |axis: DVec3| focal[at] / w * (axis[at] - leans * clamped * axis.z);
             DVec3::from(axes.map(by))

@@ -264,7 +264,12 @@ impl SceneBuffers {
     /// ([`Camera::in_scene`]), without what a clip leaves out. Tiles need room for them:
     /// [`FrameLimits::pairs`](crate::FrameLimits::pairs).
     pub fn estimated_pairs(&self, camera: &Camera) -> u32 {
-        self.sample.pairs(&self.layers, camera)
+        self.estimated_pairs_of_part(camera, camera)
+    }
+
+    /// The same of a picture that is a part of that of `whole`.
+    pub(crate) fn estimated_pairs_of_part(&self, camera: &Camera, whole: &Camera) -> u32 {
+        self.sample.pairs(&self.layers, camera, whole)
     }
 
     /// Blocks of all layers.

@@ -268,7 +268,7 @@ impl Renderer {
             let redrawn = frame.configured.as_ref().is_some_and(|had| had.redrawn);
             redrawn && frame.fell_back()
         };
-        if self.frames.newest().is_some_and(undrawn) {
+        if self.kept.is_some() && self.frames.newest().is_some_and(undrawn) {
             self.kept = None; // the frame before was not drawn
         }
         let (fell_back, needed) = self.frames.awaited(request.submission);
@@ -277,7 +277,10 @@ impl Renderer {
         pairs.review(self.device.memory_budget());
         pairs.make(request.scene.count, tiles, needed);
         if matches!(request.settings.raster, Raster::Auto | Raster::Tiles) && !pairs.is_fixed() {
-            let estimate = self.estimate.of(request.scene, request.camera);
+            let estimate = {
+                let whole = request.whole.unwrap_or(request.camera);
+                self.estimate.of(request.scene, request.camera, whole)
+            };
             pairs.expect(estimate);
         }
         // Where no more room can be made, quads are drawn at once.

@@ -6,17 +6,18 @@ use crate::passes::SceneBuffers;
 /// The estimate that was made last.
 #[derive(Debug, Default)]
 pub(super) struct PairEstimate {
-    /// The scene's number, how often its layers had been changed, and the camera in its space.
-    made_of: Option<(u64, u64, Camera)>,
+    /// The scene's number, how often its layers had been changed, the camera in its space, and that of whose picture it shows
+    /// a part.
+    made_of: Option<(u64, u64, Camera, Camera)>,
     pairs: u32,
 }
 
 impl PairEstimate {
-    /// The pairs of a scene in the picture of a camera in its space.
-    pub(super) fn of(&mut self, scene: &SceneBuffers, camera: &Camera) -> u32 {
-        let from = (scene.id, scene.changes, *camera);
+    /// The pairs of a scene in the picture of a camera in its space, which is a part of that of `whole`.
+    pub(super) fn of(&mut self, scene: &SceneBuffers, camera: &Camera, whole: &Camera) -> u32 {
+        let from = (scene.id, scene.changes, *camera, *whole);
         if self.made_of != Some(from) {
-            self.pairs = scene.estimated_pairs(camera);
+            self.pairs = scene.estimated_pairs_of_part(camera, whole);
             self.made_of = Some(from);
         }
         self.pairs

@@ -164,6 +164,7 @@ impl Renderer {
         })
     }
 
+    /// Another renderer for what this one draws, where it draws it.
     fn alike(&self, desc: RendererDesc) -> Result<Self> {
         let mut made = self.sharing(desc)?;
         made.placement = self.placement;

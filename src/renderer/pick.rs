@@ -11,7 +11,7 @@ use super::outcome::Submission;
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
-use crate::gpu::{Buffer, BufferDesc, Device, Location, Recorder};
+use crate::gpu::{Buffer, BufferDesc, Device, Location, Recorder, Target};
 use crate::limits;
 use crate::passes::{SceneBuffers, TilePicture};
 use crate::placement::Placement;
@@ -104,13 +104,15 @@ struct Slot {
 }
 
 impl Picker {
-    /// A picker beside a renderer, whose compiled pipelines it shares. So many requests, from 1 to
-    /// [`RendererDesc::MAX_FRAMES`], may be unfinished at once.
+    /// A picker beside a renderer, whose compiled pipelines it shares and whose [placement](Renderer::set_placement) it takes.
+    /// So many requests, from 1 to [`RendererDesc::MAX_FRAMES`], may be unfinished at once.
     ///
     /// # Errors
     /// As for [`Renderer::sharing`].
     pub fn new(renderer: &Renderer, in_flight: u32) -> Result<Self> {
-        let renderer = renderer.sharing(RendererDesc {
+        let renderer = renderer.alike(RendererDesc {
+            // Nothing is drawn into a target, least of all into a render pass of the host's.
+            target: Target::DYNAMIC,
             color_space: ColorSpace::Stored,
             depth: None,
             expected_depth: None,
@@ -134,11 +136,12 @@ impl Picker {
     }
 
     /// Records the question what the pixels of `rect` show most of, in the picture of `camera`. Of the settings, those that
-    /// say how splats are cut and projected count. This allocates where it asks for more than any request before it.
+    /// say how splats are cut and projected count. This allocates where it asks for more than any request before it, and the
+    /// first request compiles what no frame needs: make one that nobody waits for.
     ///
     /// # Safety
     /// As for [`Renderer::prepare`], with requests in place of frames: of so many as [`new`](Self::new) was told the first one
-    /// has finished before one more is recorded.
+    /// has finished before one more is recorded, and all of them before the picker is dropped.
     ///
     /// # Errors
     /// As for [`Renderer::configure`], and [`Error::Invalid`] for a rectangle that has no pixels or reaches out of the
@@ -174,7 +177,8 @@ impl Picker {
         unsafe { self.renderer.prepare(cmd, scene) }?;
         let tiles = self.renderer.picture().filter(|_| scene.count > 0);
         if let Some(tiles) = tiles {
-            // SAFETY: the caller's promises are those of `prepare`, and the buffers live as the frame's do.
+            // SAFETY: the caller's promises are those of `prepare`; the tiles' buffers live as the frame's do, and the slot's
+            // until its next request or the picker's end, which come after this one has finished.
             let mut recorder = unsafe { Recorder::begin(&device, cmd, None) };
             let [begins, pixels] = TilePicture::sizes(rect.extent, TargetFormat::Float);
             let [to, _] = sizes(rect.extent);
@@ -208,12 +212,14 @@ impl Picker {
             ));
         }
         let slot = &self.slots[(ticket.request % slots) as usize];
-        let is_held = ticket.request + slots >= self.recorded;
+        let later = self.recorded.checked_sub(ticket.request);
+        let is_held = later.is_some_and(|later| (1..=slots).contains(&later));
         let (Some((rect, has_splats)), Some(readback), true) =
             (slot.asked, &slot.readback, is_held)
         else {
             return Err(Error::Invalid(format!(
-                "Picker::read was given request {}, whose memory a later one has taken: read each before {slots} more are recorded",
+                "Picker::read was given request {}, which was never recorded or whose memory a later one has taken: read each \
+                 before {slots} more are recorded",
                 ticket.request
             )));
         };

@@ -1,10 +1,11 @@
 //! Picks: the Gaussian that a pixel shows most of, as the reference finds it, in the whole picture and in parts of it.
 
 use ash::vk;
-use rara::scene::{Kind, generate};
+use rara::glam::{DQuat, DVec3};
+use rara::scene::{Bounds, Kind, generate};
 use rara::{
-    Clip, ClipOp, Layer, Mode, Pick, PickTicket, Picker, Picks, Picture, Renderer, RendererDesc,
-    Scene, Settings, Show, reference,
+    Camera, Clip, ClipOp, Gaussians, Headless, Layer, LayerState, Mode, Pick, PickTicket, Picker,
+    Picks, Picture, Placement, Renderer, RendererDesc, Scene, Settings, Show, reference,
 };
 
 use crate::common;
@@ -60,22 +61,29 @@ fn assert_alike(picks: &Picks, expected: &Picks) {
 fn pixels_show_most_of_what_the_reference_says() {
     let mut headless = common::headless();
     let scene = generate(Kind::General, 3_000, 5);
-    let camera = common::views(&scene, 3, common::scaled((120, 90)))[1];
-    let (width, height) = (camera.width, camera.height);
+    let outside = common::views(&scene, 3, common::scaled((120, 90)))[1];
+    let size = (outside.width, outside.height);
+    // From within, splats that reach into a part have their centres far outside of it.
+    let centre = Bounds::of(&scene).centre();
+    let within = Camera::look_at(centre, outside.eye, -DVec3::Y, 80.0, size).expect("a view");
+    let flat = common::flattened(&outside, &scene);
     headless.load(&scene).expect("uploads");
-    for (mode, planes) in [
-        (Mode::None, 0),
-        (Mode::Hard, 1),
-        (Mode::Rara, 1),
-        (Mode::Exact, 1),
-        (Mode::Exact, 3),
+    for (camera, mode, planes) in [
+        (outside, Mode::None, 0),
+        (outside, Mode::Hard, 1),
+        (outside, Mode::Rara, 1),
+        (outside, Mode::Exact, 1),
+        (outside, Mode::Exact, 3),
+        (within, Mode::None, 0),
+        (within, Mode::Exact, 1),
+        (flat, Mode::Exact, 1),
     ] {
         let clip = common::clip(&scene, planes, ClipOp::And);
         let settings = Settings::default().mode(mode);
         let strongest = settings.show(Show::Strongest);
         let truth = reference::render::<f64>(&scene, &camera, &clip, &strongest).picture;
         let whole = headless
-            .pick(&camera, &clip, &settings, rect(0, 0, width, height))
+            .pick(&camera, &clip, &settings, rect(0, 0, size.0, size.1))
             .expect("picks");
         let others = differing(&whole, &truth);
         let shown = whole.pixels.iter().flatten().count();
@@ -88,13 +96,15 @@ fn pixels_show_most_of_what_the_reference_says() {
             "{mode:?}: {others} of {shown} differ"
         );
         // A part of the picture is that part, also where it begins within a tile and ends at the picture's edge.
+        let (width, height) = (size.0 as i32, size.1 as i32);
         for part in [
             rect(31, 17, 23, 30),
-            rect(width as i32 / 2, height as i32 / 2, 1, 1),
-            rect(width as i32 - 9, height as i32 - 5, 9, 5),
+            rect(width / 2, height / 2, 1, 1),
+            rect(width - 9, height - 5, 9, 5),
         ] {
-            let picks = headless.pick(&camera, &clip, &settings, part);
-            let picks = picks.expect("picks");
+            let picks = headless
+                .pick(&camera, &clip, &settings, part)
+                .expect("picks");
             assert_eq!(
                 picks.pixels.len() as u32,
                 part.extent.width * part.extent.height
@@ -106,7 +116,7 @@ fn pixels_show_most_of_what_the_reference_says() {
     headless.close().expect("no validation messages");
 }
 
-/// Numbers run on from layer to layer, and a layer that is hidden, moved or clipped away is not picked where it was.
+/// Numbers run on from layer to layer, and a layer that is hidden, moved or clipped away is picked where it is then.
 #[test]
 fn layers_are_picked_where_they_are_shown() {
     let mut headless = common::headless();
@@ -114,31 +124,84 @@ fn layers_are_picked_where_they_are_shown() {
         generate(Kind::Layers, 800, 1),
         generate(Kind::General, 900, 2),
     );
-    let scene = Scene::from_iter([Layer::new("near", &near), Layer::new("far", &far)]);
     let camera = common::views(&near, 2, (64, 48))[0];
-    let settings = Settings::default();
-    let everywhere = rect(0, 0, 64, 48);
-    headless.load(scene.clone()).expect("uploads");
+    let (settings, everywhere) = (Settings::default(), rect(0, 0, 64, 48));
     let strongest = settings.show(Show::Strongest);
-    let truth = reference::render::<f64>(scene, &camera, &Clip::default(), &strongest).picture;
-    let picks = headless.pick(&camera, &Clip::default(), &settings, everywhere);
-    let picks = picks.expect("picks");
-    assert!(differing(&picks, &truth) < 16);
-    let layers: Vec<usize> = picks.gaussians().iter().map(|pick| pick.layer).collect();
-    assert!(
-        layers.contains(&0) && layers.contains(&1),
-        "both layers are seen"
-    );
-    for pick in picks.gaussians() {
-        assert_eq!(pick.layer, usize::from(pick.number >= 800), "{pick:?}");
-    }
-    let state = headless.layers()[0].state();
+    let usual = LayerState::default();
+    let moved = Placement::new(DVec3::new(0.3, -0.2, 0.1), DQuat::from_rotation_y(0.7), 0.6);
+    let moved = usual.placement(moved.expect("possible"));
+    let half = common::clip(&near, 1, ClipOp::And);
+    let layers = [Layer::new("near", &near), Layer::new("far", &far)];
     headless
-        .set_layer_state(0, state.visible(false))
-        .expect("hides");
-    let picks = headless.pick(&camera, &Clip::default(), &settings, everywhere);
-    let hidden = picks.expect("picks").gaussians();
-    assert!(!hidden.is_empty() && hidden.iter().all(|pick| pick.layer == 1));
+        .load(Scene::from_iter(layers.clone()))
+        .expect("uploads");
+    let mut seen: Vec<Vec<Pick>> = Vec::new();
+    for (state, own) in [
+        (usual, None),
+        (moved, None),
+        (usual, Some(half)),
+        (usual.visible(false), None),
+    ] {
+        headless.set_layer_state(0, state).expect("a state");
+        headless.set_layer_clip(0, own.clone()).expect("a clip");
+        let mut first = layers[0].clone().with(state);
+        if let Some(own) = own {
+            first = first.clipped(own);
+        }
+        let scene = Scene::from_iter([first, layers[1].clone()]);
+        let truth = reference::render::<f64>(scene, &camera, &Clip::default(), &strongest);
+        let picks = headless.pick(&camera, &Clip::default(), &settings, everywhere);
+        let picks = picks.expect("picks");
+        assert!(differing(&picks, &truth.picture) < 16);
+        let all = picks.gaussians();
+        for pick in &all {
+            assert_eq!(pick.layer, usize::from(pick.number >= 800), "{pick:?}");
+        }
+        assert_eq!(all.iter().any(|pick| pick.layer == 0), state.visible);
+        assert!(all.iter().any(|pick| pick.layer == 1));
+        assert!(!seen.contains(&all), "another state shows others");
+        seen.push(all);
+    }
+    headless.close().expect("no validation messages");
+}
+
+/// A picker beside a renderer that draws a scene elsewhere finds it there, and nothing in an empty scene.
+#[test]
+fn scenes_are_picked_where_the_renderer_places_them() {
+    let mut headless = common::headless();
+    let scene = generate(Kind::General, 900, 4);
+    let camera = common::views(&scene, 3, (64, 48))[0];
+    let (clip, settings) = (Clip::default(), Settings::default());
+    let everywhere = rect(0, 0, 64, 48);
+    let placed = Placement::new(DVec3::new(0.2, 0.1, -0.3), DQuat::from_rotation_z(0.5), 0.8);
+    let placed = placed.expect("possible");
+    let state = LayerState::default().placement(placed);
+    let layer = Layer::new("placed", &scene).with(state);
+    headless.load(Scene::from_iter([layer])).expect("uploads");
+    let expected = headless.pick(&camera, &clip, &settings, everywhere);
+    let expected = expected.expect("picks");
+    let device = headless.device().clone();
+    let mut renderer =
+        Renderer::new(&device, RendererDesc::new(vk::Format::R8G8B8A8_UNORM)).expect("a renderer");
+    renderer.set_placement(placed);
+    let mut beside = Headless::beside(&renderer).expect("beside");
+    beside.load(&scene).expect("uploads");
+    let found = beside
+        .pick(&camera, &clip, &settings, everywhere)
+        .expect("picks");
+    let same = found.pixels.iter().zip(&expected.pixels);
+    let same = same
+        .filter(|(a, b)| a.map(|a| a.number) == b.map(|b| b.number))
+        .count();
+    assert!(same + 16 > found.pixels.len(), "{same}"); // it is rounded in another space
+    let shown = found.pixels.iter().flatten().count();
+    assert!(shown > 300, "{shown}");
+    beside.load(&Gaussians::default()).expect("uploads");
+    let nothing = beside
+        .pick(&camera, &clip, &settings, everywhere)
+        .expect("picks");
+    assert_eq!(nothing.strongest(), None);
+    drop((beside, renderer, device));
     headless.close().expect("no validation messages");
 }
 

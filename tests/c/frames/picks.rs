@@ -6,6 +6,7 @@ use super::channels::{SIZE, camera, with_renderer};
 use super::*;
 use crate::clips::clip_of;
 use crate::results::assert_fails;
+use rara::scene::Bounds;
 use rara::{Clip, Headless, Settings};
 use rara_c::boundary::*;
 use rara_c::camera::*;
@@ -18,7 +19,9 @@ const PIXELS: usize = (PART.2 * PART.3) as usize;
 #[test]
 fn picks_are_those_of_a_headless_renderer() {
     with_both(1_200, |scene, _, device, ours| {
-        let camera = camera(scene).near_cut(Some(0.3));
+        let whole = camera(scene);
+        let middle = (whole.rotation * (Bounds::of(scene).centre() - whole.eye)).z;
+        let camera = whole.near_cut(Some(middle));
         let uploaded = ours.uploaded();
         let (x, y, width, height) = PART;
         with_renderer(ours.device, |renderer| {
@@ -27,7 +30,7 @@ fn picks_are_those_of_a_headless_renderer() {
                 let mut picker = null_mut();
                 assert_ok(rara_picker_create(renderer, 1, &mut picker));
                 let mut clip = clip_of(&[]);
-                clip.near_cut = 0.3;
+                clip.near_cut = middle;
                 let seen = RaraCamera::from(camera);
                 let ask = |x: i32| {
                     let mut ticket = RaraPickTicket::default();
@@ -74,6 +77,10 @@ fn picks_are_those_of_a_headless_renderer() {
                     ..second
                 };
                 assert_fails(read(other, PIXELS), RARA_ERROR_INVALID, "another picker's");
+                for request in [second.request + 1, u64::MAX] {
+                    let never = RaraPickTicket { request, ..second };
+                    assert_fails(read(never, PIXELS), RARA_ERROR_INVALID, "never recorded");
+                }
                 assert_fails(
                     read(second, 1),
                     RARA_ERROR_INVALID,
@@ -92,8 +99,15 @@ fn picks_are_those_of_a_headless_renderer() {
                     offset: vk::Offset2D { x, y },
                     extent: vk::Extent2D { width, height },
                 };
-                let expected = headless.pick(&camera, &Clip::default(), &Settings::default(), rect);
-                let expected = expected.expect("picks").pixels;
+                let mut pick = |camera| {
+                    let picks = headless.pick(camera, &Clip::default(), &Settings::default(), rect);
+                    picks.expect("picks").pixels
+                };
+                let expected = pick(&camera);
+                assert!(
+                    expected != pick(&whole),
+                    "the near cut leaves something out"
+                );
                 let shown = expected.iter().flatten().count();
                 assert!(shown > PIXELS / 2, "{shown}");
                 for (pick, expected) in picks.iter().zip(expected) {

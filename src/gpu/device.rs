@@ -3,12 +3,13 @@
 use std::any::Any;
 use std::ffi::CString;
 use std::sync::atomic::AtomicU64;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::Allocator;
 
 use super::account::Account;
+use super::ahead::Ahead;
 use super::clock::Clock;
 use super::commands::Commands;
 use super::instance::Instance;
@@ -40,6 +41,8 @@ pub(super) struct Inner {
     pipeline_cache: vk::PipelineCache,
     /// How long the driver has made pipelines.
     pub(super) pipeline_ns: AtomicU64,
+    /// How kernels are compiled ahead; empty where they are not.
+    ahead: OnceLock<Ahead>,
     commands: Commands,
     mesh_shader: Option<ext::mesh_shader::Device>,
     push_descriptor: Option<khr::push_descriptor::Device>,
@@ -91,6 +94,7 @@ impl Device {
                 queue_family: desc.queue_family,
                 pipeline_cache: desc.pipeline_cache,
                 pipeline_ns: AtomicU64::new(0),
+                ahead: OnceLock::new(),
                 allocator: Some(allocator),
                 source: desc.memory,
                 account: Account::default(),
@@ -178,6 +182,16 @@ impl Device {
         unsafe { instance.get_physical_device_properties(physical) }
     }
 
+    /// The driver; zero where it does not say.
+    pub(super) fn driver_id(&self) -> vk::DriverId {
+        let (instance, physical) = (&self.inner.instance, self.inner.physical);
+        let mut driver = vk::PhysicalDeviceDriverProperties::default();
+        let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
+        // SAFETY: the instance is ours, or the host's and outlives this device, which has Vulkan 1.2.
+        unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
+        driver.driver_id
+    }
+
     /// The family of the queue.
     pub fn queue_family(&self) -> u32 {
         self.inner.queue_family
@@ -248,6 +262,21 @@ impl Device {
 
     pub(crate) fn pipeline_cache(&self) -> vk::PipelineCache {
         self.inner.pipeline_cache
+    }
+
+    /// True for a device that was opened here, false for a host's.
+    pub(super) fn is_own(&self) -> bool {
+        self.inner.owned.is_some()
+    }
+
+    /// How kernels are compiled ahead; `None` where they are not.
+    pub(super) fn ahead(&self) -> Option<&Ahead> {
+        self.inner.ahead.get()
+    }
+
+    /// Has kernels compiled ahead from now on, unless they are already.
+    pub(super) fn compile_ahead(&self, ahead: Ahead) {
+        let _ = self.inner.ahead.set(ahead);
     }
 
     /// Names an object of this device for debuggers and validation messages.

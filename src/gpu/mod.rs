@@ -15,6 +15,7 @@
 
 mod access;
 mod account;
+mod ahead;
 mod attachments;
 mod clock;
 mod commands;

@@ -51,10 +51,8 @@ impl ComputePipeline {
         #[cfg(feature = "lab")]
         let info = info.map(|info| info.flags(device.pipeline_flags()));
         let (raw, cache) = (device.raw(), device.pipeline_cache());
-        let made = device.making_pipelines(|| {
-            // SAFETY: module and layout are the device's and alive; the constants outlive the call.
-            unsafe { raw.create_compute_pipelines(cache, &info, None) }
-        });
+        // SAFETY: module and layout are the device's and alive; the constants outlive the call.
+        let made = unsafe { raw.create_compute_pipelines(cache, &info, None) };
         let made = made.map_err(|(_, result)| result);
         let inner = Pipeline::new(device, desc.name, layout, made, "vkCreateComputePipelines")?;
         #[cfg(feature = "lab")]
@@ -224,11 +222,9 @@ impl GraphicsPipeline {
         #[cfg(feature = "lab")]
         let info = info.flags(device.pipeline_flags());
         let (raw, cache) = (device.raw(), device.pipeline_cache());
-        let made = device.making_pipelines(|| {
-            // SAFETY: modules and layout are the device's and alive; everything pointed to outlives the call. Whoever named
-            // a render pass vouched for it in `Target::render_pass`.
-            unsafe { raw.create_graphics_pipelines(cache, &[info], None) }
-        });
+        // SAFETY: modules and layout are the device's and alive; everything pointed to outlives the call. Whoever named
+        // a render pass vouched for it in `Target::render_pass`.
+        let made = unsafe { raw.create_graphics_pipelines(cache, &[info], None) };
         let made = made.map_err(|(_, result)| result);
         let inner = Pipeline::new(device, desc.name, layout, made, "vkCreateGraphicsPipelines")?;
         #[cfg(feature = "lab")]
@@ -320,11 +316,7 @@ struct Module<'a> {
 
 impl<'a> Module<'a> {
     fn new(device: &'a Device, shader: &'a Shader, bindings: Bindings) -> Result<Self> {
-        let code = match bindings {
-            Bindings::Address => shader.address,
-            Bindings::Bound => shader.bound,
-        };
-        let info = vk::ShaderModuleCreateInfo::default().code(code);
+        let info = vk::ShaderModuleCreateInfo::default().code(shader.code(bindings));
         // SAFETY: the device is alive, and the words are SPIR-V that this crate's build compiled and checked.
         let raw = unsafe { device.raw().create_shader_module(&info, None) }
             .map_err(failed("vkCreateShaderModule"))?;

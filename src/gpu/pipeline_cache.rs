@@ -2,7 +2,6 @@
 //! supposed to refuse what is not theirs, but some crash.
 
 use std::sync::atomic::Ordering;
-use std::time::Instant;
 
 use ash::vk;
 
@@ -54,15 +53,6 @@ impl Device {
     /// make a pipeline, others when it is used first: then the frame that uses it first takes longer, which is not in here.
     pub fn pipeline_ms(&self) -> f64 {
         self.inner.pipeline_ns.load(Ordering::Relaxed) as f64 / 1e6
-    }
-
-    /// Makes pipelines, and counts how long it takes.
-    pub(super) fn making_pipelines<R>(&self, make: impl FnOnce() -> R) -> R {
-        let begin = Instant::now();
-        let made = make();
-        let ns = u64::try_from(begin.elapsed().as_nanos()).unwrap_or(u64::MAX);
-        self.inner.pipeline_ns.fetch_add(ns, Ordering::Relaxed);
-        made
     }
 
     /// Adds the pipelines that an earlier run kept, so that they need not be compiled again.

@@ -5,6 +5,7 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use super::ahead::Ahead;
 use super::{Device, PipelineCacheId};
 use crate::files::write_atomically;
 use crate::{Error, Result};
@@ -99,6 +100,9 @@ impl PipelineFile {
     pub(crate) fn open(cache: &PipelineCache, device: &Device) -> Option<Self> {
         let id = device.pipeline_cache_id();
         let path = cache.folder()?.join(name(&id));
+        if let Some(ahead) = Ahead::open(device, path.with_extension("compiled")) {
+            device.compile_ahead(ahead);
+        }
         let mut this = Self { path, held: None };
         match read(&this.path, &id) {
             Ok(data) => {

@@ -2,6 +2,8 @@
 
 use ash::vk;
 
+use super::Bindings;
+
 /// How a shader uses a buffer, as its GLSL declares it (`readonly`, `writeonly` or neither).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BufferAccess {
@@ -42,6 +44,16 @@ pub struct Shader {
     pub buffers: &'static [BufferUse],
     /// True when it has subgroup operations. Where the device can be asked for whole subgroups of a size, it is.
     pub subgroups: bool,
+}
+
+impl Shader {
+    /// Its SPIR-V that reaches its buffers in one of the two ways.
+    pub(super) fn code(&self, bindings: Bindings) -> &'static [u32] {
+        match bindings {
+            Bindings::Address => self.address,
+            Bindings::Bound => self.bound,
+        }
+    }
 }
 
 /// Buffers a pass can have: device addresses that fit in the guaranteed 128 bytes of push constants beside

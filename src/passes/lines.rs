@@ -53,7 +53,8 @@ impl Lines {
         if lines.is_empty() {
             return Ok(());
         }
-        self.pipelines.ensure(device, draw(attachments).key())?;
+        self.pipelines
+            .ensure(device, vec![draw(attachments).key()])?;
         let bytes = bytemuck::cast_slice::<_, u8>(lines);
         let needed = (COMMAND + bytes.len()) as u64;
         let place = &mut self.buffers[frame];

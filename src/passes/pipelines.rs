@@ -190,46 +190,72 @@ impl Pipelines {
         self.compute.contains_key(key) || self.graphics.contains_key(key)
     }
 
-    /// Makes a pipeline that is not there yet.
-    pub(crate) fn ensure(&mut self, device: &Device, key: PipelineKey) -> Result<()> {
-        if self.has(&key) {
-            return Ok(());
+    /// Makes the pipelines that are not there yet, on as many threads as the device allows.
+    pub(crate) fn ensure(&mut self, device: &Device, keys: Vec<PipelineKey>) -> Result<()> {
+        let mut missing: Vec<PipelineKey> = Vec::new();
+        for key in keys {
+            if !self.has(&key) && !missing.contains(&key) {
+                missing.push(key);
+            }
         }
-        let PipelineKey {
-            name,
-            shader: Identity(shader),
-            ref constants,
-            draw,
-        } = key;
+        // The largest first, so that no thread is left alone with it at the end.
+        missing.sort_by_key(|key| std::cmp::Reverse(key.shader.0.bound.len()));
         let bindings = self.bindings;
-        let begun = Instant::now();
-        if let Some((Identity(fragment), attachments, depth_test)) = draw {
-            let desc = GraphicsDesc {
-                name,
-                front: shader,
-                fragment,
-                constants,
-                attachments,
-                depth_test,
-                blend: Some(OVER),
-                topology: vk::PrimitiveTopology::TRIANGLE_STRIP,
-                bindings,
-            };
-            let pipeline = GraphicsPipeline::new(device, &desc)?;
-            self.graphics.insert(key, pipeline);
-        } else {
-            let desc = ComputeDesc {
-                name,
-                shader,
-                constants,
-                bindings,
-            };
-            let pipeline = ComputePipeline::new(device, &desc)?;
-            self.compute.insert(key, pipeline);
+        let made = device.making_pipelines(
+            &missing,
+            |key| key.kernel(bindings),
+            |key| key.make(device, bindings),
+        )?;
+        for (key, pipeline) in missing.into_iter().zip(made) {
+            match pipeline {
+                Made::Compute(pipeline) => drop(self.compute.insert(key, pipeline)),
+                Made::Graphics(pipeline) => drop(self.graphics.insert(key, pipeline)),
+            }
         }
-        let ms = 1e3 * begun.elapsed().as_secs_f64();
-        log::debug!("pipeline \"{name}\" was made in {ms:.1} ms");
         Ok(())
+    }
+}
+
+/// A pipeline of either kind.
+enum Made {
+    Compute(ComputePipeline),
+    Graphics(GraphicsPipeline),
+}
+
+impl PipelineKey {
+    /// The description of a kernel; `None` for a draw.
+    fn kernel(&self, bindings: Bindings) -> Option<ComputeDesc<'_>> {
+        self.draw.is_none().then(|| ComputeDesc {
+            name: self.name,
+            shader: self.shader.0,
+            constants: &self.constants,
+            bindings,
+        })
+    }
+
+    fn make(&self, device: &Device, bindings: Bindings) -> Result<Made> {
+        let begun = Instant::now();
+        let made = match (self.kernel(bindings), self.draw) {
+            (Some(kernel), _) => Made::Compute(ComputePipeline::new(device, &kernel)?),
+            (None, draw) => {
+                let (Identity(fragment), attachments, depth_test) = draw.expect("no kernel");
+                let desc = GraphicsDesc {
+                    name: self.name,
+                    front: self.shader.0,
+                    fragment,
+                    constants: &self.constants,
+                    attachments,
+                    depth_test,
+                    blend: Some(OVER),
+                    topology: vk::PrimitiveTopology::TRIANGLE_STRIP,
+                    bindings,
+                };
+                Made::Graphics(GraphicsPipeline::new(device, &desc)?)
+            }
+        };
+        let ms = 1e3 * begun.elapsed().as_secs_f64();
+        log::debug!("pipeline \"{}\" was made in {ms:.1} ms", self.name);
+        Ok(made)
     }
 }
 

@@ -50,13 +50,9 @@ impl SharedPipelines {
         if !has_all(shared) {
             // This replaces the shared pipelines by a copy, while other renderers record with the ones that they have.
             let pipelines = Arc::make_mut(shared);
-            let mut made = Ok(());
-            plan.pipelines(targets, &mut |key| {
-                if made.is_ok() {
-                    made = pipelines.ensure(device, key);
-                }
-            });
-            made?;
+            let mut keys = Vec::new();
+            plan.pipelines(targets, &mut |key| keys.push(key));
+            pipelines.ensure(device, keys)?;
         }
         self.seen[at] = Some(shared.clone());
         Ok(())

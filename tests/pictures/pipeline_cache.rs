@@ -27,11 +27,39 @@ fn run(pipeline_cache: PipelineCache) -> (Picture, u64) {
     (picture, headless.kept_pipeline_bytes())
 }
 
+/// The one file of compiled pipelines in a folder.
 fn only_file(folder: &Path) -> PathBuf {
     let files = fs::read_dir(folder).expect("the folder was made");
-    let files: Vec<_> = files.map(|file| file.expect("listed").path()).collect();
+    let files = files.map(|file| file.expect("listed").path());
+    let files: Vec<_> = files
+        .filter(|path| path.extension() != Some("compiled".as_ref()))
+        .collect();
     assert_eq!(files.len(), 1, "{files:?}");
     files[0].clone()
+}
+
+#[test]
+fn kernels_that_lavapipe_compiles_at_their_first_use_are_compiled_ahead_once() {
+    let place = Folder::new("pipelines-ahead");
+    let folder = place.join("cache");
+    let (first, _) = run(PipelineCache::Folder(folder.clone()));
+    let list = only_file(&folder).with_extension("compiled");
+    let is_lavapipe = common::headless_unchecked(Bindings::Address)
+        .device_name()
+        .contains("llvmpipe");
+    if !is_lavapipe || std::thread::available_parallelism().map_or(1, usize::from) < 2 {
+        assert!(!list.exists(), "nothing is compiled ahead here");
+        return;
+    }
+    let noted = fs::read_to_string(&list).expect("the list was written");
+    assert!(noted.lines().count() > 5, "{noted}");
+    let (second, _) = run(PipelineCache::Folder(folder.clone()));
+    assert_eq!(fs::read_to_string(&list).expect("is there"), noted);
+    // A list that is damaged is as good as one that lacks what cannot be read.
+    let damaged = noted.replacen('\n', "no hash\n", 1);
+    fs::write(&list, damaged).expect("the file is ours");
+    let (third, _) = run(PipelineCache::Folder(folder));
+    assert!(first == second && first == third);
 }
 
 #[test]

@@ -71,7 +71,7 @@ pub use clip::{Clip, ClipOp, Plane, Quadric, Shape, Surface};
 pub use depth::DepthMap;
 pub use error::{Error, Result};
 #[doc(inline)]
-pub use gpu::PipelineCache;
+pub use gpu::{OnCompile, PipelineCache};
 pub use passes::{SceneBuffers, SceneLayer, Staging};
 pub use picture::{Channel, Cue, Cues, Picture};
 pub use placement::Placement;

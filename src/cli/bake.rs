@@ -236,7 +236,10 @@ impl Bake {
             }
         }
         let (baked, hard, views) = match residual {
-            Some(residual) => (Some(residual.baked), Some(residual.hard), residual.views),
+            Some(mut residual) => {
+                residual.compiled.take().into_iter().for_each(say);
+                (Some(residual.baked), Some(residual.hard), residual.views)
+            }
             None => (None, None, Vec::new()),
         };
         if self.json {

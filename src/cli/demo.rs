@@ -96,7 +96,7 @@ impl Demo {
             });
         }
         let usual = shots.iter().map(|shot| shot.stats.wall_ms).sum::<f64>() / shots.len() as f64;
-        let preparing = output::preparing(session.first_use_ms(usual), session.has_kept());
+        let compiled = output::compiled(session.first_use_ms(usual), session.has_kept());
         session.close()?;
         for Shot { mode, picture, .. } in &shots {
             sheet::opaque(picture).save(self.output.join(format!("{}.png", name(*mode))))?;
@@ -107,7 +107,7 @@ impl Demo {
         let [_, hard, _, exact] = [0, 1, 2, 3].map(|index| &shots[index].picture);
         let corner = sheet::where_they_differ(hard, exact);
         sheet::sheet(&labelled, corner).save(self.output.join("sheet.png"))?;
-        preparing.into_iter().for_each(say);
+        compiled.into_iter().for_each(say);
         print_frames(&shots);
         if !self.no_reference {
             print_errors(&shots, &scene, &camera, &clip)?;

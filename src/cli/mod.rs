@@ -57,6 +57,7 @@ mod values;
 #[cfg(feature = "view")]
 mod view;
 mod views;
+mod warm;
 
 use std::process::ExitCode;
 
@@ -106,6 +107,7 @@ enum Command {
     Info(info::Info),
     Stress(stress::Stress),
     Devices(devices::Devices),
+    Warm(warm::Warm),
     Completions(shell::Completions),
     Man(shell::Man),
 }
@@ -128,6 +130,7 @@ impl Command {
             Self::Info(command) => command.run(),
             Self::Stress(command) => command.run(),
             Self::Devices(command) => command.run(),
+            Self::Warm(command) => command.run(),
             Self::Completions(command) => command.run(),
             Self::Man(command) => command.run(),
         }

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use rara::{Error, Picture, Result};
+use rara::{Error, OnCompile, Picture, Result};
 use serde::Serialize;
 
 use super::values::STANDARD;
@@ -49,16 +49,51 @@ pub(super) fn complain(line: impl Display) {
     let _ = writeln!(io::stderr(), "{line}");
 }
 
-/// The line about the driver's shaders; none where preparing them has hardly taken a moment. An earlier run may have `kept`
+/// A sign of life while shaders are compiled, however many parts of the program say so at once.
+pub(super) struct Compiling(());
+
+/// How many parts say so, and the sign.
+static COMPILING: Mutex<(usize, Option<Spinner>)> = Mutex::new((0, None));
+
+impl Compiling {
+    pub(super) fn begin() -> Self {
+        let mut shown = COMPILING.lock().unwrap_or_else(PoisonError::into_inner);
+        shown.0 += 1;
+        shown
+            .1
+            .get_or_insert_with(|| Spinner::new("compiling shaders"));
+        Self(())
+    }
+
+    /// What a device calls when it compiles.
+    pub(super) fn hook() -> OnCompile {
+        let shown = Mutex::new(None);
+        OnCompile::new(move |is_begun| {
+            *shown.lock().unwrap_or_else(PoisonError::into_inner) = is_begun.then(Self::begin);
+        })
+    }
+}
+
+impl Drop for Compiling {
+    fn drop(&mut self) {
+        let mut shown = COMPILING.lock().unwrap_or_else(PoisonError::into_inner);
+        shown.0 -= 1;
+        if shown.0 == 0 {
+            shown.1 = None;
+        }
+    }
+}
+
+/// The line about the driver's shaders; none where compiling them has hardly taken a moment. An earlier run may have `kept`
 /// them.
-pub(super) fn preparing(first_use_ms: f64, kept: bool) -> Option<String> {
+pub(super) fn compiled(first_use_ms: f64, kept: bool) -> Option<String> {
     let seconds = first_use_ms / 1e3;
     let first = if kept {
         ""
     } else {
         ", first time on this driver"
     };
-    (seconds >= 0.25).then(|| format!("preparing shaders{first}: {seconds:.1} s"))
+    (seconds >= 0.25).then(|| format!("compiling shaders{first}: {seconds:.1} s"))
 }
 
 /// Prints the document that `--json` promises.

@@ -1,10 +1,11 @@
 //! What moves on a terminal while something takes longer than a moment; elsewhere there is nothing to see.
 
+use std::sync::LazyLock;
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::output;
 
@@ -13,6 +14,9 @@ const MOMENT: Duration = Duration::from_millis(500);
 
 /// How often what moves moves, also where the work says nothing for long.
 const TICK: Duration = Duration::from_millis(100);
+
+/// What is shown at once, a line each.
+static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
 /// A thread that shows a bar once the work has taken a moment, and moves it from then on.
 struct Sign {
@@ -35,7 +39,7 @@ impl Sign {
             if !waits(MOMENT) {
                 return;
             }
-            bar.set_draw_target(ProgressDrawTarget::stderr());
+            let bar = BARS.add(bar);
             while waits(TICK) {
                 bar.tick();
             }

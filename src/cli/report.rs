@@ -271,8 +271,8 @@ impl fmt::Display for Report {
                 grouped(pass.primitives)
             )?;
         }
-        if let Some(preparing) = output::preparing(self.first_use_ms, self.has_kept) {
-            write!(f, "\n{preparing}")?;
+        if let Some(compiled) = output::compiled(self.first_use_ms, self.has_kept) {
+            write!(f, "\n{compiled}")?;
         }
         write!(
             f,

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::compare::Measures;
 use super::failure::Failure;
-use super::output::Progress;
+use super::output::{self, Progress};
 use super::session::Session;
 
 /// The measures of one view.
@@ -25,6 +25,8 @@ pub(super) struct Residual {
     pub(super) baked: Measures,
     pub(super) hard: Measures,
     pub(super) views: Vec<View>,
+    /// The line about the driver's compilation, where that took a moment.
+    pub(super) compiled: Option<String>,
 }
 
 /// Draws the scene cut exactly and by centres, and the baked scene, and compares them.
@@ -59,8 +61,10 @@ pub(super) fn residual(
         of_baked.push(baked);
         of_hard.push(hard);
     }
+    let compiled = output::compiled(session.first_use_ms(0.0), session.has_kept());
     session.close()?;
     Ok(Residual {
+        compiled,
         baked: over_all(&of_baked).into(),
         hard: over_all(&of_hard).into(),
         views,

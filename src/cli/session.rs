@@ -12,7 +12,7 @@ use rara::{
 };
 
 use super::combine::Measured;
-use super::output::Spinner;
+use super::output::Compiling;
 use super::process;
 
 /// A device with a scene on it.
@@ -60,7 +60,7 @@ impl Session {
         &mut self,
         frames: impl IntoIterator<Item = (&'a Camera, &'a Clip, &'a Settings)>,
     ) -> Result<()> {
-        let _spinner = Spinner::new("preparing shaders");
+        let _compiling = Compiling::begin();
         self.headless.forget();
         for (camera, clip, settings) in frames {
             let first = self.headless.render(camera, clip, settings)?;

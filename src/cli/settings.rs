@@ -110,6 +110,7 @@ impl DeviceArgs {
         HeadlessDesc::default()
             .device(self.device.clone())
             .validation(self.validation)
+            .on_compile(Some(output::Compiling::hook()))
             .pipeline_cache(if self.no_pipeline_cache {
                 PipelineCache::Off
             } else {

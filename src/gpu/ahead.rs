@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Instant;
 
@@ -18,6 +18,24 @@ use ash::vk;
 use super::{Buffer, BufferDesc, ComputeDesc, ComputePipeline, Device, DeviceDesc, Location};
 use crate::files::write_atomically;
 use crate::{Error, Result};
+
+/// A function that is called with `true` when the making and compiling of pipelines begins, and with `false` when it ends: for
+/// programs that say what they wait for. Both calls come from the thread that configures a frame.
+#[derive(Clone)]
+pub struct OnCompile(Arc<dyn Fn(bool) + Send + Sync>);
+
+impl OnCompile {
+    /// Has a function called.
+    pub fn new(hook: impl Fn(bool) + Send + Sync + 'static) -> Self {
+        Self(Arc::new(hook))
+    }
+}
+
+impl std::fmt::Debug for OnCompile {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("OnCompile")
+    }
+}
 
 /// A driver that compiles at the first dispatch, and the list of what it is known to have kept.
 #[derive(Debug)]
@@ -155,6 +173,8 @@ impl Device {
         make: impl Fn(&T) -> Result<R> + Sync,
     ) -> Result<Vec<R>> {
         let begin = Instant::now();
+        let said = |is_begun| self.compile_hook().map(|hook| hook.0(is_begun));
+        said(true);
         let made = if !self.is_own() || threads() < 2 || wanted.len() < 2 {
             wanted.iter().map(make).collect()
         } else {
@@ -166,6 +186,7 @@ impl Device {
                 on_threads(wanted, || Ok(()), |(), item| make(item))
             })
         };
+        said(false);
         let ns = u64::try_from(begin.elapsed().as_nanos()).unwrap_or(u64::MAX);
         self.inner.pipeline_ns.fetch_add(ns, Ordering::Relaxed);
         made

@@ -9,7 +9,7 @@ use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::Allocator;
 
 use super::account::Account;
-use super::ahead::Ahead;
+use super::ahead::{Ahead, OnCompile};
 use super::clock::Clock;
 use super::commands::Commands;
 use super::instance::Instance;
@@ -43,6 +43,7 @@ pub(super) struct Inner {
     pub(super) pipeline_ns: AtomicU64,
     /// How kernels are compiled ahead; empty where they are not.
     ahead: OnceLock<Ahead>,
+    on_compile: OnceLock<OnCompile>,
     commands: Commands,
     mesh_shader: Option<ext::mesh_shader::Device>,
     push_descriptor: Option<khr::push_descriptor::Device>,
@@ -95,6 +96,7 @@ impl Device {
                 pipeline_cache: desc.pipeline_cache,
                 pipeline_ns: AtomicU64::new(0),
                 ahead: OnceLock::new(),
+                on_compile: OnceLock::new(),
                 allocator: Some(allocator),
                 source: desc.memory,
                 account: Account::default(),
@@ -277,6 +279,16 @@ impl Device {
     /// Has kernels compiled ahead from now on, unless they are already.
     pub(super) fn compile_ahead(&self, ahead: Ahead) {
         let _ = self.inner.ahead.set(ahead);
+    }
+
+    /// Has a function called when pipelines are made, unless one is already.
+    pub(crate) fn on_compile(&self, hook: OnCompile) {
+        let _ = self.inner.on_compile.set(hook);
+    }
+
+    /// What is called when pipelines are made.
+    pub(super) fn compile_hook(&self) -> Option<&OnCompile> {
+        self.inner.on_compile.get()
     }
 
     /// Names an object of this device for debuggers and validation messages.

@@ -59,6 +59,7 @@ mod validation;
 mod write_only;
 
 pub use account::NamedBytes;
+pub use ahead::OnCompile;
 pub use attachments::Target;
 pub use device::Device;
 pub use devices::{DeviceInfo, list_devices};

@@ -1,6 +1,6 @@
 //! The description from which a session is opened.
 
-use crate::gpu::{Bindings, Device, DeviceShape, PipelineCache};
+use crate::gpu::{Bindings, Device, DeviceShape, OnCompile, PipelineCache};
 use crate::setters::setters;
 use crate::trace::Trace;
 
@@ -18,6 +18,8 @@ pub struct HeadlessDesc {
     pub bindings: Option<Bindings>,
     /// The place in which compiled pipelines are kept from one run to the next.
     pub pipeline_cache: PipelineCache,
+    /// What is called when shaders are compiled, which may take seconds.
+    pub on_compile: Option<OnCompile>,
     /// The trace in which to note how long each step takes on the processor and on the device.
     pub trace: Option<Trace>,
     /// Count what the stages do, where the device can.
@@ -31,6 +33,7 @@ setters!(HeadlessDesc {
     validation: bool,
     bindings: Option<Bindings>,
     pipeline_cache: PipelineCache,
+    on_compile: Option<OnCompile>,
     trace: Option<Trace>,
     statistics: bool,
     shape: Option<DeviceShape>,

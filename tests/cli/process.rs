@@ -131,3 +131,55 @@ fn drivers_keep_their_shaders_in_the_folder_that_is_named() {
         "render @/scene.ply --size 16x16 --mode none --json",
     ));
 }
+
+#[test]
+fn after_warm_pictures_find_their_shaders_compiled() {
+    let here = folder("warm");
+    let cache = here.join("cache");
+    scene(&here);
+    // The driver's own folder serves, so that it compiles nothing for this test alone.
+    let home = std::env::var_os("HOME").map(|home| Path::new(&home).join(".cache"));
+    let drivers = ["MESA_SHADER_CACHE_DIR", "XDG_CACHE_HOME"];
+    let set = drivers.iter().find_map(std::env::var_os);
+    let drivers = set
+        .or(home.map(Into::into))
+        .unwrap_or_else(|| here.join("driver").into());
+    let run = |words: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rara"));
+        command.args(
+            words
+                .split(' ')
+                .map(|word| word.replace('@', here.to_str().expect("text"))),
+        );
+        command
+            .env("RARA_CACHE", &cache)
+            .env("MESA_SHADER_CACHE_DIR", &drivers);
+        done(command.output().expect("the rara binary runs"))
+    };
+    let lists = || {
+        let files = fs::read_dir(&cache)
+            .expect("a folder")
+            .flatten()
+            .map(|file| file.path());
+        let lists = files.filter(|path| path.extension() == Some("compiled".as_ref()));
+        lists
+            .map(|list| fs::read_to_string(list).expect("text"))
+            .collect::<Vec<_>>()
+    };
+    run("warm");
+    let warm = lists();
+    for clip in [
+        "",
+        " --clip plane:1,0,0,0.2",
+        " --clip sphere:0,0,0,1",
+        " --clip box:0,0,0,1,1,1 --clip !sphere:0,0,0,.5",
+    ] {
+        run(&format!(
+            "render @/scene.ply -o @/cut.png --size 96x64{clip}"
+        ));
+    }
+    run(
+        "render @/scene.ply -o @/cut.exr --size 96x64 --clip sphere:0,0,0,1 --aov depth,normal,layer,weight,count",
+    );
+    assert_eq!(lists(), warm, "something was compiled after rara warm");
+}

@@ -122,7 +122,7 @@ impl Loading {
     pub(super) fn uploading(&mut self, loaded: &Loaded, is_first: bool) {
         let count: usize = loaded.layers.iter().map(|l| l.gaussians.len()).sum();
         let shaders = if is_first {
-            ", and preparing shaders"
+            ", and compiling shaders"
         } else {
             ""
         };

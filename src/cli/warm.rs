@@ -1,0 +1,113 @@
+//! `rara warm`: shaders compiled before a picture waits for them.
+
+use clap::{Args, ValueEnum};
+use glam::DVec3;
+use rara::clip::Expression;
+use rara::scene::{Bounds, Kind, generate};
+use rara::{Aov, Camera, Clip, Error, Mode, Raster, Scene, Settings, ShFormat};
+
+use super::failure::Failure;
+use super::output::{Progress, say};
+use super::session::Session;
+use super::settings::DeviceArgs;
+
+/// Compile the shaders ahead, for container images, cluster nodes and first pictures
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  rara warm
+  RARA_CACHE=/var/cache/rara rara warm --all
+
+It compiles what pictures need without a clip, cut by a plane, by a curved shape and by several shapes, in the default mode, and
+the channels of --aov. What drivers compile is kept in RARA_CACHE where that names a folder, and else in their own folders.")]
+pub(super) struct Warm {
+    /// Compile what the other modes, ways to draw, and forms of spherical harmonics need too
+    #[arg(long)]
+    all: bool,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+/// The clips whose frames differ in their shaders.
+const CLIPS: [Option<&str>; 4] = [
+    None,
+    Some("plane:0,0,1,0"),
+    Some("sphere:0,0,0,1"),
+    Some("all(box:0,0,0,1,1,1, not(sphere:0.5,0,0,0.5))"),
+];
+
+impl Warm {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let gaussians = generate(Kind::General, 500, 1);
+        let scene = Scene::from(&gaussians);
+        let up = -DVec3::Y;
+        let camera = Camera::frame(&Bounds::of(&gaussians), up, 50.0, (64, 64))?;
+        let usual = Settings::default();
+        let sh = usual.precision.sh;
+        let mut session = Session::open(&self.device.meant(), &scene, sh)?;
+        let frames = self.frames()?;
+        let mut progress = Progress::new("compiling shaders");
+        for (done, (stored, clip, settings)) in frames.iter().enumerate() {
+            progress.update(done as u64, frames.len() as u64 + 1);
+            session.reload(&scene, *stored)?;
+            match session.one(&camera, clip, settings) {
+                // A device without mesh shaders, say, has none to compile.
+                Err(Error::Device(why)) if settings.raster != Raster::Auto => {
+                    say(format_args!("note: {why}"));
+                }
+                drawn => drop(drawn?),
+            }
+        }
+        session.reload(&scene, sh)?;
+        for text in CLIPS {
+            let clip = clip(text)?;
+            let frame = (&camera, &clip, &usual);
+            session.channels(Aov::value_variants(), &scene, frame)?;
+        }
+        drop(progress);
+        let (seconds, kept) = (session.first_use_ms(0.0) / 1e3, session.has_kept());
+        session.close()?;
+        let before = if kept {
+            "; an earlier run had kept some"
+        } else {
+            ""
+        };
+        say(format_args!("compiled shaders: {seconds:.1} s{before}"));
+        Ok(())
+    }
+
+    /// The frames that need all of the shaders, each with how the scene's spherical harmonics are stored.
+    fn frames(&self) -> Result<Vec<(ShFormat, Clip, Settings)>, Failure> {
+        let clips = CLIPS.into_iter().map(clip).collect::<Result<Vec<_>, _>>()?;
+        let settings = Settings::default();
+        let usual = clips
+            .iter()
+            .map(|clip| (settings.precision.sh, clip.clone(), settings));
+        let mut frames: Vec<_> = usual.collect();
+        if self.all {
+            for mode in Mode::value_variants() {
+                for raster in Raster::value_variants() {
+                    let settings = settings.mode(*mode).raster(*raster);
+                    let of_mode = clips
+                        .iter()
+                        .map(|clip| (settings.precision.sh, clip.clone(), settings));
+                    frames.extend(of_mode);
+                }
+            }
+            for sh in ShFormat::value_variants() {
+                for degree in 0..=3 {
+                    frames.push((*sh, clips[1].clone(), settings.sh_degree(Some(degree))));
+                }
+            }
+        }
+        Ok(frames)
+    }
+}
+
+/// The clip of an expression; none is everything.
+fn clip(text: Option<&str>) -> rara::Result<Clip> {
+    Ok(match text {
+        Some(text) => text.parse::<Expression>()?.clip(),
+        None => Clip::default(),
+    })
+}

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 use rara::gpu::{Bindings, Device, DeviceShape};
-use rara::measure::compare;
+use rara::measure::differences;
 use rara::scene::{Bounds, Kind, generate, load};
 use rara::types::Splat;
 use rara::{
@@ -274,7 +274,7 @@ pub fn moved(mut clip: Clip, by: f64) -> Clip {
 /// Asserts the project's bounds: 60 dB into a 32-bit target, 48 dB through 8 bits, and at most one pixel in a thousand
 /// further off than 2/255 (a splat that f32 puts on the other side of alpha = 1/255 or of a neighbour).
 pub fn assert_agrees(what: &str, ours: &Picture, truth: &Picture) {
-    let float = compare(ours, truth).expect("the same size");
+    let float = differences(ours, truth).expect("the same size");
     assert!(
         float.psnr >= 60.0,
         "{what}: {:.1} dB into a 32-bit target: {float:?}",
@@ -285,7 +285,7 @@ pub fn assert_agrees(what: &str, ours: &Picture, truth: &Picture) {
         "{what}: {:.3} % of pixels over 2/255",
         100.0 * float.share_over_2
     );
-    let png = compare(&ours.quantised(), &displayable(truth)).expect("the same size");
+    let png = differences(&ours.quantised(), &displayable(truth)).expect("the same size");
     assert!(
         png.psnr >= 48.0,
         "{what}: {:.1} dB through 8 bits",

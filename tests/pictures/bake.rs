@@ -2,7 +2,7 @@
 
 use crate::common;
 use glam::{DQuat, DVec3};
-use rara::measure::compare;
+use rara::measure::differences;
 use rara::scene::{Bounds, Kind, generate};
 use rara::{
     BakeSettings, Camera, Clip, ClipOp, ExactForm, Headless, Layer, LayerState, Mode, Picture,
@@ -87,8 +87,8 @@ fn a_baked_scene_is_nearer_to_the_exact_cut_than_one_cut_by_centres() {
             headless.load(&baked.gaussians).expect("uploads");
             let none = Clip::default();
             let shown = drawn(&mut headless, &camera, &none, Mode::None);
-            let ours = compare(&shown, exact).expect("of one size");
-            let theirs = compare(hard, exact).expect("of one size");
+            let ours = differences(&shown, exact).expect("of one size");
+            let theirs = differences(hard, exact).expect("of one size");
             println!(
                 "{name}, clip {number}: {:.2} dB and {:.3} for {:.2} dB and {:.3}",
                 ours.psnr, ours.l1, theirs.psnr, theirs.l1
@@ -103,7 +103,7 @@ fn a_baked_scene_is_nearer_to_the_exact_cut_than_one_cut_by_centres() {
             } else {
                 headless.load(&again.gaussians).expect("uploads");
                 let again = drawn(&mut headless, &camera, &none, Mode::None);
-                let moved = compare(&again, &shown).expect("of one size").l1;
+                let moved = differences(&again, &shown).expect("of one size").l1;
                 println!("{name}: a second time moves {moved:.4}");
                 assert!(moved < 0.1, "{name}: {moved}");
             }
@@ -145,7 +145,7 @@ fn a_baked_layer_takes_its_layers_place() {
     let layers = layers.map(|(gaussians, state)| Layer::new("baked", gaussians).with(state));
     headless.load(Scene::from_iter(layers)).expect("uploads");
     let shown = drawn(&mut headless, &camera, &Clip::default(), Mode::None);
-    let error = |picture| compare(picture, &exact).expect("of one size").l1;
+    let error = |picture| differences(picture, &exact).expect("of one size").l1;
     assert!(
         error(&shown) < 0.8 * error(&hard),
         "{}, {}",

@@ -5,7 +5,7 @@ use std::process::Command;
 use crate::common;
 use crate::common::folder::Folder;
 use glam::DVec3;
-use rara::measure::compare;
+use rara::measure::differences;
 use rara::scene::{Kind, generate};
 use rara::{Camera, Clip, ClipOp, Headless, Mode, Picture, Plane, Raster, Settings, reference};
 
@@ -204,7 +204,7 @@ fn splats_of_one_depth_keep_the_order_of_the_file() {
             rendered.expect("renders");
             let ours = headless.picture().expect("reads back");
             let truth = reference::render::<f64>(&scene, &camera, &Clip::default(), &settings);
-            let psnr = compare(&ours, &truth.picture).expect("one size").psnr;
+            let psnr = differences(&ours, &truth.picture).expect("one size").psnr;
             assert!(psnr > 90.0, "{layers} layers, {raster:?}: {psnr} dB");
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::common;
 use glam::DVec3;
-use rara::measure::compare;
+use rara::measure::differences;
 use rara::{Camera, Clip, ClipOp, Gaussians, Headless, Miss, Mode, Picture, Plane, Settings};
 
 const SIZE: (u32, u32) = (200, 150);
@@ -65,7 +65,7 @@ fn tracing_every_gaussian_degrades_the_picture_as_the_paper_reports() {
             headless
                 .render(&camera, &far_plane(&scene), &settings)
                 .expect("renders");
-            compare(&headless.picture().expect("reads back"), &plain)
+            differences(&headless.picture().expect("reads back"), &plain)
                 .expect("the same size")
                 .l1
         };

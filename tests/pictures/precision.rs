@@ -1,7 +1,7 @@
 //! Every choice of precision draws without a validation message and within its stated error.
 
 use crate::common;
-use rara::measure::compare;
+use rara::measure::differences;
 use rara::{
     ClipOp, Gaussians, Headless, PhiForm, Precision, Preset, Settings, ShFormat, TargetFormat,
     reference,
@@ -46,7 +46,7 @@ fn psnr(headless: &mut Headless, scene: &Gaussians, precision: Precision) -> f64
         headless.render(&camera, &clip, &settings).expect("renders");
         let picture = headless.picture().expect("reads back");
         let twin = reference::render::<f64>(scene, &camera, &clip, &settings).picture;
-        compare(&picture, &twin).expect("the same size").psnr
+        differences(&picture, &twin).expect("the same size").psnr
     };
     let views = common::views(scene, 3, SIZE).into_iter();
     views.map(view).fold(f64::INFINITY, f64::min)

@@ -3,7 +3,7 @@
 use crate::common;
 use glam::DVec3;
 use rara::clip::Expression;
-use rara::measure::compare;
+use rara::measure::differences;
 use rara::{Camera, Clip, Gaussians, Layer, Mode, Plane, Raster, Scene, Settings, scene};
 
 /// Every shape, and regions of several, through the middle of a generated scene of radius 1.
@@ -75,7 +75,7 @@ fn a_huge_sphere_is_its_tangent_plane() {
     let sphere = picture("sphere:599999.94,0,799999.92,1000000");
     let outside = picture("!sphere:-600000.06,0,-800000.08,1000000");
     for curved in [sphere, outside] {
-        let difference = compare(&curved, &plane).expect("the same size");
+        let difference = differences(&curved, &plane).expect("the same size");
         assert!(difference.max < 0.3, "{difference:?}, in 1/255");
     }
 }
@@ -103,7 +103,7 @@ fn a_region_and_its_complement_rebuild_the_whole() {
             .render(&camera, &Clip::default(), &settings)
             .expect("renders");
         let rebuilt = headless.picture().expect("reads back");
-        let difference = compare(&rebuilt, &whole).expect("the same size");
+        let difference = differences(&rebuilt, &whole).expect("the same size");
         assert!(difference.max < 0.5, "{text}: {difference:?}, in 1/255");
     }
 }

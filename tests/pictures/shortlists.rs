@@ -3,7 +3,7 @@
 use crate::common;
 use glam::DVec3;
 use rara::clip::Expression;
-use rara::measure::compare;
+use rara::measure::differences;
 use rara::scene::{Kind, generate};
 use rara::{Clip, ClipOp, Headless, Mode, Picture, Plane, Raster, Settings};
 
@@ -88,7 +88,7 @@ fn surfaces_far_away_change_no_pixel() {
     // From outside, and from among the splats, of which some then are cut far from where their contours are.
     for camera in common::views(&gaussians, 3, common::scaled((253, 190))) {
         let [alone, among] = [&alone, &among].map(|clip| render(&mut headless, &camera, clip));
-        let difference = compare(&among, &alone).expect("the same size");
+        let difference = differences(&among, &alone).expect("the same size");
         assert!(difference.max < 0.1, "{difference:?}, in 1/255");
     }
 }

@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
 use rara::clip::Expression;
-use rara::measure::compare;
+use rara::measure::differences;
 use rara::{Clip, ClipOp, Gaussians, Mode, Plane, Settings};
 
 use super::{check, directions, draw, operations, planes, scenes, views};
@@ -50,7 +50,8 @@ fn a_rigid_motion_of_everything_leaves_the_picture() {
                 let clip = Clip::of(planes.clone(), op);
                 let still = draw(headless, &camera, &clip, &settings);
                 headless.load(&moved(&scene, turn, step)).expect("uploads");
-                let result = compare(&still, &draw(headless, &away, &carried, &settings)).unwrap();
+                let result =
+                    differences(&still, &draw(headless, &away, &carried, &settings)).unwrap();
                 prop_assert!(
                     result.l1 < 0.02 && result.share_over_2 < 2e-3,
                     "{mode:?}: {result:?}"
@@ -85,7 +86,7 @@ fn a_mirrored_camera_shows_the_picture_from_right_to_left() {
                 for row in turned.pixels.chunks_exact_mut(camera.width as usize) {
                     row.reverse();
                 }
-                let result = compare(&plain, &turned).unwrap();
+                let result = differences(&plain, &turned).unwrap();
                 prop_assert!(
                     result.l1 < 0.002 && result.share_over_2 < 2e-4,
                     "{mode:?}: {result:?}"
@@ -127,7 +128,7 @@ fn a_world_of_another_power_of_two_is_the_same_picture_to_the_bit() {
             prop_assert!(
                 picture == expected,
                 "{mode:?}: {:?}",
-                compare(&picture, &expected)
+                differences(&picture, &expected)
             );
         }
         Ok(())

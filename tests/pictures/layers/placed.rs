@@ -85,7 +85,7 @@ fn colours_turn_with_their_layer() {
     headless
         .render(&world, &carried, &Settings::default())
         .expect("renders");
-    let apart = rara::measure::compare(&picture(&mut headless), &still).expect("the same size");
+    let apart = rara::measure::differences(&picture(&mut headless), &still).expect("the same size");
     assert!(apart.psnr < 40.0, "{apart:?}");
     headless.close().expect("nothing to say");
 }

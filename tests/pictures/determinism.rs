@@ -7,7 +7,7 @@ use crate::common::folder::Folder;
 use glam::DVec3;
 use rara::measure::differences;
 use rara::scene::{Kind, generate};
-use rara::{Camera, Clip, ClipOp, Headless, Mode, Picture, Plane, Raster, Settings, reference};
+use rara::{Camera, Clip, ClipOp, Headless, Mode, Picture, Plane, Raster, Settings};
 
 const SIZE: (u32, u32) = (300, 220);
 
@@ -203,7 +203,7 @@ fn splats_of_one_depth_keep_the_order_of_the_file() {
             let rendered = headless.render(&camera, &Clip::default(), &settings);
             rendered.expect("renders");
             let ours = headless.picture().expect("reads back");
-            let truth = reference::render::<f64>(&scene, &camera, &Clip::default(), &settings);
+            let truth = common::truth(&scene, &camera, &Clip::default(), &settings);
             let psnr = differences(&ours, &truth.picture).expect("one size").psnr;
             assert!(psnr > 90.0, "{layers} layers, {raster:?}: {psnr} dB");
         }

@@ -84,7 +84,7 @@ fn a_wide_picture_of_many_tiles_is_that_of_quads() {
     let worst = apart(&tiles, &quads);
     assert!(worst <= 1.0, "tiles and quads differ by {worst:.3}/255");
     let camera = common::views(&scene, 1, SIZE)[0];
-    let mut fresh = common::headless();
+    let mut fresh = headless.sharing().expect("another renderer");
     fresh.load(&scene).expect("uploads");
     let [after, alone] = [&mut headless, &mut fresh]
         .map(|headless| drawn(headless, (&camera, &clip, Raster::Tiles)).1);
@@ -132,7 +132,7 @@ fn a_lone_survivor_after_many_is_itself() {
         let stats = reused.render(&camera, &clip, &hard).expect("renders");
         assert_eq!(stats.counts.drawn, 1);
         let after_many = reused.picture().expect("reads back");
-        let mut fresh = common::headless();
+        let mut fresh = reused.sharing().expect("another renderer");
         fresh.load(&scene).expect("uploads");
         fresh.render(&camera, &clip, &hard).expect("renders");
         assert!(

@@ -10,7 +10,7 @@ fn a_hidden_layer_is_not_there() {
     let mut headless = common::headless();
     headless.load(all).expect("uploads");
     headless.set_layer_state(5, hidden).expect("a layer");
-    let mut rest = common::headless();
+    let mut rest = headless.sharing().expect("another renderer");
     let without = named(parts[..5].iter().map(|part| (part, LayerState::default())));
     rest.load(without).expect("uploads");
     let camera = common::views(&scene, 1, common::scaled(SIZE))[0];
@@ -36,8 +36,8 @@ fn a_hidden_layer_is_not_there() {
         let hidden = &sides[blocks(&parts[..5])..blocks(&parts)];
         assert!(hidden.iter().all(|&side| side == 0), "{mode:?}: {sides:?}");
     }
+    drop(rest);
     headless.close().expect("nothing to say");
-    rest.close().expect("nothing to say");
 }
 
 /// Whatever a frame takes over from the one before, its bytes are those of a whole frame.
@@ -45,7 +45,8 @@ fn a_hidden_layer_is_not_there() {
 fn layers_that_change_leave_nothing_behind() {
     let (scene, parts) = in_parts(3_000);
     let layers = named(parts.iter().map(|part| (part, LayerState::default())));
-    let (mut keeps, mut forgets) = (common::headless(), common::headless());
+    let mut keeps = common::headless();
+    let mut forgets = keeps.sharing().expect("another renderer");
     keeps.load(layers.clone()).expect("uploads");
     forgets.load(layers).expect("uploads");
     let mut pick = common::picker(5);
@@ -95,8 +96,8 @@ fn layers_that_change_leave_nothing_behind() {
     );
     // Frames whose clip alone has moved, that find the view anew with the sides that there are, and that change nothing.
     assert!(reused.iter().all(|&frames| frames > 2), "{reused:?}");
+    drop(forgets);
     keeps.close().expect("nothing to say");
-    forgets.close().expect("nothing to say");
 }
 
 /// With all layers hidden a frame shows nothing, whatever it takes over, and then shows again what it did.

@@ -7,7 +7,8 @@ use rara::reference;
 fn layers_are_drawn_as_the_scene_that_they_are_parts_of() {
     let (scene, parts) = in_parts(6_000);
     let layers = named(parts.iter().map(|part| (part, LayerState::default())));
-    let (mut whole, mut layered) = (common::headless(), common::headless());
+    let mut whole = common::headless();
+    let mut layered = whole.sharing().expect("another renderer");
     whole.load(&scene).expect("uploads");
     layered.load(layers.clone()).expect("uploads");
     let names: Vec<_> = layered
@@ -45,8 +46,8 @@ fn layers_are_drawn_as_the_scene_that_they_are_parts_of() {
             }
         }
     }
+    drop(layered);
     whole.close().expect("nothing to say");
-    layered.close().expect("nothing to say");
 }
 
 /// Layers store their harmonics at the highest degree of any, in every format.

@@ -100,6 +100,12 @@ fn print(row: &Row) {
     if row.not_finite > 0 {
         say(format_args!("  {} values are not finite", row.not_finite));
     }
+    if row.miscounted > 1 {
+        say(format_args!(
+            "  {} splats are counted on another side than in the reference",
+            row.miscounted
+        ));
+    }
     if let Some(reason) = row.reason {
         say(format_args!("  target {:.0e}: {reason}", row.target));
     }

@@ -29,34 +29,46 @@ const CLIPS: [(Mode, usize, ClipOp); 7] = [
     (Mode::Exact, 2, ClipOp::Or),
 ];
 
+/// Those whose splats have the longest way through the kernels: what else a kernel does depends on the mode, not on the scene.
+const SPLIT: [(Mode, usize, ClipOp); 2] = [CLIPS[3], CLIPS[5]];
+
+/// Gaussians of a scene: several partitions of the sort.
+const COUNT: usize = 20_000;
+
 #[test]
 fn generated_scenes_in_every_mode() {
     let mut shapes = Shapes::new();
-    for (name, scene) in common::generated_scenes(50_000) {
-        check_modes(&mut shapes, &name, &scene);
+    for (index, (name, scene)) in common::generated_scenes(COUNT).into_iter().enumerate() {
+        let clips = if index == 0 { &CLIPS[..] } else { &SPLIT };
+        check_modes(&mut shapes, &name, &scene, clips);
     }
     shapes.close();
 }
 
 #[test]
-fn trained_scenes_in_every_mode() {
+fn trained_scenes_whose_splats_are_cut() {
     let mut shapes = Shapes::new();
     for (name, scene) in common::trained_scenes() {
-        let step = scene.len().div_ceil(50_000);
+        let step = scene.len().div_ceil(COUNT);
         let some = common::picked(&scene, (0..scene.len()).step_by(step));
-        check_modes(&mut shapes, &name, &some);
+        check_modes(&mut shapes, &name, &some, &SPLIT);
     }
     shapes.close();
 }
 
-fn check_modes(shapes: &mut Shapes, name: &str, scene: &Gaussians) {
+fn check_modes(
+    shapes: &mut Shapes,
+    name: &str,
+    scene: &Gaussians,
+    clips: &[(Mode, usize, ClipOp)],
+) {
     shapes.load(scene);
     let camera = common::views(scene, 3, common::scaled(SIZE))[1];
-    for (mode, planes, op) in CLIPS {
+    for &(mode, planes, op) in clips {
         let clip = common::clip(scene, planes, op);
         let what = format!("{name}, {mode:?}, {planes} planes {op:?}");
         let settings = Settings::default().mode(mode).raster(Raster::Tiles);
-        shapes.check(&what, &camera, &clip, &settings);
+        shapes.check_runs(&what, &camera, &clip, &settings);
         let counts = shapes.counts();
         let [few, several] = [counts.tile_groups, counts.several_tile_groups].map(|list| list[3]);
         let is_split = mode == Mode::Exact && planes > 1;
@@ -86,7 +98,7 @@ fn check_modes(shapes: &mut Shapes, name: &str, scene: &Gaussians) {
 #[test]
 fn a_moving_clip() {
     let mut shapes = Shapes::new();
-    let (name, scene) = common::generated_scenes(50_000).remove(0);
+    let (name, scene) = common::generated_scenes(COUNT).remove(0);
     shapes.load(&scene);
     let camera = common::views(&scene, 3, SIZE)[0];
     let settings = Settings::default().raster(Raster::Tiles);
@@ -165,7 +177,7 @@ fn keys_and_counts_at_the_edges_of_partitions() {
             shapes.load(&scene);
             let settings = Settings::default().raster(Raster::Tiles);
             let what = format!("{count} in {layers} layers");
-            let drawn = shapes.check(&what, &facing(SIZE), &Clip::default(), &settings);
+            let drawn = shapes.check_runs(&what, &facing(SIZE), &Clip::default(), &settings);
             assert_eq!(drawn as usize, count, "{what}: all are in view");
         }
     }
@@ -199,7 +211,7 @@ fn splats_over_the_whole_picture() {
         shapes.load(&scene);
         let settings = Settings::default().raster(Raster::Tiles);
         let what = format!("{large} large ones of {count}, {size:?}");
-        shapes.check(&what, &facing(size), &Clip::default(), &settings);
+        shapes.check_runs(&what, &facing(size), &Clip::default(), &settings);
     }
     shapes.close();
 }

@@ -1,4 +1,5 @@
-//! What the passes declare about their invocations and their loads, held to real frames and to ceilings.
+//! The commands of real frames, and what the passes declare about their invocations and their loads, held to each other and to
+//! ceilings.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -69,34 +70,65 @@ fn heavy(picture: FrameNumbers) -> FrameNumbers {
     }
 }
 
+/// The most dispatches and barriers of a frame whose clip cuts and which is drawn by tiles. Expected depths, which a host may
+/// ask for besides, are a dispatch more.
+const MOST: [u64; 2] = [32, 36];
+
 #[test]
-fn passes_have_the_invocations_that_they_declare() {
-    let mut seen = BTreeSet::new();
+fn frames_have_the_commands_in_the_budget_and_the_invocations_that_passes_declare() {
     let frames = Frames::on_a_gpus_kernels(SMALL);
-    let all = frames.all().into_iter();
-    for frame in all.filter(|frame| frame.is_usual() && frame.raster == Raster::Tiles) {
-        seen.extend(check_invocations(&frames, &frame));
+    let (mut found, mut seen) = (Table::new(), BTreeSet::new());
+    for frame in frames.all().iter().filter(|frame| frame.is_usual()) {
+        let is_tiled = frame.raster == Raster::Tiles;
+        if !is_tiled && !frame.is_counted() {
+            continue;
+        }
+        let drawn = frames.draw(frame);
+        if frame.is_counted() {
+            let count = commands(frame, &drawn);
+            let numbers = ["dispatches", "barriers"].into_iter().zip(count);
+            found.insert(frame.name.clone(), numbers.collect());
+        }
+        if is_tiled {
+            seen.extend(check_invocations(&frames, frame, &drawn));
+        }
     }
     frames.close();
+    budget::check(BTreeMap::from([("frames".into(), found)]), Rule::Ceiling);
     // More macro-tiles than a digit has values: their sort takes a second pass.
     let frames = Frames::on_a_gpus_kernels((2600, 1500));
-    seen.extend(check_invocations(&frames, &frames.all()[0]));
+    let first = &frames.all()[0];
+    seen.extend(check_invocations(&frames, first, &frames.draw(first)));
     frames.close();
     let declared: BTreeSet<_> = costs().map(|cost| cost.name).collect();
     assert_eq!(seen, declared, "some are declared that no frame has");
 }
 
+/// The dispatches and barriers of a frame.
+fn commands(frame: &Frame, drawn: &Drawn) -> [u64; 2] {
+    let recorded = &drawn.recorded;
+    let count = [recorded.dispatches.len() as u64, recorded.barriers.into()];
+    if frame.raster == Raster::Tiles && frame.planes > 0 && frame.moves == 0 {
+        let most = [MOST[0] + u64::from(frame.wants_depth()), MOST[1]];
+        assert!(
+            count[0] <= most[0] && count[1] <= most[1],
+            "{}: {count:?} dispatches and barriers, {most:?} are allowed whatever the budget says",
+            frame.name
+        );
+    }
+    count
+}
+
 /// Checks the workgroups of a frame's passes; returns their names.
-fn check_invocations(frames: &Frames, frame: &Frame) -> BTreeSet<&'static str> {
-    let drawn = frames.draw(frame);
-    let numbers = numbers(&drawn);
+fn check_invocations(frames: &Frames, frame: &Frame, drawn: &Drawn) -> BTreeSet<&'static str> {
+    let numbers = numbers(drawn);
     let mut seen = BTreeSet::new();
     for dispatch in &drawn.recorded.dispatches {
         let cost = costs().find(|cost| cost.name == dispatch.name);
         let cost = cost.unwrap_or_else(|| panic!("{}: no cost is declared", dispatch.name));
         let declared = (cost.invocations)(&numbers);
         let size = workgroup(frames, dispatch.name);
-        let groups = groups(&drawn, dispatch);
+        let groups = groups(drawn, dispatch);
         // Passes of the sort that the keys do without have none.
         if groups == 0 {
             continue;

@@ -9,7 +9,7 @@ const FORMAT: vk::Format = vk::Format::R32G32_SFLOAT;
 
 /// Draws a frame of expected depths on a canvas of their format; returns the whole canvas.
 fn draw(
-    device: &Device,
+    (device, first): On<'_>,
     canvas: &Canvas,
     world: &World,
     desc: RendererDesc,
@@ -19,7 +19,7 @@ fn draw(
     let scene = SceneBuffers::upload(device, &world.scene, rara::ShFormat::Float);
     let scene = scene.expect("uploads");
     let desc = desc.expected_depth(Some(ExpectedDepthDesc::new(FORMAT)));
-    let mut renderer = Renderer::new(device, desc).expect("a renderer");
+    let mut renderer = first.sharing(desc).expect("a renderer");
     let configured = renderer.configure(&scene, &world.camera, clip, settings);
     configured.expect("configures");
     let frame = Frame {
@@ -33,26 +33,28 @@ fn draw(
 #[test]
 fn expected_depths_are_the_references() {
     let world = World::new();
-    for (mode, planes, op) in [
-        (Mode::None, 0, ClipOp::And),
-        (Mode::Exact, 1, ClipOp::And),
-        (Mode::Exact, 2, ClipOp::Or),
-        (Mode::Rara, 1, ClipOp::And),
-        (Mode::Hard, 1, ClipOp::And),
-    ] {
-        let clip = common::clip(&world.scene, planes, op);
-        let settings = Settings::default().mode(mode);
-        let truth =
-            reference::depth::expected::<f64>(&world.scene, &world.camera, &clip, &settings);
-        with_host(true, |host, device| {
-            let canvas = Canvas::new(&host.lend(), device, CanvasDesc::new(VIEW, FORMAT));
+    with_host(true, |host, device| {
+        let first = first(device);
+        let canvas = Canvas::new(&host.lend(), device, CanvasDesc::new(VIEW, FORMAT));
+        for (mode, planes, op) in [
+            (Mode::None, 0, ClipOp::And),
+            (Mode::Exact, 1, ClipOp::And),
+            (Mode::Exact, 2, ClipOp::Or),
+            (Mode::Rara, 1, ClipOp::And),
+            (Mode::Hard, 1, ClipOp::And),
+        ] {
+            let clip = common::clip(&world.scene, planes, op);
+            let settings = Settings::default().mode(mode);
+            let truth =
+                reference::depth::expected::<f64>(&world.scene, &world.camera, &clip, &settings);
             for (raster, bindings) in [
                 (Raster::Tiles, Bindings::Bound),
                 (Raster::Quad, Bindings::Address),
             ] {
                 let desc = RendererDesc::new(FLOATS).bindings(bindings);
                 let look = (&clip, &settings.raster(raster));
-                let pixels = draw(device, &canvas, &world, desc, look, Frame::new(VIEW));
+                let on = (device, &first);
+                let pixels = draw(on, &canvas, &world, desc, look, Frame::new(VIEW));
                 let mut errors: Vec<_> = pixels
                     .iter()
                     .zip(&truth)
@@ -72,8 +74,8 @@ fn expected_depths_are_the_references() {
                 eprintln!("{what}");
                 assert!(most < 2e-4 && worst < 0.02, "{what}");
             }
-        });
-    }
+        }
+    });
 }
 
 /// The rest of a big cut splat lies farther away than its centre, and a host's mesh hides depths like colours.
@@ -91,7 +93,14 @@ fn expected_depths_are_behind_the_cut_and_before_the_mesh() {
             .bindings(Bindings::Bound);
         let clip = Clip::default();
         let look = (&clip, &Settings::default());
-        let pixels = draw(device, &canvas, &world, desc, look, frame(None));
+        let pixels = draw(
+            (device, &first(device)),
+            &canvas,
+            &world,
+            desc,
+            look,
+            frame(None),
+        );
         let depths = part(&pixels);
         let (rect, mesh) = world.meshes[1];
         let middle = (rect.offset.y + 20) as u32 * VIEW.0 + rect.offset.x as u32 + 60;

@@ -19,6 +19,8 @@ fn meshes_hide_the_splats_behind_them_from_an_orthographic_camera() {
 fn hides(world: &World, maps: impl IntoIterator<Item = DepthMap>) {
     let truth = world.truth();
     with_host(true, |host, device| {
+        let first = first(device);
+        let on = (device, &first);
         for map in maps {
             let desc = canvas(world, map, vk::Format::D32_SFLOAT);
             let depth = depth_desc(&desc, map, true);
@@ -30,7 +32,7 @@ fn hides(world: &World, maps: impl IntoIterator<Item = DepthMap>) {
                 let desc = RendererDesc::new(FLOATS)
                     .depth(Some(depth))
                     .bindings(bindings);
-                let (picture, path) = draw(device, &canvas, world, desc, raster);
+                let (picture, path) = draw(on, &canvas, world, desc, raster);
                 let asked = match raster {
                     Raster::Tiles => "tiles",
                     Raster::Mesh => "mesh",
@@ -53,6 +55,8 @@ fn hides(world: &World, maps: impl IntoIterator<Item = DepthMap>) {
 fn depths_in_few_bits_hide_the_same_splats_in_every_way_of_drawing() {
     let world = World::new();
     with_host(true, |host, device| {
+        let first = first(device);
+        let on = (device, &first);
         for format in [
             vk::Format::D16_UNORM,
             vk::Format::X8_D24_UNORM_PACK32,
@@ -71,8 +75,8 @@ fn depths_in_few_bits_hide_the_same_splats_in_every_way_of_drawing() {
                 let desc = RendererDesc::new(FLOATS)
                     .depth(Some(depth))
                     .bindings(Bindings::Bound);
-                let (quads, _) = draw(device, &canvas, &world, desc, Raster::Quad);
-                let (tiles, path) = draw(device, &canvas, &world, desc, Raster::Tiles);
+                let (quads, _) = draw(on, &canvas, &world, desc, Raster::Quad);
+                let (tiles, path) = draw(on, &canvas, &world, desc, Raster::Tiles);
                 assert_eq!(path, "tiles");
                 let worst = apart(&quads, &tiles, 0.0);
                 eprintln!("{format:?}, {map:?}: {worst}/255");
@@ -93,6 +97,8 @@ fn a_depth_image_beside_the_picture_hides_nothing() {
     drawn.expect("renders");
     let truth = headless.picture().expect("reads back");
     with_host(true, |host, device| {
+        let first = first(device);
+        let on = (device, &first);
         for map in maps() {
             let desc = canvas(&world, map, vk::Format::D32_SFLOAT);
             let depth = depth_desc(&desc, map, true);
@@ -103,7 +109,7 @@ fn a_depth_image_beside_the_picture_hides_nothing() {
             let mut beside = canvas.depth_image(ORIGIN.0, ORIGIN.1);
             beside.origin.x += 5_000;
             let tiles = Raster::Tiles;
-            let (picture, _) = draw_behind(device, &canvas, &world, desc, tiles, Some(beside));
+            let (picture, _) = draw_behind(on, &canvas, &world, desc, tiles, Some(beside));
             let worst = apart(&picture, &truth, 0.0);
             assert!(worst < 1.0, "{map:?}: {worst}/255");
         }
@@ -116,12 +122,14 @@ fn tiles_that_cannot_see_the_hosts_depth_are_quads() {
     let truth = world.truth();
     let map = maps()[1];
     with_host(false, |host, device| {
+        let first = first(device);
+        let on = (device, &first);
         let desc = canvas(&world, map, vk::Format::D32_SFLOAT);
         let depth = depth_desc(&desc, map, false);
         let canvas = Canvas::new(&host.lend(), device, desc);
         let desc = RendererDesc::new(FLOATS).depth(Some(depth));
         for raster in [Raster::Tiles, Raster::Auto] {
-            let (picture, path) = draw(device, &canvas, &world, desc, raster);
+            let (picture, path) = draw(on, &canvas, &world, desc, raster);
             assert_eq!(path, "quad", "{raster:?}");
             let worst = apart(&picture, &truth, 0.0);
             assert!(worst < 1.0, "{raster:?}: {worst}/255");

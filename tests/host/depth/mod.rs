@@ -139,9 +139,16 @@ fn frame(behind: Option<DepthImage>) -> Frame {
     }
 }
 
+/// A device, and a renderer on it whose pipelines all others share.
+type On<'a> = (&'a Device, &'a Renderer);
+
+fn first(device: &Device) -> Renderer {
+    Renderer::new(device, RendererDesc::new(FLOATS)).expect("a renderer")
+}
+
 /// Draws one frame of the world on a canvas; returns the part under the camera's picture, and how it was drawn.
 fn draw(
-    device: &Device,
+    on: On<'_>,
     canvas: &Canvas,
     world: &World,
     desc: RendererDesc,
@@ -149,12 +156,12 @@ fn draw(
 ) -> (Picture, &'static str) {
     let is_read = desc.depth.is_some_and(|depth| depth.readable);
     let behind = is_read.then(|| canvas.depth_image(ORIGIN.0, ORIGIN.1));
-    draw_behind(device, canvas, world, desc, raster, behind)
+    draw_behind(on, canvas, world, desc, raster, behind)
 }
 
 /// Draws one frame behind a depth image.
 fn draw_behind(
-    device: &Device,
+    (device, first): On<'_>,
     canvas: &Canvas,
     world: &World,
     desc: RendererDesc,
@@ -163,7 +170,7 @@ fn draw_behind(
 ) -> (Picture, &'static str) {
     let format = rara::ShFormat::Float;
     let scene = SceneBuffers::upload(device, &world.scene, format).expect("uploads");
-    let mut renderer = Renderer::new(device, desc).expect("a renderer");
+    let mut renderer = first.sharing(desc).expect("a renderer");
     let settings = Settings::default().raster(raster);
     let configured = renderer.configure(&scene, &world.camera, &world.clip, &settings);
     configured.expect("configures");

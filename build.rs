@@ -1,10 +1,10 @@
 //! Turns `glsl/` into the crate's constants (`limits.glsl`), structs (`types.glsl`), and the SPIR-V and the interface of
 //! every shader.
 //!
-//! Every shader is compiled twice from one source: with buffers behind device addresses, and with bound buffers that the
-//! validation layer can watch. With the feature `shaderc` the GLSL is compiled here, warnings as errors. Without it
-//! the SPIR-V committed in `glsl/spirv/` is used, so that nobody has to compile a C++ compiler to see a
-//! picture; the manifest beside each module says from which GLSL it was compiled, and a difference is an error.
+//! Every shader is compiled thrice from one source: with buffers behind device addresses, with bound buffers that the
+//! validation layer can watch, and with some of either for CPU drivers. With the feature `shaderc` the GLSL is compiled
+//! here, warnings as errors. Without it the SPIR-V committed in `glsl/spirv/` is used, so that nobody has to compile a C++
+//! compiler to see a picture; the manifest beside each module says from which GLSL it was compiled, and a difference is an error.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -73,12 +73,12 @@ fn spirv_of(glsl: &Path, out: &Path) -> PathBuf {
 /// The interfaces of all programs.
 fn shaders(glsl: &Path, modules: &Path) -> String {
     let source = |path: PathBuf| {
-        let [address, bound] =
+        let [address, bound, mixed] =
             VARIANTS.map(|(variant, _)| words(&manifest::module_path(modules, &path, variant)));
         interface::Source {
             file: path.file_name().expect("a file").to_string_lossy().into(),
             declarations: spirv::declarations(&bound),
-            modules: [address, bound],
+            modules: [address, bound, mixed],
         }
     };
     let sources: Vec<_> = manifest::shaders(glsl).into_iter().map(source).collect();

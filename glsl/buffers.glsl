@@ -5,6 +5,11 @@
 // buffer, which the validation layer's synchronisation checks can watch. The access qualifier is the pass's only
 // declaration of what it does to the buffer: the recorder derives barriers from it.
 //
+// RARA_MIXED is for CPU drivers. They load what all lanes share once from a bound buffer, and inside branches for each
+// lane from an address. But what differs between lanes they load from a bound buffer by a branch for each lane and
+// component: with bound buffers alone, lavapipe takes up to ten times as long to compile a shader. So a buffer that
+// COMMON_BUFFER_OF declares, because all lanes read the same of it, is bound, and the others are reached by address.
+//
 // A shader that has parameters declares a struct before it includes anything, and names it, as in
 //     struct Params { uint pass; };
 //     #define PARAMS Params
@@ -18,14 +23,16 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
+#define BOUND_BUFFER_OF(access, index, name, members) \
+    layout(set = 0, binding = index, std430) access buffer name##Block { members; } name;
+
 #ifdef RARA_BOUND
 #ifdef PARAMS
 layout(push_constant, std430) uniform Push {
     PARAMS params;
 } push;
 #endif
-#define BUFFER_OF(access, index, name, members) \
-    layout(set = 0, binding = index, std430) access buffer name##Block { members; } name;
+#define BUFFER_OF BOUND_BUFFER_OF
 #else
 layout(push_constant, std430) uniform Push {
     uvec2 address[MAX_BUFFERS];
@@ -36,6 +43,11 @@ layout(push_constant, std430) uniform Push {
 #define BUFFER_OF(access, index, name, members) \
     layout(buffer_reference, std430, buffer_reference_align = 16) access buffer name##Block { members; }; \
     name##Block name = name##Block(push.address[index]);
+#endif
+#ifdef RARA_MIXED
+#define COMMON_BUFFER_OF BOUND_BUFFER_OF
+#else
+#define COMMON_BUFFER_OF BUFFER_OF
 #endif
 #define BUFFER(access, index, Type, name) BUFFER_OF(access, index, name, Type at[])
 

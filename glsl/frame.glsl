@@ -5,7 +5,7 @@
 #include "types.glsl"
 #include "buffers.glsl"
 
-BUFFER_OF(readonly, 0, frame, FrameData constants; LayerData layers[])
+COMMON_BUFFER_OF(readonly, 0, frame, FrameData constants; LayerData layers[])
 #define FRAME frame.constants
 
 // True when lines of sight are parallel to the view axis, and have no eye.

@@ -13,8 +13,8 @@ pub(crate) struct Source {
     /// Its file, `splat.mesh`.
     pub(crate) file: String,
     pub(crate) declarations: Declarations,
-    /// The modules that reach their buffers by address, and by binding.
-    pub(crate) modules: [Vec<u32>; 2],
+    /// The modules that reach their buffers by address, by binding, and by either.
+    pub(crate) modules: [Vec<u32>; 3],
 }
 
 impl Source {
@@ -59,7 +59,8 @@ fn module(shaders: &[Source]) -> String {
         writeln!(
             out,
             "/// `glsl/{}`.\npub(crate) static {}: super::Shader = super::Shader {{ name: {name:?}, file: {:?}, \
-             stage: ash::vk::ShaderStageFlags::{}, buffers: &[{}], address: &{:?}, bound: &{:?}, subgroups: {} }};",
+             stage: ash::vk::ShaderStageFlags::{}, buffers: &[{}], address: &{:?}, bound: &{:?}, mixed: &{:?}, \
+             subgroups: {} }};",
             shader.file,
             shader.names().1,
             shader.file,
@@ -67,6 +68,7 @@ fn module(shaders: &[Source]) -> String {
             uses.collect::<String>(),
             shader.modules[0],
             shader.modules[1],
+            shader.modules[2],
             shader.declarations.subgroups,
         )
         .unwrap();
@@ -242,7 +244,7 @@ mod tests {
                 subgroups: false,
                 workgroup: [0; 3],
             },
-            modules: [vec![], vec![]],
+            modules: [vec![], vec![], vec![]],
         }
     }
 

@@ -1,4 +1,4 @@
-//! A manifest says from which GLSL committed SPIR-V was compiled. It is a small file beside the two modules of a shader, so
+//! A manifest says from which GLSL committed SPIR-V was compiled. It is a small file beside the modules of a shader, so
 //! that changes to different shaders touch different files.
 
 use std::collections::BTreeSet;

@@ -11,6 +11,9 @@ pub(crate) mod spirv;
 #[cfg(not(test))]
 pub(crate) mod compile;
 
-/// The two ways in which a shader reaches its buffers: ending of the SPIR-V's file name, and preprocessor definition.
-pub(crate) const VARIANTS: [(&str, Option<&str>); 2] =
-    [("address", None), ("bound", Some("RARA_BOUND"))];
+/// The ways in which a shader reaches its buffers: ending of the SPIR-V's file name, and preprocessor definition.
+pub(crate) const VARIANTS: [(&str, Option<&str>); 3] = [
+    ("address", None),
+    ("bound", Some("RARA_BOUND")),
+    ("mixed", Some("RARA_MIXED")),
+];

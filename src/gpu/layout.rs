@@ -15,14 +15,18 @@ pub enum Bindings {
     /// They are storage buffers of descriptor set 0, pushed with each command. The validation layer sees every hazard; a
     /// buffer may not exceed [`Support::max_storage_buffer_range`](super::Support::max_storage_buffer_range).
     Bound,
+    /// The frame's constants are bound, and the others reached by device address. It needs what [`Bound`](Self::Bound) needs.
+    Mixed,
 }
 
 impl Bindings {
     /// The fastest way on a device. CPU drivers load what all lanes share once from a bound buffer, and for each lane from
-    /// an address: with bound buffers a frame takes lavapipe 0.87 of the time. On GPUs addresses cost nothing.
+    /// an address, but compile a branch for each lane where a bound buffer is read at several places: lavapipe then takes
+    /// two to six times as long to compile a frame's shaders as with [`Mixed`](Self::Mixed), and draws it no faster. On GPUs
+    /// addresses cost nothing.
     pub fn suiting(device: &Device) -> Self {
         if device.shape() == DeviceShape::Cpu && device.support().push_descriptor {
-            Self::Bound
+            Self::Mixed
         } else {
             Self::Address
         }
@@ -44,7 +48,7 @@ impl PushConstants {
     /// The bytes of the block that shaders declare: those that bind their buffers need no addresses.
     fn bytes(bindings: Bindings) -> std::ops::Range<usize> {
         match bindings {
-            Bindings::Address => 0..size_of::<Self>(),
+            Bindings::Address | Bindings::Mixed => 0..size_of::<Self>(),
             Bindings::Bound => std::mem::offset_of!(Self, param)..size_of::<Self>(),
         }
     }
@@ -99,7 +103,8 @@ impl Layout {
             bindings,
             uses,
         };
-        if bindings == Bindings::Bound {
+        let binds = bindings != Bindings::Address;
+        if binds {
             this.set = this.create_set()?;
             device.set_name(this.set, name);
         }
@@ -109,11 +114,7 @@ impl Layout {
         let sets = [this.set];
         let info = vk::PipelineLayoutCreateInfo::default()
             .push_constant_ranges(&ranges)
-            .set_layouts(if bindings == Bindings::Bound {
-                &sets
-            } else {
-                &[]
-            });
+            .set_layouts(if binds { &sets } else { &[] });
         // SAFETY: the device is alive as long as `device`, and the set layout was made from it.
         this.raw = unsafe { device.raw().create_pipeline_layout(&info, None) }
             .map_err(failed("vkCreatePipelineLayout"))?;

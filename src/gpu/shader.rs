@@ -1,4 +1,4 @@
-//! A shader as build.rs describes it: its SPIR-V in both bindings and the buffers it declares.
+//! A shader as build.rs describes it: its SPIR-V for all bindings and the buffers it declares.
 
 use ash::vk;
 
@@ -26,8 +26,9 @@ pub struct BufferUse {
     pub access: BufferAccess,
 }
 
-/// A compiled shader. The same source is compiled twice: with buffers behind device addresses (fast, and free of the
-/// binding size limit) and with bound storage buffers (which the validation layer can watch).
+/// A compiled shader. The same source is compiled thrice: with buffers behind device addresses (fast, and free of the
+/// binding size limit), with bound storage buffers (which the validation layer can watch), and with some of
+/// either (which CPU drivers need to compile fast and run fast).
 #[derive(Debug, Clone, Copy)]
 pub struct Shader {
     /// File name without its stage's ending: `classify` for `glsl/classify.comp`.
@@ -40,6 +41,8 @@ pub struct Shader {
     pub address: &'static [u32],
     /// SPIR-V that reaches its buffers through descriptor set 0.
     pub bound: &'static [u32],
+    /// SPIR-V that reaches some of its buffers either way.
+    pub mixed: &'static [u32],
     /// The buffers, by ascending binding.
     pub buffers: &'static [BufferUse],
     /// True when it has subgroup operations. Where the device can be asked for whole subgroups of a size, it is.
@@ -52,6 +55,7 @@ impl Shader {
         match bindings {
             Bindings::Address => self.address,
             Bindings::Bound => self.bound,
+            Bindings::Mixed => self.mixed,
         }
     }
 }

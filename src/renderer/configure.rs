@@ -320,9 +320,9 @@ impl Renderer {
     pub(super) fn bindings_of(&self, largest: u64) -> Bindings {
         let support = self.device.support();
         let binds = support.push_descriptor && largest <= support.max_storage_buffer_range;
-        match self.desc.bindings {
-            Bindings::Bound if binds => Bindings::Bound,
-            Bindings::Bound | Bindings::Address => Bindings::Address,
+        match binds {
+            true => self.desc.bindings,
+            false => Bindings::Address,
         }
     }
 }

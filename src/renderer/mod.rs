@@ -72,8 +72,8 @@ use shared::SharedPipelines;
 /// **What recording leaves behind.** `prepare` binds a compute pipeline, `draw` a graphics pipeline; both write push
 /// constants. `draw` sets the viewport. The host binds its own pipelines again, pushes its own constants, and sets all
 /// dynamic state of its pipelines again but the scissor: binding a pipeline of rara's, in which the rest is fixed,
-/// undoes it. With [`Bindings::Bound`](crate::gpu::Bindings::Bound) both push descriptor set 0 too, by a layout of their
-/// own, so that the host binds all of its sets again. No image, no layout, no query and no vertex buffer is touched. Of
+/// undoes it. Except with [`Bindings::Address`](crate::gpu::Bindings::Address) both push descriptor set 0 too, by a layout
+/// of their own, so that the host binds all of its sets again. No image, no layout, no query and no vertex buffer is touched. Of
 /// the host's dynamic state `draw` reads one thing, the scissor, which `vkCmdSetScissor` sets and
 /// `vkCmdSetScissorWithCount` does not. The host's viewport may be any, upside down or not yet set.
 ///

@@ -6,8 +6,8 @@ use crate::error::Result;
 use crate::gpu::{Bindings, Device};
 use crate::passes::{Pipelines, Plan, Targets};
 
-/// The pipelines for addresses and for bound buffers.
-type ByBindings = [Option<Arc<Pipelines>>; 2];
+/// The pipelines for each of the [`Bindings`].
+type ByBindings = [Option<Arc<Pipelines>>; 3];
 
 /// A renderer's view of the compiled pipelines.
 #[derive(Debug, Default)]
@@ -24,7 +24,7 @@ impl SharedPipelines {
     pub(super) fn sharing(&self) -> Self {
         Self {
             all: self.all.clone(),
-            seen: [None, None],
+            seen: ByBindings::default(),
         }
     }
 

@@ -65,7 +65,7 @@ pub fn splats(buffer: &[[f32; 4]], gaussians: usize, shape: DeviceShape) -> Vec<
 pub fn bindings(device: &Device) -> Vec<Bindings> {
     let mut all = vec![Bindings::Address];
     if device.support().push_descriptor {
-        all.push(Bindings::Bound);
+        all.extend([Bindings::Bound, Bindings::Mixed]);
     }
     all
 }

@@ -101,13 +101,16 @@ fn every_mode_by_quads() {
     }
 }
 
-/// Users have buffers reached by address; the other tests bind them, so that the synchronisation checks see them.
+/// Users have buffers reached by address, or on CPU drivers by either; the other tests bind them, so that the synchronisation
+/// checks see them.
 #[test]
-fn every_mode_by_addresses() {
+fn every_mode_by_what_users_have() {
     if common::bindings(common::headless().device()).len() == 1 {
         eprintln!("SKIPPED: this device has addresses alone, the other tests use them");
         return;
     }
-    let scenes = common::generated_scenes(5_000);
-    check_scenes_by(Bindings::Address, scenes, 1, &modes(&CLIPS[2..]));
+    for bindings in [Bindings::Address, Bindings::Mixed] {
+        let scenes = common::generated_scenes(5_000);
+        check_scenes_by(bindings, scenes, 1, &modes(&CLIPS[2..]));
+    }
 }

@@ -128,6 +128,7 @@ fn shader(bytes: &[u8]) -> Result<&'static Shader> {
         stage: vk::ShaderStageFlags::COMPUTE,
         address: words.leak(),
         bound: &[],
+        mixed: &[],
         buffers: &[
             BufferUse {
                 name: "read",

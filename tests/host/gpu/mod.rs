@@ -48,6 +48,7 @@ const ADD: Shader = Shader {
     stage: vk::ShaderStageFlags::COMPUTE,
     address: spirv!("add.comp.address"),
     bound: spirv!("add.comp.bound"),
+    mixed: spirv!("add.comp.address"),
     buffers: &[
         used("source", 0, BufferAccess::Read),
         used("target", 1, BufferAccess::Write),
@@ -60,6 +61,7 @@ const VERTEX: Shader = Shader {
     stage: vk::ShaderStageFlags::VERTEX,
     address: spirv!("square.vert.address"),
     bound: spirv!("square.vert.bound"),
+    mixed: spirv!("square.vert.address"),
     buffers: &[used("corners", 0, BufferAccess::Read)],
     subgroups: false,
 };
@@ -69,6 +71,7 @@ const MESH: Shader = Shader {
     stage: vk::ShaderStageFlags::MESH_EXT,
     address: spirv!("square.mesh.address"),
     bound: spirv!("square.mesh.bound"),
+    mixed: spirv!("square.mesh.address"),
     buffers: &[used("corners", 0, BufferAccess::Read)],
     subgroups: false,
 };
@@ -78,6 +81,7 @@ const FRAGMENT: Shader = Shader {
     stage: vk::ShaderStageFlags::FRAGMENT,
     address: spirv!("square.frag.address"),
     bound: spirv!("square.frag.bound"),
+    mixed: spirv!("square.frag.address"),
     buffers: &[used("paint", 1, BufferAccess::Read)],
     subgroups: false,
 };

@@ -33,7 +33,7 @@ fn life(host: &Device) -> Result<()> {
         location: Location::Upload,
     })?;
     let desc = RendererDesc {
-        bindings: Bindings::Bound,
+        bindings: Bindings::Mixed,
         timing: true,
         reuse: true,
         frames_in_flight: 2,

@@ -2,16 +2,16 @@
 
 use rara::ash::vk;
 use rara::glam::{DQuat, DVec3};
-use rara::gpu::{Device, DeviceDesc, DeviceShape, Recorded};
+use rara::gpu::{Bindings, Device, DeviceDesc, DeviceShape, Drawer, Image, Recorded};
 use rara::scene::{Bounds, Kind, generate};
 use rara::{
-    Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, Gaussians, Layer, Mode, Preset,
-    Raster, Renderer, RendererDesc, Scene, SceneBuffers, Settings, ShFormat, Shape,
+    Camera, Clip, ClipOp, DepthDesc, DepthMap, Error, ExpectedDepthDesc, Gaussians, Layer, Mode,
+    Preset, Raster, Renderer, RendererDesc, Scene, SceneBuffers, Settings, ShFormat, Shape,
 };
 
 use crate::common;
 
-const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+pub const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 /// A picture in which each kind of work occurs. Not a multiple of a tile.
 pub const SMALL: (u32, u32) = (253, 190);
 
@@ -60,6 +60,13 @@ impl Frame {
         self.is_usual() && !self.layered && self.raster != Raster::Mesh
     }
 
+    /// True of frames that can be recorded without a host's images, and that differ from the others in more than their shaders'
+    /// constants.
+    pub fn is_own_recording(&self) -> bool {
+        let stored = self.stored == ShFormat::Packed && self.preset == Preset::Balanced;
+        stored && self.host == Host::Plain
+    }
+
     /// True when the host asks for the splats' depths.
     pub fn wants_depth(&self) -> bool {
         self.host == Host::WantsDepth
@@ -99,6 +106,7 @@ impl Drawn {
 /// A device, and all that frames are drawn of.
 pub struct Frames {
     renderer: Renderer,
+    bindings: Bindings,
     camera: Camera,
     scene: Gaussians,
     /// The same Gaussians as one layer, stored in each way, and as two.
@@ -122,6 +130,11 @@ impl Frames {
 
     /// On a device that takes notes.
     pub fn on(desc: &DeviceDesc, size: (u32, u32)) -> Self {
+        Self::bound_as(Bindings::default(), desc, size)
+    }
+
+    /// The same with buffers that are reached in one way.
+    pub fn bound_as(bindings: Bindings, desc: &DeviceDesc, size: (u32, u32)) -> Self {
         let device = Device::headless_inspected(desc).expect("a Vulkan device");
         let scene = generate(Kind::General, 2000, 5);
         let upload = |format| SceneBuffers::upload(&device, &scene, format).expect("uploads");
@@ -135,7 +148,9 @@ impl Frames {
         let layers = Scene::from_iter(layers);
         let layered = SceneBuffers::upload(&device, &layers, ShFormat::Packed);
         Self {
-            renderer: Renderer::new(&device, RendererDesc::new(FORMAT)).expect("a renderer"),
+            renderer: Renderer::new(&device, RendererDesc::new(FORMAT).bindings(bindings))
+                .expect("a renderer"),
+            bindings,
             camera: common::views(&scene, 1, size)[0],
             stored: formats.map(|format| (format, upload(format))).into(),
             layered: layered.expect("uploads"),
@@ -153,7 +168,48 @@ impl Frames {
     /// Draws a frame, from nothing but the frames that it is to take over from. Nothing is drawn of one for which the host has
     /// to have a depth, only its pipelines are made.
     pub fn draw(&self, frame: &Frame) -> Drawn {
-        let mut desc = RendererDesc::new(FORMAT).reuse(true);
+        let mut recorded = Recorded::default();
+        let renderer = self.configured(frame, |renderer, scene| {
+            let submitted = self.device.submit_and_wait(|cmd| {
+                // SAFETY: `cmd` is recording outside rendering, and all that is used outlives the wait.
+                unsafe { renderer.prepare(cmd, scene) }
+            });
+            submitted.unwrap_or_else(|error| panic!("{}: {error}", frame.name));
+            recorded = self.device.recorded();
+        });
+        Drawn { recorded, renderer }
+    }
+
+    /// Records a frame, its draws into `target` included, and submits nothing.
+    pub fn record(&self, frame: &Frame, target: &Image) {
+        self.configured(frame, |renderer, scene| {
+            let unsubmitted = self.device.submit_and_wait(|cmd| {
+                // SAFETY: `cmd` is recording outside rendering, and what is recorded is never executed. The scope is opened
+                // and closed around the draw, on an attachment of the renderer's format.
+                unsafe {
+                    renderer.prepare(cmd, scene)?;
+                    target.begin_rendering(cmd, [0.0; 4]);
+                    Drawer::new(&self.device, cmd, None).viewport(target.extent().into());
+                    renderer.draw(cmd, [0.0; 2])?;
+                    target.end_rendering(cmd);
+                }
+                Err::<(), _>(Error::Invalid("recorded".into()))
+            });
+            let error = unsubmitted.expect_err("nothing is submitted").to_string();
+            assert!(error.ends_with("recorded"), "{}: {error}", frame.name);
+        });
+    }
+
+    /// Configures a frame after those that it is to reuse, and has each recorded. Nothing is recorded of one for which the host
+    /// has to have a depth.
+    fn configured(
+        &self,
+        frame: &Frame,
+        mut record: impl FnMut(&mut Renderer, &SceneBuffers),
+    ) -> Renderer {
+        let mut desc = RendererDesc::new(FORMAT)
+            .reuse(true)
+            .bindings(self.bindings);
         match frame.host {
             Host::Plain => {}
             Host::HasDepth => {
@@ -181,22 +237,15 @@ impl Frames {
             .mode(frame.mode)
             .raster(frame.raster)
             .precision(frame.preset.precision());
-        let mut recorded = Recorded::default();
         for moves in 0..=frame.moves {
             let clip = self.clip(frame.planes, moves);
             let configured = renderer.configure(scene, &self.camera, &clip, &settings);
             configured.unwrap_or_else(|error| panic!("{}: {error}", frame.name));
-            if frame.host == Host::HasDepth {
-                continue;
+            if frame.host != Host::HasDepth {
+                record(&mut renderer, scene);
             }
-            let submitted = self.device.submit_and_wait(|cmd| {
-                // SAFETY: `cmd` is recording outside rendering, and all that is used outlives the wait.
-                unsafe { renderer.prepare(cmd, scene) }
-            });
-            submitted.unwrap_or_else(|error| panic!("{}: {error}", frame.name));
-            recorded = self.device.recorded();
         }
-        Drawn { recorded, renderer }
+        renderer
     }
 
     fn clip(&self, planes: usize, moves: u32) -> Clip {

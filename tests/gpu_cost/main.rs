@@ -1,6 +1,6 @@
 //! What frames cost a GPU, as far as it can be known without one: the commands that a frame records, how wide its passes are
 //! and how long their chains of loads, and what a GPU's compiler makes of its pipelines. `budget.toml` says how much each may
-//! have, so that a change that costs more has to change that file too.
+//! have, so that a change that costs more has to change that file too. The same frames are recorded to see that no barrier is missing.
 //!
 //! The compiler is Mesa's for AMD, RADV, on devices that the library of the package mesa-drm-shim pretends there are. It
 //! compiles as for real ones; what it draws there means nothing, and nothing here looks at pictures or times.
@@ -16,6 +16,7 @@ mod spirv;
 
 mod budget;
 mod frames;
+mod hazards;
 mod model;
 mod passes;
 mod pipelines;

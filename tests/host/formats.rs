@@ -48,7 +48,7 @@ fn every_format_holds_the_picture_as_well_as_it_can() {
                     Raster::Tiles => tiles,
                     _ => quads,
                 };
-                let desc = RendererDesc::new(format).bindings(Bindings::Bound);
+                let desc = RendererDesc::new(format).bindings(Bindings::Mixed);
                 let mut renderer = Renderer::new(device, desc).expect("a renderer");
                 let settings = Settings::default().raster(raster);
                 let configured = renderer.configure(&buffers, &camera, &clip, &settings);

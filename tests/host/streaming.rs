@@ -113,9 +113,9 @@ fn scenes_and_clips_change_while_frames_are_in_flight() {
 
     // A new scene's copies are in the commands of the frame that first shows it, or in those of the frame before.
     let ways = [
-        (Raster::Tiles, Bindings::Bound, true, 0),
+        (Raster::Tiles, Bindings::Mixed, true, 0),
         (Raster::Tiles, Bindings::Address, false, 1),
-        (Raster::Quad, Bindings::Bound, false, 1),
+        (Raster::Quad, Bindings::Mixed, false, 1),
         (Raster::Quad, Bindings::Address, true, 0),
     ];
     for (raster, bindings, reuse, ahead) in ways {

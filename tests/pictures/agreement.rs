@@ -10,7 +10,7 @@ const SIZE: (u32, u32) = (253, 190);
 const VIEWS: usize = 3;
 
 fn check_scenes(scenes: Vec<(String, Gaussians)>, mode: Mode, clips: &[(usize, ClipOp)]) {
-    check_scenes_by(Bindings::Bound, scenes, VIEWS, &[(mode, clips)]);
+    check_scenes_by(Bindings::Mixed, scenes, VIEWS, &[(mode, clips)]);
 }
 
 fn check_scenes_by(
@@ -74,7 +74,7 @@ fn exact_on_trained_scenes() {
 #[test]
 fn every_mode_on_generated_scenes() {
     let scenes = common::generated_scenes(5_000);
-    check_scenes_by(Bindings::Bound, scenes, VIEWS, &modes(&CLIPS));
+    check_scenes_by(Bindings::Mixed, scenes, VIEWS, &modes(&CLIPS));
 }
 
 /// A CPU driver gets tiles by default, and a GPU gets draws.
@@ -101,16 +101,16 @@ fn every_mode_by_quads() {
     }
 }
 
-/// Users have buffers reached by address, or on CPU drivers by either; the other tests bind them, so that the synchronisation
-/// checks see them.
+/// The other tests reach buffers as users of CPU drivers do.
 #[test]
-fn every_mode_by_what_users_have() {
-    if common::bindings(common::headless().device()).len() == 1 {
-        eprintln!("SKIPPED: this device has addresses alone, the other tests use them");
-        return;
-    }
-    for bindings in [Bindings::Address, Bindings::Mixed] {
-        let scenes = common::generated_scenes(5_000);
-        check_scenes_by(bindings, scenes, 1, &modes(&CLIPS[2..]));
-    }
+fn every_mode_by_addresses() {
+    let scenes = common::generated_scenes(5_000);
+    check_scenes_by(Bindings::Address, scenes, 1, &modes(&CLIPS[2..]));
+}
+
+/// As under `--validation`.
+#[test]
+fn exact_by_bound_buffers() {
+    let scenes = common::generated_scenes(5_000);
+    check_scenes_by(Bindings::Bound, scenes, 1, &[(Mode::Exact, &CLIPS[1..2])]);
 }

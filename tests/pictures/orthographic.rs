@@ -29,7 +29,7 @@ const CLIPS: [(Mode, usize, ClipOp); 6] = [
 
 #[test]
 fn every_mode_by_every_way_of_drawing() {
-    for bindings in [Bindings::Bound, Bindings::Address] {
+    for bindings in [Bindings::Mixed, Bindings::Address] {
         let mut headless = common::headless_by(bindings);
         for (name, scene) in common::generated_scenes(4_000) {
             headless.load(&scene).expect("uploads");

@@ -21,7 +21,7 @@ struct Pair {
 
 impl Pair {
     fn new(scene: &Gaussians) -> Self {
-        Self::by(Bindings::Bound, scene)
+        Self::by(Bindings::Mixed, scene)
     }
 
     fn by(bindings: Bindings, scene: &Gaussians) -> Self {
@@ -220,7 +220,7 @@ fn whatever_changes_the_bytes_are_those_of_a_whole_frame() {
         let mut pair = Pair::by(bindings, &scenes[0].1);
         let rasters = common::rasters(pair.keeps.device());
         // What is taken over depends on the kind of scene; how buffers are reached is another matter, for which one does.
-        let count = if bindings == Bindings::Bound { 3 } else { 1 };
+        let count = if bindings == Bindings::Mixed { 3 } else { 1 };
         for (_, scene) in &scenes[..count] {
             pair.load(scene);
             let mut frame = Frame {

@@ -26,7 +26,7 @@ pub struct Shapes {
 impl Shapes {
     /// Kernels for CPU drivers, for GPUs with the device's own subgroups, and for GPUs that cannot be asked for any.
     pub fn new() -> Self {
-        let cpu = common::headless_shaped(Bindings::Bound, DeviceShape::Cpu);
+        let cpu = common::headless_shaped(Bindings::Mixed, DeviceShape::Cpu);
         let [least, most] = cpu.device().support().full_subgroups;
         let mut shapes = vec![DeviceShape::Gpu { subgroup: 0 }];
         if most >= 8 {
@@ -36,7 +36,7 @@ impl Shapes {
             eprintln!("SKIPPED: this device has no subgroups of 8; kernels without are compared");
         }
         let others = shapes.into_iter().map(|shape| {
-            let renderer = common::headless_shaped(Bindings::Bound, shape);
+            let renderer = common::headless_shaped(Bindings::Mixed, shape);
             assert_eq!(renderer.device().shape(), shape);
             (shape, renderer)
         });

@@ -81,7 +81,7 @@ fn renderer() -> (Device, Renderer) {
     let device = device.expect("a device and the validation layer");
     let format = TargetFormat::Float.vulkan();
     let desc = RendererDesc::new(format)
-        .bindings(Bindings::Bound)
+        .bindings(Bindings::Mixed)
         .expected_depth(Some(ExpectedDepthDesc::new(format)));
     let renderer = Renderer::new(&device, desc).expect("a renderer");
     (device, renderer)

@@ -35,7 +35,7 @@ impl Drop for Stages {
 impl Stages {
     pub fn new() -> Self {
         Self {
-            headless: common::headless_by(Bindings::Bound),
+            headless: common::headless_by(Bindings::Mixed),
             scene: Gaussians::default(),
             numbers: Vec::new(),
         }

@@ -36,7 +36,7 @@ fn life(headless: &mut Headless, raster: Raster) -> Result<[Picture; 2]> {
 
 fn on(device: &Device) -> Result<Headless> {
     let desc = HeadlessDesc {
-        bindings: Some(Bindings::Bound), // the layer can watch these, where the driver has them
+        bindings: Some(Bindings::Mixed),
         pipeline_cache: PipelineCache::Off,
         ..HeadlessDesc::default()
     };

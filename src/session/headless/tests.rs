@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::clip::{ClipOp, Plane};
-use crate::gpu::faults;
+use crate::gpu::{Bindings, faults};
 use crate::limits;
 use crate::scene::{Bounds, Gaussians, Kind, Random, extent_along, generate};
 use crate::settings::{ExactForm, Mode, Raster, Show};
@@ -13,6 +13,7 @@ fn headless() -> Headless {
     let desc = HeadlessDesc {
         device: std::env::var("RARA_TEST_DEVICE").ok(),
         validation: true,
+        bindings: Some(Bindings::Mixed),
         ..HeadlessDesc::default()
     };
     Headless::new(&desc).expect("a device and the validation layer")

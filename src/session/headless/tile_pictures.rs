@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::clip::{ClipOp, Plane};
-use crate::gpu::DeviceShape;
+use crate::gpu::{Bindings, DeviceShape};
 use crate::scene::{Bounds, Kind, Layer, generate};
 use crate::settings::{Mode, Raster, Show};
 use glam::DVec3;
@@ -36,6 +36,7 @@ impl Pair {
             let desc = HeadlessDesc {
                 device: std::env::var("RARA_TEST_DEVICE").ok(),
                 validation: true,
+                bindings: Some(Bindings::Mixed),
                 shape,
                 ..HeadlessDesc::default()
             };

@@ -27,7 +27,7 @@ const ALL: RaraAovs =
 /// The same by a headless renderer of its own, one channel after the other.
 fn headless(scene: &Scene<'_>, camera: &Camera, clip: &Clip) -> Vec<f32> {
     // Another way to reach buffers rounds otherwise.
-    let desc = HeadlessDesc::default().bindings(Some(Bindings::Bound));
+    let desc = HeadlessDesc::default().bindings(Some(Bindings::Mixed));
     let mut headless = Headless::new(&desc).expect("a device");
     headless.load(scene.clone()).expect("uploads");
     let all = [Aov::Depth, Aov::Normal, Aov::Layer, Aov::Weight, Aov::Count];

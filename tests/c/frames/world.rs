@@ -143,7 +143,7 @@ impl<'a> World<'a> {
         let desc = RendererDesc::new(FLOATS)
             .depth(Some(DepthDesc::new(DEPTH, self.map()).readable(true)))
             .expected_depth(Some(ExpectedDepthDesc::new(DEPTHS)))
-            .bindings(Bindings::Bound);
+            .bindings(Bindings::Mixed);
         let scene = SceneBuffers::upload(device, self.layers.clone(), ShFormat::Packed);
         let scene = scene.expect("uploads");
         let mut renderer = Renderer::new(device, desc).expect("a renderer");

@@ -74,7 +74,7 @@ fn depths_in_few_bits_hide_the_same_splats_in_every_way_of_drawing() {
                 let canvas = Canvas::new(&host.lend(), device, desc);
                 let desc = RendererDesc::new(FLOATS)
                     .depth(Some(depth))
-                    .bindings(Bindings::Bound);
+                    .bindings(Bindings::Mixed);
                 let (quads, _) = draw(on, &canvas, &world, desc, Raster::Quad);
                 let (tiles, path) = draw(on, &canvas, &world, desc, Raster::Tiles);
                 assert_eq!(path, "tiles");
@@ -105,7 +105,7 @@ fn a_depth_image_beside_the_picture_hides_nothing() {
             let canvas = Canvas::new(&host.lend(), device, desc);
             let desc = RendererDesc::new(FLOATS)
                 .depth(Some(depth))
-                .bindings(Bindings::Bound);
+                .bindings(Bindings::Mixed);
             let mut beside = canvas.depth_image(ORIGIN.0, ORIGIN.1);
             beside.origin.x += 5_000;
             let tiles = Raster::Tiles;

@@ -30,7 +30,7 @@ fn a_classic_render_pass_shows_the_same_picture() {
                 let desc = RendererDesc::new(FLOATS)
                     .depth(depth)
                     .target(target)
-                    .bindings(Bindings::Bound);
+                    .bindings(Bindings::Mixed);
                 // A render pass is gone before the next one has pipelines.
                 draw((device, &first(device)), &canvas, &world, desc, raster).0
             });
@@ -60,7 +60,7 @@ fn targets_of_several_samples_resolve_to_the_same_picture() {
         let desc = RendererDesc::new(FLOATS)
             .depth(Some(depth))
             .samples(samples)
-            .bindings(Bindings::Bound);
+            .bindings(Bindings::Mixed);
         let first = first(device);
         for raster in common::rasters(device) {
             let (picture, _) = draw((device, &first), &canvas, &world, desc, raster);

@@ -70,8 +70,8 @@ fn frames_that_are_configured_ahead_show_the_same_pictures() {
         frames.push((camera, clip, settings));
     }
     for desc in [
-        in_flight(FLOATS, Bindings::Bound),
-        in_flight(FLOATS, Bindings::Bound).reuse(true),
+        in_flight(FLOATS, Bindings::Mixed),
+        in_flight(FLOATS, Bindings::Mixed).reuse(true),
     ] {
         let host = open_host(FLOATS, VIEW, true);
         let mut engine = Engine::new(host, &scene, ShFormat::default(), desc.reuse(false));
@@ -97,7 +97,7 @@ fn frames_that_are_configured_ahead_show_the_same_pictures() {
 fn tokens_in_an_order_that_makes_no_sense_are_refused() {
     let scene = scene();
     let frames = frames(&scene);
-    let desc = in_flight(FLOATS, Bindings::Bound).reuse(true);
+    let desc = in_flight(FLOATS, Bindings::Mixed).reuse(true);
     let host = open_host(FLOATS, VIEW, true);
     let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
     let refused = |result: rara::Result<()>, says: &str| {

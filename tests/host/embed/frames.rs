@@ -19,10 +19,10 @@ fn frames_in_flight_show_the_headless_pictures_over_what_the_host_has_painted() 
         .collect();
 
     for (format, bindings) in [
-        (FLOATS, Bindings::Bound),
+        (FLOATS, Bindings::Mixed),
         (FLOATS, Bindings::Address),
-        (HALVES, Bindings::Bound),
-        (BYTES, Bindings::Bound),
+        (HALVES, Bindings::Mixed),
+        (BYTES, Bindings::Mixed),
     ] {
         let desc = in_flight(format, bindings);
         let host = open_host(format, VIEW, true);
@@ -128,7 +128,7 @@ fn a_host_whose_frames_take_over_from_each_other_gets_the_same_pictures() {
 fn settings_of_the_next_frame_leave_the_prepared_one_alone() {
     let scene = scene();
     let shown = frames(&scene).swap_remove(1);
-    let desc = in_flight(FLOATS, Bindings::Bound);
+    let desc = in_flight(FLOATS, Bindings::Mixed);
     let host = open_host(FLOATS, VIEW, true);
     let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
     let moved = rara::Placement::new(glam::DVec3::X, glam::DQuat::IDENTITY, 2.0).expect("finite");

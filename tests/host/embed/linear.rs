@@ -83,9 +83,9 @@ fn the_splats_picture_meets_a_hosts_pixels_as_linear_light() {
     let picture = headless.picture().expect("reads back");
     let converted = in_linear_light(&picture);
     for (space, bindings) in [
-        (ColorSpace::Linear, Bindings::Bound),
+        (ColorSpace::Linear, Bindings::Mixed),
         (ColorSpace::Linear, Bindings::Address),
-        (ColorSpace::Stored, Bindings::Bound),
+        (ColorSpace::Stored, Bindings::Mixed),
     ] {
         let desc = in_flight(FLOATS, bindings).color_space(space);
         let host = open_host(FLOATS, VIEW, true);
@@ -118,7 +118,7 @@ fn linear_light_is_of_colours_and_of_tiles() {
     let counted = settings.show(Show::Count);
     headless.render(&camera, &clip, &counted).expect("renders");
     let picture = headless.picture().expect("reads back");
-    let desc = in_flight(FLOATS, Bindings::Bound).color_space(ColorSpace::Linear);
+    let desc = in_flight(FLOATS, Bindings::Mixed).color_space(ColorSpace::Linear);
     let host = open_host(FLOATS, VIEW, true);
     let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
     engine.configure(&(camera, clip.clone(), counted));

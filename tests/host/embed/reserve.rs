@@ -113,7 +113,7 @@ fn drawn(
 #[test]
 fn frames_within_what_was_reserved_compile_and_allocate_nothing() {
     let scene = generate(Kind::General, 1_500, 5);
-    let usual = in_flight(FLOATS, Bindings::Bound);
+    let usual = in_flight(FLOATS, Bindings::Mixed);
     let ours = |reserve| drawn(usual.reuse(true), &scene, reserve, all_settings);
     let (pictures, made) = ours(true);
     assert_eq!(made, (0, 0), "pipelines and allocations");
@@ -132,7 +132,7 @@ fn frames_within_what_was_reserved_compile_and_allocate_nothing() {
 #[test]
 fn what_was_reserved_outlives_a_frame_beyond_it() {
     let scene = generate(Kind::General, 1_500, 5);
-    let desc = in_flight(FLOATS, Bindings::Bound);
+    let desc = in_flight(FLOATS, Bindings::Mixed);
     let host = open_host(FLOATS, VIEW, true);
     let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
     let limits = FrameLimits::new((64, 64), 1_500)
@@ -168,7 +168,7 @@ fn what_was_reserved_outlives_a_frame_beyond_it() {
 #[test]
 fn another_thread_can_compile_what_frames_will_need() {
     let scene = scene();
-    let desc = in_flight(FLOATS, Bindings::Bound);
+    let desc = in_flight(FLOATS, Bindings::Mixed);
     let host = open_host(FLOATS, VIEW, true);
     let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
     let mut other = engine.renderer.sharing(desc).expect("a renderer");
@@ -192,7 +192,7 @@ fn another_thread_can_compile_what_frames_will_need() {
 #[test]
 fn a_budget_is_kept_and_says_what_to_do() {
     let scene = scene();
-    let desc = in_flight(FLOATS, Bindings::Bound);
+    let desc = in_flight(FLOATS, Bindings::Mixed);
     let host = open_host(FLOATS, VIEW, true);
     let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
     let device = engine.device.clone();
@@ -249,7 +249,7 @@ fn a_budget_without_room_for_all_pairs_draws_quads() {
     scene.opacities_mut().fill(0.02);
     let (camera, clip, settings) = frames(&scene).swap_remove(1);
     let truth = rara::reference::render::<f64>(&scene, &camera, &clip, &settings).picture;
-    let desc = in_flight(FLOATS, Bindings::Bound);
+    let desc = in_flight(FLOATS, Bindings::Mixed);
     let host = open_host(FLOATS, VIEW, true);
     let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
     let expected = expected(&engine.host, &truth, 0);
@@ -282,7 +282,7 @@ fn a_budget_without_room_for_all_pairs_draws_quads() {
 #[test]
 fn what_the_frame_does_not_need_is_given_back() {
     let scene = scene();
-    let desc = in_flight(FLOATS, Bindings::Bound);
+    let desc = in_flight(FLOATS, Bindings::Mixed);
     let shown = frames(&scene).swap_remove(1);
     let needed = {
         let host = open_host(FLOATS, VIEW, true);
@@ -333,7 +333,7 @@ fn depths_are_reserved_for() {
     let map = DepthMap::reversed(0.1, f64::INFINITY).expect("a map");
     let depth = rara::DepthDesc::new(vk::Format::D32_SFLOAT, map).readable(true);
     let expected = rara::ExpectedDepthDesc::new(vk::Format::R32G32_SFLOAT);
-    let desc = in_flight(FLOATS, Bindings::Bound)
+    let desc = in_flight(FLOATS, Bindings::Mixed)
         .depth(Some(depth))
         .expected_depth(Some(expected));
     let host = open_host(FLOATS, VIEW, true);

@@ -15,7 +15,7 @@ fn a_viewport_anywhere_in_the_target_leaves_the_rest_alone() {
     headless.render(&camera, &clip, &settings).expect("renders");
     let truth = headless.picture().expect("reads back");
     for (format, optional) in [(FLOATS, true), (HALVES, true), (BYTES, false)] {
-        let desc = in_flight(format, Bindings::Bound);
+        let desc = in_flight(format, Bindings::Mixed);
         let host = open_host(format, target, optional);
         let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
         for raster in common::rasters(&engine.device) {

@@ -110,8 +110,8 @@ fn two_eyes_share_a_scope_and_compile_nothing_twice() {
 fn one_renderer_draws_views_one_after_the_other_in_one_command_buffer() {
     with_eyes(2, |eyes| {
         for (way, bindings) in [
-            (Raster::Tiles, Bindings::Bound),
-            (Raster::Quad, Bindings::Bound),
+            (Raster::Tiles, Bindings::Mixed),
+            (Raster::Quad, Bindings::Mixed),
             (Raster::Tiles, Bindings::Address),
         ] {
             let two = desc().frames_in_flight(2).bindings(bindings);

@@ -94,7 +94,7 @@ fn a_hosts_matrices_draw_the_picture_of_the_camera_made_by_hand() {
 
     with_host(true, |host, device| {
         let desc = RendererDesc::new(FLOATS)
-            .bindings(Bindings::Bound)
+            .bindings(Bindings::Mixed)
             .depth(Some(
                 DepthDesc::new(vk::Format::D32_SFLOAT, map).readable(true),
             ));

@@ -22,7 +22,7 @@ const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const SIZE: (u32, u32) = (121, 97);
 
 fn desc() -> RendererDesc {
-    RendererDesc::new(FLOATS).bindings(Bindings::Bound)
+    RendererDesc::new(FLOATS).bindings(Bindings::Mixed)
 }
 
 fn raster(raster: Raster) -> Settings {

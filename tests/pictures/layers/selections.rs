@@ -47,7 +47,7 @@ fn selections_change_no_picture() {
         (round.clip(), Preset::Balanced, 24),
     ];
     for shape in [DeviceShape::Cpu, DeviceShape::Gpu { subgroup: 0 }] {
-        let open = || common::headless_shaped(Bindings::Bound, shape);
+        let open = || common::headless_shaped(Bindings::Mixed, shape);
         let (mut whole, mut layered) = (open(), open());
         whole.load(&scene).expect("uploads");
         for predicate in ["size>0.03", "inside(sphere:0,0,0,0.6) or opacity<0.2"] {

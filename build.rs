@@ -78,6 +78,11 @@ fn shaders(glsl: &Path, modules: &Path) -> String {
         interface::Source {
             file: path.file_name().expect("a file").to_string_lossy().into(),
             declarations: spirv::declarations(&bound),
+            common: spirv::declarations(&mixed)
+                .buffers
+                .iter()
+                .map(|b| b.binding)
+                .collect(),
             modules: [address, bound, mixed],
         }
     };

@@ -830,6 +830,10 @@ typedef struct RaraFrameStats {
 // address.
 #define RARA_BINDINGS_BOUND 1
 
+// The constants of the frame bound and all else by address, for CPU drivers: they compile it in a fraction of the time that bound
+// buffers take, and run it faster than addresses alone. Needs what RARA_BINDINGS_BOUND needs.
+#define RARA_BINDINGS_MIXED 2
+
 // Colours as a display stores them, as splats are trained and blended: they meet the host's pixels as they are. The default.
 #define RARA_COLOR_SPACE_STORED 0
 

@@ -13,6 +13,8 @@ pub(crate) struct Source {
     /// Its file, `splat.mesh`.
     pub(crate) file: String,
     pub(crate) declarations: Declarations,
+    /// The bindings of the buffers that are bound where others are reached by address.
+    pub(crate) common: Vec<u32>,
     /// The modules that reach their buffers by address, by binding, and by either.
     pub(crate) modules: [Vec<u32>; 3],
 }
@@ -54,7 +56,8 @@ fn module(shaders: &[Source]) -> String {
     for shader in shaders {
         let uses = shader.declarations.buffers.iter().map(|buffer| {
             let Buffer { binding, name, access } = buffer;
-            format!("super::BufferUse {{ name: {name:?}, binding: {binding}, access: super::BufferAccess::{access} }}, ")
+            format!("super::BufferUse {{ name: {name:?}, binding: {binding}, access: super::BufferAccess::{access}, \
+                 common: {} }}, ", shader.common.contains(binding))
         });
         writeln!(
             out,
@@ -244,6 +247,7 @@ mod tests {
                 subgroups: false,
                 workgroup: [0; 3],
             },
+            common: Vec::new(),
             modules: [vec![], vec![], vec![]],
         }
     }

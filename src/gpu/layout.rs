@@ -15,7 +15,7 @@ pub enum Bindings {
     /// They are storage buffers of descriptor set 0, pushed with each command. The validation layer sees every hazard; a
     /// buffer may not exceed [`Support::max_storage_buffer_range`](super::Support::max_storage_buffer_range).
     Bound,
-    /// The frame's constants are bound, and the others reached by device address. It needs what [`Bound`](Self::Bound) needs.
+    /// The frame's constants are bound, and all else is reached by device address.
     Mixed,
 }
 
@@ -103,7 +103,7 @@ impl Layout {
             bindings,
             uses,
         };
-        let binds = bindings != Bindings::Address;
+        let binds = this.bound().next().is_some();
         if binds {
             this.set = this.create_set()?;
             device.set_name(this.set, name);
@@ -137,13 +137,23 @@ impl Layout {
                 .descriptor_count(1)
                 .stage_flags(self.stages)
         };
-        let slots: Vec<_> = self.uses.iter().map(slot).collect();
+        let slots: Vec<_> = self.bound().map(slot).collect();
         let info = vk::DescriptorSetLayoutCreateInfo::default()
             .flags(vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR)
             .bindings(&slots);
         // SAFETY: the device is alive as long as `self.device`.
         unsafe { self.device.raw().create_descriptor_set_layout(&info, None) }
             .map_err(failed("vkCreateDescriptorSetLayout"))
+    }
+
+    /// The buffers that are bound.
+    fn bound(&self) -> impl Iterator<Item = &BufferUse> {
+        let is_bound = |buffer: &&BufferUse| match self.bindings {
+            Bindings::Address => false,
+            Bindings::Bound => true,
+            Bindings::Mixed => buffer.common,
+        };
+        self.uses.iter().filter(is_bound)
     }
 
     /// Buffers that a command must be given: one for each binding up to the highest.
@@ -193,12 +203,13 @@ impl Layout {
         let bytes = &bytemuck::bytes_of(&block)[PushConstants::bytes(self.bindings)];
         // SAFETY: the caller vouches for `cmd`; the layout has one range of this size for these stages.
         unsafe { raw.cmd_push_constants(cmd, self.raw, self.stages, 0, bytes) };
-        if self.set == vk::DescriptorSetLayout::null() || self.uses.is_empty() {
+        let count = self.bound().count();
+        if count == 0 {
             return;
         }
         let limit = self.device.support().max_storage_buffer_range;
         let mut infos = [[vk::DescriptorBufferInfo::default()]; MAX_BUFFERS];
-        for (info, buffer) in infos.iter_mut().zip(&self.uses) {
+        for (info, buffer) in infos.iter_mut().zip(self.bound()) {
             let bound = buffers[buffer.binding as usize];
             assert!(
                 bound.size() <= limit,
@@ -211,7 +222,7 @@ impl Layout {
                 .range(vk::WHOLE_SIZE)];
         }
         let mut writes = [vk::WriteDescriptorSet::default(); MAX_BUFFERS];
-        for ((write, info), buffer) in writes.iter_mut().zip(&infos).zip(&self.uses) {
+        for ((write, info), buffer) in writes.iter_mut().zip(&infos).zip(self.bound()) {
             *write = vk::WriteDescriptorSet::default()
                 .dst_binding(buffer.binding)
                 .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
@@ -222,9 +233,7 @@ impl Layout {
             .push_descriptor()
             .expect("a layout with a set was made with the extension");
         // SAFETY: as above; set 0 of the layout is a push descriptor set with exactly these bindings.
-        unsafe {
-            push.cmd_push_descriptor_set(cmd, point, self.raw, 0, &writes[..self.uses.len()])
-        };
+        unsafe { push.cmd_push_descriptor_set(cmd, point, self.raw, 0, &writes[..count]) };
     }
 }
 

@@ -24,6 +24,8 @@ pub struct BufferUse {
     pub binding: u32,
     /// How it is used.
     pub access: BufferAccess,
+    /// True when all lanes read the same of it, so that it is bound also where others are reached by address.
+    pub common: bool,
 }
 
 /// A compiled shader. The same source is compiled thrice: with buffers behind device addresses (fast, and free of the

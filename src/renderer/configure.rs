@@ -320,9 +320,11 @@ impl Renderer {
     pub(super) fn bindings_of(&self, largest: u64) -> Bindings {
         let support = self.device.support();
         let binds = support.push_descriptor && largest <= support.max_storage_buffer_range;
-        match binds {
-            true => self.desc.bindings,
-            false => Bindings::Address,
+        match self.desc.bindings {
+            Bindings::Bound if binds => Bindings::Bound,
+            // The constants are small.
+            Bindings::Mixed if support.push_descriptor => Bindings::Mixed,
+            _ => Bindings::Address,
         }
     }
 }

@@ -134,11 +134,13 @@ fn shader(bytes: &[u8]) -> Result<&'static Shader> {
                 name: "read",
                 binding: 0,
                 access: BufferAccess::Read,
+                common: false,
             },
             BufferUse {
                 name: "written",
                 binding: 1,
                 access: BufferAccess::Write,
+                common: false,
             },
         ],
         subgroups: false,

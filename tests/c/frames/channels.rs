@@ -71,7 +71,7 @@ pub(super) fn with_renderer(device: *mut RaraDevice, test: impl FnOnce(*mut Rara
         let mut desc: RaraRendererDesc = std::mem::zeroed();
         let (size, format) = (size_of_val(&desc), vk::Format::R8G8B8A8_UNORM);
         assert_ok(rara_renderer_desc_default(&mut desc, size, format));
-        desc.bindings = RARA_BINDINGS_BOUND;
+        desc.bindings = RARA_BINDINGS_MIXED;
         assert_ok(rara_renderer_create(device, &desc, &mut renderer));
         test(renderer);
         rara_renderer_destroy(renderer);

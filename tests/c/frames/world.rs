@@ -179,7 +179,7 @@ impl<'a> World<'a> {
             let size = size_of_val(&desc);
             assert_ok(rara_renderer_desc_default(&mut desc, size, FLOATS));
             (desc.depth, desc.expected_depth_format) = (&depth, DEPTHS);
-            desc.bindings = RARA_BINDINGS_BOUND;
+            desc.bindings = RARA_BINDINGS_MIXED;
             let mut renderer = null_mut();
             assert_ok(rara_renderer_create(device, &desc, &mut renderer));
             let placement = RaraPlacement::from(self.placement);

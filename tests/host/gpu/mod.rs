@@ -38,6 +38,7 @@ const fn used(name: &'static str, binding: u32, access: BufferAccess) -> BufferU
         name,
         binding,
         access,
+        common: false,
     }
 }
 

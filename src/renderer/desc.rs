@@ -44,8 +44,8 @@ pub struct RendererDesc {
     /// Dynamic rendering, or a classic render pass.
     pub target: Target,
     /// The way to reach buffers: by address or bound, where the validation layer can watch them, or some of either;
-    /// [`Bindings::suiting`] says which is faster on a device. A frame whose buffers exceed the device's binding size uses
-    /// addresses, whichever is asked for.
+    /// [`Bindings::suiting`] says which is faster on a device. With [`Bindings::Bound`] a frame whose buffers exceed the device's
+    /// binding size uses addresses.
     pub bindings: Bindings,
     /// True to take timestamps around the stages.
     pub timing: bool,

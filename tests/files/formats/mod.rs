@@ -4,6 +4,7 @@ mod collected;
 mod damaged;
 mod detected;
 mod distance;
+mod harmonics;
 mod truth;
 mod variants;
 mod written;

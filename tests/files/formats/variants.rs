@@ -103,7 +103,7 @@ fn spz_of_version_1_has_halves() {
     assert_eq!(found.opacities(), [1.0]);
 }
 
-fn webp(path: &Path, pixels: &[[u8; 4]]) {
+pub(super) fn webp(path: &Path, pixels: &[[u8; 4]]) {
     wide_webp(path, pixels, pixels.len());
 }
 
@@ -312,7 +312,7 @@ fn gltf_of_integers_and_a_matrix() {
     assert!(found.report.to_string().contains("where it is placed"));
 }
 
-fn base64(bytes: &[u8]) -> String {
+pub(super) fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
     for three in bytes.chunks(3) {

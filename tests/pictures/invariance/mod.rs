@@ -3,6 +3,7 @@
 
 mod cuts;
 mod layers;
+mod similarity;
 mod worlds;
 
 use std::cell::RefCell;

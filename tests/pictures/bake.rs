@@ -154,3 +154,43 @@ fn a_baked_layer_takes_its_layers_place() {
     );
     headless.close().expect("nothing to validate");
 }
+
+/// The fade is the state of the layer, in which what is baked goes on to be drawn: it says what is visible at all, and is in
+/// no opacity.
+#[test]
+fn a_faded_layer_keeps_its_gaussians_own_opacities() {
+    let scene = generate(Kind::General, 1500, 6);
+    let bounds = Bounds::of(&scene);
+    let [clip, ..] = clips(&bounds);
+    let faded = LayerState::default().opacity(0.5);
+    let layer = Layer::new("faded", &scene).with(faded);
+
+    let settings = BakeSettings::default();
+    let baked = bake_layer(&layer, &clip, &settings).expect("bakes");
+    let unfaded = bake(&scene, &clip, &settings).expect("bakes");
+    assert!(baked.counts.children > 50 && baked.counts.visible > 500);
+    for (source, opacity) in baked.sources.iter().zip(baked.gaussians.opacities()) {
+        let own = scene.opacities()[*source as usize];
+        let same = unfaded.sources.binary_search(source).expect("no fewer");
+        let child = unfaded.gaussians.opacities()[same];
+        assert!(
+            [own, child].contains(opacity),
+            "{opacity}, of {own} and {child}"
+        );
+    }
+
+    // None is replaced by centres, and the layer's state is the only fade that shows.
+    let by_centres = settings.mode(Mode::Hard);
+    let baked = bake_layer(&layer, &clip, &by_centres).expect("bakes");
+    let camera = Camera::frame(&bounds, -DVec3::Y, 50.0, (64, 48)).expect("a view");
+    let mut headless = common::headless();
+    headless.load(Scene::from_iter([layer])).expect("uploads");
+    let cut = drawn(&mut headless, &camera, &clip, Mode::Hard);
+    let again = Layer::new("baked", &baked.gaussians).with(faded);
+    headless.load(Scene::from_iter([again])).expect("uploads");
+    let shown = drawn(&mut headless, &camera, &Clip::default(), Mode::None);
+    assert!(cut.pixels.iter().any(|pixel| pixel[3] > 0.5));
+    let apart = differences(&shown, &cut).expect("of one size");
+    assert!(apart.max < 0.01, "{apart:?}");
+    headless.close().expect("nothing to validate");
+}

@@ -122,6 +122,27 @@ fn several_scenes_become_one_file_or_one_each() {
     assert_eq!(apart["files"].as_array().map(Vec::len), Some(2));
 }
 
+/// One file of several layers has no place for the fade of one. A file for each has the layer's own opacities: the fade stays
+/// in the list.
+#[test]
+fn a_faded_layer_is_baked_as_opaque_as_it_is() {
+    let here = folder("bake-faded");
+    let file = scene(&here);
+    let list = r#"{"layers": [{"name": "skin", "path": "scene.ply", "opacity": 0.5}]}"#;
+    fs::write(here.join("list.json"), list).expect("a list");
+    let words = "bake @/list.json -o @/OUT --clip plane:1,0,0,1e6 --views 0";
+    let merged = line(&here, &words.replace("OUT", "all.ply"));
+    refused(&merged, 2, "layer 'skin' is placed or faded");
+    done(line(&here, &words.replace("OUT", "cut_{}.ply")));
+    let [own, baked] = [file, here.join("cut_skin.ply")].map(|path| {
+        let loaded = rara::scene::load(&path, &mut |_, _| ()).expect("a scene");
+        loaded.gaussians.into_arrays().opacities
+    });
+    assert_eq!(own.len(), baked.len());
+    let apart = own.iter().zip(&baked).map(|(a, b)| (a - b).abs());
+    assert!(apart.fold(0.0, f32::max) < 1e-6);
+}
+
 #[test]
 fn a_clip_that_keeps_nothing_leaves_an_empty_scene_and_says_so() {
     let here = folder("bake-empty");

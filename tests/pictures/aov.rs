@@ -1,8 +1,12 @@
 //! What a headless renderer says of a pixel beside its colour.
 
 use crate::common;
+use glam::{DQuat, DVec3, Vec3};
 use rara::scene::{Kind, generate};
-use rara::{Camera, Clip, ClipOp, Mode, Raster, Settings, Show, reference};
+use rara::{
+    Aov, Camera, Clip, ClipOp, Gaussians, Mode, Projection, Raster, Scene, Settings, Show,
+    reference,
+};
 
 #[test]
 fn headless_expected_depths_are_the_references() {
@@ -56,15 +60,42 @@ fn headless_expected_depths_are_the_references() {
     headless.close().expect("nothing to validate");
 }
 
+/// A disc aside that shows the eye one face and the plane of the eye the other.
+#[test]
+fn normals_are_turned_to_the_eye_and_not_to_its_plane() {
+    let normal = DVec3::new(-0.9, 0.0, 0.44).normalize();
+    let at = DVec3::new(1.0, 0.0, 1.2);
+    let mut disc = Gaussians::default();
+    let turn = DQuat::from_rotation_arc(DVec3::Z, normal).as_quat();
+    let thin = Vec3::new(0.15, 0.15, 0.001);
+    disc.push(at.as_vec3(), thin, turn, 0.9, &[0.0; 3]);
+    let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, -DVec3::Y, 90.0, (64, 64));
+    let camera = camera.expect("a view");
+    let flat = camera.projection(Projection::Orthographic);
+    let (clip, settings) = (Clip::default(), Settings::default());
+    let mut headless = common::headless();
+    headless.load(&disc).expect("uploads");
+    for (camera, expected) in [(camera, normal), (flat.fx(20.0).fy(20.0), -normal)] {
+        let frame = (&camera, &clip, &settings);
+        let channels = headless.channels(&[Aov::Normal], &Scene::from(&disc), frame);
+        let channels = channels.expect("channels");
+        let [x, y, z] = channels.as_slice() else {
+            panic!("{} channels", channels.len());
+        };
+        let all = x.values.iter().zip(&y.values).zip(&z.values);
+        let all = all.map(|((x, y), z)| Vec3::new(*x, *y, *z).as_dvec3());
+        let shown: Vec<_> = all.filter(|found| *found != DVec3::ZERO).collect();
+        assert!(shown.len() > 10, "{} pixels", shown.len());
+        for found in shown {
+            assert!(found.distance(expected) < 1e-3, "{found}, not {expected}");
+        }
+    }
+    headless.close().expect("nothing to validate");
+}
+
 #[test]
 fn depths_need_a_scene() {
-    let camera = Camera::look_at(
-        glam::DVec3::Z,
-        glam::DVec3::ZERO,
-        -glam::DVec3::Y,
-        40.0,
-        (8, 8),
-    );
+    let camera = Camera::look_at(DVec3::Z, DVec3::ZERO, -DVec3::Y, 40.0, (8, 8));
     let error = common::headless()
         .expected_depth(
             &camera.expect("a view"),

@@ -4,6 +4,8 @@
 
 mod stored;
 
+use std::f64::consts::PI;
+
 use rara::glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 use rara::scene::load;
 use rara::{Gaussians, Placement};

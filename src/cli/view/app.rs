@@ -212,6 +212,12 @@ impl App {
                 None
             }
             WindowEvent::DroppedFile(file) => Some(Action::Drop(file)),
+            // A key that is down when the window gets the keyboard was pressed for another window, or is reported once more.
+            WindowEvent::KeyboardInput {
+                event,
+                is_synthetic: true,
+                ..
+            } if event.state.is_pressed() => None,
             WindowEvent::KeyboardInput { event, .. } => {
                 stage.dirty |= event.state.is_pressed() && stage.overlay.hush();
                 self.input.key(

@@ -65,7 +65,7 @@ impl Compiling {
         Self(())
     }
 
-    /// What a device calls when it compiles.
+    /// The function that a device calls when it compiles.
     pub(super) fn hook() -> OnCompile {
         let shown = Mutex::new(None);
         OnCompile::new(move |is_begun| {

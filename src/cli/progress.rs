@@ -15,7 +15,7 @@ const MOMENT: Duration = Duration::from_millis(500);
 /// How often what moves moves, also where the work says nothing for long.
 const TICK: Duration = Duration::from_millis(100);
 
-/// What is shown at once, a line each.
+/// The bars that are shown at once, a line each.
 static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
 /// A thread that shows a bar once the work has taken a moment, and moves it from then on.

@@ -27,8 +27,7 @@ pub(crate) fn compile(glsl: &Path, spirv: &Path) -> Result<(), String> {
             // For 1.3 glslang would write LocalSizeId, which needs maintenance4 and complicates reflection.
             options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_2 as u32);
             // The bound variant serves the validation layer and reflection: it keeps names and every declared buffer.
-            // Of what the optimiser makes, CPU drivers make tiles that take 1.3 times as long, so that they get the mixed
-            // variant as it is.
+            // CPU drivers get the mixed variant as it is: their tiles take 1.3 times as long from optimised modules.
             let optimise = match variant {
                 "address" => OptimizationLevel::Performance,
                 _ => OptimizationLevel::Zero,

@@ -144,7 +144,7 @@ impl Dispatcher {
     }
 }
 
-/// What tells a kernel's compilation from others by the same driver.
+/// The hash that tells a kernel's compilation from others by the same driver.
 fn hash(device: &Device, desc: &ComputeDesc<'_>) -> u64 {
     let step = |hash: u64, word: &u32| (hash ^ u64::from(*word)).wrapping_mul(0x0100_0000_01b3);
     let constants = desc.constants.iter().flat_map(|(id, value)| [id, value]);

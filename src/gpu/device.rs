@@ -286,7 +286,7 @@ impl Device {
         let _ = self.inner.on_compile.set(hook);
     }
 
-    /// What is called when pipelines are made.
+    /// The function that is called when pipelines are made.
     pub(super) fn compile_hook(&self) -> Option<&OnCompile> {
         self.inner.on_compile.get()
     }

@@ -77,7 +77,7 @@ pub fn compare_within(
     Ok((comparison, within.map(|sum| per_channel * sum)))
 }
 
-/// What [`Comparison`] says without the structural similarity, which takes twenty times as long as the rest.
+/// A [`Comparison`] without the structural similarity, which takes twenty times as long as the rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Differences {
     /// As [`Comparison::max`].

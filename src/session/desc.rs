@@ -18,7 +18,7 @@ pub struct HeadlessDesc {
     pub bindings: Option<Bindings>,
     /// The place in which compiled pipelines are kept from one run to the next.
     pub pipeline_cache: PipelineCache,
-    /// What is called when shaders are compiled, which may take seconds.
+    /// The function that is called when shaders are compiled, which may take seconds.
     pub on_compile: Option<OnCompile>,
     /// The trace in which to note how long each step takes on the processor and on the device.
     pub trace: Option<Trace>,

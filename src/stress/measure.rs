@@ -123,7 +123,7 @@ fn measure(headless: &mut Headless, case: &Case, turn: Option<usize>, row: &mut 
         mode: Mode::None,
         ..Settings::default()
     };
-    // What either way of drawing leaves out shows here, before anything is cut.
+    // A splat that either way of drawing leaves out shows here, before anything is cut.
     let all = [Raster::Tiles, Raster::Quad];
     let drawn = pictures(headless, case, &Clip::default(), &uncut, &all)?;
     let whole = truth(case, &Clip::default(), &uncut).picture;

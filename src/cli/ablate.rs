@@ -44,8 +44,8 @@ struct Row {
 impl Ablate {
     pub(super) fn run(self) -> Result<(), Failure> {
         let look = self.common.look.meant()?;
-        self.common.camera.single("an ablation")?;
         let views = self.common.camera.meant(&self.scenes.places())?;
+        let views = views.single("an ablation")?;
         let loaded = self.scenes.load()?;
         let scene = loaded.scene();
         let camera = views.of(&scene)?.remove(0).camera;

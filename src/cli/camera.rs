@@ -10,7 +10,7 @@ use super::failure::Failure;
 #[cfg(doc)]
 use super::framing;
 use super::lens::{Depths, Lens, Ortho, ortho};
-use super::views::pick;
+use super::views::picked;
 pub(super) use super::views::{View, Views};
 use super::{aspect, output, training, values};
 use rara::{camera_files, scene::Bounds};
@@ -48,11 +48,13 @@ pub(super) struct CameraArgs {
     /// beside the scene]
     #[arg(long, value_name = "FILE", conflicts_with = "camera")]
     cameras: Option<PathBuf>,
-    /// Which of the cameras: number from 0, name, or all [default with --cameras: 0; without it the camera frames the scene]
-    #[arg(long, value_name = "N|NAME|all", conflicts_with_all = ["eye", "camera", "ortho", "fov_y", "up"])]
+    /// Which of the cameras: a number from 0, a name, numbers from one to another (3..6, both of these too), several of these
+    /// with commas between them, or all [default with --cameras: 0; without it the camera frames the scene]
+    #[arg(long, value_name = "N|NAME|N..M|all", conflicts_with_all = ["eye", "target", "ortho", "fov_y", "up"])]
     view: Option<String>,
     /// One camera: JSON with width, height, fx, fy, cx, cy, world_to_camera (16 numbers, row-major), and perhaps
-    /// "projection": "orthographic"; fx and fy are then the pixels of a world unit
+    /// "projection": "orthographic"; fx and fy are then the pixels of a world unit. --save-camera writes such a file, and
+    /// --json has the same under "camera". With --view the file may hold a list of cameras
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
     /// Keep what is at this depth or deeper, world units along the view axis: a plane that moves with the camera, cuts every
@@ -90,16 +92,6 @@ impl CameraArgs {
     /// True when a file places the camera.
     fn is_from_file(&self) -> bool {
         self.camera.is_some() || self.cameras.is_some() || self.view.is_some()
-    }
-
-    /// Refuses several cameras, where `what` needs one.
-    pub(super) fn single(&self, what: &str) -> Result<(), Failure> {
-        match self.all() {
-            false => Ok(()),
-            true => Err(Failure::Usage(format!(
-                "{what} has one camera: give --view a number or a name"
-            ))),
-        }
     }
 
     /// The same flags for a command whose default size is another.
@@ -140,6 +132,11 @@ impl CameraArgs {
     /// The direction that is up in the picture, if a flag says it.
     pub(super) fn chosen_up(&self) -> Option<DVec3> {
         self.up
+    }
+
+    /// What was typed for `--view`.
+    pub(super) fn chosen_view(&self) -> Option<&str> {
+        self.view.as_deref()
     }
 
     /// The size of the picture, if a flag says it.
@@ -210,8 +207,8 @@ impl CameraArgs {
             })
             .collect();
         if let Some(wanted) = wanted {
-            let picked = wanted.iter().map(|one| pick(&views, one, &path, flag));
-            views = picked.collect::<Result<_, _>>()?;
+            let all = wanted.iter().map(|one| picked(&views, one, &path, flag));
+            views = all.collect::<Result<Vec<_>, _>>()?.concat();
         }
         let depths = self.depths();
         for view in &mut views {

@@ -58,8 +58,7 @@ struct Shot {
 impl Demo {
     pub(super) fn run(self) -> Result<(), Failure> {
         let look = self.common.look.meant()?;
-        self.common.camera.single("a demo")?;
-        let views = self.common.camera.meant(&self.scenes)?;
+        let views = self.common.camera.meant(&self.scenes)?.single("a demo")?;
         output::make_folder(&self.output)?;
         let loaded = if self.scenes.is_empty() {
             made_up()

@@ -367,12 +367,10 @@ impl Render {
         }
         let first = numbers.first().copied().unwrap_or(0);
         if several && filled(pattern, 0, "a") == filled(pattern, 1, "b") {
-            let what = if self.frame.camera.all() {
-                "--view all makes"
-            } else if self.path.moves() {
-                "--path makes"
-            } else {
-                "these sections are"
+            let what = match self.frame.camera.chosen_view() {
+                Some(view) => &format!("--view {view} makes"),
+                None if self.path.moves() => "--path makes",
+                None => "these sections are",
             };
             let remedy = match pattern == Path::new(values::STANDARD) {
                 true => {

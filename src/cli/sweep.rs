@@ -75,8 +75,8 @@ impl Sweep {
         // The shapes that stand still.
         let shapes = self.frame.clip.expressions()?;
         let moving = self.moving()?;
-        self.frame.camera.single("a sweep")?;
         let views = self.frame.camera.meant(&self.scenes.places())?;
+        let views = views.single("a sweep")?;
         if let Some(folder) = &self.output {
             output::make_folder(folder)?;
         }

@@ -46,6 +46,16 @@ impl Views {
         };
         given.iter().map(|view| view.number).chain(0..placed)
     }
+
+    /// Refuses several cameras, where `what` needs one.
+    pub(super) fn single(self, what: &str) -> Result<Self, Failure> {
+        match self.numbers().count() {
+            1 => Ok(self),
+            count => Err(Failure::Usage(format!(
+                "{what} has one camera, and these are {count}: give --view a number or a name"
+            ))),
+        }
+    }
 }
 
 impl Views {
@@ -82,26 +92,60 @@ impl Views {
     }
 }
 
-/// The view with the number or name `wanted`; a name may leave out its ending.
-pub(super) fn pick(views: &[View], wanted: &str, path: &Path, flag: &str) -> Result<View, Failure> {
-    let count = views.len();
+/// The views that `wanted` means: a number from 0, a name that may leave out its ending, a range of numbers with both ends, as
+/// 3..6, or several of these with commas between them. A name goes before what else could be meant.
+pub(super) fn picked(
+    views: &[View],
+    wanted: &str,
+    path: &Path,
+    flag: &str,
+) -> Result<Vec<View>, Failure> {
+    let whole = found(views, wanted);
+    if whole.is_none() && wanted.contains(',') {
+        let parts = wanted
+            .split(',')
+            .map(|part| picked(views, part.trim(), path, flag));
+        let parts = parts.collect::<Result<Vec<_>, _>>()?;
+        return Ok(parts.concat());
+    }
+    let range = || {
+        let (first, last) = wanted.split_once("..")?;
+        let number = |text: &str| {
+            text.trim()
+                .parse::<usize>()
+                .ok()
+                .filter(|n| *n < views.len())
+        };
+        let (first, last) = (number(first)?, number(last)?);
+        let numbers = first.min(last)..=first.max(last);
+        let mut views = views[numbers].to_vec();
+        if last < first {
+            views.reverse();
+        }
+        Some(views)
+    };
+    let picked = whole.map(|index| vec![views[index].clone()]);
+    picked.or_else(range).ok_or_else(|| {
+        let meant = values::meant(wanted, views.iter().map(|view| view.name.as_str()));
+        Failure::Usage(format!(
+            "{flag} {wanted}: {} has {} cameras, and none of that number (from 0) or name{meant}",
+            path.display(),
+            views.len()
+        ))
+    })
+}
+
+/// Where the view with the number or name `wanted` is.
+fn found(views: &[View], wanted: &str) -> Option<usize> {
     let stem = |name: &str| Path::new(name).file_stem().map(|s| s.to_owned());
-    let by_number = wanted.parse::<usize>().ok().filter(|n| *n < count);
-    let index = by_number
+    let by_number = wanted.parse::<usize>().ok().filter(|n| *n < views.len());
+    by_number
         .or_else(|| views.iter().position(|v| v.name == wanted))
         .or_else(|| {
             views
                 .iter()
                 .position(|v| stem(&v.name).is_some_and(|s| s == wanted))
-        });
-    let meant = values::meant(wanted, views.iter().map(|view| view.name.as_str()));
-    let found = index.and_then(|i| views.get(i).cloned());
-    found.ok_or_else(|| {
-        Failure::Usage(format!(
-            "{flag} {wanted}: {} has {count} cameras, and none of that number (from 0) or name{meant}",
-            path.display()
-        ))
-    })
+        })
 }
 
 #[cfg(test)]
@@ -109,9 +153,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn views_are_picked_by_number_name_or_stem() {
+    fn views_are_picked_by_number_name_stem_or_range() {
         let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::NEG_Y, 50.0, (8, 8)).unwrap();
-        let names = ["a.jpg", "b/7.png", "2"];
+        let names = ["a.jpg", "b/7.png", "2", "0..1", "x,y"];
         let views = || {
             names.iter().enumerate().map(|(number, n)| View {
                 number,
@@ -119,17 +163,30 @@ mod tests {
                 camera,
             })
         };
-        let picked = |wanted| {
-            let views: Vec<_> = views().collect();
-            pick(&views, wanted, Path::new("f"), "--view")
-                .map(|v| v.number)
-                .ok()
+        let views: Vec<_> = views().collect();
+        let numbers = |wanted| {
+            let picked = picked(&views, wanted, Path::new("f"), "--view");
+            picked.map(|picked| picked.iter().map(|view| view.number).collect::<Vec<_>>())
         };
-        assert_eq!(picked("1"), Some(1));
-        assert_eq!(picked("a.jpg"), Some(0));
-        assert_eq!(picked("a"), Some(0));
-        assert_eq!(picked("7"), Some(1));
-        assert_eq!(picked("2"), Some(2));
-        assert_eq!(picked("9"), None);
+        for (wanted, meant) in [
+            ("1", &[1][..]),
+            ("a.jpg", &[0]),
+            ("a", &[0]),
+            ("7", &[1]),
+            ("2", &[2]),
+            ("1..3", &[1, 2, 3]),
+            ("3..1", &[3, 2, 1]),
+            ("2 .. 2", &[2]),
+            ("2,1..2, a", &[2, 1, 2, 0]),
+            // These are names.
+            ("0..1", &[3]),
+            ("x,y", &[4]),
+        ] {
+            assert_eq!(numbers(wanted).ok().as_deref(), Some(meant), "{wanted}");
+        }
+        for none in ["9", "3..5", "..2", "1..", "1,", "0,b", "a..7"] {
+            let failure = numbers(none).expect_err(none).to_string();
+            assert!(failure.contains("f has 5 cameras"), "{none}: {failure}");
+        }
     }
 }

@@ -105,10 +105,11 @@ struct Row {
 impl Bench {
     pub(super) fn run(self) -> Result<(), Failure> {
         let look = self.look.meant()?;
-        self.camera.single("a bench")?;
         let (clip, views) = (
             self.clip.meant()?,
-            self.camera.meant(&self.scenes.places())?,
+            self.camera
+                .meant(&self.scenes.places())?
+                .single("a bench")?,
         );
         if let Some(folder) = &self.output {
             output::make_folder(folder)?;

@@ -37,7 +37,8 @@ pub enum ColmapFormat {
 
 /// Loads every camera of a 3DGS `cameras.json`, a nerfstudio `transforms.json` or a COLMAP sparse folder (with
 /// `cameras` and `images`, each `.bin` or `.txt`; a folder that has `sparse/0` does too). JSON files keep their order,
-/// COLMAP's cameras are sorted by picture name. A file with a single camera (see [`load_camera`]) gives that one.
+/// COLMAP's cameras are sorted by picture name. A file with a single camera (see [`load_camera`]) gives that one, and a list
+/// of such cameras, each perhaps with a `"name"`, all of them.
 ///
 /// World coordinates are taken as the file has them. Cameras with lens distortion are an error.
 ///
@@ -69,6 +70,7 @@ pub fn load_cameras(path: &Path) -> Result<Vec<NamedCamera>> {
 pub fn cameras_from_json(json: &[u8], name: &Path) -> Result<Vec<NamedCamera>> {
     let json = json::bare(json);
     let cameras = match json.first() {
+        Some(b'[') if single::is_list(json) => single::parse_list(json),
         Some(b'[') => inria::parse(json),
         Some(b'{') => nerfstudio::parse(json).or_else(|error| match single::parse(json) {
             Ok(camera) => Ok(vec![NamedCamera { name: "0".into(), camera }]),
@@ -107,7 +109,8 @@ fn not_empty(cameras: Vec<NamedCamera>, path: &Path) -> Result<Vec<NamedCamera>>
 
 /// Loads a single camera: JSON `{"width", "height", "fx", "fy", "cx", "cy", "world_to_camera": [16 numbers,
 /// row-major]}`; without `cx` or `cy` the principal point is the middle. With `"projection": "orthographic"` `fx` and `fy`
-/// are the pixels of a world unit.
+/// are the pixels of a world unit. `clip_near`, `clip_far` and `near_cut` are those of [`Camera`]. With `eye`, three numbers
+/// that have to agree with the matrix, a camera is read as it was written, to the last bit.
 ///
 /// # Errors
 /// [`Error::Io`] if the file can't be read, [`Error::Format`] if it has no usable camera.

@@ -1,14 +1,23 @@
-//! Our own file of one camera: the matrix as a renderer has it.
+//! Our own files of one camera, or of a list: the matrix as a renderer has it.
 
-use glam::{DMat4, DVec4};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 
-use super::{Parts, Pose};
+use super::{NamedCamera, Parts, Pose};
 use crate::camera::{Camera, Projection};
+use crate::error::shortened;
 use crate::json;
+
+/// How far `eye` may be from where the matrix puts it, as a share of its distance from the origin: files round both.
+const EYE_TOLERANCE: f64 = 1e-5;
+/// How far axes may be from unit length and from being square to each other where they are rotations but for rounding, as
+/// products of several rotations have them.
+const ROUNDING: f64 = 1e-13;
 
 #[derive(Deserialize)]
 struct Single {
+    name: Option<String>,
     width: f64,
     height: f64,
     fx: f64,
@@ -17,8 +26,13 @@ struct Single {
     cy: Option<f64>,
     /// Row by row.
     world_to_camera: [f64; 16],
+    /// The matrix says it as well, but for rounding.
+    eye: Option<[f64; 3]>,
     #[serde(default)]
     projection: Name,
+    clip_near: Option<f64>,
+    clip_far: Option<f64>,
+    near_cut: Option<f64>,
 }
 
 #[derive(Deserialize, Default)]
@@ -30,23 +44,74 @@ enum Name {
 }
 
 pub(super) fn parse(json: &[u8]) -> Result<Camera, String> {
-    let single: Single = json::parse(json)?;
-    let matrix = DMat4::from_cols_array(&single.world_to_camera).transpose();
-    if matrix.row(3) != DVec4::W {
-        return Err(
-            "the last row of world_to_camera is not 0, 0, 0, 1; write the matrix row by row".into(),
-        );
+    json::parse::<Single>(json)?.camera("the camera")
+}
+
+/// True for a list of our own cameras.
+pub(super) fn is_list(json: &[u8]) -> bool {
+    #[derive(Deserialize)]
+    struct Entry {
+        world_to_camera: Option<IgnoredAny>,
     }
-    let parts = Parts {
-        width: single.width,
-        height: single.height,
-        focal: (single.fx, single.fy),
-        centre: (single.cx, single.cy),
-        pose: Pose::WorldToCamera(matrix),
+    let entries = serde_json::from_slice::<Vec<Entry>>(json);
+    entries.is_ok_and(|entries| entries.iter().any(|entry| entry.world_to_camera.is_some()))
+}
+
+pub(super) fn parse_list(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
+    let entries: Vec<Single> = json::parse(json)?;
+    let named = |(number, mut entry): (usize, Single)| {
+        let name = entry.name.take().unwrap_or_else(|| number.to_string());
+        let camera = entry.camera(&format!("camera {number} (`{}`)", shortened(&name)))?;
+        Ok(NamedCamera { name, camera })
     };
-    let projection = match single.projection {
-        Name::Perspective => Projection::Perspective,
-        Name::Orthographic => Projection::Orthographic,
-    };
-    Ok(parts.camera("the camera")?.projection(projection))
+    entries.into_iter().enumerate().map(named).collect()
+}
+
+impl Single {
+    /// The camera, or what is wrong with it; `what` names it.
+    fn camera(self, what: &str) -> Result<Camera, String> {
+        let matrix = DMat4::from_cols_array(&self.world_to_camera).transpose();
+        if matrix.row(3) != DVec4::W {
+            return Err(format!(
+                "the last row of world_to_camera of {what} is not 0, 0, 0, 1; write the matrix row by row"
+            ));
+        }
+        let parts = Parts {
+            width: self.width,
+            height: self.height,
+            focal: (self.fx, self.fy),
+            centre: (self.cx, self.cy),
+            pose: Pose::WorldToCamera(matrix),
+        };
+        let projection = match self.projection {
+            Name::Perspective => Projection::Perspective,
+            Name::Orthographic => Projection::Orthographic,
+        };
+        let mut camera = parts
+            .camera(what)?
+            .projection(projection)
+            .clip_near(self.clip_near)
+            .clip_far(self.clip_far)
+            .near_cut(self.near_cut);
+        let checked = camera.check_near_cut().and(camera.clip_planes());
+        checked.map_err(|error| format!("{what}: {error}"))?;
+        if let Some(eye) = self.eye.map(DVec3::from) {
+            let apart = eye.distance(camera.eye);
+            if apart.is_nan() || apart > EYE_TOLERANCE * camera.eye.length().max(1.0) {
+                return Err(format!(
+                    "the eye of {what} is {eye}, and its world_to_camera puts it at {}; leave out eye, or write the matrix of \
+                     that eye",
+                    camera.eye
+                ));
+            }
+            // What a camera was drawn with, to the last bit, draws the same picture again.
+            camera.eye = eye;
+            let rotation = DMat3::from_mat4(matrix);
+            let oblique = rotation * rotation.transpose() - DMat3::IDENTITY;
+            if oblique.to_cols_array().iter().all(|v| v.abs() <= ROUNDING) {
+                camera.rotation = rotation;
+            }
+        }
+        Ok(camera)
+    }
 }

@@ -1,6 +1,6 @@
 //! The flags that place the camera.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::DVec3;
@@ -166,7 +166,7 @@ impl CameraArgs {
 
     /// The file of the cameras: the one that is named, or the one beside a scene; `flag` asks for it.
     fn file(&self, scenes: &[PathBuf], flag: &str) -> Result<PathBuf, Failure> {
-        if let Some(file) = &self.cameras {
+        if let Some(file) = self.cameras.as_ref().or(self.camera.as_ref()) {
             return Ok(file.clone());
         }
         let found = scenes.iter().find_map(|scene| training::cameras(scene));
@@ -252,8 +252,8 @@ impl CameraArgs {
                 camera,
             }]));
         }
-        if let Some(path) = &self.camera {
-            let camera = depths.of(self.sized(camera_files::load_camera(path)?)?)?;
+        if let (Some(path), None) = (&self.camera, &self.view) {
+            let camera = depths.of(self.sized(only(path, scenes)?)?)?;
             return Ok(Views::Given(vec![View {
                 number: 0,
                 name: path.display().to_string(),
@@ -292,5 +292,22 @@ impl CameraArgs {
             Some(size) => aspect::sized(camera, size),
             None => Ok(camera),
         }
+    }
+}
+
+/// The only camera of a file.
+fn only(path: &Path, scenes: &[PathBuf]) -> Result<Camera, Failure> {
+    let error = match camera_files::load_camera(path) {
+        Ok(camera) => return Ok(camera),
+        Err(error) => error,
+    };
+    match training::load_cameras(path, scenes).as_deref() {
+        Ok([only]) => Ok(only.camera),
+        Ok(several) => Err(Failure::Usage(format!(
+            "--camera {}: the file has {} cameras: choose by --view, which takes numbers, names and all",
+            path.display(),
+            several.len()
+        ))),
+        Err(_) => Err(error.into()),
     }
 }

@@ -63,10 +63,12 @@ pub(super) struct Depths {
 }
 
 impl Depths {
-    /// The camera with planes, and a near cut, at these depths.
+    /// The camera with planes, and a near cut, at these depths, and at its own where none are given.
     pub(super) fn of(self, camera: Camera) -> Result<Camera, Failure> {
-        let camera = camera.clip_near(self.near).clip_far(self.far);
-        let camera = camera.near_cut(self.cut);
+        let camera = camera
+            .clip_near(self.near.or(camera.clip_near))
+            .clip_far(self.far.or(camera.clip_far))
+            .near_cut(self.cut.or(camera.near_cut));
         camera.check_near_cut().map_err(Failure::usage)?;
         camera.clip_planes().map_err(Failure::usage)?;
         Ok(camera)

@@ -41,6 +41,7 @@ mod reading;
 mod render;
 mod report;
 mod residual;
+mod save_camera;
 mod scene_file;
 mod scenes;
 mod section;

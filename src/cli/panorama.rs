@@ -91,14 +91,11 @@ impl Panorama {
         (half, (half * OVERLAP).ceil() + 2.0)
     }
 
-    /// The six views of a view's surroundings. Where `up` is given the horizon is level, whatever the camera's own tilt.
-    pub(super) fn faces(self, view: &View, up: Option<DVec3>) -> Vec<View> {
+    /// The six views of a view's surroundings.
+    pub(super) fn faces(self, view: &View) -> Vec<View> {
         let (half, margin) = self.half();
         let side = 2.0 * (half + margin);
-        let axes = match up.and_then(|up| level(view.camera.rotation, up)) {
-            Some(level) => level,
-            None => view.camera.rotation,
-        };
+        let axes = view.camera.rotation;
         let face = |(name, own): &(&str, [DVec3; 3])| View {
             number: view.number,
             name: format!("{} {name}", view.name),
@@ -187,6 +184,14 @@ impl Panorama {
     }
 }
 
+/// The camera without its tilt, so that the horizon is level; as it is where it looks along `up`.
+pub(super) fn levelled(camera: Camera, up: DVec3) -> Camera {
+    match level(camera.rotation, up) {
+        Some(axes) => camera.rotation(axes),
+        None => camera,
+    }
+}
+
 /// Axes with the same right, or nearly so, whose down is against `up`; none where they look along it.
 fn level(axes: DMat3, up: DVec3) -> Option<DMat3> {
     let down = -up.try_normalize()?;
@@ -246,11 +251,11 @@ mod tests {
     #[test]
     fn every_direction_is_where_it_belongs_without_a_seam() {
         let panorama = Panorama { width: 128 };
-        let view = view();
-        let up = DVec3::NEG_Y;
-        let axes = level(view.camera.rotation, up).unwrap();
+        let mut view = view();
+        view.camera = levelled(view.camera, DVec3::NEG_Y);
+        let axes = view.camera.rotation;
         assert!((axes.row(1) - DVec3::Y).length() < 1e-12 && axes.determinant() > 0.999);
-        let faces = panorama.faces(&view, Some(up));
+        let faces = panorama.faces(&view);
         for face in &faces {
             assert!((face.camera.rotation.determinant() - 1.0).abs() < 1e-12);
         }
@@ -278,7 +283,7 @@ mod tests {
     fn a_file_s_camera_keeps_its_own_axes_and_sizes_are_two_to_one() {
         let view = view();
         let panorama = Panorama { width: 64 };
-        let faces = panorama.faces(&view, None);
+        let faces = panorama.faces(&view);
         assert!(
             (faces[0].camera.rotation - view.camera.rotation)
                 .to_cols_array()

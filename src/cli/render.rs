@@ -14,11 +14,12 @@ use super::frame::FrameArgs;
 use super::framing;
 use super::memory;
 use super::output::{self, Progress};
-use super::panorama::{Panorama, PanoramaArgs};
+use super::panorama::{self, Panorama, PanoramaArgs};
 use super::path::PathArgs;
 use super::pattern::filled;
 use super::profile::{Profile, ProfileArgs};
 use super::report::{Frame, Report};
+use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
 use super::section::{Section, SectionArgs, Sections};
 use super::session::Repeat;
@@ -77,6 +78,8 @@ pub(super) struct Render {
     slice: SliceArgs,
     #[command(flatten)]
     frame: FrameArgs,
+    #[command(flatten)]
+    save_camera: SaveCameraArgs,
     #[command(flatten)]
     profile: ProfileArgs,
 }
@@ -205,10 +208,16 @@ impl Render {
     ) -> Result<(), Failure> {
         let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
-        let planned = pictures.of(&scene)?;
+        let mut planned = pictures.of(&scene)?;
+        if let (Some(_), Some(up)) = (&run.panorama, self.horizon()) {
+            for Planned { view, .. } in &mut planned {
+                view.camera = panorama::levelled(view.camera, up);
+            }
+        }
         if run.film.is_none() {
             self.check_files(&planned)?;
         }
+        self.save_camera.save(planned.iter().map(|one| &one.view))?;
         let sizes = planned.iter().map(|one| run.size(&one.view.camera));
         let kept = run.panorama.map_or(0, Panorama::kept_pixels);
         // A path has many pictures of one size.
@@ -239,7 +248,7 @@ impl Render {
             let mut picture = None;
             if let Some(panorama) = &run.panorama {
                 let mut faces = Vec::new();
-                for face in panorama.faces(&one.view, self.horizon()) {
+                for face in panorama.faces(&one.view) {
                     let drawn = (&face.camera, &one.clip, settings);
                     let measured = session.measured_frame(drawn.0, drawn.1, drawn.2, repeat)?;
                     frames.push(Frame::new(&face, path.as_deref(), plane, measured));

@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::camera::View;
 use super::combine::{Combine, Measured, combine};
 use super::output::{self, grouped, say};
+use super::save_camera::CameraJson;
 use super::scenes::Loaded;
 use super::session::Session;
 
@@ -22,6 +23,9 @@ pub(super) struct Report {
     scene: SceneReport,
     size: [u32; 2],
     mode: String,
+    /// The camera of all frames, if they have one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    camera: Option<CameraJson>,
     #[serde(flatten)]
     measured: Measured,
     /// What the driver's compilation has added to frames that are not among those measured.
@@ -49,6 +53,8 @@ pub(super) struct Frame {
     file: Option<String>,
     /// The section's plane, or the one that moves: normal and offset.
     plane: Option<[f64; 4]>,
+    /// The camera that drew it.
+    camera: CameraJson,
     #[serde(flatten)]
     pub(super) measured: Measured,
 }
@@ -69,6 +75,7 @@ impl Frame {
             name: view.name.clone(),
             file: file.map(|file| file.display().to_string()),
             plane,
+            camera: (&view.camera).into(),
             measured,
         }
     }
@@ -184,6 +191,11 @@ impl Report {
             },
             size: [size.0, size.1],
             mode,
+            camera: frames
+                .first()
+                .map(|first| &first.camera)
+                .filter(|camera| frames.iter().all(|frame| frame.camera == **camera))
+                .cloned(),
             first_use_ms: session.first_use_ms(measured.stats.wall_ms),
             has_kept: session.has_kept(),
             measured,

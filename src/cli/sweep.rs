@@ -16,6 +16,7 @@ use super::memory;
 use super::output::{self, Progress};
 use super::profile::{Profile, ProfileArgs};
 use super::report::{Frame, Report};
+use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
 use super::settings::name;
 use super::values;
@@ -66,6 +67,8 @@ pub(super) struct Sweep {
     #[command(flatten)]
     frame: FrameArgs,
     #[command(flatten)]
+    save_camera: SaveCameraArgs,
+    #[command(flatten)]
     profile: ProfileArgs,
 }
 
@@ -114,6 +117,7 @@ impl Sweep {
         let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
         let view = framing::views(views, &scene)?.remove(0);
+        self.save_camera.save([&view].into_iter())?;
         let camera = view.camera;
         let range = match moving {
             Moving::Plane(normal) => extent_along(&scene, *normal),

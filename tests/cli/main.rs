@@ -5,6 +5,7 @@ mod folder;
 
 mod aov;
 mod bake;
+mod cameras;
 mod clips;
 mod convert;
 mod films;

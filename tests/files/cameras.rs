@@ -133,6 +133,68 @@ fn one_camera() {
     assert_same(&load_cameras(&path).unwrap()[0].camera, &camera());
 }
 
+#[test]
+fn lists_of_our_own_cameras() {
+    let named = single().replacen(
+        '{',
+        r#"{"name": "first", "near_cut": 0.5, "clip_far": 7, "#,
+        1,
+    );
+    let cameras = load_json(&format!("[{named}, {}]", single())).unwrap();
+    assert_eq!([&cameras[0].name, &cameras[1].name], ["first", "1"]);
+    let given = camera().near_cut(Some(0.5)).clip_far(Some(7.0));
+    for (read, given) in [(&cameras[0].camera, given), (&cameras[1].camera, camera())] {
+        assert_same(read, &given);
+        let depths = |camera: &Camera| (camera.clip_near, camera.clip_far, camera.near_cut);
+        assert_eq!(depths(read), depths(&given));
+    }
+    for (more, says) in [
+        (
+            r#""near_cut": 0"#,
+            "camera 1 (`1`): a near cut at a depth of 0",
+        ),
+        (r#""clip_near": 2, "clip_far": 1"#, "nothing lies between"),
+        (
+            r#""eye": [0, 0, 0]"#,
+            "the eye of camera 1 (`1`) is [0, 0, 0], and its world_to_camera puts it at",
+        ),
+        (r#""width": 0.5"#, "camera 1 (`1`) has the width 0.5"),
+    ] {
+        let field = more.split(':').next().unwrap();
+        let rest = match field {
+            r#""width""# => single().replacen(r#""width": 1000, "#, "", 1),
+            _ => single(),
+        };
+        let wrong = rest.replacen('{', &format!("{{{more}, "), 1);
+        let error = load_json(&format!("[{named}, {wrong}]"))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(says), "{error}");
+    }
+}
+
+/// Axes that a file has rounded are made square to each other, and those that have all their digits stay as they are.
+#[test]
+fn an_eye_that_is_said_keeps_all_digits() {
+    let camera = camera();
+    let with_eye = |matrix: &str, eye: DVec3| {
+        let eye = json(eye.to_array());
+        let text = single().replacen('{', &format!("{{\"eye\": {eye}, "), 1);
+        let whole = json(camera.world_to_camera().transpose().to_cols_array());
+        load_json(&format!("[{}]", text.replace(&whole, matrix))).unwrap()[0].camera
+    };
+    let whole = json(camera.world_to_camera().transpose().to_cols_array());
+    let again = with_eye(&whole, camera.eye);
+    assert_eq!((again.eye, again.rotation), (camera.eye, camera.rotation));
+    let rounded = camera.world_to_camera().transpose().to_cols_array();
+    let rounded = rounded.map(|v| (v * 1e6).round() / 1e6);
+    let near = with_eye(&json(rounded), camera.eye);
+    assert_eq!(near.eye, camera.eye);
+    let square = near.rotation * near.rotation.transpose();
+    assert!(square.abs_diff_eq(glam::DMat3::IDENTITY, 1e-15), "{square}");
+    assert!(near.rotation.abs_diff_eq(camera.rotation, 2e-6));
+}
+
 /// One picture of `images.bin`.
 fn image_record(name: &str, camera_id: u32, points: u64) -> Vec<u8> {
     let matrix = camera().world_to_camera();

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use rara::{Camera, Error, Picture, Projection, Result};
-use serde_json::json;
+use rara::{Camera, Error, Picture, Result};
 
 use crate::cli::output;
+use crate::cli::save_camera::CameraJson;
 
 /// The screenshots' files: `{}` becomes their number.
 #[derive(Debug)]
@@ -56,17 +56,7 @@ pub(super) fn save(picture: &Picture, camera: &Camera, path: &Path) -> Result<()
     Camera::from_world_to_camera(matrix, lens, (camera.width, camera.height))?;
     output::check_file(path)?;
     picture.save(path)?;
-    let matrix = matrix.transpose().to_cols_array();
-    let file = json!({
-        "width": camera.width, "height": camera.height,
-        "fx": camera.fx, "fy": camera.fy, "cx": camera.cx, "cy": camera.cy,
-        "world_to_camera": matrix,
-        "projection": match camera.projection {
-            Projection::Orthographic => "orthographic",
-            _ => "perspective",
-        },
-    });
-    output::text(&beside(path), &format!("{file:#}\n"))
+    output::text(&beside(path), &CameraJson::from(camera).text())
 }
 
 /// The line that names the file, and the flags with which `rara render` draws it again.
@@ -115,7 +105,7 @@ mod tests {
         assert_eq!(shots.next(), folder.join("shot_003.png"));
 
         let read = camera_files::load_camera(&folder.join("shot_002.json")).unwrap();
-        assert!((read.eye - eye).length() < 1e-12 && read.fx == camera.fx);
+        assert_eq!(read, camera);
         std::fs::remove_dir_all(&folder).unwrap();
     }
 

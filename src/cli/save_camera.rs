@@ -1,0 +1,177 @@
+//! Cameras as JSON, as `--camera` and `--cameras` read them: in the statistics, beside screenshots, and by `--save-camera`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use rara::{Camera, Projection};
+use serde::Serialize;
+
+use super::camera::View;
+use super::output;
+
+/// A camera, to the last bit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct CameraJson {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
+    width: u32,
+    height: u32,
+    fx: f64,
+    fy: f64,
+    cx: f64,
+    cy: f64,
+    /// The matrix has it too, but for rounding.
+    eye: [f64; 3],
+    /// Row by row.
+    world_to_camera: [f64; 16],
+    projection: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clip_near: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clip_far: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    near_cut: Option<f64>,
+}
+
+impl From<&Camera> for CameraJson {
+    fn from(camera: &Camera) -> Self {
+        Self {
+            name: None,
+            width: camera.width,
+            height: camera.height,
+            fx: camera.fx,
+            fy: camera.fy,
+            cx: camera.cx,
+            cy: camera.cy,
+            eye: camera.eye.to_array(),
+            world_to_camera: camera.world_to_camera().transpose().to_cols_array(),
+            projection: match camera.projection {
+                Projection::Orthographic => "orthographic",
+                _ => "perspective",
+            },
+            clip_near: camera.clip_near,
+            clip_far: camera.clip_far,
+            near_cut: camera.near_cut,
+        }
+    }
+}
+
+impl CameraJson {
+    /// The text of a file of it.
+    pub(super) fn text(&self) -> String {
+        text(self)
+    }
+}
+
+fn text(document: &impl Serialize) -> String {
+    let text = serde_json::to_string_pretty(document);
+    text.expect("the documents have string keys only") + "\n"
+}
+
+/// Where the cameras go.
+#[derive(Debug, Args)]
+pub(super) struct SaveCameraArgs {
+    /// Write the camera of the picture to a file, which draws the same picture by --camera; those of several pictures are a
+    /// list with names, which --cameras and --view read
+    #[arg(
+        long,
+        value_name = "FILE",
+        help_heading = "Camera (without any of these it frames the scene)"
+    )]
+    save_camera: Option<PathBuf>,
+}
+
+impl SaveCameraArgs {
+    /// Writes the cameras of all pictures, if they are wanted.
+    pub(super) fn save<'a>(
+        &self,
+        views: impl ExactSizeIterator<Item = &'a View>,
+    ) -> rara::Result<()> {
+        let Some(file) = &self.save_camera else {
+            return Ok(());
+        };
+        output::check_file(file)?;
+        let is_one = views.len() == 1;
+        let named = views.map(|view| CameraJson {
+            name: (!is_one).then(|| view.name.clone()),
+            ..CameraJson::from(&view.camera)
+        });
+        let named: Vec<_> = named.collect();
+        let text = match &named[..] {
+            [one] => one.text(),
+            several => text(&several),
+        };
+        output::text(file, &text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DMat3, DQuat, DVec3};
+    use rara::camera_files;
+    use std::path::Path;
+
+    fn read(text: &str) -> Camera {
+        camera_files::camera_from_json(text.as_bytes(), Path::new("f")).expect("a camera")
+    }
+
+    /// Cameras whose numbers have no short decimals, and whose axes are square to each other but for rounding.
+    fn cameras() -> Vec<Camera> {
+        let camera = |n: u32| {
+            let n = f64::from(n);
+            let eye = DVec3::new(n / 7.0, -1e3 / (n + 3.0), 1e-7 * n - 4.0);
+            let turn = DQuat::from_scaled_axis(DVec3::new(n.sin(), n / 3.0, (n * n).cos()));
+            let camera = Camera::look_at(eye, DVec3::ONE / 3.0, DVec3::NEG_Y, 47.0, (97, 64));
+            let camera = camera.expect("a view");
+            let rotation = DMat3::from_quat(turn) * camera.rotation;
+            camera.rotation(rotation).cx(48.5 + n / 9.0)
+        };
+        (0..200).map(camera).collect()
+    }
+
+    #[test]
+    fn a_camera_comes_back_to_the_last_bit() {
+        for camera in cameras() {
+            let flat = camera.projection(Projection::Orthographic).fx(1.0 / 3.0);
+            let cut = camera
+                .clip_near(Some(-0.1))
+                .clip_far(Some(1.0 / 3.0))
+                .near_cut(Some(1e-3));
+            for camera in [camera, flat, cut] {
+                assert_eq!(read(&CameraJson::from(&camera).text()), camera);
+            }
+        }
+    }
+
+    #[test]
+    fn several_are_a_list_with_names() {
+        let folder = std::env::temp_dir().join(format!("rara-cameras-{}", std::process::id()));
+        let file = folder.join("made/cameras.json");
+        let views: Vec<View> = cameras()
+            .into_iter()
+            .take(3)
+            .enumerate()
+            .map(|(number, camera)| View {
+                number,
+                name: format!("picture {number}"),
+                camera,
+            })
+            .collect();
+        let save = |save_camera| SaveCameraArgs { save_camera };
+        save(None).save(views.iter()).expect("nothing is written");
+        assert!(!folder.exists());
+        save(Some(file.clone())).save(views.iter()).expect("writes");
+        let again = camera_files::load_cameras(&file).expect("cameras");
+        assert_eq!(again.len(), 3);
+        for (again, view) in again.iter().zip(&views) {
+            assert_eq!((&again.name, again.camera), (&view.name, view.camera));
+        }
+        save(Some(file.clone()))
+            .save(views[..1].iter())
+            .expect("writes");
+        let one = camera_files::load_camera(&file).expect("a camera");
+        assert_eq!(one, views[0].camera);
+        std::fs::remove_dir_all(&folder).expect("ours");
+    }
+}

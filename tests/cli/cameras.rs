@@ -1,0 +1,171 @@
+//! Which cameras draw, and that what is said of them draws the same pictures again.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::{document, done, folder, line, refused, scene, stderr};
+
+/// The bytes of the picture, or the pictures, that these words draw, and the statistics.
+fn drawn(here: &Path, words: &str) -> (Vec<u8>, Value) {
+    let words = format!("render @/scene.ply -o @/drawn.exr --repeat 1 --json {words}");
+    let report = document(line(here, &words));
+    let bytes = fs::read(here.join("drawn.exr")).expect("a picture");
+    (bytes, report)
+}
+
+/// Four cameras of 48x32 pixels that look at the scene from -z, farther and farther.
+fn cameras(here: &Path) {
+    let camera = |number: i32| {
+        json!({"img_name": format!("v{number}.png"), "width": 48, "height": 32,
+            "position": [0.1 * f64::from(number), 0.0, -4.0 - f64::from(number)],
+            "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "fx": 40.0, "fy": 40.0})
+    };
+    let all: Vec<_> = (0..4).map(camera).collect();
+    fs::write(here.join("cameras.json"), json!(all).to_string()).expect("writes");
+}
+
+#[test]
+fn the_camera_that_is_reported_or_saved_draws_the_same_bytes() {
+    let here = folder("cameras_again");
+    scene(&here);
+    let planes = "--clip plane:0,0.6,0.8,-0.1";
+    for (words, clip) in [
+        ("--size 97x64", ""),
+        ("--size 97x64 --up 0.3,-1,0.2 --fov-y 37", planes),
+        ("--size 64x97 --ortho fit", ""),
+        (
+            "--eye 1,-2,-5 --target 0.1,0.2,0.3 --size 64x48 --ortho 3.1",
+            planes,
+        ),
+        ("--size 64x48 --clip-near 3 --clip-far 4 --near-cut 2.5", ""),
+    ] {
+        let (bytes, report) = drawn(&here, &format!("{words} {clip} --save-camera @/saved.json"));
+        let saved = fs::read_to_string(here.join("saved.json")).expect("a camera");
+        let saved: Value = serde_json::from_str(&saved).expect("JSON");
+        assert_eq!(saved, report["camera"], "{words}");
+        let (again, _) = drawn(&here, &format!("--camera @/saved.json {clip}"));
+        assert!(bytes == again, "{words}");
+        let again = drawn(&here, &format!("--cameras @/saved.json {clip}"));
+        assert!(bytes == again.0, "{words}");
+        // What is reported of the picture that is drawn again is what was reported before.
+        assert_eq!(again.1["camera"], saved, "{words}");
+    }
+}
+
+#[test]
+fn a_section_s_camera_and_plane_draw_it_again() {
+    let here = folder("cameras_section");
+    scene(&here);
+    let words = "render @/scene.ply -o @/s_{}.exr --size 96x64 --section coronal=0.3 --section !z=0.6 --repeat 1 --json \
+                 --save-camera @/saved.json";
+    let report = document(line(&here, words));
+    for number in 0..2 {
+        let frame = &report["frames"][number];
+        fs::write(here.join("one.json"), frame["camera"].to_string()).expect("writes");
+        let plane: Vec<_> = frame["plane"].as_array().expect("a plane").iter().collect();
+        let plane: Vec<_> = plane.iter().map(|value| value.to_string()).collect();
+        let clip = format!("--clip plane:{}", plane.join(","));
+        let picture = fs::read(here.join(format!("s_{number}.exr"))).expect("a picture");
+        let name = frame["name"].as_str().expect("a name");
+        for camera in [
+            "--camera @/one.json".to_owned(),
+            format!("--cameras @/saved.json --view {number}"),
+            format!("--cameras @/saved.json --view {name}"),
+            format!("--camera @/saved.json --view {name}"),
+        ] {
+            let (again, _) = drawn(&here, &format!("{camera} {clip}"));
+            assert!(again == picture, "{camera} {clip}");
+        }
+    }
+    let output = line(&here, "render @/scene.ply -o @/x.png --camera @/saved.json");
+    refused(&output, 2, "has 2 cameras: choose by --view");
+}
+
+#[test]
+fn cameras_of_a_path_and_of_a_panorama_draw_their_frames_again() {
+    let here = folder("cameras_path");
+    scene(&here);
+    cameras(&here);
+    for path in ["spline:0,3,1", "orbit:0.37"] {
+        let words = format!(
+            "render @/scene.ply -o @/p_{{}}.exr --path {path} --frames 4 --size 48x32 --repeat 1 --save-camera @/saved.json"
+        );
+        done(line(&here, &words));
+        let kind = path.split(':').next().expect("a kind");
+        for number in 0..4 {
+            let picture = fs::read(here.join(format!("p_{number}.exr"))).expect("a picture");
+            let words = format!("--cameras @/saved.json --view {kind}_{number}");
+            assert!(drawn(&here, &words).0 == picture, "{words}");
+        }
+        let again = "render @/scene.ply -o @/q_{}.exr --cameras @/saved.json --view all --repeat 1";
+        done(line(&here, again));
+        let picture = |name: &str| fs::read(here.join(name)).expect("a picture");
+        assert!((0..4).all(|n| picture(&format!("p_{n}.exr")) == picture(&format!("q_{n}.exr"))));
+    }
+    let panorama = "--panorama --size 64x32";
+    let around = format!("{panorama} --eye 0,0,-1 --target 0.2,-0.4,0 --save-camera @/around.json");
+    let (bytes, _) = drawn(&here, &around);
+    assert!(drawn(&here, &format!("{panorama} --camera @/around.json")).0 == bytes);
+}
+
+#[test]
+fn a_sweep_s_camera_is_that_of_each_frame() {
+    let here = folder("cameras_sweep");
+    scene(&here);
+    let words = "sweep @/scene.ply --clip-normal 0,0,1 --frames 3 --size 48x32 --json --save-camera @/saved.json";
+    let report = document(line(&here, words));
+    let saved = fs::read_to_string(here.join("saved.json")).expect("a camera");
+    let saved: Value = serde_json::from_str(&saved).expect("JSON");
+    assert_eq!(report["camera"], saved);
+    for frame in report["frames"].as_array().expect("frames") {
+        assert_eq!(frame["camera"], saved);
+    }
+    let words = "render @/scene.ply --size 48x32 --json --repeat 1";
+    assert_eq!(document(line(&here, words))["camera"], saved);
+}
+
+#[test]
+fn ranges_and_lists_choose_cameras() {
+    let here = folder("cameras_ranges");
+    scene(&here);
+    cameras(&here);
+    let numbers = |view: &str| {
+        let words = format!("render @/scene.ply --json --repeat 1 --view {view}");
+        let report = document(line(&here, &words));
+        let frames = report["frames"].as_array().expect("frames");
+        let number = |frame: &Value| frame["view"].as_u64().expect("a number");
+        frames.iter().map(number).collect::<Vec<_>>()
+    };
+    assert_eq!(numbers("1..3"), [1, 2, 3]);
+    assert_eq!(numbers("3..2,v0"), [3, 2, 0]);
+    let words = "render @/scene.ply -o @/p_{}.png --json --repeat 1 --path cameras:1..2,0";
+    assert_eq!(document(line(&here, words))["frames"][1]["view"], 2);
+    for (words, says) in [
+        (
+            "render @/scene.ply -o @/x.png --view 1..2",
+            "--view 1..2 makes several pictures: put {}",
+        ),
+        (
+            "render @/scene.ply -o @/{}.png --view 1..4",
+            "--view 1..4: ",
+        ),
+        (
+            "render @/scene.ply -o @/{}.png --view 0,0",
+            "would be one file",
+        ),
+        (
+            "sweep @/scene.ply --clip-normal 0,0,1 --view 1..2",
+            "a sweep has one camera, and these are 2",
+        ),
+    ] {
+        let output = line(&here, words);
+        assert!(
+            stderr(&output).contains(says),
+            "{words}: {}",
+            stderr(&output)
+        );
+        assert!(output.status.code() == Some(2) && output.stdout.is_empty());
+    }
+}

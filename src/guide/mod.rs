@@ -29,6 +29,7 @@ chapters! {
     changes,
     command_line,
     embedding shows "linear" "stored",
+    formats,
     frame,
     glossary,
     gpu,

@@ -34,7 +34,7 @@ pub fn save_ply(path: &Path, gaussians: &Gaussians) -> Result<()> {
 /// also `.compressed.ply`, `.spz`, `.sog` and `.glb`. The file appears when complete.
 ///
 /// All but `.glb` round what they store, `.ply` in the last digits of scales and opacities, and `.compressed.ply` and `.sog`
-/// change the Gaussians' order; the guide's chapter on the [command line](crate::guide::command_line) has what that costs.
+/// change the Gaussians' order; the guide's chapter on [formats](crate::guide::formats) has what that costs.
 ///
 /// Returns how many Gaussians have a scale, a colour or a coefficient beyond what the format holds; it becomes the nearest
 /// that it does.

@@ -115,7 +115,7 @@ fn one_model_in_all_encodings() {
     let truth = load(&general.join("leica_8192_inria.ply"), &mut |_, _| ())
         .unwrap()
         .gaussians;
-    let guide = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/guide/command_line.md");
+    let guide = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/guide/formats.md");
     let guide = std::fs::read_to_string(guide).unwrap();
     let mut missing = Vec::new();
     for (path, name, format) in paths(&folder) {

@@ -113,6 +113,9 @@ fn shortlists_follow_clip_and_camera() {
         (0, 0.3),
         (0, 0.31),
         (1, 0.3),
+        // Back to the clip of the last frame that was whole, after one that only moved the clip.
+        (1, -0.9),
+        (0, 0.3),
     ];
     for (view, x) in walk {
         forgets.forget();

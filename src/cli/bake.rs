@@ -11,7 +11,7 @@ use rara::{
 use serde::Serialize;
 
 use super::antialiasing;
-use super::clip::ClipArgs;
+use super::clip::{ClipArgs, Regions};
 use super::compare::Measures;
 use super::failure::Failure;
 use super::output::{self, Progress, grouped, say};
@@ -107,6 +107,7 @@ impl Bake {
         let clip = self.meant_clip(&entries)?;
         let paths = self.check_output(&entries)?;
         let loaded = self.scenes.load()?;
+        let clip = clip.clip(&loaded.scene())?;
         let is_merged = !self.output.to_string_lossy().contains("{}");
         if is_merged {
             antialiasing::check_alike(&loaded)?;
@@ -163,9 +164,9 @@ impl Bake {
     }
 
     /// The clip of the frame, where that or a layer's own may cut.
-    fn meant_clip(&self, entries: &[LayerEntry]) -> Result<Clip, Failure> {
+    fn meant_clip(&self, entries: &[LayerEntry]) -> Result<Regions, Failure> {
         let clip = self.clip.meant()?;
-        if clip.is_everything() && !self.scenes.may_have_clips(entries) {
+        if clip.is_empty() && !self.scenes.may_have_clips(entries) {
             return Err(no_clip());
         }
         if self.mode == Mode::None {

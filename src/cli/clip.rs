@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rara::clip::{Expression, NamedClip, clips_to_json, load_clips};
-use rara::{Clip, ClipOp, Plane, Shape};
+use rara::{Bounds, Clip, ClipOp, Plane, Scene};
 
 use super::failure::Failure;
 use super::output;
+use super::region::Region;
 use super::values;
 
 /// The clip: the parts to cut away.
@@ -18,16 +19,17 @@ pub(super) struct ClipArgs {
     /// begins at such a plane; box:cx,cy,cz,hx,hy,hz[,qw,qx,qy,qz] has a centre, half sizes and a rotation;
     /// sphere:cx,cy,cz,r; ellipsoid:cx,cy,cz,rx,ry,rz[,qw,qx,qy,qz]; cylinder:ax,ay,az,bx,by,bz,r lies between two discs;
     /// capsule:ax,ay,az,bx,by,bz,r is within r of a stretch of a line; cone:ax,ay,az,bx,by,bz,r has its tip at a and a disc
-    /// around b. A leading ! keeps the outside, in single quotes: '!box:0,0,0,1,1,1'
-    #[arg(long, value_name = "SHAPE", value_parser = shape, allow_hyphen_values = true)]
-    clip: Vec<Shape>,
+    /// around b. A leading ! keeps the outside, in single quotes: '!box:0,0,0,1,1,1'. plane:x=40% lies across an axis at a share of
+    /// the scene's robust bounds and keeps what lies beyond it; slab:z=40%..60% lies between two shares
+    #[arg(long, value_name = "SHAPE", value_parser = Region::shape, allow_hyphen_values = true)]
+    clip: Vec<Region>,
     /// An expression of shapes (repeatable): all(...) keeps what all of its operands keep, any(...) what any of them does,
     /// not(...) what its operand does not, as in 'all(box:0,0,0,1,1,1, not(sphere:1,0,0,.5))'
-    #[arg(long, value_name = "EXPRESSION", value_parser = values::expression, allow_hyphen_values = true)]
-    clip_expr: Vec<Expression>,
+    #[arg(long, value_name = "EXPRESSION", value_parser = Region::expression, allow_hyphen_values = true)]
+    clip_expr: Vec<Region>,
     /// The clips of a JSON file (repeatable): a list of planes, {"normal":[x,y,z],"d":d}, or of expressions as trees,
-    /// {"clip":{"all":[...]}}, as --save-clip writes them, each with a "name" or without. :NAME takes only those of that
-    /// name, or the one of that number (from 0)
+    /// {"clip":{"all":[...]}}, as --save-clip writes them, each with a "name" or without. :NAME takes those of that name, or the
+    /// one of that number (from 0), and :* all of them; a file of several clips with names needs one of these
     #[arg(long, value_name = "FILE[:NAME]")]
     clip_file: Vec<String>,
     /// Write the clip that the flags make to a JSON file, which --clip-file reads; a section's own plane is not in it
@@ -38,63 +40,98 @@ pub(super) struct ClipArgs {
     clip_op: ClipOp,
 }
 
-impl ClipArgs {
-    /// The clip that the flags mean; reads its files.
-    pub(super) fn meant(&self) -> Result<Clip, Failure> {
-        let expressions = self.expressions()?;
-        Ok(match &expressions[..] {
+/// The clip that flags make, before the scene is known in which parts of it may lie at shares.
+#[derive(Debug, Default)]
+pub(super) struct Regions {
+    all: Vec<Region>,
+    op: ClipOp,
+    /// The file that it is saved to.
+    save: Option<PathBuf>,
+}
+
+impl Regions {
+    /// How its regions combine.
+    pub(super) fn op(&self) -> ClipOp {
+        self.op
+    }
+
+    /// True where there is none.
+    pub(super) fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// The regions in a scene.
+    pub(super) fn of(&self, scene: &Scene<'_>) -> rara::Result<Vec<Expression>> {
+        let is_relative = |region: &Region| matches!(region, Region::Relative(..));
+        // The bounds of a large scene take a while.
+        let bounds = match self.all.iter().any(is_relative) {
+            true => Bounds::of(scene.clone()),
+            false => Bounds::of(Scene::default()),
+        };
+        self.all.iter().map(|region| region.of(&bounds)).collect()
+    }
+
+    /// The clip in a scene, which is saved where that is wanted.
+    pub(super) fn clip(&self, scene: &Scene<'_>) -> rara::Result<Clip> {
+        self.save(scene)?;
+        Ok(match &self.of(scene)?[..] {
             [] => Clip::default(),
-            all => Clip::joined(all.iter().map(Expression::clip), self.op()),
+            all => Clip::joined(all.iter().map(Expression::clip), self.op),
         })
     }
 
-    /// The shapes and expressions that the flags mean; reads their files, and saves the clip where that is wanted.
-    pub(super) fn expressions(&self) -> Result<Vec<Expression>, Failure> {
-        let mut expressions: Vec<_> = self.clip.iter().copied().map(Expression::Shape).collect();
-        for text in &self.clip_file {
-            expressions.extend(from_file(text)?);
-        }
-        expressions.extend(self.clip_expr.iter().cloned());
-        self.save(&expressions, "--clip, --clip-expr or --clip-file")?;
-        Ok(expressions)
-    }
-
-    /// Writes the clip to a file as one expression, where that is wanted; `flags` are those that give one.
-    fn save(&self, expressions: &[Expression], flags: &str) -> Result<(), Failure> {
-        let Some(path) = &self.save_clip else {
+    /// Writes the clip to a file as one expression, where that is wanted.
+    pub(super) fn save(&self, scene: &Scene<'_>) -> rara::Result<()> {
+        let Some(path) = &self.save else {
             return Ok(());
         };
-        let clip = match (expressions, self.op()) {
-            ([], _) => {
-                return Err(Failure::Usage(format!(
-                    "--save-clip: there is no clip to save; give one by {flags}"
-                )));
-            }
-            ([only], _) => only.clone(),
-            (all, ClipOp::And) => Expression::All(all.into()),
-            (all, ClipOp::Or) => Expression::Any(all.into()),
+        let mut all = self.of(scene)?;
+        let clip = match (all.len(), self.op) {
+            (1, _) => all.remove(0),
+            (_, ClipOp::And) => Expression::All(all),
+            (_, ClipOp::Or) => Expression::Any(all),
         };
         let name = path
             .file_stem()
             .unwrap_or_default()
             .to_string_lossy()
             .into();
-        Ok(output::text(
-            path,
-            &clips_to_json(&[NamedClip { name, clip }]),
-        )?)
+        output::text(path, &clips_to_json(&[NamedClip { name, clip }]))
+    }
+}
+
+impl ClipArgs {
+    /// The clip that the flags mean; reads its files.
+    pub(super) fn meant(&self) -> Result<Regions, Failure> {
+        let mut all = self.clip.clone();
+        for text in &self.clip_file {
+            all.extend(from_file(text)?.into_iter().map(Region::Fixed));
+        }
+        all.extend(self.clip_expr.iter().cloned());
+        self.regions(all, "--clip, --clip-expr or --clip-file")
     }
 
-    /// The shapes and expressions that clip beside planes that files name, and saves them where that is wanted: those files clip
-    /// nothing by themselves.
-    pub(super) fn beside_planes(&self) -> Result<Vec<Expression>, Failure> {
-        let shapes = self.clip.iter().copied().map(Expression::Shape);
-        let typed: Vec<_> = shapes.chain(self.clip_expr.iter().cloned()).collect();
-        self.save(
-            &typed,
+    /// What clips beside planes that files name, where those files clip nothing by themselves.
+    pub(super) fn beside_planes(&self) -> Result<Regions, Failure> {
+        let typed = self.clip.iter().chain(&self.clip_expr).cloned();
+        self.regions(
+            typed.collect(),
             "--clip or --clip-expr: a section's plane is not saved",
-        )?;
-        Ok(typed)
+        )
+    }
+
+    /// Regions that combine, and are saved, as the flags say; `flags` are those that give one.
+    fn regions(&self, all: Vec<Region>, flags: &str) -> Result<Regions, Failure> {
+        if self.save_clip.is_some() && all.is_empty() {
+            return Err(Failure::Usage(format!(
+                "--save-clip: there is no clip to save; give one by {flags}"
+            )));
+        }
+        Ok(Regions {
+            all,
+            op: self.clip_op,
+            save: self.save_clip.clone(),
+        })
     }
 
     /// All planes of the files, with their names.
@@ -106,15 +143,15 @@ impl ClipArgs {
         }
         Ok(planes)
     }
-
-    /// How they combine.
-    pub(super) fn op(&self) -> ClipOp {
-        self.clip_op
-    }
 }
 
-fn shape(text: &str) -> Result<Shape, String> {
-    text.parse().map_err(|error: rara::Error| error.to_string())
+/// In place of a clip's name: all clips of a file.
+const ALL: &str = "*";
+
+/// True for several clips that have names, of which one is meant.
+pub(super) fn are_alternatives(clips: &[NamedClip]) -> bool {
+    let mut named = clips.iter().enumerate();
+    clips.len() > 1 && named.any(|(number, clip)| clip.name != number.to_string())
 }
 
 /// The clips of `FILE` or `FILE:NAME`. Names and paths may hold colons: a file that exists goes before a name.
@@ -131,6 +168,22 @@ fn from_file(text: &str) -> Result<Vec<Expression>, Failure> {
         None => (Path::new(text), None),
     };
     let clips = load_clips(path)?;
+    let name = match name {
+        Some(ALL) => None,
+        None if are_alternatives(&clips) => {
+            let names: Vec<_> = clips.iter().map(|named| named.name.as_str()).collect();
+            return Err(Failure::Usage(format!(
+                "--clip-file {text}: {} has {} clips, {}: say which, as in {}:{}, or {}:{ALL} for all of them together",
+                path.display(),
+                clips.len(),
+                names.join(", "),
+                path.display(),
+                names[0],
+                path.display(),
+            )));
+        }
+        other => other,
+    };
     let Some(name) = name else {
         return Ok(clips.into_iter().map(|named| named.clip).collect());
     };
@@ -157,16 +210,16 @@ mod tests {
     use glam::DVec3;
 
     fn clip(shapes: &[&str], clip_op: ClipOp) -> Result<Clip, Failure> {
-        let clip = shapes.iter().map(|s| shape(s).unwrap()).collect();
+        let clip = shapes.iter().map(|s| Region::shape(s).unwrap()).collect();
         let clip_file = Vec::new();
-        ClipArgs {
+        let args = ClipArgs {
             clip,
             clip_expr: Vec::new(),
             clip_file,
             save_clip: None,
             clip_op,
-        }
-        .meant()
+        };
+        Ok(args.meant()?.clip(&Scene::default())?)
     }
 
     fn keeps(clip: &Clip, x: f64, y: f64, z: f64) -> bool {
@@ -234,7 +287,7 @@ mod tests {
             "cone:1",
             "",
         ] {
-            assert!(shape(text).is_err(), "{text}");
+            assert!(Region::shape(text).is_err(), "{text}");
         }
     }
 }

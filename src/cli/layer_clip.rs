@@ -1,6 +1,9 @@
 //! `--layer-clip`: the clips of single layers, in place of what their list says.
 
+use rara::Bounds;
+
 use super::failure::Failure;
+use super::region::Region;
 use super::scene_file::LayerClip;
 use super::scenes::Loaded;
 
@@ -13,12 +16,21 @@ pub(super) fn apply(texts: &[String], loaded: &mut Loaded) -> Result<(), Failure
             )));
         };
         let (name, region) = (&text[..at], &text[at + 1..]);
+        let wrong = |error: &str| Failure::Usage(format!("--layer-clip {name}: {error}"));
         let clip = match region.trim() {
             "frame" => None,
-            region => Some(
-                LayerClip::parse(region)
-                    .map_err(|error| Failure::Usage(format!("--layer-clip {name}: {error}")))?,
-            ),
+            "whole" => Some(LayerClip::Whole),
+            region => {
+                let region = Region::expression(region).map_err(|error| wrong(&error))?;
+                let bounds = match region {
+                    Region::Fixed(_) => Bounds::of(rara::Scene::default()),
+                    Region::Relative(..) => Bounds::of(loaded.scene()),
+                };
+                let region = region
+                    .of(&bounds)
+                    .map_err(|error| wrong(&error.to_string()))?;
+                Some(LayerClip::Region(region))
+            }
         };
         for layer in loaded.named("--layer-clip", name)? {
             layer.clip = clip.clone();

@@ -38,6 +38,7 @@ mod process;
 mod profile;
 mod progress;
 mod reading;
+mod region;
 mod render;
 mod report;
 mod residual;

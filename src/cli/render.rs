@@ -8,6 +8,7 @@ use glam::DVec3;
 use rara::{Aov, Camera, Clip, Scene, Settings};
 
 use super::camera::{View, Views};
+use super::clip::Regions;
 use super::failure::Failure;
 use super::film::{self, FilmArgs, Kind};
 use super::frame::FrameArgs;
@@ -87,7 +88,7 @@ pub(super) struct Render {
 /// The pictures that are asked for.
 enum Pictures {
     /// Of cameras, under one clip.
-    Views(Views, Clip),
+    Views(Views, Regions),
     Sections(Sections),
 }
 
@@ -116,8 +117,14 @@ impl Run {
 struct Planned {
     view: View,
     clip: Clip,
+    section: Option<Section>,
+}
+
+impl Planned {
     /// A section's plane.
-    cut: Option<Cut>,
+    fn cut(&self) -> Option<&Cut> {
+        self.section.as_ref().map(|section| &section.cut)
+    }
 }
 
 impl Pictures {
@@ -132,21 +139,23 @@ impl Pictures {
     /// The pictures, once the scene is known.
     fn of(self, scene: &Scene<'_>) -> Result<Vec<Planned>, Failure> {
         Ok(match self {
-            Self::Views(views, clip) => {
+            Self::Views(views, regions) => {
+                let clip = regions.clip(scene)?;
                 let views = framing::views(views, scene)?.into_iter();
                 let planned = |view| Planned {
                     view,
                     clip: clip.clone(),
-                    cut: None,
+                    section: None,
                 };
                 views.map(planned).collect()
             }
             Self::Sections(sections) => {
+                sections.save(scene)?;
                 let sections = sections.of(scene)?.into_iter();
                 let planned = |one: Section| Planned {
                     clip: one.clip(),
-                    view: one.view,
-                    cut: Some(one.cut),
+                    view: one.view.clone(),
+                    section: Some(one),
                 };
                 sections.map(planned).collect()
             }
@@ -243,8 +252,14 @@ impl Render {
         for (done, one) in planned.iter().enumerate() {
             progress.update(done as u64, planned.len() as u64);
             let path = self.picture_file(&one.view);
-            let sliced = one.cut.as_ref().filter(|_| self.slice.is_shown());
-            let plane = one.cut.as_ref().map(|cut| &cut.plane);
+            let sliced = one.cut().filter(|_| self.slice.is_shown());
+            let plane = one.cut().map(|cut| &cut.plane);
+            let section = one.section.as_ref().filter(|_| sliced.is_none());
+            let cut = section.map(|section| section.of_layers(&scene));
+            if let Some(cut) = &cut {
+                session.set_layer_clips(cut)?;
+            }
+            let scene = cut.as_ref().unwrap_or(&scene);
             let mut picture = None;
             if let Some(panorama) = &run.panorama {
                 let mut faces = Vec::new();
@@ -274,7 +289,7 @@ impl Render {
             let (Some(mut picture), Some(path)) = (picture, path) else {
                 continue;
             };
-            if let Some(cut) = one.cut.as_ref().filter(|_| slicer.has_cues()) {
+            if let Some(cut) = one.cut().filter(|_| slicer.has_cues()) {
                 slicer.draw_cues(&mut picture, (&one.view, cut, settings))?;
             }
             if let Some(film) = &mut film {
@@ -285,7 +300,7 @@ impl Render {
                 profile.span("encode", || output::picture(&picture, &path))?;
             } else {
                 let drawn = (&one.view.camera, &one.clip, settings);
-                let channels = session.channels(&self.aov, &scene, drawn)?;
+                let channels = session.channels(&self.aov, scene, drawn)?;
                 picture.save_with(&path, &channels)?;
             }
             if written.last() != Some(&path) {

@@ -28,8 +28,8 @@ pub(super) struct SceneArgs {
     /// LAYER/NAME=PREDICATE from one layer, what earlier selections have left
     #[arg(long, value_name = "NAME=PREDICATE")]
     select: Vec<String>,
-    /// The clip of one layer in place of the frame's (repeatable): an expression as for --clip-expr, whole for a layer
-    /// that no clip cuts, or frame for one that the frame's cuts although its list gives it another
+    /// The clip of one layer in place of the frame's (repeatable): an expression as for --clip-expr, which a --section cuts
+    /// besides; whole for a layer that nothing cuts; frame for one that the frame's clip cuts although its list says otherwise
     #[arg(long, value_name = "NAME=EXPRESSION")]
     layer_clip: Vec<String>,
     /// Whether splats that the low-pass makes larger than they are get no brighter for it, as scenes need it that were trained
@@ -99,7 +99,6 @@ impl SceneArgs {
     /// Reads the files, and tells how far it has come.
     pub(super) fn load_watched(&self, watch: Watch<'_>) -> Result<Loaded, Failure> {
         let mut loaded = load(self.entries()?, &self.antialiasing, watch)?;
-        layer_clip::apply(&self.layer_clip, &mut loaded)?;
         place::apply(&self.place, &mut loaded)?;
         for name in &self.hide {
             for layer in loaded.named("--hide", name)? {
@@ -111,6 +110,8 @@ impl SceneArgs {
                 layer.state = layer.state.visible(true);
             }
         }
+        // Last, as a clip may lie at a share of what is visible, where it is placed.
+        layer_clip::apply(&self.layer_clip, &mut loaded)?;
         Ok(loaded)
     }
 }

@@ -6,7 +6,7 @@ use rara::clip::Expression;
 use rara::{Bounds, Camera, Clip, ClipOp, Gaussians, Plane, Scene};
 
 use super::camera::{CameraArgs, View};
-use super::clip::ClipArgs;
+use super::clip::{ClipArgs, Regions};
 use super::failure::Failure;
 use super::slice::Cut;
 use super::values;
@@ -38,13 +38,13 @@ enum Wanted {
 /// An axis of the scene, and how a section across it is seen. The sides are those from which a radiologist looks at a patient
 /// in DICOM's coordinates, whose x points to the patient's left, y to the back and z to the head.
 #[derive(Debug, Clone, PartialEq)]
-struct Axis {
+pub(super) struct Axis {
     /// As it was typed.
     name: String,
     /// Shares grow along it.
-    along: DVec3,
+    pub(super) along: DVec3,
     /// The view's direction, along the axis or against it.
-    forward: DVec3,
+    pub(super) forward: DVec3,
     up: DVec3,
 }
 
@@ -60,7 +60,7 @@ struct Shares {
 const MOST: u32 = 100_000;
 
 impl Axis {
-    fn of(typed: &str) -> Option<Self> {
+    pub(super) fn of(typed: &str) -> Option<Self> {
         let (axis, sign) = match typed.strip_prefix('!') {
             Some(axis) => (axis, -1.0),
             None => (typed, 1.0),
@@ -146,7 +146,7 @@ fn wanted(text: &str) -> Result<Wanted, String> {
 pub(super) struct Sections {
     planned: Vec<Planned>,
     /// What else clips.
-    shapes: Vec<Expression>,
+    shapes: Regions,
     thickness: Option<f64>,
     scale: Option<f64>,
     up: Option<DVec3>,
@@ -165,16 +165,36 @@ enum Planned {
 #[derive(Debug)]
 pub(super) struct Section {
     pub(super) view: View,
-    /// What clips it, all together.
-    pub(super) shapes: Vec<Expression>,
-    /// The plane that the camera faces, which is among the shapes, and what else clips.
+    /// Its plane, and the one at its back where it has a thickness.
+    own: Vec<Expression>,
+    /// What else clips.
+    others: Vec<Expression>,
+    /// The plane that the camera faces, and what else clips.
     pub(super) cut: Cut,
 }
 
 impl Section {
+    /// What clips it, all together.
+    pub(super) fn shapes(&self) -> Vec<Expression> {
+        self.others.iter().chain(&self.own).cloned().collect()
+    }
+
     /// The region that it keeps.
     pub(super) fn clip(&self) -> Clip {
-        joined(&self.shapes)
+        joined(&self.shapes())
+    }
+
+    /// A scene whose layers' own clips are joined with the section. A layer that nothing clips stays whole.
+    pub(super) fn of_layers<'a>(&self, scene: &Scene<'a>) -> Scene<'a> {
+        let own = joined(&self.own);
+        let layers = scene.layers().iter().map(|layer| match layer.clip() {
+            Some(clip) if !clip.is_everything() => {
+                let both = [clip.clone(), own.clone()];
+                layer.clone().clipped(Clip::joined(both, ClipOp::And))
+            }
+            _ => layer.clone(),
+        });
+        layers.collect()
     }
 }
 
@@ -195,18 +215,17 @@ impl SectionArgs {
                     .into(),
             ));
         }
-        if clip.op() != ClipOp::And {
+        let is_named = self.section.iter().any(|s| matches!(s, Wanted::Named(_)));
+        let (shapes, planes) = if is_named {
+            (clip.beside_planes()?, clip.planes()?)
+        } else {
+            (clip.meant()?, Vec::new())
+        };
+        if shapes.op() != ClipOp::And {
             return Err(Failure::Usage(
                 "a section keeps what is behind it and kept by every --clip: leave out --clip-op or".into(),
             ));
         }
-        let is_named = self.section.iter().any(|s| matches!(s, Wanted::Named(_)));
-        let (shapes, planes) = if is_named {
-            let planes = clip.planes()?;
-            (clip.beside_planes()?, planes)
-        } else {
-            (clip.expressions()?, Vec::new())
-        };
         let mut planned = Vec::new();
         for wanted in &self.section {
             match wanted {
@@ -262,9 +281,16 @@ impl Sections {
         0..self.planned.len()
     }
 
+    /// Saves what clips beside them, where that is wanted.
+    pub(super) fn save(&self, scene: &Scene<'_>) -> rara::Result<()> {
+        self.shapes.save(scene)
+    }
+
     /// The sections, once the scene is known.
     pub(super) fn of(&self, scene: &Scene<'_>) -> rara::Result<Vec<Section>> {
         let bounds = Bounds::of(scene.clone());
+        let others = self.shapes.of(scene)?;
+        let rest = joined(&others);
         let section = |(number, planned): (usize, &Planned)| {
             let (name, plane, up) = match planned {
                 Planned::Across(axis, share) => {
@@ -280,15 +306,10 @@ impl Sections {
             if let Some(scale) = self.scale {
                 camera = camera.fx(1.0 / scale).fy(1.0 / scale);
             }
-            let joined = |shapes: &[Expression]| {
-                Clip::joined(shapes.iter().map(Expression::clip), ClipOp::And)
-            };
-            let rest = joined(&self.shapes);
-            let mut shapes = self.shapes.clone();
-            shapes.push(Expression::Shape(plane.into()));
+            let mut own = vec![Expression::Shape(plane.into())];
             if let Some(thickness) = self.thickness {
                 let far = Plane::new(-plane.normal(), thickness - plane.offset())?;
-                shapes.push(Expression::Shape(far.into()));
+                own.push(Expression::Shape(far.into()));
             }
             Ok(Section {
                 view: View {
@@ -296,8 +317,12 @@ impl Sections {
                     name,
                     camera,
                 },
-                shapes,
-                cut: Cut { plane, rest },
+                own,
+                others: others.clone(),
+                cut: Cut {
+                    plane,
+                    rest: rest.clone(),
+                },
             })
         };
         self.planned.iter().enumerate().map(section).collect()

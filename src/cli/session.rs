@@ -113,6 +113,14 @@ impl Session {
         self.headless.load_as(scene, sh)
     }
 
+    /// Gives the layers the clips that they have in a scene of the same layers.
+    pub(super) fn set_layer_clips(&mut self, scene: &Scene<'_>) -> Result<()> {
+        let layers = scene.layers().iter().enumerate();
+        layers
+            .map(|(index, layer)| (index, layer.clip().cloned()))
+            .try_for_each(|(index, clip)| self.headless.set_layer_clip(index, clip))
+    }
+
     /// Renders a frame that follows the one before and takes over what stays the same.
     pub(super) fn next_frame(
         &mut self,

@@ -8,6 +8,7 @@ use rara::clip::Expression;
 use rara::{Clip, Plane, Settings};
 
 use super::camera::Views;
+use super::clip::Regions;
 use super::combine::Measured;
 use super::failure::Failure;
 use super::frame::FrameArgs;
@@ -76,7 +77,7 @@ impl Sweep {
     pub(super) fn run(self) -> Result<(), Failure> {
         let settings = self.frame.settings.meant()?;
         // The shapes that stand still.
-        let shapes = self.frame.clip.expressions()?;
+        let shapes = self.frame.clip.meant()?;
         let moving = self.moving()?;
         let views = self.frame.camera.meant(&self.scenes.places())?;
         let views = views.single("a sweep")?;
@@ -110,15 +111,16 @@ impl Sweep {
         &self,
         profile: &Profile,
         views: Views,
-        (mut shapes, moving): (Vec<Expression>, &Moving),
+        (regions, moving): (Regions, &Moving),
         settings: &Settings,
     ) -> Result<(), Failure> {
-        let op = self.frame.clip.op();
         let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
         let view = framing::views(views, &scene)?.remove(0);
         self.save_camera.save([&view].into_iter())?;
         let camera = view.camera;
+        regions.save(&scene)?;
+        let (mut shapes, op) = (regions.of(&scene)?, regions.op());
         let range = match moving {
             Moving::Plane(normal) => extent_along(&scene, *normal),
             Moving::Region(..) => (0.0, 1.0),

@@ -16,8 +16,8 @@ use crate::error::{Error, Result};
 use crate::gpu::Bindings;
 use crate::limits;
 use crate::passes::{
-    Kept, Occluders, Plan, SceneBuffers, SceneFacts, SceneLayer, Targets, TilePixels, TileWork,
-    Work,
+    Kept, Occluders, Plan, SceneBuffers, SceneFacts, SceneLayer, Sizes, Targets, TilePixels,
+    TileWork, Work,
 };
 use crate::precision::{ShFormat, TargetFormat};
 use crate::settings::{Raster, Settings};
@@ -38,6 +38,17 @@ pub(crate) struct FrameRequest<'a> {
     pub(crate) picture: Option<TargetFormat>,
     /// The camera of whose picture `camera` shows a part; `None` where it shows all of it.
     pub(crate) whole: Option<&'a Camera>,
+}
+
+/// A frame before anything is allocated or compiled for it.
+struct Planned {
+    plan: Plan,
+    raster: Raster,
+    /// Why splats become pixels in that way.
+    reason: &'static str,
+    depth_map: Option<DepthMap>,
+    redrawn: bool,
+    needs_tiles: bool,
 }
 
 impl Renderer {
@@ -100,16 +111,35 @@ impl Renderer {
         (self.frames.prepared(), self.forgotten)
     }
 
-    /// Configures a frame whose camera and clip are in the scene's units already.
-    fn configure_in_scene(&mut self, request: &FrameRequest<'_>) -> Result<Configured> {
+    /// True when the frame of a request needs a pipeline that no renderer has made yet, which may take seconds.
+    pub(crate) fn compiles(&mut self, request: &FrameRequest<'_>) -> Result<bool> {
+        let camera = request.camera.in_scene(&self.placement);
+        let clip = request.clip.in_scene(&self.placement);
+        let request = FrameRequest {
+            camera: &camera,
+            clip: &clip,
+            ..*request
+        };
+        let Planned { mut plan, .. } = self.planned(&request)?;
+        if self.memory.fits(&plan) {
+            plan.work = self.work(request.scene.id, &plan, request.submission)?;
+        }
+        let held = self.memory.allocated().map(|held| held.sizes().largest());
+        let needed = Sizes::of(&plan).largest().max(held.unwrap_or(0));
+        let bindings = self.bindings_of(needed.max(request.scene.largest()));
+        Ok(!self.pipelines.has_all(bindings, self.targets(), &plan))
+    }
+
+    /// Decides what a frame computes whose camera and clip are in the scene's units already.
+    fn planned(&mut self, request: &FrameRequest<'_>) -> Result<Planned> {
         let scene = request.scene;
         if !scene.is_on(&self.device) {
             return Err(Error::Invalid(
                 "the scene was uploaded to another device than the renderer's".into(),
             ));
         }
-        let submission = request.submission;
-        self.memory.free_finished(self.frames.finished(submission));
+        self.memory
+            .free_finished(self.frames.finished(request.submission));
         let tiles = tiles_of(request.camera.width, request.camera.height);
         // Where no quads can take the tiles' place, nothing does.
         let needs_tiles = self.needs_tiles(request.settings);
@@ -135,7 +165,27 @@ impl Renderer {
             whole: request.whole,
             ..self.facts(scene.layers(), scene.count, raster, depth_map)
         };
-        let mut plan = Plan::new(facts, request.camera, request.clip, request.settings)?;
+        Ok(Planned {
+            plan: Plan::new(facts, request.camera, request.clip, request.settings)?,
+            raster,
+            reason,
+            depth_map,
+            redrawn,
+            needs_tiles,
+        })
+    }
+
+    /// Configures a frame whose camera and clip are in the scene's units already.
+    fn configure_in_scene(&mut self, request: &FrameRequest<'_>) -> Result<Configured> {
+        let Planned {
+            mut plan,
+            raster,
+            reason,
+            depth_map,
+            redrawn,
+            needs_tiles,
+        } = self.planned(request)?;
+        let (scene, submission) = (request.scene, request.submission);
         if !self.memory.fits(&plan) {
             if let Some(kept) = &mut self.kept {
                 kept.holds = false;
@@ -160,7 +210,7 @@ impl Renderer {
         let bindings = self.bindings(scene);
         let targets = self.targets();
         let pipelines = &mut self.pipelines;
-        pipelines.ensure(&self.device, bindings, targets, &plan)?;
+        let is_first_use = pipelines.ensure(&self.device, bindings, targets, &plan)?;
         Ok(Configured {
             scene: scene.id,
             plan,
@@ -172,6 +222,7 @@ impl Renderer {
             submission,
             redrawn,
             needs_tiles,
+            is_first_use,
             prepared: false,
         })
     }

@@ -29,6 +29,8 @@ pub(super) struct Configured {
     pub(super) redrawn: bool,
     /// True when only tiles show what is asked for, so that no quads can take their place.
     pub(super) needs_tiles: bool,
+    /// True when it is the first to use a pipeline: drivers may compile that within the frame.
+    pub(super) is_first_use: bool,
     /// True when it has been prepared.
     pub(super) prepared: bool,
 }

@@ -126,7 +126,6 @@ impl WorkingMemory {
     }
 
     /// The buffers, if a frame has been configured.
-    #[cfg_attr(not(feature = "lab"), allow(dead_code))]
     pub(super) fn allocated(&self) -> Option<&Buffers> {
         self.buffers.as_deref()
     }

@@ -114,7 +114,8 @@ impl Renderer {
         let mut pipelines = std::mem::take(&mut self.pipelines);
         let compiled = self.for_each_plan(limits, pairs, &mut |plan, _| {
             pipelines.ensure(&self.device, of_memory, targets, plan)?;
-            pipelines.ensure(&self.device, of_scene, targets, plan)
+            pipelines.ensure(&self.device, of_scene, targets, plan)?;
+            Ok(())
         });
         self.pipelines = pipelines;
         compiled

@@ -28,26 +28,30 @@ impl SharedPipelines {
         }
     }
 
-    /// Compiles the pipelines that a plan needs and no renderer has compiled yet.
+    /// True when a renderer has made all pipelines that a plan needs.
+    pub(super) fn has_all(&self, bindings: Bindings, targets: Targets, plan: &Plan) -> bool {
+        let has_all = |pipelines: &Pipelines| has_all(pipelines, targets, plan);
+        let all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
+        all[bindings as usize].as_deref().is_some_and(has_all)
+    }
+
+    /// Compiles the pipelines that a plan needs and no renderer has compiled yet; returns whether there were any.
     pub(super) fn ensure(
         &mut self,
         device: &Device,
         bindings: Bindings,
         targets: Targets,
         plan: &Plan,
-    ) -> Result<()> {
+    ) -> Result<bool> {
         let at = bindings as usize;
-        let has_all = |pipelines: &Pipelines| {
-            let mut all = true;
-            plan.pipelines(targets, &mut |key| all &= pipelines.has(&key));
-            all
-        };
+        let has_all = |pipelines: &Pipelines| has_all(pipelines, targets, plan);
         if self.seen[at].as_deref().is_some_and(has_all) {
-            return Ok(());
+            return Ok(false);
         }
         let mut all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
         let shared = all[at].get_or_insert_with(|| Arc::new(Pipelines::new(bindings)));
-        if !has_all(shared) {
+        let is_first_use = !has_all(shared);
+        if is_first_use {
             // This replaces the shared pipelines by a copy, while other renderers record with the ones that they have.
             let pipelines = Arc::make_mut(shared);
             let mut keys = Vec::new();
@@ -55,7 +59,7 @@ impl SharedPipelines {
             pipelines.ensure(device, keys)?;
         }
         self.seen[at] = Some(shared.clone());
-        Ok(())
+        Ok(is_first_use)
     }
 
     /// The pipelines of a frame that is configured.
@@ -63,4 +67,10 @@ impl SharedPipelines {
         let pipelines = self.seen[bindings as usize].as_ref();
         pipelines.expect("ensure() compiles them")
     }
+}
+
+fn has_all(pipelines: &Pipelines, targets: Targets, plan: &Plan) -> bool {
+    let mut all = true;
+    plan.pipelines(targets, &mut |key| all &= pipelines.has(&key));
+    all
 }

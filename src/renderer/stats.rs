@@ -148,6 +148,13 @@ impl RecordedFrame {
         configured.is_some_and(|configured| configured.submission == Submission::InFlight)
     }
 
+    /// True when it was the first to use a pipeline, which the driver may have compiled within it.
+    #[cfg_attr(not(feature = "view"), allow(dead_code))]
+    pub(crate) fn is_first_use(&self) -> bool {
+        let configured = self.configured.as_ref();
+        configured.is_some_and(|configured| configured.is_first_use)
+    }
+
     /// All that is known of it but the time until it was ready, which only the one who waited knows.
     pub(crate) fn stats(&self) -> FrameStats {
         let passes = self.pass_times();

@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{
     Attachments, Device, DeviceDesc, Drawer, FRAMES, InFlight, Surface, Swapchain, Window,
 };
-use crate::passes::{Lines, SceneLayer};
+use crate::passes::{Lines, SceneBuffers, SceneLayer};
 use crate::picture::Picture;
 use crate::precision::ShFormat;
 use crate::renderer::{FrameRequest, Outcome, RendererDesc, Submission};
@@ -159,6 +159,20 @@ impl Windowed {
         Ok(extent.map(|extent| (extent.width, extent.height)))
     }
 
+    /// True when [`show`](Self::show) would have to compile shaders first, which may take seconds in which nothing else is
+    /// shown.
+    ///
+    /// # Errors
+    /// As of [`show`](Self::show).
+    pub fn compiles(&mut self, camera: &Camera, clip: &Clip, settings: &Settings) -> Result<bool> {
+        self.unbroken()?;
+        self.wait()?;
+        let renderer = &mut self.session.renderer;
+        let scene = loaded(&self.session.scene, "show")?;
+        renderer.set_color_format(self.swapchain.format());
+        renderer.compiles(&in_flight(scene, camera, clip, settings))
+    }
+
     /// Draws a frame and shows it. The camera's picture has the size that [`fit`](Self::fit) gave. After an error on the way
     /// to the window there are no more frames: a new `Windowed` for the same window is the way on.
     pub fn show(&mut self, camera: &Camera, clip: &Clip, settings: &Settings) -> Result<Redraw> {
@@ -175,15 +189,7 @@ impl Windowed {
         let renderer = &mut self.session.renderer;
         let scene = loaded(&self.session.scene, "show")?;
         renderer.set_color_format(swapchain.format());
-        renderer.configure_frame(&FrameRequest {
-            scene,
-            camera,
-            clip,
-            settings,
-            submission: Submission::InFlight,
-            picture: None,
-            whole: None,
-        })?;
+        renderer.configure_frame(&in_flight(scene, camera, clip, settings))?;
         let changes_nothing = renderer.changes_nothing();
         let seen: Vec<_> = lines
             .iter()
@@ -318,16 +324,39 @@ impl Windowed {
     /// Waits for the oldest frame in flight and reads its outcome; `None` before there are so many.
     fn wait(&mut self) -> Result<Option<Outcome>> {
         self.frames.wait()?;
-        let renderer = &self.session.renderer;
+        let renderer = &mut self.session.renderer;
         let Some(frame) = renderer.oldest() else {
             return Ok(None);
         };
         let outcome = renderer.outcome(frame);
-        // A picture beside the window is not the window's frame.
+        if frame.is_first_use() {
+            // Its times may contain compilation: the next frame computes everything anew, and its times count.
+            renderer.forget();
+            return Ok(Some(Outcome::NeedsRoom));
+        }
         if outcome != Outcome::Unchanged && frame.is_in_flight() {
+            // A picture beside the window is not the window's frame.
             self.stats = Some(frame.stats());
         }
         Ok(Some(outcome))
+    }
+}
+
+/// A window's frame.
+fn in_flight<'a>(
+    scene: &'a SceneBuffers,
+    camera: &'a Camera,
+    clip: &'a Clip,
+    settings: &'a Settings,
+) -> FrameRequest<'a> {
+    FrameRequest {
+        scene,
+        camera,
+        clip,
+        settings,
+        submission: Submission::InFlight,
+        picture: None,
+        whole: None,
     }
 }
 

@@ -40,6 +40,85 @@ fn clips_of_files_are_what_was_saved() {
 }
 
 #[test]
+fn one_of_several_named_clips_is_asked_for() {
+    let here = folder("alternatives");
+    scene(&here);
+    let planes = r#"[{"name": "axial", "normal": [0, 0, 1], "d": 0}, {"name": "coronal", "normal": [0, 1, 0], "d": 0}]"#;
+    fs::write(here.join("planes.json"), planes).unwrap();
+    let drawn = |flags: &str| {
+        let words = format!("render @/scene.ply --size 48x32 -o @/a.png --json {flags}");
+        document(line(&here, &words));
+        fs::read(here.join("a.png")).unwrap()
+    };
+    let words = "render @/scene.ply --json --clip-file @/planes.json";
+    for part in ["axial, coronal", "planes.json:axial", "planes.json:*"] {
+        refused(&line(&here, words), 2, part);
+    }
+    let axial = "--clip plane:0,0,1,0";
+    assert_eq!(drawn("--clip-file @/planes.json:axial"), drawn(axial));
+    let both = format!("{axial} --clip plane:0,1,0,0");
+    assert_eq!(drawn("--clip-file @/planes.json:*"), drawn(&both));
+    // Clips without names are the parts of one.
+    fs::write(
+        here.join("parts.json"),
+        planes.replace("\"name\"", "\"note\""),
+    )
+    .unwrap();
+    assert_eq!(drawn("--clip-file @/parts.json"), drawn(&both));
+}
+
+#[test]
+fn clips_at_shares_lie_between_the_bounds_that_info_prints() {
+    let here = folder("shares");
+    scene(&here);
+    let info = document(line(&here, "info @/scene.ply --json"));
+    let bound = |end: &str, axis: usize| info["robust_bounds"][end][axis].as_f64().unwrap();
+    let at = |axis, share: f64| {
+        let (low, high) = (bound("min", axis), bound("max", axis));
+        low + (high - low) * share
+    };
+    let drawn = |command: &str, flags: &str| {
+        let words = format!("{command} @/scene.ply {flags}");
+        done(line(&here, &words));
+    };
+    let same = |share: &str, absolute: &str| {
+        let picture = |flags: &str| {
+            drawn("render", &format!("--size 48x32 -o @/a.png {flags}"));
+            fs::read(here.join("a.png")).unwrap()
+        };
+        assert_eq!(picture(share), picture(absolute), "{share}, {absolute}");
+    };
+    let plane = format!("plane:1,0,0,{}", -at(0, 0.4));
+    same("--clip plane:x=40%", &format!("--clip {plane}"));
+    same("--clip !plane:sagittal=40%", &format!("--clip !{plane}"));
+    let slab = format!("slab:0,0,1,{},{}", -at(2, 0.25), at(2, 0.5) - at(2, 0.25));
+    same(
+        "--clip-expr any(slab:axial=25%..50%,plane:x=40%)",
+        &format!("--clip-expr any({slab},{plane})"),
+    );
+    same("--layer-clip scene=plane:x=40%", &format!("--clip {plane}"));
+    // What is saved says where it lies.
+    drawn(
+        "render",
+        "--size 8x8 -o @/a.png --clip plane:x=40% --save-clip @/saved.json",
+    );
+    same("--clip-file @/saved.json", &format!("--clip {plane}"));
+    let written = |flags: &str| {
+        drawn("convert", &format!("{flags} -o @/kept.ply"));
+        fs::read(here.join("kept.ply")).unwrap()
+    };
+    assert_eq!(
+        written("--clip plane:x=40%"),
+        written(&format!("--clip {plane}"))
+    );
+    refused(
+        &line(&here, "render @/scene.ply --json --clip plane:x=0.4"),
+        2,
+        "in percent",
+    );
+}
+
+#[test]
 fn layers_have_names_and_clips_of_their_own() {
     let here = folder("named_layers");
     scene(&here);

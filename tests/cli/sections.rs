@@ -109,6 +109,28 @@ fn a_section_faces_its_plane() {
 }
 
 #[test]
+fn a_section_cuts_layers_that_have_clips_of_their_own() {
+    let here = folder("section_layers");
+    scene(&here);
+    let of = |flags: &str| {
+        let sections = "--section z=0.3 --section z=0.6";
+        let words = format!("render @/scene.ply -o @/s_{{}}.exr {SIZE} {sections} {flags}");
+        done(line(&here, &words));
+        [0, 1].map(|n| fs::read(here.join(format!("s_{n}.exr"))).expect("a picture"))
+    };
+    let ball = "sphere:0,0,0,0.8";
+    let both = of(&format!("--layer-clip scene={ball}"));
+    assert!(both == of(&format!("--clip {ball}")) && both != of(""));
+    let slab = "--section-thickness 0.1";
+    let thin = of(&format!("--layer-clip scene={ball} {slab}"));
+    assert!(thin == of(&format!("--clip {ball} {slab}")) && thin != both);
+    // A layer that nothing cuts is whole, in a section too.
+    let whole = of("--layer-clip scene=whole");
+    assert!(whole == of(&format!("--layer-clip scene=whole --clip {ball}")));
+    assert!(whole != of(""));
+}
+
+#[test]
 fn several_sections_are_numbered_pictures() {
     let here = folder("sections");
     scene(&here);

@@ -139,6 +139,17 @@ fn what_is_dropped_is_shown_and_what_cannot_be_read_changes_nothing() {
     viewer.say("drop @/clip.json");
     let clipped = viewer.screenshot("clipped");
     assert!(apart(&second, &clipped) > 20.0, "the clip cuts");
+    // Of several clips with names one is meant: the first, until another is asked for.
+    let planes = r#"[{"name": "a", "normal": [1, 0, 0], "d": 0}, {"name": "b", "normal": [-1, 0, 0], "d": 0}]"#;
+    fs::write(folder.join("planes.json"), planes).expect("a file");
+    viewer.say("drop @/planes.json");
+    let one = viewer.screenshot("one");
+    viewer.say("clip next");
+    let other = viewer.screenshot("other");
+    viewer.say("clip next");
+    let again = viewer.screenshot("one_again");
+    assert!(apart(&one, &other) > 20.0 && apart(&one, &again) == 0.0);
+    viewer.say("drop @/clip.json");
     viewer.say("drop @/first.json");
     let elsewhere = viewer.screenshot("elsewhere");
     assert!(apart(&clipped, &elsewhere) > 20.0, "the camera is another");
@@ -183,6 +194,7 @@ fn a_bar_moves_until_the_scene_is_there() {
     let words = "view - --validation --no-text --size 400x200 --background 0.2,0.4,0.6";
     let mut command = rara(&folder, words);
     command.env("DISPLAY", &display.name);
+    command.env("MESA_SHADER_CACHE_DIR", folder.join("driver"));
     command.stdin(Stdio::piped()).stderr(Stdio::piped());
     let mut child = Owned(command.spawn().expect("the rara binary runs"));
     // Nobody knows how much is to come by standard input.
@@ -210,6 +222,15 @@ fn a_bar_moves_until_the_scene_is_there() {
     });
     let mut client = display.client();
     let window = client.window();
+    // The driver keeps nothing that the first cut needs, and the window says so before it stands still.
+    client.press(window, 33); // P
+    until("a bar while shaders are compiled", || {
+        (!of_colour(&display.corner(400, 200), FILLED).is_empty()).then_some(())
+    });
+    until("the cut", || {
+        let seen = display.corner(400, 200);
+        (of_colour(&seen, FILLED).is_empty() && apart(&seen, &drawn) > 1.01).then_some(())
+    });
     client.press(window, 9); // Escape
     let printed = child.printed();
     assert!(child.0.wait().expect("it ends").success(), "{printed}");

@@ -117,6 +117,7 @@ impl Bench {
         let loaded = self.scenes.load()?;
         let scene = loaded.scene();
         let camera = views.of(&scene)?.remove(0).camera;
+        let clip = clip.clip(&scene)?;
         let clip = if clip.is_everything() {
             Clip::of([middle(&scene, &camera)?], ClipOp::And)
         } else {

@@ -30,6 +30,8 @@ pub(super) enum Action {
     Reset,
     /// Take the next camera of the file.
     NextView,
+    /// Take the next of the named clips that were dropped in one file.
+    NextClip,
     Held(HeldAction),
     /// Show a layer or hide it; whichever it is not where that is not said.
     Layer(Which, Option<bool>),
@@ -163,6 +165,8 @@ impl FromStr for Action {
                     ));
                 }
             },
+            "clip" if rest == "next" => Self::NextClip,
+            "clip" => return Err(format!("clip {rest}: next is possible")),
             "plane" | "shape" => Self::Held(held(verb, rest)?),
             "drag" => Self::Held(HeldAction::Drag(pair(rest)?)),
             "tilt" => Self::Held(HeldAction::Tilt(pair(rest)?)),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rara::camera_files::load_cameras;
-use rara::clip::{Expression, load_clips};
+use rara::clip::{NamedClip, load_clips};
 use rara::{Camera, Error};
 use serde_json::Value;
 
@@ -15,7 +15,7 @@ use crate::cli::{scene_file, training};
 pub(super) enum Dropped {
     /// A scene, which is yet to be read.
     Scene,
-    Clip(Vec<Expression>),
+    Clip(Vec<NamedClip>),
     /// At least one.
     Cameras(Vec<Camera>),
 }
@@ -41,7 +41,7 @@ impl Dropped {
                     )
                     .into());
                 }
-                Self::Clip(clips.into_iter().map(|named| named.clip).collect())
+                Self::Clip(clips)
             }
             Kind::Cameras => {
                 let cameras = load_cameras(path)?;

@@ -168,7 +168,9 @@ mod tests {
         let matches = matches.unwrap_or_else(|error| panic!("{flags}: {error}"));
         let settings = SettingsArgs::from_arg_matches(&matches).unwrap();
         let clip = ClipArgs::from_arg_matches(&matches).unwrap();
-        let cut = Cut::new(clip.expressions().unwrap(), clip.op(), DVec3::ZERO);
+        let regions = clip.meant().unwrap();
+        let expressions = regions.of(&rara::Scene::default()).unwrap();
+        let cut = Cut::new(expressions, regions.op(), DVec3::ZERO);
         let clips = Clips::new(cut, &[], DVec3::ZERO);
         (clips, settings.meant().unwrap())
     }

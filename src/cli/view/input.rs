@@ -43,7 +43,8 @@ Keys:
   Esc                          quit
 Files dropped on the window:
   a scene                      in place of this one; several are its layers
-  clips, cameras (.json)       the clip that is edited; cameras to choose from";
+  a clip (.json)               in place of the clip that is edited; V takes the next of several with names
+  cameras (.json)              to choose from by N";
 
 /// How many degrees an arrow key turns.
 const ARROW: f64 = 5.0;
@@ -238,6 +239,7 @@ fn letter(text: &str) -> Option<Action> {
         "o" => Action::OtherProjection,
         "r" => Action::Reset,
         "n" => Action::NextView,
+        "v" => Action::NextClip,
         "c" => Action::Screenshot(None),
         "t" => Action::Timings,
         "h" => Action::Keys(None),

@@ -118,19 +118,11 @@ impl Loading {
         })
     }
 
-    /// What follows the reading, which the window waits for; the first scene's frame needs shaders besides.
-    pub(super) fn uploading(&mut self, loaded: &Loaded, is_first: bool) {
+    /// The upload, which follows the reading and which the window waits for.
+    pub(super) fn uploading(&mut self, loaded: &Loaded) {
         let count: usize = loaded.layers.iter().map(|l| l.gaussians.len()).sum();
-        let shaders = if is_first {
-            ", and compiling shaders"
-        } else {
-            ""
-        };
         *self.now.lock().unwrap_or_else(PoisonError::into_inner) = Now {
-            what: format!(
-                "putting {} Gaussians on the device{shaders}",
-                grouped(count as u64)
-            ),
+            what: format!("uploading {} Gaussians", grouped(count as u64)),
             share: Some(1.0),
         };
     }

@@ -6,6 +6,7 @@ mod camera_flags;
 mod cut;
 mod dropped;
 mod flags;
+mod frames;
 mod grip;
 mod input;
 mod layer_flags;
@@ -28,7 +29,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::DVec3;
-use rara::clip::Expression;
 use rara::{Camera, ClipOp, Scene};
 
 use self::cut::Cut;
@@ -37,6 +37,7 @@ use self::loading::Fresh;
 use self::scenery::Manner;
 use self::shots::Shots;
 use super::camera::{CameraArgs, UP, Views};
+use super::clip::Regions;
 use super::failure::Failure;
 use super::frame::FrameArgs;
 use super::scenes::SceneArgs;
@@ -59,6 +60,7 @@ Scripts, a line an action, # begins a comment; each is on the screen before the 
   move X,Y,Z             world units      shape SHAPE          in the held one's place
   camera orbit, fly, reset, next          plane NX,NY,NZ,D     a plane in its place
   camera perspective, orthographic        drag DX,DY           pixels
+  clip next              of a dropped file
   mode none, hard, rara, exact            tilt DX,DY           degrees
   screenshot [FILE]                       scale FACTOR
   resize WxH                              layer N|NAME [on|off]
@@ -104,7 +106,7 @@ const SIZE: (u32, u32) = (1280, 720);
 /// What is looked at first.
 enum Begin {
     /// The cameras, under the clip that was typed.
-    Views(Views, Vec<Expression>, ClipOp),
+    Views(Views, Regions),
     Section(Sections),
 }
 
@@ -115,11 +117,7 @@ impl View {
         let camera = self.frame.camera.sized_by_default(SIZE);
         let begin = match self.section.meant(&camera, clip)? {
             Some(sections) => Begin::Section(single(sections)?),
-            None => Begin::Views(
-                camera.meant(&self.scenes.places())?,
-                clip.expressions()?,
-                clip.op(),
-            ),
+            None => Begin::Views(camera.meant(&self.scenes.places())?, clip.meant()?),
         };
         let shots = shots(&self.output)?;
         let follow = self.script.as_deref() == Some(Path::new("-"));
@@ -164,19 +162,19 @@ impl View {
 impl Begin {
     /// Cameras without a clip.
     fn unclipped(views: Views) -> Self {
-        Self::Views(views, Vec::new(), ClipOp::And)
+        Self::Views(views, Regions::default())
     }
 
     /// The size of the window.
     fn size(&self, camera: &CameraArgs) -> Result<(u32, u32), Failure> {
         match self {
-            Self::Views(Views::Given(views), ..) => {
+            Self::Views(Views::Given(views), _) => {
                 let first = views
                     .first()
                     .map(|view| (view.camera.width, view.camera.height));
                 first.ok_or_else(|| Failure::Usage("--cameras: the file has no camera".into()))
             }
-            Self::Views(Views::Framed { size, .. }, ..) => Ok(*size),
+            Self::Views(Views::Framed { size, .. }, _) => Ok(*size),
             _ => Ok(camera.chosen_size()),
         }
     }
@@ -191,19 +189,22 @@ impl Begin {
         // Where a file or a section places the camera, up is what is up in its own picture.
         let own_up = |camera: &Camera| -camera.rotation.row(1);
         match self {
-            Self::Views(views, clip, op) => {
+            Self::Views(views, regions) => {
+                regions.save(scene)?;
                 let views = super::framing::views(views, scene)?
                     .into_iter()
                     .map(|view| view.camera);
                 let views = views.map(|camera| (camera, up.unwrap_or(own_up(&camera))));
-                Ok((views.collect(), Cut::new(clip, op, centre)))
+                let cut = Cut::new(regions.of(scene)?, regions.op(), centre);
+                Ok((views.collect(), cut))
             }
             Self::Section(sections) => {
+                sections.save(scene)?;
                 let mut views = Vec::new();
                 let mut cut = Cut::new(Vec::new(), ClipOp::And, centre);
                 for section in sections.of(scene)? {
                     views.push((section.view.camera, own_up(&section.view.camera)));
-                    cut = Cut::new(section.shapes, ClipOp::And, centre);
+                    cut = Cut::new(section.shapes(), ClipOp::And, centre);
                     cut.hold(&section.cut.plane.into());
                 }
                 Ok((views, cut))

@@ -8,6 +8,7 @@ use super::app::Sent;
 use super::dropped::Dropped;
 use super::loading::{Fresh, Load, Loading, TICK};
 use super::stage::Viewer;
+use crate::cli::clip::are_alternatives;
 use crate::cli::failure::Failure;
 use crate::cli::output;
 
@@ -73,7 +74,7 @@ impl Viewer {
 
     fn show(&mut self, fresh: Fresh) -> Result<(), Failure> {
         if let Some(loading) = &mut self.loading {
-            loading.uploading(&fresh.loaded, !self.began);
+            loading.uploading(&fresh.loaded);
             // The window does nothing else meanwhile, so that it says so before.
             if self.visible() {
                 self.draw()?;
@@ -82,11 +83,36 @@ impl Viewer {
         let uploaded = self.windowed.load_as(fresh.loaded.scene(), self.manner.sh);
         // Where it does not fit there is none, and one that is refused leaves the one before.
         self.loaded = !self.windowed.layers().is_empty();
+        self.last = None;
         uploaded?;
         self.scenery = fresh.scenery;
         self.view = 0;
         self.viewpoint = self.scenery.viewpoint(0);
         Ok(())
+    }
+
+    /// Takes the next of the clips of a file, of which one is meant.
+    pub(super) fn next_clip(&mut self) {
+        let (clips, at) = &mut self.alternatives;
+        *at = (*at + 1) % clips.len().max(1);
+        self.show_alternative();
+    }
+
+    fn show_alternative(&mut self) {
+        let (clips, at) = &self.alternatives;
+        let Some(named) = clips.get(*at) else {
+            self.overlay
+                .tell("no file of several clips was dropped".into());
+            return;
+        };
+        let text = format!(
+            "clip {} of {}: {}; V takes the next",
+            at + 1,
+            clips.len(),
+            named.name
+        );
+        self.scenery.clips.replace(vec![named.clip.clone()]);
+        self.overlay.tell(text);
     }
 
     /// Clips and cameras that were dropped, once the scene that they are for is there.
@@ -97,7 +123,15 @@ impl Viewer {
             }
             match dropped {
                 Dropped::Scene => {}
-                Dropped::Clip(clip) => self.scenery.clips.replace(clip),
+                Dropped::Clip(clips) if are_alternatives(&clips) => {
+                    self.alternatives = (clips, 0);
+                    self.show_alternative();
+                }
+                Dropped::Clip(clips) => {
+                    self.alternatives = (Vec::new(), 0);
+                    let clips = clips.into_iter().map(|named| named.clip);
+                    self.scenery.clips.replace(clips.collect());
+                }
                 Dropped::Cameras(cameras) => {
                     let count = cameras.len();
                     // What is up is what is up in the camera's own picture.

@@ -1,11 +1,12 @@
-//! An open window with a scene in it: the actions on it, and its frames.
+//! An open window with a scene in it, and the actions on it.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use rara::{Redraw, Windowed};
+use rara::clip::NamedClip;
+use rara::{Camera, Clip, Settings, Windowed};
 use winit::dpi::PhysicalSize;
 use winit::event_loop::EventLoopProxy;
 use winit::window::Window;
@@ -16,15 +17,13 @@ use super::dropped::Dropped;
 use super::flags;
 use super::input::KEYS;
 use super::loading::Loading;
-use super::outlines;
-use super::overlay::{Overlay, Seen};
+use super::overlay::Overlay;
 use super::scenery::{Manner, Scenery};
 use super::shots;
 use super::title;
 use super::viewpoint::{Viewpoint, Walk};
 use crate::cli::failure::Failure;
 use crate::cli::output::say;
-use crate::cli::settings;
 
 /// The open window.
 pub(super) struct Viewer {
@@ -42,15 +41,21 @@ pub(super) struct Viewer {
     pub(super) dropped: Vec<PathBuf>,
     /// What was dropped with the scene that is being read.
     pub(super) beside: Vec<Dropped>,
+    /// Clips of a file, of which one is meant, and the number of the one that is shown.
+    pub(super) alternatives: (Vec<NamedClip>, usize),
     pub(super) overlay: Overlay,
+    /// True where the window says that the next frame has to compile shaders.
+    pub(super) compiling: bool,
+    /// The last frame of the scene that was shown.
+    pub(super) last: Option<(Camera, Clip, Settings)>,
     pub(super) view: usize,
     pub(super) viewpoint: Viewpoint,
     /// Share of the scene's radius that flying covers in a second.
     speed: f64,
     /// The window's size in pixels, from its events: winit panics when it is asked for the size and the window is gone.
-    size: (u32, u32),
+    pub(super) size: (u32, u32),
     /// How many of them are as long as one on an ordinary screen.
-    scale_factor: f64,
+    pub(super) scale_factor: f64,
     minimised: bool,
     /// True when nothing of the window is visible.
     occluded: bool,
@@ -59,15 +64,11 @@ pub(super) struct Viewer {
     /// True when the last frame's numbers are not known yet.
     pub(super) unsettled: bool,
     /// When the last frame was shown, if the next one follows at once.
-    shown_at: Option<Instant>,
-    intervals: Vec<Duration>,
-    titled_at: Option<Instant>,
+    pub(super) shown_at: Option<Instant>,
+    pub(super) intervals: Vec<Duration>,
+    pub(super) titled_at: Option<Instant>,
 }
 
-/// The title changes no more often than this, since each change costs the window system a message.
-const TITLE_PAUSE: Duration = Duration::from_millis(200);
-/// The most times between frames that are kept.
-const INTERVALS: usize = 10_000;
 /// The least and the most speed; a user can still come back from both.
 const SPEEDS: (f64, f64) = (1e-6, 1e6);
 
@@ -87,7 +88,10 @@ impl Viewer {
             scale_factor: window.scale_factor(),
             window,
             proxy,
+            alternatives: (Vec::new(), 0),
             overlay: Overlay::new(manner.text),
+            compiling: false,
+            last: None,
             manner,
             scenery,
             loaded: false,
@@ -196,6 +200,7 @@ impl Viewer {
             Action::Projection(projection) => self.viewpoint.projection = projection,
             Action::OtherProjection => self.viewpoint.other_projection(),
             Action::Reset => self.viewpoint.reset(),
+            Action::NextClip => self.next_clip(),
             Action::NextView => {
                 let walk = self.viewpoint.walk;
                 self.view = (self.view + 1) % self.scenery.views.len();
@@ -272,88 +277,6 @@ impl Viewer {
         self.dirty = true;
         self.shown_at = None; // the next frame does not follow at once
         Ok(())
-    }
-
-    /// Draws a frame and shows it.
-    pub(super) fn draw(&mut self) -> Result<(), Failure> {
-        let Some(size) = self.windowed.fit(self.size())? else {
-            // An event will report the next size.
-            (self.dirty, self.unsettled) = (false, false);
-            return Ok(());
-        };
-        if let Some(panels) = self.overlay.panels(self.overlay.content(&self.seen(size))) {
-            self.windowed.set_panels(&panels);
-        }
-        if !self.loaded {
-            let background = self.manner.settings.background.unwrap_or_default();
-            let redraw = self.windowed.show_panels(background)?;
-            (self.dirty, self.unsettled) = (redraw == Redraw::Now, false);
-            return Ok(());
-        }
-        let camera = self.viewpoint.camera(size);
-        let Scenery {
-            clips,
-            centre,
-            radius,
-            ..
-        } = &mut self.scenery;
-        let Manner {
-            outlined, settings, ..
-        } = &self.manner;
-        clips.apply(&mut self.windowed)?;
-        self.windowed.set_lines(match outlined {
-            true => outlines::lines(clips, &camera, (*centre, *radius)),
-            false => Vec::new(),
-        });
-        let clip = clips.frame.clip();
-        let redraw = self.windowed.show(&camera, &clip, settings)?;
-        self.dirty = redraw == Redraw::Now;
-        self.unsettled = redraw == Redraw::WhenIdle;
-        let now = Instant::now();
-        // A frame that only asks for numbers does not count, since nobody waits for it.
-        if let Some(before) = self.shown_at.take().filter(|_| self.unsettled)
-            && self.intervals.len() < INTERVALS
-        {
-            self.intervals.push(now - before);
-        }
-        if self.unsettled {
-            self.shown_at = Some(now);
-        }
-        if redraw == Redraw::NotNeeded {
-            self.overlay.scene_is_seen();
-        }
-        // The numbers that are known now may be others than those over the picture.
-        self.dirty |= redraw == Redraw::NotNeeded && self.overlay.is_old(&self.seen(size));
-        if redraw == Redraw::NotNeeded || self.titled_at.is_none_or(|at| now - at >= TITLE_PAUSE) {
-            self.titled_at = Some(now);
-            self.entitle();
-        }
-        Ok(())
-    }
-
-    /// What there is to say of the picture.
-    fn seen(&self, size: (u32, u32)) -> Seen<'_> {
-        Seen {
-            clips: self.loaded.then_some(&self.scenery.clips),
-            mode: self.manner.settings.mode,
-            stats: self.windowed.stats(),
-            progress: self.loading.as_ref().map(Loading::progress),
-            size,
-            scale_factor: self.scale_factor,
-        }
-    }
-
-    /// True when there is something else to say than what is written over the picture.
-    pub(super) fn is_behind(&self) -> bool {
-        self.overlay.is_old(&self.seen(self.size))
-    }
-
-    fn entitle(&self) {
-        let Scenery { name, clips, .. } = &self.scenery;
-        let mode = settings::name(self.manner.settings.mode);
-        let stats = self.windowed.stats();
-        let text = title::title(name, &mode, clips.words().as_deref(), stats);
-        self.window.set_title(&text);
     }
 
     /// Asks for another size of the window; returns whether it has that size already.

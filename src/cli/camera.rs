@@ -4,30 +4,33 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::DVec3;
-use rara::{Camera, Gaussians};
+use rara::Camera;
 
 use super::failure::Failure;
-#[cfg(doc)]
-use super::framing;
 use super::lens::{Depths, Lens, Ortho, ortho};
-use super::views::picked;
+use super::views::{Framed, picked};
 pub(super) use super::views::{View, Views};
 use super::{aspect, output, training, values};
-use rara::{camera_files, scene::Bounds};
+use rara::camera_files;
 
-/// The camera's position and lens. Without any of these it frames the scene.
+/// The heading of these flags in the help.
+pub(super) const HEADING: &str = "Camera (without any of these it frames the scene)";
+
+/// The camera's position and lens. Without any of these it frames what is visible of the scene.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Camera (without any of these it frames the scene)")]
+#[command(next_help_heading = HEADING)]
 pub(super) struct CameraArgs {
-    /// The eye's position
+    /// The eye's position. Without --target it looks at the middle of what it would frame
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera"])]
     eye: Option<DVec3>,
-    /// The point that it looks at
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true, requires = "eye")]
+    /// The point that it looks at. Without --eye it does so from the side and the distance from which it would frame the scene
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["cameras", "camera"])]
     target: Option<DVec3>,
     /// The direction that is up in the picture, as 0,-1,0 or -y; where a scene is upside down, y, and where it lies on its
-    /// side, z or -z [default: -y; a section's may be another]
+    /// side, z or -z [default: -y, and where the camera frames the scene the mean of the cameras beside it, if there are any; a
+    /// section's may be another]. Of a view along it z is up, of one along z -y
     #[arg(long, value_name = "X,Y,Z|AXIS", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera"])]
     up: Option<DVec3>,
@@ -40,7 +43,7 @@ pub(super) struct CameraArgs {
     )]
     #[arg(conflicts_with_all = ["cameras", "camera"])]
     fov_y: f64,
-    /// Orthographic, without perspective: the picture's height in world units, or `fit` for all of the scene, without --eye
+    /// Orthographic, without perspective: the picture's height in world units, or `fit` for all that is visible, without --eye
     #[arg(long, value_name = "HEIGHT|fit", value_parser = ortho, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera", "fov_y"])]
     ortho: Option<Ortho>,
@@ -126,7 +129,12 @@ impl CameraArgs {
         let from_file = self.is_from_file();
         let cuts = [self.clip_near, self.clip_far, self.near_cut];
         let cuts = cuts.iter().any(Option::is_some);
-        from_file || cuts || self.eye.is_some() || self.ortho.is_some() || self.fov_y != FOV_Y
+        from_file
+            || cuts
+            || self.eye.is_some()
+            || self.target.is_some()
+            || self.ortho.is_some()
+            || self.fov_y != FOV_Y
     }
 
     /// The direction that is up in the picture, if a flag says it.
@@ -151,7 +159,8 @@ impl CameraArgs {
 
     /// The point that an orbit goes round and the direction of its axis, where flags place the camera.
     pub(super) fn pivot(&self) -> Option<(DVec3, DVec3)> {
-        Some((self.target?, self.up.unwrap_or(UP)))
+        let target = self.target.filter(|_| self.eye.is_some())?;
+        Some((target, self.up.unwrap_or(UP)))
     }
 
     /// Refuses what would choose cameras of a file for `what`, which needs none.
@@ -159,7 +168,7 @@ impl CameraArgs {
         match self.is_from_file() {
             false => Ok(()),
             true => Err(Failure::Usage(format!(
-                "{what} goes round the framed scene, or round --target from --eye: leave out the cameras of a file"
+                "{what} goes round the framed scene, or round --target and from --eye: leave out the cameras of a file"
             ))),
         }
     }
@@ -190,9 +199,10 @@ impl CameraArgs {
         flag: &str,
         wanted: Option<&[String]>,
     ) -> Result<Vec<View>, Failure> {
-        if self.eye.is_some() || self.ortho.is_some() || self.up.is_some() || self.fov_y != FOV_Y {
+        let is_placed = self.eye.or(self.target).or(self.up).is_some();
+        if is_placed || self.ortho.is_some() || self.fov_y != FOV_Y {
             return Err(Failure::Usage(format!(
-                "{flag} takes the cameras of a file: leave out --eye, --up, --fov-y and --ortho"
+                "{flag} takes the cameras of a file: leave out --eye, --target, --up, --fov-y and --ortho"
             )));
         }
         let path = self.file(scenes, flag)?;
@@ -227,29 +237,18 @@ impl CameraArgs {
 
     /// The cameras that the flags mean, also of files beside these scenes; reads their files.
     pub(super) fn meant(&self, scenes: &[PathBuf]) -> Result<Views, Failure> {
-        let size = self.chosen_size();
-        let up = self.up.unwrap_or(UP);
-        let depths = self.depths();
-        if self.eye.is_some() && self.target.is_none() {
-            return Err(Failure::Usage(
-                "--eye has no --target: give the point that the camera looks at".into(),
-            ));
-        }
+        let (size, depths) = (self.chosen_size(), self.depths());
+        let lens = match self.ortho {
+            None => Lens::Perspective(self.fov_y),
+            Some(Ortho::Height(height)) => Lens::Orthographic(Some(height)),
+            Some(Ortho::Fit) => Lens::Orthographic(None),
+        };
         if let (Some(eye), Some(target)) = (self.eye, self.target) {
-            let camera = match self.ortho {
-                None => Camera::look_at(eye, target, up, self.fov_y, size),
-                Some(Ortho::Height(height)) => Camera::orthographic(eye, target, up, height, size),
-                Some(Ortho::Fit) => {
-                    return Err(Failure::Usage(
-                        "--ortho fit places the camera itself: give a height with --eye and --target".into(),
-                    ));
-                }
-            };
-            let camera = depths.of(camera.map_err(Failure::usage)?)?;
+            let camera = lens.look((eye, target), self.up.unwrap_or(UP), size)?;
             return Ok(Views::Given(vec![View {
                 number: 0,
                 name: "camera".into(),
-                camera,
+                camera: depths.of(camera)?,
             }]));
         }
         if let (Some(path), None) = (&self.camera, &self.view) {
@@ -261,25 +260,17 @@ impl CameraArgs {
             }]));
         }
         if self.cameras.is_none() && self.view.is_none() {
-            let lens = match self.ortho {
-                None => Lens::Perspective(self.fov_y),
-                Some(Ortho::Height(height)) => Lens::Orthographic(Some(height)),
-                Some(Ortho::Fit) => Lens::Orthographic(None),
-            };
-            // Errors that do not depend on the scene are found before it is read.
-            let unframed = lens.frame(&Bounds::of(&Gaussians::default()), up, size);
-            depths.of(unframed.map_err(Failure::usage)?)?;
-            if self.up.is_none() {
-                scenes
-                    .iter()
-                    .find_map(|scene| training::hint_of_up(scene, UP));
-            }
-            return Ok(Views::Framed {
+            let (up, note) = training::up_of(self.up, scenes);
+            let framed = Framed {
                 up,
                 lens,
                 size,
                 depths,
-            });
+                eye: self.eye,
+                target: self.target,
+                note,
+            };
+            return framed.checked().map(Views::Framed);
         }
         let one = [self.view.clone().unwrap_or_else(|| "0".into())];
         let wanted = (!self.all()).then_some(&one[..]);

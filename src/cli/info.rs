@@ -36,7 +36,7 @@ struct Document {
     notes: Vec<String>,
     /// Box around all centres.
     centres: Extent,
-    /// Box without the stray centres, which cameras and sweeps use.
+    /// Box without the stray centres, along which sections and sweeps count.
     robust_bounds: Extent,
     opacity: Spread,
     /// Of each Gaussian's longest axis, world units.

@@ -5,6 +5,7 @@ use rara::Camera;
 use rara::scene::Bounds;
 
 use super::failure::Failure;
+use super::output;
 
 /// The scale of an orthographic picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,6 +35,34 @@ pub(super) enum Lens {
 }
 
 impl Lens {
+    /// A camera at the first point that looks at the second.
+    pub(super) fn look(
+        self,
+        (eye, target): (DVec3, DVec3),
+        up: DVec3,
+        size: (u32, u32),
+    ) -> Result<Camera, Failure> {
+        let turned = upright(target - eye, up);
+        if turned != up {
+            output::warn_once(format!(
+                "note: the camera looks along what is up; up in the picture is {}",
+                if turned == DVec3::Z { "z" } else { "-y" }
+            ));
+        }
+        let camera = match self {
+            Self::Perspective(fov_y) => Camera::look_at(eye, target, turned, fov_y, size),
+            Self::Orthographic(Some(height)) => {
+                Camera::orthographic(eye, target, turned, height, size)
+            }
+            Self::Orthographic(None) => {
+                return Err(Failure::Usage(
+                    "--ortho fit places the camera itself: give a height with --eye".into(),
+                ));
+            }
+        };
+        camera.map_err(Failure::usage)
+    }
+
     /// A camera that holds the bounds, seen from their front, the right and above.
     pub(super) fn frame(
         self,
@@ -51,6 +80,20 @@ impl Lens {
                 }))
             }
         }
+    }
+}
+
+/// The direction that is up in the picture of a camera that looks this way: `up`, unless it looks along that. Then it is z, or
+/// -y where it looks along z, as in sections.
+pub(super) fn upright(forward: DVec3, up: DVec3) -> DVec3 {
+    let is_along = |axis: DVec3| {
+        let across = forward.normalize_or_zero().cross(axis);
+        across.length() <= 1e-12 * axis.length()
+    };
+    match (is_along(up), is_along(DVec3::Z)) {
+        (false, _) => up,
+        (true, false) => DVec3::Z,
+        (true, true) => DVec3::NEG_Y,
     }
 }
 

@@ -157,7 +157,10 @@ pub(crate) fn main() -> ExitCode {
         Err(error) => Err(error.into()),
     };
     match outcome {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => {
+            output::end();
+            ExitCode::SUCCESS
+        }
         Err(failure) => {
             failure.details().for_each(output::complain);
             output::complain(&failure);

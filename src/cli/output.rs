@@ -44,6 +44,21 @@ pub(super) fn warn_once(line: String) {
     }
 }
 
+/// Lines that wait for the end of the work.
+static AFTERWARDS: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// Prints a line for people once the work is done; it is no use where that fails.
+pub(super) fn say_afterwards(line: String) {
+    let mut lines = AFTERWARDS.lock().unwrap_or_else(PoisonError::into_inner);
+    lines.push(line);
+}
+
+/// The work is done.
+pub(super) fn end() {
+    let mut lines = AFTERWARDS.lock().unwrap_or_else(PoisonError::into_inner);
+    lines.drain(..).for_each(say);
+}
+
 /// Prints why something failed. Where nobody listens (stderr closed), nothing is lost by going on.
 pub(super) fn complain(line: impl Display) {
     let _ = writeln!(io::stderr(), "{line}");

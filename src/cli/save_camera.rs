@@ -6,7 +6,7 @@ use clap::Args;
 use rara::{Camera, Projection};
 use serde::Serialize;
 
-use super::camera::View;
+use super::camera::{HEADING, View};
 use super::output;
 
 /// A camera, to the last bit.
@@ -73,11 +73,7 @@ fn text(document: &impl Serialize) -> String {
 pub(super) struct SaveCameraArgs {
     /// Write the camera of the picture to a file, which draws the same picture by --camera; those of several pictures are a
     /// list with names, which --cameras and --view read
-    #[arg(
-        long,
-        value_name = "FILE",
-        help_heading = "Camera (without any of these it frames the scene)"
-    )]
+    #[arg(long, value_name = "FILE", help_heading = HEADING)]
     save_camera: Option<PathBuf>,
 }
 

@@ -3,11 +3,13 @@
 use clap::Args;
 use glam::DVec3;
 use rara::clip::Expression;
-use rara::{Bounds, Camera, Clip, ClipOp, Gaussians, Plane, Scene};
+use rara::{Bounds, Clip, ClipOp, Gaussians, Plane, Scene};
 
 use super::camera::{CameraArgs, View};
 use super::clip::{ClipArgs, Regions};
 use super::failure::Failure;
+use super::framing::Visible;
+use super::lens::upright;
 use super::slice::Cut;
 use super::values;
 
@@ -15,15 +17,15 @@ use super::values;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Sections")]
 pub(super) struct SectionArgs {
-    /// Cut the scene and face the cut, without perspective (repeatable): AXIS=SHARE is across an axis, at a share of the
-    /// scene's robust bounds from 0 to 1; AXIS=FROM..TO:COUNT is so many of them. Axes: z or axial, y or coronal, x or
+    /// Cut the scene and face the cut, without perspective (repeatable): AXIS=SHARE is across an axis, at a share from
+    /// 0 to 1 of the robust bounds that rara info prints; AXIS=FROM..TO:COUNT is so many of them. Axes: z or axial, y or coronal, x or
     /// sagittal; a leading ! looks from the other side. NAME is a plane of a --clip-file, which then clips nothing else
     #[arg(long, value_name = "AXIS=SHARE|NAME", value_parser = wanted, allow_hyphen_values = true)]
     section: Vec<Wanted>,
     /// Keep a slab of this thickness behind each section, world units, instead of all that lies behind it
     #[arg(long, value_name = "T", value_parser = values::positive, requires = "section", allow_hyphen_values = true)]
     section_thickness: Option<f32>,
-    /// World units of a pixel [default: as many as show all of the scene]
+    /// World units of a pixel [default: as many as hold all that is visible of the scene, alike for all sections across an axis]
     #[arg(long, value_name = "S", value_parser = values::positive, requires = "section", allow_hyphen_values = true)]
     section_scale: Option<f32>,
 }
@@ -291,6 +293,7 @@ impl Sections {
         let bounds = Bounds::of(scene.clone());
         let others = self.shapes.of(scene)?;
         let rest = joined(&others);
+        let visible = Visible::nearly_all_of(scene);
         let section = |(number, planned): (usize, &Planned)| {
             let (name, plane, up) = match planned {
                 Planned::Across(axis, share) => {
@@ -301,8 +304,8 @@ impl Sections {
                 }
                 Planned::Plane(name, plane) => (name.clone(), *plane, up_across(plane)),
             };
-            let up = self.up.unwrap_or(up);
-            let mut camera = Camera::facing(&plane, &bounds, up, self.size)?;
+            let up = self.up.map_or(up, |up| upright(plane.normal(), up));
+            let mut camera = visible.facing(&plane, up, self.size)?;
             if let Some(scale) = self.scale {
                 camera = camera.fx(1.0 / scale).fy(1.0 / scale);
             }

@@ -7,6 +7,7 @@ use glam::DVec3;
 use rara::Camera;
 use rara::camera_files::{self, NamedCamera};
 
+use super::camera::UP;
 use super::failure::Failure;
 use super::values::STANDARD;
 use super::{dataparser, output};
@@ -133,23 +134,35 @@ pub(super) fn load_cameras(path: &Path, scenes: &[PathBuf]) -> rara::Result<Vec<
     Ok(cameras)
 }
 
-/// Says so where the cameras of 3DGS beside a scene have the world the other way up, or on its side, than a picture whose
-/// up this is. Nothing is said where there are none, or where they are upright in no direction that they share.
-pub(super) fn hint_of_up(scene: &Path, up: DVec3) -> Option<()> {
-    let file = beside(scene, "cameras.json")?;
-    let cameras = camera_files::load_cameras(&file).ok()?;
-    let theirs = common_up(cameras.iter().map(|named| &named.camera))?;
-    let how = match theirs.dot(up.normalize()) {
-        along if along < -0.5 => "upside down",
-        along if along < 0.5 => "on its side",
-        _ => return None,
+/// The direction that is up in a picture that frames these scenes: the one that is `chosen`, or that of the cameras beside one, or
+/// -y, as in COLMAP's worlds, and in those of formats that say what is up, which are turned as they are read. With a note where
+/// it may be another.
+pub(super) fn up_of(chosen: Option<DVec3>, scenes: &[PathBuf]) -> (DVec3, Option<String>) {
+    if let Some(up) = chosen {
+        return (up, None);
+    }
+    let of_cameras = scenes.iter().find_map(|scene| {
+        let file = cameras(scene)?;
+        let loaded = load_cameras(&file, scenes).ok()?;
+        let up = common_up(loaded.iter().map(|named| &named.camera))?;
+        let note = format!(
+            "note: up is {}, the mean of the cameras in {}; --up takes another direction",
+            direction_text(up),
+            file.display()
+        );
+        let is_usual = up.dot(UP) > 0.9;
+        Some((up, (!is_usual).then_some(note)))
+    });
+    let says_what_is_up = |scene: &PathBuf| {
+        let ending = scene.extension().and_then(|ending| ending.to_str());
+        let ending = ending.unwrap_or_default().to_ascii_lowercase();
+        ["spz", "glb", "gltf"].contains(&&ending[..])
     };
-    output::say(format_args!(
-        "note: by the cameras of {} the picture is {how}; --up {} turns it",
-        file.display(),
-        direction_text(theirs)
-    ));
-    Some(())
+    of_cameras.unwrap_or_else(|| {
+        let note = "note: up is -y; --up y turns a picture that is upside down, --up z one that lies on its side";
+        let is_known = scenes.iter().all(says_what_is_up);
+        (UP, (!is_known).then(|| note.into()))
+    })
 }
 
 /// The direction that is up for most of these cameras: the mean of theirs, where they agree well enough to have one.

@@ -6,10 +6,11 @@ use glam::DVec3;
 use rara::scene::Bounds;
 use rara::{Camera, Scene};
 
+use super::camera::UP;
 use super::failure::Failure;
 use super::lens::{Depths, Lens};
 use super::path::Orbit;
-use super::{framing, values};
+use super::{framing, output, values};
 
 /// A camera and what its file calls it.
 #[derive(Debug, Clone)]
@@ -25,15 +26,70 @@ pub(super) struct View {
 pub(super) enum Views {
     /// Cameras that are known before the scene is loaded.
     Given(Vec<View>),
-    /// A camera that the scene's bounds will place.
-    Framed {
-        up: DVec3,
-        lens: Lens,
-        size: (u32, u32),
-        depths: Depths,
-    },
+    /// A camera that the scene will place.
+    Framed(Framed),
     /// An orbit round the scene that such a camera frames.
-    Round(Orbit, Box<Views>),
+    Round(Orbit, Framed),
+}
+
+/// A camera that the scene places, but for what flags say of it.
+#[derive(Debug, Clone)]
+pub(super) struct Framed {
+    pub(super) up: DVec3,
+    pub(super) lens: Lens,
+    pub(super) size: (u32, u32),
+    pub(super) depths: Depths,
+    /// It stands here, and looks at the middle of what is framed.
+    pub(super) eye: Option<DVec3>,
+    /// It looks at this, from the side and the distance from which it would look at the middle.
+    pub(super) target: Option<DVec3>,
+    /// What is to be said of the direction that is up.
+    pub(super) note: Option<String>,
+}
+
+impl Framed {
+    /// The camera with its lens and its axes: it looks at the middle of what is framed from the eye, if that is said, and
+    /// otherwise from the front, the right and above, with its eye anywhere.
+    pub(super) fn turned(&self, middle: DVec3) -> Result<Camera, Failure> {
+        let unit = Bounds {
+            min: DVec3::NEG_ONE,
+            max: DVec3::ONE,
+        };
+        match self.eye {
+            Some(eye) => self.lens.look((eye, middle), self.up, self.size),
+            None => {
+                let camera = self.lens.frame(&unit, self.up, self.size);
+                camera.map_err(Failure::usage)
+            }
+        }
+    }
+
+    /// The camera that looks at the middle from where it stands, moved so that it looks at the target likewise.
+    pub(super) fn aimed(&self, camera: Camera, middle: DVec3) -> Camera {
+        let forward = camera.rotation.row(2);
+        match self.target {
+            Some(target) => camera.eye(target - forward * forward.dot(middle - camera.eye)),
+            None => camera,
+        }
+    }
+
+    /// The camera that holds a box.
+    fn boxed(&self, bounds: &Bounds) -> Result<Camera, Failure> {
+        let camera = match self.eye {
+            Some(_) => self.turned(bounds.centre())?,
+            None => self.lens.frame(bounds, self.up, self.size)?,
+        };
+        self.depths.of(self.aimed(camera, bounds.centre()))
+    }
+
+    /// Finds errors that do not depend on the scene before it is read.
+    pub(super) fn checked(self) -> Result<Self, Failure> {
+        let eye = self.eye.unwrap_or_default();
+        let aside = self.up.normalize_or(UP).any_orthonormal_vector();
+        self.depths
+            .of(self.turned(eye + aside * (1.0 + eye.length()))?)?;
+        Ok(self)
+    }
 }
 
 impl Views {
@@ -41,7 +97,7 @@ impl Views {
     pub(super) fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
         let (given, placed) = match self {
             Self::Given(views) => (views.as_slice(), 0),
-            Self::Framed { .. } => (&[][..], 1),
+            Self::Framed(_) => (&[][..], 1),
             Self::Round(orbit, _) => (&[][..], orbit.frames as usize),
         };
         given.iter().map(|view| view.number).chain(0..placed)
@@ -56,38 +112,38 @@ impl Views {
             ))),
         }
     }
-}
 
-impl Views {
-    /// The cameras, once the scene is known; one that frames it holds the box around it. [`framing::views`] are nearer.
+    /// The direction that is up in the world, where the scene places the camera.
+    #[cfg(feature = "view")]
+    pub(super) fn up(&self) -> Option<DVec3> {
+        self.framed().map(|framed| framed.up)
+    }
+
+    /// What is to be said of it.
+    pub(super) fn note(&self) -> Option<String> {
+        self.framed()?.note.clone()
+    }
+
+    fn framed(&self) -> Option<&Framed> {
+        match self {
+            Self::Given(_) => None,
+            Self::Framed(framed) | Self::Round(_, framed) => Some(framed),
+        }
+    }
+
+    /// The camera of a command that measures, once the scene is known; one that frames the scene holds the box around it.
+    /// [`framing::views`] are nearer.
     pub(super) fn of(self, scene: &Scene<'_>) -> Result<Vec<View>, Failure> {
         match self {
-            Self::Given(views) => Ok(views),
-            Self::Framed {
-                up,
-                lens,
-                size,
-                depths,
-            } => {
-                let camera = depths.of(lens.frame(&Bounds::of(scene), up, size)?)?;
+            Self::Framed(framed) => {
+                framed.note.iter().cloned().for_each(output::say_afterwards);
                 Ok(vec![View {
                     number: 0,
                     name: "framing".into(),
-                    camera,
+                    camera: framed.boxed(&Bounds::of(scene))?,
                 }])
             }
-            Self::Round(orbit, framed) => match *framed {
-                Self::Framed {
-                    up,
-                    lens,
-                    size,
-                    depths,
-                } => {
-                    let camera = depths.of(lens.frame(&Bounds::of(scene), up, size)?)?;
-                    Ok(framing::round(orbit, camera, (lens, up), scene))
-                }
-                given => given.of(scene),
-            },
+            other => framing::views(other, scene),
         }
     }
 }
@@ -188,5 +244,39 @@ mod tests {
             let failure = numbers(none).expect_err(none).to_string();
             assert!(failure.contains("f has 5 cameras"), "{none}: {failure}");
         }
+    }
+
+    /// Figures of commands that measure rest on the camera that holds the box.
+    #[test]
+    fn commands_that_measure_keep_the_box_s_camera() {
+        let made = rara::scene::generate(rara::scene::Kind::General, 300, 1);
+        let bounds = Bounds::of(&made);
+        let plain = Framed {
+            up: UP,
+            lens: Lens::Perspective(50.0),
+            size: (64, 48),
+            depths: Depths::default(),
+            eye: None,
+            target: None,
+            note: None,
+        };
+        let camera = |framed: &Framed| {
+            let views = Views::Framed(framed.clone()).of(&(&made).into());
+            views.expect("a view").remove(0).camera
+        };
+        let boxed = Camera::frame(&bounds, UP, 50.0, (64, 48)).expect("a view");
+        assert_eq!(camera(&plain), boxed);
+        let aside = DVec3::new(1.0, 2.0, 3.0);
+        let moved = camera(&Framed {
+            target: Some(bounds.centre() + aside),
+            ..plain.clone()
+        });
+        assert!((moved.eye - boxed.eye).distance(aside) < 1e-12);
+        let from = camera(&Framed {
+            eye: Some(aside),
+            ..plain
+        });
+        let facing = Camera::look_at(aside, bounds.centre(), UP, 50.0, (64, 48));
+        assert_eq!(from, facing.expect("a view"));
     }
 }

@@ -169,3 +169,62 @@ fn ranges_and_lists_choose_cameras() {
         assert!(output.status.code() == Some(2) && output.stdout.is_empty());
     }
 }
+
+#[test]
+fn an_eye_or_a_target_by_itself_is_enough_and_a_view_along_up_has_another() {
+    let here = folder("cameras_partial");
+    scene(&here);
+    let camera = |words: &str| drawn(&here, &format!("--size 48x32 {words}")).1["camera"].clone();
+    let numbers = |value: &Value| {
+        let array = value.as_array().expect("numbers").iter();
+        array
+            .map(|n| n.as_f64().expect("a number"))
+            .collect::<Vec<_>>()
+    };
+    let usual = camera("");
+    let from = camera("--eye -1,-2,-4");
+    assert_eq!(numbers(&from["eye"]), [-1.0, -2.0, -4.0]);
+    // The middle of the scene, which is near the origin, is in the middle of the picture.
+    let matrix = numbers(&from["world_to_camera"]);
+    assert!(
+        matrix[3].abs() < 0.3 && matrix[7].abs() < 0.3 && matrix[11] > 4.0,
+        "{matrix:?}"
+    );
+    let at = camera("--target 7,0,0");
+    let (usual, at) = (
+        numbers(&usual["world_to_camera"]),
+        numbers(&at["world_to_camera"]),
+    );
+    let axes = |matrix: &[f64]| {
+        (0..3)
+            .flat_map(|row| matrix[4 * row..4 * row + 3].to_vec())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(axes(&usual), axes(&at));
+    let seen = |row: usize| 7.0 * at[4 * row] + at[4 * row + 3];
+    assert!(seen(0).abs() < 1e-9 && seen(1).abs() < 1e-9 && (seen(2) - usual[11]).abs() < 0.3);
+    let orbit = "render @/scene.ply -o @/o_{}.exr --size 48x32 --repeat 1 --path orbit --frames 2 --eye -1,-2,-4";
+    done(line(&here, orbit));
+    let first = fs::read(here.join("o_0.exr")).expect("a picture");
+    assert!(first == drawn(&here, "--size 48x32 --eye -1,-2,-4").0);
+
+    for (eye, up, other) in [
+        ("0,-4,0", "-y", "z"),
+        ("0,0,5", "z", "-y"),
+        ("0.3,0,0", "0.5,0,0", "z"),
+    ] {
+        let words = format!(
+            "render @/scene.ply -o @/along.exr --size 48x32 --repeat 1 --eye {eye} --target 0,0,0"
+        );
+        let printed = stderr(&done(line(&here, &format!("{words} --up {up}"))));
+        let says = format!("looks along what is up; up in the picture is {other}");
+        assert!(printed.contains(&says), "{printed}");
+        let along = fs::read(here.join("along.exr")).expect("a picture");
+        let printed = stderr(&done(line(&here, &format!("{words} --up {other}"))));
+        assert!(!printed.contains("looks along"), "{printed}");
+        assert!(
+            along == fs::read(here.join("along.exr")).expect("a picture"),
+            "{eye}"
+        );
+    }
+}

@@ -139,7 +139,11 @@ fn ffmpeg_gets_opaque_pictures_and_its_failures_are_sentences() {
         assert!(words.contains(part), "{part}: {words}");
     }
     let made = done(film(&path, "-o @/film.webm --background white"));
-    assert!(!stderr(&made).contains("note:"), "{}", stderr(&made));
+    assert!(
+        !stderr(&made).contains("no transparency"),
+        "{}",
+        stderr(&made)
+    );
     let before = files(&here);
     for script in [
         "echo 'Unknown encoder libx264.' >&2; exit 1",

@@ -192,16 +192,18 @@ fn what_does_not_go_together_is_refused_by_name() {
             "twice as wide as high",
         ),
         ("-o @/a.png --panorama --eye 0,0,0 --fov-y 60", "--fov-y"),
-        // What lies ahead is nothing to go round.
-        (
-            "-o @/a.apng --panorama --eye 0,0,0 --path orbit",
-            "--eye has no --target",
-        ),
         (
             "-o @/a.png --panorama --eye 0,0,0 --clip-near 1",
             "--clip-near",
         ),
-        ("-o @/a.png --eye 0,0,0", "--target"),
+        (
+            "-o @/a.png --panorama --target 0,0,0",
+            "--eye, --camera or --cameras",
+        ),
+        (
+            "-o @/a.apng --path spline --target 0,0,0",
+            "leave out --eye",
+        ),
     ] {
         refused(
             &line(&here, &format!("render @/scene.ply {flags}")),

@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::Path;
 
+use serde_json::Value;
+
 use super::{document, done, folder, line, refused, scene};
 
 const SIZE: &str = "--size 96x64";
@@ -58,41 +60,45 @@ fn a_camera_file_says_what_the_flags_say() {
     assert!(drawn(&here, "--ortho fit") != drawn(&here, "--ortho 1.5"));
 }
 
-/// A section across an axis is what a camera and a plane draw that are placed by hand.
+/// A section across an axis is what its camera and a plane draw, which both stand where they should.
 #[test]
 fn a_section_faces_its_plane() {
     let here = folder("section");
     scene(&here);
     let [min, max] = bounds(&here);
-    let at = |axis: usize, share: f64| min[axis] + (max[axis] - min[axis]) * share;
-    let radius = (0..3)
-        .map(|i| (max[i] - min[i]).powi(2))
-        .sum::<f64>()
-        .sqrt()
-        / 2.0;
     for (names, axis, sign, up) in [
-        (["sagittal", "x"], 0, -1.0, "0,0,1"),
-        (["coronal", "y"], 1, 1.0, "0,0,1"),
-        (["axial", "z"], 2, 1.0, "0,-1,0"),
+        (["sagittal", "x"], 0, -1.0, [0.0, 0.0, 1.0]),
+        (["coronal", "y"], 1, 1.0, [0.0, 0.0, 1.0]),
+        (["axial", "z"], 2, 1.0, [0.0, -1.0, 0.0]),
     ] {
         for (flip, sign) in [("", sign), ("!", -sign)] {
-            let mut target = [0, 1, 2].map(|axis| at(axis, 0.5));
-            target[axis] = at(axis, 0.4);
-            let (mut eye, mut normal) = (target, [0.0; 3]);
-            eye[axis] -= sign * (2.0 * radius + 0.25);
+            let at = min[axis] + (max[axis] - min[axis]) * 0.4;
+            let mut normal = [0.0; 3];
             normal[axis] = sign;
             let text = |v: [f64; 3]| v.map(|v| v.to_string()).join(",");
             let plane = |d: f64| format!("--clip plane:{},{d}", text(normal));
-            let d = -sign * target[axis];
-            let camera = format!(
-                "--eye {} --target {} --up {up} --ortho {}",
-                text(eye),
-                text(target),
-                64.0 * 0.0625
-            );
+            let d = -sign * at;
             let section = format!("--section {flip}{}=0.4 --section-scale 0.0625", names[0]);
-            let half = drawn(&here, &section);
+            let half = drawn(&here, &format!("{section} --save-camera @/flat.json"));
+            let file = fs::read(here.join("flat.json")).expect("a camera");
+            let saved: Value = serde_json::from_slice(&file).expect("JSON");
+            let number = |value: &Value| value.as_f64().expect("a number");
+            let row =
+                |row: usize| [0, 1, 2].map(|i| number(&saved["world_to_camera"][4 * row + i]));
+            assert_eq!(
+                (row(2), row(1)),
+                (normal, up.map(|v| -v)),
+                "{names:?} {flip}"
+            );
+            assert_eq!(
+                (&saved["projection"], number(&saved["fx"])),
+                (&"orthographic".into(), 16.0)
+            );
+            // It stands before all of the scene.
+            let before = sign * (at - number(&saved["eye"][axis]));
+            assert!(before > max[axis] - min[axis], "{names:?} {flip}: {before}");
             assert!(half == drawn(&here, &section.replace(names[0], names[1])));
+            let camera = "--camera @/flat.json";
             assert!(
                 half == drawn(&here, &format!("{camera} {}", plane(d))),
                 "{names:?} {flip}"
@@ -104,8 +110,10 @@ fn a_section_faces_its_plane() {
             assert!(slab == placed && slab != half, "{names:?} {flip}");
         }
     }
-    let turned = drawn(&here, "--section z=0.4 --up 1,0,0");
-    assert!(turned != drawn(&here, "--section z=0.4"));
+    let plain = drawn(&here, "--section z=0.4");
+    assert!(plain != drawn(&here, "--section z=0.4 --up 1,0,0"));
+    // What is up along the view says nothing of the picture.
+    assert!(plain == drawn(&here, "--section z=0.4 --up z"));
 }
 
 #[test]

@@ -197,26 +197,39 @@ fn what_was_trained_antialiased_is_drawn_so() {
 }
 
 #[test]
-fn a_picture_that_the_cameras_have_the_other_way_up_says_so() {
+fn up_is_as_in_the_cameras_beside_the_scene() {
     let here = folder("upright");
     scene(&here);
     done(line(&here, "generate general -n 100 -o @/few.ply"));
     trained(&here);
     let words = "render @/trained --size 8x8 -o @/a.png --repeat 1";
     let printed = stderr(&done(line(&here, words)));
-    assert!(!printed.contains("--up"), "{printed}");
+    assert!(!printed.contains("up is"), "{printed}");
     let cameras = json!([{"id": 0, "img_name": "a", "width": 48, "height": 32, "position": [0.0, 0.0, -3.0],
         "rotation": [[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]], "fx": 40.0, "fy": 40.0}]);
     fs::write(here.join("trained/cameras.json"), cameras.to_string()).expect("writes");
     let printed = stderr(&done(line(&here, words)));
     assert!(
-        printed.contains("upside down; --up y turns it"),
+        printed.contains("up is y, the mean of the cameras in"),
         "{printed}"
     );
-    for up in ["y", "-y"] {
+    let picture = || fs::read(here.join("a.png")).expect("a picture");
+    let by_cameras = picture();
+    for (up, is_same) in [("y", true), ("-y", false)] {
         let printed = stderr(&done(line(&here, &format!("{words} --up {up}"))));
-        assert!(!printed.contains("upside down"), "{printed}");
+        assert!(!printed.contains("up is"), "{printed}");
+        assert_eq!(picture() == by_cameras, is_same, "{up}");
     }
+    // Without cameras -y is up, and a note says so of formats that do not say it themselves.
+    let words = words.replace("@/trained", "@/few.ply");
+    let printed = stderr(&done(line(&here, &words)));
+    assert!(printed.contains("up is -y; --up y turns"), "{printed}");
+    let ply = picture();
+    done(line(&here, &format!("{words} --up -y")));
+    assert!(picture() == ply);
+    done(line(&here, "convert @/few.ply -o @/few.glb"));
+    let printed = stderr(&done(line(&here, &words.replace("few.ply", "few.glb"))));
+    assert!(!printed.contains("up is"), "{printed}");
 }
 
 /// Of another aspect than the camera a picture shows all that the camera sees, in its middle and as it is.

@@ -102,11 +102,12 @@ impl PathArgs {
                 };
                 camera.without_file("--path orbit")?;
                 let begin = camera.meant(scenes)?;
-                Ok(match (&begin, camera.pivot()) {
+                Ok(match (begin, camera.pivot()) {
                     (Views::Given(views), Some(round)) => {
                         Views::Given(orbit.views(views[0].camera, round))
                     }
-                    _ => Views::Round(orbit, Box::new(begin)),
+                    (Views::Framed(framed), _) => Views::Round(orbit, framed),
+                    (other, _) => other,
                 })
             }
             Some(Route::Spline { views, closed }) => {

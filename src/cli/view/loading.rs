@@ -16,11 +16,13 @@ use super::text::Progress;
 use super::{Begin, name};
 use crate::cli::camera::{FOV_Y, Views};
 use crate::cli::failure::Failure;
+use crate::cli::framing::Visible;
 use crate::cli::lens::{Depths, Lens};
 use crate::cli::output::grouped;
 use crate::cli::reading::{Reading, Watch};
 use crate::cli::scenes::{self, Loaded};
-use crate::cli::values;
+use crate::cli::views::Framed;
+use crate::cli::{training, values};
 
 /// A scene that has been read, and how it is looked at.
 pub(super) struct Fresh {
@@ -59,29 +61,34 @@ impl Fresh {
         typed: &[(&str, &str)],
     ) -> Result<Self, Failure> {
         let scene = loaded.scene();
-        let bounds = Bounds::of(&scene);
-        let (views, cut) = begin.of(&scene, up, bounds.centre())?;
+        let middle = Bounds::of(&scene).centre();
+        let visible = Visible::of(&scene);
+        let (views, cut) = begin.of((&scene, &visible), up, middle)?;
         let scenery = Scenery {
             name: name(&scene),
             views,
-            clips: Clips::new(cut, &loaded.layers, bounds.centre()).typed(typed),
-            centre: bounds.centre(),
-            radius: bounds.radius(),
+            clips: Clips::new(cut, &loaded.layers, middle).typed(typed),
+            centre: visible.middle,
+            radius: visible.radius,
         };
         Ok(Self { loaded, scenery })
     }
 
     /// The scene of dropped files, as it is looked at without any flags but for what is up, in a window of this size.
-    pub(super) fn of_files(files: Vec<PathBuf>, up: DVec3, size: (u32, u32)) -> Load {
+    pub(super) fn of_files(files: Vec<PathBuf>, up: Option<DVec3>, size: (u32, u32)) -> Load {
         Box::new(move |watch| {
             let loaded = scenes::load_files(&files, watch)?;
-            let framed = Views::Framed {
+            let (up, note) = training::up_of(up, &files);
+            let framed = Views::Framed(Framed {
                 up,
                 lens: Lens::Perspective(FOV_Y),
                 size,
                 depths: Depths::default(),
-            };
-            Self::new(loaded, Begin::unclipped(framed), Some(up), &[])
+                eye: None,
+                target: None,
+                note,
+            });
+            Self::new(loaded, Begin::unclipped(framed), None, &[])
         })
     }
 }
@@ -191,7 +198,7 @@ mod tests {
     fn what_cannot_be_read_is_said_as_on_the_command_line() {
         let missing = PathBuf::from("/nowhere/scene.ply");
         let (sent, got) = mpsc::channel();
-        let load = Fresh::of_files(vec![missing.clone()], DVec3::NEG_Y, (64, 64));
+        let load = Fresh::of_files(vec![missing.clone()], None, (64, 64));
         let loading = Loading::begin(load, move |outcome| sent.send(outcome).unwrap()).unwrap();
         let failure = got.recv().unwrap().err().expect("it is not there");
         let typed = scenes::load_files(&[missing], &mut |_| ()).err();

@@ -36,10 +36,11 @@ use self::input::KEYS;
 use self::loading::Fresh;
 use self::scenery::Manner;
 use self::shots::Shots;
-use super::camera::{CameraArgs, UP, Views};
+use super::camera::{CameraArgs, Views};
 use super::clip::Regions;
 use super::failure::Failure;
 use super::frame::FrameArgs;
+use super::framing::Visible;
 use super::scenes::SceneArgs;
 use super::section::{SectionArgs, Sections};
 use super::{output, values};
@@ -143,7 +144,7 @@ impl View {
                 manner: Manner {
                     sh: settings.precision.sh,
                     settings,
-                    up: camera.chosen_up().unwrap_or(UP),
+                    up: camera.chosen_up(),
                     outlined: !self.no_outline,
                     text: !self.no_text,
                     shots,
@@ -174,7 +175,7 @@ impl Begin {
                     .map(|view| (view.camera.width, view.camera.height));
                 first.ok_or_else(|| Failure::Usage("--cameras: the file has no camera".into()))
             }
-            Self::Views(Views::Framed { size, .. }, _) => Ok(*size),
+            Self::Views(Views::Framed(framed), _) => Ok(framed.size),
             _ => Ok(camera.chosen_size()),
         }
     }
@@ -182,7 +183,7 @@ impl Begin {
     /// The cameras, each with its up direction, and the clip, once the scene is known.
     fn of(
         self,
-        scene: &Scene<'_>,
+        (scene, visible): (&Scene<'_>, &Visible),
         up: Option<DVec3>,
         centre: DVec3,
     ) -> Result<(Vec<(Camera, DVec3)>, Cut), Failure> {
@@ -191,7 +192,9 @@ impl Begin {
         match self {
             Self::Views(views, regions) => {
                 regions.save(scene)?;
-                let views = super::framing::views(views, scene)?
+                views.note().into_iter().for_each(output::say);
+                let up = views.up().or(up);
+                let views = super::framing::views_of(views, visible)?
                     .into_iter()
                     .map(|view| view.camera);
                 let views = views.map(|camera| (camera, up.unwrap_or(own_up(&camera))));

@@ -26,8 +26,8 @@ pub(super) struct Manner {
     pub(super) settings: Settings,
     /// How spherical harmonics are stored.
     pub(super) sh: ShFormat,
-    /// The direction that is up in the pictures of scenes that no camera comes with.
-    pub(super) up: DVec3,
+    /// The direction that is up in the pictures of scenes that no camera comes with, if a flag says it.
+    pub(super) up: Option<DVec3>,
     /// True when the shapes that clip are outlined.
     pub(super) outlined: bool,
     /// True when there is text over the picture without asking for it.

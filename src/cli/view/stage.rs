@@ -22,6 +22,7 @@ use super::scenery::{Manner, Scenery};
 use super::shots;
 use super::title;
 use super::viewpoint::{Viewpoint, Walk};
+use crate::cli::camera::UP;
 use crate::cli::failure::Failure;
 use crate::cli::output::say;
 
@@ -80,7 +81,7 @@ impl Viewer {
         proxy: EventLoopProxy<Sent>,
         manner: Manner,
     ) -> rara::Result<Self> {
-        let scenery = Scenery::nothing(manner.up)?;
+        let scenery = Scenery::nothing(manner.up.unwrap_or(UP))?;
         let viewpoint = scenery.viewpoint(0);
         Ok(Self {
             windowed,

@@ -18,7 +18,7 @@ const LARGEST: f64 = 4.0;
 /// Cells are halved in volume until half of the Gaussians are in cells of so many or fewer.
 const CROWD: usize = 2;
 /// The most steps of it.
-const STEPS: i32 = 24;
+const STEPS: i32 = 28;
 /// The largest Gaussian that links others, in cells of its second axis: it is smooth, and goes through what is apart.
 const LINKING: f64 = 4.0;
 /// The most places on half of an axis that are linked.
@@ -93,7 +93,7 @@ fn cell(all: &[Weighed]) -> Option<f64> {
             .last()
             .map_or(0.0, |_| along[along.len() - 1 - tenth] - along[tenth])
     };
-    let largest = (0..3).map(spread).fold(0.0, f64::max) / 4.0;
+    let largest = (0..3).map(spread).fold(0.0, f64::max);
     if largest == 0.0 || !largest.is_finite() {
         return None;
     }

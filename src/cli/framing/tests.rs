@@ -137,6 +137,18 @@ fn one_gaussian_a_few_coarse_ones_and_none_are_framed() {
     let mut tiny = one.clone();
     tiny.scales_mut().fill(Vec3::splat(1e-4));
     assert!(filled(&perspective(&tiny), &tiny).1.max_element() < 0.01);
+    // However far apart they are for their size, a few are the scene.
+    let mut apart = Gaussians::default();
+    for at in [
+        Vec3::ZERO,
+        Vec3::new(9.0, 1.0, 0.0),
+        Vec3::new(4.0, -6.0, 5.0),
+    ] {
+        apart.push(at, Vec3::splat(1e-3), Quat::IDENTITY, 0.5, &[0.0; 3]);
+    }
+    let (least, most) = filled(&perspective(&apart), &apart);
+    let widest = most.max(-least).max_element();
+    assert!((0.9..0.93).contains(&widest), "{least} to {most}");
     let nothing = perspective(&Gaussians::default());
     assert!(nothing.eye.is_finite() && nothing.eye.length() > 0.5);
 }

@@ -1,7 +1,9 @@
-//! Medians and means over frames.
+//! Medians, means and sums over frames.
 
 use rara::{Counts, FrameStats, PassTime};
 use serde::Serialize;
+
+use super::times;
 
 /// Frames of one picture that were measured.
 #[derive(Debug, Clone, Serialize)]
@@ -24,13 +26,13 @@ pub(super) struct Times {
 }
 
 impl Times {
-    /// Of all of these the one that `better` chooses, each time by itself.
-    fn of(all: impl Iterator<Item = Self>, better: fn(f64, f64) -> f64) -> Self {
-        let both = all.reduce(|a, b| Self {
-            gpu_ms: a.gpu_ms.zip(b.gpu_ms).map(|(a, b)| better(a, b)),
-            wall_ms: better(a.wall_ms, b.wall_ms),
+    /// What `join` makes of all of these, each time by itself.
+    fn of(all: impl Iterator<Item = Self>, join: fn(f64, f64) -> f64) -> Self {
+        let joined = all.reduce(|a, b| Self {
+            gpu_ms: a.gpu_ms.zip(b.gpu_ms).map(|(a, b)| join(a, b)),
+            wall_ms: join(a.wall_ms, b.wall_ms),
         });
-        both.unwrap_or(Self {
+        joined.unwrap_or(Self {
             gpu_ms: None,
             wall_ms: 0.0,
         })
@@ -53,6 +55,18 @@ impl Measured {
         }
     }
 
+    /// The sums of what the parts of one picture took.
+    pub(super) fn together<'a>(parts: impl Iterator<Item = &'a Self> + Clone) -> Self {
+        let stats: Vec<_> = parts.clone().map(|one| one.stats.clone()).collect();
+        let add = |a, b| a + b;
+        Self {
+            stats: combine(&stats, Combine::Sum),
+            samples: parts.clone().map(|one| one.samples).sum(),
+            least: Times::of(parts.clone().map(|one| one.least), add),
+            greatest: Times::of(parts.map(|one| one.greatest), add),
+        }
+    }
+
     /// The medians of several pictures' medians.
     pub(super) fn all<'a>(pictures: impl Iterator<Item = &'a Self> + Clone) -> Self {
         let stats: Vec<_> = pictures.clone().map(|one| one.stats.clone()).collect();
@@ -70,14 +84,16 @@ impl Measured {
 pub(super) enum Combine {
     Median,
     Mean,
+    Sum,
 }
 
 impl Combine {
-    fn of(self, mut values: Vec<f64>) -> f64 {
+    pub(super) fn of(self, mut values: Vec<f64>) -> f64 {
         let count = values.len();
         match self {
             _ if count == 0 => 0.0,
-            Self::Mean => values.iter().sum::<f64>() / count as f64,
+            Self::Sum => times::sum(values),
+            Self::Mean => times::sum(values) / count as f64,
             Self::Median => {
                 values.sort_unstable_by(f64::total_cmp);
                 (values[(count - 1) / 2] + values[count / 2]) / 2.0
@@ -94,27 +110,26 @@ fn middle(frames: &[FrameStats]) -> Counts {
     counts.get(frames.len() / 2).copied().unwrap_or_default()
 }
 
-/// Each value's median or mean over the frames. A stage that a frame did not run counts as 0 ms there, and is listed as
-/// skipped when most frames skipped it.
+/// Each value's median, mean or sum over the frames. A stage that some of them did not run took 0 ms there. It is among the
+/// stages that were skipped, and has no time, where no frame ran it, and of medians where most frames did not.
 pub(super) fn combine(frames: &[FrameStats], how: Combine) -> FrameStats {
     let value = |get: &dyn Fn(&FrameStats) -> f64| how.of(frames.iter().map(get).collect());
     let count = |get: fn(&Counts) -> u32| value(&|frame| get(&frame.counts).into()).round() as u32;
-    let ms = |name: &str, frame: &FrameStats| {
-        frame
-            .passes
-            .iter()
-            .filter(|p| p.name == name)
-            .map(|p| p.ms)
-            .sum()
+    let ran = |name: &str| {
+        let count = frames.iter().filter(|frame| ran(frame, name)).count();
+        match how {
+            Combine::Median => 2 * count >= frames.len(),
+            Combine::Mean | Combine::Sum => count > 0,
+        }
     };
-    let passes = distinct(frames.iter().flat_map(|f| f.passes.iter().map(|p| p.name)));
-    let mut skipped = distinct(frames.iter().flat_map(|f| f.skipped.iter().copied()));
-    skipped.retain(|name| {
-        2 * frames.iter().filter(|f| f.skipped.contains(name)).count() > frames.len()
-    });
+    let timed = frames.iter().flat_map(|f| f.passes.iter().map(|p| p.name));
+    let skipped = frames.iter().flat_map(|f| f.skipped.iter().copied());
+    let passes = distinct(timed.clone()).into_iter().filter(|name| ran(name));
+    let mut skipped = distinct(skipped.chain(timed));
+    skipped.retain(|name| !ran(name));
     let mut combined = FrameStats::default();
     combined.counts = match how {
-        Combine::Median => middle(frames),
+        Combine::Median | Combine::Sum => middle(frames),
         Combine::Mean => Counts {
             visible: count(|c| c.visible),
             cutoff: count(|c| c.cutoff),
@@ -123,9 +138,9 @@ pub(super) fn combine(frames: &[FrameStats], how: Combine) -> FrameStats {
             drawn: count(|c| c.drawn),
         },
     };
-    let passes = passes.into_iter().map(|name| PassTime {
+    let passes = passes.map(|name| PassTime {
         name,
-        ms: value(&|frame| ms(name, frame)),
+        ms: value(&|frame| times::of_stage(frame, name).unwrap_or_default()),
     });
     combined.passes = passes.collect();
     let is_timed = frames.iter().any(|frame| frame.gpu_ms.is_some());
@@ -138,6 +153,15 @@ pub(super) fn combine(frames: &[FrameStats], how: Combine) -> FrameStats {
         combined.statistics = last.statistics.clone();
     }
     combined
+}
+
+/// True where a frame ran a stage that others ran or skipped.
+fn ran(frame: &FrameStats, stage: &str) -> bool {
+    match frame.gpu_ms {
+        Some(_) => times::of_stage(frame, stage).is_some(),
+        // Nothing was timed, so that what it skipped is all that is known.
+        None => !frame.skipped.contains(&stage),
+    }
 }
 
 /// The names in the order of their first appearance.
@@ -171,8 +195,12 @@ mod tests {
         frame
     }
 
+    fn sorting(frame: &FrameStats) -> Option<f64> {
+        times::of_stage(frame, "sort")
+    }
+
     #[test]
-    fn medians_and_means() {
+    fn medians_means_and_sums() {
         let frames = [
             frame(9.0, 10, Some(3.0)),
             frame(1.0, 30, None),
@@ -180,13 +208,7 @@ mod tests {
         ];
         let median = combine(&frames, Combine::Median);
         assert_eq!((median.gpu_ms, median.counts.visible), (Some(2.0), 20));
-        assert_eq!(
-            median.passes[1],
-            PassTime {
-                name: "sort",
-                ms: 3.0
-            }
-        );
+        assert_eq!(sorting(&median), Some(3.0));
         assert!(median.skipped.is_empty());
         let parts = [Measured::of(&frames[..1]), Measured::of(&frames[1..])];
         let all = Measured::all(parts.iter());
@@ -196,12 +218,50 @@ mod tests {
             (Some(1.0), Some(9.0))
         );
         let mean = combine(&frames, Combine::Mean);
-        assert_eq!((mean.gpu_ms, mean.passes[1].ms), (Some(4.0), 3.0));
+        assert_eq!((mean.gpu_ms, sorting(&mean)), (Some(4.0), Some(3.0)));
         assert_eq!(combine(&frames[1..2], Combine::Median), frames[1]);
         assert_eq!(combine(&frames[1..], Combine::Median).gpu_ms, Some(1.5));
         assert_eq!(
             combine(&[FrameStats::default()], Combine::Mean).gpu_ms,
             None
         );
+        let together = Measured::together(parts.iter());
+        assert_eq!((together.samples, together.stats.gpu_ms), (3, Some(10.5)));
+        assert_eq!(sorting(&together.stats), Some(6.0));
+        assert_eq!(
+            (together.least.gpu_ms, together.greatest.gpu_ms),
+            (Some(10.0), Some(11.0))
+        );
+    }
+
+    #[test]
+    fn a_stage_is_timed_or_skipped_and_never_both() {
+        let frames = |ran: usize, of: usize| {
+            let frame = |index| frame(1.0, 1, (index < ran).then_some(2.0));
+            (0..of).map(frame).collect::<Vec<_>>()
+        };
+        for (ran, of, median, mean) in [
+            (0, 3, None, None),
+            (1, 3, None, Some(2.0 / 3.0)),
+            (1, 2, Some(1.0), Some(1.0)),
+            (2, 3, Some(2.0), Some(4.0 / 3.0)),
+        ] {
+            for (how, expected) in [(Combine::Median, median), (Combine::Mean, mean)] {
+                let combined = combine(&frames(ran, of), how);
+                assert_eq!(sorting(&combined), expected, "{ran} of {of}, {how:?}");
+                assert_eq!(combined.skipped.contains(&"sort"), expected.is_none());
+            }
+        }
+        // Where nothing is timed, stages that most frames skipped are those that are skipped.
+        let untimed = |ran, of| {
+            let mut all = frames(ran, of);
+            all.iter_mut().for_each(|frame| {
+                frame.gpu_ms = None;
+                frame.passes.clear();
+            });
+            combine(&all, Combine::Median).skipped
+        };
+        assert_eq!((untimed(2, 3), untimed(1, 3)), (vec![], vec!["sort"]));
+        assert!(combine(&[], Combine::Sum).wall_ms.is_sign_positive());
     }
 }

@@ -18,7 +18,7 @@ use super::output::{self, grouped, say};
 use super::scenes::{self, Loaded};
 use super::session::Session;
 use super::settings::name;
-use super::sheet;
+use super::{sheet, times};
 
 /// Draw a scene cut through its middle in all four modes, and measure them
 #[derive(Debug, Args)]
@@ -94,7 +94,7 @@ impl Demo {
                 stats: combine(frames, Combine::Median),
             });
         }
-        let usual = shots.iter().map(|shot| shot.stats.wall_ms).sum::<f64>() / shots.len() as f64;
+        let usual = times::sum(shots.iter().map(|shot| shot.stats.wall_ms)) / shots.len() as f64;
         let compiled = output::compiled(session.first_use_ms(usual), session.has_kept());
         session.close()?;
         for Shot { mode, picture, .. } in &shots {
@@ -161,16 +161,11 @@ fn print_frames(shots: &[Shot]) {
         let c = stats.counts;
         let [visible, cut, clipped, culled] =
             [c.visible, c.cutoff, c.invisible, c.culled].map(|n| grouped(n.into()));
-        let passes: Vec<String> = stats
-            .passes
-            .iter()
-            .map(|p| format!("{} {:.2}", p.name, p.ms))
-            .collect();
         say(format_args!(
-            "{:<6} {visible:>10} {cut:>10} {clipped:>10} {culled:>10} {:>9.2}  {}",
+            "{:<6} {visible:>10} {cut:>10} {clipped:>10} {culled:>10} {:>9}  {}",
             name(*mode),
-            stats.gpu_ms.unwrap_or_default(),
-            passes.join(", ")
+            times::ms(stats.gpu_ms, 2),
+            times::stages(stats, 2).join(", ")
         ));
     }
 }

@@ -1,5 +1,7 @@
 //! Host memory: what will not fit is known before it is taken.
 
+use std::collections::HashSet;
+
 use rara::{Error, Result};
 
 use super::output::grouped;
@@ -39,6 +41,15 @@ pub(super) fn check_picture((width, height): (u32, u32), kept: u64) -> Result<()
         },
         "draw a smaller one, or allow more (ulimit -v)",
     )
+}
+
+/// The same of pictures of these sizes, one after the other.
+pub(super) fn check_pictures(sizes: impl Iterator<Item = (u32, u32)>, kept: u64) -> Result<()> {
+    // Most runs have many pictures of one size.
+    let sizes: HashSet<_> = sizes.collect();
+    sizes
+        .into_iter()
+        .try_for_each(|size| check_picture(size, kept))
 }
 
 /// Fails where so many bytes are not to be had.

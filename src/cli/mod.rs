@@ -31,6 +31,7 @@ mod output;
 mod panorama;
 mod path;
 mod pattern;
+mod pictures;
 mod place;
 mod precision;
 #[allow(unsafe_code)]
@@ -54,6 +55,7 @@ mod shell;
 mod slice;
 mod stress;
 mod sweep;
+mod times;
 mod training;
 mod values;
 #[cfg(feature = "view")]

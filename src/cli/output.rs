@@ -116,25 +116,32 @@ pub(super) fn json(document: &impl Serialize) -> Result<()> {
     answer(&serde_json::to_string_pretty(document).expect("the documents have string keys only"))
 }
 
+/// Prints a document of one line; false where nobody reads it.
+pub(super) fn json_line(document: &impl Serialize) -> Result<bool> {
+    let line = serde_json::to_string(document).expect("the documents have string keys only");
+    bytes(format!("{line}\n").as_bytes())
+}
+
 /// Prints what a command was asked for, with a line break behind.
 pub(super) fn answer(text: &str) -> Result<()> {
-    bytes(format!("{}\n", text.trim_end()).as_bytes())
+    bytes(format!("{}\n", text.trim_end()).as_bytes()).map(drop)
 }
 
 /// Writes a picture to a file, or to standard output as PNG.
 pub(super) fn picture(picture: &Picture, file: &Path) -> Result<()> {
     match file == Path::new(STANDARD) {
-        true => bytes(&picture.to_png()?),
+        true => bytes(&picture.to_png()?).map(drop),
         false => picture.save(file),
     }
 }
 
-/// Writes to standard output. A reader that stops reading is no failure.
-fn bytes(bytes: &[u8]) -> Result<()> {
+/// Writes to standard output; false where a reader has stopped reading, which is no failure.
+fn bytes(bytes: &[u8]) -> Result<bool> {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::io("stdout")(error)),
-        _ => Ok(()),
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),
+        Err(error) => Err(Error::io("stdout")(error)),
     }
 }
 
@@ -194,6 +201,12 @@ fn check_folder(folder: &Path) -> Result<()> {
     }
 }
 
+/// So many of what is called `one`: "1 picture", "1 234 pictures".
+pub(super) fn counted(number: u64, one: &str) -> String {
+    let ending = if number == 1 { "" } else { "s" };
+    format!("{} {one}{ending}", grouped(number))
+}
+
 /// 1234567 as "1 234 567".
 pub(super) fn grouped(number: u64) -> String {
     let digits = number.to_string();
@@ -209,7 +222,7 @@ pub(super) fn grouped(number: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{check_folder, grouped};
+    use super::{check_folder, counted, grouped};
     use std::fs;
 
     #[test]
@@ -243,5 +256,7 @@ mod tests {
     fn digits_stand_in_groups_of_three() {
         let shown = [0, 999, 1000, 1_234_567].map(grouped);
         assert_eq!(shown, ["0", "999", "1 000", "1 234 567"]);
+        let shown = [0, 1, 2, 1000].map(|number| counted(number, "view"));
+        assert_eq!(shown, ["0 views", "1 view", "2 views", "1 000 views"]);
     }
 }

@@ -1,6 +1,6 @@
 //! The flags that show what is in a frame: a trace, and what the stages have done.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use rara::{HeadlessDesc, Scene, ShFormat, Trace};
@@ -35,10 +35,13 @@ impl ProfileArgs {
     }
 
     /// Begins the trace; fails where its file could not be written, or is one of `pictures`.
-    pub(super) fn begin(&self, pictures: &[PathBuf]) -> Result<Profile, Failure> {
+    pub(super) fn begin(
+        &self,
+        pictures: impl FnOnce() -> Vec<PathBuf>,
+    ) -> Result<Profile, Failure> {
         if let Some(file) = &self.trace {
             output::check_file(file)?;
-            if pictures.contains(file) {
+            if pictures().contains(file) {
                 return Err(Failure::Usage(format!(
                     "--trace and -o are one file, {}: name two",
                     file.display()
@@ -67,12 +70,6 @@ impl Profile {
             output::say("note: this device counts nothing (no pipelineStatisticsQuery)");
         }
         Ok(session)
-    }
-
-    /// Writes the picture of a session's last frame to a file.
-    pub(super) fn save_picture(&self, session: &mut Session, file: &Path) -> Result<(), Failure> {
-        let picture = session.last_picture()?;
-        Ok(self.span("encode", || output::picture(&picture, file))?)
     }
 
     /// Records how long `act` takes.

@@ -1,7 +1,6 @@
 //! `rara render`: pictures of a scene.
 
-use std::collections::{HashMap, HashSet};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
@@ -10,20 +9,19 @@ use rara::{Aov, Camera, Clip, Scene, Settings};
 use super::camera::{View, Views};
 use super::clip::Regions;
 use super::failure::Failure;
-use super::film::{self, FilmArgs, Kind};
 use super::frame::FrameArgs;
 use super::framing;
 use super::memory;
-use super::output::{self, Progress};
+use super::output;
 use super::panorama::{self, Panorama, PanoramaArgs};
 use super::path::PathArgs;
-use super::pattern::filled;
+use super::pictures::{Destination, Drawn, PictureArgs, Planned};
 use super::profile::{Profile, ProfileArgs};
-use super::report::{Frame, Report};
+use super::report::{Answer, Frame, Report};
 use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
 use super::section::{Section, SectionArgs, Sections};
-use super::session::Repeat;
+use super::session::{Repeat, Session};
 use super::settings::name;
 use super::slice::{Cut, SliceArgs, Slicer};
 use super::values;
@@ -54,23 +52,22 @@ pub(super) struct Render {
     scenes: SceneArgs,
     /// The picture's file, .png or .exr; its folders are made; - is standard output, as --format says. {} becomes the number of
     /// the camera or section, {:04} the number with zeros before it, {name} its name. A name that ends in .apng is a film of
-    /// all pictures; so is one in .mp4, .mov, .mkv or .webm, which ffmpeg encodes. May be left out with --json
-    #[arg(short, long, value_name = "OUT", value_parser = values::film_file(), required_unless_present = "json")]
+    /// all pictures; so is one in .mp4, .mov, .mkv or .webm, which ffmpeg encodes. A folder gets several pictures as
+    /// frame_000.png and so on. May be left out with --json or --json-lines
+    #[arg(short, long, value_name = "OUT", value_parser = values::pictures_file())]
+    #[arg(required_unless_present_any = ["json", "json_lines"])]
     output: Option<PathBuf>,
     /// Channels of the .exr beside its colours. Each is drawn by itself, and no time is reported of it
-    #[arg(long, value_name = "LIST", value_delimiter = ',', requires = "output")]
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
     aov: Vec<Aov>,
     /// Render N times, nothing carried over between them, and report the medians [default: as often as five frames need, but no
     /// longer than about 2 s]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     repeat: Option<u32>,
-    /// Print the statistics as JSON to stdout
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    pictures: PictureArgs,
     #[command(flatten)]
     path: PathArgs,
-    #[command(flatten)]
-    film: FilmArgs,
     #[command(flatten)]
     panorama: PanoramaArgs,
     #[command(flatten)]
@@ -92,35 +89,14 @@ enum Pictures {
     Sections(Sections),
 }
 
-/// What becomes of the pictures.
-struct Run {
-    film: Option<Kind>,
-    panorama: Option<Panorama>,
-    /// True where frames are reported one by one.
-    several: bool,
-}
-
-impl Run {
-    /// Frames that make a picture.
-    fn frames_a_picture(&self) -> usize {
-        self.panorama.map_or(1, |_| Panorama::FACES)
-    }
-
-    /// The size of the picture that a camera makes.
-    fn size(&self, camera: &Camera) -> (u32, u32) {
-        let own = (camera.width, camera.height);
-        self.panorama.map_or(own, Panorama::size)
-    }
-}
-
-/// A picture that is to be drawn.
-struct Planned {
+/// A picture of the scene.
+struct Shot {
     view: View,
     clip: Clip,
     section: Option<Section>,
 }
 
-impl Planned {
+impl Shot {
     /// A section's plane.
     fn cut(&self) -> Option<&Cut> {
         self.section.as_ref().map(|section| &section.cut)
@@ -137,27 +113,27 @@ impl Pictures {
     }
 
     /// The pictures, once the scene is known.
-    fn of(self, scene: &Scene<'_>) -> Result<Vec<Planned>, Failure> {
+    fn of(self, scene: &Scene<'_>) -> Result<Vec<Shot>, Failure> {
         Ok(match self {
             Self::Views(views, regions) => {
                 let clip = regions.clip(scene)?;
                 let views = framing::views(views, scene)?.into_iter();
-                let planned = |view| Planned {
+                let shot = |view| Shot {
                     view,
                     clip: clip.clone(),
                     section: None,
                 };
-                views.map(planned).collect()
+                views.map(shot).collect()
             }
             Self::Sections(sections) => {
                 sections.save(scene)?;
                 let sections = sections.of(scene)?.into_iter();
-                let planned = |one: Section| Planned {
+                let shot = |one: Section| Shot {
                     clip: one.clip(),
                     view: one.view.clone(),
                     section: Some(one),
                 };
-                sections.map(planned).collect()
+                sections.map(shot).collect()
             }
         })
     }
@@ -165,12 +141,7 @@ impl Pictures {
 
 impl Render {
     pub(super) fn run(mut self) -> Result<(), Failure> {
-        let mut settings = self.frame.settings.meant()?;
-        let film = self.film.meant(self.output.as_deref())?;
-        if film.is_some_and(Kind::is_opaque) && settings.background.is_none() {
-            film::say_opaque();
-            settings = settings.background(Some([0.0; 3]));
-        }
+        let settings = self.frame.settings.meant()?;
         self.slice.check(&settings)?;
         let sections = self.section.meant(&self.frame.camera, &self.frame.clip)?;
         let panorama = self.panorama.meant(self.frame.camera.size())?;
@@ -192,139 +163,136 @@ impl Render {
             }
         };
         let numbers = pictures.numbers();
-        let several = self.frame.camera.all() || self.path.moves() || numbers.len() > 1;
-        self.check_output(&numbers, several && film.is_none())?;
+        let several = self.several(numbers.len());
+        let several = several.as_deref();
+        self.check_channels()?;
+        let output = self.output.as_deref();
+        let destination = self.pictures.destination(output, &numbers, several)?;
+        let settings = destination.settings(settings);
 
-        let files = numbers
-            .iter()
-            .filter_map(|n| Some(filled(self.output.as_ref()?, *n, "")));
-        let profile = self.profile.begin(&files.collect::<Vec<_>>())?;
-        let run = Run {
-            film,
-            panorama,
-            several: several || panorama.is_some(),
-        };
-        let done = self.draw(&profile, pictures, run, &settings);
+        let profile = self.profile.begin(|| destination.files(&numbers))?;
+        let pictures = (pictures, several.is_some());
+        let done = self.draw(&profile, pictures, (panorama, &destination), &settings);
         profile.end_after(done)
+    }
+
+    /// What makes so many pictures, if they are several: a run of several frames, however many there are.
+    fn several(&self, count: usize) -> Option<String> {
+        match self.frame.camera.chosen_view() {
+            Some(view) if count > 1 || self.frame.camera.all() => {
+                Some(format!("--view {view} makes"))
+            }
+            _ if self.path.moves() => Some("--path makes".into()),
+            _ => (count > 1).then(|| "these sections are".into()),
+        }
     }
 
     fn draw(
         &self,
         profile: &Profile,
-        pictures: Pictures,
-        run: Run,
+        (pictures, several): (Pictures, bool),
+        (panorama, destination): (Option<Panorama>, &Destination<'_>),
         settings: &Settings,
     ) -> Result<(), Failure> {
         let loaded = profile.span("load", || self.scenes.load())?;
         let scene = loaded.scene();
-        let mut planned = pictures.of(&scene)?;
-        if let (Some(_), Some(up)) = (&run.panorama, self.horizon()) {
-            for Planned { view, .. } in &mut planned {
+        let mut shots = pictures.of(&scene)?;
+        if let (Some(_), Some(up)) = (&panorama, self.horizon()) {
+            for Shot { view, .. } in &mut shots {
                 view.camera = panorama::levelled(view.camera, up);
             }
         }
-        if run.film.is_none() {
-            self.check_files(&planned)?;
-        }
-        self.save_camera.save(planned.iter().map(|one| &one.view))?;
-        let sizes = planned.iter().map(|one| run.size(&one.view.camera));
-        let kept = run.panorama.map_or(0, Panorama::kept_pixels);
-        // A path has many pictures of one size.
-        for size in sizes.clone().collect::<HashSet<_>>() {
-            memory::check_picture(size, kept)?;
-        }
-        let size = match run.film {
-            Some(_) => film::one_size(sizes)?,
-            None => sizes.into_iter().next().unwrap_or((0, 0)),
+        self.save_camera.save(shots.iter().map(|shot| &shot.view))?;
+        let called = |shot: &Shot| (shot.view.number, shot.view.name.clone());
+        let Some(planned) = destination.left(shots, called)? else {
+            return Ok(());
         };
+        let size = |camera: &Camera| panorama.map_or((camera.width, camera.height), Panorama::size);
+        let sizes = planned.iter().map(|one| size(&one.what.view.camera));
+        let kept = panorama.map_or(0, Panorama::kept_pixels);
+        memory::check_pictures(sizes.clone(), kept)?;
+        let size = destination.size(sizes)?;
         let device = self.frame.device.meant();
         let mut session = profile.open(device, &scene, settings.precision.sh)?;
-        let clips = loaded.has_clips() || planned.iter().any(|one| !one.clip.is_everything());
-        let repeat = self.repeat(planned.len() * run.frames_a_picture());
-        let mut frames = Vec::new();
-        let mut written = Vec::new();
+        let is_clipped = |one: &Planned<Shot>| !one.what.clip.is_everything();
+        let clips = loaded.has_clips() || planned.iter().any(is_clipped);
+        let faces = panorama.map_or(1, |_| Panorama::FACES);
+        let repeat = self.repeat(planned.len() * faces);
         let mut slicer = Slicer::new(&self.slice, &scene, self.frame.device.meant());
-        let mut film = match (run.film, &self.output) {
-            (Some(kind), Some(file)) => Some(self.film.begin(kind, file, size, planned.len())?),
-            _ => None,
-        };
-        let mut progress = Progress::new("rendering");
-        for (done, one) in planned.iter().enumerate() {
-            progress.update(done as u64, planned.len() as u64);
-            let path = self.picture_file(&one.view);
-            let sliced = one.cut().filter(|_| self.slice.is_shown());
-            let plane = one.cut().map(|cut| &cut.plane);
-            let section = one.section.as_ref().filter(|_| sliced.is_none());
-            let cut = section.map(|section| section.of_layers(&scene));
-            if let Some(cut) = &cut {
-                session.set_layer_clips(cut)?;
+        let written = destination.draw("rendering", profile, (&planned, size), |one| {
+            if let Some(panorama) = &panorama {
+                return self.surroundings(profile, &mut session, (panorama, one), settings, repeat);
             }
-            let scene = cut.as_ref().unwrap_or(&scene);
-            let mut picture = None;
-            if let Some(panorama) = &run.panorama {
-                let mut faces = Vec::new();
-                for face in panorama.faces(&one.view) {
-                    let drawn = (&face.camera, &one.clip, settings);
-                    let measured = session.measured_frame(drawn.0, drawn.1, drawn.2, repeat)?;
-                    frames.push(Frame::new(&face, path.as_deref(), plane, measured));
-                    if path.is_some() {
-                        faces.push(session.last_picture()?);
-                    }
-                }
-                if path.is_some() {
-                    picture = Some(profile.span("panorama", || panorama.assembled(&faces)));
-                }
-            } else {
-                let measured = match sliced {
-                    Some(cut) => slicer.frame(&mut session, (&one.view, cut, settings), repeat)?,
-                    None => {
-                        session.measured_frame(&one.view.camera, &one.clip, settings, repeat)?
-                    }
-                };
-                frames.push(Frame::new(&one.view, path.as_deref(), plane, measured));
-                if path.is_some() {
-                    picture = Some(session.last_picture()?);
-                }
+            let Planned { what: shot, file } = one;
+            let Shot {
+                view,
+                clip,
+                section,
+            } = shot;
+            let sliced = shot.cut().filter(|_| self.slice.is_shown());
+            let section = section.as_ref().filter(|_| sliced.is_none());
+            let cut_scene = section.map(|section| section.of_layers(&scene));
+            if let Some(cut_scene) = &cut_scene {
+                session.set_layer_clips(cut_scene)?;
             }
-            let (Some(mut picture), Some(path)) = (picture, path) else {
-                continue;
+            let scene = cut_scene.as_ref().unwrap_or(&scene);
+            let measured = match sliced {
+                Some(cut) => slicer.frame(&mut session, (view, cut, settings), repeat)?,
+                None => session.measured_frame(&view.camera, clip, settings, repeat)?,
             };
-            if let Some(cut) = one.cut().filter(|_| slicer.has_cues()) {
-                slicer.draw_cues(&mut picture, (&one.view, cut, settings))?;
-            }
-            if let Some(film) = &mut film {
-                if !profile.span("encode", || film.add(&picture))? {
-                    break;
+            let plane = shot.cut().map(|cut| &cut.plane);
+            let mut drawn = Drawn::from(Frame::new(view, file.as_deref(), plane, measured));
+            if file.is_some() {
+                let mut picture = session.last_picture()?;
+                if let Some(cut) = shot.cut().filter(|_| slicer.has_cues()) {
+                    slicer.draw_cues(&mut picture, (view, cut, settings))?;
                 }
-            } else if self.aov.is_empty() {
-                profile.span("encode", || output::picture(&picture, &path))?;
-            } else {
-                let drawn = (&one.view.camera, &one.clip, settings);
-                let channels = session.channels(&self.aov, scene, drawn)?;
-                picture.save_with(&path, &channels)?;
+                drawn.picture = Some(picture);
+                if !self.aov.is_empty() {
+                    let frame = (&view.camera, clip, settings);
+                    drawn.channels = session.channels(&self.aov, scene, frame)?;
+                }
             }
-            if written.last() != Some(&path) {
-                written.push(path);
-            }
-        }
-        if let Some(film) = film {
-            profile.span("encode", || film.finish())?;
-        }
-        drop(progress);
+            Ok(drawn)
+        })?;
         slicer.close()?;
 
-        let report = Report::new(&session, &loaded, size, name(settings.mode), &frames);
-        let report = match run.several {
-            true => report.with_frames(frames),
-            false => report,
-        };
-        let report = match run.panorama {
-            // Behind one who looks at a scene there is nothing.
-            Some(_) => report.with_empty_frames(),
+        let mode = name(settings.mode);
+        let report = Report::new(&session, &loaded, size, mode, &written.pictures);
+        let (faces, pictures) = (written.faces, written.pictures);
+        let report = match panorama {
+            Some(_) => report.with_frames(faces),
+            None if several => report.with_frames(pictures),
             None => report,
         };
         session.close()?;
-        Ok(report.print(self.json, clips, &written)?)
+        Ok(report.print(self.pictures.answer(), clips, &written.files)?)
+    }
+
+    /// Draws a panorama.
+    fn surroundings(
+        &self,
+        profile: &Profile,
+        session: &mut Session,
+        (panorama, one): (&Panorama, &Planned<Shot>),
+        settings: &Settings,
+        repeat: Repeat,
+    ) -> Result<Drawn, Failure> {
+        let Planned { what: shot, file } = one;
+        let (mut frames, mut pictures) = (Vec::new(), Vec::new());
+        for face in panorama.faces(&shot.view) {
+            let measured = session.measured_frame(&face.camera, &shot.clip, settings, repeat)?;
+            frames.push(Frame::new(&face, file.as_deref(), None, measured));
+            if file.is_some() {
+                pictures.push(session.last_picture()?);
+            }
+        }
+        let picture = || profile.span("panorama", || panorama.assembled(&pictures));
+        Ok(Drawn {
+            picture: file.as_ref().map(|_| picture()),
+            faces: frames.clone(),
+            ..Drawn::from(Frame::together(&shot.view, file.as_deref(), &frames))
+        })
     }
 
     /// The direction that is up in a panorama; none where cameras of a file have one of their own.
@@ -333,84 +301,28 @@ impl Render {
         self.frame.camera.up().filter(|_| !of_file)
     }
 
-    /// How often each of so many pictures is drawn.
-    fn repeat(&self, pictures: usize) -> Repeat {
+    /// How often each of so many frames is drawn.
+    fn repeat(&self, frames: usize) -> Repeat {
+        let is_table = self.pictures.answer() == Answer::Table;
         match self.repeat {
             Some(repeat) => Repeat::Exactly(repeat),
-            None if output::is_quiet() && !self.json => Repeat::Unmeasured,
+            None if output::is_quiet() && is_table => Repeat::Unmeasured,
             // A trace shows what happens in a frame; more of them would be harder to read.
             None if self.profile.is_traced() => Repeat::Exactly(1),
-            None => Repeat::of_pictures(pictures),
+            None => Repeat::of_pictures(frames),
         }
     }
 
-    /// The file of the picture of a view.
-    fn picture_file(&self, view: &View) -> Option<PathBuf> {
-        Some(filled(self.output.as_ref()?, view.number, &view.name))
-    }
-
-    /// Makes the pictures' folders, and fails where two pictures would be one file.
-    fn check_files(&self, planned: &[Planned]) -> Result<(), Failure> {
-        let mut files = HashMap::new();
-        let mut folders = HashSet::new();
-        for one in planned {
-            let Some(file) = self.picture_file(&one.view) else {
-                return Ok(());
-            };
-            if folders.insert(file.parent().map(Path::to_owned)) {
-                output::check_file(&file)?;
-            }
-            if let Some(other) = files.insert(file, &one.view.name) {
-                return Err(Failure::Usage(format!(
-                    "the pictures of {other} and {} would be one file: put {{}} where their number goes",
-                    one.view.name
-                )));
-            }
-        }
-        Ok(())
-    }
-
-    /// Checks `-o` before any work is done.
-    fn check_output(&self, numbers: &[usize], several: bool) -> Result<(), Failure> {
-        let Some(pattern) = &self.output else {
-            return Ok(());
-        };
-        if self.json && pattern == Path::new(values::STANDARD) {
-            return Err(Failure::Usage(
-                "-o - and --json both take standard output: name a file for the picture".into(),
-            ));
-        }
-        let is_exr = pattern
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("exr"));
-        if !self.aov.is_empty() && !is_exr {
-            return Err(Failure::Usage(
+    /// Refuses channels for files that hold none.
+    fn check_channels(&self) -> Result<(), Failure> {
+        let ending = self.output.as_ref().and_then(|file| file.extension());
+        let is_exr = ending.is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
+        match self.aov.is_empty() || is_exr {
+            true => Ok(()),
+            false => Err(Failure::Usage(
                 "--aov makes channels that only .exr files hold: give -o a name that ends in .exr"
                     .into(),
-            ));
-        }
-        let first = numbers.first().copied().unwrap_or(0);
-        if several && filled(pattern, 0, "a") == filled(pattern, 1, "b") {
-            let what = match self.frame.camera.chosen_view() {
-                Some(view) => &format!("--view {view} makes"),
-                None if self.path.moves() => "--path makes",
-                None => "these sections are",
-            };
-            let remedy = match pattern == Path::new(values::STANDARD) {
-                true => {
-                    "name a file with {} where their number goes, or give --format apng or rgba"
-                }
-                false => {
-                    "put {} where their number goes, as in -o view_{}.png, or name a film, as film.apng"
-                }
-            };
-            return Err(Failure::Usage(format!("{what} several pictures: {remedy}")));
-        }
-        // Folders whose names have a slot are made when all names are known.
-        let is_one = |folder: &Path| filled(folder, 0, "a") == filled(folder, 1, "b");
-        match pattern.parent().is_none_or(is_one) {
-            true => Ok(output::check_file(&filled(pattern, first, "x"))?),
-            false => Ok(()),
+            )),
         }
     }
 }

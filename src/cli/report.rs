@@ -9,10 +9,22 @@ use serde::Serialize;
 
 use super::camera::View;
 use super::combine::{Combine, Measured, combine};
-use super::output::{self, grouped, say};
+use super::output::{self, counted, grouped, say};
 use super::save_camera::CameraJson;
 use super::scenes::Loaded;
 use super::session::Session;
+use super::times;
+
+/// How what is measured is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Answer {
+    /// As a table, for people.
+    Table,
+    /// As one JSON document.
+    Document,
+    /// As a line of JSON for each picture, when it is done.
+    Lines,
+}
 
 /// The statistics of a command. Its keys are what scripts rely on.
 #[derive(Debug, Serialize)]
@@ -23,7 +35,7 @@ pub(super) struct Report {
     scene: SceneReport,
     size: [u32; 2],
     mode: String,
-    /// The camera of all frames, if they have one.
+    /// The camera of all pictures, if they have one.
     #[serde(skip_serializing_if = "Option::is_none")]
     camera: Option<CameraJson>,
     #[serde(flatten)]
@@ -37,13 +49,13 @@ pub(super) struct Report {
     frames: Vec<Frame>,
     #[serde(skip_serializing_if = "Option::is_none")]
     mean: Option<FrameStats>,
-    /// Whether some frames show nothing as a matter of course.
+    /// Frames of one picture.
     #[serde(skip)]
-    some_are_empty: bool,
+    faces: usize,
 }
 
 /// One picture, and the frames that measured it.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub(super) struct Frame {
     /// The number of its view or section.
     view: usize,
@@ -55,6 +67,9 @@ pub(super) struct Frame {
     plane: Option<[f64; 4]>,
     /// The camera that drew it.
     camera: CameraJson,
+    /// The frames that it is made of.
+    #[serde(skip)]
+    faces: usize,
     #[serde(flatten)]
     pub(super) measured: Measured,
 }
@@ -76,7 +91,17 @@ impl Frame {
             file: file.map(|file| file.display().to_string()),
             plane,
             camera: (&view.camera).into(),
+            faces: 1,
             measured,
+        }
+    }
+
+    /// One of a picture that is made of several, which took as long as these together.
+    pub(super) fn together(view: &View, file: Option<&Path>, faces: &[Self]) -> Self {
+        let measured = Measured::together(faces.iter().map(|face| &face.measured));
+        Self {
+            faces: faces.len(),
+            ..Self::new(view, file, None, measured)
         }
     }
 }
@@ -134,43 +159,55 @@ impl Report {
                 _ => "the clip leaves nothing of what is in view",
             };
             say(format_args!("warning: the picture is empty: {why}"));
-        } else if empty > 0 && self.mean.is_none() && !self.some_are_empty {
+        } else if empty > 0 && self.mean.is_none() && self.faces == 1 {
+            // Behind one who looks at a scene there is nothing, and behind a plane that has crossed it neither.
             let which = self
                 .frames
                 .iter()
                 .find(|f| f.measured.stats.counts.drawn == 0);
             let which = which.map_or("", |frame| &frame.name);
+            let are = if empty == 1 { "is" } else { "are" };
             say(format_args!(
-                "warning: {empty} of {} pictures are empty, as that of {which}",
-                self.frames.len()
+                "warning: {empty} of {} {are} empty, as that of {which}",
+                counted(self.frames.len() as u64, "picture")
             ));
         }
     }
 
-    /// Prints it as JSON to stdout, or for people, with the pictures that were written. `clips` is true where there is a clip.
-    pub(super) fn print(&self, json: bool, clips: bool, written: &[PathBuf]) -> rara::Result<()> {
+    /// Prints it, for people with the pictures that were written. `clips` is true where there is a clip.
+    pub(super) fn print(
+        &self,
+        answer: Answer,
+        clips: bool,
+        written: &[PathBuf],
+    ) -> rara::Result<()> {
         self.warn(clips);
-        if json {
-            return output::json(self);
+        match answer {
+            Answer::Document => output::json(self)?,
+            Answer::Lines => {}
+            Answer::Table => {
+                say(self);
+                say(wrote(written));
+            }
         }
-        say(self);
-        say(wrote(written));
         Ok(())
     }
 
-    /// A report whose top level holds the frames' medians.
+    /// A report whose top level holds the medians of what each picture took.
     pub(super) fn new(
         session: &Session,
         loaded: &Loaded,
         size: (u32, u32),
         mode: String,
-        frames: &[Frame],
+        pictures: &[Frame],
     ) -> Self {
         let (device, driver, device_bytes) = session.about();
         let (shape, reason) = session.shape();
         let scene_bytes = session.scene_bytes();
         let scene = loaded.scene();
-        let measured = Measured::all(frames.iter().map(|frame| &frame.measured));
+        let measured = Measured::all(pictures.iter().map(|picture| &picture.measured));
+        let faces = pictures.first().map_or(1, |picture| picture.faces);
+        let a_frame = measured.stats.wall_ms / faces as f64;
         Self {
             device,
             driver,
@@ -191,12 +228,12 @@ impl Report {
             },
             size: [size.0, size.1],
             mode,
-            camera: frames
+            camera: pictures
                 .first()
                 .map(|first| &first.camera)
-                .filter(|camera| frames.iter().all(|frame| frame.camera == **camera))
+                .filter(|camera| pictures.iter().all(|picture| picture.camera == **camera))
                 .cloned(),
-            first_use_ms: session.first_use_ms(measured.stats.wall_ms),
+            first_use_ms: session.first_use_ms(a_frame),
             has_kept: session.has_kept(),
             measured,
             memory: Memory {
@@ -208,21 +245,13 @@ impl Report {
             },
             frames: Vec::new(),
             mean: None,
-            some_are_empty: false,
+            faces,
         }
     }
 
     /// Adds the single frames.
     pub(super) fn with_frames(self, frames: Vec<Frame>) -> Self {
         Self { frames, ..self }
-    }
-
-    /// Finds nothing wrong with frames that show nothing, unless all of them do.
-    pub(super) fn with_empty_frames(self) -> Self {
-        Self {
-            some_are_empty: true,
-            ..self
-        }
     }
 
     /// Adds the frames' means.
@@ -244,8 +273,8 @@ impl fmt::Display for Report {
         writeln!(f, "device   {} ({})", self.device, self.driver)?;
         write!(
             f,
-            "scene    {} Gaussians, SH degree {}",
-            grouped(scene.gaussians as u64),
+            "scene    {}, SH degree {}",
+            counted(scene.gaussians as u64, "Gaussian"),
             scene.sh_degree
         )?;
         if scene.repaired + scene.dropped > 0 {
@@ -261,17 +290,15 @@ impl fmt::Display for Report {
             "\npicture  {}x{}, mode {}",
             self.size[0], self.size[1], self.mode
         )?;
-        if !self.frames.is_empty() {
-            write!(f, "; {} frames, medians:", self.frames.len())?;
+        let frames = counted(self.frames.len() as u64, "frame");
+        match (self.frames.len(), self.faces) {
+            (0, _) => {}
+            (_, 1) => write!(f, "; {frames}, medians:")?,
+            (all, faces) if all == faces => write!(f, "; {frames} together:")?,
+            (_, faces) => write!(f, "; {frames}, medians of {faces} together:")?,
         }
         writeln!(f, "\ncounts   {}", CountsText(&stats.counts))?;
-        write!(f, "passes  ")?;
-        for pass in &stats.passes {
-            write!(f, " {} {:.2}", pass.name, pass.ms)?;
-        }
-        if !stats.skipped.is_empty() {
-            write!(f, " (skipped: {})", stats.skipped.join(", "))?;
-        }
+        write!(f, "passes   {}", times::line(stats))?;
         for pass in &stats.statistics {
             write!(
                 f,
@@ -286,15 +313,15 @@ impl fmt::Display for Report {
         if let Some(compiled) = output::compiled(self.first_use_ms, self.has_kept) {
             write!(f, "\n{compiled}")?;
         }
-        write!(
-            f,
-            "\ntime     {:.2} ms on the device, {:.2} ms in all",
-            stats.gpu_ms.unwrap_or_default(),
-            stats.wall_ms
-        )?;
+        let [device, all] = [stats.gpu_ms, Some(stats.wall_ms)].map(|time| times::ms(time, 2));
+        write!(f, "\ntime     {device} ms on the device, {all} ms in all")?;
         match self.measured.samples {
-            1 => writeln!(f)?,
-            frames => writeln!(f, " (the median of {frames} frames)")?,
+            one if one == self.faces => writeln!(f)?,
+            samples => {
+                let what = if self.faces == 1 { "frame" } else { "picture" };
+                let samples = counted((samples / self.faces) as u64, what);
+                writeln!(f, " (the median of {samples})")?;
+            }
         }
         write!(
             f,

@@ -14,7 +14,7 @@ use super::failure::Failure;
 use super::frame::FrameArgs;
 use super::framing;
 use super::memory;
-use super::output::{self, Progress};
+use super::pictures::{Destination, Drawn, PictureArgs};
 use super::profile::{Profile, ProfileArgs};
 use super::report::{Frame, Report};
 use super::save_camera::SaveCameraArgs;
@@ -28,13 +28,13 @@ use rara::scene::extent_along;
 #[command(after_help = "\
 Examples:
   rara sweep scene.ply --clip-normal 0,0,1 -o frames
+  rara sweep scene.ply --clip-normal 0,0,1 --frames 240 -o sweep.mp4 --background white
   rara sweep scene.ply --clip-normal 1,0,0 --frames 30 --mode hard --json
   rara sweep scene.ply --clip-normal 0,0,1 --clip-file planes.json:skin -o frames
   rara sweep scene.ply --from sphere:0,0,0,.1 --to sphere:0,0,0,2 -o frames
   rara sweep scene.ply --from 'all(plane:1,0,0,0, box:0,0,0,1,1,1)' --to 'all(plane:0,1,0,0, box:0,0,0,1,1,1)' -o turn
 
-Of a plane across the scene the first frame keeps the whole of the robust bounds, and the last one nothing. Pictures are
-frame_000.png and so on. The third frame and those after it compute only what the moving clip changes. Other clip shapes
+Of a plane across the scene the first frame keeps the whole of the robust bounds, and the last one nothing. The third frame and those after it compute only what the moving clip changes. Other clip shapes
 stand still; --clip-op joins the moving ones to them too. The JSON has the frames, their medians on top and their means under \"mean\".")]
 pub(super) struct Sweep {
     #[command(flatten)]
@@ -44,17 +44,18 @@ pub(super) struct Sweep {
     #[arg(required_unless_present = "from", conflicts_with = "from")]
     clip_normal: Option<DVec3>,
     /// The clip of the first frame, a shape or an expression as for --clip-expr
-    #[arg(long, value_name = "EXPRESSION", value_parser = values::expression, allow_hyphen_values = true, requires = "to")]
+    #[arg(long, value_name = "EXPRESSION", value_parser = values::expression, allow_hyphen_values = true)]
     from: Option<Expression>,
     /// The clip of the last frame, with the same shapes in the same places: points, sizes and radii move evenly, rotations
     /// and normals along the shortest arcs
-    #[arg(long, value_name = "EXPRESSION", value_parser = values::expression, allow_hyphen_values = true, requires = "from")]
+    #[arg(long, value_name = "EXPRESSION", value_parser = values::expression, allow_hyphen_values = true)]
     to: Option<Expression>,
     /// Number of frames
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: u32,
-    /// Folder for the pictures; made unless it is there
-    #[arg(short, long, value_name = "DIR")]
+    /// A folder for frame_000.png and so on, which is made; or, as for `rara render`, a name with {} or {:04} for the number
+    /// that ends in .png or .exr, a film, as sweep.mp4 or sweep.apng, or - as --format says
+    #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
     /// Render each frame from nothing; without this flag a frame takes over what stays the same, to the same bytes
     #[arg(long)]
@@ -62,9 +63,8 @@ pub(super) struct Sweep {
     /// Render each frame N times, nothing carried over between them, and take the medians
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     repeat: u32,
-    /// Print the statistics as JSON to stdout
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    pictures: PictureArgs,
     #[command(flatten)]
     frame: FrameArgs,
     #[command(flatten)]
@@ -81,12 +81,14 @@ impl Sweep {
         let moving = self.moving()?;
         let views = self.frame.camera.meant(&self.scenes.places())?;
         let views = views.single("a sweep")?;
-        if let Some(folder) = &self.output {
-            output::make_folder(folder)?;
-        }
+        let numbers: Vec<_> = (0..self.frames as usize).collect();
+        let output = self.output.as_deref();
+        let destination = (self.pictures).destination(output, &numbers, Some("a sweep makes"))?;
+        let settings = destination.settings(settings);
 
-        let profile = self.profile.begin(&[])?;
-        let done = self.draw(&profile, views, (shapes, &moving), &settings);
+        let profile = self.profile.begin(|| destination.files(&numbers))?;
+        let clips = (shapes, &moving);
+        let done = self.draw(&profile, (views, clips), &destination, &settings);
         profile.end_after(done)
     }
 
@@ -110,8 +112,8 @@ impl Sweep {
     fn draw(
         &self,
         profile: &Profile,
-        views: Views,
-        (regions, moving): (Regions, &Moving),
+        (views, (regions, moving)): (Views, (Regions, &Moving)),
+        destination: &Destination<'_>,
         settings: &Settings,
     ) -> Result<(), Failure> {
         let loaded = profile.span("load", || self.scenes.load())?;
@@ -121,11 +123,16 @@ impl Sweep {
         let camera = view.camera;
         regions.save(&scene)?;
         let (mut shapes, op) = (regions.of(&scene)?, regions.op());
+        let called = |index: &u32| (*index as usize, view.name.clone());
+        let Some(planned) = destination.left((0..self.frames).collect(), called)? else {
+            return Ok(());
+        };
         let range = match moving {
             Moving::Plane(normal) => extent_along(&scene, *normal),
             Moving::Region(..) => (0.0, 1.0),
         };
-        memory::check_picture((camera.width, camera.height), 0)?;
+        let size = (camera.width, camera.height);
+        memory::check_picture(size, 0)?;
         let device = self.frame.device.meant();
         let mut session = profile.open(device, &scene, settings.precision.sh)?;
         let mut clip_of = |index| -> rara::Result<Clip> {
@@ -141,33 +148,28 @@ impl Sweep {
         let first = first.into_iter().collect::<rara::Result<Vec<_>>>()?;
         session.warm_up(first.iter().map(|clip| (&camera, clip, settings)))?;
 
-        let mut frames = Vec::new();
-        let mut written = Vec::new();
-        let mut progress = Progress::new("sweeping");
-        for index in 0..self.frames {
-            progress.update(index.into(), self.frames.into());
+        let written = destination.draw("sweeping", profile, (&planned, size), |one| {
+            let (index, file) = (one.what, one.file.as_deref());
             let clip = clip_of(index)?;
             let measured = if self.independent || self.repeat > 1 {
                 session.frame(&camera, &clip, settings, self.repeat)?
             } else {
                 Measured::of(&[session.next_frame(&camera, &clip, settings)?])
             };
-            let path = self.output.as_ref();
-            let path = path.map(|folder| folder.join(format!("frame_{index:03}.png")));
-            if let Some(path) = &path {
-                profile.save_picture(&mut session, path)?;
-            }
             let plane = moving.plane(position(range, index, self.frames))?;
-            frames.push(Frame::new(&view, path.as_deref(), plane.as_ref(), measured));
-            written.extend(path);
-        }
-        drop(progress);
+            let frame = Frame::new(&view, file, plane.as_ref(), measured);
+            let picture = file.map(|_| session.last_picture()).transpose()?;
+            Ok(Drawn {
+                picture,
+                ..frame.into()
+            })
+        })?;
 
-        let size = (camera.width, camera.height);
-        let report = Report::new(&session, &loaded, size, name(settings.mode), &frames);
-        let report = report.with_frames(frames).with_mean();
+        let mode = name(settings.mode);
+        let report = Report::new(&session, &loaded, size, mode, &written.pictures);
+        let report = report.with_frames(written.pictures).with_mean();
         session.close()?;
-        Ok(report.print(self.json, true, &written)?)
+        Ok(report.print(self.pictures.answer(), true, &written.files)?)
     }
 }
 

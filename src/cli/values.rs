@@ -183,8 +183,15 @@ pub(super) fn picture_path(path: OsString) -> Result<PathBuf, String> {
     }
 }
 
+/// True for a name that ends as that of a folder, or is one's.
+pub(super) fn is_folder(path: &Path) -> bool {
+    let name = path.as_os_str().as_encoded_bytes();
+    let is_separator = |byte: &u8| std::path::is_separator((*byte).into());
+    name.last().is_some_and(is_separator) || (path != Path::new(STANDARD) && path.is_dir())
+}
+
 /// The file name of a picture or a film; its ending says the format.
-fn film_path(path: OsString) -> Result<PathBuf, String> {
+pub(super) fn film_path(path: OsString) -> Result<PathBuf, String> {
     let is_film = film::Kind::of(Path::new(&path)).is_some();
     match is_film {
         true => Ok(path.into()),
@@ -202,9 +209,12 @@ pub(super) fn picture_file() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(picture_path)
 }
 
-/// The parser of the file name of a picture or a film.
-pub(super) fn film_file() -> impl TypedValueParser<Value = PathBuf> {
-    OsStringValueParser::new().try_map(film_path)
+/// The parser of the file name of a picture or a film, or of a folder.
+pub(super) fn pictures_file() -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(|path| match is_folder(Path::new(&path)) {
+        true => Ok(path.into()),
+        false => film_path(path),
+    })
 }
 
 #[cfg(test)]

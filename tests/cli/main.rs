@@ -9,6 +9,7 @@ mod cameras;
 mod clips;
 mod convert;
 mod films;
+mod outputs;
 mod panoramas;
 mod paths;
 mod process;

@@ -58,6 +58,19 @@ fn a_panorama_has_every_direction_in_its_place() {
         .map(|frame| frame["name"].as_str().expect("a name"))
         .collect();
     assert_eq!(faces[0], "camera front");
+    // It takes as long as all of them.
+    for time in ["gpu_ms", "wall_ms"] {
+        let together: f64 = frames(&report)
+            .iter()
+            .map(|frame| frame[time].as_f64().expect("a time"))
+            .sum();
+        assert!((report[time].as_f64().expect("a time") - together).abs() < 1e-9 * together);
+    }
+    let words = "render @/compass.ply -o @/p.png --panorama --size 64x32 --eye 0,0,0 --repeat 2";
+    let printed = stderr(&done(line(&here, words)));
+    for part in ["6 frames together:", "(the median of 2 pictures)"] {
+        assert!(printed.contains(part), "{printed}");
+    }
     let here_is = |name: &str, at: (u32, u32), expected: [f64; 3]| {
         let [r, g, b, a] = Picture::load(here.join(name))
             .expect("a picture")

@@ -61,6 +61,44 @@ fn times_say_how_many_frames_they_are_the_medians_of() {
     assert!(stderr(&printed).contains("medians of 5 frames"));
 }
 
+/// Most frames of a sweep skip the stages that a moving clip does not touch. Those have no time, and no frame has less than none.
+#[test]
+fn a_stage_that_was_skipped_has_no_time() {
+    let here = folder("skipped_stages");
+    scene(&here);
+    let words = "sweep @/scene.ply --clip-normal 0,0,1 --frames 7 --size 32x32";
+    let report = document(line(&here, &format!("{words} --json")));
+    let names = |of: &Value, list: &str, key: &str| -> Vec<String> {
+        let list = of[list].as_array().expect("a list");
+        let name = |one: &Value| {
+            if key.is_empty() {
+                one.clone()
+            } else {
+                one[key].clone()
+            }
+        };
+        let text = |one: &Value| name(one).as_str().expect("a name").to_owned();
+        list.iter().map(text).collect()
+    };
+    assert!(!names(&report, "skipped", "").is_empty(), "{report}");
+    let frames = report["frames"].as_array().expect("frames");
+    for of in frames.iter().chain([&report, &report["mean"]]) {
+        let (skipped, timed) = (names(of, "skipped", ""), names(of, "passes", "name"));
+        assert!(!timed.iter().any(|name| skipped.contains(name)), "{of}");
+        for pass in of["passes"].as_array().expect("passes") {
+            assert!(
+                pass["ms"].as_f64().is_some_and(f64::is_sign_positive),
+                "{pass}"
+            );
+        }
+    }
+    let printed = stderr(&done(line(&here, words)));
+    assert!(
+        printed.contains("(skipped: ") && !printed.contains("-0.00"),
+        "{printed}"
+    );
+}
+
 #[test]
 fn frames_say_what_they_show_and_where_it_is() {
     let here = folder("frame_facts");

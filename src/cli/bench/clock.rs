@@ -5,6 +5,8 @@ use rara::{Camera, Clip, PassTime, Result, Scene, Settings};
 use serde::Serialize;
 
 use super::Session;
+use crate::cli::combine::Combine;
+use crate::cli::times;
 
 /// The times of one choice, milliseconds.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -96,7 +98,10 @@ impl Samples {
             }
         };
         let passes: Vec<Pass> = names.map(|p| pass(p.name)).collect();
-        let (ms_min, cpu_ms_min) = (passes.iter().map(|p| p.ms_min).sum(), least(&self.cpu));
+        let (ms_min, cpu_ms_min) = (
+            times::sum(passes.iter().map(|p| p.ms_min)),
+            least(&self.cpu),
+        );
         let has_cpu_time = on_cpu && cpu_ms_min.is_finite() && cpu_ms_min > 0.0;
         Times {
             ms: median(&self.ms),
@@ -115,12 +120,7 @@ fn least(values: &[f64]) -> f64 {
 }
 
 fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    match sorted.len() {
-        0 => 0.0,
-        n => (sorted[(n - 1) / 2] + sorted[n / 2]) / 2.0,
-    }
+    Combine::Median.of(values.to_vec())
 }
 
 #[cfg(test)]

@@ -26,10 +26,10 @@ use video::{Container, Video};
 #[command(next_help_heading = "Camera paths, films and panoramas")]
 pub(super) struct FilmArgs {
     /// Pictures a second of a film [default: 30]
-    #[arg(long, value_name = "N", requires = "output", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     fps: Option<u16>,
     /// What -o - writes: a picture as png, all of them as apng, or their bare bytes one after the other as rgba
-    #[arg(long, value_name = "FORMAT", requires = "output")]
+    #[arg(long, value_name = "FORMAT")]
     format: Option<Stream>,
 }
 
@@ -76,11 +76,8 @@ impl Kind {
 }
 
 impl FilmArgs {
-    /// The kind of film that is asked for; none for pictures. Fails early where it could not be written.
-    pub(super) fn meant(
-        &self,
-        output: Option<&Path>,
-    ) -> std::result::Result<Option<Kind>, Failure> {
+    /// The kind of film that is asked for; none for pictures.
+    pub(super) fn kind(&self, output: Option<&Path>) -> std::result::Result<Option<Kind>, Failure> {
         let is_stream = output == Some(Path::new(STANDARD));
         let kind = match self.format {
             Some(_) if !is_stream => {
@@ -99,17 +96,20 @@ impl FilmArgs {
                 "--fps is the pace of a film: give -o a name that ends in .apng, {ENDINGS}, or leave it out"
             )));
         }
-        if let (Some(kind), Some(file)) = (kind, output) {
-            if filled(file, 0, "a") != filled(file, 1, "b") {
-                return Err(Failure::Usage(
-                    "a film is one file: leave the braces out of its name, or name numbered pictures, as frame_{:04}.png".into(),
-                ));
-            }
-            if kind.is_opaque() {
-                video::encoder(file)?;
-            }
-        }
         Ok(kind)
+    }
+
+    /// Fails early where such a film could not be written to `file`.
+    pub(super) fn check(&self, kind: Kind, file: &Path) -> std::result::Result<(), Failure> {
+        if filled(file, 0, "a") != filled(file, 1, "b") {
+            return Err(Failure::Usage(
+                "a film is one file: leave the braces out of its name, or name numbered pictures, as frame_{:04}.png".into(),
+            ));
+        }
+        if kind.is_opaque() {
+            video::encoder(file)?;
+        }
+        Ok(output::check_file(file)?)
     }
 
     /// Begins a film of so many pictures, all of one size.

@@ -8,7 +8,7 @@ use super::input::KEYS;
 use super::layers::Clips;
 use super::numbers;
 use super::text::{self, Progress, Type};
-use crate::cli::settings;
+use crate::cli::{settings, times};
 
 const HINT: &str = "H: keys   M: numbers   drop a file to open it";
 /// The hint goes away after this time with a scene.
@@ -162,11 +162,8 @@ impl Overlay {
 
 /// The mode and what a frame takes, what is cut by what, and its numbers.
 fn lines(clips: &Clips, mode: Mode, stats: Option<&FrameStats>) -> Vec<String> {
-    let stats = stats.filter(|stats| !stats.passes.is_empty());
-    let took = stats.map(|stats| {
-        let ms: f64 = stats.passes.iter().map(|pass| pass.ms).sum();
-        format!(", last frame {ms:.1} ms")
-    });
+    let took = stats.and_then(times::total);
+    let took = took.map(|ms| format!(", last frame {} ms", times::ms(Some(ms), 1)));
     let mut lines = vec![format!(
         "mode {}{}",
         settings::name(mode),

@@ -6,6 +6,7 @@ use std::time::Duration;
 use rara::FrameStats;
 
 use crate::cli::output::grouped;
+use crate::cli::times;
 
 /// The title: what is shown, how it is cut, and where the last frame's time went on the device.
 pub(super) fn title(
@@ -18,18 +19,14 @@ pub(super) fn title(
     if let Some(cut) = cut {
         let _ = write!(text, ", {cut}");
     }
-    let Some(stats) = stats.filter(|stats| !stats.passes.is_empty()) else {
+    let Some((stats, total)) = stats.and_then(|stats| Some((stats, times::total(stats)?))) else {
         return text;
     };
-    let total: f64 = stats.passes.iter().map(|pass| pass.ms).sum();
-    let mut passes: Vec<_> = stats.passes.iter().collect();
-    passes.sort_by(|a, b| b.ms.total_cmp(&a.ms));
-    let most: Vec<_> = passes
-        .iter()
-        .take(3)
-        .map(|pass| format!("{} {:.1}", pass.name, pass.ms))
-        .collect();
-    let _ = write!(text, "; {total:.1} ms ({})", most.join(", "));
+    let mut most = stats.clone();
+    most.passes.sort_by(|a, b| b.ms.total_cmp(&a.ms));
+    most.passes.truncate(3);
+    let most = times::stages(&most, 1).join(", ");
+    let _ = write!(text, "; {} ms ({most})", times::ms(Some(total), 1));
     text
 }
 
@@ -51,18 +48,13 @@ pub(super) fn lines(
             grouped(counts.invisible.into()),
             grouped(counts.culled.into())
         );
-        text += "\npasses  ";
-        for pass in &stats.passes {
-            let _ = write!(text, " {} {:.2}", pass.name, pass.ms);
-        }
-        if !stats.skipped.is_empty() {
-            let _ = write!(text, " (skipped: {})", stats.skipped.join(", "));
-        }
-        let total: f64 = stats.passes.iter().map(|pass| pass.ms).sum();
         let _ = write!(
             text,
-            "\ntime     {total:.2} ms on the device, as {} ({})",
-            stats.raster.path, stats.raster.reason
+            "\npasses   {}\ntime     {} ms on the device, as {} ({})",
+            times::line(stats),
+            times::ms(times::total(stats), 2),
+            stats.raster.path,
+            stats.raster.reason
         );
     }
     if intervals.is_empty() {

@@ -1,0 +1,306 @@
+//! Where the pictures of a run go: files of their own, a folder, a film, or standard output.
+//!
+//! A command plans its pictures, and draws those that are [left](Destination::left) one by one. What is drawn goes to its
+//! place, and is reported, at once.
+
+mod part;
+mod writer;
+
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use rara::{Error, Settings};
+use serde_json::json;
+
+use super::failure::Failure;
+use super::film::{self, FilmArgs, Kind};
+use super::output::{self, counted, say};
+use super::pattern::filled;
+use super::report::Answer;
+use super::values::{self, STANDARD};
+use part::Part;
+pub(super) use writer::Drawn;
+#[cfg(unix)]
+pub(super) use writer::settle;
+
+/// What becomes of pictures, and of what is measured.
+#[derive(Debug, Args)]
+pub(super) struct PictureArgs {
+    /// Draw only part K of N of the pictures, numbered as in the whole: N jobs draw all of them
+    #[arg(long, value_name = "K/N", value_parser = part::part)]
+    part: Option<Part>,
+    /// Leave out pictures whose files are there, whatever these show, as after an interruption
+    #[arg(long)]
+    skip_existing: bool,
+    /// Print the statistics as JSON to stdout
+    #[arg(long)]
+    json: bool,
+    /// Print the statistics of each picture as one line of JSON to stdout, as soon as its file is there
+    #[arg(long, conflicts_with = "json")]
+    json_lines: bool,
+    #[command(flatten)]
+    film: FilmArgs,
+}
+
+/// Where pictures go, checked before any work is done.
+pub(super) struct Destination<'a> {
+    args: &'a PictureArgs,
+    place: Place,
+}
+
+enum Place {
+    Nowhere,
+    /// Files by a pattern, or standard output.
+    Files(PathBuf),
+    /// frame_000.png and so on.
+    Folder(PathBuf),
+    Film(Kind, PathBuf),
+}
+
+/// A picture that is to be drawn, and its file.
+pub(super) struct Planned<T> {
+    pub(super) what: T,
+    pub(super) file: Option<PathBuf>,
+}
+
+impl PictureArgs {
+    /// How what is measured is printed.
+    pub(super) fn answer(&self) -> Answer {
+        match (self.json, self.json_lines) {
+            (true, _) => Answer::Document,
+            (_, true) => Answer::Lines,
+            _ => Answer::Table,
+        }
+    }
+
+    /// Where pictures of these numbers go. `several` is what makes more than one of them, if anything does.
+    pub(super) fn destination(
+        &self,
+        output: Option<&Path>,
+        numbers: &[usize],
+        several: Option<&str>,
+    ) -> Result<Destination<'_>, Failure> {
+        let place = self.place(output, several.is_some())?;
+        self.check(&place, several.is_some())?;
+        match &place {
+            Place::Nowhere => {}
+            Place::Folder(folder) => output::make_folder(folder)?,
+            Place::Files(pattern) => check_pattern(pattern, numbers, several)?,
+            Place::Film(kind, file) => self.film.check(*kind, file)?,
+        }
+        Ok(Destination { args: self, place })
+    }
+
+    fn place(&self, output: Option<&Path>, several: bool) -> Result<Place, Failure> {
+        let Some(output) = output else {
+            return Ok(Place::Nowhere);
+        };
+        let is_folder = values::is_folder(output);
+        match values::film_path(output.into()) {
+            Ok(file) if !is_folder => {
+                let kind = self.film.kind(Some(output))?;
+                return Ok(match kind {
+                    Some(kind) => Place::Film(kind, file),
+                    None => Place::Files(file),
+                });
+            }
+            Err(why) if !is_folder && has_slot(output) => {
+                return Err(Failure::Usage(format!("{}: {why}", output.display())));
+            }
+            _ => {}
+        }
+        self.film.kind(None)?;
+        if !several {
+            let error = Error::format(output, "this is a folder; name a file in it");
+            return Err(error.into());
+        }
+        Ok(Place::Folder(output.to_owned()))
+    }
+
+    /// Refuses flags that have no meaning there.
+    fn check(&self, place: &Place, several: bool) -> Result<(), Failure> {
+        let flags = [
+            ("--part", self.part.is_some()),
+            ("--skip-existing", self.skip_existing),
+            ("--json-lines", self.json_lines),
+            ("--json", self.json),
+        ];
+        let is_given = |wanted: &[&str]| {
+            let given = flags
+                .iter()
+                .find(|(flag, is_given)| *is_given && wanted.contains(flag));
+            given.map(|(flag, _)| *flag)
+        };
+        let is_stream = match place {
+            Place::Files(file) | Place::Film(_, file) => file == Path::new(STANDARD),
+            Place::Nowhere | Place::Folder(_) => false,
+        };
+        if let Some(flag) = is_given(&["--json", "--json-lines"]).filter(|_| is_stream) {
+            return Err(Failure::Usage(format!(
+                "-o - and {flag} both take standard output: name a file for the picture"
+            )));
+        }
+        let whole = is_given(&["--part", "--skip-existing", "--json-lines"]);
+        if let (Place::Film(..), Some(flag)) = (place, whole) {
+            return Err(Failure::Usage(format!(
+                "{flag} goes picture by picture, and a film is whole: leave it out, or name numbered pictures, as -o \
+                 frame_{{:04}}.png"
+            )));
+        }
+        if is_stream && self.skip_existing {
+            return Err(Failure::Usage(
+                "--skip-existing looks for files, and -o - writes none: leave out one of them"
+                    .into(),
+            ));
+        }
+        if self.part.is_some() && !several {
+            return Err(Failure::Usage(
+                "--part divides several pictures, and there is one: leave it out, or ask for more by --path, --view all or \
+                 --section"
+                    .into(),
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// True where a name stands for several.
+fn has_slot(pattern: &Path) -> bool {
+    filled(pattern, 0, "a") != filled(pattern, 1, "b")
+}
+
+/// Fails where several pictures would be one file, or the first one could not be written.
+fn check_pattern(pattern: &Path, numbers: &[usize], several: Option<&str>) -> Result<(), Failure> {
+    if let Some(what) = several.filter(|_| !has_slot(pattern)) {
+        let remedy = match pattern == Path::new(STANDARD) {
+            true => "name a file with {} where their number goes, or give --format apng or rgba",
+            false => {
+                "put {} where their number goes, as in -o view_{}.png, or name a film, as film.apng"
+            }
+        };
+        return Err(Failure::Usage(format!("{what} several pictures: {remedy}")));
+    }
+    // Folders whose names have a slot are made when all names are known.
+    if pattern.parent().is_some_and(has_slot) {
+        return Ok(());
+    }
+    let first = numbers.first().copied().unwrap_or(0);
+    Ok(output::check_file(&filled(pattern, first, "x"))?)
+}
+
+impl Destination<'_> {
+    /// The settings for pictures that go there: on black where nothing else is said and they can have no transparency.
+    pub(super) fn settings(&self, settings: Settings) -> Settings {
+        match &self.place {
+            Place::Film(kind, _) if kind.is_opaque() && settings.background.is_none() => {
+                film::say_opaque();
+                settings.background(Some([0.0; 3]))
+            }
+            _ => settings,
+        }
+    }
+
+    /// The file of a picture.
+    fn file(&self, number: usize, name: &str) -> Option<PathBuf> {
+        match &self.place {
+            Place::Nowhere => None,
+            Place::Files(pattern) => Some(filled(pattern, number, name)),
+            Place::Folder(folder) => Some(folder.join(format!("frame_{number:03}.png"))),
+            Place::Film(_, file) => Some(file.clone()),
+        }
+    }
+
+    /// The files of pictures of these numbers that have no names.
+    pub(super) fn files(&self, numbers: &[usize]) -> Vec<PathBuf> {
+        let files = numbers.iter().filter_map(|number| self.file(*number, ""));
+        files.collect()
+    }
+
+    /// The pictures that are left to draw, with their files, whose folders are there from now on: those of --part, and of
+    /// these the ones that --skip-existing does not leave out. None where that are none, which is then said. `called` is
+    /// the number and the name of one.
+    pub(super) fn left<T>(
+        &self,
+        all: Vec<T>,
+        called: impl Fn(&T) -> (usize, String),
+    ) -> Result<Option<Vec<Planned<T>>>, Failure> {
+        let of_one = |what| {
+            let (number, name) = called(&what);
+            let file = self.file(number, &name);
+            Planned { what, file }
+        };
+        let mut planned: Vec<_> = all.into_iter().map(of_one).collect();
+        if !matches!(self.place, Place::Film(..)) {
+            check_distinct(&planned, called)?;
+        }
+        let whole = planned.len();
+        if let Some(part) = self.args.part {
+            planned = part.of(planned);
+            if planned.is_empty() {
+                say(format_args!(
+                    "note: part {part} of {} is empty",
+                    counted(whole as u64, "picture")
+                ));
+            }
+        }
+        let before = planned.len();
+        if self.args.skip_existing {
+            let is_there = |file: &PathBuf| file.is_file();
+            planned.retain(|one| !one.file.as_ref().is_some_and(is_there));
+            say(format_args!(
+                "note: {} of {} there and left out",
+                before - planned.len(),
+                match before {
+                    1 => "1 picture is".into(),
+                    _ => format!("{} are", counted(before as u64, "picture")),
+                }
+            ));
+        }
+        let files = planned.iter().filter_map(|one| one.file.as_deref());
+        let mut folders = HashSet::new();
+        for file in files {
+            if folders.insert(file.parent()) {
+                output::check_file(file)?;
+            }
+        }
+        if planned.is_empty() && whole > 0 {
+            if self.args.json {
+                output::json(&json!({ "frames": [] }))?;
+            }
+            return Ok(None);
+        }
+        Ok(Some(planned))
+    }
+
+    /// The size that is reported of pictures of these sizes; those of a film have one.
+    pub(super) fn size(
+        &self,
+        mut sizes: impl Iterator<Item = (u32, u32)>,
+    ) -> Result<(u32, u32), Failure> {
+        match self.place {
+            Place::Film(..) => film::one_size(sizes),
+            _ => Ok(sizes.next().unwrap_or((0, 0))),
+        }
+    }
+}
+
+/// Fails where two pictures would be one file.
+fn check_distinct<T>(
+    planned: &[Planned<T>],
+    called: impl Fn(&T) -> (usize, String),
+) -> Result<(), Failure> {
+    let mut files = HashMap::new();
+    for Planned { what, file } in planned {
+        let Some(file) = file else {
+            return Ok(());
+        };
+        if let Some(other) = files.insert(file, what) {
+            let [other, one] = [other, what].map(|what| called(what).1);
+            return Err(Failure::Usage(format!(
+                "the pictures of {other} and {one} would be one file: put {{}} where their number goes"
+            )));
+        }
+    }
+    Ok(())
+}

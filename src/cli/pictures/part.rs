@@ -1,0 +1,78 @@
+//! `--part`: the share of one of several jobs.
+
+use std::fmt;
+
+/// One part of so many.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Part {
+    /// From 1.
+    number: u32,
+    of: u32,
+}
+
+/// The value of `--part`.
+pub(super) fn part(text: &str) -> Result<Part, String> {
+    let numbers = text.split_once('/');
+    let numbers = numbers.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+    match numbers {
+        Some((number, of)) if (1..=of).contains(&number) => Ok(Part { number, of }),
+        Some((_, of)) if of > 0 => Err(format!("the parts of {of} are 1/{of} to {of}/{of}")),
+        _ => Err("expected a part and the number of parts, as 3/10".into()),
+    }
+}
+
+impl Part {
+    /// Those of all that are in this part. Parts follow each other, and differ by one at most.
+    pub(super) fn of<T>(self, mut all: Vec<T>) -> Vec<T> {
+        let count = all.len() as u128;
+        // At most as large as the count.
+        let end = |part: u32| (count * u128::from(part) / u128::from(self.of)) as usize;
+        all.truncate(end(self.number));
+        all.split_off(end(self.number - 1))
+    }
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}/{}", self.number, self.of)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_all_of_it_and_nearly_alike() {
+        for count in [0, 1, 7, 10, 1000] {
+            for of in [1, 3, 10, 11] {
+                let parts: Vec<Vec<u32>> = (1..=of)
+                    .map(|number| Part { number, of }.of((0..count).collect()))
+                    .collect();
+                assert!(parts.concat().into_iter().eq(0..count), "{count} by {of}");
+                let sizes = parts.iter().map(Vec::len);
+                let (least, most) = (sizes.clone().min(), sizes.max());
+                assert!(most <= least.map(|least| least + 1), "{count} by {of}");
+            }
+        }
+    }
+
+    #[test]
+    fn parts_are_read_as_they_are_written() {
+        assert_eq!(part("3/10"), Ok(Part { number: 3, of: 10 }));
+        assert_eq!(part("1/1").map(|part| part.to_string()), Ok("1/1".into()));
+        for wrong in [
+            "",
+            "3",
+            "0/10",
+            "11/10",
+            "1/0",
+            "-1/3",
+            "a/b",
+            "1/2/3",
+            "1/4294967296",
+        ] {
+            assert!(part(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -117,9 +117,6 @@ impl Bake {
             return Err(no_clip());
         }
 
-        if self.mode != Mode::Rara && self.sigma.is_some() {
-            say("note: --sigma changes nothing without --mode rara");
-        }
         let defaults = BakeSettings::default();
         let settings = defaults
             .mode(self.mode)

@@ -27,6 +27,7 @@ mod layer_clip;
 mod lens;
 mod memory;
 mod model;
+mod needs;
 mod output;
 mod panorama;
 mod path;
@@ -65,7 +66,7 @@ mod warm;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use failure::Failure;
 
@@ -141,15 +142,35 @@ impl Command {
     }
 }
 
+/// The command line, and where its values are from.
+fn typed() -> Result<(Cli, ArgMatches), clap::Error> {
+    let typed = Cli::command().try_get_matches()?;
+    let cli = Cli::from_arg_matches(&typed);
+    let cli = cli.map_err(|error| error.format(&mut Cli::command()))?;
+    Ok((cli, typed))
+}
+
+/// Fails where a flag has no effect.
+fn needs_met(typed: &ArgMatches) -> Result<(), Failure> {
+    let all = Cli::command();
+    match typed.subcommand() {
+        Some((name, typed)) => {
+            let command = all.find_subcommand(name);
+            command.map_or(Ok(()), |command| needs::check(command, typed))
+        }
+        None => Ok(()),
+    }
+}
+
 /// Parses the command line, runs the command, and turns a failure into its sentence and exit status.
 pub(crate) fn main() -> ExitCode {
     process::begin();
-    let outcome = match Cli::try_parse() {
-        Ok(cli) => {
+    let outcome = match typed() {
+        Ok((cli, typed)) => {
             if cli.quiet {
                 output::be_quiet();
             }
-            cli.command.run()
+            needs_met(&typed).and_then(|()| cli.command.run())
         }
         Err(error) if !error.use_stderr() => {
             // `--help` and `--version` arrive as errors too; a closed pipe is the reader's business.

@@ -23,10 +23,10 @@ pub(super) struct SectionArgs {
     #[arg(long, value_name = "AXIS=SHARE|NAME", value_parser = wanted, allow_hyphen_values = true)]
     section: Vec<Wanted>,
     /// Keep a slab of this thickness behind each section, world units, instead of all that lies behind it
-    #[arg(long, value_name = "T", value_parser = values::positive, requires = "section", allow_hyphen_values = true)]
+    #[arg(long, value_name = "T", value_parser = values::positive, allow_hyphen_values = true)]
     section_thickness: Option<f32>,
     /// World units of a pixel [default: as many as hold all that is visible of the scene, alike for all sections across an axis]
-    #[arg(long, value_name = "S", value_parser = values::positive, requires = "section", allow_hyphen_values = true)]
+    #[arg(long, value_name = "S", value_parser = values::positive, allow_hyphen_values = true)]
     section_scale: Option<f32>,
 }
 

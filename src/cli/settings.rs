@@ -75,13 +75,6 @@ pub(super) fn name(value: impl ValueEnum) -> String {
 impl SettingsArgs {
     /// The settings that the flags mean.
     pub(super) fn meant(&self) -> Result<Settings, Failure> {
-        if self.mode != Mode::Rara && (self.sigma.is_some() || self.miss.is_some()) {
-            output::say("note: --sigma and --miss change nothing without --mode rara");
-        }
-        if matches!(self.mode, Mode::None | Mode::Hard) && (self.decay.is_some() || self.trace_all)
-        {
-            output::say("note: --decay and --trace-all change nothing with --mode none or hard");
-        }
         let defaults = self.look.meant()?;
         Ok(defaults
             .mode(self.mode)

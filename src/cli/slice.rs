@@ -18,22 +18,22 @@ use super::values;
 #[command(next_help_heading = "Sections")]
 pub(super) struct SliceArgs {
     /// Show the colours on each section's plane, weighted by the splats' opacities there, instead of the scene behind it
-    #[arg(long, requires = "section", conflicts_with = "aov")]
+    #[arg(long, conflicts_with = "aov")]
     slice: bool,
     /// Draw a line around each cut surface
-    #[arg(long, value_name = "R,G,B", value_parser = values::colour, requires = "section")]
+    #[arg(long, value_name = "R,G,B", value_parser = values::colour)]
     outline: Option<[f32; 3]>,
     /// Pixels of that line
-    #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 2.0, requires = "outline")]
+    #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 2.0)]
     outline_width: f32,
     /// Tint each cut surface along its edge
-    #[arg(long, value_name = "R,G,B", value_parser = values::colour, requires = "section")]
+    #[arg(long, value_name = "R,G,B", value_parser = values::colour)]
     rim: Option<[f32; 3]>,
     /// Pixels of that tint
-    #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 24.0, requires = "rim")]
+    #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 24.0)]
     rim_width: f32,
     /// The alpha of a slice from which it belongs to the cut surface, 0 to 1
-    #[arg(long, value_name = "ALPHA", value_parser = values::share, default_value_t = 0.1, requires = "section")]
+    #[arg(long, value_name = "ALPHA", value_parser = values::share, default_value_t = 0.1)]
     cut_level: f32,
 }
 

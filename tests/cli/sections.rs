@@ -220,8 +220,6 @@ fn slices_show_the_plane_and_cues_its_edge() {
     let plain = drawn(&here, section);
     let slice = drawn(&here, &format!("{section} --slice"));
     assert!(plain != slice);
-    // What is not asked for changes nothing.
-    assert!(plain == drawn(&here, &format!("{section} --cut-level 0.3")));
     let outlined = drawn(
         &here,
         &format!("{section} --outline 1,1,0 --outline-width 3"),

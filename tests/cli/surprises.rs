@@ -32,12 +32,24 @@ fn what_is_likely_a_mistake_is_warned_of_unless_nobody_wants_to_know() {
             "--mode none clips nothing",
         ),
         (
-            "--mode hard --decay depth",
-            "--decay and --trace-all change nothing",
+            "--mode hard --decay depth --trace-all",
+            "note: --trace-all changes nothing without --mode exact or rara",
         ),
         (
             "--mode exact --sigma 2",
-            "--sigma and --miss change nothing",
+            "note: --sigma changes nothing without --mode rara",
+        ),
+        (
+            "--mode hard --phi logistic",
+            "note: --phi changes nothing without --mode exact",
+        ),
+        (
+            "--raster quad --transmittance-min 0",
+            "note: --transmittance-min changes nothing without --raster tiles or auto",
+        ),
+        (
+            "--clip plane:1,0,0,0 --clip-op or",
+            "note: --clip-op changes nothing without a second shape",
         ),
         ("--clip plane:1,0,0,-1e6", "the picture is empty: the clip"),
         (

@@ -22,7 +22,7 @@ pub(super) struct PathArgs {
     #[arg(long, value_name = "PATH", value_parser = route, conflicts_with_all = ["camera", "view", "section"])]
     path: Option<Route>,
     /// Number of pictures of an orbit or a spline [default: 120]
-    #[arg(long, value_name = "N", requires = "path", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     frames: Option<u32>,
 }
 

@@ -1,0 +1,232 @@
+//! Which flags have an effect only beside others. Clap's own `requires` waives what conflicts with something that is given,
+//! and would then leave a flag without any.
+
+#[cfg(all(test, feature = "view"))]
+mod tests;
+
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Command};
+
+use super::failure::Failure;
+use super::output;
+
+/// What a flag needs beside it.
+enum Need {
+    Nothing,
+    /// One of these flags.
+    Flag(&'static [&'static str]),
+    /// This flag with one of these values.
+    Value(&'static str, &'static [&'static str]),
+    /// This flag with another value.
+    Other(&'static str, &'static str),
+    /// Two of these flags, or one of them twice.
+    Two(&'static [&'static str]),
+}
+
+use Need::{Flag, Nothing, Other, Two, Value};
+
+/// What flags need, by their names in the definitions; where a command has none of those that are needed, nothing. Where a
+/// value is needed a note says so, since scripts give such flags to one value after another.
+const NEEDS: &[(&str, Need)] = &[
+    // The scene.
+    ("select", Nothing),
+    ("layer_clip", Nothing),
+    ("antialiasing", Nothing),
+    ("place", Nothing),
+    ("hide", Nothing),
+    ("unhide", Nothing),
+    // What is written.
+    ("quiet", Nothing),
+    ("output", Nothing),
+    ("json", Nothing),
+    ("json_lines", Nothing),
+    ("aov", Flag(&["output"])),
+    ("skip_existing", Flag(&["output"])),
+    ("fps", Flag(&["output"])),
+    ("format", Flag(&["output"])),
+    (
+        "part",
+        Flag(&["path", "view", "section", "clip_normal", "from"]),
+    ),
+    ("trace", Nothing),
+    ("statistics", Nothing),
+    ("repeat", Flag(&["measure"])),
+    // The camera.
+    ("eye", Nothing),
+    ("target", Nothing),
+    ("up", Other("views", "0")),
+    ("fov_y", Nothing),
+    ("ortho", Nothing),
+    ("cameras", Nothing),
+    ("view", Nothing),
+    ("camera", Nothing),
+    ("save_camera", Nothing),
+    ("clip_near", Nothing),
+    ("clip_far", Nothing),
+    ("near_cut", Nothing),
+    ("size", Other("views", "0")),
+    ("path", Nothing),
+    ("frames", Flag(&["path"])),
+    ("panorama", Nothing),
+    // Sections.
+    ("section", Nothing),
+    ("section_thickness", Flag(&["section"])),
+    ("section_scale", Flag(&["section"])),
+    ("slice", Flag(&["section"])),
+    ("outline", Flag(&["section"])),
+    ("outline_width", Flag(&["outline"])),
+    ("rim", Flag(&["section"])),
+    ("rim_width", Flag(&["rim"])),
+    ("cut_level", Flag(&["outline", "rim"])),
+    // The clip. A file may hold several shapes, and sections refuse `or` themselves.
+    ("clip", Nothing),
+    ("clip_expr", Nothing),
+    ("clip_file", Nothing),
+    ("save_clip", Nothing),
+    (
+        "clip_op",
+        Two(&[
+            "clip",
+            "clip_expr",
+            "clip_file",
+            "clip_file",
+            "section",
+            "section",
+            "clip_normal",
+            "from",
+        ]),
+    ),
+    ("clip_normal", Nothing),
+    ("from", Flag(&["to"])),
+    ("to", Flag(&["from"])),
+    ("independent", Nothing),
+    // How it is drawn.
+    ("mode", Nothing),
+    ("decay", Value("mode", &["exact", "rara"])),
+    ("trace_all", Value("mode", &["exact", "rara"])),
+    ("sigma", Value("mode", &["rara"])),
+    ("miss", Value("mode", &["rara"])),
+    ("background", Nothing),
+    ("sh_degree", Nothing),
+    ("raster", Nothing),
+    ("show", Nothing),
+    ("preset", Nothing),
+    ("target_format", Nothing),
+    ("sh_format", Nothing),
+    ("phi", Value("mode", &["exact"])),
+    ("key_bits", Nothing),
+    ("beam_switch", Value("mode", &["exact"])),
+    ("transmittance_min", Value("raster", &["tiles", "auto"])),
+    ("device", Flag(&["measure"])),
+    ("device", Other("views", "0")),
+    ("validation", Flag(&["measure"])),
+    ("validation", Other("views", "0")),
+    ("no_pipeline_cache", Flag(&["measure"])),
+    ("no_pipeline_cache", Other("views", "0")),
+    // Of single commands.
+    ("script", Nothing),
+    ("no_outline", Nothing),
+    ("no_text", Nothing),
+    ("steps", Nothing),
+    ("only", Nothing),
+    ("shapes", Nothing),
+    ("measure", Nothing),
+    ("most", Nothing),
+    ("no_reference", Nothing),
+    ("min_psnr", Nothing),
+    ("max_l1", Nothing),
+    ("min_opacity", Nothing),
+    ("scale", Nothing),
+    ("rotate", Nothing),
+    ("offset", Nothing),
+    ("count", Nothing),
+    ("seed", Nothing),
+    ("children", Value("mode", &["exact", "rara"])),
+    ("leave", Value("mode", &["exact", "rara"])),
+    ("views", Nothing),
+    ("all", Nothing),
+];
+
+/// Refuses flags of a command that have no effect beside what else was typed, or says so.
+pub(super) fn check(command: &Command, typed: &ArgMatches) -> Result<(), Failure> {
+    for (flag, need) in NEEDS {
+        let is_typed =
+            |id: &str| has(command, id) && typed.value_source(id) == Some(ValueSource::CommandLine);
+        if !is_typed(flag) {
+            continue;
+        }
+        let shown = shown(command, flag);
+        match need.missing(command, typed) {
+            None => {}
+            Some((what, true)) => {
+                output::say(format_args!("note: {shown} changes nothing without {what}"));
+            }
+            Some((what, false)) => {
+                return Err(Failure::Usage(format!(
+                    "{shown} changes nothing without {what}: give that too, or leave out {shown}"
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
+impl Need {
+    /// What is missing, if something is, and whether that is only worth a note.
+    fn missing(&self, command: &Command, typed: &ArgMatches) -> Option<(String, bool)> {
+        let count = |ids: &[&str]| -> usize {
+            let ids = ids.iter().filter(|id| has(command, id));
+            let is_typed = |id: &&&str| typed.value_source(id) == Some(ValueSource::CommandLine);
+            let occurrences = |id: &&str| typed.indices_of(id).map_or(1, Iterator::count);
+            ids.filter(is_typed).map(occurrences).sum()
+        };
+        let is = |id: &str, value: &str| {
+            typed
+                .get_raw(id)
+                .is_some_and(|mut raw| raw.any(|raw| raw == value))
+        };
+        match *self {
+            Flag(ids) if ids.iter().any(|id| has(command, id)) => {
+                let names: Vec<_> = (ids.iter().filter(|id| has(command, id)))
+                    .map(|id| shown(command, id))
+                    .collect();
+                (count(ids) == 0).then(|| (either(&names), false))
+            }
+            // A window's keys choose other values.
+            Value(..) | Other(..) if command.get_name() == "view" => None,
+            Value(id, values) if has(command, id) && !values.iter().any(|value| is(id, value)) => {
+                Some((format!("{} {}", shown(command, id), either(values)), true))
+            }
+            Other(id, value) if has(command, id) && is(id, value) => {
+                let name = shown(command, id);
+                Some((format!("{name} other than {value}"), true))
+            }
+            Two(ids) if count(ids) < 2 => Some(("a second shape".into(), true)),
+            _ => None,
+        }
+    }
+}
+
+/// "a, b or c".
+fn either<T: std::borrow::Borrow<str>>(names: &[T]) -> String {
+    match names {
+        [others @ .., last] if !others.is_empty() => {
+            format!("{} or {}", others.join(", "), last.borrow())
+        }
+        names => names.concat(),
+    }
+}
+
+fn has(command: &Command, id: &str) -> bool {
+    command
+        .get_arguments()
+        .any(|argument| argument.get_id() == id)
+}
+
+/// A flag as it is typed.
+fn shown(command: &Command, id: &str) -> String {
+    let mut arguments = command.get_arguments();
+    let argument = arguments.find(|argument| argument.get_id() == id);
+    let long = argument.and_then(|argument| argument.get_long());
+    format!("--{}", long.unwrap_or(id))
+}

@@ -1,0 +1,175 @@
+use super::*;
+use crate::cli::Cli;
+use clap::error::ErrorKind;
+use clap::{Arg, CommandFactory};
+
+fn commands() -> Vec<Command> {
+    let mut all = Cli::command();
+    all.build();
+    all.get_subcommands().cloned().collect()
+}
+
+/// The flags of a command, those of all programs and what has no name left out.
+fn flags(command: &Command) -> Vec<&Arg> {
+    let flags = command
+        .get_arguments()
+        .filter(|flag| flag.get_long().is_some());
+    flags
+        .filter(|flag| !["help", "version"].contains(&flag.get_id().as_str()))
+        .collect()
+}
+
+/// What was typed, however little it is.
+fn typed(command: &Command, words: &[&str]) -> ArgMatches {
+    let command = command.clone().ignore_errors(true).no_binary_name(true);
+    command.get_matches_from(words)
+}
+
+/// A word line of this flag that its command understands.
+fn typed_flag(command: &Command, flag: &Arg) -> Vec<String> {
+    let name = shown(command, flag.get_id().as_str());
+    if !flag.get_action().takes_values() {
+        return vec![name];
+    }
+    let listed = flag.get_possible_values();
+    let listed = listed.iter().map(|value| value.get_name().to_owned());
+    let others = [
+        "1",
+        "0.5",
+        "8",
+        "0,0,1",
+        "1/1",
+        "sphere:0,0,0,1",
+        "orbit",
+        "z=0.5",
+        "8x8",
+        "a.png",
+        "a",
+    ];
+    let mut values = listed.chain(others.map(String::from));
+    let is_understood = |value: &String| {
+        let command = command.clone().no_binary_name(true);
+        let typed = command.try_get_matches_from([&name, value]);
+        let wrong = [ErrorKind::ValueValidation, ErrorKind::InvalidValue];
+        typed
+            .err()
+            .is_none_or(|error| !wrong.contains(&error.kind()))
+    };
+    let value = values.find(is_understood);
+    vec![
+        name.clone(),
+        value.unwrap_or_else(|| panic!("no value for {name}")),
+    ]
+}
+
+#[test]
+fn every_flag_says_what_it_needs() {
+    let mut known: Vec<&str> = NEEDS.iter().map(|(flag, _)| *flag).collect();
+    for command in commands() {
+        for flag in flags(&command) {
+            let (id, name) = (flag.get_id().as_str(), command.get_name());
+            assert!(
+                NEEDS.iter().any(|(flag, _)| *flag == id),
+                "{name}: NEEDS has no {id}"
+            );
+            known.retain(|flag| *flag != id);
+        }
+    }
+    assert!(known.is_empty(), "no command has {known:?}");
+}
+
+#[test]
+fn a_flag_without_what_it_needs_is_refused_or_noted_by_both_names() {
+    let mut found = 0;
+    for command in commands() {
+        for (id, need) in NEEDS.iter().filter(|(id, _)| has(&command, id)) {
+            if matches!(need, Nothing) {
+                continue;
+            }
+            let flag = flags(&command).into_iter().find(|flag| flag.get_id() == id);
+            let words = typed_flag(&command, flag.expect("it is there"));
+            let mut words: Vec<&str> = words.iter().map(String::as_str).collect();
+            // What makes a value's need unmet.
+            let other = match need {
+                Nothing => unreachable!("it is left out"),
+                Flag(ids) | Two(ids) if !ids.iter().any(|id| has(&command, id)) => continue,
+                Value(id, _) | Other(id, _)
+                    if !has(&command, id) || command.get_name() == "view" =>
+                {
+                    continue;
+                }
+                Flag(ids) => ids
+                    .iter()
+                    .find(|id| has(&command, id))
+                    .expect("one")
+                    .to_string(),
+                Two(_) => "second shape".into(),
+                Value("mode", values) => {
+                    let unmet = ["hard", "exact"]
+                        .into_iter()
+                        .find(|value| !values.contains(value));
+                    words.extend(["--mode", unmet.expect("one")]);
+                    "mode".into()
+                }
+                Value(_, _) => {
+                    words.extend(["--raster", "quad"]);
+                    "raster".into()
+                }
+                Other(id, value) => {
+                    words.extend(["--views", value]);
+                    id.to_string()
+                }
+            };
+            let typed = typed(&command, &words);
+            let (what, is_note) = need
+                .missing(&command, &typed)
+                .unwrap_or_else(|| panic!("{words:?}"));
+            let other = if has(&command, &other) {
+                shown(&command, &other)
+            } else {
+                other
+            };
+            assert!(what.contains(&other), "{words:?}: {what}");
+            if !is_note {
+                let refused = check(&command, &typed)
+                    .expect_err("it is refused")
+                    .to_string();
+                assert!(
+                    refused.contains(words[0]) && refused.contains(&what),
+                    "{refused}"
+                );
+            }
+            found += 1;
+        }
+    }
+    assert!(found > 40, "{found}");
+}
+
+/// Clap waives what it requires where that conflicts with something else, so that nothing is left to it.
+#[test]
+fn what_conflicts_with_a_need_does_not_meet_it() {
+    let render = commands()
+        .into_iter()
+        .find(|command| command.get_name() == "render");
+    let render = render.expect("it is there");
+    for words in [
+        "--section z=0.5 --frames 9",
+        "--path orbit --slice",
+        "--path orbit --section-thickness 1",
+        "--panorama --outline 1,1,1",
+    ] {
+        let words: Vec<_> = words.split(' ').collect();
+        assert!(
+            check(&render, &typed(&render, &words)).is_err(),
+            "{words:?}"
+        );
+    }
+    for words in [
+        "--section z=0.5 --slice",
+        "--clip-op or --clip-file a",
+        "--view all --part 1/2",
+    ] {
+        let words: Vec<_> = words.split(' ').collect();
+        assert!(check(&render, &typed(&render, &words)).is_ok(), "{words:?}");
+    }
+}

@@ -134,7 +134,7 @@ fn clip_files_are_the_same_planes() {
     };
     let (a, b, c) = ("plane:1,0,0,0", "plane:0,1,0,0.25", "plane:0,0,1,0.5");
     for (file, typed) in [
-        ("planes.json", format!("--clip {a} --clip {b} --clip {c}")),
+        ("planes.json:*", format!("--clip {a} --clip {b} --clip {c}")),
         ("planes.json:a", format!("--clip {a} --clip {c}")),
         ("planes.json:b:c", format!("--clip {b}")),
         ("planes.json:1 --clip-op or", format!("--clip {b}")),

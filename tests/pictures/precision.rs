@@ -1,10 +1,12 @@
 //! Every choice of precision draws without a validation message and within its stated error.
 
 use crate::common;
+use glam::{DQuat, DVec3};
 use rara::measure::differences;
+use rara::scene::Bounds;
 use rara::{
-    Camera, ClipOp, Gaussians, Headless, PhiForm, Precision, Preset, Settings, ShFormat,
-    TargetFormat,
+    Camera, ClipOp, Gaussians, Headless, Mode, PhiForm, Placement, Precision, Preset, Settings,
+    ShFormat, TargetFormat,
 };
 
 const SIZE: (u32, u32) = (203, 150);
@@ -73,5 +75,24 @@ fn every_precision_is_within_its_stated_error() {
                 "{name}, {what}: {psnr:.1} dB, less than {least}"
             );
         }
+    }
+}
+
+/// Far from the origin, and through a long lens, no float holds the eye, or where a splat is before it, to a pixel.
+#[test]
+fn a_long_lens_far_from_the_origin_shows_what_the_reference_shows() {
+    let mut scene = rara::scene::generate(rara::scene::Kind::General, 2_000, 5);
+    let away = DVec3::new(2e4, -3e4, 1e4);
+    let placement = Placement::new(away, DQuat::IDENTITY, 1.0).expect("a place");
+    scene.place(&placement);
+    let near = common::views(&scene, 1, common::scaled(SIZE))[0];
+    let middle = Bounds::of(&scene).centre();
+    let eye = middle + 200.0 * (near.eye - middle);
+    let far = near.eye(eye).fx(200.0 * near.fx).fy(200.0 * near.fy);
+    let mut headless = common::headless();
+    headless.load(&scene).expect("uploads");
+    let clip = common::clip(&scene, 1, ClipOp::And);
+    for settings in [Settings::default(), Settings::default().mode(Mode::None)] {
+        common::check(&mut headless, "far away", &scene, &far, &clip, &settings);
     }
 }

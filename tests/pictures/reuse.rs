@@ -266,6 +266,7 @@ type Change = (&'static str, Settings, Settings);
 fn changes() -> Vec<Change> {
     let usual = Settings::default().raster(Raster::Tiles);
     let traced = usual.mode(Mode::Rara);
+    let coarse = usual.precision(usual.precision.key_bits(16));
     let changed = |name, before: Settings, change: fn(&mut Settings)| {
         let mut after = before;
         change(&mut after);
@@ -286,6 +287,9 @@ fn changes() -> Vec<Change> {
         }),
         changed("sh_degree", usual, |s| s.sh_degree = Some(0)),
         changed("key_bits", usual, |s| s.precision.key_bits = 8),
+        changed("key_bits of as many passes", coarse, |s| {
+            s.precision.key_bits = 12;
+        }),
     ]
 }
 

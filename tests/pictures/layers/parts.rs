@@ -1,7 +1,9 @@
 //! A scene in parts is drawn as the scene, in layers that may be empty, and what is no layer is refused.
 
 use super::*;
+use rara::clip::Expression;
 use rara::reference;
+use rara::scene::Bounds;
 
 #[test]
 fn layers_are_drawn_as_the_scene_that_they_are_parts_of() {
@@ -154,4 +156,41 @@ fn what_is_no_layer_is_refused() {
     headless.load(Scene::default()).expect_err("no layer");
     assert_eq!(headless.layers().len(), 1);
     headless.close().expect("nothing to say");
+}
+
+/// Curved surfaces are packed relative to each layer, so that a clip is as exact in one that is far from the others.
+#[test]
+fn layers_far_apart_are_cut_alike() {
+    let (_, near) = common::generated_scenes(2_000).remove(0);
+    let away = DVec3::new(3e4, -1e4, 2e4);
+    let mut far = near.clone();
+    far.place(&Placement::new(away, DQuat::IDENTITY, 1.0).expect("a place"));
+    let middle = Bounds::of(&far).centre();
+    let ball = |radius: f64| format!("sphere:{},{},{},{radius}", middle.x, middle.y, middle.z);
+    let text = format!(
+        "any({}, all({}, plane:0,0,1,{}))",
+        ball(0.4),
+        ball(0.7),
+        -middle.z
+    );
+    let clip = text.parse::<Expression>().expect("an expression").clip();
+    let mut headless = common::headless();
+    let camera = common::views(&far, 1, common::scaled(SIZE))[0];
+    let mut draw = |scene: Scene<'_>| {
+        headless.load(scene).expect("uploads");
+        headless
+            .render(&camera, &clip, &Settings::default())
+            .expect("renders");
+        headless.picture().expect("reads back")
+    };
+    let alone = draw(named([(&far, LayerState::default())]));
+    let behind = draw(named(
+        [&near, &far].map(|part| (part, LayerState::default())),
+    ));
+    assert!(
+        alone == behind,
+        "the near layer is not in view, and changes nothing"
+    );
+    let truth = reference::render::<f64>(&Scene::from(&far), &camera, &clip, &Settings::default());
+    common::assert_agrees("far away", &behind, &truth.picture);
 }

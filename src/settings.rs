@@ -75,7 +75,7 @@ pub enum Show {
     /// which the clip leaves an alpha of 1/255 or more, and that comes before the pixel is saturated. Only tiles count.
     Count,
     /// The mean of the splats' colours, each weighted by its alpha, in no order, while alpha is as ever: the colours that lie
-    /// on a plane where the splats are [cross-sections](crate::scene::cross_section). Only tiles make it.
+    /// on a plane where the splats are cross-sections, as scene::cross_section makes them. Only tiles make it.
     Mean,
     /// The splat that adds most to the pixel's alpha: red and 65536 times green are its Gaussian's number in the scene, blue is
     /// its layer's, and alpha is what it adds; all are 0 where there is none. Only tiles make it, and only pictures of 32-bit

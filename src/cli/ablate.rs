@@ -24,13 +24,13 @@ Example:
 Each row is compared with the picture of mode none. The rows that trace everything say what a pixel keeps whose ray
 misses the ellipsoid; the paper's text keeps all of it at 1 sigma, its released code drops it at 3 sigma.")]
 pub(super) struct Ablate {
-    #[command(flatten)]
-    scenes: SceneArgs,
     /// Print the table as JSON to stdout
     #[arg(long)]
     json: bool,
     #[command(flatten)]
     common: ComparisonArgs,
+    #[command(flatten)]
+    scenes: SceneArgs,
 }
 
 #[derive(Debug, Serialize)]

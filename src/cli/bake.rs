@@ -40,27 +40,33 @@ next to nothing.
 Several scenes become one, as they are drawn together; with {} in OUT each is baked into a file of its own, with its name
 in place of {}.")]
 pub(super) struct Bake {
-    #[command(flatten)]
-    scenes: SceneArgs,
     /// The baked scene's file; {} becomes the name of each SCENE without its ending
     #[arg(short, long, value_name = "OUT.ply", value_parser = values::ply_path)]
     output: PathBuf,
-    /// What is cut: for hard nothing, splats stay or go by their centres; for the others what a frame of that mode cuts
+    /// What is cut: nothing for hard, else what a frame of that mode cuts
+    ///
+    /// With hard splats stay or go by their centres.
     #[arg(long, default_value = "exact")]
     mode: Mode,
-    /// Mode rara: the traced ellipsoid, in standard deviations; a splat is cut where the ellipsoid or what shows of the
-    /// splat is, whichever is larger [default: 3]
+    /// Mode rara: deviations of the ellipsoid that is traced [default: 3]
+    ///
+    /// A splat is cut if the ellipsoid is, or what shows of the splat, whichever is larger.
     #[arg(long, value_name = "K", value_parser = values::positive, allow_hyphen_values = true)]
     sigma: Option<f32>,
-    /// Splats that stand for a cut one, 1 to 3, side by side along the cut's normal. More follow the cut closer, but
-    /// thin ones are too opaque from some sides: look at the table
+    /// Splats that stand for one that is cut, 1 to 3
+    ///
+    /// They stand side by side along the cut's normal. More follow the cut closer, but thin ones are too opaque
+    /// from some sides: look at the table.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=3))]
     children: u32,
-    /// A cut splat stays whole where all within K deviations of its centre is kept. Up to 1, baking again with the same
-    /// clip cuts nothing again; about 1.5 follows the cut closest
+    /// A splat whose inner K deviations are kept stays whole
+    ///
+    /// Up to 1, baking again with the same clip cuts nothing again; about 1.5 follows the cut closest.
     #[arg(long, value_name = "K", default_value_t = 1.0, value_parser = values::not_negative, allow_hyphen_values = true)]
     leave: f32,
-    /// Views around the scene in which the baked scene is compared with the exact cut; 0 skips that, and needs no device
+    /// Views around the scene in which the baked scene is compared
+    ///
+    /// It is compared with the exact cut; 0 skips that, and needs no device.
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=360))]
     views: u32,
     /// Size of the pictures that are compared
@@ -77,6 +83,8 @@ pub(super) struct Bake {
     clip: ClipArgs,
     #[command(flatten)]
     device: DeviceArgs,
+    #[command(flatten)]
+    scenes: SceneArgs,
 }
 
 /// What was done, as a document.

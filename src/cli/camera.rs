@@ -7,6 +7,7 @@ use glam::DVec3;
 use rara::Camera;
 
 use super::failure::Failure;
+use super::json_kind::JsonKind;
 use super::lens::{Depths, Lens, Ortho, ortho};
 use super::views::{Framed, picked};
 pub(super) use super::views::{View, Views};
@@ -14,23 +15,25 @@ use super::{aspect, output, training, values};
 use rara::camera_files;
 
 /// The heading of these flags in the help.
-pub(super) const HEADING: &str = "Camera (without any of these it frames the scene)";
+pub(super) const HEADING: &str = "Camera";
 
 /// The camera's position and lens. Without any of these it frames what is visible of the scene.
 #[derive(Debug, Args)]
 #[command(next_help_heading = HEADING)]
 pub(super) struct CameraArgs {
-    /// The eye's position. Without --target it looks at the middle of what it would frame
+    /// The eye's position
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera"])]
     eye: Option<DVec3>,
-    /// The point that it looks at. Without --eye it does so from the side and the distance from which it would frame the scene
+    /// The point that the eye looks at
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera"])]
     target: Option<DVec3>,
-    /// The direction that is up in the picture, as 0,-1,0 or -y; where a scene is upside down, y, and where it lies on its
-    /// side, z or -z [default: -y, and where the camera frames the scene the mean of the cameras beside it, if there are any; a
-    /// section's may be another]. Of a view along it z is up, of one along z -y
+    /// Direction that is up in the picture, as -y or 0,-1,0
+    ///
+    /// y suits a scene that is upside down, z or -z one that lies on its side. By default -y, and where the camera
+    /// frames the scene the mean of the cameras beside it, if there are any; a section may have another. In a view
+    /// along it z is up, and -y in one along z.
     #[arg(long, value_name = "X,Y,Z|AXIS", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera"])]
     up: Option<DVec3>,
@@ -43,35 +46,48 @@ pub(super) struct CameraArgs {
     )]
     #[arg(conflicts_with_all = ["cameras", "camera"])]
     fov_y: f64,
-    /// Orthographic, without perspective: the picture's height in world units, or `fit` for all that is visible, without --eye
+    /// Draw without perspective, HEIGHT world units high, or fit all
+    ///
+    /// fit shows all that is visible, and goes without --eye.
     #[arg(long, value_name = "HEIGHT|fit", value_parser = ortho, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera", "fov_y"])]
     ortho: Option<Ortho>,
-    /// Cameras of a 3DGS cameras.json, a nerfstudio transforms.json or a COLMAP sparse folder [default with --view: those
-    /// beside the scene]
+    /// Take cameras from a cameras.json, transforms.json or COLMAP folder
+    ///
+    /// By default with --view: the cameras beside the scene.
     #[arg(long, value_name = "FILE", conflicts_with = "camera")]
     cameras: Option<PathBuf>,
-    /// Which of the cameras: a number from 0, a name, numbers from one to another (3..6, both of these too), several of these
-    /// with commas between them, or all [default with --cameras: 0; without it the camera frames the scene]
+    /// Which of the cameras: N, NAME, N..M, several with commas, or all
+    ///
+    /// Numbers count from 0, and a range has both of its ends. By default 0 with --cameras; without it the camera
+    /// frames the scene.
     #[arg(long, value_name = "N|NAME|N..M|all", conflicts_with_all = ["eye", "target", "ortho", "fov_y", "up"])]
     view: Option<String>,
-    /// One camera: JSON with width, height, fx, fy, cx, cy, world_to_camera (16 numbers, row-major), and perhaps
-    /// "projection": "orthographic"; fx and fy are then the pixels of a world unit. --save-camera writes such a file, and
-    /// --json has the same under "camera". With --view the file may hold a list of cameras
+    /// Take one camera from a JSON file, as --save-camera writes it
+    ///
+    /// The file has width, height, fx, fy, cx, cy, world_to_camera (16 numbers, row-major), and perhaps
+    /// "projection": "orthographic"; fx and fy are then the pixels of a world unit. --json has the same under
+    /// "camera". With --view the file may hold a list of cameras.
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
-    /// Keep what is at this depth or deeper, world units along the view axis: a plane that moves with the camera, cuts every
-    /// layer, and cuts splats as --mode says
+    /// Keep what is at this depth or deeper, world units
+    ///
+    /// It is a plane across the view axis, which moves with the camera, cuts every layer, and cuts splats as --mode
+    /// says.
     #[arg(long, value_name = "DEPTH", allow_hyphen_values = true)]
     clip_near: Option<f64>,
-    /// Keep what is at this depth or nearer, likewise
+    /// Keep what is at this depth or nearer
     #[arg(long, value_name = "DEPTH", allow_hyphen_values = true)]
     clip_far: Option<f64>,
-    /// Draw splats whose centres are at this depth or deeper, each whole, world units [default: 0.2]
+    /// Draw splats whose centres are at this depth or deeper, world units
+    ///
+    /// Each is drawn whole. By default 0.2.
     #[arg(long, value_name = "DEPTH")]
     near_cut: Option<f64>,
-    /// Picture size [default: 1024x1024, or the camera file's own; a window's: 1280x720]. Of another aspect than the camera
-    /// file's it shows all that the camera sees, undistorted, and more beside it
+    /// Size of the picture [default: 1024x1024, or the camera file's]
+    ///
+    /// A window is 1280x720. Of another aspect than the camera file's the picture shows all that the camera sees,
+    /// undistorted, and more beside it.
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     size: Option<(u32, u32)>,
     /// Whether only the camera's place and its axes count.
@@ -206,7 +222,8 @@ impl CameraArgs {
             )));
         }
         let path = self.file(scenes, flag)?;
-        let loaded = training::load_cameras(&path, scenes)?
+        let loaded = training::load_cameras(&path, scenes)
+            .map_err(|error| JsonKind::Cameras.wanted(&path, error))?
             .into_iter()
             .enumerate();
         let mut views: Vec<View> = loaded
@@ -299,6 +316,6 @@ fn only(path: &Path, scenes: &[PathBuf]) -> Result<Camera, Failure> {
             path.display(),
             several.len()
         ))),
-        Err(_) => Err(error.into()),
+        Err(_) => Err(JsonKind::Cameras.wanted(path, error)),
     }
 }

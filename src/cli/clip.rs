@@ -7,6 +7,7 @@ use rara::clip::{Expression, NamedClip, clips_to_json, load_clips};
 use rara::{Bounds, Clip, ClipOp, Plane, Scene};
 
 use super::failure::Failure;
+use super::json_kind::JsonKind;
 use super::output;
 use super::region::Region;
 use super::values;
@@ -15,27 +16,35 @@ use super::values;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Clip")]
 pub(super) struct ClipArgs {
-    /// A shape whose inside stays visible (repeatable): plane:nx,ny,nz,d keeps n.x + d >= 0; slab:nx,ny,nz,d,thickness
-    /// begins at such a plane; box:cx,cy,cz,hx,hy,hz[,qw,qx,qy,qz] has a centre, half sizes and a rotation;
-    /// sphere:cx,cy,cz,r; ellipsoid:cx,cy,cz,rx,ry,rz[,qw,qx,qy,qz]; cylinder:ax,ay,az,bx,by,bz,r lies between two discs;
-    /// capsule:ax,ay,az,bx,by,bz,r is within r of a stretch of a line; cone:ax,ay,az,bx,by,bz,r has its tip at a and a disc
-    /// around b. A leading ! keeps the outside, in single quotes: '!box:0,0,0,1,1,1'. plane:x=40% lies across an axis at a share of
-    /// the scene's robust bounds and keeps what lies beyond it; slab:z=40%..60% lies between two shares
+    /// Keep the inside of a shape (repeatable); '!SHAPE' keeps its outside
+    ///
+    /// plane:nx,ny,nz,d keeps n.x + d >= 0. plane:x=40% lies across an axis at 40 % of the scene's robust bounds
+    /// and keeps what lies beyond. slab:nx,ny,nz,d,thickness begins at such a plane; slab:z=40%..60% lies between
+    /// two shares. box:cx,cy,cz,hx,hy,hz[,qw,qx,qy,qz] has a centre, half sizes and a rotation. sphere:cx,cy,cz,r.
+    /// ellipsoid:cx,cy,cz,rx,ry,rz[,qw,qx,qy,qz]. cylinder:ax,ay,az,bx,by,bz,r lies between two discs.
+    /// capsule:ax,ay,az,bx,by,bz,r is within r of a stretch of a line. cone:ax,ay,az,bx,by,bz,r has its tip at a
+    /// and a disc around b. Shells need single quotes around a leading !: '!box:0,0,0,1,1,1'.
     #[arg(long, value_name = "SHAPE", value_parser = Region::shape, allow_hyphen_values = true)]
     clip: Vec<Region>,
-    /// An expression of shapes (repeatable): all(...) keeps what all of its operands keep, any(...) what any of them does,
-    /// not(...) what its operand does not, as in 'all(box:0,0,0,1,1,1, not(sphere:1,0,0,.5))'
+    /// Keep what an expression of shapes keeps: all(...), any(...), not(...)
+    ///
+    /// all(...) keeps what all of its operands keep, any(...) what at least one keeps, not(...) what its operand
+    /// does not keep, as in 'all(box:0,0,0,1,1,1, not(sphere:1,0,0,.5))'. The flag is repeatable.
     #[arg(long, value_name = "EXPRESSION", value_parser = Region::expression, allow_hyphen_values = true)]
     clip_expr: Vec<Region>,
-    /// The clips of a JSON file (repeatable): a list of planes, {"normal":[x,y,z],"d":d}, or of expressions as trees,
-    /// {"clip":{"all":[...]}}, as --save-clip writes them, each with a "name" or without. :NAME takes those of that name, or the
-    /// one of that number (from 0), and :* all of them; a file of several clips with names needs one of these
+    /// Take clips from a JSON file (repeatable)
+    ///
+    /// The file is a list of planes, {"normal":[x,y,z],"d":d}, or of expressions as trees, {"clip":{"all":[...]}},
+    /// as --save-clip writes them, each with a "name" or without. :NAME takes the clips of that name, or the one of
+    /// that number (from 0), and :* takes all of them. A file of several clips with names needs one of these.
     #[arg(long, value_name = "FILE[:NAME]")]
     clip_file: Vec<String>,
-    /// Write the clip that the flags make to a JSON file, which --clip-file reads; a section's own plane is not in it
+    /// Write the clip to a JSON file, which --clip-file reads
+    ///
+    /// A section's own plane is not in it. Shares of the scene are written as the places that they mean.
     #[arg(long, value_name = "FILE")]
     save_clip: Option<PathBuf>,
-    /// How several shapes combine: visible in all of them, or in any
+    /// Whether a point has to be in all shapes, or in any
     #[arg(long, value_name = "OP", default_value = "and")]
     clip_op: ClipOp,
 }
@@ -139,7 +148,9 @@ impl ClipArgs {
         let mut planes = Vec::new();
         for file in &self.clip_file {
             let plane = |named: NamedClip| Some((named.name, named.clip.as_plane()?));
-            planes.extend(load_clips(file.as_ref())?.into_iter().filter_map(plane));
+            let path = Path::new(file);
+            let clips = load_clips(path).map_err(|error| JsonKind::Clips.wanted(path, error))?;
+            planes.extend(clips.into_iter().filter_map(plane));
         }
         Ok(planes)
     }
@@ -167,7 +178,7 @@ fn from_file(text: &str) -> Result<Vec<Expression>, Failure> {
         Some(at) => (Path::new(&text[..at]), Some(&text[at + 1..])),
         None => (Path::new(text), None),
     };
-    let clips = load_clips(path)?;
+    let clips = load_clips(path).map_err(|error| JsonKind::Clips.wanted(path, error))?;
     let name = match name {
         Some(ALL) => None,
         None if are_alternatives(&clips) => {

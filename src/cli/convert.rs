@@ -33,8 +33,6 @@ placed and faded, and hidden layers are left out.
 --clip and the like keep whole Gaussians by their centres, in the space of the scene as it was read; `rara bake` cuts
 them. After the clip, the scene is scaled, then turned, then moved.")]
 pub(super) struct Convert {
-    #[command(flatten)]
-    scenes: SceneArgs,
     /// The file to write; its name says the format
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
@@ -58,6 +56,8 @@ pub(super) struct Convert {
     json: bool,
     #[command(flatten)]
     clip: ClipArgs,
+    #[command(flatten)]
+    scenes: SceneArgs,
 }
 
 /// What was done, as a document.

@@ -31,7 +31,7 @@ Writes none.png, hard.png, rara.png, exact.png and sheet.png, which also magnifi
 differ most. \"own\" compares the picture with the same mode computed
 in double precision on the CPU; \"truth\" with the exact cut.")]
 pub(super) struct Demo {
-    /// Scene files, of any format; several are the layers of one scene. Without any, a made-up scene
+    /// Scene files, the layers of one scene [default: a made-up scene]
     #[arg(value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     /// Folder for the pictures; made unless it is there

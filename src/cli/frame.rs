@@ -10,9 +10,9 @@ use super::settings::{DeviceArgs, LookArgs, SettingsArgs};
 #[derive(Debug, Args)]
 pub(super) struct FrameArgs {
     #[command(flatten)]
-    pub(super) camera: CameraArgs,
-    #[command(flatten)]
     pub(super) clip: ClipArgs,
+    #[command(flatten)]
+    pub(super) camera: CameraArgs,
     #[command(flatten)]
     pub(super) settings: SettingsArgs,
     #[command(flatten)]

@@ -2,6 +2,7 @@
 
 use clap::Args;
 use glam::DVec3;
+use rara::Gaussians;
 use serde::Serialize;
 
 use super::failure::Failure;
@@ -19,11 +20,11 @@ Example:
 Statistics are the least value, the 1st, 50th and 99th percentiles, and the greatest. What the loader repaired or
 dropped comes first.")]
 pub(super) struct Info {
-    #[command(flatten)]
-    scenes: SceneArgs,
     /// Print it as JSON to stdout
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    scenes: SceneArgs,
 }
 
 #[derive(Debug, Serialize)]
@@ -34,6 +35,13 @@ struct Document {
     repaired: u64,
     dropped: u64,
     notes: Vec<String>,
+    #[serde(flatten)]
+    facts: Facts,
+}
+
+/// Facts about Gaussians.
+#[derive(Debug, Serialize)]
+struct Facts {
     /// Box around all centres.
     centres: Extent,
     /// Box without the stray centres, along which sections and sweeps count.
@@ -77,6 +85,9 @@ struct LayerFacts {
     antialiased: bool,
     /// Whether it has a clip of its own.
     clipped: bool,
+    /// What else there is to say of it, where it is one of several.
+    #[serde(rename = "statistics", skip_serializing_if = "Option::is_none")]
+    facts: Option<Facts>,
 }
 
 impl LayerFacts {
@@ -91,6 +102,7 @@ impl LayerFacts {
             visible: layer.state.visible,
             antialiased: layer.gaussians.is_antialiased(),
             clipped: layer.clip.is_some(),
+            facts: None,
         }
     }
 }
@@ -122,13 +134,8 @@ impl Extent {
     }
 }
 
-impl Info {
-    pub(super) fn run(self) -> Result<(), Failure> {
-        let mut loaded = self.scenes.load()?;
-        let (repaired, dropped) = (loaded.repaired, loaded.dropped);
-        let notes = std::mem::take(&mut loaded.notes);
-        let layers = loaded.layers.iter().map(LayerFacts::of).collect();
-        let gaussians = &loaded.merged();
+impl Facts {
+    fn of(gaussians: &Gaussians) -> Self {
         let sorted = |index: usize| {
             let mut axes = gaussians.scales()[index].to_array();
             axes.sort_unstable_by(f32::total_cmp);
@@ -143,13 +150,7 @@ impl Info {
             DVec3::INFINITY
         };
         let robust = Bounds::of(gaussians);
-        let document = Document {
-            gaussians: gaussians.len(),
-            layers,
-            sh_degree: gaussians.sh_degree(),
-            repaired,
-            dropped,
-            notes,
+        Self {
             centres: Extent::new(
                 centres.clone().fold(empty, DVec3::min),
                 centres.fold(-empty, DVec3::max),
@@ -160,6 +161,64 @@ impl Info {
             elongation: Spread::of(all.clone().map(|i| ratio(sorted(i)[2], sorted(i)[1]))),
             flatness: Spread::of(all.map(|i| ratio(sorted(i)[1], sorted(i)[0]))),
             cut: bands(gaussians),
+        }
+    }
+
+    /// The lines for people.
+    fn lines(&self) -> Vec<String> {
+        let corner = |[x, y, z]: [f64; 3]| format!("{x:.4}, {y:.4}, {z:.4}");
+        let extent = |e: Extent| format!("({}) to ({})", corner(e.min), corner(e.max));
+        let spread = |s: Spread| {
+            format!(
+                "{:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e}",
+                s.min, s.p1, s.median, s.p99, s.max
+            )
+        };
+        let Bands { ours, paper } = self.cut;
+        vec![
+            format!("centres        {}", extent(self.centres)),
+            format!("robust bounds  {}", extent(self.robust_bounds)),
+            format!(
+                "{:>26} {:>11} {:>11} {:>11} {:>11}",
+                "min", "1 %", "median", "99 %", "max"
+            ),
+            format!("opacity        {}", spread(self.opacity)),
+            format!("scale          {}", spread(self.scale)),
+            format!("elongation     {}", spread(self.elongation)),
+            format!("flatness       {}", spread(self.flatness)),
+            format!(
+                "cut by a plane through the middle: {:.2} %; in the paper's band of 3 max sigma: {:.2} %, {:.2} times as many",
+                100.0 * ours,
+                100.0 * paper,
+                paper / ours.max(1e-30)
+            ),
+        ]
+    }
+}
+
+impl Info {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let mut loaded = self.scenes.load()?;
+        let (repaired, dropped) = (loaded.repaired, loaded.dropped);
+        let notes = std::mem::take(&mut loaded.notes);
+        let mut layers: Vec<_> = loaded.layers.iter().map(LayerFacts::of).collect();
+        if layers.len() > 1 {
+            for (facts, layer) in layers.iter_mut().zip(&loaded.layers) {
+                let mut placed = layer.gaussians.clone();
+                // What single precision cannot hold there is in no picture either.
+                let _ = placed.place(&layer.state.placement);
+                facts.facts = Some(Facts::of(&placed));
+            }
+        }
+        let gaussians = &loaded.merged();
+        let document = Document {
+            gaussians: gaussians.len(),
+            layers,
+            sh_degree: gaussians.sh_degree(),
+            repaired,
+            dropped,
+            notes,
+            facts: Facts::of(gaussians),
         };
         if self.json {
             return Ok(output::json(&document)?);
@@ -170,14 +229,6 @@ impl Info {
 
 /// The lines for people.
 fn table(document: &Document) -> Vec<String> {
-    let corner = |[x, y, z]: [f64; 3]| format!("{x:.4}, {y:.4}, {z:.4}");
-    let extent = |e: Extent| format!("({}) to ({})", corner(e.min), corner(e.max));
-    let spread = |s: Spread| {
-        format!(
-            "{:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e}",
-            s.min, s.p1, s.median, s.p99, s.max
-        )
-    };
     let mut lines = Vec::new();
     lines.push(format!(
         "gaussians      {}",
@@ -210,23 +261,13 @@ fn table(document: &Document) -> Vec<String> {
     lines.push(format!("SH degree      {}", document.sh_degree));
     lines.push(format!("repaired       {}", grouped(document.repaired)));
     lines.push(format!("dropped        {}", grouped(document.dropped)));
-    lines.push(format!("centres        {}", extent(document.centres)));
-    lines.push(format!("robust bounds  {}", extent(document.robust_bounds)));
-    lines.push(format!(
-        "{:>26} {:>11} {:>11} {:>11} {:>11}",
-        "min", "1 %", "median", "99 %", "max"
-    ));
-    lines.push(format!("opacity        {}", spread(document.opacity)));
-    lines.push(format!("scale          {}", spread(document.scale)));
-    lines.push(format!("elongation     {}", spread(document.elongation)));
-    lines.push(format!("flatness       {}", spread(document.flatness)));
-    let Bands { ours, paper } = document.cut;
-    lines.push(format!(
-        "cut by a plane through the middle: {:.2} %; in the paper's band of 3 max sigma: {:.2} %, {:.2} times as many",
-        100.0 * ours,
-        100.0 * paper,
-        paper / ours.max(1e-30)
-    ));
+    lines.extend(document.facts.lines());
+    for layer in &document.layers {
+        if let Some(facts) = &layer.facts {
+            lines.push(format!("\nlayer {}", layer.name));
+            lines.extend(facts.lines().into_iter().map(|line| format!("  {line}")));
+        }
+    }
     lines
 }
 

@@ -21,8 +21,10 @@ mod film;
 mod frame;
 mod framing;
 mod generate;
+mod help;
 mod info;
 mod ink;
+mod json_kind;
 mod layer_clip;
 mod lens;
 mod memory;
@@ -66,7 +68,7 @@ mod warm;
 
 use std::process::ExitCode;
 
-use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{ArgMatches, FromArgMatches, Parser, Subcommand};
 
 use failure::Failure;
 
@@ -88,8 +90,10 @@ Examples:
 
 Exit status: 0 done, 1 the work failed, 2 the command line is wrong.")]
 struct Cli {
-    /// Print only what was asked for, and why something failed: no notes, no warnings, no progress
-    #[arg(short, long, global = true)]
+    /// Print only what was asked for, and why something failed
+    ///
+    /// No notes, no warnings, no progress.
+    #[arg(short, long, global = true, display_order = 900)]
     quiet: bool,
     #[command(subcommand)]
     command: Command,
@@ -115,6 +119,7 @@ enum Command {
     Warm(warm::Warm),
     Completions(shell::Completions),
     Man(shell::Man),
+    Help(help::Help),
 }
 
 impl Command {
@@ -138,21 +143,22 @@ impl Command {
             Self::Warm(command) => command.run(),
             Self::Completions(command) => command.run(),
             Self::Man(command) => command.run(),
+            Self::Help(command) => command.run(),
         }
     }
 }
 
 /// The command line, and where its values are from.
 fn typed() -> Result<(Cli, ArgMatches), clap::Error> {
-    let typed = Cli::command().try_get_matches()?;
+    let typed = help::command().try_get_matches()?;
     let cli = Cli::from_arg_matches(&typed);
-    let cli = cli.map_err(|error| error.format(&mut Cli::command()))?;
+    let cli = cli.map_err(|error| error.format(&mut help::command()))?;
     Ok((cli, typed))
 }
 
 /// Fails where a flag has no effect.
 fn needs_met(typed: &ArgMatches) -> Result<(), Failure> {
-    let all = Cli::command();
+    let all = help::command();
     match typed.subcommand() {
         Some((name, typed)) => {
             let command = all.find_subcommand(name);
@@ -165,6 +171,7 @@ fn needs_met(typed: &ArgMatches) -> Result<(), Failure> {
 /// Parses the command line, runs the command, and turns a failure into its sentence and exit status.
 pub(crate) fn main() -> ExitCode {
     process::begin();
+    output::tell_warnings();
     let outcome = match typed() {
         Ok((cli, typed)) => {
             if cli.quiet {
@@ -196,6 +203,6 @@ pub(crate) fn main() -> ExitCode {
 mod tests {
     #[test]
     fn clap_finds_no_fault_with_the_definitions() {
-        <super::Cli as clap::CommandFactory>::command().debug_assert();
+        super::help::command().debug_assert();
     }
 }

@@ -64,6 +64,28 @@ pub(super) fn complain(line: impl Display) {
     let _ = writeln!(io::stderr(), "{line}");
 }
 
+/// Tells people what the library warns of.
+pub(super) fn tell_warnings() {
+    struct Notes;
+    impl log::Log for Notes {
+        fn enabled(&self, about: &log::Metadata<'_>) -> bool {
+            about.level() == log::Level::Warn && about.target().starts_with("rara")
+        }
+
+        fn log(&self, record: &log::Record<'_>) {
+            if self.enabled(record.metadata()) {
+                warn_once(format!("note: {}", record.args()));
+            }
+        }
+
+        fn flush(&self) {}
+    }
+    // Nothing else in this program sets a logger.
+    if log::set_logger(&Notes).is_ok() {
+        log::set_max_level(log::LevelFilter::Warn);
+    }
+}
+
 /// A sign of life while shaders are compiled, however many parts of the program say so at once.
 pub(super) struct Compiling(());
 

@@ -17,10 +17,12 @@ use super::failure::Failure;
 
 /// A picture of all directions.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Camera paths, films and panoramas")]
+#[command(next_help_heading = "Paths, films and panoramas")]
 pub(super) struct PanoramaArgs {
-    /// Draw all that is seen from --eye, or from a camera of a file or path: an equirectangular picture, twice as wide as high
-    /// [default: 2048x1024], with what the camera looks at in its middle
+    /// Draw everything that is seen from --eye, twice as wide as high
+    ///
+    /// The picture is equirectangular [default: 2048x1024], and what the camera looks at is in its middle. The
+    /// place may also be a camera of a file or of a path.
     #[arg(long, conflicts_with_all = ["ortho", "fov_y", "section", "aov", "clip_near", "clip_far", "near_cut"])]
     panorama: bool,
 }

@@ -7,25 +7,38 @@ use rara::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Precision")]
 pub(super) struct PrecisionArgs {
-    /// A choice of all the following; the guide (src/guide/modes.md) has what each costs and gives up
+    /// A choice of all the following
+    ///
+    /// The guide (src/guide/modes.md) has what each costs and gives up.
     #[arg(long, default_value = "balanced")]
     pub(super) preset: Preset,
-    /// Channels of the picture that is drawn into: 8 bits, or floats of 16 or 32
+    /// Channels of the target: 8 bits, or floats of 16 or 32
     #[arg(long, value_name = "FORMAT")]
     target_format: Option<TargetFormat>,
-    /// Spherical harmonics on the device: floats of 32 or 16 bits, 11 bits and a scale a degree (packed), or 8 and a scale a Gaussian
+    /// Storage of spherical harmonics on the device
+    ///
+    /// Floats of 32 or 16 bits, 11 bits and a scale for each degree (packed), or 8 bits and a scale for each
+    /// Gaussian.
     #[arg(long, value_name = "FORMAT")]
     sh_format: Option<ShFormat>,
-    /// Approximation of the normal distribution in mode exact: off by at most 2e-5, 1.4e-4 or 1e-2
+    /// Mode exact: approximation of the normal distribution
+    ///
+    /// The forms are off by at most 2e-5, 1.4e-4 or 1e-2.
     #[arg(long, value_name = "FORM")]
     phi: Option<PhiForm>,
-    /// How many bits of the depths the sort compares at most; each pass takes 8
+    /// Bits of the depths that the sort compares, at most
+    ///
+    /// Each pass of the sort takes 8.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(8..=32))]
     key_bits: Option<u32>,
-    /// Mode exact: sigma/depth above which a cut splat gets the form that is exact in perspective; 0 is all of them
+    /// Mode exact: sigma/depth from which the form in perspective is used
+    ///
+    /// 0 uses that form for all cut splats.
     #[arg(long, value_name = "X", value_parser = switch, allow_hyphen_values = true)]
     beam_switch: Option<f32>,
-    /// Tiles: transmittance below which a pixel is saturated, and what lies behind is left out; 0 blends everything
+    /// Tiles: transmittance at which a pixel is saturated
+    ///
+    /// What lies behind is left out; 0 blends everything.
     #[arg(long, value_name = "X", value_parser = transmittance, allow_hyphen_values = true)]
     transmittance_min: Option<f32>,
 }

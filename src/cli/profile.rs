@@ -13,10 +13,14 @@ use super::session::Session;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Profiling")]
 pub(super) struct ProfileArgs {
-    /// Write what took how long on processor and device, for ui.perfetto.dev or chrome://tracing
+    /// Write a trace for ui.perfetto.dev or chrome://tracing
+    ///
+    /// It shows how long each step takes on the processor and on the device.
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
-    /// Count what each stage does, where the device can: "statistics" in the JSON, a line each otherwise
+    /// Count what each stage does, if the device can
+    ///
+    /// The counts are "statistics" in the JSON, and a line for each stage otherwise.
     #[arg(long)]
     statistics: bool,
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
-use rara::{Aov, Camera, Clip, Scene, Settings};
+use rara::{Aov, Camera, Clip, Scene, Settings, Show};
 
 use super::camera::{View, Views};
 use super::clip::Regions;
@@ -15,7 +15,7 @@ use super::memory;
 use super::output;
 use super::panorama::{self, Panorama, PanoramaArgs};
 use super::path::PathArgs;
-use super::pictures::{Destination, Drawn, PictureArgs, Planned};
+use super::pictures::{self, Destination, Drawn, PictureArgs, Planned};
 use super::profile::{Profile, ProfileArgs};
 use super::report::{Answer, Frame, Report};
 use super::save_camera::SaveCameraArgs;
@@ -48,38 +48,43 @@ Examples:
 
 Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premultiplied.")]
 pub(super) struct Render {
-    #[command(flatten)]
-    scenes: SceneArgs,
-    /// The picture's file, .png or .exr; its folders are made; - is standard output, as --format says. {} becomes the number of
-    /// the camera or section, {:04} the number with zeros before it, {name} its name. A name that ends in .apng is a film of
-    /// all pictures; so is one in .mp4, .mov, .mkv or .webm, which ffmpeg encodes. A folder gets several pictures as
-    /// frame_000.png and so on. May be left out with --json or --json-lines
+    /// Picture, .png or .exr; a film, .apng, .mp4, .mov, .mkv or .webm; - is stdout
+    ///
+    /// Folders are made. {} becomes the number of the camera or section, {:04} the number with zeros before it, and
+    /// {name} its name. A folder gets several pictures as frame_000.png and so on. A film holds all pictures;
+    /// ffmpeg encodes all but .apng. --format says what standard output gets. The flag may be left out with --json
+    /// and --json-lines.
     #[arg(short, long, value_name = "OUT", value_parser = values::pictures_file())]
     #[arg(required_unless_present_any = ["json", "json_lines"])]
     output: Option<PathBuf>,
-    /// Channels of the .exr beside its colours. Each is drawn by itself, and no time is reported of it
+    /// Channels of the .exr beside its colours
+    ///
+    /// Each is drawn in frames of its own, and no time of it is reported.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     aov: Vec<Aov>,
-    /// Render N times, nothing carried over between them, and report the medians [default: as often as five frames need, but no
-    /// longer than about 2 s]
+    /// Render N times from nothing, and report the medians
+    ///
+    /// By default as often as five frames need, but no longer than about 2 s.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     repeat: Option<u32>,
     #[command(flatten)]
     pictures: PictureArgs,
     #[command(flatten)]
-    path: PathArgs,
+    frame: FrameArgs,
     #[command(flatten)]
-    panorama: PanoramaArgs,
+    save_camera: SaveCameraArgs,
     #[command(flatten)]
     section: SectionArgs,
     #[command(flatten)]
     slice: SliceArgs,
     #[command(flatten)]
-    frame: FrameArgs,
+    path: PathArgs,
     #[command(flatten)]
-    save_camera: SaveCameraArgs,
+    panorama: PanoramaArgs,
     #[command(flatten)]
     profile: ProfileArgs,
+    #[command(flatten)]
+    scenes: SceneArgs,
 }
 
 /// The pictures that are asked for.
@@ -165,7 +170,12 @@ impl Render {
         let numbers = pictures.numbers();
         let several = self.several(numbers.len());
         let several = several.as_deref();
-        self.check_channels()?;
+        if !self.aov.is_empty() {
+            pictures::needs_floats(self.output.as_deref(), "--aov makes channels")?;
+        }
+        if settings.show == Show::Count {
+            pictures::needs_floats(self.output.as_deref(), pictures::COUNTS)?;
+        }
         let output = self.output.as_deref();
         let destination = self.pictures.destination(output, &numbers, several)?;
         let settings = destination.settings(settings);
@@ -310,19 +320,6 @@ impl Render {
             // A trace shows what happens in a frame; more of them would be harder to read.
             None if self.profile.is_traced() => Repeat::Exactly(1),
             None => Repeat::of_pictures(frames),
-        }
-    }
-
-    /// Refuses channels for files that hold none.
-    fn check_channels(&self) -> Result<(), Failure> {
-        let ending = self.output.as_ref().and_then(|file| file.extension());
-        let is_exr = ending.is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
-        match self.aov.is_empty() || is_exr {
-            true => Ok(()),
-            false => Err(Failure::Usage(
-                "--aov makes channels that only .exr files hold: give -o a name that ends in .exr"
-                    .into(),
-            )),
         }
     }
 }

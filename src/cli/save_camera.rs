@@ -71,8 +71,10 @@ fn text(document: &impl Serialize) -> String {
 /// Where the cameras go.
 #[derive(Debug, Args)]
 pub(super) struct SaveCameraArgs {
-    /// Write the camera of the picture to a file, which draws the same picture by --camera; those of several pictures are a
-    /// list with names, which --cameras and --view read
+    /// Write the camera of the picture to a JSON file
+    ///
+    /// --camera draws the same picture from it. The cameras of several pictures are a list with names, which
+    /// --cameras and --view read.
     #[arg(long, value_name = "FILE", help_heading = HEADING)]
     save_camera: Option<PathBuf>,
 }

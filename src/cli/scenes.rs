@@ -6,6 +6,7 @@ use clap::Args;
 use rara::{Gaussians, Layer, LayerState};
 
 use super::failure::Failure;
+use super::json_kind::JsonKind;
 use super::output::say;
 use super::reading::{self, Watch};
 use super::scene_file::{self, LayerClip, LayerEntry};
@@ -14,38 +15,52 @@ use rara::scene::{Format, Property};
 
 /// The flags that name the scene.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Layers")]
 pub(super) struct SceneArgs {
-    /// Scene files (3DGS .ply, .compressed.ply, .splat, .ksplat, .spz, .sog, a folder of SOG, .glb, .gltf), or a folder that training left, of which the last iteration counts, or - for standard input; several are the layers of one scene, each called by its file's name or as in NAME=FILE. A
-    /// .json file lists layers: {"layers":[{"path":"skin.ply","name":"skin","opacity":0.5,"visible":true,
+    /// Scene files or a folder; - is standard input
+    ///
+    /// Formats: 3DGS .ply, .compressed.ply, .splat, .ksplat, .spz, .sog, a folder of SOG, .glb and .gltf; or a
+    /// folder that training left, of which the last iteration counts. Several files are the layers of one scene. A
+    /// layer has the name of its file, or a name given as NAME=FILE. A .json file lists layers:
+    /// {"layers":[{"path":"skin.ply","name":"skin","opacity":0.5,"visible":true,
     /// "antialiased":true,"position":[x,y,z],"rotation":[w,x,y,z],"scale":s,"clip":{...} or "clip_expr":"...",
     /// "select":[{"name":"vessels","where":"label in 3,4"}]}]}
-    #[arg(value_name = "SCENE", required = true)]
+    #[arg(value_name = "SCENE", required = true, help_heading = None)]
     files: Vec<PathBuf>,
-    /// Makes a layer of its own of the splats that fulfil a predicate (repeatable): opacity>0.5, size<0.01 (the largest
-    /// standard deviation), red>0.6, green, blue (the colour of degree 0), 'label in 3,4,7..9' (any property of the file;
-    /// property(NAME) where its name means something else), 'inside(sphere:0,0,0,1)' (the centre, in any expression as for
-    /// --clip-expr), joined by and, or, not and ( ); comparisons are < <= > >= = and !=. It takes from every file, or as
-    /// LAYER/NAME=PREDICATE from one layer, what earlier selections have left
+    /// Make a layer of the splats that fulfil a predicate (repeatable)
+    ///
+    /// Predicates are opacity>0.5, size<0.01 (the largest standard deviation), red>0.6, green and blue (the colour
+    /// of degree 0), 'label in 3,4,7..9' (any property of the file; property(NAME) if its name means something
+    /// else) and 'inside(sphere:0,0,0,1)' (by the centre, in any expression as for --clip-expr), joined by and, or,
+    /// not and ( ). Comparisons are < <= > >= = and !=. A selection takes from every file, or as
+    /// LAYER/NAME=PREDICATE from one layer, what earlier selections have left.
     #[arg(long, value_name = "NAME=PREDICATE")]
     select: Vec<String>,
-    /// The clip of one layer in place of the frame's (repeatable): an expression as for --clip-expr, which a --section cuts
-    /// besides; whole for a layer that nothing cuts; frame for one that the frame's clip cuts although its list says otherwise
+    /// Give one layer a clip of its own (repeatable)
+    ///
+    /// The clip is an expression as for --clip-expr, in place of the frame's clip; a --section cuts the layer as
+    /// well. whole is a layer that nothing cuts. frame is a layer that the frame's clip cuts although its list says
+    /// otherwise.
     #[arg(long, value_name = "NAME=EXPRESSION")]
     layer_clip: Vec<String>,
-    /// Whether splats that the low-pass makes larger than they are get no brighter for it, as scenes need it that were trained
-    /// antialiased (3DGS --antialiasing, gsplat, Mip-Splatting): on, off, or auto, which goes by what files and the training's
-    /// settings beside them say [default: auto]; NAME=on says it of one layer (repeatable)
+    /// Whether the scene was trained antialiased: on, off or auto
+    ///
+    /// Splats that the low-pass makes larger than they are then get no brighter, as scenes need it that were
+    /// trained antialiased (3DGS --antialiasing, gsplat, Mip-Splatting). auto, the default, goes by what the files
+    /// and the training's settings beside them say. NAME=on says it of one layer (repeatable).
     #[arg(long, value_name = "on|off|auto")]
     antialiasing: Vec<String>,
-    /// Where a layer stands (repeatable), in place of what its list says: move:X,Y,Z, turn:X,Y,Z,DEGREES or rotation:W,X,Y,Z,
-    /// and scale:S, with blanks between several. It is scaled, then turned about its own origin, then moved; without NAME= all
-    /// layers are
+    /// Place a layer: move:X,Y,Z turn:X,Y,Z,DEGREES scale:S (repeatable)
+    ///
+    /// The place replaces what a list says of the layer. rotation:W,X,Y,Z is a quaternion in place of turn. Blanks
+    /// separate several. The layer is scaled, then turned about its own origin, then moved. Without NAME= all
+    /// layers are placed.
     #[arg(long, value_name = "[NAME=]PLACE")]
     place: Vec<String>,
-    /// Leaves a layer out of the picture (repeatable)
+    /// Leave a layer out of the picture (repeatable)
     #[arg(long, value_name = "NAME")]
     hide: Vec<String>,
-    /// Shows a layer that its list hides (repeatable)
+    /// Show a layer that its list hides (repeatable)
     #[arg(long, value_name = "NAME")]
     unhide: Vec<String>,
 }
@@ -352,7 +367,7 @@ fn named_file(typed: &Path) -> Result<Vec<LayerEntry>, Failure> {
                 "{name}={}: a list of layers has names of its own; leave this one out",
                 path.display()
             ))),
-            None => Ok(scene_file::read(path)?),
+            None => scene_file::read(path).map_err(|error| JsonKind::Scene.wanted(path, error)),
         };
     }
     let mut entry = LayerEntry::of(path);

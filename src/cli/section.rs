@@ -17,15 +17,19 @@ use super::values;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Sections")]
 pub(super) struct SectionArgs {
-    /// Cut the scene and face the cut, without perspective (repeatable): AXIS=SHARE is across an axis, at a share from
-    /// 0 to 1 of the robust bounds that rara info prints; AXIS=FROM..TO:COUNT is so many of them. Axes: z or axial, y or coronal, x or
-    /// sagittal; a leading ! looks from the other side. NAME is a plane of a --clip-file, which then clips nothing else
+    /// Cut across an axis and face the cut: axial=0.4, z=0.1..0.9:9 (repeatable)
+    ///
+    /// AXIS=SHARE cuts at a share from 0 to 1 of the robust bounds that rara info prints; AXIS=FROM..TO:COUNT is that many
+    /// sections. Axes are z or axial, y or coronal, x or sagittal; a leading ! looks from the other side. NAME is a
+    /// plane of a --clip-file, which then clips nothing else. The picture has no perspective.
     #[arg(long, value_name = "AXIS=SHARE|NAME", value_parser = wanted, allow_hyphen_values = true)]
     section: Vec<Wanted>,
-    /// Keep a slab of this thickness behind each section, world units, instead of all that lies behind it
+    /// Keep a slab of this thickness, world units [default: all behind]
     #[arg(long, value_name = "T", value_parser = values::positive, allow_hyphen_values = true)]
     section_thickness: Option<f32>,
-    /// World units of a pixel [default: as many as hold all that is visible of the scene, alike for all sections across an axis]
+    /// World units of a pixel [default: as many as show the scene]
+    ///
+    /// By default as many as hold all that is visible, alike for all sections across an axis.
     #[arg(long, value_name = "S", value_parser = values::positive, allow_hyphen_values = true)]
     section_scale: Option<f32>,
 }

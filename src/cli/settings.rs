@@ -11,16 +11,20 @@ use super::{output, values};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Drawing")]
 pub(super) struct SettingsArgs {
-    /// How Gaussians that the clip cuts are treated
+    /// How Gaussians that the clip cuts are drawn
     #[arg(long, default_value = "exact")]
     pub(super) mode: Mode,
-    /// The quantity that a cut splat's visible share scales [default: linear for rara, depth for exact]
+    /// What a cut splat's visible share scales
+    ///
+    /// By default linear for rara, and depth for exact.
     #[arg(long, value_name = "LAW")]
     decay: Option<Decay>,
-    /// Mode rara: the ellipsoid it traces, in standard deviations [default: 3]
+    /// Mode rara: deviations of the ellipsoid that is traced [default: 3]
     #[arg(long, value_name = "K", value_parser = values::positive, allow_hyphen_values = true)]
     sigma: Option<f32>,
-    /// Mode rara: what a cut splat keeps where the pixel's ray misses its ellipsoid [default: peak]
+    /// Mode rara: what is kept where a ray misses [default: peak]
+    ///
+    /// A pixel's ray may miss the ellipsoid of a splat that the clip cuts.
     #[arg(long, value_name = "WHAT")]
     miss: Option<Miss>,
     /// Ablation: treat every Gaussian as cut
@@ -34,16 +38,16 @@ pub(super) struct SettingsArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Drawing")]
 pub(super) struct LookArgs {
-    /// Background colour: three numbers from 0 to 1, #rrggbb, or a name as white [default: transparent]
+    /// Three numbers from 0 to 1, #rrggbb or white [default: transparent]
     #[arg(long, value_name = "COLOUR", value_parser = values::colour, allow_hyphen_values = true)]
     background: Option<[f32; 3]>,
-    /// Highest spherical-harmonics degree to evaluate [default: the scene's own]
+    /// Highest degree of spherical harmonics [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=3))]
     sh_degree: Option<u32>,
     /// How splats become pixels; the picture is the same
     #[arg(long, value_name = "HOW", default_value = "auto")]
     raster: Raster,
-    /// Colours, or what the clip does to each splat: whole ones blue, cut ones red to yellow by their weight
+    /// What is shown: colours, or what the clip does to each splat
     #[arg(long, value_name = "WHAT", default_value = "colour")]
     show: Show,
     #[command(flatten)]
@@ -54,14 +58,18 @@ pub(super) struct LookArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Device")]
 pub(super) struct DeviceArgs {
-    /// Device number or part of its name; `rara devices` lists them [default: the best]
+    /// Number or part of the name of the device, as rara devices lists them
     #[arg(long, value_name = "N|NAME")]
     device: Option<String>,
-    /// Load the Khronos validation layer with synchronisation checks; any message is an error
+    /// Load the Vulkan validation layer; any message is an error
+    ///
+    /// The Khronos layer also checks synchronisation.
     #[arg(long)]
     validation: bool,
-    /// Compile everything anew, and keep nothing for the next run, but for what a driver keeps by itself. Without this flag it is
-    /// kept in the folder RARA_CACHE (if that is empty, nowhere), else in the user's cache folder
+    /// Compile everything anew, and keep nothing for the next run
+    ///
+    /// A driver may still keep something itself. By default what is compiled is kept in the folder RARA_CACHE (if
+    /// that is empty, nowhere), else in the user's cache folder.
     #[arg(long)]
     no_pipeline_cache: bool,
 }

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_complete::Shell;
 
 use super::failure::Failure;
-use super::{Cli, output};
+use super::{help, output};
 
 /// Print the completions of a shell
 #[derive(Debug, Args)]
@@ -22,7 +22,7 @@ pub(super) struct Completions {
 impl Completions {
     pub(super) fn run(self) -> Result<(), Failure> {
         let mut script = Vec::new();
-        clap_complete::generate(self.shell, &mut Cli::command(), "rara", &mut script);
+        clap_complete::generate(self.shell, &mut help::command(), "rara", &mut script);
         Ok(output::answer(&String::from_utf8_lossy(&script))?)
     }
 }
@@ -41,7 +41,7 @@ pub(super) struct Man {
 
 impl Man {
     pub(super) fn run(self) -> Result<(), Failure> {
-        let mut command = Cli::command();
+        let mut command = help::command();
         command.build();
         let page = |command: clap::Command| {
             let mut page = Vec::new();

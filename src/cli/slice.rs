@@ -17,22 +17,24 @@ use super::values;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Sections")]
 pub(super) struct SliceArgs {
-    /// Show the colours on each section's plane, weighted by the splats' opacities there, instead of the scene behind it
+    /// Show the colours on the section's plane, not the scene behind it
+    ///
+    /// Each splat counts by its opacity on the plane, in no order.
     #[arg(long, conflicts_with = "aov")]
     slice: bool,
     /// Draw a line around each cut surface
     #[arg(long, value_name = "R,G,B", value_parser = values::colour)]
     outline: Option<[f32; 3]>,
-    /// Pixels of that line
+    /// Width of that line, pixels
     #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 2.0)]
     outline_width: f32,
     /// Tint each cut surface along its edge
     #[arg(long, value_name = "R,G,B", value_parser = values::colour)]
     rim: Option<[f32; 3]>,
-    /// Pixels of that tint
+    /// Width of that tint, pixels
     #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 24.0)]
     rim_width: f32,
-    /// The alpha of a slice from which it belongs to the cut surface, 0 to 1
+    /// Alpha of a slice at which the cut surface begins, 0 to 1
     #[arg(long, value_name = "ALPHA", value_parser = values::share, default_value_t = 0.1)]
     cut_level: f32,
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use glam::DVec3;
 use rara::clip::Expression;
-use rara::{Clip, Plane, Settings};
+use rara::{Clip, Plane, Settings, Show};
 
 use super::camera::Views;
 use super::clip::Regions;
@@ -14,7 +14,7 @@ use super::failure::Failure;
 use super::frame::FrameArgs;
 use super::framing;
 use super::memory;
-use super::pictures::{Destination, Drawn, PictureArgs};
+use super::pictures::{self, Destination, Drawn, PictureArgs};
 use super::profile::{Profile, ProfileArgs};
 use super::report::{Frame, Report};
 use super::save_camera::SaveCameraArgs;
@@ -37,27 +37,27 @@ Examples:
 Of a plane across the scene the first frame keeps the whole of the robust bounds, and the last one nothing. The third frame and those after it compute only what the moving clip changes. Other clip shapes
 stand still; --clip-op joins the moving ones to them too. The JSON has the frames, their medians on top and their means under \"mean\".")]
 pub(super) struct Sweep {
-    #[command(flatten)]
-    scenes: SceneArgs,
     /// The normal of a plane that moves across the scene; it points to the side that stays
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(required_unless_present = "from", conflicts_with = "from")]
     clip_normal: Option<DVec3>,
-    /// The clip of the first frame, a shape or an expression as for --clip-expr
+    /// The clip of the first frame, an expression as for --clip-expr
     #[arg(long, value_name = "EXPRESSION", value_parser = values::expression, allow_hyphen_values = true)]
     from: Option<Expression>,
-    /// The clip of the last frame, with the same shapes in the same places: points, sizes and radii move evenly, rotations
-    /// and normals along the shortest arcs
+    /// The clip of the last frame, with the same shapes in the same places
+    ///
+    /// Points, sizes and radii move evenly, rotations and normals along the shortest arcs.
     #[arg(long, value_name = "EXPRESSION", value_parser = values::expression, allow_hyphen_values = true)]
     to: Option<Expression>,
     /// Number of frames
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: u32,
-    /// A folder for frame_000.png and so on, which is made; or, as for `rara render`, a name with {} or {:04} for the number
-    /// that ends in .png or .exr, a film, as sweep.mp4 or sweep.apng, or - as --format says
+    /// Pictures, a folder or a film, as for rara render
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
-    /// Render each frame from nothing; without this flag a frame takes over what stays the same, to the same bytes
+    /// Render each frame from nothing, to the same bytes
+    ///
+    /// Without this flag a frame reuses what stays the same.
     #[arg(long)]
     independent: bool,
     /// Render each frame N times, nothing carried over between them, and take the medians
@@ -71,11 +71,16 @@ pub(super) struct Sweep {
     save_camera: SaveCameraArgs,
     #[command(flatten)]
     profile: ProfileArgs,
+    #[command(flatten)]
+    scenes: SceneArgs,
 }
 
 impl Sweep {
     pub(super) fn run(self) -> Result<(), Failure> {
         let settings = self.frame.settings.meant()?;
+        if settings.show == Show::Count {
+            pictures::needs_floats(self.output.as_deref(), pictures::COUNTS)?;
+        }
         // The shapes that stand still.
         let shapes = self.frame.clip.meant()?;
         let moving = self.moving()?;

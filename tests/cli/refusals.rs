@@ -227,6 +227,8 @@ fn a_wrong_command_line_is_status_2_and_one_line() {
         ("generate blob -o a.ply", "general, strands, layers"),
         ("generate general -o a.txt", ".ply"),
         ("compare a.png", "B"),
+        ("render a.ply -o a.png --show count", ".exr"),
+        ("sweep a.ply --clip-normal x -o frames --show count", ".exr"),
     ] {
         refused(&line(&here, words), 2, what);
     }

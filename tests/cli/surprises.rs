@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{document, done, folder, line, rara, refused, scene, stderr, stdout};
+use super::{document, done, folder, line, line_with, rara, refused, scene, stderr, stdout};
 
 /// A list of cameras with these names, 48x32 pixels each.
 fn cameras(here: &Path, names: &[&str]) {
@@ -220,6 +220,95 @@ fn names_that_are_nearly_right_get_a_suggestion() {
         "did you mean 'scene'?",
     );
     refused(&line(&here, "info @/scnee.ply"), 1, "check the name");
+}
+
+#[test]
+fn json_of_another_kind_is_named_for_what_it_is() {
+    let here = folder("json_kinds");
+    scene(&here);
+    done(line(
+        &here,
+        "render @/scene.ply -o @/a.png --size 8x8 --save-camera @/camera.json",
+    ));
+    fs::write(
+        here.join("clips.json"),
+        r#"[{"normal": [1, 0, 0], "d": 0}]"#,
+    )
+    .unwrap();
+    fs::write(
+        here.join("layers.json"),
+        r#"{"layers": [{"path": "scene.ply"}]}"#,
+    )
+    .unwrap();
+    let list = r#"[{"id": 1, "img_name": "a", "width": 8, "height": 8, "position": [0, 0, 0]}]"#;
+    fs::write(here.join("cameras.json"), list).unwrap();
+    for (words, says) in [
+        ("@/scene.ply --clip-file @/camera.json", "a file of cameras"),
+        (
+            "@/scene.ply --clip-file @/cameras.json",
+            "a file of cameras",
+        ),
+        ("@/scene.ply --clip-file @/layers.json", "a list of layers"),
+        ("@/scene.ply --camera @/clips.json", "a file of clips"),
+        ("@/scene.ply --cameras @/clips.json", "a file of clips"),
+        ("@/scene.ply --cameras @/layers.json", "a list of layers"),
+        ("@/clips.json", "a file of clips"),
+        ("@/camera.json", "a file of cameras"),
+    ] {
+        refused(&line(&here, &format!("render {words} --json")), 1, says);
+    }
+}
+
+#[test]
+fn what_the_library_warns_of_is_a_note() {
+    let here = folder("warnings");
+    scene(&here);
+    fs::write(here.join("file"), "no folder").unwrap();
+    let unwritable = here.join("file/cache");
+    let words = "render @/scene.ply -o @/a.png --size 8x8";
+    let variable = Some(("RARA_CACHE", unwritable.to_str().unwrap()));
+    let told = stderr(&done(line_with(&here, words, variable)));
+    assert!(told.contains("note: ") && told.contains("file"), "{told}");
+    let quiet = stderr(&done(line_with(
+        &here,
+        &format!("{words} --quiet"),
+        variable,
+    )));
+    assert_eq!(quiet, "");
+}
+
+#[test]
+fn several_scenes_are_told_apart() {
+    let here = folder("info_layers");
+    scene(&here);
+    done(line(
+        &here,
+        "generate strands -n 300 --seed 2 -o @/more.ply",
+    ));
+    let told = stdout(&done(line(&here, "info @/scene.ply @/more.ply")));
+    let more = told.split_once("layer more").expect("a part for it").1;
+    assert!(
+        more.contains("robust bounds") && told.contains("layer scene"),
+        "{told}"
+    );
+    let all = document(line(&here, "info @/scene.ply @/more.ply --json"));
+    let alone = document(line(&here, "info @/more.ply --json"));
+    assert_eq!(all["layers"][1]["statistics"]["scale"], alone["scale"]);
+    assert!(alone["layers"][0]["statistics"].is_null());
+}
+
+#[test]
+fn help_has_commands_and_topics() {
+    let help = |of: &[&str]| stdout(&done(rara([&["help"], of].concat())));
+    assert!(help(&[]).contains("render") && help(&["render"]).contains("--aov <LIST>"));
+    let clip = help(&["clip"]);
+    assert!(
+        clip.contains("ellipsoid:cx") && clip.contains("--clip-op"),
+        "{clip}"
+    );
+    assert!(help(&["view"]).contains("Page Up"));
+    let said = rara(["help", "clips"]);
+    refused(&said, 2, "did you mean 'clip'?");
 }
 
 #[test]

@@ -84,7 +84,7 @@ fn a_long_lens_far_from_the_origin_shows_what_the_reference_shows() {
     let mut scene = rara::scene::generate(rara::scene::Kind::General, 2_000, 5);
     let away = DVec3::new(2e4, -3e4, 1e4);
     let placement = Placement::new(away, DQuat::IDENTITY, 1.0).expect("a place");
-    scene.place(&placement);
+    assert!(scene.place(&placement).is_empty());
     let near = common::views(&scene, 1, common::scaled(SIZE))[0];
     let middle = Bounds::of(&scene).centre();
     let eye = middle + 200.0 * (near.eye - middle);

@@ -171,7 +171,11 @@ fn what_is_dropped_is_shown_and_what_cannot_be_read_changes_nothing() {
     });
     viewer.say("layer 2 off");
     viewer.screenshot("both");
-    let printed = viewer.quit();
+    let printed = viewer.quit_as(1);
+    assert!(
+        printed.contains("--script: a file could not be opened"),
+        "{printed}"
+    );
     for name in refused {
         let said = rara(&folder, &format!("render @/{name} -o @/no.png")).output();
         let said = stderr(&said.expect("the rara binary runs"));

@@ -98,11 +98,16 @@ impl<'a> Viewer<'a> {
     }
 
     /// Quits; returns what it has printed. Asserts that there is no message of the validation layer and no failure.
-    pub(super) fn quit(mut self) -> String {
+    pub(super) fn quit(self) -> String {
+        self.quit_as(0)
+    }
+
+    /// The same with another exit status.
+    pub(super) fn quit_as(mut self, code: i32) -> String {
         self.say("quit");
         let printed = self.printed();
         let status = self.child.0.wait().expect("it ends");
-        assert!(status.success(), "{status}: {printed}");
+        assert_eq!(status.code(), Some(code), "{printed}");
         assert!(!printed.contains("validation"), "{printed}");
         printed
     }

@@ -40,8 +40,6 @@ in the form that is exact in perspective, in double precision. What is not withi
 double precision is not timed, and exit status 1 says so. The folder of -o gets bench.md, bench.csv, bench.json and
 pareto.svg and pareto.png.")]
 pub(super) struct Bench {
-    #[command(flatten)]
-    scenes: SceneArgs,
     /// Frames of each choice, one of each in turn
     #[arg(long, value_name = "N", default_value_t = 11, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     frames: u32,
@@ -68,6 +66,8 @@ pub(super) struct Bench {
     look: LookArgs,
     #[command(flatten)]
     device: DeviceArgs,
+    #[command(flatten)]
+    scenes: SceneArgs,
 }
 
 /// Everything that was measured.

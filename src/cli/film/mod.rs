@@ -23,12 +23,14 @@ use video::{Container, Video};
 
 /// How a film is written.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Camera paths, films and panoramas")]
+#[command(next_help_heading = "Paths, films and panoramas")]
 pub(super) struct FilmArgs {
     /// Pictures a second of a film [default: 30]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     fps: Option<u16>,
-    /// What -o - writes: a picture as png, all of them as apng, or their bare bytes one after the other as rgba
+    /// What -o - writes
+    ///
+    /// A picture as png, all of them as apng, or their bare bytes one after the other as rgba.
     #[arg(long, value_name = "FORMAT")]
     format: Option<Stream>,
 }

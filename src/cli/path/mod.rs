@@ -15,10 +15,13 @@ use spline::Spline;
 
 /// Where the camera moves.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Camera paths, films and panoramas")]
+#[command(next_help_heading = "Paths, films and panoramas")]
 pub(super) struct PathArgs {
-    /// Move the camera, a picture for each place: orbit[:TURNS] goes round the framed scene, or round --target from --eye, to
-    /// the right; spline[:VIEW,...][,closed] goes smoothly through cameras of a file; cameras[:VIEW,...] shows these themselves
+    /// Move the camera: orbit[:TURNS], spline[:VIEW,...] or cameras[:VIEW,...]
+    ///
+    /// Each place is a picture. orbit goes round the framed scene, or round --target from --eye, to the right.
+    /// spline goes smoothly through cameras of a file, with ,closed at the end back to the first. cameras shows
+    /// these themselves.
     #[arg(long, value_name = "PATH", value_parser = route, conflicts_with_all = ["camera", "view", "section"])]
     path: Option<Route>,
     /// Number of pictures of an orbit or a spline [default: 120]

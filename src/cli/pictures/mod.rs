@@ -27,20 +27,43 @@ pub(super) use writer::settle;
 /// What becomes of pictures, and of what is measured.
 #[derive(Debug, Args)]
 pub(super) struct PictureArgs {
-    /// Draw only part K of N of the pictures, numbered as in the whole: N jobs draw all of them
+    /// Draw only part K of N of the pictures
+    ///
+    /// They are numbered as in the whole, so that N jobs draw all of them.
     #[arg(long, value_name = "K/N", value_parser = part::part)]
     part: Option<Part>,
-    /// Leave out pictures whose files are there, whatever these show, as after an interruption
+    /// Leave out pictures whose files are there, whatever these show
+    ///
+    /// After an interruption the rest is drawn.
     #[arg(long)]
     skip_existing: bool,
-    /// Print the statistics as JSON to stdout
+    /// Print the statistics as JSON
     #[arg(long)]
     json: bool,
-    /// Print the statistics of each picture as one line of JSON to stdout, as soon as its file is there
+    /// Print the statistics of each picture as a line of JSON
+    ///
+    /// A line is printed as soon as the picture's file is there.
     #[arg(long, conflicts_with = "json")]
     json_lines: bool,
     #[command(flatten)]
     film: FilmArgs,
+}
+
+/// What a picture of counts is made of.
+pub(super) const COUNTS: &str = "--show count makes numbers of splats";
+
+/// Refuses `what` for files that do not hold it: 8 bits end at the colour white.
+pub(super) fn needs_floats(output: Option<&Path>, what: &str) -> Result<(), Failure> {
+    let is_exr = |file: &Path| {
+        let ending = file.extension();
+        ending.is_some_and(|ending| ending.eq_ignore_ascii_case("exr"))
+    };
+    match output.is_none_or(is_exr) {
+        true => Ok(()),
+        false => Err(Failure::Usage(format!(
+            "{what}, which only .exr files hold: give -o a name that ends in .exr"
+        ))),
+    }
 }
 
 /// Where pictures go, checked before any work is done.

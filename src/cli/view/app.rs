@@ -54,6 +54,10 @@ struct App {
     script: VecDeque<Action>,
     /// The script goes on when the window has this size; it fails at that time.
     resizing: Option<((u32, u32), Instant)>,
+    /// How many warnings there were before the script's last step, where that opens a file.
+    opens_after: Option<u32>,
+    /// True once a step of the script has failed.
+    has_failed: bool,
     /// When held keys last moved the view.
     moved_at: Option<Instant>,
     failure: Option<Failure>,
@@ -116,6 +120,8 @@ pub(super) fn run(events: EventLoop<Sent>, mut start: Start) -> Result<(), Failu
         stage: None,
         input: Input::default(),
         resizing: None,
+        opens_after: None,
+        has_failed: false,
         moved_at: None,
         failure: None,
     };
@@ -127,6 +133,10 @@ pub(super) fn run(events: EventLoop<Sent>, mut start: Start) -> Result<(), Failu
     };
     if let Some(failure) = app.failure {
         return Err(failure);
+    }
+    if app.has_failed {
+        let message = "--script: a file could not be opened, as said above";
+        return Err(Error::Invalid(message.into()).into());
     }
     ran.map_err(|error| Error::Device(format!("the window's events ended: {error}")).into())
 }
@@ -264,6 +274,8 @@ impl App {
             && !stage.waits_for_files()
             && !(stage.dirty && stage.visible())
         {
+            let warnings = stage.warnings;
+            self.has_failed |= self.opens_after.take().is_some_and(|had| had < warnings);
             let waits = |action: &Action| stage.unsettled && stage.visible() && !action.moves();
             if self.script.front().is_some_and(waits) {
                 break;
@@ -279,6 +291,9 @@ impl App {
                 }
                 Some(Action::Resize(_)) => stage.changed()?,
                 Some(action) => {
+                    if matches!(action, Action::Drop(_)) {
+                        self.opens_after = Some(stage.warnings);
+                    }
                     stage.act(action)?;
                     // A hidden window has no frame after which what is dropped is opened.
                     stage.open_dropped()?;

@@ -4,6 +4,8 @@ use glam::DVec3;
 use rara::clip::{Expression, Solid};
 use rara::{Clip, ClipOp, Placement, Plane, Shape};
 
+use super::numbers::stands_at;
+
 /// Expressions of shapes, which of the shapes is held, and whether they cut at all.
 #[derive(Debug, Clone)]
 pub(super) struct Cut {
@@ -148,7 +150,7 @@ impl Cut {
             words += &format!(" {} of {count}", self.held + 1);
         }
         if let Solid::Plane(plane) = shape.solid() {
-            words += &format!(" at {:.4}", plane.offset() + 0.0); // -0 is 0
+            words += &format!(" at {:.4}", stands_at(&plane));
         }
         words
     }
@@ -207,7 +209,7 @@ mod tests {
                 "plane 1 of 4 at 0.0000",
                 "sphere 2 of 4",
                 "box 3 of 4",
-                "plane 4 of 4 at -2.0000"
+                "plane 4 of 4 at 2.0000"
             ]
         );
         let text: Vec<String> = cut.expressions().iter().map(ToString::to_string).collect();

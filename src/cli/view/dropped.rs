@@ -5,9 +5,9 @@ use std::path::Path;
 use rara::camera_files::load_cameras;
 use rara::clip::{NamedClip, load_clips};
 use rara::{Camera, Error};
-use serde_json::Value;
 
 use crate::cli::failure::Failure;
+use crate::cli::json_kind::JsonKind;
 use crate::cli::{scene_file, training};
 
 /// What a file has.
@@ -29,8 +29,8 @@ impl Dropped {
             return Err(Error::format(path, message).into());
         }
         Ok(match kind(path) {
-            Kind::Scene => Self::Scene,
-            Kind::Clip => {
+            JsonKind::Scene => Self::Scene,
+            JsonKind::Clips => {
                 let clips = load_clips(path)?;
                 let surfaces = clips.iter().map(|one| one.clip.clip().all_surfaces().len());
                 let count: usize = surfaces.sum();
@@ -43,7 +43,7 @@ impl Dropped {
                 }
                 Self::Clip(clips)
             }
-            Kind::Cameras => {
+            JsonKind::Cameras => {
                 let cameras = load_cameras(path)?;
                 Self::Cameras(cameras.into_iter().map(|named| named.camera).collect())
             }
@@ -54,86 +54,43 @@ impl Dropped {
 /// The surfaces of a clip that a frame takes.
 const MOST_SURFACES: usize = 1 << 16;
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
-    Scene,
-    Clip,
-    Cameras,
-}
-
 /// What a file seems to be; the messages of what is none of all this are those of a scene.
-fn kind(path: &Path) -> Kind {
+fn kind(path: &Path) -> JsonKind {
     let is_of_colmap = |ending: &str| path.join("cameras").with_extension(ending).is_file();
     if path.is_dir() {
         let is_trained = matches!(training::scene_in(path), Ok(Some(_)));
         let has_cameras =
             is_of_colmap("bin") || is_of_colmap("txt") || path.join("sparse").is_dir();
         return match has_cameras && !is_trained {
-            true => Kind::Cameras,
-            false => Kind::Scene,
+            true => JsonKind::Cameras,
+            false => JsonKind::Scene,
         };
     }
     let ending = path.extension().and_then(|ending| ending.to_str());
     match ending {
-        Some("bin" | "txt") => return Kind::Cameras,
+        Some("bin" | "txt") => return JsonKind::Cameras,
         Some("json") => {}
-        _ => return Kind::Scene,
+        _ => return JsonKind::Scene,
     }
     if !scene_file::is_list(path) {
-        return Kind::Scene;
+        return JsonKind::Scene;
     }
     let is_short = |size: u64| size <= scene_file::MOST_BYTES;
     if !std::fs::metadata(path).is_ok_and(|facts| is_short(facts.len())) {
         // No list is so long, but the cameras of many pictures may be.
-        return Kind::Cameras;
+        return JsonKind::Cameras;
     }
     let text = std::fs::read(path).unwrap_or_default();
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
     match serde_json::from_slice(text) {
-        Ok(document) => kind_of_json(&document),
-        Err(_) => Kind::Scene,
-    }
-}
-
-fn kind_of_json(document: &Value) -> Kind {
-    let has = |value: &Value, keys: &[&str]| keys.iter().any(|key| value.get(key).is_some());
-    match document {
-        Value::Array(all) => match all.first() {
-            Some(first) if has(first, &["position", "fx", "img_name"]) => Kind::Cameras,
-            _ => Kind::Clip,
-        },
-        document if has(document, &["frames", "world_to_camera"]) => Kind::Cameras,
-        _ => Kind::Scene,
+        Ok(document) => JsonKind::of(&document),
+        Err(_) => JsonKind::Scene,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_json_file_is_what_it_says() {
-        for (text, is) in [
-            (r#"[{"normal":[1,0,0],"d":0}]"#, Kind::Clip),
-            (
-                r#"[{"name":"a","clip":{"sphere":{"centre":[0,0,0],"radius":1}}}]"#,
-                Kind::Clip,
-            ),
-            ("[]", Kind::Clip),
-            (
-                r#"[{"id":0,"img_name":"a","width":8,"height":8,"position":[0,0,0]}]"#,
-                Kind::Cameras,
-            ),
-            (r#"{"frames":[]}"#, Kind::Cameras),
-            (r#"{"width":8,"world_to_camera":[]}"#, Kind::Cameras),
-            (r#"{"layers":[]}"#, Kind::Scene),
-            ("{}", Kind::Scene),
-            ("7", Kind::Scene),
-        ] {
-            let document = serde_json::from_str(text).expect("JSON");
-            assert_eq!(kind_of_json(&document), is, "{text}");
-        }
-    }
 
     #[test]
     fn files_are_told_apart_by_their_names_and_what_is_in_them() {
@@ -151,8 +108,8 @@ mod tests {
         let scene = |path: &Path| matches!(Dropped::of(path), Ok(Dropped::Scene));
         assert!(scene(&put("a.splat", "")) && scene(&put("broken.json", "{")));
         assert!(scene(&put("meta.json", "{}")) && scene(&sog));
-        assert_eq!(kind(&folder.join("colmap")), Kind::Cameras);
-        assert_eq!(kind(&folder.join("colmap/cameras.txt")), Kind::Cameras);
+        assert_eq!(kind(&folder.join("colmap")), JsonKind::Cameras);
+        assert_eq!(kind(&folder.join("colmap/cameras.txt")), JsonKind::Cameras);
         let error = Dropped::of(&folder.join("none.ply"))
             .unwrap_err()
             .to_string();

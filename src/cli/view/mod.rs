@@ -47,7 +47,17 @@ use super::{output, values};
 
 /// Look at a scene in a window, and drag clip shapes through it
 #[derive(Debug, Args)]
-#[command(after_help = format!("\
+#[command(after_help = "\
+Examples:
+  rara view scene.ply
+  rara view scene.ply --clip plane:0,0,1,-2 --mode hard --size 1600x900
+  rara view scene.ply --clip-expr 'all(box:0,0,0,1,1,1, not(sphere:1,0,0,.5))'
+  rara view body.ply organ.ply --clip plane:1,0,0,0 --layer-clip organ=whole
+  rara view scene.ply --section axial=0.4
+  printf 'plane +0.1\\nscreenshot cut.png\\nquit\\n' | rara view scene.ply --script -
+
+rara help view lists the keys, the mouse and the actions of scripts.")]
+#[command(after_long_help = format!("\
 {KEYS}
 
 The window's title says what the last frame took on the device, and its three longest stages; T
@@ -69,36 +79,31 @@ Scripts, a line an action, # begins a comment; each is on the screen before the 
   timings, flags                          outline on, off
   keys on, off                            numbers on, off
   drop FILE                               repeat N ACTION
-  quit
-
-Examples:
-  rara view scene.ply
-  rara view scene.ply --clip plane:0,0,1,-2 --mode hard --size 1600x900
-  rara view scene.ply --clip-expr 'all(box:0,0,0,1,1,1, not(sphere:1,0,0,.5))'
-  rara view body.ply organ.ply --clip plane:1,0,0,0 --layer-clip organ=whole
-  rara view scene.ply --section axial=0.4
-  printf 'plane +0.1\\nscreenshot cut.png\\nquit\\n' | rara view scene.ply --script -"))]
+  quit"))]
 pub(super) struct View {
-    #[command(flatten)]
-    scenes: SceneArgs,
     /// The screenshots' files, .png or .exr; {} becomes their number
     #[arg(short, long, value_name = "OUT", default_value = "view_{}.png", value_parser = values::picture_file())]
     output: PathBuf,
-    /// Do what a file says, or standard input for -, as for smoke tests: one action a line, see below. Without quit the
-    /// window stays
+    /// Do what a file says, or standard input for -, one action a line
+    ///
+    /// The actions are listed below. Without quit the window stays. A step that fails is exit status 1.
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
-    /// Begin without the outlines of the shapes that clip, which the key B brings
+    /// Begin without the outlines of the shapes, which the key B brings
     #[arg(long)]
     no_outline: bool,
-    /// Begin without text over the picture: without the hint, and without the clip's numbers, which the key M brings. What
-    /// fails is written there all the same, and how far the reading of a scene has come
+    /// Begin without text over the picture
+    ///
+    /// The hint is left out, and so are the clip's numbers, which the key M brings. What fails is written there all
+    /// the same, and how far the reading of a scene has come.
     #[arg(long)]
     no_text: bool,
     #[command(flatten)]
     section: SectionArgs,
     #[command(flatten)]
     frame: FrameArgs,
+    #[command(flatten)]
+    scenes: SceneArgs,
 }
 
 /// A window that fits most screens.

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use glam::{DQuat, DVec3};
-use rara::Shape;
 use rara::clip::Solid;
+use rara::{Plane, Shape};
 
 /// The numbers of a shape, a line each. Lengths are world units, and rotations an axis and degrees about it.
 pub(super) fn lines(shape: &Shape) -> Vec<String> {
@@ -14,11 +14,11 @@ pub(super) fn lines(shape: &Shape) -> Vec<String> {
     match shape.solid() {
         Solid::Plane(plane) => {
             say("normal", &point(plane.normal()));
-            say("offset", &[plane.offset()]);
+            say("at", &[stands_at(&plane)]);
         }
         Solid::Slab { plane, thickness } => {
             say("normal", &point(plane.normal()));
-            say("offset", &[plane.offset()]);
+            say("at", &[stands_at(&plane)]);
             say("thickness", &[thickness]);
         }
         Solid::Cuboid {
@@ -56,6 +56,11 @@ pub(super) fn lines(shape: &Shape) -> Vec<String> {
         _ => lines.push(shape.to_string()),
     }
     lines
+}
+
+/// Where a plane stands along its normal, world units.
+pub(super) fn stands_at(plane: &Plane) -> f64 {
+    0.0 - plane.offset() // -0 is 0
 }
 
 fn turned(rotation: DQuat) -> Option<String> {
@@ -105,7 +110,7 @@ mod tests {
     fn every_shape_says_its_numbers_by_their_names() {
         assert_eq!(
             of("plane:0,0,-2,1"),
-            ["normal 0.0000 0.0000 -1.0000", "offset 0.5000"]
+            ["normal 0.0000 0.0000 -1.0000", "at -0.5000"]
         );
         assert_eq!(of("slab:1,0,0,0,0.25")[2], "thickness 0.2500");
         assert_eq!(

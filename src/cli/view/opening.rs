@@ -152,6 +152,7 @@ impl Viewer {
     /// Says why something failed, on the terminal and over the picture.
     pub(super) fn warn(&mut self, failure: &Failure) {
         output::complain(failure);
+        self.warnings += 1;
         self.overlay.warn(failure.to_string());
         self.dirty = true;
     }

@@ -44,6 +44,8 @@ pub(super) struct Viewer {
     pub(super) beside: Vec<Dropped>,
     /// Clips of a file, of which one is meant, and the number of the one that is shown.
     pub(super) alternatives: (Vec<NamedClip>, usize),
+    /// How often something has failed that the window outlives.
+    pub(super) warnings: u32,
     pub(super) overlay: Overlay,
     /// True where the window says that the next frame has to compile shaders.
     pub(super) compiling: bool,
@@ -90,6 +92,7 @@ impl Viewer {
             window,
             proxy,
             alternatives: (Vec::new(), 0),
+            warnings: 0,
             overlay: Overlay::new(manner.text),
             compiling: false,
             last: None,

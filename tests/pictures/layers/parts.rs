@@ -164,7 +164,8 @@ fn layers_far_apart_are_cut_alike() {
     let (_, near) = common::generated_scenes(2_000).remove(0);
     let away = DVec3::new(3e4, -1e4, 2e4);
     let mut far = near.clone();
-    far.place(&Placement::new(away, DQuat::IDENTITY, 1.0).expect("a place"));
+    let lost = far.place(&Placement::new(away, DQuat::IDENTITY, 1.0).expect("a place"));
+    assert!(lost.is_empty());
     let middle = Bounds::of(&far).centre();
     let ball = |radius: f64| format!("sphere:{},{},{},{radius}", middle.x, middle.y, middle.z);
     let text = format!(

@@ -1,0 +1,251 @@
+//! `rara help`: the commands, the flags of one in a line or two each, and all that is to be said of a topic.
+//!
+//! A topic is a heading under which commands list flags. Their help has a summary of each flag, a topic all of its text, so that
+//! both come from the flags' definitions alone.
+
+use clap::builder::StyledStr;
+use clap::{Arg, ArgAction, Args, Command, CommandFactory};
+
+use super::failure::Failure;
+use super::{Cli, output};
+
+/// Print the flags of a command, or everything about a topic
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  rara help
+  rara help render
+  rara help clip")]
+pub(super) struct Help {
+    /// A command or a topic
+    #[arg(value_name = "COMMAND|TOPIC")]
+    of: Option<String>,
+}
+
+/// The definition of the program's command line.
+pub(super) fn command() -> Command {
+    let help = Arg::new("help")
+        .short('h')
+        .long("help")
+        .help("Print help")
+        .action(ArgAction::HelpShort)
+        .display_order(1000);
+    let command = Cli::command()
+        .disable_help_flag(true)
+        .disable_help_subcommand(true)
+        .mut_subcommands(|part| {
+            // What a command writes comes first.
+            let is_output = |arg: &Arg| arg.get_id() == "output";
+            let part = part.mut_args(|arg| match is_output(&arg) {
+                true => arg.display_order(0),
+                false => arg,
+            });
+            let topics = topics(&part);
+            if topics.is_empty() {
+                return part;
+            }
+            let names = topics.iter().map(|heading| topic(heading));
+            let more = format!(
+                "More on each flag: rara help {}, and rara help TOPIC for the topics {}.",
+                part.get_name(),
+                names.collect::<Vec<_>>().join(", ")
+            );
+            let after = part.get_after_help().map(StyledStr::to_string);
+            let after = after.map_or(String::new(), |after| format!("{after}\n\n"));
+            part.after_help(format!("{after}{more}"))
+        })
+        .mut_subcommands(|part| match part.get_after_help() {
+            Some(after) => {
+                let after = unwrapped(&after.to_string());
+                part.after_help(after)
+            }
+            None => part,
+        });
+    command.arg(help.global(true))
+}
+
+/// A text whose paragraphs are a line each, so that they are wrapped once. Lines that begin with a blank stay as they are.
+fn unwrapped(text: &str) -> String {
+    let mut whole = String::new();
+    let mut was_prose = false;
+    for line in text.lines() {
+        let is_prose = !line.is_empty() && !line.starts_with(' ') && !line.ends_with(':');
+        if !whole.is_empty() {
+            whole.push(if was_prose && is_prose { ' ' } else { '\n' });
+        }
+        whole += line;
+        was_prose = is_prose;
+    }
+    whole
+}
+
+/// The headings under which a command lists flags, in its order.
+fn topics(command: &Command) -> Vec<String> {
+    let mut topics: Vec<String> = Vec::new();
+    for heading in command.get_arguments().filter_map(Arg::get_help_heading) {
+        if !topics.iter().any(|known| known == heading) {
+            topics.push(heading.to_owned());
+        }
+    }
+    topics
+}
+
+/// The name by which a heading is asked for: its first word.
+fn topic(heading: &str) -> String {
+    let word = heading.split(|letter: char| !letter.is_alphabetic()).next();
+    word.unwrap_or_default().to_lowercase()
+}
+
+impl Help {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let mut command = command();
+        command.build();
+        let Some(of) = self.of else {
+            return Ok(output::answer(&command.render_help().to_string())?);
+        };
+        if let Some(part) = command.find_subcommand(&of) {
+            return Ok(output::answer(&of_command(part))?);
+        }
+        let mut known: Vec<String> = Vec::new();
+        for part in command.get_subcommands() {
+            known.push(part.get_name().to_owned());
+            let of_topic = |arg: &&Arg| {
+                let heading = arg.get_help_heading();
+                heading.is_some_and(|heading| topic(heading) == of)
+            };
+            let flags: Vec<Arg> = part.get_arguments().filter(of_topic).cloned().collect();
+            if !flags.is_empty() {
+                let whose = format!(
+                    "These are flags of rara {}, and of other commands that list them.",
+                    part.get_name()
+                );
+                let flags = page(flags).render_long_help();
+                return Ok(output::answer(&format!("{flags}\n{whose}"))?);
+            }
+        }
+        for heading in command.get_subcommands().flat_map(topics) {
+            let topic = topic(&heading);
+            if !known.contains(&topic) {
+                known.push(topic);
+            }
+        }
+        let meant = super::values::meant(&of, known.iter().map(String::as_str));
+        Err(Failure::Usage(format!(
+            "help {of}: there is no such command or topic; there are {}{meant}",
+            known.join(", ")
+        )))
+    }
+}
+
+/// A page with all that is to be said of flags.
+fn page(flags: Vec<Arg>) -> Command {
+    Command::new("page")
+        .disable_help_flag(true)
+        .max_term_width(100)
+        .help_template("{all-args}")
+        .args(flags)
+}
+
+/// All that is to be said of a command, but for its topics.
+fn of_command(command: &Command) -> String {
+    let own = command.get_arguments();
+    let own = own.filter(|arg| arg.get_help_heading().is_none() && arg.get_id() != "help");
+    let usage = command.clone().render_usage();
+    let about = command.get_about().cloned().unwrap_or_default();
+    let after = [command.get_after_long_help(), command.get_after_help()];
+    let after: Vec<String> = after.iter().flatten().map(ToString::to_string).collect();
+    let page = page(own.cloned().collect())
+        .help_template("{all-args}{after-help}")
+        .after_help(unwrapped(&after.join("\n\n")));
+    format!("{about}\n\n{usage}\n\n{}", page.clone().render_long_help())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashMap;
+
+    fn parts() -> Vec<Command> {
+        let mut command = command();
+        command.build();
+        command.get_subcommands().cloned().collect()
+    }
+
+    fn help(part: &Command) -> String {
+        part.clone().render_help().to_string()
+    }
+
+    #[test]
+    fn the_help_of_a_command_is_short_and_begins_with_its_output() {
+        for part in parts() {
+            let (name, text) = (part.get_name(), help(&part));
+            let lines = text.lines().count();
+            assert!(lines <= 150, "{name}: {lines} lines");
+            let options = text.split_once("Options:\n").map(|(_, rest)| rest);
+            let first = options.and_then(|rest| rest.lines().next()).unwrap_or("");
+            let writes = part.get_arguments().any(|arg| arg.get_id() == "output");
+            assert!(!writes || first.contains("--output"), "{name}: {first}");
+        }
+    }
+
+    #[test]
+    fn texts_are_for_readers_of_a_terminal() {
+        let mut long: Vec<String> = Vec::new();
+        for part in parts() {
+            for arg in part.get_arguments() {
+                let name = format!("{} {}", part.get_name(), arg.get_id());
+                let summary = arg.get_help().map(ToString::to_string).unwrap_or_default();
+                if summary.len() > 90 || summary.is_empty() || summary.ends_with('.') {
+                    long.push(format!("{name}: {summary}"));
+                }
+                let values = arg.get_possible_values().into_iter();
+                let values = values.filter_map(|value| value.get_help().map(ToString::to_string));
+                let details = arg.get_long_help().map(ToString::to_string);
+                for text in values.chain(details).chain([summary]) {
+                    let is_for_rustdoc = text.contains("](") || text.contains("[`");
+                    assert!(!is_for_rustdoc, "{name}: {text}");
+                }
+            }
+        }
+        assert!(long.is_empty(), "no summaries: {long:#?}");
+    }
+
+    #[test]
+    fn paragraphs_are_wrapped_once() {
+        for part in parts() {
+            let text = help(&part);
+            let lines: Vec<&str> = text.lines().collect();
+            for pair in lines.windows(2) {
+                let is_prose =
+                    |line: &str| line.starts_with(char::is_alphanumeric) && !line.ends_with(':');
+                if !is_prose(pair[0]) || !is_prose(pair[1]) {
+                    continue;
+                }
+                let word = pair[1].split(' ').next().unwrap_or_default();
+                let would_fit = pair[0].len() + 1 + word.len() <= 100;
+                assert!(!would_fit, "{}: {pair:?}", part.get_name());
+            }
+        }
+    }
+
+    #[test]
+    fn a_topic_is_one_heading() {
+        let mut headings: HashMap<String, String> = HashMap::new();
+        for heading in parts().iter().flat_map(topics) {
+            let known = headings.entry(topic(&heading)).or_insert(heading.clone());
+            assert_eq!(*known, heading);
+        }
+        let commands: Vec<String> = parts().iter().map(|part| part.get_name().into()).collect();
+        assert!(headings.keys().all(|topic| !commands.contains(topic)));
+        assert!(headings.len() >= 8, "{headings:?}");
+    }
+
+    #[test]
+    fn paragraphs_are_joined_and_lists_are_not() {
+        let text = "Examples:\n  a\n  b\n\nOne\ntwo.\n\nThree:\n  c";
+        assert_eq!(
+            unwrapped(text),
+            "Examples:\n  a\n  b\n\nOne two.\n\nThree:\n  c"
+        );
+    }
+}

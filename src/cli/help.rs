@@ -34,11 +34,12 @@ pub(super) fn command() -> Command {
         .disable_help_flag(true)
         .disable_help_subcommand(true)
         .mut_subcommands(|part| {
-            // What a command writes comes first.
-            let is_output = |arg: &Arg| arg.get_id() == "output";
-            let part = part.mut_args(|arg| match is_output(&arg) {
-                true => arg.display_order(0),
-                false => arg,
+            // What a command writes comes first, and the rest as it is defined.
+            let mut order = 0;
+            let part = part.mut_args(|arg| {
+                order += 1;
+                let is_output = arg.get_id() == "output";
+                arg.display_order(if is_output { 0 } else { order })
             });
             let topics = topics(&part);
             if topics.is_empty() {

@@ -37,6 +37,9 @@ Examples:
 Of a plane across the scene the first frame keeps the whole of the robust bounds, and the last one nothing. The third frame and those after it compute only what the moving clip changes. Other clip shapes
 stand still; --clip-op joins the moving ones to them too. The JSON has the frames, their medians on top and their means under \"mean\".")]
 pub(super) struct Sweep {
+    /// Pictures, a folder or a film, as for rara render
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
     /// The normal of a plane that moves across the scene; it points to the side that stays
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(required_unless_present = "from", conflicts_with = "from")]
@@ -52,9 +55,6 @@ pub(super) struct Sweep {
     /// Number of frames
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: u32,
-    /// Pictures, a folder or a film, as for rara render
-    #[arg(short, long, value_name = "OUT")]
-    output: Option<PathBuf>,
     /// Render each frame from nothing, to the same bytes
     ///
     /// Without this flag a frame reuses what stays the same.

@@ -97,7 +97,8 @@ impl Ahead {
             })
         };
         if let Err(error) = kept() {
-            log::warn!("what the driver has compiled is not noted: {error}");
+            // The compiled pipelines go to the same folder, and what is wrong with it is told of those.
+            log::debug!("what the driver has compiled is not noted: {error}");
         }
     }
 }

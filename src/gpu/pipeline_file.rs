@@ -95,6 +95,13 @@ impl Seal {
     }
 }
 
+fn is_missing(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory
+    )
+}
+
 impl PipelineFile {
     /// Gives the device the pipelines that an earlier run kept for it. `None` if nothing is to be kept.
     pub(crate) fn open(cache: &PipelineCache, device: &Device) -> Option<Self> {
@@ -114,7 +121,8 @@ impl PipelineFile {
                     Err(error) => log::warn!("{}: {error}", this.path.display()),
                 }
             }
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            // A file among the folders is told of when something is to be kept.
+            Err(error) if is_missing(&error) => {}
             Err(error) => log::warn!("{}: {error}; compiling anew", this.path.display()),
         }
         Some(this)

@@ -43,9 +43,9 @@ fn rara_with<A: AsRef<std::ffi::OsStr>>(
     let mut command = Command::new(env!("CARGO_BIN_EXE_rara"));
     command
         .args(arguments)
-        .envs(variable)
         // The tests must not use the user's own cache.
         .env("RARA_CACHE", "")
+        .envs(variable)
         .output()
         .expect("the rara binary runs")
 }

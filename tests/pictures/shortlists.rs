@@ -96,7 +96,8 @@ fn surfaces_far_away_change_no_pixel() {
 /// Frames that take over what they can of the one before are the same bytes as frames that take over nothing.
 #[test]
 fn shortlists_follow_clip_and_camera() {
-    let gaussians = generate(Kind::General, 8_000, 3);
+    // So many that most blocks have no part in most shapes.
+    let gaussians = generate(Kind::General, 60_000, 3);
     let mut keeps = common::headless();
     let mut forgets = keeps.sharing().expect("another renderer");
     for headless in [&mut keeps, &mut forgets] {

@@ -2,16 +2,30 @@
 
 use super::*;
 use crate::canvas::with_host;
+use rara::glam::{DQuat, DVec3};
 use rara::gpu::Bindings;
-use rara::{ExpectedDepthDesc, Mode, reference};
+use rara::{ExpectedDepthDesc, Mode, Placement, reference};
 
 const FORMAT: vk::Format = vk::Format::R32G32_SFLOAT;
 
 /// Draws a frame of expected depths on a canvas of their format; returns the whole canvas.
 fn draw(
-    (device, first): On<'_>,
+    on: On<'_>,
     canvas: &Canvas,
     world: &World,
+    desc: RendererDesc,
+    look: (&Clip, &Settings),
+    frame: Frame,
+) -> Vec<[f32; 4]> {
+    let placed = (&world.camera, Placement::IDENTITY);
+    draw_placed(on, canvas, (world, placed), desc, look, frame)
+}
+
+/// The same of a scene that the host has placed, seen by a camera of its own.
+fn draw_placed(
+    (device, first): On<'_>,
+    canvas: &Canvas,
+    (world, (camera, placement)): (&World, (&Camera, Placement)),
     desc: RendererDesc,
     (clip, settings): (&Clip, &Settings),
     frame: Frame,
@@ -20,7 +34,8 @@ fn draw(
     let scene = scene.expect("uploads");
     let desc = desc.expected_depth(Some(ExpectedDepthDesc::new(FORMAT)));
     let mut renderer = first.sharing(desc).expect("a renderer");
-    let configured = renderer.configure(&scene, &world.camera, clip, settings);
+    renderer.set_placement(placement);
+    let configured = renderer.configure(&scene, camera, clip, settings);
     configured.expect("configures");
     let frame = Frame {
         depths: true,
@@ -74,6 +89,42 @@ fn expected_depths_are_the_references() {
                 eprintln!("{what}");
                 assert!(most < 2e-4 && worst < 0.02, "{what}");
             }
+        }
+    });
+}
+
+/// A host that has placed the scene gets depths in its own units.
+#[test]
+fn expected_depths_are_in_the_hosts_units() {
+    let world = World::new();
+    let larger = Placement::new(DVec3::ZERO, DQuat::IDENTITY, 2.0).expect("a scale");
+    let farther = world.camera.eye(2.0 * world.camera.eye);
+    let clip = Clip::default();
+    with_host(true, |host, device| {
+        let first = first(device);
+        let canvas = Canvas::new(&host.lend(), device, CanvasDesc::new(VIEW, FORMAT));
+        let [own, hosts] =
+            [(&world.camera, Placement::IDENTITY), (&farther, larger)].map(|placed| {
+                let (desc, look) = (RendererDesc::new(FLOATS), (&clip, &Settings::default()));
+                let frame = Frame::new(VIEW);
+                draw_placed(
+                    (device, &first),
+                    &canvas,
+                    (&world, placed),
+                    desc,
+                    look,
+                    frame,
+                )
+            });
+        assert!(own.iter().filter(|pixel| pixel[1] > 0.02).count() > 2_000);
+        for (own, hosts) in own.iter().zip(&hosts) {
+            let [sum, alpha]: [(f32, f32); 2] =
+                [0, 1].map(|channel| (own[channel], hosts[channel]));
+            assert!((alpha.0 - alpha.1).abs() < 1e-3, "{own:?} {hosts:?}");
+            assert!(
+                (2.0 * sum.0 - sum.1).abs() < 1e-3 * (1.0 + sum.1),
+                "{own:?} {hosts:?}"
+            );
         }
     });
 }

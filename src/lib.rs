@@ -38,6 +38,10 @@ mod trace;
 #[doc(hidden)]
 pub use passes::cost;
 #[cfg(feature = "lab")]
+pub mod counted;
+#[cfg(not(feature = "lab"))]
+mod counted;
+#[cfg(feature = "lab")]
 pub mod files;
 #[cfg(not(feature = "lab"))]
 mod files;

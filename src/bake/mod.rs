@@ -14,6 +14,7 @@ mod region;
 mod tests;
 
 use crate::clip::Clip;
+use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::scene::{Gaussians, Layer};
 use crate::setters::setters;
@@ -181,8 +182,8 @@ fn bake_faded(
     }
     if u32::try_from(gaussians.len()).is_err() {
         return Err(Error::Invalid(format!(
-            "{} Gaussians are more than the {} that can be numbered; bake them in parts",
-            gaussians.len(),
+            "{} are more than the {} that can be numbered; bake them in parts",
+            counted(gaussians.len(), "Gaussian"),
             u32::MAX
         )));
     }

@@ -8,6 +8,7 @@
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use super::{Camera, Projection};
+use crate::counted::counted;
 use crate::depth::DepthMap;
 use crate::error::{Error, Result};
 use crate::limits::NEAR_Z;
@@ -308,7 +309,8 @@ fn axes(right: DVec3, down: DVec3, forward: DVec3) -> Result<(DMat3, [f64; 2])> 
     for (row, focal) in focal.into_iter().enumerate() {
         if !(focal > 0.0 && focal.is_finite()) {
             return refused(format!(
-                "the projection matrix is singular: its row {row} makes a picture of {focal} pixels a unit"
+                "the projection matrix is singular: its row {row} makes a picture of {} a unit",
+                counted(focal, "pixel")
             ));
         }
     }

@@ -6,6 +6,7 @@ use std::path::Path;
 use glam::{DQuat, DVec3};
 
 use super::colmap::{ColmapImage, Lens, MODELS};
+use crate::counted::counted;
 use crate::error::{Error, Result};
 
 /// Longest picture name we read; paths are shorter on every system.
@@ -98,8 +99,8 @@ impl<'a, R: Read + Seek> Records<'a, R> {
         match usize::try_from(count) {
             Ok(fits) if count <= self.left / least => Ok(fits),
             _ => Err(self.error(&format!(
-                "the file promises {count} {what}, but has only {} bytes; it is cut off or no COLMAP model",
-                self.size
+                "the file promises {count} {what}, but has only {}; it is cut off or no COLMAP model",
+                counted(self.size, "byte")
             ))),
         }
     }

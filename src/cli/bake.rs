@@ -14,7 +14,7 @@ use super::antialiasing;
 use super::clip::{ClipArgs, Regions};
 use super::compare::Measures;
 use super::failure::Failure;
-use super::output::{self, Progress, grouped, say};
+use super::output::{self, Progress, counted, grouped, say};
 use super::residual::{Residual, View, residual};
 use super::scene_file::LayerEntry;
 use super::scenes::{Loaded, SceneArgs};
@@ -232,11 +232,8 @@ impl Bake {
     ) -> Result<(), Failure> {
         let written = outputs.iter().map(|output| output.gaussians.len()).sum();
         for Output { path, gaussians } in outputs {
-            let count = grouped(gaussians.len() as u64);
-            say(format_args!(
-                "wrote {count} Gaussians to {}",
-                path.display()
-            ));
+            let count = counted(gaussians.len() as u64, "Gaussian");
+            say(format_args!("wrote {count} to {}", path.display()));
             if gaussians.is_empty() {
                 say("note: the clip keeps nothing of it; the file is a scene without Gaussians");
             }
@@ -264,7 +261,10 @@ impl Bake {
         if let (Some(baked), Some(hard)) = (baked, hard) {
             say(format_args!(
                 "\n{:<32} {:>9} {:>10} {:>9}",
-                format!("against the exact cut, {} views", views.len()),
+                format!(
+                    "against the exact cut, {}",
+                    counted(views.len() as u64, "view")
+                ),
                 "PSNR, dB",
                 "L1 of 255",
                 "SSIM"

@@ -312,9 +312,9 @@ fn only(path: &Path, scenes: &[PathBuf]) -> Result<Camera, Failure> {
     match training::load_cameras(path, scenes).as_deref() {
         Ok([only]) => Ok(only.camera),
         Ok(several) => Err(Failure::Usage(format!(
-            "--camera {}: the file has {} cameras: choose by --view, which takes numbers, names and all",
+            "--camera {}: the file has {}: choose by --view, which takes numbers, names and all",
             path.display(),
-            several.len()
+            output::counted(several.len() as u64, "camera")
         ))),
         Err(_) => Err(JsonKind::Cameras.wanted(path, error)),
     }

@@ -184,9 +184,9 @@ fn from_file(text: &str) -> Result<Vec<Expression>, Failure> {
         None if are_alternatives(&clips) => {
             let names: Vec<_> = clips.iter().map(|named| named.name.as_str()).collect();
             return Err(Failure::Usage(format!(
-                "--clip-file {text}: {} has {} clips, {}: say which, as in {}:{}, or {}:{ALL} for all of them together",
+                "--clip-file {text}: {} has {}, {}: say which, as in {}:{}, or {}:{ALL} for all of them together",
                 path.display(),
-                clips.len(),
+                output::counted(clips.len() as u64, "clip"),
                 names.join(", "),
                 path.display(),
                 names[0],
@@ -207,9 +207,9 @@ fn from_file(text: &str) -> Result<Vec<Expression>, Failure> {
     if found.is_empty() {
         let meant = values::meant(name, clips.iter().map(|named| named.name.as_str()));
         return Err(Failure::Usage(format!(
-            "--clip-file {text}: {} has {} clips, and none of that name or number (from 0){meant}",
+            "--clip-file {text}: {} has {}, and none of that name or number (from 0){meant}",
             path.display(),
-            clips.len()
+            output::counted(clips.len() as u64, "clip")
         )));
     }
     Ok(found)

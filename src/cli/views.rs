@@ -184,9 +184,9 @@ pub(super) fn picked(
     picked.or_else(range).ok_or_else(|| {
         let meant = values::meant(wanted, views.iter().map(|view| view.name.as_str()));
         Failure::Usage(format!(
-            "{flag} {wanted}: {} has {} cameras, and none of that number (from 0) or name{meant}",
+            "{flag} {wanted}: {} has {}, and none of that number (from 0) or name{meant}",
             path.display(),
-            views.len()
+            super::output::counted(views.len() as u64, "camera")
         ))
     })
 }

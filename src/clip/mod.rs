@@ -31,6 +31,7 @@ pub use surface::Surface;
 
 use glam::DVec3;
 
+use crate::counted::counted;
 use crate::error::{Error, Result};
 
 /// How several surfaces combine.
@@ -157,7 +158,8 @@ impl Clip {
         match count(self, 0) {
             Some(count) if count <= 1 << 16 => Ok(()),
             Some(count) => Err(Error::Invalid(format!(
-                "a clip of {count} surfaces is beyond the 65536 that one may have; use fewer"
+                "a clip of {} is beyond the 65536 that one may have; use fewer",
+                counted(count, "surface")
             ))),
             None => Err(Error::Invalid(format!(
                 "a clip with an empty part, or with parts within parts beyond {} levels, means nothing; leave such parts out",

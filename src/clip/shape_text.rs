@@ -6,6 +6,7 @@ use std::str::FromStr;
 use glam::{DQuat, DVec3};
 
 use super::{Plane, Shape, Solid};
+use crate::counted::counted;
 use crate::error::{Error, Result, shortened};
 
 /// The names of the shapes.
@@ -56,8 +57,8 @@ fn solid(name: &str, text: &str) -> Result<Solid> {
     };
     let needs = |what: &str| {
         Err(Error::Invalid(format!(
-            "a {name} has {what}, not {} numbers",
-            list.len()
+            "a {name} has {what}, not {}",
+            counted(list.len(), "number")
         )))
     };
     Ok(match (name, list.len()) {

@@ -50,7 +50,7 @@ impl Image {
         if desc.width == 0 || desc.height == 0 || desc.width.max(desc.height) > limit {
             let size = format!("{} x {}", desc.width, desc.height);
             return Err(Error::Invalid(format!(
-                "a picture of {size} pixels is not possible: each side is 1 to {limit} on this device"
+                "a picture of {size} is not possible: each side is 1 to {limit} pixels on this device"
             )));
         }
         let extent = vk::Extent2D {
@@ -85,7 +85,7 @@ impl Image {
                 // SAFETY: created above, used by nothing.
                 unsafe { device.raw().destroy_image(handle, None) };
                 let size = format!(
-                    "{} x {} pixels ({})",
+                    "{} x {} ({})",
                     desc.width,
                     desc.height,
                     bytes(requirements.size)

@@ -4,6 +4,7 @@ use ash::vk;
 
 use super::failure::failed;
 use super::{Buffer, BufferUse, Device, DeviceShape, MAX_BUFFERS, MAX_PARAMS, Shader};
+use crate::counted::counted;
 use crate::{Error, Result};
 
 /// How shaders reach their buffers.
@@ -213,9 +214,9 @@ impl Layout {
             let bound = buffers[buffer.binding as usize];
             assert!(
                 bound.size() <= limit,
-                "buffer \"{}\" of {} bytes cannot be bound: this device binds at most {limit}; use buffer addresses",
+                "buffer \"{}\" of {} cannot be bound: this device binds at most {limit}; use buffer addresses",
                 bound.name(),
-                bound.size()
+                counted(bound.size(), "byte")
             );
             *info = [vk::DescriptorBufferInfo::default()
                 .buffer(bound.handle())

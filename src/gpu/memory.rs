@@ -9,6 +9,7 @@ use gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme};
 use super::failure::failed;
 use super::lent::Memory;
 use super::{Device, WriteOnly};
+use crate::counted::counted;
 use crate::{Error, Result};
 
 /// Allocations from this size on get memory of their own; smaller ones share blocks. With a lower limit small buffers would
@@ -213,8 +214,10 @@ impl Buffer {
             .is_some_and(|end| end <= self.0.size);
         assert!(
             inside,
-            "{size} bytes at {offset} do not lie in buffer \"{}\" of {} bytes",
-            self.0.name, self.0.size
+            "{} at {offset} do not lie in buffer \"{}\" of {}",
+            counted(size, "byte"),
+            self.0.name,
+            counted(self.0.size, "byte")
         );
     }
 }
@@ -248,7 +251,7 @@ impl std::fmt::Debug for Buffer {
 /// A number of bytes for people.
 pub(crate) fn bytes(count: u64) -> String {
     match count {
-        0..1024 => format!("{count} bytes"),
+        0..1024 => counted(count, "byte"),
         1024..0x10_0000 => format!("{:.1} KiB", count as f64 / 1024.0),
         0x10_0000..0x4000_0000 => format!("{:.1} MiB", count as f64 / f64::from(1 << 20)),
         _ => format!("{:.2} GiB", count as f64 / f64::from(1 << 30)),

@@ -2,6 +2,7 @@
 
 use crate::camera::Camera;
 use crate::clip::{Clip, ClipOp};
+use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::gpu::DeviceShape;
 use crate::limits;
@@ -296,8 +297,9 @@ fn weight_data(
     // Shaders count the records' elements in 32 bits.
     if u64::from(scene.gaussians) * u64::from(cut_stride) > u64::from(u32::MAX) {
         return Err(Error::Invalid(format!(
-            "{} Gaussians cut by {} surfaces are beyond what a frame can address; use fewer or split the scene",
-            scene.gaussians, most_surfaces
+            "{} cut by {} are beyond what a frame can address; use fewer or split the scene",
+            counted(scene.gaussians, "Gaussian"),
+            counted(most_surfaces, "surface")
         )));
     }
     Ok(WeightData {

@@ -7,6 +7,7 @@ use bytemuck::cast_slice;
 
 use crate::camera::Camera;
 use crate::clip::Clip;
+use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::gpu::{Buffer, Device, Recorder, WriteOnly};
 use crate::limits;
@@ -165,7 +166,8 @@ impl SceneBuffers {
         let needed = sizes.iter().sum::<u64>();
         if (staging.bytes.size() as u64) < needed {
             return Err(Error::Invalid(format!(
-                "this scene needs {needed} bytes of staging memory and {} were lent; SceneBuffers::staging_bytes says",
+                "this scene needs {} of staging memory and {} were lent; SceneBuffers::staging_bytes says",
+                counted(needed, "byte"),
                 staging.bytes.size()
             )));
         }
@@ -210,20 +212,20 @@ impl SceneBuffers {
         let places = scene.layers().len() * limits::BLOCK_SIZE as usize + scene.gaussians();
         if u32::try_from(places).is_err() {
             return Err(Error::Invalid(format!(
-                "a scene of {} Gaussians is beyond the 2^32 of an index",
-                scene.gaussians()
+                "a scene of {} is beyond the 2^32 of an index",
+                counted(scene.gaussians(), "Gaussian")
             )));
         }
         scene.check()?;
         let sizes = sizes(scene, format);
         if sizes[1] > u64::from(u32::MAX) * 4 {
             return Err(Error::Invalid(format!(
-                "{} Gaussians of spherical-harmonics degree {} need more than 2^32 numbers; lower the degree or store them in fewer bits",
-                scene.gaussians(),
+                "{} of spherical-harmonics degree {} need more than 2^32 numbers; lower the degree or store them in fewer bits",
+                counted(scene.gaussians(), "Gaussian"),
                 scene.sh_degree()
             )));
         }
-        let what = format!("a scene of {} Gaussians", scene.gaussians());
+        let what = format!("a scene of {}", counted(scene.gaussians(), "Gaussian"));
         device.check_budget(&what, sizes.iter().sum(), 0)?;
         let sh = (format, 3 * sh_coefficients(scene.sh_degree()));
         let (mut layers, mut packed) = (Vec::<SceneLayer>::new(), Vec::new());
@@ -249,13 +251,10 @@ impl SceneBuffers {
             changes: 0,
         };
         log::info!(
-            "a scene of {} Gaussians in {} takes {} bytes on the device",
-            buffers.count,
-            match buffers.layers.len() {
-                1 => "one layer".into(),
-                layers => format!("{layers} layers"),
-            },
-            buffers.bytes()
+            "a scene of {} in {} takes {} on the device",
+            counted(buffers.count, "Gaussian"),
+            counted(buffers.layers.len(), "layer"),
+            counted(buffers.bytes(), "byte")
         );
         Ok((buffers, packed))
     }

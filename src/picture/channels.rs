@@ -9,6 +9,7 @@ use exr::prelude::{
 };
 
 use super::{Channel, Picture};
+use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::files::write_atomically;
 
@@ -35,9 +36,9 @@ impl Picture {
         for Channel { name, values } in channels {
             if values.len() != self.pixels.len() {
                 return Err(Error::Invalid(format!(
-                    "channel '{name}' has {} numbers for {} pixels",
-                    values.len(),
-                    self.pixels.len()
+                    "channel '{name}' has {} for {}",
+                    counted(values.len(), "number"),
+                    counted(self.pixels.len(), "pixel")
                 )));
             }
             if all.iter().any(|(other, _)| other == name) {

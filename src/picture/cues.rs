@@ -55,7 +55,7 @@ impl Picture {
         for cue in [cues.outline, cues.rim].into_iter().flatten() {
             if !(cue.width.is_finite() && cue.width > 0.0) {
                 return Err(Error::Invalid(format!(
-                    "a cue {} pixels wide cannot be drawn; give a width above zero",
+                    "a cue of width {} cannot be drawn; give a number of pixels above zero",
                     cue.width
                 )));
             }

@@ -10,6 +10,7 @@ use image::{
 };
 
 use super::{Picture, premultiplied, to_bytes};
+use crate::counted::counted;
 use crate::files::write_atomically;
 use crate::{Camera, Error, Result};
 
@@ -61,10 +62,10 @@ impl Picture {
         let count = u64::from(self.width) * u64::from(self.height);
         if self.pixels.len() as u64 != count {
             return Err(Error::Invalid(format!(
-                "a picture of {}x{} has {} pixels; give it one for each place",
+                "a picture of {}x{} has {}; give it one for each place",
                 self.width,
                 self.height,
-                self.pixels.len()
+                counted(self.pixels.len(), "pixel")
             )));
         }
         let encoded = self.encoded(Kind::Png);

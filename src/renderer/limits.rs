@@ -3,6 +3,7 @@
 use super::pair_room;
 use crate::camera::Camera;
 use crate::clip::{Clip, ClipOp, Plane, Quadric, Surface};
+use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::limits;
 use crate::precision::ShFormat;
@@ -82,8 +83,9 @@ impl FrameLimits {
             u64::from(self.gaussians) + u64::from(self.layers) * u64::from(limits::BLOCK_SIZE);
         if places > u64::from(u32::MAX) {
             return refuse(format!(
-                "gaussians is {} in {} layers: beyond the 2^32 of an index",
-                self.gaussians, self.layers
+                "gaussians is {} in {}: beyond the 2^32 of an index",
+                self.gaussians,
+                counted(self.layers, "layer")
             ));
         }
         let most = self.planes.max(self.surfaces);

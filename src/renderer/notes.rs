@@ -3,6 +3,7 @@
 
 use super::Renderer;
 use super::frames::Configured;
+use crate::counted::counted;
 
 impl Renderer {
     /// Writes what is new about the frame that has been configured.
@@ -28,19 +29,19 @@ impl Renderer {
                 false => format!("{took:.3} ms on the device"),
             };
             log::trace!(
-                "the oldest frame drew {} splats, {} of them cut, of {} pairs of tile and splat: {took}",
-                counts.drawn,
+                "the oldest frame drew {}, {} of them cut, of {} of tile and splat: {took}",
+                counted(counts.drawn, "splat"),
                 counts.cutoff,
-                self.pairs(),
+                counted(self.pairs(), "pair"),
             );
         }
         if let Some(Configured { plan, .. }) = self.configured() {
             let [width, height] = plan.size();
             log::trace!(
-                "frame {number} shows {} Gaussians in {width}x{height} px with {} surfaces, room for {} pairs, and without {}",
-                plan.gaussians(),
-                plan.layers.most_surfaces(),
-                plan.data.room.pair_capacity,
+                "frame {number} shows {} in {width}x{height} px with {}, room for {}, and without {}",
+                counted(plan.gaussians(), "Gaussian"),
+                counted(plan.layers.most_surfaces(), "surface"),
+                counted(plan.data.room.pair_capacity, "pair"),
                 match self.skipped() {
                     skipped if skipped.is_empty() => "skipping a stage".into(),
                     skipped => skipped.join(", "),

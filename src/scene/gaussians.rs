@@ -2,6 +2,7 @@
 
 use glam::{Quat, Vec3};
 
+use crate::counted::counted;
 use crate::error::{Error, Result};
 
 /// The highest degree of spherical harmonics.
@@ -174,8 +175,8 @@ impl Gaussians {
         let numbers = 3 * self.sh_coefficients();
         assert!(
             sh.len() == numbers,
-            "{} numbers are no spherical harmonics of degree {}, which have {numbers}",
-            sh.len(),
+            "{} are no spherical harmonics of degree {}, which have {numbers}",
+            counted(sh.len(), "number"),
             self.0.sh_degree
         );
         self.0.positions.push(position);
@@ -285,12 +286,13 @@ impl GaussianArrays {
         ] {
             if Some(found) != expected {
                 let each = if array == "sh" {
-                    format!(", each {numbers} numbers of {array}")
+                    format!(", each {} of {array}", counted(numbers, "number"))
                 } else {
                     String::new()
                 };
                 return Err(format!(
-                    "{array} has {found} elements, which do not fit {count} positions{each}"
+                    "{array} has {}, which do not fit {count} positions{each}",
+                    counted(found, "element")
                 ));
             }
         }

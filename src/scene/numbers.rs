@@ -1,6 +1,7 @@
 //! The numbers of a scene's Gaussians: of two that are equally deep, the one of the smaller number is in front.
 
 use super::Layer;
+use crate::counted::counted;
 use crate::error::{Error, Result};
 
 /// The numbers that the Gaussians of a layer have in its scene.
@@ -58,8 +59,9 @@ pub(super) fn check(layers: &[Layer<'_>], count: usize) -> Result<()> {
         before += own as u64;
         if let Some(numbers) = in_set.filter(|numbers| numbers.len() != own) {
             return Err(Error::Invalid(format!(
-                "layer '{name}' has {own} Gaussians and {} numbers for them; give one each",
-                numbers.len()
+                "layer '{name}' has {} and {} for them; give one each",
+                counted(own, "Gaussian"),
+                counted(numbers.len(), "number")
             )));
         }
         for index in 0..own {
@@ -122,7 +124,7 @@ mod tests {
         let two = generate(Kind::General, 2, 1);
         let none = Gaussians::default();
         for (first, numbers, words) in [
-            (0, &[0][..], "2 Gaussians and 1 numbers"),
+            (0, &[0][..], "2 Gaussians and 1 number "),
             (0, &[1, 1], "number 1, which another has too"),
             (0, &[0, 2], "number 2, and the scene's 2"),
             (u32::MAX, &[0, u32::MAX], "number 4294967295"),

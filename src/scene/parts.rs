@@ -1,6 +1,7 @@
 //! A set of Gaussians in parts, each of which becomes a layer.
 
 use super::{GaussianArrays, Gaussians};
+use crate::counted::counted;
 use crate::error::{Error, Result};
 
 /// Gaussians that are a part of a set, as [`Gaussians::into_parts`] and [`Predicate::split`](super::Predicate::split) make
@@ -32,9 +33,9 @@ impl Gaussians {
     pub fn divide(&mut self, part_of: &[u32], parts: usize) -> Result<Vec<Part>> {
         if part_of.len() != self.len() {
             return Err(Error::Invalid(format!(
-                "{} Gaussians cannot be divided by {} numbers of parts; give one each",
-                self.len(),
-                part_of.len()
+                "{} cannot be divided by {} of parts; give one each",
+                counted(self.len(), "Gaussian"),
+                counted(part_of.len(), "number")
             )));
         }
         let mut counts = vec![0; parts];
@@ -60,8 +61,9 @@ impl Gaussians {
         let made: Option<Vec<Part>> = counts.iter().enumerate().map(room).collect();
         let mut made = made.ok_or_else(|| {
             Error::Memory(format!(
-                "no memory for {parts} parts of {} Gaussians; free some or select fewer",
-                self.len()
+                "no memory for {} of {}; free some or select fewer",
+                counted(parts, "part"),
+                counted(self.len(), "Gaussian")
             ))
         })?;
         for (index, &part) in part_of.iter().enumerate() {

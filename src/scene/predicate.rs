@@ -2,6 +2,7 @@
 
 use super::{Gaussians, Part, Property, SH_0};
 use crate::clip::Expression;
+use crate::counted::counted;
 use crate::error::{Error, Result, shortened};
 use crate::placement::Placement;
 
@@ -213,10 +214,10 @@ impl<'a> Values<'a> {
                 };
                 if property.values.len() != gaussians.len() {
                     return Err(Error::Invalid(format!(
-                        "the property `{}` has {} values for {} Gaussians; give one each",
+                        "the property `{}` has {} for {}; give one each",
                         shortened(name),
-                        property.values.len(),
-                        gaussians.len()
+                        counted(property.values.len(), "value"),
+                        counted(gaussians.len(), "Gaussian")
                     )));
                 }
                 return Ok(Self {

@@ -12,6 +12,7 @@ mod films;
 mod outputs;
 mod panoramas;
 mod paths;
+mod plurals;
 mod process;
 mod profile;
 mod refusals;

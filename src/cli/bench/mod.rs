@@ -218,8 +218,8 @@ impl Bench {
         match report.refused.first() {
             None => Ok(()),
             Some(first) => Err(rara::Error::Invalid(format!(
-                "{} choice(s) were not timed because their pictures are wrong: {first}",
-                report.refused.len()
+                "not timed, because the picture is wrong: {}; {first}",
+                output::counted(report.refused.len() as u64, "choice")
             ))
             .into()),
         }

@@ -21,16 +21,16 @@ pub(super) fn markdown(report: &Report) -> String {
     let [width, height] = report.size;
     let _ = writeln!(
         text,
-        "# {}, {width}x{height}\n\n{} Gaussians; {} ({}). ms: the sum of each stage's least of {} frames, one of each choice in turn; the median frame; and the least and median time of this process on \
+        "# {}, {width}x{height}\n\n{}; {} ({}). ms: the sum of each stage's least of {}, one of each choice in turn; the median frame; and the least and median time of this process on \
          all cores. \
          Errors against the exact cut in double precision, of 255; band SSIM over the {:.2} % of the picture in which \
          the way of cutting shows. Popping: largest change of a pixel in a step of {} through a 300th of the scene each, \
          of 255, and of that what the truth does not do. **Bold**: nothing else is both faster and nearer.\n",
         report.scene,
-        report.gaussians,
+        output::counted(report.gaussians as u64, "Gaussian"),
         report.device,
         report.driver,
-        report.frames,
+        output::counted(report.frames.into(), "frame"),
         100.0 * report.band_share,
         report.steps,
     );

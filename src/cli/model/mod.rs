@@ -93,7 +93,10 @@ impl Model {
         let mut counted = gpu_model::frames();
         counted.retain(|frame| frame.gaussians <= most);
         if counted.is_empty() {
-            let message = format!("no scene of the model has {most} Gaussians or fewer");
+            let message = format!(
+                "no scene of the model has at most {}",
+                output::counted(most as u64, "Gaussian")
+            );
             return Err(Failure::Usage(message));
         }
         let mut report = Report {

@@ -37,7 +37,10 @@ impl Dropped {
                 if count > MOST_SURFACES {
                     return Err(Error::format(
                         path,
-                        format!("{count} surfaces are beyond the {MOST_SURFACES} that a clip may have; use fewer"),
+                        format!(
+                            "{} are beyond the {MOST_SURFACES} that a clip may have; use fewer",
+                            crate::cli::output::counted(count as u64, "surface")
+                        ),
                     )
                     .into());
                 }
@@ -121,7 +124,7 @@ mod tests {
         let many = put("many.json", &format!("[{planes}]"));
         let error = Dropped::of(&many).unwrap_err().to_string();
         assert!(
-            error.contains("many.json") && error.contains("65537 surfaces"),
+            error.contains("many.json") && error.contains("65 537 surfaces"),
             "{error}"
         );
         std::fs::remove_dir_all(&folder).unwrap();

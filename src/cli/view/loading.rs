@@ -18,7 +18,7 @@ use crate::cli::camera::{FOV_Y, Views};
 use crate::cli::failure::Failure;
 use crate::cli::framing::Visible;
 use crate::cli::lens::{Depths, Lens};
-use crate::cli::output::grouped;
+use crate::cli::output::counted;
 use crate::cli::reading::{Reading, Watch};
 use crate::cli::scenes::{self, Loaded};
 use crate::cli::views::Framed;
@@ -129,7 +129,7 @@ impl Loading {
     pub(super) fn uploading(&mut self, loaded: &Loaded) {
         let count: usize = loaded.layers.iter().map(|l| l.gaussians.len()).sum();
         *self.now.lock().unwrap_or_else(PoisonError::into_inner) = Now {
-            what: format!("uploading {} Gaussians", grouped(count as u64)),
+            what: format!("uploading {}", counted(count as u64, "Gaussian")),
             share: Some(1.0),
         };
     }

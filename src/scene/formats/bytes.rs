@@ -1,5 +1,7 @@
 //! The bytes of a file, taken from the front; nothing is taken that is not there.
 
+use crate::counted::counted;
+
 /// What is left of a file, or of a part of one.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bytes<'a>(pub(super) &'a [u8]);
@@ -11,7 +13,8 @@ impl<'a> Bytes<'a> {
         let split = split.and_then(|count| self.0.split_at_checked(count));
         let (taken, rest) = split.ok_or_else(|| {
             format!(
-                "{what} takes {count} bytes, but {} are left; the file is cut off or its header wrong, get it again",
+                "{what} takes {}, but {} are left; the file is cut off or its header wrong, get it again",
+                counted(count, "byte"),
                 self.0.len()
             )
         })?;

@@ -6,6 +6,7 @@ use flate2::bufread::{DeflateDecoder, GzDecoder};
 use ruzstd::decoding::StreamingDecoder;
 
 use super::Failure;
+use crate::counted::counted;
 
 /// No stream of deflate becomes larger than this many times itself.
 const MOST_DEFLATE: u64 = 1040;
@@ -78,7 +79,8 @@ fn exactly(from: impl Read, size: u64, kind: &str, what: &str) -> Result<Vec<u8>
     match read.len() as u64 == size {
         true => Ok(read),
         false => Err(Failure::Format(format!(
-            "the {kind} stream of {what} has {} bytes where {size} are promised; get the file again",
+            "the {kind} stream of {what} does not have the {} that are promised, but {}; get the file again",
+            counted(size, "byte"),
             if read.len() as u64 > size {
                 "more".to_owned()
             } else {

@@ -4,6 +4,7 @@ use super::super::assemble::{OPACITY, SCALES, SH, SLOTS, Stored};
 use super::super::sh_coefficients;
 use super::bytes::{Bytes, f16_at, f32_at, u16_at};
 use super::{Failure, Made, colour, room};
+use crate::counted::counted;
 
 /// Bytes of the file's header, and of each section's.
 const HEADER: u64 = 4096;
@@ -112,7 +113,8 @@ impl<'a> Section<'a> {
         let room = if room == 0 { splats } else { room };
         if splats > room {
             return Err(format!(
-                "{what} promises {splats} Gaussians in room for {room}; export the scene again"
+                "{what} promises {} in room for {room}; export the scene again",
+                counted(splats, "Gaussian")
             ));
         }
         let quantised = level > 0 && splats > 0;

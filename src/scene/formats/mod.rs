@@ -17,6 +17,7 @@ pub(super) use self::write::encode;
 use super::assemble::{Assembler, Stored};
 use super::load::{Found, Input, Progress};
 use super::{Format, Gaussians, LoadReport, Loaded, Property, SH_0};
+use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::placement::Placement;
 
@@ -79,7 +80,7 @@ impl Made {
         }
         self.gaussians
             .try_append(&other.gaussians)
-            .ok_or_else(|| Failure::Memory(format!("{} Gaussians", other.elements + before)))?;
+            .ok_or_else(|| Failure::Memory(counted(other.elements + before, "Gaussian")))?;
         self.report.append(other.report, before);
         self.elements += other.elements;
         let dropped = other.dropped.iter().map(|element| before + element);
@@ -115,12 +116,13 @@ impl Made {
 fn room(count: u64, sh_degree: u32, stored: Stored) -> std::result::Result<Assembler, Failure> {
     if count > u64::from(u32::MAX) {
         return Err(Failure::Format(format!(
-            "{count} Gaussians are more than the {} that can be numbered; split the file",
+            "{} are more than the {} that can be numbered; split the file",
+            counted(count, "Gaussian"),
             u32::MAX
         )));
     }
     let assembler = Assembler::with_room(count, sh_degree, Vec::new());
-    let assembler = assembler.ok_or_else(|| Failure::Memory(format!("{count} Gaussians")))?;
+    let assembler = assembler.ok_or_else(|| Failure::Memory(counted(count, "Gaussian")))?;
     Ok(assembler.stored(stored))
 }
 
@@ -181,7 +183,7 @@ fn whole(
     let mut bytes = Vec::new();
     let room = usize::try_from(total).is_ok_and(|total| bytes.try_reserve_exact(total).is_ok());
     if !room {
-        return Err(memory(format!("its {total} bytes")));
+        return Err(memory(format!("its {}", counted(total, "byte"))));
     }
     source
         .take(total)

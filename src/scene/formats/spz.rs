@@ -5,6 +5,7 @@ use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored, unit_
 use super::bytes::{Bytes, f16_at};
 use super::inflate::{self, Gzip};
 use super::{Failure, Made, room};
+use crate::counted::counted;
 
 const MAGIC: &[u8; 4] = b"NGSP";
 /// Bytes of the header that all versions have, and of version 4's.
@@ -261,8 +262,8 @@ pub(super) fn read(bytes: &[u8], turn: bool) -> Result<Made, Failure> {
 
 fn too_many(header: &Header) -> Failure {
     Failure::Format(format!(
-        "the header promises {} Gaussians, for which the file is too short; it is cut off, get it again",
-        header.count
+        "the header promises {}, for which the file is too short; it is cut off, get it again",
+        counted(header.count, "Gaussian")
     ))
 }
 
@@ -328,17 +329,17 @@ fn read_streams(
                 continue;
             }
             return Err(Failure::Format(format!(
-                "it has {} streams, and none for the {name}; export the scene again",
-                header.streams
+                "it has {}, and none for the {name}; export the scene again",
+                counted(header.streams, "stream")
             )));
         }
         let (stored, plain) = (table.u64(name)?, table.u64(name)?);
         let stream = rest.take(stored, name)?;
         if plain != needed {
             return Err(Failure::Format(format!(
-                "the stream of the {name} is said to have {plain} bytes, but {} Gaussians have {needed}; export the \
-                 scene again",
-                header.count
+                "the stream of the {name} is said to have {}, but that of {} has {needed}; export the scene again",
+                counted(plain, "byte"),
+                counted(header.count, "Gaussian")
             )));
         }
         runs[number] = inflate::zstd(stream, needed, &format!("the {name}"))?;

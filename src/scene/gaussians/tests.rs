@@ -27,7 +27,7 @@ fn arrays_that_fit_are_taken_and_given_back() {
 fn the_array_that_does_not_fit_is_named() {
     type Spoil = fn(&mut GaussianArrays);
     let cases: [(&str, Spoil); 15] = [
-        ("scales has 1 elements", |a| a.scales.truncate(1)),
+        ("scales has 1 element,", |a| a.scales.truncate(1)),
         ("rotations has 3", |a| a.rotations.push(Quat::IDENTITY)),
         ("opacities has 0", |a| a.opacities.clear()),
         (

@@ -6,6 +6,7 @@ use super::Progress;
 use super::binary::Failure;
 use super::header::Header;
 use super::layout::{Field, Layout};
+use crate::counted::counted;
 use crate::error::shortened;
 use crate::scene::assemble::{Assembler, Row};
 
@@ -98,8 +99,8 @@ fn parse(line: &[u8], fields: &[Field], row: &mut Row) -> Result<(), String> {
     let mut next = || {
         words.next().ok_or_else(|| {
             format!(
-                "too few numbers, the header declares {} properties; export the scene again",
-                fields.len()
+                "too few numbers, the header declares {}; export the scene again",
+                counted(fields.len(), "property")
             )
         })
     };

@@ -5,6 +5,7 @@ use ply_rs::ply::{ElementDef, Encoding, PropertyType};
 use super::header::Header;
 use super::number::Number;
 use super::trained::{self, FILTER};
+use crate::counted::counted;
 use crate::error::shortened;
 use crate::scene::Property;
 use crate::scene::assemble::{FIXED, SH, SLOTS};
@@ -43,8 +44,8 @@ impl<'a> Layout<'a> {
         let vertex = &header.elements[at];
         if vertex.count as u64 > u64::from(u32::MAX) {
             return Err(format!(
-                "the header promises {} Gaussians, more than the {} that can be numbered; split the file",
-                vertex.count,
+                "the header promises {}, more than the {} that can be numbered; split the file",
+                counted(vertex.count, "Gaussian"),
                 u32::MAX
             ));
         }
@@ -142,9 +143,11 @@ impl<'a> Layout<'a> {
         if needed > u128::from(available) {
             let whole = u128::from(available).saturating_sub(before) / each.max(1);
             return Err(format!(
-                "the header promises {} Gaussians of at least {each} bytes, but the {available} bytes after it have \
-                 room for {whole}; the file is cut off, get it again",
-                self.count
+                "the header promises {} of at least {}, but the {} after it have room for {whole}; the file is cut off, get it \
+                 again",
+                counted(self.count, "Gaussian"),
+                counted(each, "byte"),
+                counted(available, "byte")
             ));
         }
         Ok(())

@@ -19,6 +19,7 @@ use self::trained::Kind;
 use super::assemble::Assembler;
 use super::load::{Input, Loaded, Progress};
 use super::{Format, Property};
+use crate::counted::counted;
 use crate::error::{Error, Result};
 
 /// Reads 3DGS `.ply` files, compressed ones too.
@@ -42,8 +43,9 @@ pub(super) fn read(
 
     let memory = |count: u64| {
         Error::Memory(format!(
-            "{}: no memory for {count} Gaussians; free some or split the file",
-            name.display()
+            "{}: no memory for {}; free some or split the file",
+            name.display(),
+            counted(count, "Gaussian")
         ))
     };
     let left = progress.total().saturating_sub(header.size);

@@ -6,6 +6,7 @@ use ply_rs::ply::{ElementDef, Encoding};
 
 use super::header::Header;
 use super::layout::{Field, fixed_size};
+use crate::counted::counted;
 use crate::scene::SH_0;
 use crate::scene::assemble::{
     Assembler, OPACITY, ROTATION, SCALES, SH, SLOTS, Stored, unit_quaternion,
@@ -158,9 +159,10 @@ pub(super) fn read(
         let rest = size.and_then(|size| left.checked_sub(size));
         left = rest.ok_or_else(|| {
             format!(
-                "the {} `{}` elements have lists or do not fit the {left} bytes that are left; the file is cut off, get it \
-                 again",
-                element.count, element.name
+                "`{}` with its {} has lists or does not fit into the {} that are left; the file is cut off, get it again",
+                element.name,
+                counted(element.count, "element"),
+                counted(left, "byte")
             )
         })?;
         let table = Table::read(source, element, big_endian)?;
@@ -179,8 +181,9 @@ pub(super) fn read(
     };
     if chunks.count < vertices.count.div_ceil(CHUNK) {
         return Err(Failure::Format(format!(
-            "{} chunks are too few for {} Gaussians, {CHUNK} each; export the scene again",
-            chunks.count, vertices.count
+            "{} are too few for {}, {CHUNK} each; export the scene again",
+            counted(chunks.count, "chunk"),
+            counted(vertices.count, "Gaussian")
         )));
     }
     let mut assembler = assemble(&chunks, &vertices, harmonics.as_ref())?;
@@ -224,7 +227,8 @@ fn assemble(
         45 => 3,
         _ => {
             return Err(Failure::Format(format!(
-                "the `sh` element has {rest} properties; degree 1, 2 or 3 has 9, 24 or 45, export the scene again"
+                "the `sh` element has {}; degree 1, 2 or 3 has 9, 24 or 45, export the scene again",
+                counted(rest, "property")
             )));
         }
     };
@@ -239,14 +243,16 @@ fn assemble(
     let columns = columns?;
     if let Some(table) = harmonics.filter(|table| table.count < vertices.count) {
         return Err(Failure::Format(format!(
-            "{} spherical harmonics are too few for {} Gaussians; export the scene again",
-            table.count, vertices.count
+            "spherical harmonics of {} are too few for {}; export the scene again",
+            table.count,
+            counted(vertices.count, "Gaussian")
         )));
     }
     let count = vertices.count as u64;
     if count > u64::from(u32::MAX) {
         return Err(Failure::Format(format!(
-            "the header promises {count} Gaussians, more than the {} that can be numbered; split the file",
+            "the header promises {}, more than the {} that can be numbered; split the file",
+            counted(count, "Gaussian"),
             u32::MAX
         )));
     }

@@ -91,7 +91,7 @@ impl Pair {
         assert!(stats.skipped.contains(&"splat"), "nothing is drawn");
         assert_eq!(bytes(&self.leaves, "target"), 0);
         let [left, drawn] = self.both().map(|headless| headless.device_bytes());
-        assert!(left < drawn, "{left} and {drawn} bytes");
+        assert!(left < drawn, "bytes: {left} and {drawn}");
         stats
     }
 

@@ -51,7 +51,7 @@ fn headers_that_are_refused() {
             b"ply\nformat ascii 1.0\nelement a 1000000000\nend_header\n".to_vec(),
             "without any property",
         ),
-        (compressed.to_vec(), "1 `chunk` elements"),
+        (compressed.to_vec(), "`chunk` with its 1 element"),
         (mesh.to_vec(), "mesh"),
         (without("scale_2"), "discs of 2D Gaussian Splatting"),
         (with("comment SplatRenderMode: 2dgs\n"), "discs of 2D"),

@@ -5,6 +5,7 @@ use serde_json::Value;
 use super::super::Failure;
 use super::buffers::Buffers;
 use super::{index, list};
+use crate::counted::counted;
 use crate::error::shortened;
 
 /// An attribute's numbers in memory.
@@ -74,7 +75,8 @@ impl Accessor {
         }
         if index(accessor, "count") != Some(count) {
             return Err(wrong(&format!(
-                "is not of {count} Gaussians as the positions are"
+                "is not of {} as the positions are",
+                counted(count, "Gaussian")
             )));
         }
         let kind = match index(accessor, "componentType") {
@@ -94,7 +96,7 @@ impl Accessor {
             _ => 0,
         };
         if found != parts && !(name == "COLOR_0" && found == 3) {
-            return Err(wrong(&format!("has not {parts} parts")));
+            return Err(wrong(&format!("has not {}", counted(parts, "part"))));
         }
         let view = index(accessor, "bufferView").ok_or_else(|| wrong("has no bufferView"))?;
         let (bytes, stride) = buffers.view(document, view)?;
@@ -118,7 +120,8 @@ impl Accessor {
             .filter(|_| stride >= element);
         let bytes = bytes.ok_or_else(|| {
             wrong(&format!(
-                "has not the bytes of {count} elements; it may be cut off"
+                "has not the bytes of {}; it may be cut off",
+                counted(count, "element")
             ))
         })?;
         Ok(Self {

@@ -17,6 +17,7 @@ use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored};
 use super::super::{SH_0, sh_coefficients};
 use super::bytes::Bytes;
 use super::{Failure, Made, json, room, spz};
+use crate::counted::counted;
 use crate::error::shortened;
 use crate::placement::Placement;
 
@@ -93,9 +94,9 @@ pub(super) fn read_document(
             whole.append(made)?;
             if whole.gaussians.len() / MOST_DRAWN > buffers.size() {
                 return Err(Failure::Format(format!(
-                    "the glTF draws {} Gaussians and more of {} bytes, the same ones again and again; export the scene once",
-                    whole.gaussians.len(),
-                    buffers.size()
+                    "the glTF draws {} and more of {}, the same ones again and again; export the scene once",
+                    counted(whole.gaussians.len(), "Gaussian"),
+                    counted(buffers.size(), "byte")
                 )));
             }
         }

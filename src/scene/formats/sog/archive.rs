@@ -3,6 +3,7 @@
 use super::super::bytes::Bytes;
 use super::super::inflate;
 use super::Failure;
+use crate::counted::counted;
 use crate::error::shortened;
 
 /// Files of an archive that are looked at, at most.
@@ -111,8 +112,8 @@ impl<'a> Archive<'a> {
             }
             0 | 8 => {
                 return Err(Failure::Format(format!(
-                    "{what} cannot have {} bytes, as its directory says; get the scene again",
-                    entry.size
+                    "{what} cannot have {}, as its directory says; get the scene again",
+                    counted(entry.size, "byte")
                 )));
             }
             method => {

@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use crate::counted::counted;
 use crate::error::shortened;
 
 /// What the values of a picture stand for.
@@ -34,8 +35,8 @@ impl Range {
             return match numbers {
                 Some(numbers) if numbers.len() == 256 => Ok(Self::Codebook(numbers)),
                 found => Err(format!(
-                    "the codebook of {name} has {} numbers, and 256 are needed; export the scene again",
-                    found.map_or(0, |numbers| numbers.len())
+                    "the codebook of {name} has {}, and 256 are needed; export the scene again",
+                    counted(found.map_or(0, |numbers| numbers.len()), "number")
                 )),
             };
         }
@@ -55,8 +56,8 @@ fn ends(part: &Value, name: &str, channels: usize) -> Result<Vec<[f64; 2]>, Stri
             Ok(low.into_iter().zip(high).map(<[f64; 2]>::from).collect())
         }
         _ => Err(format!(
-            "{name} has neither a codebook of 256 numbers nor \"mins\" and \"maxs\" of {channels} numbers; export the scene \
-             again"
+            "{name} has neither a codebook of 256 numbers nor \"mins\" and \"maxs\" of {}; export the scene again",
+            counted(channels, "number")
         )),
     }
 }
@@ -85,8 +86,9 @@ impl Harmonics<'_> {
             return Ok(degree);
         }
         Err(format!(
-            "the picture of spherical harmonics is {width} pixels wide, which {} does not fit: 192, 512 and 960 are of \
+            "the picture of spherical harmonics is {} wide, which {} does not fit: 192, 512 and 960 are of \
              degree 1, 2 and 3; export the scene again",
+            counted(width, "pixel"),
             self.bands.map_or("any degree".into(), |bands| format!(
                 "the degree {bands} of meta.json"
             ))

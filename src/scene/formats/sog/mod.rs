@@ -14,6 +14,7 @@ use self::meta::{Meta, Range};
 use self::picture::Picture;
 use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored, unit_quaternion};
 use super::{Failure, Made, beside, json, room};
+use crate::counted::counted;
 
 pub(super) use self::streamed::read as read_streamed;
 
@@ -59,16 +60,19 @@ fn read(document: &Value, get: &dyn Fn(&str) -> Result<Vec<u8>, Failure>) -> Res
     let stored: usize = files.iter().map(Vec::len).sum();
     if count > MOST_OF_BYTE * stored as u64 + FEW {
         return Err(Failure::Format(format!(
-            "meta.json promises {count} Gaussians, which its pictures of {stored} bytes cannot hold; get the scene again"
+            "meta.json promises {}, which its pictures of {} cannot hold; get the scene again",
+            counted(count, "Gaussian"),
+            counted(stored, "byte")
         )));
     }
     let plane = |name: &str, file: &[u8]| -> Result<Picture, Failure> {
         let picture = Picture::decode(file, name, picture::most(count))?;
         if (picture.pixels().len() as u64) < count {
             return Err(Failure::Format(format!(
-                "the picture {} has {} pixels, fewer than its {count} Gaussians; get the scene again",
+                "the picture {} has {} for its {}; get the scene again",
                 crate::error::shortened(name),
-                picture.pixels().len()
+                counted(picture.pixels().len(), "pixel"),
+                counted(count, "Gaussian")
             )));
         }
         Ok(picture)

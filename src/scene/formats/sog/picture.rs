@@ -5,6 +5,7 @@ use std::io::Cursor;
 use image_webp::WebPDecoder;
 
 use super::Failure;
+use crate::counted::counted;
 use crate::error::shortened;
 
 /// A picture: red, green, blue and alpha of each pixel.
@@ -44,7 +45,12 @@ impl Picture {
                  without loss"
             )));
         }
-        let memory = || Failure::Memory(format!("the {count} pixels of the picture {name}"));
+        let memory = || {
+            Failure::Memory(format!(
+                "the {} of the picture {name}",
+                counted(count, "pixel")
+            ))
+        };
         let channels = if decoder.has_alpha() { 4 } else { 3 };
         let mut plain = Vec::new();
         let size = count as usize * channels;

@@ -138,6 +138,18 @@ fn ffmpeg_gets_opaque_pictures_and_its_failures_are_sentences() {
     for part in ["-video_size 32x24", "-framerate 24", "-f mp4"] {
         assert!(words.contains(part), "{part}: {words}");
     }
+    let sweep = "sweep @/scene.ply --clip-normal 0,0,1 --frames 3 --size 32x24";
+    let path_is = Some(("PATH", path.as_str()));
+    done(line_with(
+        &here,
+        &format!("{sweep} -o @/sweep.mp4"),
+        path_is,
+    ));
+    let raw = done(line(
+        &here,
+        &format!("{sweep} --background black -o - --format rgba"),
+    ));
+    assert!(fs::read(here.join("sweep.mp4")).expect("a film") == raw.stdout);
     let made = done(film(&path, "-o @/film.webm --background white"));
     assert!(
         !stderr(&made).contains("no transparency"),

@@ -114,7 +114,8 @@ impl Bake {
         let entries = self.scenes.entries()?;
         let clip = self.meant_clip(&entries)?;
         let paths = self.check_output(&entries)?;
-        let loaded = self.scenes.load()?;
+        let mut loaded = self.scenes.load()?;
+        clip.settle(&mut loaded)?;
         let clip = clip.clip(&loaded.scene())?;
         let is_merged = !self.output.to_string_lossy().contains("{}");
         if is_merged {

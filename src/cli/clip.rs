@@ -10,6 +10,8 @@ use super::failure::Failure;
 use super::json_kind::JsonKind;
 use super::output;
 use super::region::Region;
+use super::scene_file::LayerClip;
+use super::scenes::{Loaded, LoadedLayer};
 use super::values;
 
 /// The clip: the parts to cut away.
@@ -54,6 +56,8 @@ pub(super) struct ClipArgs {
 pub(super) struct Regions {
     all: Vec<Region>,
     op: ClipOp,
+    /// The clips of single layers that files have.
+    layers: Vec<(String, LayerClip)>,
     /// The file that it is saved to.
     save: Option<PathBuf>,
 }
@@ -80,21 +84,32 @@ impl Regions {
         self.all.iter().map(|region| region.of(&bounds)).collect()
     }
 
-    /// The clip in a scene, which is saved where that is wanted.
+    /// Gives layers the clips that files have for them, unless a flag says otherwise, and saves all clips where that is wanted.
+    pub(super) fn settle(&self, loaded: &mut Loaded) -> Result<(), Failure> {
+        for (name, clip) in &self.layers {
+            for layer in loaded.named("--clip-file", name)? {
+                if layer.clip == layer.listed.clip {
+                    layer.clip = Some(clip.clone());
+                }
+            }
+        }
+        Ok(self.save(loaded)?)
+    }
+
+    /// The clip in a scene.
     pub(super) fn clip(&self, scene: &Scene<'_>) -> rara::Result<Clip> {
-        self.save(scene)?;
         Ok(match &self.of(scene)?[..] {
             [] => Clip::default(),
             all => Clip::joined(all.iter().map(Expression::clip), self.op),
         })
     }
 
-    /// Writes the clip to a file as one expression, where that is wanted.
-    pub(super) fn save(&self, scene: &Scene<'_>) -> rara::Result<()> {
+    /// Writes the clip to a file as one expression, and the layers' own clips, where that is wanted.
+    fn save(&self, loaded: &Loaded) -> rara::Result<()> {
         let Some(path) = &self.save else {
             return Ok(());
         };
-        let mut all = self.of(scene)?;
+        let mut all = self.of(&loaded.scene())?;
         let clip = match (all.len(), self.op) {
             (1, _) => all.remove(0),
             (_, ClipOp::And) => Expression::All(all),
@@ -105,7 +120,21 @@ impl Regions {
             .unwrap_or_default()
             .to_string_lossy()
             .into();
-        output::text(path, &clips_to_json(&[NamedClip { name, clip }]))
+        let of_all = NamedClip {
+            name,
+            clip,
+            layer: None,
+        };
+        let of_one = |layer: &LoadedLayer| {
+            Some(NamedClip {
+                name: layer.name.clone(),
+                clip: layer.clip.as_ref()?.expression(),
+                layer: Some(layer.name.clone()),
+            })
+        };
+        let layers = loaded.layers.iter().filter_map(of_one);
+        let clips: Vec<_> = [of_all].into_iter().chain(layers).collect();
+        output::text(path, &clips_to_json(&clips))
     }
 }
 
@@ -113,11 +142,18 @@ impl ClipArgs {
     /// The clip that the flags mean; reads its files.
     pub(super) fn meant(&self) -> Result<Regions, Failure> {
         let mut all = self.clip.clone();
+        let mut layers = Vec::new();
         for text in &self.clip_file {
-            all.extend(from_file(text)?.into_iter().map(Region::Fixed));
+            for NamedClip { clip, layer, .. } in from_file(text)? {
+                match layer {
+                    Some(layer) => layers.push((layer, LayerClip::of(clip))),
+                    None => all.push(Region::Fixed(clip)),
+                }
+            }
         }
         all.extend(self.clip_expr.iter().cloned());
-        self.regions(all, "--clip, --clip-expr or --clip-file")
+        let regions = self.regions(all, "--clip, --clip-expr or --clip-file")?;
+        Ok(Regions { layers, ..regions })
     }
 
     /// What clips beside planes that files name, where those files clip nothing by themselves.
@@ -139,6 +175,7 @@ impl ClipArgs {
         Ok(Regions {
             all,
             op: self.clip_op,
+            layers: Vec::new(),
             save: self.save_clip.clone(),
         })
     }
@@ -159,14 +196,15 @@ impl ClipArgs {
 /// In place of a clip's name: all clips of a file.
 const ALL: &str = "*";
 
-/// True for several clips that have names, of which one is meant.
+/// True for several clips that have names, of which one is meant. The clips of single layers go with any of them.
 pub(super) fn are_alternatives(clips: &[NamedClip]) -> bool {
+    let of_all = clips.iter().filter(|clip| clip.layer.is_none()).count();
     let mut named = clips.iter().enumerate();
-    clips.len() > 1 && named.any(|(number, clip)| clip.name != number.to_string())
+    of_all > 1 && named.any(|(number, clip)| clip.name != number.to_string())
 }
 
 /// The clips of `FILE` or `FILE:NAME`. Names and paths may hold colons: a file that exists goes before a name.
-fn from_file(text: &str) -> Result<Vec<Expression>, Failure> {
+fn from_file(text: &str) -> Result<Vec<NamedClip>, Failure> {
     let is_file = |at: usize| Path::new(&text[..at]).is_file();
     let named = if is_file(text.len()) {
         None
@@ -182,11 +220,12 @@ fn from_file(text: &str) -> Result<Vec<Expression>, Failure> {
     let name = match name {
         Some(ALL) => None,
         None if are_alternatives(&clips) => {
-            let names: Vec<_> = clips.iter().map(|named| named.name.as_str()).collect();
+            let of_all = clips.iter().filter(|named| named.layer.is_none());
+            let names: Vec<_> = of_all.map(|named| named.name.as_str()).collect();
             return Err(Failure::Usage(format!(
                 "--clip-file {text}: {} has {}, {}: say which, as in {}:{}, or {}:{ALL} for all of them together",
                 path.display(),
-                output::counted(clips.len() as u64, "clip"),
+                output::counted(names.len() as u64, "clip"),
                 names.join(", "),
                 path.display(),
                 names[0],
@@ -196,13 +235,13 @@ fn from_file(text: &str) -> Result<Vec<Expression>, Failure> {
         other => other,
     };
     let Some(name) = name else {
-        return Ok(clips.into_iter().map(|named| named.clip).collect());
+        return Ok(clips);
     };
     let of_name = clips.iter().filter(|named| named.name == name);
-    let mut found: Vec<Expression> = of_name.map(|named| named.clip.clone()).collect();
+    let mut found: Vec<NamedClip> = of_name.cloned().collect();
     if found.is_empty() {
         let numbered = name.parse().ok().and_then(|n: usize| clips.get(n));
-        found.extend(numbered.map(|named| named.clip.clone()));
+        found.extend(numbered.cloned());
     }
     if found.is_empty() {
         let meant = values::meant(name, clips.iter().map(|named| named.name.as_str()));

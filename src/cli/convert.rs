@@ -95,6 +95,7 @@ impl Convert {
         let placement = self.placement()?;
         let clip = self.clip.meant()?;
         let mut loaded = self.scenes.load()?;
+        clip.settle(&mut loaded)?;
         let clip = clip.clip(&loaded.scene())?;
         antialiasing::check_alike(&loaded)?;
         let mut document = Document {

@@ -155,7 +155,7 @@ pub(super) fn middle(scene: &Scene<'_>, camera: &Camera) -> rara::Result<Plane> 
 fn print_frames(shots: &[Shot]) {
     say(format_args!(
         "\n{:<6} {:>10} {:>10} {:>10} {:>10} {:>9}  ms a stage; medians of {FRAMES} frames",
-        "mode", "visible", "cut", "clipped", "culled", "ms"
+        "mode", "visible", "cutoff", "invisible", "culled", "ms"
     ));
     for Shot { mode, stats, .. } in shots {
         let c = stats.counts;

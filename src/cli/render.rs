@@ -117,6 +117,14 @@ impl Pictures {
         }
     }
 
+    /// What clips them, but for sections' own planes.
+    fn regions(&self) -> &Regions {
+        match self {
+            Self::Views(_, regions) => regions,
+            Self::Sections(sections) => sections.regions(),
+        }
+    }
+
     /// The pictures, once the scene is known.
     fn of(self, scene: &Scene<'_>) -> Result<Vec<Shot>, Failure> {
         Ok(match self {
@@ -131,7 +139,6 @@ impl Pictures {
                 views.map(shot).collect()
             }
             Self::Sections(sections) => {
-                sections.save(scene)?;
                 let sections = sections.of(scene)?.into_iter();
                 let shot = |one: Section| Shot {
                     clip: one.clip(),
@@ -204,7 +211,8 @@ impl Render {
         (panorama, destination): (Option<Panorama>, &Destination<'_>),
         settings: &Settings,
     ) -> Result<(), Failure> {
-        let loaded = profile.span("load", || self.scenes.load())?;
+        let mut loaded = profile.span("load", || self.scenes.load())?;
+        pictures.regions().settle(&mut loaded)?;
         let scene = loaded.scene();
         let mut shots = pictures.of(&scene)?;
         if let (Some(_), Some(up)) = (&panorama, self.horizon()) {

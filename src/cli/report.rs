@@ -350,7 +350,7 @@ impl fmt::Display for CountsText<'_> {
             [visible, cutoff, invisible, culled, drawn].map(|count| grouped(count.into()));
         write!(
             f,
-            "{visible} visible, {cutoff} cut, {invisible} clipped away, {culled} culled; {drawn} drawn"
+            "{visible} visible, {cutoff} cutoff, {invisible} invisible, {culled} culled; {drawn} drawn"
         )
     }
 }

@@ -45,6 +45,22 @@ impl LayerClip {
         }
     }
 
+    /// The clip that an expression means.
+    pub(super) fn of(clip: Expression) -> Self {
+        match clip {
+            Expression::All(all) if all.is_empty() => Self::Whole,
+            region => Self::Region(region),
+        }
+    }
+
+    /// Its expression.
+    pub(super) fn expression(&self) -> Expression {
+        match self {
+            Self::Whole => Expression::All(Vec::new()),
+            Self::Region(region) => region.clone(),
+        }
+    }
+
     /// The region that it keeps.
     pub(super) fn clip(&self) -> Clip {
         match self {

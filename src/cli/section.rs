@@ -287,9 +287,9 @@ impl Sections {
         0..self.planned.len()
     }
 
-    /// Saves what clips beside them, where that is wanted.
-    pub(super) fn save(&self, scene: &Scene<'_>) -> rara::Result<()> {
-        self.shapes.save(scene)
+    /// What clips beside their planes.
+    pub(super) fn regions(&self) -> &Regions {
+        &self.shapes
     }
 
     /// The sections, once the scene is known.

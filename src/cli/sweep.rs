@@ -121,12 +121,12 @@ impl Sweep {
         destination: &Destination<'_>,
         settings: &Settings,
     ) -> Result<(), Failure> {
-        let loaded = profile.span("load", || self.scenes.load())?;
+        let mut loaded = profile.span("load", || self.scenes.load())?;
+        regions.settle(&mut loaded)?;
         let scene = loaded.scene();
         let view = framing::views(views, &scene)?.remove(0);
         self.save_camera.save([&view].into_iter())?;
         let camera = view.camera;
-        regions.save(&scene)?;
         let (mut shapes, op) = (regions.of(&scene)?, regions.op());
         let called = |index: &u32| (*index as usize, view.name.clone());
         let Some(planned) = destination.left((0..self.frames).collect(), called)? else {

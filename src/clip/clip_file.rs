@@ -17,13 +17,16 @@ use crate::json;
 pub struct NamedClip {
     /// Its name in the file, or its number there, from 0. Several clips may share one.
     pub name: String,
-    /// The clip.
+    /// The clip. One that keeps everything is [`Expression::All`] of nothing.
     pub clip: Expression,
+    /// The layer whose own clip it is; `None` for the clip of all layers that have none.
+    pub layer: Option<String>,
 }
 
 #[derive(Deserialize)]
 struct Entry {
     name: Option<String>,
+    layer: Option<String>,
     clip: Option<Node>,
     normal: Option<[f64; 3]>,
     d: Option<f64>,
@@ -32,6 +35,8 @@ struct Entry {
 #[derive(Serialize)]
 struct Saved<'a> {
     name: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    layer: Option<&'a str>,
     clip: Node,
 }
 
@@ -39,6 +44,8 @@ struct Saved<'a> {
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 enum Node {
+    /// Keeps everything.
+    Whole,
     All(Vec<Node>),
     Any(Vec<Node>),
     Not(Box<Node>),
@@ -126,6 +133,7 @@ impl Node {
         };
         let v = DVec3::from;
         let solid = match self {
+            Self::Whole => return Ok(Expression::All(Vec::new())),
             Self::All(all) => return Ok(Expression::All(list("all", all)?)),
             Self::Any(any) => return Ok(Expression::Any(list("any", any)?)),
             Self::Not(node) => {
@@ -189,6 +197,7 @@ impl Node {
     fn of(expression: &Expression) -> Self {
         let list = |all: &[Expression]| all.iter().map(Self::of).collect();
         match expression {
+            Expression::All(all) if all.is_empty() => Self::Whole,
             Expression::All(all) => Self::All(list(all)),
             Expression::Any(any) => Self::Any(list(any)),
             Expression::Not(operand) => Self::Not(Box::new(Self::of(operand))),
@@ -253,7 +262,8 @@ impl Node {
 }
 
 /// Loads the clips of a JSON file: a list whose elements have a `"name"` or not, and either `"clip"`, an expression as a
-/// tree, or `"normal"` and `"d"`, a plane. A node of the tree is `{"all": [...]}`, `{"any": [...]}`, `{"not": ...}` or a shape,
+/// tree, or `"normal"` and `"d"`, a plane. An element with a `"layer"` is the clip of that layer, and `"whole"` as a clip keeps
+/// everything. A node of the tree is `{"all": [...]}`, `{"any": [...]}`, `{"not": ...}` or a shape,
 /// as `{"sphere": {"centre": [x, y, z], "radius": r}}`; quaternions are w, x, y, z.
 ///
 /// # Errors
@@ -319,6 +329,7 @@ impl Entry {
         Ok(NamedClip {
             clip: clip.map_err(|error| format!("element {number}: {error}"))?,
             name: self.name.unwrap_or_else(|| number.to_string()),
+            layer: self.layer,
         })
     }
 }
@@ -327,6 +338,7 @@ impl Entry {
 pub fn clips_to_json(clips: &[NamedClip]) -> String {
     let saved = clips.iter().map(|named| Saved {
         name: &named.name,
+        layer: named.layer.as_deref(),
         clip: Node::of(&named.clip),
     });
     let saved: Vec<_> = saved.collect();
@@ -351,8 +363,19 @@ mod tests {
             .map(|text| NamedClip {
                 name: format!("clip \"{}\"", text.len()),
                 clip: text.parse().unwrap(),
+                layer: (text.len() % 2 == 0).then(|| format!("layer {text}")),
             })
+            .chain([NamedClip {
+                name: "shielded".into(),
+                clip: Expression::All(Vec::new()),
+                layer: Some("skin".into()),
+            }])
             .collect();
+        assert!(
+            clips
+                .last()
+                .is_some_and(|last| last.clip.clip().is_everything())
+        );
         let json = clips_to_json(&clips);
         let again = clips_from_json(json.as_bytes(), Path::new("clips.json")).unwrap();
         assert_eq!(again, clips);

@@ -32,8 +32,12 @@ pub fn load_planes(path: &Path) -> Result<Vec<NamedPlane>> {
 /// [`Error::Format`] as there.
 pub fn planes_from_json(json: &[u8], name: &Path) -> Result<Vec<NamedPlane>> {
     let clips = clips_from_json(json, name)?.into_iter().enumerate();
-    let plane = |(number, NamedClip { name: own, clip }): (usize, NamedClip)| match clip.as_plane()
-    {
+    let plane = |(
+        number,
+        NamedClip {
+            name: own, clip, ..
+        },
+    ): (usize, NamedClip)| match clip.as_plane() {
         Some(plane) => Ok(NamedPlane { name: own, plane }),
         None => Err(Error::format(
             name,

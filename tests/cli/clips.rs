@@ -119,6 +119,33 @@ fn clips_at_shares_lie_between_the_bounds_that_info_prints() {
 }
 
 #[test]
+fn clips_of_layers_are_saved_with_the_frames() {
+    let here = folder("saved_layer_clips");
+    scene(&here);
+    for seed in [2, 3] {
+        let words = format!("generate layers -n 300 --seed {seed} -o @/more{seed}.ply");
+        done(line(&here, &words));
+    }
+    let drawn = |flags: &str| {
+        let scenes = "@/scene.ply @/more2.ply @/more3.ply";
+        let words = format!("render {scenes} --size 48x32 -o @/a.exr {flags}");
+        done(line(&here, &words));
+        fs::read(here.join("a.exr")).unwrap()
+    };
+    let frame = "--clip plane:1,0,0,0";
+    let flags = format!("{frame} --layer-clip more2=whole --layer-clip more3=sphere:0,0,0,.4");
+    let typed = drawn(&format!("{flags} --save-clip @/saved.json"));
+    assert!(typed != drawn(frame) && typed == drawn("--clip-file @/saved.json"));
+    let taken_back = "--layer-clip more2=plane:1,0,0,0 --layer-clip more3=plane:1,0,0,0";
+    assert!(drawn(&format!("--clip-file @/saved.json {taken_back}")) == drawn(frame));
+    refused(
+        &line(&here, "render @/scene.ply --json --clip-file @/saved.json"),
+        2,
+        "no layer is called 'more2'",
+    );
+}
+
+#[test]
 fn layers_have_names_and_clips_of_their_own() {
     let here = folder("named_layers");
     scene(&here);

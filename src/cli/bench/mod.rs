@@ -114,7 +114,8 @@ impl Bench {
         if let Some(folder) = &self.output {
             output::make_folder(folder)?;
         }
-        let loaded = self.scenes.load()?;
+        let mut loaded = self.scenes.load()?;
+        clip.settle(&mut loaded)?;
         let scene = loaded.scene();
         let camera = views.of(&scene)?.remove(0).camera;
         let clip = clip.clip(&scene)?;

@@ -155,7 +155,8 @@ impl View {
                     shots,
                 },
                 load: Box::new(move |watch| {
-                    let loaded = scenes.load_watched(watch)?;
+                    let mut loaded = scenes.load_watched(watch)?;
+                    begin.regions().settle(&mut loaded)?;
                     Fresh::new(loaded, begin, up, &scenes.typed())
                 }),
                 script,
@@ -185,6 +186,14 @@ impl Begin {
         }
     }
 
+    /// What clips, but for a section's own plane.
+    fn regions(&self) -> &Regions {
+        match self {
+            Self::Views(_, regions) => regions,
+            Self::Section(sections) => sections.regions(),
+        }
+    }
+
     /// The cameras, each with its up direction, and the clip, once the scene is known.
     fn of(
         self,
@@ -196,7 +205,6 @@ impl Begin {
         let own_up = |camera: &Camera| -camera.rotation.row(1);
         match self {
             Self::Views(views, regions) => {
-                regions.save(scene)?;
                 views.note().into_iter().for_each(output::say);
                 let up = views.up().or(up);
                 let views = super::framing::views_of(views, visible)?
@@ -207,7 +215,6 @@ impl Begin {
                 Ok((views.collect(), cut))
             }
             Self::Section(sections) => {
-                sections.save(scene)?;
                 let mut views = Vec::new();
                 let mut cut = Cut::new(Vec::new(), ClipOp::And, centre);
                 for section in sections.of(scene)? {

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use rara::Error;
+use rara::clip::NamedClip;
 
 use super::app::Sent;
 use super::dropped::Dropped;
@@ -11,6 +12,7 @@ use super::stage::Viewer;
 use crate::cli::clip::are_alternatives;
 use crate::cli::failure::Failure;
 use crate::cli::output;
+use crate::cli::scene_file::LayerClip;
 
 impl Viewer {
     /// Begins to read a scene.
@@ -123,6 +125,23 @@ impl Viewer {
             }
             match dropped {
                 Dropped::Scene => {}
+                Dropped::Clip(clips) if clips.iter().any(|clip| clip.layer.is_some()) => {
+                    let (of_layers, of_all): (Vec<_>, Vec<_>) =
+                        clips.into_iter().partition(|clip| clip.layer.is_some());
+                    for NamedClip { clip, layer, .. } in of_layers {
+                        let layer = layer.unwrap_or_default();
+                        if !self.scenery.clips.replace_of(&layer, &LayerClip::of(clip)) {
+                            let text = format!(
+                                "the file has a clip for '{layer}', and no layer is called so"
+                            );
+                            self.overlay.warn(text);
+                        }
+                    }
+                    if !of_all.is_empty() {
+                        self.beside.push(Dropped::Clip(of_all));
+                        self.take_up_what_is_beside();
+                    }
+                }
                 Dropped::Clip(clips) if are_alternatives(&clips) => {
                     self.alternatives = (clips, 0);
                     self.show_alternative();

@@ -42,7 +42,7 @@ pub(super) fn lines(
         let counts = &stats.counts;
         let _ = write!(
             text,
-            "\ncounts   {} visible, {} cut, {} invisible, {} culled",
+            "\ncounts   {} visible, {} cutoff, {} invisible, {} culled",
             grouped(counts.visible.into()),
             grouped(counts.cutoff.into()),
             grouped(counts.invisible.into()),

@@ -9,6 +9,7 @@ use super::choose;
 use super::desc::ColorSpace;
 use super::frames::{Configured, Ready, RecordedFrame};
 use super::outcome::Submission;
+use super::request::FrameRequest;
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::depth::DepthMap;
@@ -19,26 +20,11 @@ use crate::passes::{
     Kept, Occluders, Plan, SceneBuffers, SceneFacts, SceneLayer, Sizes, Targets, TilePixels,
     TileWork, Work,
 };
-use crate::precision::{ShFormat, TargetFormat};
+use crate::precision::ShFormat;
 use crate::settings::{Raster, Settings};
 
 /// Where only tiles show what is asked for, lists of half the room are tried down to so many pairs.
 const LEAST_ROOM: u32 = 1 << 12;
-
-/// The picture that a frame is to show, and how the frame is submitted.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct FrameRequest<'a> {
-    pub(crate) scene: &'a SceneBuffers,
-    pub(crate) camera: &'a Camera,
-    pub(crate) clip: &'a Clip,
-    pub(crate) settings: &'a Settings,
-    pub(crate) submission: Submission,
-    /// The target's format, where nothing lies below, so that the tiles' picture may be the picture; `None` where it has to
-    /// be drawn.
-    pub(crate) picture: Option<TargetFormat>,
-    /// The camera of whose picture `camera` shows a part; `None` where it shows all of it.
-    pub(crate) whole: Option<&'a Camera>,
-}
 
 /// A frame before anything is allocated or compiled for it.
 struct Planned {
@@ -64,15 +50,7 @@ impl Renderer {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<()> {
-        self.configure_frame(&FrameRequest {
-            scene,
-            camera,
-            clip,
-            settings,
-            submission: Submission::InFlight,
-            picture: None,
-            whole: None,
-        })
+        self.configure_frame(&FrameRequest::in_flight(scene, camera, clip, settings))
     }
 
     /// As [`configure`](Self::configure), for a frame that is submitted as the request says.
@@ -85,13 +63,7 @@ impl Renderer {
 
     /// A frame that is ready to be recorded.
     pub(super) fn ready(&mut self, request: &FrameRequest<'_>) -> Result<Ready> {
-        let camera = request.camera.in_scene(&self.placement);
-        let clip = request.clip.in_scene(&self.placement);
-        let frame = self.configure_in_scene(&FrameRequest {
-            camera: &camera,
-            clip: &clip,
-            ..*request
-        })?;
+        let frame = self.in_scene(request, Self::configure_in_scene)?;
         Ok(Ready {
             buffers: self.memory.buffers().clone(),
             pipelines: self.pipelines.get(frame.bindings).clone(),
@@ -113,14 +85,12 @@ impl Renderer {
 
     /// True when the frame of a request needs a pipeline that no renderer has made yet, which may take seconds.
     pub(crate) fn compiles(&mut self, request: &FrameRequest<'_>) -> Result<bool> {
-        let camera = request.camera.in_scene(&self.placement);
-        let clip = request.clip.in_scene(&self.placement);
-        let request = FrameRequest {
-            camera: &camera,
-            clip: &clip,
-            ..*request
-        };
-        let Planned { mut plan, .. } = self.planned(&request)?;
+        self.in_scene(request, Self::compiles_in_scene)
+    }
+
+    /// As [`compiles`](Self::compiles), where camera and clip are in the scene's units already.
+    fn compiles_in_scene(&mut self, request: &FrameRequest<'_>) -> Result<bool> {
+        let Planned { mut plan, .. } = self.planned(request)?;
         if self.memory.fits(&plan) {
             plan.work = self.work(request.scene.id, &plan, request.submission)?;
         }
@@ -128,6 +98,24 @@ impl Renderer {
         let needed = Sizes::of(&plan).largest().max(held.unwrap_or(0));
         let bindings = self.bindings_of(needed.max(request.scene.largest()));
         Ok(!self.pipelines.has_all(bindings, self.targets(), &plan))
+    }
+
+    /// Does something with a request whose camera and clip are in the scene's units.
+    fn in_scene<R>(
+        &mut self,
+        request: &FrameRequest<'_>,
+        act: impl FnOnce(&mut Self, &FrameRequest<'_>) -> Result<R>,
+    ) -> Result<R> {
+        let camera = request.camera.in_scene(&self.placement);
+        let clip = request.clip.in_scene(&self.placement);
+        act(
+            self,
+            &FrameRequest {
+                camera: &camera,
+                clip: &clip,
+                ..*request
+            },
+        )
     }
 
     /// Decides what a frame computes whose camera and clip are in the scene's units already.

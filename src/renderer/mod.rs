@@ -27,6 +27,7 @@ mod outcome;
 mod pair_room;
 mod pick;
 mod record;
+mod request;
 mod reserve;
 mod shared;
 mod stats;
@@ -36,12 +37,12 @@ mod token;
 #[cfg(feature = "lab")]
 mod working;
 
-pub(crate) use configure::FrameRequest;
 pub use desc::{ColorSpace, DepthDesc, ExpectedDepthDesc, RendererDesc};
 pub(crate) use frames::RecordedFrame;
 pub use limits::FrameLimits;
 pub(crate) use outcome::{Outcome, Submission};
 pub use pick::{Pick, PickTicket, Picker, Picks};
+pub(crate) use request::FrameRequest;
 pub use token::FrameToken;
 
 use estimate::PairEstimate;

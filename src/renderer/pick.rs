@@ -5,9 +5,8 @@ use std::collections::HashMap;
 use ash::vk;
 
 use super::Renderer;
-use super::configure::FrameRequest;
 use super::desc::{ColorSpace, RendererDesc};
-use super::outcome::Submission;
+use super::request::FrameRequest;
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::{Error, Result};
@@ -161,13 +160,9 @@ impl Picker {
             .raster(Raster::Auto)
             .background(None);
         self.renderer.configure_frame(&FrameRequest {
-            scene,
-            camera: &part,
-            clip,
-            settings: &settings,
-            submission: Submission::InFlight,
             picture: Some(TargetFormat::Float),
             whole: Some(camera),
+            ..FrameRequest::in_flight(scene, &part, clip, &settings)
         })?;
         let device = self.renderer.device.clone();
         let slot = &mut self.slots[(self.recorded % self.slots.len() as u64) as usize];

@@ -30,9 +30,12 @@ impl SharedPipelines {
 
     /// True when a renderer has made all pipelines that a plan needs.
     pub(super) fn has_all(&self, bindings: Bindings, targets: Targets, plan: &Plan) -> bool {
-        let has_all = |pipelines: &Pipelines| has_all(pipelines, targets, plan);
-        let all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
-        all[bindings as usize].as_deref().is_some_and(has_all)
+        let (at, has_all) = (bindings as usize, |pipelines: &Pipelines| {
+            has_all(pipelines, targets, plan)
+        });
+        let all = || self.all.lock().unwrap_or_else(PoisonError::into_inner);
+        // Without the lock where nothing is new.
+        self.seen[at].as_deref().is_some_and(has_all) || all()[at].as_deref().is_some_and(has_all)
     }
 
     /// Compiles the pipelines that a plan needs and no renderer has compiled yet; returns whether there were any.

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::configure::FrameRequest;
 use super::frames::Ready;
 use super::outcome::Submission;
 use super::record::check_origin;
+use super::request::FrameRequest;
 use super::{Renderer, out_of_order};
 use crate::camera::Camera;
 use crate::clip::Clip;
@@ -45,13 +45,8 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<FrameToken> {
         let ready = self.ready(&FrameRequest {
-            scene,
-            camera,
-            clip,
-            settings,
             submission: Submission::Ahead,
-            picture: None,
-            whole: None,
+            ..FrameRequest::in_flight(scene, camera, clip, settings)
         })?;
         Ok(FrameToken {
             ready,

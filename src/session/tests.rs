@@ -46,15 +46,8 @@ fn crowded() -> (Gaussians, Camera) {
 /// Submits a frame of quads or tiles as one of several in flight, which is drawn whatever room it has, and waits for it.
 fn show(session: &mut Session, camera: &Camera, settings: &Settings) -> Outcome {
     let renderer = &mut session.renderer;
-    let request = FrameRequest {
-        scene: session.scene.as_ref().expect("loaded"),
-        camera,
-        clip: &Clip::default(),
-        settings,
-        submission: Submission::InFlight,
-        picture: None,
-        whole: None,
-    };
+    let (scene, clip) = (session.scene.as_ref().expect("loaded"), Clip::default());
+    let request = FrameRequest::in_flight(scene, camera, &clip, settings);
     renderer.configure_frame(&request).expect("configures");
     let mut target = Target::default();
     let format = settings.precision.target;

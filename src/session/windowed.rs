@@ -15,10 +15,10 @@ use crate::error::{Error, Result};
 use crate::gpu::{
     Attachments, Device, DeviceDesc, Drawer, FRAMES, InFlight, Surface, Swapchain, Window,
 };
-use crate::passes::{Lines, SceneBuffers, SceneLayer};
+use crate::passes::{Lines, SceneLayer};
 use crate::picture::Picture;
 use crate::precision::ShFormat;
-use crate::renderer::{FrameRequest, Outcome, RendererDesc, Submission};
+use crate::renderer::{FrameRequest, Outcome, RendererDesc};
 use crate::scene::{LayerState, Scene};
 use crate::settings::Settings;
 use crate::stats::FrameStats;
@@ -170,7 +170,7 @@ impl Windowed {
         let renderer = &mut self.session.renderer;
         let scene = loaded(&self.session.scene, "show")?;
         renderer.set_color_format(self.swapchain.format());
-        renderer.compiles(&in_flight(scene, camera, clip, settings))
+        renderer.compiles(&FrameRequest::in_flight(scene, camera, clip, settings))
     }
 
     /// Draws a frame and shows it. The camera's picture has the size that [`fit`](Self::fit) gave. After an error on the way
@@ -189,7 +189,7 @@ impl Windowed {
         let renderer = &mut self.session.renderer;
         let scene = loaded(&self.session.scene, "show")?;
         renderer.set_color_format(swapchain.format());
-        renderer.configure_frame(&in_flight(scene, camera, clip, settings))?;
+        renderer.configure_frame(&FrameRequest::in_flight(scene, camera, clip, settings))?;
         let changes_nothing = renderer.changes_nothing();
         let seen: Vec<_> = lines
             .iter()
@@ -330,7 +330,8 @@ impl Windowed {
         };
         let outcome = renderer.outcome(frame);
         if frame.is_first_use() {
-            // Its times may contain compilation: the next frame computes everything anew, and its times count.
+            // Its times may contain compilation: the next frame computes everything anew, and its times count. To the window
+            // that is as if it had to be drawn again.
             renderer.forget();
             return Ok(Some(Outcome::NeedsRoom));
         }
@@ -339,24 +340,6 @@ impl Windowed {
             self.stats = Some(frame.stats());
         }
         Ok(Some(outcome))
-    }
-}
-
-/// A window's frame.
-fn in_flight<'a>(
-    scene: &'a SceneBuffers,
-    camera: &'a Camera,
-    clip: &'a Clip,
-    settings: &'a Settings,
-) -> FrameRequest<'a> {
-    FrameRequest {
-        scene,
-        camera,
-        clip,
-        settings,
-        submission: Submission::InFlight,
-        picture: None,
-        whole: None,
     }
 }
 

@@ -1,0 +1,43 @@
+//! What is asked of a frame.
+
+use super::outcome::Submission;
+use crate::camera::Camera;
+use crate::clip::Clip;
+use crate::passes::SceneBuffers;
+use crate::precision::TargetFormat;
+use crate::settings::Settings;
+
+/// The picture that a frame is to show, and how the frame is submitted.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FrameRequest<'a> {
+    pub(crate) scene: &'a SceneBuffers,
+    pub(crate) camera: &'a Camera,
+    pub(crate) clip: &'a Clip,
+    pub(crate) settings: &'a Settings,
+    pub(crate) submission: Submission,
+    /// The target's format, where nothing lies below, so that the tiles' picture may be the picture; `None` where it has to
+    /// be drawn.
+    pub(crate) picture: Option<TargetFormat>,
+    /// The camera of whose picture `camera` shows a part; `None` where it shows all of it.
+    pub(crate) whole: Option<&'a Camera>,
+}
+
+impl<'a> FrameRequest<'a> {
+    /// A whole picture that is drawn over what lies below, submitted while earlier frames are unfinished.
+    pub(crate) fn in_flight(
+        scene: &'a SceneBuffers,
+        camera: &'a Camera,
+        clip: &'a Clip,
+        settings: &'a Settings,
+    ) -> Self {
+        Self {
+            scene,
+            camera,
+            clip,
+            settings,
+            submission: Submission::InFlight,
+            picture: None,
+            whole: None,
+        }
+    }
+}

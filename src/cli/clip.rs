@@ -1,5 +1,6 @@
 //! `--clip`, `--clip-file` and `--clip-op`: from their text to surfaces.
 
+use std::cell::LazyCell;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -46,7 +47,7 @@ pub(super) struct ClipArgs {
     /// A section's own plane is not in it. Shares of the scene are written as the places that they mean.
     #[arg(long, value_name = "FILE")]
     save_clip: Option<PathBuf>,
-    /// Whether a point has to be in all shapes, or in any
+    /// Keep what is in all shapes, or what is in any of them
     #[arg(long, value_name = "OP", default_value = "and")]
     clip_op: ClipOp,
 }
@@ -75,13 +76,11 @@ impl Regions {
 
     /// The regions in a scene.
     pub(super) fn of(&self, scene: &Scene<'_>) -> rara::Result<Vec<Expression>> {
-        let is_relative = |region: &Region| matches!(region, Region::Relative(..));
-        // The bounds of a large scene take a while.
-        let bounds = match self.all.iter().any(is_relative) {
-            true => Bounds::of(scene.clone()),
-            false => Bounds::of(Scene::default()),
-        };
-        self.all.iter().map(|region| region.of(&bounds)).collect()
+        let bounds = LazyCell::new(|| Bounds::of(scene.clone()));
+        self.all
+            .iter()
+            .map(|region| region.of(|| *bounds))
+            .collect()
     }
 
     /// Gives layers the clips that files have for them, unless a flag says otherwise, and saves all clips where that is wanted.
@@ -156,7 +155,7 @@ impl ClipArgs {
         Ok(Regions { layers, ..regions })
     }
 
-    /// What clips beside planes that files name, where those files clip nothing by themselves.
+    /// The regions beside planes that files name, where those files clip nothing else.
     pub(super) fn beside_planes(&self) -> Result<Regions, Failure> {
         let typed = self.clip.iter().chain(&self.clip_expr).cloned();
         self.regions(
@@ -185,9 +184,7 @@ impl ClipArgs {
         let mut planes = Vec::new();
         for file in &self.clip_file {
             let plane = |named: NamedClip| Some((named.name, named.clip.as_plane()?));
-            let path = Path::new(file);
-            let clips = load_clips(path).map_err(|error| JsonKind::Clips.wanted(path, error))?;
-            planes.extend(clips.into_iter().filter_map(plane));
+            planes.extend(load(file.as_ref())?.into_iter().filter_map(plane));
         }
         Ok(planes)
     }
@@ -196,11 +193,16 @@ impl ClipArgs {
 /// In place of a clip's name: all clips of a file.
 const ALL: &str = "*";
 
-/// True for several clips that have names, of which one is meant. The clips of single layers go with any of them.
+/// True for several clips that have names, of which one is meant. The clips of single layers are none of these.
 pub(super) fn are_alternatives(clips: &[NamedClip]) -> bool {
     let of_all = clips.iter().filter(|clip| clip.layer.is_none()).count();
     let mut named = clips.iter().enumerate();
     of_all > 1 && named.any(|(number, clip)| clip.name != number.to_string())
+}
+
+/// All clips of a file.
+fn load(path: &Path) -> Result<Vec<NamedClip>, Failure> {
+    load_clips(path).map_err(|error| JsonKind::Clips.wanted(path, error))
 }
 
 /// The clips of `FILE` or `FILE:NAME`. Names and paths may hold colons: a file that exists goes before a name.
@@ -216,7 +218,7 @@ fn from_file(text: &str) -> Result<Vec<NamedClip>, Failure> {
         Some(at) => (Path::new(&text[..at]), Some(&text[at + 1..])),
         None => (Path::new(text), None),
     };
-    let clips = load_clips(path).map_err(|error| JsonKind::Clips.wanted(path, error))?;
+    let clips = load(path)?;
     let name = match name {
         Some(ALL) => None,
         None if are_alternatives(&clips) => {

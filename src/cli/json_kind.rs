@@ -31,15 +31,9 @@ impl JsonKind {
         }
     }
 
-    /// What a file describes; none where it is no short JSON file.
-    pub(super) fn of_file(path: &Path) -> Option<Self> {
-        let size = std::fs::metadata(path).ok()?.len();
-        if size > scene_file::MOST_BYTES {
-            return None;
-        }
-        let text = std::fs::read(path).ok()?;
-        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
-        let document: Value = serde_json::from_slice(text).ok()?;
+    /// What a file surely describes; none where it is no short JSON file, or of no kind that is known.
+    fn of_file(path: &Path) -> Option<Self> {
+        let document = document(path)?;
         let first = document.get(0);
         let is_sure = match Self::of(&document) {
             Self::Scene => document.get("layers").is_some(),
@@ -66,6 +60,18 @@ impl JsonKind {
             None => error.into(),
         }
     }
+}
+
+/// True for files that are short enough to be looked at as a whole.
+pub(super) fn is_short(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|facts| facts.len() <= scene_file::MOST_BYTES)
+}
+
+/// The document of a short JSON file.
+pub(super) fn document(path: &Path) -> Option<Value> {
+    let text = is_short(path).then(|| std::fs::read(path).ok()).flatten()?;
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
+    serde_json::from_slice(text).ok()
 }
 
 #[cfg(test)]

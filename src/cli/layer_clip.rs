@@ -22,14 +22,10 @@ pub(super) fn apply(texts: &[String], loaded: &mut Loaded) -> Result<(), Failure
             "whole" => Some(LayerClip::Whole),
             region => {
                 let region = Region::expression(region).map_err(|error| wrong(&error))?;
-                let bounds = match region {
-                    Region::Fixed(_) => Bounds::of(rara::Scene::default()),
-                    Region::Relative(..) => Bounds::of(loaded.scene()),
-                };
-                let region = region
-                    .of(&bounds)
-                    .map_err(|error| wrong(&error.to_string()))?;
-                Some(LayerClip::Region(region))
+                let region = region.of(|| Bounds::of(loaded.scene()));
+                Some(LayerClip::Region(
+                    region.map_err(|error| wrong(&error.to_string()))?,
+                ))
             }
         };
         for layer in loaded.named("--layer-clip", name)? {

@@ -6,6 +6,7 @@
 mod ablate;
 mod antialiasing;
 mod aspect;
+mod axis;
 mod bake;
 mod bench;
 mod camera;

@@ -3,7 +3,7 @@
 use rara::clip::Expression;
 use rara::{Bounds, Result, Shape};
 
-use super::section::Axis;
+use super::axis::Axis;
 
 /// A clip as it was typed.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,12 +45,12 @@ impl Region {
         })
     }
 
-    /// The clip in a scene of these bounds.
-    pub(super) fn of(&self, bounds: &Bounds) -> Result<Expression> {
+    /// The clip in a scene, whose bounds are asked for if it lies at shares of them: those of a large one take a while.
+    pub(super) fn of(&self, bounds: impl FnOnce() -> Bounds) -> Result<Expression> {
         match self {
             Self::Fixed(expression) => Ok(expression.clone()),
             Self::Relative(text) => {
-                let fixed = fixed(text, bounds).map_err(rara::Error::Invalid)?;
+                let fixed = fixed(text, &bounds()).map_err(rara::Error::Invalid)?;
                 fixed.parse()
             }
         }
@@ -75,8 +75,9 @@ fn fixed(text: &str, bounds: &Bounds) -> std::result::Result<String, String> {
         };
         let typed = format!("{kind}{}", &rest[..end]);
         let wrong = |what: &str| format!("'{typed}': {what}");
-        let axis = Axis::of(name.trim()).filter(|axis| axis.forward.dot(axis.along) != 0.0);
-        let axis = axis.filter(|_| !name.contains('!')).ok_or_else(|| {
+        // The other side is the outside of the shape.
+        let axis = Axis::of(name.trim()).filter(|_| !name.contains('!'));
+        let axis = axis.ok_or_else(|| {
             wrong("expected one of the axes x, y, z, sagittal, coronal and axial")
         })?;
         let (low, high) = (bounds.min.dot(axis.along), bounds.max.dot(axis.along));
@@ -146,7 +147,7 @@ mod tests {
             let region = Region::expression(typed).expect(typed);
             assert!(matches!(region, Region::Relative(..)), "{typed}");
             let meant: Expression = means.parse().expect(means);
-            assert_eq!(region.of(&bounds()).expect(typed), meant, "{typed}");
+            assert_eq!(region.of(bounds).expect(typed), meant, "{typed}");
         }
         let typed = "all(plane:1,0,0,3, sphere:0,0,0,1)";
         let region = Region::expression(typed).expect(typed);

@@ -7,7 +7,7 @@ use rara::clip::{NamedClip, load_clips};
 use rara::{Camera, Error};
 
 use crate::cli::failure::Failure;
-use crate::cli::json_kind::JsonKind;
+use crate::cli::json_kind::{self, JsonKind};
 use crate::cli::{scene_file, training};
 
 /// What a file has.
@@ -78,17 +78,11 @@ fn kind(path: &Path) -> JsonKind {
     if !scene_file::is_list(path) {
         return JsonKind::Scene;
     }
-    let is_short = |size: u64| size <= scene_file::MOST_BYTES;
-    if !std::fs::metadata(path).is_ok_and(|facts| is_short(facts.len())) {
+    if !json_kind::is_short(path) {
         // No list is so long, but the cameras of many pictures may be.
         return JsonKind::Cameras;
     }
-    let text = std::fs::read(path).unwrap_or_default();
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
-    match serde_json::from_slice(text) {
-        Ok(document) => JsonKind::of(&document),
-        Err(_) => JsonKind::Scene,
-    }
+    json_kind::document(path).map_or(JsonKind::Scene, |document| JsonKind::of(&document))
 }
 
 #[cfg(test)]

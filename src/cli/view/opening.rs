@@ -117,6 +117,33 @@ impl Viewer {
         self.overlay.tell(text);
     }
 
+    /// Gives layers the clips of a file that are theirs, and takes the others in place of the clip that is edited.
+    fn take_up(&mut self, clips: Vec<NamedClip>) {
+        let mut of_all = Vec::new();
+        for named in clips {
+            let Some(layer) = &named.layer else {
+                of_all.push(named);
+                continue;
+            };
+            if !self
+                .scenery
+                .clips
+                .replace_of(layer, &LayerClip::of(named.clip))
+            {
+                let text = format!("the file has a clip for '{layer}', and no layer is called so");
+                self.overlay.warn(text);
+            }
+        }
+        if are_alternatives(&of_all) {
+            self.alternatives = (of_all, 0);
+            self.show_alternative();
+        } else if !of_all.is_empty() {
+            self.alternatives = (Vec::new(), 0);
+            let clips = of_all.into_iter().map(|named| named.clip);
+            self.scenery.clips.replace(clips.collect());
+        }
+    }
+
     /// Clips and cameras that were dropped, once the scene that they are for is there.
     fn take_up_what_is_beside(&mut self) {
         for dropped in std::mem::take(&mut self.beside) {
@@ -125,32 +152,7 @@ impl Viewer {
             }
             match dropped {
                 Dropped::Scene => {}
-                Dropped::Clip(clips) if clips.iter().any(|clip| clip.layer.is_some()) => {
-                    let (of_layers, of_all): (Vec<_>, Vec<_>) =
-                        clips.into_iter().partition(|clip| clip.layer.is_some());
-                    for NamedClip { clip, layer, .. } in of_layers {
-                        let layer = layer.unwrap_or_default();
-                        if !self.scenery.clips.replace_of(&layer, &LayerClip::of(clip)) {
-                            let text = format!(
-                                "the file has a clip for '{layer}', and no layer is called so"
-                            );
-                            self.overlay.warn(text);
-                        }
-                    }
-                    if !of_all.is_empty() {
-                        self.beside.push(Dropped::Clip(of_all));
-                        self.take_up_what_is_beside();
-                    }
-                }
-                Dropped::Clip(clips) if are_alternatives(&clips) => {
-                    self.alternatives = (clips, 0);
-                    self.show_alternative();
-                }
-                Dropped::Clip(clips) => {
-                    self.alternatives = (Vec::new(), 0);
-                    let clips = clips.into_iter().map(|named| named.clip);
-                    self.scenery.clips.replace(clips.collect());
-                }
+                Dropped::Clip(clips) => self.take_up(clips),
                 Dropped::Cameras(cameras) => {
                     let count = cameras.len();
                     // What is up is what is up in the camera's own picture.

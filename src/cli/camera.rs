@@ -8,7 +8,7 @@ use rara::Camera;
 
 use super::failure::Failure;
 use super::json_kind::JsonKind;
-use super::lens::{Depths, Lens, Ortho, ortho};
+use super::lens::{Depths, Lens, Ortho, UP, ortho};
 use super::views::{Framed, picked};
 pub(super) use super::views::{View, Views};
 use super::{aspect, output, training, values};
@@ -54,10 +54,10 @@ pub(super) struct CameraArgs {
     ortho: Option<Ortho>,
     /// Take cameras from a cameras.json, transforms.json or COLMAP folder
     ///
-    /// By default with --view: the cameras beside the scene.
+    /// With --view and without this flag the cameras are those beside the scene.
     #[arg(long, value_name = "FILE", conflicts_with = "camera")]
     cameras: Option<PathBuf>,
-    /// Which of the cameras: N, NAME, N..M, several with commas, or all
+    /// Choose from the cameras: N, NAME, N..M, several with commas, or all
     ///
     /// Numbers count from 0, and a range has both of its ends. By default 0 with --cameras; without it the camera
     /// frames the scene.
@@ -95,8 +95,6 @@ pub(super) struct CameraArgs {
     is_around: bool,
 }
 
-/// The direction that is up in the world where nothing else is said.
-pub(super) const UP: DVec3 = DVec3::NEG_Y;
 /// Picture size where neither a flag nor a file gives one.
 const DEFAULT_SIZE: (u32, u32) = (1024, 1024);
 /// Degrees.
@@ -158,7 +156,7 @@ impl CameraArgs {
         self.up
     }
 
-    /// What was typed for `--view`.
+    /// The text of `--view`.
     pub(super) fn chosen_view(&self) -> Option<&str> {
         self.view.as_deref()
     }

@@ -7,6 +7,9 @@ use rara::scene::Bounds;
 use super::failure::Failure;
 use super::output;
 
+/// The direction that is up in the world where nothing else is said.
+pub(super) const UP: DVec3 = DVec3::NEG_Y;
+
 /// The scale of an orthographic picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Ortho {

@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rara::{Error, OnCompile, Picture, Result};
 use serde::Serialize;
@@ -147,6 +147,31 @@ pub(super) fn json_line(document: &impl Serialize) -> Result<bool> {
 /// Prints what a command was asked for, with a line break behind.
 pub(super) fn answer(text: &str) -> Result<()> {
     bytes(format!("{}\n", text.trim_end()).as_bytes()).map(drop)
+}
+
+/// Locked from before a picture gets its name until its line is printed.
+static SETTLED: Mutex<()> = Mutex::new(());
+
+/// Keeps this process from being told to end until what is returned goes.
+pub(super) fn unsettled() -> MutexGuard<'static, ()> {
+    SETTLED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Waits until every picture that has its name has its line too, and lets no other get one: for a process that is told to
+/// end. It does not wait long, as for a reader that does not read.
+#[cfg(unix)]
+pub(super) fn settle() {
+    use std::sync::TryLockError;
+    use std::thread::sleep;
+    use std::time::{Duration, Instant};
+    const PATIENCE: Duration = Duration::from_secs(2);
+    let begin = Instant::now();
+    while begin.elapsed() < PATIENCE {
+        match SETTLED.try_lock() {
+            Err(TryLockError::WouldBlock) => sleep(Duration::from_millis(1)),
+            settled => return std::mem::forget(settled),
+        }
+    }
 }
 
 /// Writes a picture to a file, or to standard output as PNG.

@@ -74,7 +74,7 @@ mod signals {
     use signal_hook::iterator::Signals;
     use signal_hook::{flag, low_level};
 
-    use super::super::{film, output, pictures};
+    use super::super::{film, output};
 
     /// What is said when something aborts: Rust where a small piece of memory is not to be had, and drivers.
     const ABORTED: &[u8] = b"rara: the process was aborted, as happens when memory runs out or a driver gives up; draw a \
@@ -104,7 +104,7 @@ mod signals {
         };
         let wait = move || {
             for signal in signals.forever() {
-                pictures::settle();
+                output::settle();
                 film::abandon();
                 let what = match rara::files::abandon() {
                     0 => "no unfinished file was there",

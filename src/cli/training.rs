@@ -7,8 +7,8 @@ use glam::DVec3;
 use rara::Camera;
 use rara::camera_files::{self, NamedCamera};
 
-use super::camera::UP;
 use super::failure::Failure;
+use super::lens::UP;
 use super::values::STANDARD;
 use super::{dataparser, output};
 

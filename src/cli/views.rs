@@ -6,9 +6,8 @@ use glam::DVec3;
 use rara::scene::Bounds;
 use rara::{Camera, Scene};
 
-use super::camera::UP;
 use super::failure::Failure;
-use super::lens::{Depths, Lens};
+use super::lens::{Depths, Lens, UP};
 use super::path::Orbit;
 use super::{framing, output, values};
 

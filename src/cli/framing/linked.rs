@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-use super::visible::Reach;
+use super::reach::Reach;
 
 /// The share of the weight that is worth a picture wider by the factor e: of a part by itself.
 const PART: f64 = 0.03;
@@ -34,7 +34,7 @@ pub(super) struct Weighed {
 }
 
 /// Those that are framed. A `generous` choice takes ten times as little for worth showing.
-pub(super) fn counted(all: &[Weighed], generous: bool) -> Vec<Reach> {
+pub(super) fn framed(all: &[Weighed], generous: bool) -> Vec<Reach> {
     let Some(cell) = cell(all) else {
         return all.iter().map(|one| one.reach).collect();
     };

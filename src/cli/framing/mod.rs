@@ -3,6 +3,7 @@
 //! Commands that measure keep the camera that holds the box around the scene: the figures of the guide were taken with it.
 
 mod linked;
+mod reach;
 mod visible;
 
 use rara::{Camera, Scene};

@@ -3,7 +3,8 @@
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 use rara::{Camera, Plane, Scene};
 
-use super::linked::{Weighed, counted};
+use super::linked::{Weighed, framed};
+use super::reach::Reach;
 
 /// Share of the picture that is filled.
 const FILL: f64 = 0.92;
@@ -18,32 +19,6 @@ const SAMPLE: usize = 1 << 19;
 /// held, but for half a thousandth.
 const LINES: usize = 64;
 const COLUMNS: usize = 128;
-
-/// A Gaussian, out to where it is faint.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Reach {
-    pub(super) centre: DVec3,
-    /// The half axes of the ellipsoid, columns.
-    pub(super) axes: DMat3,
-}
-
-impl Reach {
-    /// How far it reaches from its centre along each axis of a camera.
-    fn across(&self, rotation: DMat3) -> DVec3 {
-        let rows = (rotation * self.axes).transpose();
-        DVec3::new(
-            rows.x_axis.length(),
-            rows.y_axis.length(),
-            rows.z_axis.length(),
-        )
-    }
-
-    /// How far it reaches from a point along the axis on which it is farthest.
-    pub(super) fn farthest(&self, from: DVec3) -> f64 {
-        let off = (self.centre - from).abs() + self.across(DMat3::IDENTITY);
-        off.max_element()
-    }
-}
 
 /// What of a scene is framed.
 #[derive(Debug)]
@@ -96,7 +71,7 @@ impl Visible {
                     size: scales.max_element(),
                 })
             });
-            all.extend(counted(&weighed.collect::<Vec<_>>(), generous));
+            all.extend(framed(&weighed.collect::<Vec<_>>(), generous));
         }
         Self::holding(all)
     }

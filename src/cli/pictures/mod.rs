@@ -3,6 +3,7 @@
 //! A command plans its pictures, and draws those that are [left](Destination::left) one by one. What is drawn goes to its
 //! place, and is reported, at once.
 
+mod drawn;
 mod part;
 mod writer;
 
@@ -19,10 +20,8 @@ use super::output::{self, counted, say};
 use super::pattern::filled;
 use super::report::Answer;
 use super::values::{self, STANDARD};
+pub(super) use drawn::Drawn;
 use part::Part;
-pub(super) use writer::Drawn;
-#[cfg(unix)]
-pub(super) use writer::settle;
 
 /// What becomes of pictures, and of what is measured.
 #[derive(Debug, Args)]

@@ -1,50 +1,14 @@
 //! Pictures on their way to their places.
 
 use std::path::PathBuf;
-use std::sync::{Mutex, PoisonError};
-
-use rara::{Channel, Picture};
 
 use super::super::failure::Failure;
 use super::super::film::Film;
 use super::super::output::{self, Progress};
 use super::super::profile::Profile;
-use super::super::report::{Answer, Frame};
+use super::super::report::Answer;
+use super::drawn::{Drawn, Written};
 use super::{Destination, Place, Planned};
-
-/// What was drawn for one picture.
-pub(in super::super) struct Drawn {
-    /// What is reported of it.
-    pub(in super::super) frame: Frame,
-    /// The frames that it is made of, if they are several.
-    pub(in super::super) faces: Vec<Frame>,
-    /// None where it goes nowhere.
-    pub(in super::super) picture: Option<Picture>,
-    /// Beside its colours.
-    pub(in super::super) channels: Vec<Channel>,
-}
-
-/// What goes nowhere.
-impl From<Frame> for Drawn {
-    fn from(frame: Frame) -> Self {
-        Self {
-            frame,
-            faces: Vec::new(),
-            picture: None,
-            channels: Vec::new(),
-        }
-    }
-}
-
-/// What is known of a run's pictures when all are drawn.
-#[derive(Default)]
-pub(in super::super) struct Written {
-    /// A frame for each picture.
-    pub(in super::super) pictures: Vec<Frame>,
-    /// The frames that these are made of, where they are several each.
-    pub(in super::super) faces: Vec<Frame>,
-    pub(in super::super) files: Vec<PathBuf>,
-}
 
 impl Destination<'_> {
     /// Draws the pictures, all of a film of one `size`, and hands each on; ends early where nobody wants more.
@@ -96,7 +60,7 @@ impl Destination<'_> {
             channels,
         } = drawn;
         let prints = self.args.answer() == Answer::Lines;
-        let _settled = prints.then(|| SETTLED.lock().unwrap_or_else(PoisonError::into_inner));
+        let _unsettled = prints.then(output::unsettled);
         let mut is_wanted = true;
         if let (Some(picture), Some(file)) = (picture, file) {
             profile.span("encode", || match film {
@@ -115,25 +79,5 @@ impl Destination<'_> {
         written.pictures.push(frame);
         written.faces.extend(faces);
         Ok(is_wanted)
-    }
-}
-
-/// Locked from before a picture gets its name until its line is printed.
-static SETTLED: Mutex<()> = Mutex::new(());
-
-/// Waits until every picture that has its name has its line too, and lets no other get one: for a process that is told to
-/// end. It does not wait long, as for a reader that does not read.
-#[cfg(unix)]
-pub(in super::super) fn settle() {
-    use std::sync::TryLockError;
-    use std::thread::sleep;
-    use std::time::{Duration, Instant};
-    const PATIENCE: Duration = Duration::from_secs(2);
-    let begin = Instant::now();
-    while begin.elapsed() < PATIENCE {
-        match SETTLED.try_lock() {
-            Err(TryLockError::WouldBlock) => sleep(Duration::from_millis(1)),
-            settled => return std::mem::forget(settled),
-        }
     }
 }

@@ -22,8 +22,8 @@ use super::scenery::{Manner, Scenery};
 use super::shots;
 use super::title;
 use super::viewpoint::{Viewpoint, Walk};
-use crate::cli::camera::UP;
 use crate::cli::failure::Failure;
+use crate::cli::lens::UP;
 use crate::cli::output::say;
 
 /// The open window.

@@ -7,6 +7,7 @@ mod aov;
 mod bake;
 mod cameras;
 mod clips;
+mod compare;
 mod convert;
 mod films;
 mod outputs;

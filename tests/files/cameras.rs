@@ -8,11 +8,13 @@ use proptest::prelude::*;
 use rara::Camera;
 use rara::camera_files::{NamedCamera, load_camera, load_cameras};
 
+use super::colmap::colmap_binary;
+
 /// A folder of its own, removed at the end.
-struct Folder(PathBuf);
+pub(super) struct Folder(pub(super) PathBuf);
 
 impl Folder {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         static NEXT: AtomicU32 = AtomicU32::new(0);
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let path =
@@ -21,7 +23,7 @@ impl Folder {
         Self(path)
     }
 
-    fn file(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+    pub(super) fn file(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
         let path = self.0.join(name);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(&path, bytes).unwrap();
@@ -41,13 +43,13 @@ fn load_json(text: &str) -> rara::Result<Vec<NamedCamera>> {
 }
 
 /// The camera that all the files below describe.
-fn camera() -> Camera {
+pub(super) fn camera() -> Camera {
     let rotation = DQuat::from_xyzw(0.1, -0.3, 0.2, 0.9).normalize();
     let matrix = DMat4::from_rotation_translation(rotation, DVec3::new(0.5, -0.25, 3.0));
     Camera::from_world_to_camera(matrix, (800.0, 810.0, 500.0, 300.0), (1000, 600)).unwrap()
 }
 
-fn assert_same(a: &Camera, b: &Camera) {
+pub(super) fn assert_same(a: &Camera, b: &Camera) {
     assert_eq!((a.width, a.height), (b.width, b.height));
     for (a, b) in [(a.fx, b.fx), (a.fy, b.fy), (a.cx, b.cx), (a.cy, b.cy)] {
         assert!((a - b).abs() < 1e-9, "{a} {b}");
@@ -177,13 +179,12 @@ fn lists_of_our_own_cameras() {
 #[test]
 fn an_eye_that_is_said_keeps_all_digits() {
     let camera = camera();
+    let whole = json(camera.world_to_camera().transpose().to_cols_array());
     let with_eye = |matrix: &str, eye: DVec3| {
         let eye = json(eye.to_array());
         let text = single().replacen('{', &format!("{{\"eye\": {eye}, "), 1);
-        let whole = json(camera.world_to_camera().transpose().to_cols_array());
         load_json(&format!("[{}]", text.replace(&whole, matrix))).unwrap()[0].camera
     };
-    let whole = json(camera.world_to_camera().transpose().to_cols_array());
     let again = with_eye(&whole, camera.eye);
     assert_eq!((again.eye, again.rotation), (camera.eye, camera.rotation));
     let rounded = camera.world_to_camera().transpose().to_cols_array();
@@ -193,71 +194,6 @@ fn an_eye_that_is_said_keeps_all_digits() {
     let square = near.rotation * near.rotation.transpose();
     assert!(square.abs_diff_eq(glam::DMat3::IDENTITY, 1e-15), "{square}");
     assert!(near.rotation.abs_diff_eq(camera.rotation, 2e-6));
-}
-
-/// One picture of `images.bin`.
-fn image_record(name: &str, camera_id: u32, points: u64) -> Vec<u8> {
-    let matrix = camera().world_to_camera();
-    let (_, q, t) = matrix.to_scale_rotation_translation();
-    let mut bytes = 7_u32.to_le_bytes().to_vec();
-    for number in [q.w, q.x, q.y, q.z, t.x, t.y, t.z] {
-        bytes.extend(number.to_le_bytes());
-    }
-    bytes.extend(camera_id.to_le_bytes());
-    bytes.extend(name.as_bytes());
-    bytes.push(0);
-    bytes.extend(points.to_le_bytes());
-    bytes.extend(vec![9; 24 * points as usize]);
-    bytes
-}
-
-fn colmap_binary() -> (Vec<u8>, Vec<u8>) {
-    let mut cameras = 2_u64.to_le_bytes().to_vec();
-    let lenses: [(u32, i32, &[f64]); 2] = [
-        (3, 1, &[800.0, 810.0, 500.0, 300.0]),
-        (5, 2, &[800.0, 500.0, 300.0, 0.0]),
-    ];
-    for (id, model, parameters) in lenses {
-        cameras.extend(id.to_le_bytes());
-        cameras.extend(model.to_le_bytes());
-        cameras.extend(1000_u64.to_le_bytes());
-        cameras.extend(600_u64.to_le_bytes());
-        parameters
-            .iter()
-            .for_each(|p| cameras.extend(p.to_le_bytes()));
-    }
-    let images = [
-        2_u64.to_le_bytes().to_vec(),
-        image_record("b.png", 5, 1000),
-        image_record("a.png", 3, 0),
-    ]
-    .concat();
-    (cameras, images)
-}
-
-#[test]
-fn colmap_folders_binary_and_text() {
-    let folder = Folder::new();
-    let (cameras, images) = colmap_binary();
-    folder.file("sparse/0/cameras.bin", cameras);
-    let file = folder.file("sparse/0/images.bin", images);
-    let text = Folder::new();
-    text.file(
-        "cameras.txt",
-        "# comment\n3 PINHOLE 1000 600 800 810 500 300\n5 SIMPLE_RADIAL 1000 600 800 500 300 0\n",
-    );
-    let (_, q, t) = camera().world_to_camera().to_scale_rotation_translation();
-    let pose = format!("{} {} {} {} {} {} {}", q.w, q.x, q.y, q.z, t.x, t.y, t.z);
-    text.file(
-        "images.txt",
-        format!("# comment\n1 {pose} 5 b.png\n1 2 -1 3 4 7\n2 {pose} 3 a.png\n\n"),
-    );
-    for path in [&folder.0, &folder.0.join("sparse"), &file, &text.0] {
-        let cameras = load_cameras(path).unwrap();
-        assert_eq!([&cameras[0].name, &cameras[1].name], ["a.png", "b.png"]);
-        assert_same(&cameras[0].camera, &camera());
-        assert_eq!(cameras[1].camera.fy, 800.0);
-    }
 }
 
 #[test]
@@ -320,40 +256,6 @@ fn unusable_files_are_refused_with_a_sentence() {
             .contains("COLMAP")
     );
     assert!(load_cameras(Path::new("no/such.json")).is_err());
-}
-
-#[test]
-fn unusable_colmap_models_are_refused() {
-    let refused = |cameras: &[u8], images: &[u8]| {
-        let folder = Folder::new();
-        folder.file("cameras.bin", cameras);
-        folder.file("images.bin", images);
-        load_cameras(&folder.0).unwrap_err().to_string()
-    };
-    let (cameras, images) = colmap_binary();
-    let with = |at: usize, bytes: &[u8]| {
-        let mut cameras = cameras.clone();
-        cameras[at..at + bytes.len()].copy_from_slice(bytes);
-        cameras
-    };
-    assert!(refused(&with(0, &u64::MAX.to_le_bytes()), &images).contains("promises"));
-    assert!(refused(&with(12, &99_i32.to_le_bytes()), &images).contains("unknown model 99"));
-    let last = cameras.len() - 8;
-    assert!(refused(&with(last, &0.1_f64.to_le_bytes()), &images).contains("distortion"));
-    assert!(refused(&with(8, &77_u32.to_le_bytes()), &images).contains("camera 3"));
-    assert!(
-        refused(
-            &cameras,
-            &[&u64::MAX.to_le_bytes()[..], &images[8..]].concat()
-        )
-        .contains("promises")
-    );
-    let endless = [1_u64.to_le_bytes().to_vec(), image_record("a", 3, 0)].concat();
-    let endless = [&endless[..endless.len() - 8], &u64::MAX.to_le_bytes()].concat();
-    assert!(refused(&cameras, &endless).contains("cut off"));
-    for cut in 1..images.len().min(200) {
-        refused(&cameras, &images[..images.len() - cut]);
-    }
 }
 
 proptest! {

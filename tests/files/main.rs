@@ -2,6 +2,7 @@
 
 mod benchmark;
 mod cameras;
+mod colmap;
 #[path = "../common/folder.rs"]
 mod folder;
 mod formats;

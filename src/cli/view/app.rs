@@ -2,7 +2,6 @@
 //! events and a script to follow it sleeps.
 
 use std::collections::VecDeque;
-use std::panic::{self, AssertUnwindSafe};
 use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -16,6 +15,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy}
 use winit::window::{Window, WindowId};
 
 use super::action::Action;
+use super::display::without_place;
 use super::input::Input;
 use super::loading::{Fresh, Load};
 use super::lost;
@@ -67,41 +67,6 @@ struct App {
 const RESIZE_PATIENCE: Duration = Duration::from_secs(5);
 /// A frame that took longer moves the view no farther than this.
 const LONGEST_STEP: Duration = Duration::from_millis(100);
-
-/// Connects to the display. This comes before anything slow, as there may be none.
-pub(super) fn connect() -> Result<EventLoop<Sent>, Failure> {
-    let remedy = "start rara view in a desktop session (DISPLAY names an X server or XWayland), install libx11-6, \
-                  libx11-xcb1, libxcursor1, libxi6 and libxkbcommon-x11-0 where one of them is missing, or draw \
-                  without a window (rara render)";
-    // winit panics where a library is missing, and its message would go to the terminal.
-    let hook = panic::take_hook();
-    panic::set_hook(Box::new(|_| ()));
-    let made = panic::catch_unwind(AssertUnwindSafe(|| EventLoop::with_user_event().build()));
-    panic::set_hook(hook);
-    match made {
-        Ok(Ok(events)) => Ok(events),
-        Ok(Err(error)) => {
-            let display = std::env::var("DISPLAY").unwrap_or_default();
-            let reason = if cfg!(target_os = "linux") && display.is_empty() {
-                "DISPLAY is not set".to_owned()
-            } else {
-                without_place(&error.to_string()).to_owned()
-            };
-            Err(Error::Device(format!("no window can be opened: {reason}; {remedy}")).into())
-        }
-        Err(_) => Err(Error::Device(format!(
-            "no window can be opened: a library for windows is missing; {remedy}"
-        ))
-        .into()),
-    }
-}
-
-/// Removes the place in winit's sources with which winit begins its messages.
-fn without_place(message: &str) -> &str {
-    let place = message.split_once(".rs:");
-    let reason = place.and_then(|(_, rest)| rest.split_once(": "));
-    reason.map_or(message, |(_, reason)| reason)
-}
 
 /// Opens the window and stays until it is closed.
 pub(super) fn run(events: EventLoop<Sent>, mut start: Start) -> Result<(), Failure> {

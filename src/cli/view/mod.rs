@@ -4,6 +4,7 @@ mod action;
 mod app;
 mod camera_flags;
 mod cut;
+mod display;
 mod dropped;
 mod flags;
 mod frames;
@@ -138,7 +139,7 @@ impl View {
             _ => Vec::new(),
         };
         let size = begin.size(&camera)?;
-        let events = app::connect()?;
+        let events = display::connect()?;
 
         let (scenes, up) = (self.scenes, camera.up());
         app::run(

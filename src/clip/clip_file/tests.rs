@@ -1,0 +1,72 @@
+//! Clips in JSON.
+
+use super::*;
+
+#[test]
+fn clips_round_trip() {
+    let texts = [
+        "all(box:0,0,0,1,2,3, !sphere:1,0,0,0.5, not(any(cone:0,0,0,1,1,1,2, plane:0,0.6,0.8,0.3)))",
+        "any(capsule:0,0,0,0,1,0,0.1, !cylinder:0,0,0,0,1,0,0.1, slab:1,0,0,0.25,0.5)",
+        "ellipsoid:0,0,0,1,2,3,0.5,0.5,0.5,0.5",
+        "!box:1,2,3,1,1,1,0,1,0,0",
+    ];
+    let clips: Vec<NamedClip> = texts
+        .iter()
+        .map(|text| NamedClip {
+            name: format!("clip \"{}\"", text.len()),
+            clip: text.parse().unwrap(),
+            layer: (text.len() % 2 == 0).then(|| format!("layer {text}")),
+        })
+        .chain([NamedClip {
+            name: "shielded".into(),
+            clip: Expression::All(Vec::new()),
+            layer: Some("skin".into()),
+        }])
+        .collect();
+    assert!(
+        clips
+            .last()
+            .is_some_and(|last| last.clip.clip().is_everything())
+    );
+    let json = clips_to_json(&clips);
+    let again = clips_from_json(json.as_bytes(), Path::new("clips.json")).unwrap();
+    assert_eq!(again, clips);
+}
+
+#[test]
+fn planes_are_clips_too() {
+    let json = "[{\"name\": \"axial\", \"normal\": [0, 0, 2], \"d\": -5}]";
+    let clips = clips_from_json(json.as_bytes(), Path::new("planes.json")).unwrap();
+    assert_eq!(clips[0].clip.to_string(), "plane:0,0,1,-2.5");
+}
+
+#[test]
+fn nonsense_is_refused_with_its_place() {
+    let deep = format!(
+        "[{{\"clip\": {}1{}}}]",
+        "{\"not\":".repeat(200),
+        "}".repeat(200)
+    );
+    for (json, words) in [
+        ("[]", "no clip"),
+        ("[{}]", "element 0"),
+        ("[{\"clip\": {\"all\": []}}]", "no operand"),
+        ("[{\"clip\": {\"globe\": {}}}]", "globe"),
+        (
+            "[{\"clip\": {\"sphere\": {\"centre\": [0,0,0], \"radius\": 0}}}]",
+            "element 0: ",
+        ),
+        (
+            "[{\"clip\": {\"sphere\": {\"centre\": [0,0,0], \"size\": 1}}}]",
+            "size",
+        ),
+        (&deep, "line 1"),
+    ] {
+        let message = clips_from_json(json.as_bytes(), Path::new("clips.json"));
+        let message = message.unwrap_err().to_string();
+        assert!(
+            message.starts_with("clips.json: ") && message.contains(words),
+            "{message}"
+        );
+    }
+}

@@ -104,7 +104,7 @@ impl Single {
                     camera.eye
                 ));
             }
-            // What a camera was drawn with, to the last bit, draws the same picture again.
+            // An eye and axes with all their digits draw the same picture again.
             camera.eye = eye;
             let rotation = DMat3::from_mat4(matrix);
             let oblique = rotation * rotation.transpose() - DMat3::IDENTITY;

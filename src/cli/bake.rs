@@ -43,7 +43,7 @@ pub(super) struct Bake {
     /// The baked scene's file; {} becomes the name of each SCENE without its ending
     #[arg(short, long, value_name = "OUT.ply", value_parser = values::ply_path)]
     output: PathBuf,
-    /// What is cut: nothing for hard, else what a frame of that mode cuts
+    /// Cut what a frame of this mode cuts; hard cuts nothing
     ///
     /// With hard splats stay or go by their centres.
     #[arg(long, default_value = "exact")]

@@ -26,7 +26,7 @@ pub(super) struct Times {
 }
 
 impl Times {
-    /// What `join` makes of all of these, each time by itself.
+    /// All of these as one, each time combined by `join`.
     fn of(all: impl Iterator<Item = Self>, join: fn(f64, f64) -> f64) -> Self {
         let joined = all.reduce(|a, b| Self {
             gpu_ms: a.gpu_ms.zip(b.gpu_ms).map(|(a, b)| join(a, b)),

@@ -84,11 +84,13 @@ impl Renderer {
     }
 
     /// True when the frame of a request needs a pipeline that no renderer has made yet, which may take seconds.
+    #[cfg_attr(not(feature = "view"), allow(dead_code))]
     pub(crate) fn compiles(&mut self, request: &FrameRequest<'_>) -> Result<bool> {
         self.in_scene(request, Self::compiles_in_scene)
     }
 
     /// As [`compiles`](Self::compiles), where camera and clip are in the scene's units already.
+    #[cfg_attr(not(feature = "view"), allow(dead_code))]
     fn compiles_in_scene(&mut self, request: &FrameRequest<'_>) -> Result<bool> {
         let Planned { mut plan, .. } = self.planned(request)?;
         if self.memory.fits(&plan) {

@@ -126,6 +126,7 @@ impl WorkingMemory {
     }
 
     /// The buffers, if a frame has been configured.
+    #[cfg_attr(not(any(feature = "lab", feature = "view")), allow(dead_code))]
     pub(super) fn allocated(&self) -> Option<&Buffers> {
         self.buffers.as_deref()
     }

@@ -29,6 +29,7 @@ impl SharedPipelines {
     }
 
     /// True when a renderer has made all pipelines that a plan needs.
+    #[cfg_attr(not(feature = "view"), allow(dead_code))]
     pub(super) fn has_all(&self, bindings: Bindings, targets: Targets, plan: &Plan) -> bool {
         let (at, has_all) = (bindings as usize, |pipelines: &Pipelines| {
             has_all(pipelines, targets, plan)

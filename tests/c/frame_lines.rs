@@ -121,7 +121,7 @@ fn a_frame_has_lines_for_those_who_embed() {
         has(
             &taken(),
             RARA_LOG_LEVEL_INFO,
-            "a scene of 100 Gaussians in one layer takes",
+            "a scene of 100 Gaussians in 1 layer takes",
         );
 
         let mut camera: RaraCamera = std::mem::zeroed();

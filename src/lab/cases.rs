@@ -1,0 +1,169 @@
+//! The cases that the experiments and the user study share: scenes, each cut in three ways and seen from one side.
+
+use glam::DVec3;
+use rara::clip::Expression;
+use rara::scene::{Bounds, Kind, generate};
+use rara::{Camera, Clip, ClipOp, Gaussians, Layer, Plane, Result, Scene, Shape};
+
+/// A scene with its name.
+#[derive(Debug)]
+pub struct Source {
+    /// What tables and pages call it.
+    pub name: String,
+    /// What it consists of.
+    pub gaussians: Gaussians,
+}
+
+/// Eight generated scenes of the three kinds, from `count` Gaussians each.
+pub fn generated(count: usize) -> Vec<Source> {
+    let all = [
+        ("surfaces 1", Kind::General, count, 1),
+        ("surfaces 2", Kind::General, count, 2),
+        ("surfaces, coarse", Kind::General, count / 4, 3),
+        ("hair 1", Kind::Strands, count, 1),
+        ("hair 2", Kind::Strands, count, 2),
+        ("hair, thin", Kind::Strands, count / 4, 3),
+        ("anatomy", Kind::Layers, count, 1),
+        ("anatomy, coarse", Kind::Layers, count / 4, 2),
+    ];
+    let source = |(name, kind, count, seed): (&str, Kind, usize, u64)| Source {
+        name: name.into(),
+        gaussians: generate(kind, count.max(1), seed),
+    };
+    all.into_iter().map(source).collect()
+}
+
+impl Source {
+    /// The scene that the renderer takes.
+    pub fn scene(&self) -> Scene<'_> {
+        Scene::from_iter([Layer::new(&self.name, &self.gaussians)])
+    }
+}
+
+/// How a scene is cut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Cut {
+    /// By a plane that faces the camera obliquely, so that the cut surface is seen.
+    Face,
+    /// By a plane that contains the direction of view, so that the cut is an edge.
+    Edge,
+    /// By a ball that bites into what faces the camera.
+    Bite,
+}
+
+impl Cut {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Face, Self::Edge, Self::Bite];
+
+    /// What tables and pages call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Face => "face",
+            Self::Edge => "edge",
+            Self::Bite => "bite",
+        }
+    }
+
+    /// The normal of the plane that the visible side is beyond, or the direction in which the ball bites; a unit vector.
+    fn direction(self, camera: &Camera) -> DVec3 {
+        let [right, down, forward] = [0, 1, 2].map(|row| camera.rotation.row(row));
+        match self {
+            Self::Face => 0.6 * right + 0.8 * forward,
+            Self::Edge => 0.8 * right + 0.6 * down,
+            Self::Bite => forward,
+        }
+    }
+}
+
+/// One scene, seen from one side and cut in one way.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// The number of the scene.
+    pub scene: usize,
+    /// How it is cut.
+    pub cut: Cut,
+    /// From where it is seen.
+    pub camera: Camera,
+    direction: DVec3,
+    /// Between which places along the direction the cut moves: the 15th and the 85th percentile of the centres.
+    range: [f64; 2],
+    centre: DVec3,
+}
+
+impl Case {
+    /// The cut at a share of its way, 0 to 1; 0.5 is where a single picture has it. Where the ball bites, it grows.
+    ///
+    /// # Errors
+    /// If the scene has no extent.
+    pub fn at(&self, share: f64) -> Result<Clip> {
+        let along = self.range[0] + share * (self.range[1] - self.range[0]);
+        if self.cut != Cut::Bite {
+            return Ok(Clip::of([Plane::new(self.direction, -along)?], ClipOp::And));
+        }
+        let reach = self.range[1] - self.range[0];
+        let before = self.range[0] - 0.5 * reach - self.direction.dot(self.centre);
+        let ball = Shape::sphere(
+            self.centre + before * self.direction,
+            along - self.range[0] + 0.5 * reach,
+        )?;
+        Ok(Expression::Shape(ball.complement()).clip())
+    }
+}
+
+/// Every way of cutting each scene, in pictures of `size` pixels.
+///
+/// # Errors
+/// If a scene has no extent, or a picture no size.
+pub fn cases(scenes: &[Source], up: DVec3, size: (u32, u32)) -> Result<Vec<Case>> {
+    let mut cases = Vec::new();
+    for (scene, source) in scenes.iter().enumerate() {
+        let camera = Camera::frame(&Bounds::of(&source.gaussians), up, 40.0, size)?;
+        for cut in Cut::ALL {
+            let direction = cut.direction(&camera);
+            let along = |p: &glam::Vec3| direction.dot(p.as_dvec3());
+            let mut places: Vec<f64> = source.gaussians.positions().iter().map(along).collect();
+            places.sort_unstable_by(f64::total_cmp);
+            let percentile = |p: usize| places[(places.len() - 1) * p / 100];
+            cases.push(Case {
+                scene,
+                cut,
+                camera,
+                direction,
+                range: [percentile(15), percentile(85)],
+                centre: Bounds::of(&source.gaussians).centre(),
+            });
+        }
+    }
+    Ok(cases)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rara::{Mode, Settings, reference};
+
+    #[test]
+    fn every_cut_removes_more_from_step_to_step_and_never_everything() {
+        let scenes: Vec<_> = generated(400).into_iter().step_by(3).collect();
+        for case in cases(&scenes, DVec3::NEG_Y, (48, 36)).expect("cases") {
+            let scene = scenes[case.scene].scene();
+            let settings = Settings::default().mode(Mode::Hard);
+            let kept = [0.0, 0.5, 1.0].map(|share| {
+                let clip = case.at(share).expect("a clip");
+                let frame = reference::render::<f64>(&scene, &case.camera, &clip, &settings);
+                frame
+                    .picture
+                    .pixels
+                    .iter()
+                    .map(|p| f64::from(p[3]))
+                    .sum::<f64>()
+            });
+            assert!(
+                kept[0] >= kept[1] && kept[1] >= kept[2] && kept[0] > kept[2],
+                "{case:?}: {kept:?}"
+            );
+            assert!(kept[2] > 0.0, "{case:?}: {kept:?}");
+        }
+    }
+}

@@ -50,15 +50,11 @@ pub mod limits;
 #[cfg(not(feature = "lab"))]
 mod limits;
 #[cfg(feature = "lab")]
-pub mod measure;
-#[cfg(feature = "lab")]
 pub mod reference;
 // What bakes asks the reference on which side of a clip a Gaussian is, and nothing else.
 #[cfg(all(feature = "bake", not(feature = "lab")))]
 #[allow(dead_code, unreachable_pub, unused_imports)]
 mod reference;
-#[cfg(feature = "lab")]
-pub mod stress;
 #[cfg(feature = "lab")]
 pub mod types;
 #[cfg(not(feature = "lab"))]

@@ -11,18 +11,18 @@ use crate::types;
 
 /// Format of the picture that [`Headless`](crate::Headless) draws into. A host has a format of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum TargetFormat {
     /// 8 bits a channel: each blend rounds, so that thin layers gather error or vanish.
-    #[cfg_attr(feature = "cli", value(name = "8"))]
+    #[cfg_attr(feature = "clap", value(name = "8"))]
     Unorm8,
     /// 16-bit floats.
-    #[cfg_attr(feature = "cli", value(name = "16f"))]
+    #[cfg_attr(feature = "clap", value(name = "16f"))]
     Half,
     /// 32-bit floats: thousands of thin layers stay exact. A device that cannot blend them gets 16-bit ones, with a warning.
     #[default]
-    #[cfg_attr(feature = "cli", value(name = "32f"))]
+    #[cfg_attr(feature = "clap", value(name = "32f"))]
     Float,
 }
 
@@ -59,22 +59,22 @@ impl TargetFormat {
 
 /// How spherical harmonics lie in device memory. Chosen when a scene is loaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum ShFormat {
     /// 8 bits a coefficient and one scale a Gaussian; the constant term in 16-bit floats. 56 bytes for degree 3.
-    #[cfg_attr(feature = "cli", value(name = "8"))]
+    #[cfg_attr(feature = "clap", value(name = "8"))]
     Byte,
     /// The constant term in 16-bit floats; each other coefficient's red, green and blue in 11, 11 and 10 bits of its
     /// degree's scale, a power of two: off by a 1023rd and a 511th of the degree's largest at most, unless that is
     /// beyond 65536. 68 bytes for degree 3.
     Packed,
     /// 16-bit floats. 96 bytes for degree 3.
-    #[cfg_attr(feature = "cli", value(name = "16f"))]
+    #[cfg_attr(feature = "clap", value(name = "16f"))]
     Half,
     /// 32-bit floats. 192 bytes for degree 3.
     #[default]
-    #[cfg_attr(feature = "cli", value(name = "32f"))]
+    #[cfg_attr(feature = "clap", value(name = "32f"))]
     Float,
 }
 
@@ -92,7 +92,7 @@ impl ShFormat {
 
 /// The normal distribution's Phi in the weight of a cut splat: how it is approximated, and the largest error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum PhiForm {
     /// A logistic of an odd quintic: 1.9e-5.
@@ -183,7 +183,7 @@ impl Default for Precision {
 
 /// A choice of all six; [the guide](crate::guide::modes) has what each costs and gives up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum Preset {
     /// Nothing is approximated.

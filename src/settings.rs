@@ -5,7 +5,7 @@ use crate::setters::setters;
 
 /// How a clip treats the Gaussians that it cuts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum Mode {
     /// No clipping.
@@ -21,7 +21,7 @@ pub enum Mode {
 
 /// The quantity that the weight w of a cut splat scales.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Decay {
     /// Alpha: `alpha' = alpha w` (the paper).
     Linear,
@@ -31,7 +31,7 @@ pub enum Decay {
 
 /// [`Mode::Rara`] only: what a cutoff splat keeps in a pixel whose ray misses the traced ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum Miss {
     /// Everything (the paper's text).
@@ -45,7 +45,7 @@ pub enum Miss {
 
 /// How splats become pixels. All give the same picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum Raster {
     /// The faster path on the device at hand.
@@ -62,7 +62,7 @@ pub enum Raster {
 
 /// The quantity that a frame shows of its splats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum Show {
     /// The splats' colours.
@@ -80,7 +80,7 @@ pub enum Show {
     /// The splat that adds most to the pixel's alpha: red and 65536 times green are its Gaussian's number in the scene, blue is
     /// its layer's, and alpha is what it adds; all are 0 where there is none. Only tiles make it, and only pictures of 32-bit
     /// floats hold it, without a background. [`Picker`](crate::Picker) reads it.
-    #[cfg_attr(feature = "cli", value(skip))]
+    #[cfg_attr(feature = "clap", value(skip))]
     Strongest,
 }
 

@@ -12,8 +12,8 @@ use super::frame::ComparisonArgs;
 use super::output::{self, say};
 use super::scenes::SceneArgs;
 use super::session::Session;
-use rara::measure;
 use rara::scene::Bounds;
+use rara_lab::measure;
 
 /// Repeat the paper's ablation with a plane at infinity
 #[derive(Debug, Args)]

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::{output, values};
-use rara::measure::{self, Comparison};
+use rara_lab::measure::{self, Comparison};
 
 /// Measure how far two pictures are apart
 #[derive(Debug, Args)]

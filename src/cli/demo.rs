@@ -6,7 +6,8 @@ use clap::{Args, ValueEnum};
 use rara::{
     Camera, Clip, ClipOp, Decay, ExactForm, FrameStats, Mode, Picture, Plane, Scene, Settings,
 };
-use rara::{measure, reference, scene};
+use rara::{reference, scene};
+use rara_lab::measure;
 
 use super::combine::{Combine, combine};
 use super::compare::Measures;

@@ -1,7 +1,7 @@
 //! How far a baked scene's pictures are from those of the exact cut.
 
-use rara::measure::{self, Comparison};
 use rara::{Camera, Clip, HeadlessDesc, Mode, Picture, Scene, Settings, ShFormat};
+use rara_lab::measure::{self, Comparison};
 use serde::Serialize;
 
 use super::compare::Measures;

@@ -1,8 +1,9 @@
 //! `rara stress`: the stress suite's table on this device.
 
 use clap::Args;
-use rara::stress::{self, FormRow, Row};
-use rara::{Headless, stress::regimes};
+use rara::Headless;
+use rara_lab::stress::regimes;
+use rara_lab::stress::{self, FormRow, Row};
 use serde::Serialize;
 
 use super::failure::Failure;

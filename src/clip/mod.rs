@@ -36,7 +36,7 @@ use crate::error::{Error, Result};
 
 /// How several surfaces combine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum ClipOp {
     /// Visible where every surface keeps it (an intersection).
     #[default]

@@ -48,7 +48,7 @@ pub enum Cut {
     Face,
     /// By a plane that contains the direction of view, so that the cut is an edge.
     Edge,
-    /// By a ball that bites into what faces the camera.
+    /// By a ball that bites into the outline, from the left, above and before it.
     Bite,
 }
 
@@ -71,7 +71,7 @@ impl Cut {
         match self {
             Self::Face => 0.6 * right + 0.8 * forward,
             Self::Edge => 0.8 * right + 0.6 * down,
-            Self::Bite => forward,
+            Self::Bite => (0.7 * right + 0.3 * down + 0.65 * forward).normalize(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The work that each compute pass costs a GPU's frame, as functions of the frame's numbers: each pass declares how many
 //! invocations it has, how many loads one of them may have to wait for, one after the other, and how many bytes of device
 //! memory all of them together read and write. The declarations stand beside the passes; `tests/gpu_cost` holds them to the
-//! commands of real frames, and to ceilings. `measure::gpu_model` predicts times from them.
+//! commands of real frames, and to ceilings. The laboratory's `measure::gpu_model` predicts times from them.
 //!
 //! A load is a trip to device memory, not to a workgroup's shared memory. Loads that do not wait for each other count as one:
 //! those of a struct, and those of loops of a fixed length, which compilers unroll. In a loop whose length follows from data

@@ -13,6 +13,7 @@ mod combined;
 pub mod compact;
 pub mod cutoff;
 pub mod depth;
+pub mod differences;
 pub mod exact;
 pub mod footprint;
 pub mod harmonics;

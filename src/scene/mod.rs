@@ -31,8 +31,8 @@ mod save;
 pub use bounds::{Bounds, extent_along};
 pub use cross_section::cross_section;
 pub use gaussians::{GaussianArrays, Gaussians, sh_coefficients};
-#[cfg(feature = "lab")]
-pub(crate) use generate::random::Random;
+#[doc(hidden)]
+pub use generate::Random;
 pub use generate::{Kind, generate};
 pub(crate) use layer::check_clip;
 pub use layer::{Layer, LayerState, Scene};

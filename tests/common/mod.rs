@@ -10,13 +10,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 use rara::gpu::{Bindings, Device, DeviceShape};
-use rara::measure::differences;
 use rara::scene::{Bounds, Kind, generate, load};
 use rara::types::Splat;
 use rara::{
     Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, HeadlessDesc, Picture, PipelineCache,
     Plane, Projection, Raster, Settings, reference,
 };
+use rara_lab::measure::differences;
 
 /// The scale of generated scenes and pictures against the usual size, `RARA_TEST_SCALE`, for slow drivers. The tests'
 /// bounds are the same at every scale.

@@ -1,4 +1,4 @@
-//! What the model of GPUs (`rara::measure::gpu_model`) is fed with: the numbers of frames, counted on whatever device there is,
+//! What the model of GPUs (`rara_lab::measure::gpu_model`) is fed with: the numbers of frames, counted on whatever device there is,
 //! and the estimates of a GPU's compiler.
 
 use std::collections::BTreeSet;
@@ -8,12 +8,12 @@ use std::{env, fs};
 use rara::ash::vk;
 use rara::cost::{FrameNumbers, costs};
 use rara::gpu::{Device, DeviceDesc, DeviceShape};
-use rara::measure::gpu_model::{
-    self, CountedFrame, FRAMES_FILE, KERNELS_FILE, Kernel, frames, kernels,
-};
 use rara::types::{FrameData, Splat};
 use rara::{
     Gaussians, Mode, Raster, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat, limits,
+};
+use rara_lab::measure::gpu_model::{
+    self, CountedFrame, FRAMES_FILE, KERNELS_FILE, Kernel, frames, kernels,
 };
 
 use crate::common;

@@ -2,11 +2,11 @@
 
 use crate::common;
 use glam::DVec3;
-use rara::measure::{Comparison, compare};
 use rara::scene::Bounds;
 use rara::{
     Camera, Clip, ClipOp, Decay, ExactForm, Gaussians, Miss, Mode, Plane, Settings, reference,
 };
+use rara_lab::measure::{Comparison, compare};
 
 /// Mean absolute difference of the channels, of 255.
 const L1_ANYWHERE: f64 = 0.1;

@@ -2,12 +2,12 @@
 
 use crate::common;
 use glam::{DQuat, DVec3};
-use rara::measure::differences;
 use rara::scene::{Bounds, Kind, generate};
 use rara::{
     BakeSettings, Camera, Clip, ClipOp, ExactForm, Headless, Layer, LayerState, Mode, Picture,
     Placement, Plane, Scene, Settings, Shape, bake, bake_layer,
 };
+use rara_lab::measure::differences;
 
 fn drawn(headless: &mut Headless, camera: &Camera, clip: &Clip, mode: Mode) -> Picture {
     let settings = Settings::default().mode(mode);

@@ -1,13 +1,10 @@
 //! The same picture by every path and in every run.
 
-use std::process::Command;
-
 use crate::common;
-use crate::common::folder::Folder;
 use glam::DVec3;
-use rara::measure::differences;
 use rara::scene::{Kind, generate};
 use rara::{Camera, Clip, ClipOp, Headless, Mode, Picture, Plane, Raster, Settings};
+use rara_lab::measure::differences;
 
 const SIZE: (u32, u32) = (300, 220);
 
@@ -138,50 +135,6 @@ fn a_lone_survivor_after_many_is_itself() {
         assert!(
             fresh.picture().expect("reads back") == after_many,
             "number {end}"
-        );
-    }
-}
-
-#[test]
-fn every_run_with_any_number_of_driver_threads_gives_the_same_bytes() {
-    let folder = Folder::new("determinism");
-    let scene = folder.join("determinism.ply");
-    // Elsewhere, if the tests were carried to another machine.
-    let program = std::env::var_os("RARA_TEST_PROGRAM");
-    let program = program.unwrap_or_else(|| env!("CARGO_BIN_EXE_rara").into());
-    let rara = || Command::new(&program);
-    let status = rara()
-        .args(["generate", "general", "-n", "20000", "--seed", "7", "-o"])
-        .arg(&scene)
-        .status();
-    assert!(status.expect("rara runs").success());
-    let render = |run: usize, threads: &str| {
-        let out = folder.join(format!("determinism-{run}.exr"));
-        let mut command = rara();
-        command
-            .env("LP_NUM_THREADS", threads)
-            .arg("render")
-            .arg(&scene)
-            .arg("-o")
-            .arg(&out);
-        command.args([
-            "--size",
-            "300x220",
-            "--clip",
-            "plane:1,0.2,0.1,0",
-            "--validation",
-        ]);
-        if let Ok(device) = std::env::var("RARA_TEST_DEVICE") {
-            command.args(["--device", &device]);
-        }
-        assert!(command.status().expect("rara runs").success());
-        std::fs::read(out).expect("the picture was written")
-    };
-    let first = render(0, "1");
-    for (run, threads) in ["1", "2", "3", "8"].iter().enumerate() {
-        assert!(
-            render(run + 1, threads) == first,
-            "{threads} driver threads give other bytes than one"
         );
     }
 }

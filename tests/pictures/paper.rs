@@ -2,8 +2,8 @@
 
 use crate::common;
 use glam::DVec3;
-use rara::measure::differences;
 use rara::{Camera, Clip, ClipOp, Gaussians, Headless, Miss, Mode, Picture, Plane, Settings};
+use rara_lab::measure::differences;
 
 const SIZE: (u32, u32) = (200, 150);
 

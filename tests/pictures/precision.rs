@@ -2,12 +2,12 @@
 
 use crate::common;
 use glam::{DQuat, DVec3};
-use rara::measure::differences;
 use rara::scene::Bounds;
 use rara::{
     Camera, ClipOp, Gaussians, Headless, Mode, PhiForm, Placement, Precision, Preset, Settings,
     ShFormat, TargetFormat,
 };
+use rara_lab::measure::differences;
 
 const SIZE: (u32, u32) = (203, 150);
 

@@ -3,8 +3,8 @@
 use crate::common;
 use glam::DVec3;
 use rara::clip::Expression;
-use rara::measure::differences;
 use rara::{Camera, Clip, Gaussians, Layer, Mode, Plane, Raster, Scene, Settings, scene};
+use rara_lab::measure::differences;
 
 /// Every shape, and regions of several, through the middle of a generated scene of radius 1.
 const EXPRESSIONS: [&str; 14] = [

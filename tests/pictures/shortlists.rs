@@ -3,9 +3,9 @@
 use crate::common;
 use glam::DVec3;
 use rara::clip::Expression;
-use rara::measure::differences;
 use rara::scene::{Kind, generate};
 use rara::{Clip, ClipOp, Headless, Mode, Picture, Plane, Raster, Settings};
+use rara_lab::measure::differences;
 
 fn clip_of(text: &str) -> Clip {
     text.parse::<Expression>().expect("an expression").clip()

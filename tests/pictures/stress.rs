@@ -1,7 +1,7 @@
 //! The stress suite under validation: what `rara stress --validation` prints, held to its targets.
 
 use crate::common;
-use rara::stress::{self, Regime, Row};
+use rara_lab::stress::{self, Regime, Row};
 
 /// Runs every regime, so that a failure shows the whole table.
 fn check(regimes: Vec<Regime>) {

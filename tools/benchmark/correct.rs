@@ -1,8 +1,8 @@
 //! Correctness first: a variant that draws a wrong picture is not timed.
 
 use rara::glam::DVec3;
-use rara::measure::psnr;
 use rara::{Camera, Clip, Headless, Picture, Raster, Result, reference};
+use rara_lab::measure::psnr;
 
 use crate::Bench;
 use crate::args::Section;

@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use rara::measure::processor_ms;
 use rara::{Camera, Clip, FrameStats, Headless, Result, Settings};
+use rara_lab::measure::processor_ms;
 
 use crate::statistics::Summary;
 

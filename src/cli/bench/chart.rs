@@ -6,7 +6,7 @@ use std::path::Path;
 use rara::{Picture, Result};
 
 use super::{Report, output};
-use crate::cli::ink;
+use crate::ink;
 
 const WIDTH: f64 = 1200.0;
 const HEIGHT: f64 = 720.0;

@@ -1,12 +1,12 @@
 //! Times of several choices, taken in turn so that their ratios hold on a machine that does other things too.
 
-use rara::measure::processor_ms;
 use rara::{Camera, Clip, PassTime, Result, Scene, Settings};
+use rara_lab::measure::processor_ms;
 use serde::Serialize;
 
 use super::Session;
-use crate::cli::combine::Combine;
-use crate::cli::times;
+use crate::combine::Combine;
+use crate::times;
 
 /// The times of one choice, milliseconds.
 #[derive(Debug, Clone, Default, Serialize)]

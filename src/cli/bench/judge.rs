@@ -3,12 +3,12 @@
 use std::cell::RefCell;
 
 use glam::DVec3;
-use rara::measure::{self, Popping, Region};
 use rara::scene::extent_along;
 use rara::{
     Camera, Clip, Decay, ExactForm, Mode, Picture, Plane, Precision, Result, Scene, Settings,
     Surface, reference,
 };
+use rara_lab::measure::{self, Popping, Region};
 use serde::Serialize;
 
 use super::Session;

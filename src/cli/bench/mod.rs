@@ -11,8 +11,8 @@ mod variants;
 use std::path::PathBuf;
 
 use clap::Args;
-use rara::measure::undominated;
 use rara::{Clip, ClipOp};
+use rara_lab::measure::undominated;
 use serde::Serialize;
 
 use super::camera::CameraArgs;

@@ -2,9 +2,9 @@
 
 use glam::{DQuat, DVec3};
 use rara::clip::{Expression, Solid};
-use rara::measure;
 use rara::scene::Bounds;
 use rara::{Camera, Mode, Plane, Result, Scene, Settings, Shape, reference};
+use rara_lab::measure;
 use serde::Serialize;
 
 use super::Session;

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rara::gpu::DeviceShape;
-use rara::measure::gpu_model::{self, CountedFrame, GPUS, Gpu, PassPrediction};
 use rara::{Camera, Clip, Error, FrameStats, Mode, Raster, Scene, Settings, ShFormat};
+use rara_lab::measure::gpu_model::{self, CountedFrame, GPUS, Gpu, PassPrediction};
 use serde::Serialize;
 
 use super::failure::Failure;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rara::Result;
 use rara::gpu::DeviceShape;
-use rara::measure::gpu_model::{GAP, Gpu, PassPrediction, REACHED_BANDWIDTH, SIZE};
+use rara_lab::measure::gpu_model::{GAP, Gpu, PassPrediction, REACHED_BANDWIDTH, SIZE};
 
 use super::{Device, Frame, Report, output};
 

@@ -1,5 +1,5 @@
 use super::*;
-use crate::cli::Cli;
+use crate::Cli;
 use clap::error::ErrorKind;
 use clap::{Arg, CommandFactory};
 

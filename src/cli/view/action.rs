@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use rara::{Mode, Plane, Projection, Shape};
 
 use super::viewpoint::Walk;
-use crate::cli::values;
+use crate::values;
 
 /// An action.
 #[derive(Debug, Clone, PartialEq)]

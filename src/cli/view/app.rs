@@ -22,8 +22,8 @@ use super::lost;
 use super::scenery::Manner;
 use super::script;
 use super::stage::Viewer;
-use crate::cli::failure::Failure;
-use crate::cli::output::say;
+use crate::failure::Failure;
+use crate::output::say;
 
 /// A message to the event loop from another thread.
 pub(super) enum Sent {
@@ -128,7 +128,7 @@ impl App {
             ))
         })?;
         let window = Arc::new(window);
-        crate::cli::process::make_drivers_folder();
+        crate::process::make_drivers_folder();
         let windowed = Windowed::new(&start.device, window.clone())?;
         say(format_args!(
             "device   {} ({}), {:?}; H lists the keys",

@@ -52,7 +52,7 @@ pub(super) fn planes(camera: &Camera) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::camera::{CameraArgs, Views};
+    use crate::camera::{CameraArgs, Views};
     use clap::{Args as _, FromArgMatches as _};
     use glam::DVec3;
 

@@ -5,7 +5,7 @@ use std::panic::{self, AssertUnwindSafe};
 use rara::Error;
 use winit::event_loop::EventLoop;
 
-use crate::cli::failure::Failure;
+use crate::failure::Failure;
 
 /// Connects to the display. This comes before anything slow, as there may be none.
 pub(super) fn connect<T: 'static>() -> Result<EventLoop<T>, Failure> {

@@ -6,9 +6,9 @@ use rara::camera_files::load_cameras;
 use rara::clip::{NamedClip, load_clips};
 use rara::{Camera, Error};
 
-use crate::cli::failure::Failure;
-use crate::cli::json_kind::{self, JsonKind};
-use crate::cli::{scene_file, training};
+use crate::failure::Failure;
+use crate::json_kind::{self, JsonKind};
+use crate::{scene_file, training};
 
 /// What a file has.
 #[derive(Debug)]
@@ -39,7 +39,7 @@ impl Dropped {
                         path,
                         format!(
                             "{} are beyond the {MOST_SURFACES} that a clip may have; use fewer",
-                            crate::cli::output::counted(count as u64, "surface")
+                            crate::output::counted(count as u64, "surface")
                         ),
                     )
                     .into());

@@ -5,7 +5,7 @@ use rara::{Camera, ClipOp, Precision, Preset, Settings};
 
 use super::camera_flags;
 use super::layers::Clips;
-use crate::cli::settings::name;
+use crate::settings::name;
 
 /// The flags of `rara render` for clips, the planes of the camera among them, layers and settings, as a user would type them.
 /// They leave out defaults.
@@ -135,10 +135,10 @@ fn differences(precision: &Precision, preset: &Precision) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::clip::ClipArgs;
-    use crate::cli::settings::SettingsArgs;
-    use crate::cli::view::action::HeldAction;
-    use crate::cli::view::cut::Cut;
+    use crate::clip::ClipArgs;
+    use crate::settings::SettingsArgs;
+    use crate::view::action::HeldAction;
+    use crate::view::cut::Cut;
     use clap::{Args as _, FromArgMatches as _};
     use glam::{DVec2, DVec3};
     use rara::Plane;

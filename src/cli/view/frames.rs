@@ -11,8 +11,8 @@ use super::scenery::{Manner, Scenery};
 use super::stage::Viewer;
 use super::text::Progress;
 use super::title;
-use crate::cli::failure::Failure;
-use crate::cli::settings;
+use crate::failure::Failure;
+use crate::settings;
 
 /// The title changes no more often than this, since each change costs the window system a message.
 const TITLE_PAUSE: Duration = Duration::from_millis(200);

@@ -2,7 +2,7 @@
 
 use super::layers::NamedLayer;
 use super::shots::quoted;
-use crate::cli::scene_file::LayerClip;
+use crate::scene_file::LayerClip;
 
 /// How a flag, which takes all layers of a name alike, makes what is listed of them into what is shown.
 #[derive(Debug, PartialEq)]
@@ -99,11 +99,11 @@ pub(super) fn note(layers: &[NamedLayer]) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use crate::cli::scenes::LoadedLayer;
-    use crate::cli::view::action::{Edit, HeldAction, Which};
-    use crate::cli::view::cut::Cut;
-    use crate::cli::view::layers::Clips;
-    use crate::cli::view::layers::tests::{camera, layer};
+    use crate::scenes::LoadedLayer;
+    use crate::view::action::{Edit, HeldAction, Which};
+    use crate::view::cut::Cut;
+    use crate::view::layers::Clips;
+    use crate::view::layers::tests::{camera, layer};
     use glam::DVec3;
     use rara::ClipOp;
 
@@ -115,7 +115,7 @@ mod tests {
     /// The same layer as flags have left it: hidden, or with another clip.
     fn flagged(mut layer: LoadedLayer, visible: bool, clip: Option<&str>) -> LoadedLayer {
         layer.state = layer.state.visible(visible);
-        layer.clip = clip.map(|text| crate::cli::scene_file::LayerClip::parse(text).unwrap());
+        layer.clip = clip.map(|text| crate::scene_file::LayerClip::parse(text).unwrap());
         layer
     }
 

@@ -7,9 +7,9 @@ use super::action::{Edit, HeldAction, Which};
 use super::cut::Cut;
 use super::layer_flags;
 use super::shots::quoted;
-use crate::cli::failure::Failure;
-use crate::cli::scene_file::LayerClip;
-use crate::cli::scenes::{Listed, LoadedLayer};
+use crate::failure::Failure;
+use crate::scene_file::LayerClip;
+use crate::scenes::{Listed, LoadedLayer};
 use rara::clip::Expression;
 
 /// The frame's clip and the layers.
@@ -285,11 +285,7 @@ pub(super) mod tests {
     use super::*;
     use rara::LayerState;
 
-    pub(in crate::cli::view) fn layer(
-        name: &str,
-        visible: bool,
-        clip: Option<&str>,
-    ) -> LoadedLayer {
+    pub(in crate::view) fn layer(name: &str, visible: bool, clip: Option<&str>) -> LoadedLayer {
         let clip = clip.map(|text| LayerClip::parse(text).unwrap());
         LoadedLayer::new(name.into(), LayerState::default().visible(visible), clip)
     }
@@ -303,7 +299,7 @@ pub(super) mod tests {
         )
     }
 
-    pub(in crate::cli::view) fn camera() -> Camera {
+    pub(in crate::view) fn camera() -> Camera {
         Camera::look_at(DVec3::NEG_Z, DVec3::ZERO, DVec3::NEG_Y, 50.0, (64, 64)).unwrap()
     }
 

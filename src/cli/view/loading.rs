@@ -14,15 +14,15 @@ use super::layers::Clips;
 use super::scenery::Scenery;
 use super::text::Progress;
 use super::{Begin, name};
-use crate::cli::camera::{FOV_Y, Views};
-use crate::cli::failure::Failure;
-use crate::cli::framing::Visible;
-use crate::cli::lens::{Depths, Lens};
-use crate::cli::output::counted;
-use crate::cli::reading::{Reading, Watch};
-use crate::cli::scenes::{self, Loaded};
-use crate::cli::views::Framed;
-use crate::cli::{training, values};
+use crate::camera::{FOV_Y, Views};
+use crate::failure::Failure;
+use crate::framing::Visible;
+use crate::lens::{Depths, Lens};
+use crate::output::counted;
+use crate::reading::{Reading, Watch};
+use crate::scenes::{self, Loaded};
+use crate::views::Framed;
+use crate::{training, values};
 
 /// A scene that has been read, and how it is looked at.
 pub(super) struct Fresh {

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rara::Error;
 
-use crate::cli::failure::Failure;
+use crate::failure::Failure;
 
 /// Runs `work`; `None` if winit panicked. All other panics go on.
 pub(super) fn unless_lost<T>(work: impl FnOnce() -> T) -> Option<T> {

@@ -9,10 +9,10 @@ use super::app::Sent;
 use super::dropped::Dropped;
 use super::loading::{Fresh, Load, Loading, TICK};
 use super::stage::Viewer;
-use crate::cli::clip::are_alternatives;
-use crate::cli::failure::Failure;
-use crate::cli::output;
-use crate::cli::scene_file::LayerClip;
+use crate::clip::are_alternatives;
+use crate::failure::Failure;
+use crate::output;
+use crate::scene_file::LayerClip;
 
 impl Viewer {
     /// Begins to read a scene.

@@ -45,9 +45,9 @@ pub(super) fn lines(clips: &Clips, camera: &Camera, (centre, radius): (DVec3, f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::view::action::{Edit, Which};
-    use crate::cli::view::cut::Cut;
-    use crate::cli::view::layers::tests::layer;
+    use crate::view::action::{Edit, Which};
+    use crate::view::cut::Cut;
+    use crate::view::layers::tests::layer;
     use rara::ClipOp;
 
     fn clips(frame: &[&str]) -> Clips {

@@ -8,7 +8,7 @@ use super::input::KEYS;
 use super::layers::Clips;
 use super::numbers;
 use super::text::{self, Progress, Type};
-use crate::cli::{settings, times};
+use crate::{settings, times};
 
 const HINT: &str = "H: keys   M: numbers   drop a file to open it";
 /// The hint goes away after this time with a scene.
@@ -242,7 +242,7 @@ fn laid_out(content: &Content) -> Vec<Panel> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::view::cut::Cut;
+    use crate::view::cut::Cut;
     use glam::DVec3;
     use rara::{ClipOp, PassTime};
 

@@ -7,7 +7,7 @@ use std::path::Path;
 use rara::Error;
 
 use super::action::Action;
-use crate::cli::failure::Failure;
+use crate::failure::Failure;
 
 /// A line's actions.
 type Actions = Result<Vec<Action>, Failure>;

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use rara::{Camera, Error, Picture, Result};
 
-use crate::cli::output;
-use crate::cli::save_camera::CameraJson;
+use crate::output;
+use crate::save_camera::CameraJson;
 
 /// The screenshots' files: `{}` becomes their number.
 #[derive(Debug)]

@@ -22,9 +22,9 @@ use super::scenery::{Manner, Scenery};
 use super::shots;
 use super::title;
 use super::viewpoint::{Viewpoint, Walk};
-use crate::cli::failure::Failure;
-use crate::cli::lens::UP;
-use crate::cli::output::say;
+use crate::failure::Failure;
+use crate::lens::UP;
+use crate::output::say;
 
 /// The open window.
 pub(super) struct Viewer {

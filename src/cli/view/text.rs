@@ -2,7 +2,7 @@
 
 use rara::Picture;
 
-use crate::cli::ink::{self, Font};
+use crate::ink::{self, Font};
 
 const PAPER: [u8; 3] = [22, 25, 30];
 const INK: [u8; 3] = [225, 228, 232];

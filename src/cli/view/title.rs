@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use rara::FrameStats;
 
-use crate::cli::output::grouped;
-use crate::cli::times;
+use crate::output::grouped;
+use crate::times;
 
 /// The title: what is shown, how it is cut, and where the last frame's time went on the device.
 pub(super) fn title(

@@ -109,7 +109,7 @@ fn a_rigid_motion_of_everything_changes_nothing() {
         let a = render::<f64>(&base, &home, &still, &settings);
         let b = render::<f64>(&moved, &view, &carried, &settings);
         assert_eq!(a.counts, b.counts, "{settings:?}");
-        let result = crate::measure::differences(&a.picture, &b.picture).unwrap();
+        let result = crate::reference::differences::differences(&a.picture, &b.picture).unwrap();
         // Quaternions are rounded to f32 after the turn: 1e-7 of a needle's length.
         assert!(
             result.l1 < 1e-3 && result.share_over_2 < 1e-3,
@@ -127,7 +127,7 @@ fn the_f32_twin_agrees_with_f64() {
             render::<f64>(&scene, &camera, &clip, &settings),
             render::<f32>(&scene, &camera, &clip, &settings),
         );
-        let result = crate::measure::differences(&a.picture, &b.picture).unwrap();
+        let result = crate::reference::differences::differences(&a.picture, &b.picture).unwrap();
         assert_eq!(a.counts, b.counts);
         assert!(
             result.l1 < 2e-3 && result.share_over_2 < 1e-3,
@@ -186,7 +186,8 @@ fn speed() {
         let middle = start.elapsed();
         let twin = render::<f32>(&scene, &camera, clip, &settings);
         let end = start.elapsed() - middle;
-        let result = crate::measure::differences(&wide.picture, &twin.picture).unwrap();
+        let result =
+            crate::reference::differences::differences(&wide.picture, &twin.picture).unwrap();
         println!(
             "{:?}: f64 {middle:?}, f32 {end:?}, {:?}, {result:?}",
             settings.mode, wide.counts

@@ -5,19 +5,20 @@
 
 mod general;
 mod layers;
-pub(crate) mod random;
+mod random;
 mod spherical;
 mod strands;
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
 
-use self::random::Random;
+#[doc(hidden)]
+pub use self::random::Random;
 use super::gaussians::MAX_SH_DEGREE;
 use super::{Gaussians, sh_coefficients};
 
 /// The kind of scene to generate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Kind {
     /// Objects made of flat splats on surfaces, with the statistics of a trained scene; degree 3.
     General,

@@ -2,10 +2,13 @@
 
 use glam::DVec3;
 
-pub(crate) struct Random(u64);
+/// A sequence of random numbers that its seed determines.
+#[derive(Debug, Clone)]
+pub struct Random(u64);
 
 impl Random {
-    pub(crate) fn new(seed: u64) -> Self {
+    /// The sequence of a seed.
+    pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
@@ -18,16 +21,17 @@ impl Random {
     }
 
     /// From 0 up to but not including 1.
-    pub(crate) fn unit(&mut self) -> f64 {
+    pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    pub(crate) fn range(&mut self, low: f64, high: f64) -> f64 {
+    /// From `low` up to but not including `high`.
+    pub fn range(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
     /// Normal distribution by the polar method, which needs no sine.
-    pub(crate) fn normal(&mut self, mean: f64, deviation: f64) -> f64 {
+    pub fn normal(&mut self, mean: f64, deviation: f64) -> f64 {
         loop {
             let (u, v) = (self.range(-1.0, 1.0), self.range(-1.0, 1.0));
             let s = u * u + v * v;
@@ -38,12 +42,12 @@ impl Random {
     }
 
     /// exp of a normal variable of mean 0: sizes vary by factors.
-    pub(crate) fn factor(&mut self, deviation: f64) -> f64 {
+    pub fn factor(&mut self, deviation: f64) -> f64 {
         self.normal(0.0, deviation).exp()
     }
 
     /// Uniform in the unit ball.
-    pub(crate) fn in_ball(&mut self) -> DVec3 {
+    pub fn in_ball(&mut self) -> DVec3 {
         loop {
             let p = DVec3::new(
                 self.range(-1.0, 1.0),
@@ -57,7 +61,7 @@ impl Random {
     }
 
     /// Uniform on the unit sphere.
-    pub(crate) fn direction(&mut self) -> DVec3 {
+    pub fn direction(&mut self) -> DVec3 {
         loop {
             if let Some(direction) = self.in_ball().try_normalize() {
                 return direction;

@@ -15,7 +15,7 @@ use crate::settings::{Settings, Show};
 
 /// A quantity that a pixel can have beside its colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum Aov {
     /// Channel Z: the mean depth of what is left, along the view axis, world units; 0 where nothing is

@@ -257,7 +257,8 @@ fn without_any_extension_a_frame_is_drawn_all_the_same() {
     let mut headless = on(&device).expect("a renderer");
     let [tiles, quads] = [Raster::Tiles, Raster::Quad]
         .map(|raster| life(&mut headless, raster).expect("renders")[0].clone());
-    let difference = crate::measure::differences(&tiles, &quads).expect("the same size");
+    let difference =
+        crate::reference::differences::differences(&tiles, &quads).expect("the same size");
     assert!(difference.psnr > 60.0, "{difference:?}");
     let error = life(&mut headless, Raster::Mesh).expect_err("there are none");
     assert!(error.to_string().contains("VK_EXT_mesh_shader"), "{error}");

@@ -4,13 +4,13 @@
 use ash::vk;
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 use rara::gpu::Bindings;
-use rara::measure::differences;
 use rara::scene::{Kind, generate};
 use rara::{
     Aov, Camera, Channel, Clip, ClipOp, ExactForm, FrameStats, Gaussians, Headless, Layer,
     LayerState, Picture, Placement, Plane, Precision, Projection, Renderer, RendererDesc, Scene,
     Settings,
 };
+use rara_lab::measure::differences;
 
 use super::SIZE;
 use crate::common;

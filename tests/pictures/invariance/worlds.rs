@@ -3,8 +3,8 @@
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
 use rara::clip::Expression;
-use rara::measure::differences;
 use rara::{Clip, ClipOp, Gaussians, Mode, Plane, Settings};
+use rara_lab::measure::differences;
 
 use super::{check, directions, draw, operations, planes, scenes, views};
 

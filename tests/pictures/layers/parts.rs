@@ -72,7 +72,8 @@ fn layers_of_different_degrees_keep_their_colours() {
     ] {
         headless.load_as(&layers, format).expect("uploads");
         headless.render(&camera, &clip, &settings).expect("renders");
-        let apart = rara::measure::differences(&picture(&mut headless), &truth).expect("one size");
+        let apart =
+            rara_lab::measure::differences(&picture(&mut headless), &truth).expect("one size");
         assert!(apart.psnr >= least, "{format:?}: {apart:?}");
     }
     headless.close().expect("nothing to say");

@@ -85,7 +85,8 @@ fn colours_turn_with_their_layer() {
     headless
         .render(&world, &carried, &Settings::default())
         .expect("renders");
-    let apart = rara::measure::differences(&picture(&mut headless), &still).expect("the same size");
+    let apart =
+        rara_lab::measure::differences(&picture(&mut headless), &still).expect("the same size");
     assert!(apart.psnr < 40.0, "{apart:?}");
     headless.close().expect("nothing to say");
 }

@@ -3,9 +3,9 @@
 
 use glam::DVec3;
 
-use crate::passes::cost::FrameNumbers;
-use crate::scene::{Bounds, Kind, generate};
-use crate::{Camera, Clip, ClipOp, Gaussians, Plane, Result};
+use rara::cost::FrameNumbers;
+use rara::scene::{Bounds, Kind, generate};
+use rara::{Camera, Clip, ClipOp, Gaussians, Plane, Result};
 
 /// Where the frames are, from the crate's root.
 pub const FRAMES_FILE: &str = "src/measure/gpu_model/frames.txt";

@@ -1,7 +1,8 @@
-//! The command line: one file a command, and the pieces they share.
+//! The `rara` command: one file a command, and the pieces they share.
 //!
 //! Each command goes from the text of the flags (clap's structs) to what they mean (the library's types, checked once) to
 //! the work. Only [`output::answer`] writes to stdout what a command was asked for; everything else goes to stderr.
+#![deny(unsafe_code)] // only the process's environment and signals need it
 
 mod ablate;
 mod antialiasing;
@@ -170,7 +171,7 @@ fn needs_met(typed: &ArgMatches) -> Result<(), Failure> {
 }
 
 /// Parses the command line, runs the command, and turns a failure into its sentence and exit status.
-pub(crate) fn main() -> ExitCode {
+fn main() -> ExitCode {
     process::begin();
     output::tell_warnings();
     let outcome = match typed() {

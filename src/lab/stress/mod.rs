@@ -15,7 +15,7 @@ mod planes;
 mod regions;
 mod shapes;
 
-use crate::{Camera, Clip, Gaussians};
+use rara::{Camera, Clip, Gaussians};
 
 pub use files::regimes as files;
 pub use frames::regimes as frames;

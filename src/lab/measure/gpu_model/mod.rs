@@ -10,7 +10,7 @@ pub use counted::{
     CountedFrame, FRAMES_FILE, KERNELS_FILE, Kernel, SIZE, camera, clip, frames, kernels, scene,
 };
 
-use crate::passes::cost::{Cost, FrameNumbers, costs};
+use rara::cost::{Cost, FrameNumbers, costs};
 
 /// The numbers of a GPU.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

@@ -6,8 +6,8 @@ use super::make::{
     PLAIN, Setup, any_normal, axes, between, cases, orientation, push, set_colour, strewn,
 };
 use super::{Case, Regime};
-use crate::Projection;
-use crate::scene::Random;
+use rara::Projection;
+use rara::scene::Random;
 
 /// Cameras and worlds at extreme places.
 pub fn regimes() -> Vec<Regime> {

@@ -55,8 +55,8 @@ fn memory_twice_as_fast_helps_what_waits_for_memory_alone() {
 
 #[test]
 fn the_guide_and_the_front_page_say_what_is_predicted() {
-    let guide = include_str!("../../guide/gpu.md");
-    let front = include_str!("../../../README.md");
+    let guide = include_str!("../../../guide/gpu.md");
+    let front = include_str!("../../../../README.md");
     // Two digits.
     let told = |ms: f64| format!("{ms:.*}", if ms < 1.0 { 2 } else { 1 });
     for frame in frames() {

@@ -3,9 +3,9 @@
 use glam::{DMat3, DQuat, DVec3, Quat};
 
 use super::Case;
-use crate::reference::{Footprint, View};
-use crate::scene::Random;
-use crate::{Camera, Clip, ClipOp, Gaussians, Plane, Projection};
+use rara::reference::{Footprint, View};
+use rara::scene::Random;
+use rara::{Camera, Clip, ClipOp, Gaussians, Plane, Projection};
 
 /// The viewing geometry of a case.
 #[derive(Debug, Clone, Copy)]
@@ -41,7 +41,7 @@ impl Setup {
             .expect("two random directions are not parallel");
         match self.projection {
             Projection::Perspective => camera,
-            Projection::Orthographic => {
+            _ => {
                 let scale = self.focal / self.distance;
                 camera.projection(self.projection).fx(scale).fy(scale)
             }
@@ -162,7 +162,7 @@ pub(super) fn on_surface(
         let depth = (camera.rotation * (point - camera.eye)).z.max(1e-3);
         let pixel = match camera.projection {
             Projection::Perspective => depth / camera.fx,
-            Projection::Orthographic => 1.0 / camera.fx,
+            _ => 1.0 / camera.fx,
         };
         let rotation = orientation(random);
         let scales = shape(random, pixel);

@@ -1,7 +1,7 @@
 //! A part of a picture, for measures that the rest would dilute.
 
 use super::same_size;
-use crate::{Picture, Result};
+use rara::{Picture, Result};
 
 /// Some of a picture's pixels.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -9,6 +9,7 @@ mod cameras;
 mod clips;
 mod compare;
 mod convert;
+mod determinism;
 mod films;
 mod outputs;
 mod panoramas;

@@ -1,6 +1,6 @@
 //! Structural similarity of one channel.
 
-use crate::Picture;
+use rara::Picture;
 
 /// Half the window's width, pixels.
 const RADIUS: usize = 5;

@@ -1,7 +1,7 @@
 //! How much a picture jumps while a clip moves slowly.
 
 use super::same_size;
-use crate::{Picture, Result};
+use rara::{Picture, Result};
 
 /// How much a sequence of pictures changes from step to step, in units of 1/255, each the mean over the steps. A pixel's
 /// change is that of the channel that changes most.

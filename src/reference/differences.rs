@@ -1,28 +1,13 @@
-//! Measures: how far apart two pictures are, and what a GPU would take for a frame.
-
-#![forbid(unsafe_code)]
-
-pub mod gpu_model;
-mod pareto;
-mod popping;
-mod processor;
-mod region;
-mod ssim;
-
-pub use pareto::undominated;
-pub use popping::{Popping, popping};
-pub use processor::processor_ms;
-pub use region::Region;
+//! How far apart two pictures are, pixel by pixel.
 
 use crate::{Error, Picture, Result};
 
-/// The differences between two pictures.
+/// The differences between two pictures, pixel by pixel.
 ///
 /// Channels are compared as they are: premultiplied, not clamped, no transfer function. Red, green, blue and alpha
-/// all count, except that alpha is left out where both pictures are opaque throughout: it would only dilute the
-/// averages.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Comparison {
+/// all count, except that alpha is left out where both pictures are opaque throughout: it would only dilute the averages.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Differences {
     /// Largest difference of a channel, in units of 1/255.
     pub max: f64,
     /// Mean absolute difference over all channels, in units of 1/255.
@@ -31,8 +16,6 @@ pub struct Comparison {
     pub rmse: f64,
     /// Peak signal to noise ratio for a peak of 1, decibels; infinite where the pictures are equal.
     pub psnr: f64,
-    /// Structural similarity, the mean over all pixels and channels: 1 where the pictures are equal. See [`compare`].
-    pub ssim: f64,
     /// Share of the pixels of which any channel differs by more than 2/255.
     pub share_over_2: f64,
     /// Mean excess of the first picture over all channels, in units of 1/255: against a truth, light that the truth
@@ -45,58 +28,8 @@ pub struct Comparison {
 
 /// Compares two pictures of the same size.
 ///
-/// SSIM is that of Wang, Bovik, Sheikh and Simoncelli (2004): a Gaussian window of 11 x 11 pixels and sigma 1.5,
-/// K1 = 0.01, K2 = 0.03, a range of 1. At the picture's edges the window is cut off and renormalised.
-pub fn compare(a: &Picture, b: &Picture) -> Result<Comparison> {
-    compare_within(a, b, None).map(|(comparison, _)| comparison)
-}
-
-/// Compares two pictures as [`compare`] does, and also returns the mean SSIM over the pixels of a region, `None` where
-/// the region has no pixel.
-pub fn compare_within(
-    a: &Picture,
-    b: &Picture,
-    region: Option<&Region>,
-) -> Result<(Comparison, Option<f64>)> {
-    let d = differences(a, b)?;
-    let channels = channels(a, b);
-    let mut similarity = vec![0.0; a.pixels.len()];
-    (0..channels).for_each(|channel| ssim::add_channel(a, b, channel, &mut similarity));
-    let per_channel = 1.0 / channels as f64;
-    let comparison = Comparison {
-        max: d.max,
-        l1: d.l1,
-        rmse: d.rmse,
-        psnr: d.psnr,
-        ssim: per_channel * similarity.iter().sum::<f64>() / a.pixels.len() as f64,
-        share_over_2: d.share_over_2,
-        leak: d.leak,
-        loss: d.loss,
-    };
-    let within = region.and_then(|region| region.mean(&similarity));
-    Ok((comparison, within.map(|sum| per_channel * sum)))
-}
-
-/// A [`Comparison`] without the structural similarity, which takes twenty times as long as the rest.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Differences {
-    /// As [`Comparison::max`].
-    pub max: f64,
-    /// As [`Comparison::l1`].
-    pub l1: f64,
-    /// As [`Comparison::rmse`].
-    pub rmse: f64,
-    /// As [`Comparison::psnr`].
-    pub psnr: f64,
-    /// As [`Comparison::share_over_2`].
-    pub share_over_2: f64,
-    /// As [`Comparison::leak`].
-    pub leak: f64,
-    /// As [`Comparison::loss`].
-    pub loss: f64,
-}
-
-/// Compares two pictures of the same size as [`compare`] does, pixel by pixel alone.
+/// # Errors
+/// If their sizes differ, if they have no pixel, or if a channel is not finite.
 pub fn differences(a: &Picture, b: &Picture) -> Result<Differences> {
     comparable(a, b)?;
     let channels = channels(a, b);
@@ -128,17 +61,21 @@ pub fn differences(a: &Picture, b: &Picture) -> Result<Differences> {
 }
 
 /// The channels that count: all but an alpha that says nothing.
-fn channels(a: &Picture, b: &Picture) -> usize {
+pub fn channels(a: &Picture, b: &Picture) -> usize {
     let opaque = |picture: &Picture| picture.pixels.iter().all(|pixel| pixel[3] == 1.0);
     if opaque(a) && opaque(b) { 3 } else { 4 }
 }
 
-/// Peak signal to noise ratio of two pictures, as [`compare`] computes it, without the rest.
+/// Peak signal to noise ratio of two pictures, as [`differences`] computes it.
 pub fn psnr(a: &Picture, b: &Picture) -> Result<f64> {
     differences(a, b).map(|d| d.psnr)
 }
 
-fn same_size(a: &Picture, b: &Picture) -> Result<()> {
+/// Fails if the pictures' sizes differ.
+///
+/// # Errors
+/// If their sizes differ.
+pub fn same_size(a: &Picture, b: &Picture) -> Result<()> {
     if (a.width, a.height) != (b.width, b.height) {
         return Err(Error::Invalid(format!(
             "pictures of {}x{} and {}x{} cannot be compared; they must have the same size",
@@ -170,6 +107,3 @@ fn comparable(a: &Picture, b: &Picture) -> Result<()> {
     }
     Ok(())
 }
-
-#[cfg(test)]
-mod tests;

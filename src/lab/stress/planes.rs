@@ -5,8 +5,8 @@ use glam::DVec3;
 use super::make::{PLAIN, any_normal, axes, cases, on_plane, pop};
 use super::places::mix;
 use super::{Case, Regime};
-use crate::scene::Random;
-use crate::{Camera, Clip, ClipOp, Plane, Surface};
+use rara::scene::Random;
+use rara::{Camera, Clip, ClipOp, Plane, Surface};
 
 /// Planes at extreme angles and in extreme company.
 pub fn regimes() -> Vec<Regime> {

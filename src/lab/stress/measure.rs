@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::{Case, Limit, Regime, TARGET};
-use crate::limits::ALPHA_MIN_INVERSE;
 use crate::measure::{Differences, differences};
-use crate::reference;
-use crate::{Clip, Counts, Decay, ExactForm, Headless, Mode, Picture, Raster, Result, Settings};
+use rara::limits::ALPHA_MIN_INVERSE;
+use rara::reference;
+use rara::{Clip, Counts, Decay, ExactForm, Headless, Mode, Picture, Raster, Result, Settings};
 
 /// The forms of the cut that are measured. Mode `rara` only has to be finite and right in the picture: its length
 /// ratio jumps where a ray leaves the ellipsoid.
@@ -119,10 +119,7 @@ fn measure(headless: &mut Headless, case: &Case, turn: Option<usize>, row: &mut 
         Some(0) => &[Raster::Tiles],
         Some(_) => &[Raster::Quad],
     };
-    let uncut = Settings {
-        mode: Mode::None,
-        ..Settings::default()
-    };
+    let uncut = Settings::default().mode(Mode::None);
     // A splat that either way of drawing leaves out shows here, before anything is cut.
     let all = [Raster::Tiles, Raster::Quad];
     let drawn = pictures(headless, case, &Clip::default(), &uncut, &all)?;
@@ -141,12 +138,11 @@ fn measure(headless: &mut Headless, case: &Case, turn: Option<usize>, row: &mut 
         }
     }
 
-    let settings = FORMS.map(|(_, mode, form)| Settings {
-        mode,
-        form,
-        // Linear, so that a pixel's alpha is alpha times weight.
-        decay: case.apart.then_some(Decay::Linear),
-        ..Settings::default()
+    // Linear, so that a pixel's alpha is alpha times weight.
+    let decay = case.apart.then_some(Decay::Linear);
+    let settings = FORMS.map(|(_, mode, form)| {
+        let settings = Settings::default().mode(mode).form(form);
+        settings.decay(decay)
     });
     let truths = settings.map(|settings| truth(case, &case.clip, &settings));
     let beam = FORMS.iter().position(|(form, ..)| *form == "beam");
@@ -184,10 +180,7 @@ fn pictures(
     rasters: &[Raster],
 ) -> Result<Vec<(Picture, Counts)>> {
     let draw = |&raster| {
-        let settings = Settings {
-            raster,
-            ..*settings
-        };
+        let settings = settings.raster(raster);
         let counts = headless.render(&case.camera, clip, &settings)?.counts;
         Ok((headless.picture()?, counts))
     };

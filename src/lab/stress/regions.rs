@@ -4,9 +4,9 @@ use glam::DVec3;
 
 use super::make::{PLAIN, Setup, between, on_surface};
 use super::{Case, Regime};
-use crate::Clip;
-use crate::clip::Expression;
-use crate::scene::Random;
+use rara::Clip;
+use rara::clip::Expression;
+use rara::scene::Random;
 
 /// Both sides of the region are within a hundredth of a splat, and each is known to a thousandth of that.
 const THIN: &str = "24 bits place both sides of a region that is a thousandth as thick as wide to a thousandth of a splat";
@@ -142,7 +142,7 @@ fn on_border(random: &mut Random, stage: Setup, region: &Clip) -> (DVec3, DVec3)
         }
         let surfaces = region.all_surfaces();
         let nearest = surfaces.iter().min_by(|a, b| {
-            let distance = |surface: &crate::Surface| surface.distance(inside).abs();
+            let distance = |surface: &rara::Surface| surface.distance(inside).abs();
             distance(a).total_cmp(&distance(b))
         });
         let normal = nearest.expect("a region has surfaces").gradient(inside);

@@ -6,8 +6,8 @@ use glam::DVec3;
 
 use super::make::{PLAIN, any_normal};
 use super::{Case, Regime};
-use crate::scene::{Random, load};
-use crate::{Clip, ClipOp, Gaussians, Plane};
+use rara::scene::{Random, load};
+use rara::{Clip, ClipOp, Gaussians, Plane};
 
 /// Files with numbers that no trainer should write.
 pub fn regimes() -> Vec<Regime> {

@@ -1,19 +1,14 @@
-//! `rara ablate`: the paper's second table. The plane stands so far away that it cuts nothing, so every mode should draw
-//! the picture that mode `none` draws; only tracing Gaussians that are not cut can make a difference.
+//! `rara ablate`: the paper's second table.
 
 use clap::Args;
-use glam::DVec3;
-use rara::{Clip, ClipOp, Miss, Mode, Plane, Settings};
-use serde::Serialize;
+use rara::Headless;
+use rara_lab::paper::ablation;
 
-use super::compare::Measures;
 use super::failure::Failure;
 use super::frame::ComparisonArgs;
 use super::output::{self, say};
+use super::process;
 use super::scenes::SceneArgs;
-use super::session::Session;
-use rara::scene::Bounds;
-use rara_lab::measure;
 
 /// Repeat the paper's ablation with a plane at infinity
 #[derive(Debug, Args)]
@@ -33,14 +28,6 @@ pub(super) struct Ablate {
     scenes: SceneArgs,
 }
 
-#[derive(Debug, Serialize)]
-struct Row {
-    what: &'static str,
-    cutoff: u32,
-    #[serde(flatten)]
-    measures: Measures,
-}
-
 impl Ablate {
     pub(super) fn run(self) -> Result<(), Failure> {
         let look = self.common.look.meant()?;
@@ -49,67 +36,16 @@ impl Ablate {
         let loaded = self.scenes.load()?;
         let scene = loaded.scene();
         let camera = views.of(&scene)?.remove(0).camera;
-        let bounds = Bounds::of(&scene);
-        let reach = bounds
-            .min
-            .abs()
-            .max(bounds.max.abs())
-            .max_element()
-            .max(1.0);
-        let far = Clip::of([Plane::new(DVec3::Z, 1e9 * reach)?], ClipOp::And);
 
-        let mut session = Session::open(&self.common.device.meant(), &scene, look.precision.sh)?;
-        let unclipped = look.mode(Mode::None);
-        let (truth, _) = session.picture(&camera, &Clip::default(), &unclipped)?;
-        let mut rows = Vec::new();
-        for (what, settings) in cases(look) {
-            let (picture, stats) = session.picture(&camera, &far, &settings)?;
-            let measures = Measures::from(measure::compare(&picture, &truth)?);
-            rows.push(Row {
-                what,
-                cutoff: stats.counts.cutoff,
-                measures,
-            });
-        }
-        session.close()?;
+        process::make_drivers_folder();
+        let mut headless = Headless::new(&self.common.device.meant())?;
+        headless.load_as(&scene, look.precision.sh)?;
+        let rows = ablation::ablation(&mut headless, &scene, &camera, &look)?;
+        headless.close()?;
         if self.json {
             return Ok(output::json(&rows)?);
         }
-        say(format_args!(
-            "{:<28} {:>10} {:>10} {:>10}",
-            "against mode none", "cut", "L1 of 255", "SSIM"
-        ));
-        for Row {
-            what,
-            cutoff,
-            measures,
-        } in rows
-        {
-            say(format_args!(
-                "{what:<28} {cutoff:>10} {:>10.4} {:>10.6}",
-                measures.l1, measures.ssim
-            ));
-        }
+        say(ablation::table("Plane at infinity", &rows).markdown());
         Ok(())
     }
-}
-
-fn cases(look: Settings) -> Vec<(&'static str, Settings)> {
-    let mode = |mode| look.mode(mode);
-    let all = |miss, sigma| {
-        look.mode(Mode::Rara)
-            .trace_all(true)
-            .miss(miss)
-            .sigma(sigma)
-    };
-    vec![
-        ("hard", mode(Mode::Hard)),
-        ("rara", mode(Mode::Rara)),
-        ("exact", mode(Mode::Exact)),
-        ("rara, all traced, keep 1s", all(Miss::Keep, 1.0)),
-        ("rara, all traced, keep 3s", all(Miss::Keep, 3.0)),
-        ("rara, all traced, drop 1s", all(Miss::Drop, 1.0)),
-        ("rara, all traced, drop 3s", all(Miss::Drop, 3.0)),
-        ("rara, all traced, peak 3s", all(Miss::Peak, 3.0)),
-    ]
 }

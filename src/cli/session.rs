@@ -185,11 +185,6 @@ impl Session {
         self.headless.close()
     }
 
-    /// True when the device is this machine's processor.
-    pub(super) fn is_cpu(&self) -> bool {
-        self.headless.device().info().kind_name() == "cpu"
-    }
-
     /// True when the device counts what the stages do.
     pub(super) fn has_statistics(&self) -> bool {
         self.headless.device().support().pipeline_statistics

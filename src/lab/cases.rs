@@ -92,6 +92,11 @@ pub struct Case {
 }
 
 impl Case {
+    /// The direction along which the cut moves; a unit vector.
+    pub fn direction(&self) -> DVec3 {
+        self.direction
+    }
+
     /// The cut at a share of its way, 0 to 1; 0.5 is where a single picture has it. Where the ball bites, it grows.
     ///
     /// # Errors

@@ -1,5 +1,12 @@
 //! The laboratory of rara: what measures it, and the experiments of the paper. What embeds rara compiles none of it.
 
+pub mod bench;
 pub mod cases;
+pub mod charts;
+pub mod frames;
+pub mod maps;
 pub mod measure;
+pub mod paper;
+pub mod statistics;
 pub mod stress;
+pub mod table;

@@ -6,12 +6,14 @@ pub mod gpu_model;
 mod pareto;
 mod popping;
 mod processor;
+mod qualities;
 mod region;
 mod ssim;
 
 pub use pareto::undominated;
 pub use popping::{Popping, popping};
 pub use processor::processor_ms;
+pub use qualities::{Qualities, Truth, edge_distance, pieces_apart, share_of_way};
 pub use region::Region;
 
 use rara::reference::differences::channels;

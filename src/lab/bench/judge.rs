@@ -2,16 +2,16 @@
 
 use std::cell::RefCell;
 
+use crate::measure::{self, Popping, Region};
 use glam::DVec3;
 use rara::scene::extent_along;
 use rara::{
-    Camera, Clip, Decay, ExactForm, Mode, Picture, Plane, Precision, Result, Scene, Settings,
-    Surface, reference,
+    Camera, Clip, Decay, ExactForm, Headless, Mode, Picture, Plane, Precision, Result, Scene,
+    Settings, Surface, reference,
 };
-use rara_lab::measure::{self, Popping, Region};
 use serde::Serialize;
 
-use super::Session;
+use crate::frames::picture;
 
 /// A step of the slow sweep as a share of the scene: ten seconds across it at 30 pictures a second.
 const STEP: f64 = 1.0 / 300.0;
@@ -20,22 +20,22 @@ const BAND: usize = 5;
 
 /// Errors against the truth, in units of 1/255 but for SSIM, which is 1 at best.
 #[derive(Debug, Clone, Serialize)]
-pub(super) struct Measures {
-    pub(super) l1: f64,
-    pub(super) ssim: f64,
+pub(crate) struct Measures {
+    pub(crate) l1: f64,
+    pub(crate) ssim: f64,
     /// SSIM where the way of cutting makes a difference; `None` if it makes none anywhere.
-    pub(super) band_ssim: Option<f64>,
-    pub(super) max: f64,
-    pub(super) leak: f64,
-    pub(super) loss: f64,
-    pub(super) popping: Popping,
+    pub(crate) band_ssim: Option<f64>,
+    pub(crate) max: f64,
+    pub(crate) leak: f64,
+    pub(crate) loss: f64,
+    pub(crate) popping: Popping,
     /// Peak signal to noise ratio against the same choice in double precision, decibels.
     #[serde(serialize_with = "finite")]
-    pub(super) twin_psnr: f64,
+    pub(crate) twin_psnr: f64,
 }
 
 /// JSON has no infinity, so pictures that are equal are 999 dB apart.
-pub(super) fn finite<S: serde::Serializer>(
+pub(crate) fn finite<S: serde::Serializer>(
     psnr: &f64,
     serializer: S,
 ) -> std::result::Result<S::Ok, S::Error> {
@@ -43,7 +43,7 @@ pub(super) fn finite<S: serde::Serializer>(
 }
 
 /// Judges pictures of one view of one cut scene by the truth.
-pub(super) struct Judge<'a> {
+pub(crate) struct Judge<'a> {
     scene: &'a Scene<'a>,
     camera: &'a Camera,
     /// The clip in each step of the sweep; all measures but popping use the first.
@@ -55,7 +55,7 @@ pub(super) struct Judge<'a> {
 }
 
 /// The settings of the truth: every splat, called cut or not, is exact in perspective and weighed by optical depth.
-pub(super) fn truth_settings(look: &Settings) -> Settings {
+pub(crate) fn truth_settings(look: &Settings) -> Settings {
     look.mode(Mode::Exact)
         .decay(Some(Decay::Depth))
         .form(ExactForm::Beam)
@@ -63,7 +63,7 @@ pub(super) fn truth_settings(look: &Settings) -> Settings {
 }
 
 impl<'a> Judge<'a> {
-    pub(super) fn new(
+    pub(crate) fn new(
         scene: &'a Scene<'a>,
         camera: &'a Camera,
         clip: &Clip,
@@ -88,13 +88,13 @@ impl<'a> Judge<'a> {
     }
 
     /// Share of the picture in which the way of cutting makes a difference.
-    pub(super) fn band_share(&self) -> f64 {
+    pub(crate) fn band_share(&self) -> f64 {
         self.band.share()
     }
 
-    /// Measures one choice; the session holds the scene in the choice's format.
-    pub(super) fn measure(&self, session: &mut Session, settings: &Settings) -> Result<Measures> {
-        let draw = |clip| Ok(session.picture(self.camera, clip, settings)?.0);
+    /// Measures one choice; the headless holds the scene in the choice's format.
+    pub(crate) fn measure(&self, headless: &mut Headless, settings: &Settings) -> Result<Measures> {
+        let draw = |clip| Ok(picture(headless, self.camera, clip, settings)?.0);
         let pictures = self.clips.iter().map(draw).collect::<Result<Vec<_>>>()?;
         let (own, band_ssim) =
             measure::compare_within(&pictures[0], &self.truths[0], Some(&self.band))?;

@@ -1,45 +1,43 @@
 //! Times of several choices, taken in turn so that their ratios hold on a machine that does other things too.
 
-use rara::{Camera, Clip, PassTime, Result, Scene, Settings};
-use rara_lab::measure::processor_ms;
+use crate::measure::processor_ms;
+use rara::{Camera, Clip, Headless, PassTime, Result, Scene, Settings};
 use serde::Serialize;
 
-use super::Session;
-use crate::combine::Combine;
-use crate::times;
+use crate::frames::fresh;
 
 /// The times of one choice, milliseconds.
 #[derive(Debug, Clone, Default, Serialize)]
-pub(super) struct Times {
+pub(crate) struct Times {
     /// On the device, the median frame.
-    pub(super) ms: f64,
+    pub(crate) ms: f64,
     /// On the device, each stage at its quickest, which other work on the machine disturbs least.
-    pub(super) ms_min: f64,
+    pub(crate) ms_min: f64,
     /// From recording to the picture, the median frame.
-    pub(super) wall_ms: f64,
+    pub(crate) wall_ms: f64,
     /// Of this process on all cores, the median frame; 0 where the system does not count it.
-    pub(super) cpu_ms: f64,
+    pub(crate) cpu_ms: f64,
     /// Of this process on all cores, the least frame.
-    pub(super) cpu_ms_min: f64,
+    pub(crate) cpu_ms_min: f64,
     /// The cost of a choice: `ms_min` on the device, or, where the device is this machine's processor and the system
     /// counts its time, `cpu_ms_min`, which other work on the machine hardly disturbs.
-    pub(super) cost: f64,
+    pub(crate) cost: f64,
     /// Each stage's median and minimum.
-    pub(super) passes: Vec<Pass>,
+    pub(crate) passes: Vec<Pass>,
 }
 
 /// The times of one stage, milliseconds.
 #[derive(Debug, Clone, Serialize)]
-pub(super) struct Pass {
-    pub(super) name: &'static str,
-    pub(super) ms: f64,
-    pub(super) ms_min: f64,
+pub(crate) struct Pass {
+    pub(crate) name: String,
+    pub(crate) ms: f64,
+    pub(crate) ms_min: f64,
 }
 
 /// Times each clip with its settings. A round is one frame of each; there are `rounds` of them after a first one that is
 /// not counted.
-pub(super) fn time(
-    session: &mut Session,
+pub(crate) fn time(
+    headless: &mut Headless,
     scene: &Scene<'_>,
     camera: &Camera,
     all: &[(&Clip, Settings)],
@@ -57,13 +55,13 @@ pub(super) fn time(
             let ((clip, settings), samples) = (&all[index], &mut samples[index]);
             let sh = settings.precision.sh;
             if loaded != Some(sh) {
-                session.reload(scene, sh)?;
+                headless.load_as(scene, sh)?;
                 // The frame after an upload finds other data in the caches, so it is not timed.
-                session.one(camera, clip, settings)?;
+                fresh(headless, camera, clip, settings)?;
                 loaded = Some(sh);
             }
             let before = processor_ms();
-            let frame = session.one(camera, clip, settings)?;
+            let frame = fresh(headless, camera, clip, settings)?;
             let after = processor_ms();
             if round > 0 {
                 samples.ms.extend(frame.gpu_ms);
@@ -73,7 +71,7 @@ pub(super) fn time(
             }
         }
     }
-    let on_cpu = session.is_cpu();
+    let on_cpu = headless.device().info().kind_name() == "cpu";
     Ok(samples.iter().map(|s| s.times(on_cpu)).collect())
 }
 
@@ -88,18 +86,18 @@ struct Samples {
 impl Samples {
     fn times(&self, on_cpu: bool) -> Times {
         let names = self.passes.first().into_iter().flatten();
-        let pass = |name| {
+        let pass = |name: &str| {
             let ms = self.passes.iter().flatten().filter(|p| p.name == name);
             let ms: Vec<f64> = ms.map(|p| p.ms).collect();
             Pass {
-                name,
+                name: name.to_owned(),
                 ms: median(&ms),
                 ms_min: least(&ms),
             }
         };
         let passes: Vec<Pass> = names.map(|p| pass(p.name)).collect();
         let (ms_min, cpu_ms_min) = (
-            times::sum(passes.iter().map(|p| p.ms_min)),
+            passes.iter().fold(0.0, |sum, p| sum + p.ms_min),
             least(&self.cpu),
         );
         let has_cpu_time = on_cpu && cpu_ms_min.is_finite() && cpu_ms_min > 0.0;
@@ -120,7 +118,7 @@ fn least(values: &[f64]) -> f64 {
 }
 
 fn median(values: &[f64]) -> f64 {
-    Combine::Median.of(values.to_vec())
+    crate::statistics::median(values).unwrap_or(0.0)
 }
 
 #[cfg(test)]

@@ -6,22 +6,22 @@ use rara::{
 
 /// One choice.
 #[derive(Debug, Clone)]
-pub(super) struct Variant {
-    pub(super) name: &'static str,
+pub(crate) struct Variant {
+    pub(crate) name: &'static str,
     /// The flags that choose it.
-    pub(super) flags: &'static str,
-    pub(super) settings: Settings,
+    pub(crate) flags: &'static str,
+    pub(crate) settings: Settings,
 }
 
-/// A parser of one of the names.
-pub(super) fn names() -> clap::builder::PossibleValuesParser {
-    let names = variants(Settings::default()).into_iter().map(|v| v.name);
-    names.collect::<Vec<_>>().into()
+/// The names of all choices.
+pub fn names() -> Vec<&'static str> {
+    let all = variants(Settings::default()).into_iter();
+    all.map(|variant| variant.name).collect()
 }
 
 /// All choices, on top of what the command line says about everything else. Choices that store spherical harmonics in the
 /// same way follow each other.
-pub(super) fn variants(look: Settings) -> Vec<Variant> {
+pub(crate) fn variants(look: Settings) -> Vec<Variant> {
     let variant = |name, flags, settings| Variant {
         name,
         flags,

@@ -1,44 +1,45 @@
 //! What each shape costs and how far its cut is from the truth, beside a plane through the same point.
 
+use crate::measure;
 use glam::{DQuat, DVec3};
 use rara::clip::{Expression, Solid};
 use rara::scene::Bounds;
-use rara::{Camera, Mode, Plane, Result, Scene, Settings, Shape, reference};
-use rara_lab::measure;
+use rara::{Camera, Headless, Mode, Plane, Result, Scene, Settings, Shape, reference};
 use serde::Serialize;
 
-use super::Session;
+use crate::frames::picture;
+
 use super::clock::{self, Times};
 use super::judge::{finite, truth_settings};
 
 /// One region, drawn exactly and by centres.
 #[derive(Debug, Serialize)]
-pub(super) struct Line {
-    pub(super) name: &'static str,
+pub(crate) struct Line {
+    pub(crate) name: &'static str,
     /// The region as `--clip-expr` takes it.
-    pub(super) region: String,
+    pub(crate) region: String,
     /// Splats that it cuts.
-    pub(super) cutoff: u32,
-    pub(super) exact: Times,
-    pub(super) hard: Times,
+    pub(crate) cutoff: u32,
+    pub(crate) exact: Times,
+    pub(crate) hard: Times,
     /// Errors against the exact cut in double precision, of 255.
-    pub(super) l1: f64,
-    pub(super) hard_l1: f64,
+    pub(crate) l1: f64,
+    pub(crate) hard_l1: f64,
     /// Peak signal to noise ratio against the same mode in double precision, decibels.
     #[serde(serialize_with = "finite")]
-    pub(super) twin_psnr: f64,
+    pub(crate) twin_psnr: f64,
 }
 
 /// Draws every region through the middle of the scene, in turn with the others.
-pub(super) fn lines(
-    session: &mut Session,
+pub(crate) fn lines(
+    headless: &mut Headless,
     scene: &Scene<'_>,
     camera: &Camera,
     plane: Plane,
     look: &Settings,
     frames: u32,
 ) -> Result<Vec<Line>> {
-    session.reload(scene, look.precision.sh)?;
+    headless.load_as(scene, look.precision.sh)?;
     let regions = regions(&Bounds::of(scene.clone()), plane)?;
     let [exact, hard] = [Mode::Exact, Mode::Hard].map(|mode| look.mode(mode));
     let mut lines = Vec::new();
@@ -46,23 +47,23 @@ pub(super) fn lines(
         let clip = region.clip();
         let truth = |settings: &Settings| reference::render::<f64>(scene, camera, &clip, settings);
         let cut = truth(&truth_settings(look)).picture;
-        let (picture, stats) = session.picture(camera, &clip, &exact)?;
-        let by_centres = session.picture(camera, &clip, &hard)?.0;
+        let (drawn, stats) = picture(headless, camera, &clip, &exact)?;
+        let by_centres = picture(headless, camera, &clip, &hard)?.0;
         lines.push(Line {
             name,
             region: region.to_string(),
             cutoff: stats.counts.cutoff,
             exact: Times::default(),
             hard: Times::default(),
-            l1: measure::compare(&picture, &cut)?.l1,
+            l1: measure::compare(&drawn, &cut)?.l1,
             hard_l1: measure::compare(&by_centres, &cut)?.l1,
-            twin_psnr: measure::psnr(&picture, &truth(&exact).picture)?,
+            twin_psnr: measure::psnr(&drawn, &truth(&exact).picture)?,
         });
     }
     let clips: Vec<_> = regions.iter().map(|(_, region)| region.clip()).collect();
     let both = clips.iter().flat_map(|clip| [(clip, exact), (clip, hard)]);
     let both: Vec<_> = both.collect();
-    let mut times = clock::time(session, scene, camera, &both, frames)?.into_iter();
+    let mut times = clock::time(headless, scene, camera, &both, frames)?.into_iter();
     for line in &mut lines {
         line.exact = times.next().expect("two times a line");
         line.hard = times.next().expect("two times a line");

@@ -1,9 +1,8 @@
 //! The three ways of cutting that the paper compares, against the truth, at a small size and at the size asked for.
 
-use rara::{Camera, Clip, Miss, Mode, Result, Scene, Settings};
+use rara::{Camera, Clip, Headless, Miss, Mode, Result, Scene, Settings};
 use serde::Serialize;
 
-use super::Session;
 use super::judge::{Judge, Measures};
 
 /// Pixels a side of the small picture.
@@ -11,30 +10,30 @@ const SMALL: u32 = 256;
 
 /// One way of cutting at one size.
 #[derive(Debug, Serialize)]
-pub(super) struct Line {
-    pub(super) size: [u32; 2],
-    pub(super) name: &'static str,
+pub(crate) struct Line {
+    pub(crate) size: [u32; 2],
+    pub(crate) name: &'static str,
     #[serde(flatten)]
-    pub(super) measures: Measures,
+    pub(crate) measures: Measures,
     /// How many times exact is nearer to the truth, by L1.
-    pub(super) l1_over_exact: f64,
+    pub(crate) l1_over_exact: f64,
 }
 
 /// Measures all ways at the small size, in the precision of `look`. `measured` has them by name at the size asked for.
-pub(super) fn lines(
-    session: &mut Session,
+pub(crate) fn lines(
+    headless: &mut Headless,
     scene: &Scene<'_>,
     (camera, clip): (&Camera, &Clip),
     look: &Settings,
     steps: u32,
     measured: &[(&str, &Measures)],
 ) -> Result<Vec<Line>> {
-    session.reload(scene, look.precision.sh)?;
+    headless.load_as(scene, look.precision.sh)?;
     let small_camera = camera.resized((SMALL, SMALL * camera.height / camera.width.max(1)))?;
     let small = Judge::new(scene, &small_camera, clip, look, steps)?;
     let mut of_small = Vec::new();
     for (name, settings) in ways(*look) {
-        of_small.push((name, small.measure(session, &settings)?));
+        of_small.push((name, small.measure(headless, &settings)?));
     }
     let known = |name| measured.iter().find(|(have, _)| *have == name);
     let of_size = ways(*look).map(|(name, _)| Some((name, known(name)?.1.clone())));

@@ -1,0 +1,143 @@
+//! What was measured, as tables.
+
+use super::{Measures, Report};
+use crate::table::{Cell, Table};
+
+/// The columns of a picture's errors after L1.
+const ERRORS: [&str; 6] = ["SSIM", "band SSIM", "leak", "loss", "pops", "beyond"];
+
+/// What [`ERRORS`] name.
+fn errors(m: &Measures) -> [Cell; 6] {
+    [
+        Cell::Fixed(m.ssim, 5),
+        m.band_ssim
+            .map_or(Cell::Number(None), |ssim| Cell::Fixed(ssim, 5)),
+        m.leak.into(),
+        m.loss.into(),
+        m.popping.worst.into(),
+        m.popping.worst_beyond.into(),
+    ]
+}
+
+/// All tables, that of the choices first.
+pub(super) fn tables(report: &Report) -> Vec<Table> {
+    let mut tables = vec![choices(report), stages(report), ways(report)];
+    if !report.shapes.is_empty() {
+        tables.push(shapes(report));
+    }
+    tables
+}
+
+fn choices(report: &Report) -> Table {
+    let [width, height] = report.size;
+    let note = format!(
+        "{}, {width}x{height}; {} Gaussians; {} ({}). ms: the sum of each stage's least of {} frames, one of each choice in \
+         turn, and the median frame. CPU: the time of this process on all cores, least and median. Errors are those against \
+         the exact cut in double precision, on a scale of 0 to 255; band SSIM is over the {:.2} % of the picture in which \
+         the way of cutting shows. Pops: the largest change of a pixel in a step of {} through 1/300 of the scene each; \
+         beyond: how much of it the truth does not do. Front: no other choice is both faster and nearer.",
+        report.scene,
+        report.gaussians,
+        report.device,
+        report.driver,
+        report.frames,
+        100.0 * report.band_share,
+        report.steps,
+    );
+    let columns = ["choice", "flags", "ms", "median", "CPU", "median CPU", "L1"];
+    let columns = columns
+        .into_iter()
+        .chain(ERRORS)
+        .chain(["own PSNR", "front"]);
+    let mut table = Table::new("Run time against error", note, columns);
+    for row in &report.rows {
+        let (m, t) = (&row.measures, &row.times);
+        let first: [Cell; 7] = [
+            row.name.into(),
+            row.flags.into(),
+            t.ms_min.into(),
+            t.ms.into(),
+            t.cpu_ms_min.into(),
+            t.cpu_ms.into(),
+            m.l1.into(),
+        ];
+        let front = if row.undominated { "yes" } else { "" };
+        let last = [m.twin_psnr.into(), front.into()];
+        table.row(first.into_iter().chain(errors(m)).chain(last));
+    }
+    table
+}
+
+fn stages(report: &Report) -> Table {
+    let mut names = Vec::new();
+    for pass in report.rows.iter().flat_map(|row| &row.times.passes) {
+        if !names.contains(&pass.name) {
+            names.push(pass.name.clone());
+        }
+    }
+    let columns = std::iter::once("choice".into()).chain(names.iter().cloned());
+    let mut table = Table::new("Stages", "The least of the frames, ms.", columns);
+    for row in &report.rows {
+        let of = |name: &String| row.times.passes.iter().find(|pass| pass.name == *name);
+        let times = names
+            .iter()
+            .map(|name| Cell::Number(of(name).map(|pass| pass.ms_min)));
+        table.row(std::iter::once(row.name.into()).chain(times));
+    }
+    table
+}
+
+fn ways(report: &Report) -> Table {
+    let columns = ["size", "mode", "L1", "exact is nearer by"];
+    let columns = columns.into_iter().chain(ERRORS);
+    let mut table = Table::new("Ways of cutting against the truth", "", columns);
+    for line in &report.ways {
+        let [width, height] = line.size;
+        let first = [
+            format!("{width}x{height}").into(),
+            line.name.into(),
+            line.measures.l1.into(),
+            line.l1_over_exact.into(),
+        ];
+        table.row(first.into_iter().chain(errors(&line.measures)));
+    }
+    table
+}
+
+/// Ratios are of costs.
+fn shapes(report: &Report) -> Table {
+    let note =
+        "Costs (ms) and errors of mode exact; the last but one columns are those of mode hard.";
+    let columns = [
+        "region",
+        "cut",
+        "cost",
+        "/ plane",
+        "/ hard",
+        "L1",
+        "own PSNR",
+        "hard: cost",
+        "hard: L1",
+        "as --clip-expr",
+    ];
+    let mut table = Table::new("Shapes through the same point of the scene", note, columns);
+    let plane = report
+        .shapes
+        .first()
+        .map_or(f64::NAN, |plane| plane.exact.cost);
+    for line in &report.shapes {
+        table.row([
+            line.name.into(),
+            line.cutoff.into(),
+            line.exact.cost.into(),
+            (line.exact.cost / plane).into(),
+            (line.exact.cost / line.hard.cost).into(),
+            line.l1.into(),
+            line.twin_psnr.into(),
+            line.hard.cost.into(),
+            line.hard_l1.into(),
+            line.region.clone().into(),
+        ]);
+    }
+    table
+}

@@ -1,0 +1,258 @@
+//! The paper's first table: how many frames a second each mode draws while one plane moves across the whole scene and the
+//! camera stands still.
+
+use std::time::Instant;
+
+use rara::scene::extent_along;
+use rara::{Clip, ClipOp, Headless, Mode, Plane, Result, Scene, Settings};
+use serde::{Deserialize, Serialize};
+
+use crate::cases::Case;
+use crate::statistics::{mean, median, standard_deviation};
+use crate::table::{Cell, Table};
+
+/// What the paper has for each mode, frames a second of its own renderer on its own GPU: Original, Hard, RaRa.
+const PAPER: [(&str, [f64; 3]); 2] = [
+    ("paper: 360garden, 4 M", [77.82, 81.49, 81.47]),
+    ("paper: Hair, 3 M", [128.02, 146.88, 145.46]),
+];
+
+const MODES: [(&str, Mode); 4] = [
+    ("Original", Mode::None),
+    ("Hard", Mode::Hard),
+    ("RaRa", Mode::Rara),
+    ("Exact", Mode::Exact),
+];
+
+/// The times of one mode.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Row {
+    /// The paper's name of the mode.
+    pub mode: String,
+    /// True if frames reuse what a moving plane does not change.
+    pub reuse: bool,
+    /// Frames a second: the number of frames over their time from recording to the picture, the median of the sweeps.
+    pub fps: f64,
+    /// Each frame's least time of the sweeps, milliseconds: their mean over the frames, their median and their standard
+    /// deviation.
+    pub ms: [f64; 3],
+    /// The stages, milliseconds a frame.
+    pub passes: Vec<(String, f64)>,
+}
+
+/// Everything about one scene.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Efficiency {
+    /// Its name.
+    pub scene: String,
+    /// The number of its Gaussians.
+    pub gaussians: usize,
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// Frames of a sweep.
+    pub frames: u32,
+    /// Modes computed anew, then those that reuse.
+    pub rows: Vec<Row>,
+}
+
+/// The times of the frames of one sweep, and of their stages.
+#[derive(Default, Clone)]
+struct Sweep {
+    wall: Vec<f64>,
+    passes: Vec<(String, f64)>,
+    seconds: f64,
+}
+
+/// Measures `frames` frames in each mode, `repeats` times in turn. The device holds the scene.
+///
+/// # Errors
+/// If a frame cannot be drawn.
+pub fn efficiency(
+    headless: &mut Headless,
+    (name, scene): (&str, &Scene<'_>),
+    case: &Case,
+    frames: u32,
+    repeats: u32,
+) -> Result<Efficiency> {
+    let normal = case.direction();
+    let (low, high) = extent_along(scene, normal);
+    let clip = |frame: u32| {
+        let along = low + (high - low) * (f64::from(frame) + 0.5) / f64::from(frames);
+        Ok(Clip::of([Plane::new(normal, -along)?], ClipOp::And))
+    };
+    let clips = (0..frames).map(clip).collect::<Result<Vec<_>>>()?;
+    let mut rows = Vec::new();
+    for reuse in [false, true] {
+        let modes = &MODES[usize::from(reuse)..]; // the original has nothing to compute when nothing moves
+        let mut sweeps = vec![Vec::new(); modes.len()];
+        // The first round compiles and is not counted.
+        for round in 0..=repeats {
+            for (index, (_, mode)) in modes.iter().enumerate() {
+                let sweep = sweep(headless, case, &clips, *mode, reuse)?;
+                if round > 0 {
+                    sweeps[index].push(sweep);
+                }
+            }
+        }
+        let of = |((name, _), sweeps): (&(&str, Mode), Vec<Sweep>)| row(name, reuse, &sweeps);
+        rows.extend(modes.iter().zip(sweeps).map(of));
+    }
+    Ok(Efficiency {
+        scene: name.into(),
+        gaussians: scene.gaussians(),
+        size: [case.camera.width, case.camera.height],
+        frames,
+        rows,
+    })
+}
+
+fn sweep(
+    headless: &mut Headless,
+    case: &Case,
+    clips: &[Clip],
+    mode: Mode,
+    reuse: bool,
+) -> Result<Sweep> {
+    let settings = Settings::default().mode(mode);
+    let mut sweep = Sweep::default();
+    headless.forget();
+    let begin = Instant::now();
+    for clip in clips {
+        if !reuse {
+            headless.forget();
+        }
+        let stats = headless.render(&case.camera, clip, &settings)?;
+        sweep.wall.push(stats.wall_ms);
+        for pass in &stats.passes {
+            match sweep.passes.iter_mut().find(|(name, _)| name == pass.name) {
+                Some((_, ms)) => *ms += pass.ms,
+                None => sweep.passes.push((pass.name.into(), pass.ms)),
+            }
+        }
+    }
+    sweep.seconds = begin.elapsed().as_secs_f64();
+    Ok(sweep)
+}
+
+fn row(mode: &str, reuse: bool, sweeps: &[Sweep]) -> Row {
+    let frames = sweeps.first().map_or(0, |sweep| sweep.wall.len());
+    let least = |frame: usize| {
+        sweeps
+            .iter()
+            .map(|s| s.wall[frame])
+            .fold(f64::INFINITY, f64::min)
+    };
+    let least: Vec<f64> = (0..frames).map(least).collect();
+    let rates: Vec<f64> = sweeps.iter().map(|s| frames as f64 / s.seconds).collect();
+    let nothing = |value: Option<f64>| value.unwrap_or(0.0);
+    let names = sweeps.first().into_iter().flat_map(|sweep| &sweep.passes);
+    let of_all = |name: &String| -> Vec<f64> {
+        let passes = sweeps.iter().flat_map(|sweep| &sweep.passes);
+        passes
+            .filter(|(n, _)| n == name)
+            .map(|(_, ms)| ms / frames as f64)
+            .collect()
+    };
+    Row {
+        mode: mode.into(),
+        reuse,
+        fps: nothing(median(&rates)),
+        ms: [mean(&least), median(&least), standard_deviation(&least)].map(nothing),
+        passes: names
+            .map(|(name, _)| (name.clone(), nothing(median(&of_all(name)))))
+            .collect(),
+    }
+}
+
+/// The paper's table and ours: frames a second, and their ratio to Original.
+pub fn table(all: &[Efficiency]) -> Table {
+    let note = "One plane moves across the whole scene while the camera stands still. Frames per second are averaged over the \
+        frames, from recording to the picture; ms: each frame's least time of the sweeps, mean, median and standard deviation \
+        over the frames. The ratio is that of the frames per second to those of Original, computed anew. The paper's figures \
+        are of its own renderer on an RTX 4090.";
+    let columns = [
+        "scene",
+        "Gaussians",
+        "mode",
+        "frames",
+        "fps",
+        "/ Original",
+        "mean ms",
+        "median ms",
+        "deviation",
+    ];
+    let mut table = Table::new("Render efficiency (the paper's first table)", note, columns);
+    for (scene, rates) in PAPER {
+        for ((mode, _), rate) in MODES.iter().zip(rates) {
+            table.row([
+                scene.into(),
+                "".into(),
+                (*mode).into(),
+                "anew".into(),
+                rate.into(),
+                (rate / rates[0]).into(),
+                None.into(),
+                None.into(),
+                None.into(),
+            ]);
+        }
+    }
+    for one in all {
+        let original = one.rows.first().map_or(f64::NAN, |row| row.fps);
+        for row in &one.rows {
+            let [mean, median, deviation] = row.ms.map(Cell::from);
+            table.row([
+                one.scene.as_str().into(),
+                one.gaussians.to_string().into(),
+                row.mode.as_str().into(),
+                if row.reuse { "reuse" } else { "anew" }.into(),
+                row.fps.into(),
+                (row.fps / original).into(),
+                mean,
+                median,
+                deviation,
+            ]);
+        }
+    }
+    table
+}
+
+/// The stages of each mode.
+pub fn stages(all: &[Efficiency]) -> Table {
+    let mut names: Vec<&str> = Vec::new();
+    for (name, _) in all
+        .iter()
+        .flat_map(|one| &one.rows)
+        .flat_map(|row| &row.passes)
+    {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    let columns = ["scene", "mode", "frames"]
+        .into_iter()
+        .chain(names.iter().copied());
+    let mut table = Table::new("Stages of these frames", "Milliseconds per frame.", columns);
+    for one in all {
+        for row in &one.rows {
+            let frames = if row.reuse { "reuse" } else { "anew" };
+            let first = [
+                one.scene.as_str().into(),
+                row.mode.as_str().into(),
+                frames.into(),
+            ];
+            let of = |name: &&str| {
+                row.passes
+                    .iter()
+                    .find(|(n, _)| n == name)
+                    .map(|(_, ms)| *ms)
+            };
+            table.row(
+                first
+                    .into_iter()
+                    .chain(names.iter().map(|name| of(name).into())),
+            );
+        }
+    }
+    table
+}

@@ -1,0 +1,88 @@
+//! Charts as SVG documents, for reports. Each is described by a struct and drawn by its `svg`.
+//!
+//! Values that are not finite are missing: they are left out. Colours can be told apart by people who are colour-blind,
+//! and markers differ in shape as well.
+
+mod axis;
+mod bars;
+mod canvas;
+mod colours;
+mod heat_map;
+mod lines;
+mod plot;
+mod radar;
+mod scatter;
+#[cfg(test)]
+mod test;
+mod violins;
+
+pub use axis::{Axis, Scale};
+pub use bars::Bars;
+pub use heat_map::{Colours, HeatMap};
+pub use lines::Lines;
+pub use radar::Radar;
+pub use scatter::Scatter;
+pub use violins::Violins;
+
+/// Numbers under one name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Values {
+    /// What legend or axis calls them.
+    pub name: String,
+    /// The numbers.
+    pub values: Vec<f64>,
+}
+
+impl Values {
+    /// Numbers under a name.
+    pub fn new(name: impl Into<String>, values: impl Into<Vec<f64>>) -> Self {
+        Self {
+            name: name.into(),
+            values: values.into(),
+        }
+    }
+}
+
+/// A point of a chart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// Across.
+    pub x: f64,
+    /// Up.
+    pub y: f64,
+    /// What stands beside it; nothing where it is empty.
+    pub label: String,
+}
+
+/// Points under one name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// What the legend calls them.
+    pub name: String,
+    /// The points.
+    pub points: Vec<Point>,
+}
+
+impl Series {
+    /// Points without labels, [x, y] each.
+    pub fn new(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        let points = points.into_iter().map(|[x, y]| (x, y, String::new()));
+        Self::labelled(name, points)
+    }
+
+    /// Points with labels, (x, y, label) each.
+    pub fn labelled<L: Into<String>>(
+        name: impl Into<String>,
+        points: impl IntoIterator<Item = (f64, f64, L)>,
+    ) -> Self {
+        let points = points.into_iter().map(|(x, y, label)| Point {
+            x,
+            y,
+            label: label.into(),
+        });
+        Self {
+            name: name.into(),
+            points: points.collect(),
+        }
+    }
+}

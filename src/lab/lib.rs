@@ -5,3 +5,4 @@
 pub mod cases;
 pub mod charts;
 pub mod statistics;
+pub mod study;

@@ -1,0 +1,423 @@
+//! Writes the page that participants see: pictures, data, and the files of this folder.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use rara::files::write_atomically;
+use rara::{Camera, Error, Headless, HeadlessDesc, Mode, Picture, Result, Settings};
+use serde::Serialize;
+
+use super::metric::Metric;
+use crate::cases::{Case, Source, cases, generated};
+
+/// What is shown.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// What is compared with hard cuts: [`Mode::Rara`] or [`Mode::Exact`].
+    pub method: Mode,
+    /// The number of cases, spread over scenes and cuts; all there are where those are fewer.
+    pub cases: usize,
+    /// The Gaussians of each generated scene; scenes from files have their own.
+    pub gaussians: usize,
+    /// The direction that is up in the pictures.
+    pub up: DVec3,
+    /// Pixels a row of the pictures, and rows.
+    pub size: u32,
+    /// Steps of the animation of the moving cut.
+    pub frames: u32,
+    /// Pixels a row of each step, and rows.
+    pub frame_size: u32,
+    /// What is behind the scene.
+    pub background: [f32; 3],
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            method: Mode::Exact,
+            cases: 20,
+            gaussians: 20_000,
+            up: DVec3::NEG_Y,
+            size: 512,
+            frames: 24,
+            frame_size: 256,
+            background: [1.0; 3],
+        }
+    }
+}
+
+/// A page that was written.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Written {
+    /// The page to open.
+    pub page: PathBuf,
+    /// The study, as the answers name it.
+    pub study: String,
+    /// The names of the cases.
+    pub cases: Vec<String>,
+}
+
+/// Writes a user study about scenes from files, or about eight generated ones without any, into a folder. `progress` is
+/// called with the number of cases that are drawn and that there are.
+///
+/// # Errors
+/// If a scene cannot be read or drawn, an option makes no sense, or the folder holds something else or cannot be written.
+pub fn create(
+    folder: &Path,
+    scenes: &[PathBuf],
+    device: &HeadlessDesc,
+    options: &Options,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<Written> {
+    check(folder, options)?;
+    let sources = match scenes {
+        [] => generated(options.gaussians),
+        scenes => scenes
+            .iter()
+            .map(|scene| source(scene))
+            .collect::<Result<_>>()?,
+    };
+    let all = cases(&sources, options.up, (options.size, options.size))?;
+    let count = options.cases.min(all.len());
+    let spread = (0..count).map(|i| all[i * all.len() / count].clone());
+    let mut headless = Headless::new(device)?;
+    let cases: Vec<_> = spread.collect();
+    let written = write(folder, &mut headless, &sources, &cases, options, progress)?;
+    headless.close()?;
+    Ok(written)
+}
+
+/// A scene from a file, under the file's name.
+fn source(path: &Path) -> Result<Source> {
+    Ok(Source {
+        name: path
+            .file_stem()
+            .unwrap_or(path.as_os_str())
+            .to_string_lossy()
+            .into(),
+        gaussians: rara::scene::load(path, &mut |_, _| {})?.gaussians,
+    })
+}
+
+/// Fails where the options make no sense, or the folder holds something that is no study.
+fn check(folder: &Path, options: &Options) -> Result<()> {
+    let invalid = |message: &str| Err(Error::Invalid(message.into()));
+    if !matches!(options.method, Mode::Rara | Mode::Exact) {
+        return invalid(
+            "a study compares hard cuts with the mode rara or exact; choose one of them",
+        );
+    }
+    let size = |pixels: u32| (1..=4096).contains(&pixels);
+    if !size(options.size) || !size(options.frame_size) {
+        return invalid("the pictures of a study have 1 to 4096 pixels a row; choose such a size");
+    }
+    if !(2..=200).contains(&options.frames) {
+        return invalid("the moving cut of a study has 2 to 200 steps; choose such a number");
+    }
+    if columns(options.frames) * options.frame_size > Camera::MAX_SIZE {
+        return invalid(
+            "all steps of a moving cut are one picture, which is too large; choose fewer or smaller steps",
+        );
+    }
+    if options.cases == 0 {
+        return invalid("a study without a case asks nothing; choose at least one");
+    }
+    let is_empty = fs::read_dir(folder).map_or(true, |mut entries| entries.next().is_none());
+    if !is_empty && !folder.join(DATA).is_file() {
+        let message = "the folder holds something else than a study; name a new one";
+        return Err(Error::format(folder, message));
+    }
+    Ok(())
+}
+
+/// The data of the page.
+const DATA: &str = "data.js";
+/// The files of the page that are the same for every study.
+const FILES: [(&str, &str); 7] = [
+    ("index.html", include_str!("page/index.html")),
+    ("style.css", include_str!("page/style.css")),
+    ("plan.js", include_str!("page/plan.js")),
+    ("record.js", include_str!("page/record.js")),
+    ("sweep.js", include_str!("page/sweep.js")),
+    ("screens.js", include_str!("page/screens.js")),
+    ("main.js", include_str!("page/main.js")),
+];
+const PICTURES: &str = "pictures";
+
+/// What the page reads as `STUDY`.
+#[derive(Debug, Serialize)]
+struct Data {
+    format: &'static str,
+    version: u32,
+    id: String,
+    method: &'static str,
+    size: u32,
+    sweep: Sweep,
+    groups: Vec<Vec<Asked>>,
+    cases: Vec<Shown>,
+}
+
+/// How the steps of a moving cut lie in their picture.
+#[derive(Debug, Serialize)]
+struct Sweep {
+    frames: u32,
+    columns: u32,
+    size: u32,
+}
+
+#[derive(Debug, Serialize)]
+struct Asked {
+    key: Metric,
+    name: &'static str,
+    definition: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+struct Shown {
+    name: String,
+    hard: Files,
+    method: Files,
+}
+
+/// The pictures of one of the two.
+#[derive(Debug, Serialize)]
+struct Files {
+    picture: String,
+    sweep: String,
+}
+
+/// Writes a user study about these cases of these scenes into a folder. As [`create`] otherwise, which chooses them.
+///
+/// # Errors
+/// As [`create`].
+pub fn write(
+    folder: &Path,
+    headless: &mut Headless,
+    sources: &[Source],
+    cases: &[Case],
+    options: &Options,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<Written> {
+    check(folder, options)?;
+    let pictures = folder.join(PICTURES);
+    fs::create_dir_all(&pictures).map_err(Error::io(&pictures))?;
+    let mut id = Id::new();
+    let mut shown: Vec<Shown> = Vec::new();
+    let mut loaded = None;
+    for (number, case) in cases.iter().enumerate() {
+        progress(number, cases.len());
+        let source = &sources[case.scene];
+        if loaded != Some(case.scene) {
+            headless.load(source.scene())?;
+            loaded = Some(case.scene);
+        }
+        // File names do not tell which of the two is which.
+        let mut draw = |letter: char, mode: Mode| -> Result<Files> {
+            let settings = Settings::default()
+                .mode(mode)
+                .background(Some(options.background));
+            let mut save = |kind: &str, picture: &Picture| -> Result<String> {
+                let name = format!("{PICTURES}/case-{:02}-{kind}-{letter}.png", number + 1);
+                picture.save(folder.join(&name))?;
+                id.add(&picture.to_rgba8());
+                Ok(name)
+            };
+            let picture = picture(headless, case, &settings, options.size, 0.5)?;
+            let sweep = sweep(headless, case, &settings, options)?;
+            Ok(Files {
+                picture: save("picture", &picture)?,
+                sweep: save("sweep", &sweep)?,
+            })
+        };
+        let (hard, method) = (draw('1', Mode::Hard)?, draw('2', options.method)?);
+        let plain = format!("{}, {}", source.name, case.cut.name());
+        let taken = |name: &String| shown.iter().any(|other| other.name == *name);
+        let others = (2..).map(|number| format!("{plain} ({number})"));
+        let name = std::iter::once(plain.clone())
+            .chain(others)
+            .find(|name| !taken(name));
+        shown.push(Shown {
+            name: name.unwrap_or_default(),
+            hard,
+            method,
+        });
+    }
+    progress(cases.len(), cases.len());
+    shown.iter().for_each(|case| id.add(case.name.as_bytes()));
+    let method = if options.method == Mode::Rara {
+        "rara"
+    } else {
+        "exact"
+    };
+    id.add(method.as_bytes());
+    let names = shown.iter().map(|case| case.name.clone()).collect();
+    let data = Data {
+        format: super::answers::FORMAT,
+        version: super::answers::VERSION,
+        id: id.text(),
+        method,
+        size: options.size,
+        sweep: Sweep {
+            frames: options.frames,
+            columns: columns(options.frames),
+            size: options.frame_size,
+        },
+        groups: Metric::ALL
+            .chunks(3)
+            .map(|group| group.iter().map(asked).collect())
+            .collect(),
+        cases: shown,
+    };
+    let json =
+        serde_json::to_string_pretty(&data).map_err(|error| Error::Invalid(error.to_string()))?;
+    let data_js = format!("\"use strict\";\n\nconst STUDY = {json};\n");
+    for (name, content) in FILES.into_iter().chain([(DATA, data_js.as_str())]) {
+        write_atomically(&folder.join(name), |file| {
+            file.write_all(content.as_bytes())
+        })?;
+    }
+    Ok(Written {
+        page: folder.join("index.html"),
+        study: data.id,
+        cases: names,
+    })
+}
+
+fn asked(metric: &Metric) -> Asked {
+    Asked {
+        key: *metric,
+        name: metric.name(),
+        definition: metric.definition(),
+    }
+}
+
+/// A case with its cut at a share of its way.
+fn picture(
+    headless: &mut Headless,
+    case: &Case,
+    settings: &Settings,
+    size: u32,
+    share: f64,
+) -> Result<Picture> {
+    let camera = case.camera.resized((size, size))?;
+    headless.render(&camera, &case.at(share)?, settings)?;
+    headless.picture()
+}
+
+/// The number of steps in a row of the picture that holds them all.
+fn columns(frames: u32) -> u32 {
+    (1..)
+        .find(|columns| columns * columns >= frames)
+        .unwrap_or(1)
+}
+
+/// All steps of the moving cut in one picture, row by row.
+fn sweep(
+    headless: &mut Headless,
+    case: &Case,
+    settings: &Settings,
+    options: &Options,
+) -> Result<Picture> {
+    let (frames, size, columns) = (options.frames, options.frame_size, columns(options.frames));
+    let mut all = Picture::filled(columns * size, frames.div_ceil(columns) * size, [0.0; 4]);
+    for frame in 0..frames {
+        let share = f64::from(frame) / f64::from(frames - 1);
+        let step = picture(headless, case, settings, size, share)?;
+        let (left, top) = (frame % columns * size, frame / columns * size);
+        for (row, pixels) in step.pixels.chunks_exact(size as usize).enumerate() {
+            let from = (top as usize + row) * all.width as usize + left as usize;
+            all.pixels[from..from + pixels.len()].copy_from_slice(pixels);
+        }
+    }
+    Ok(all)
+}
+
+/// Fowler, Noll and Vo's hash FNV-1a, of 64 bits: it tells studies apart and stays the same everywhere.
+struct Id(u64);
+
+impl Id {
+    fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    fn add(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+
+    fn text(&self) -> String {
+        format!("{:016x}", self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hash_is_the_published_one() {
+        let mut id = Id::new();
+        id.add(b"foobar");
+        assert_eq!(id.text(), "85944171f73967e8");
+    }
+
+    #[test]
+    fn steps_lie_in_a_nearly_square_picture() {
+        assert_eq!([1, 2, 4, 5, 24, 25].map(columns), [1, 2, 2, 3, 5, 5]);
+    }
+
+    #[test]
+    fn the_page_needs_no_network_and_no_file_that_is_not_written() {
+        for (name, content) in FILES {
+            assert!(
+                !content.contains("//www") && !content.contains("http"),
+                "{name}"
+            );
+        }
+        let index = FILES[0].1;
+        for (name, _) in &FILES[1..] {
+            assert!(index.contains(&format!("\"{name}\"")), "{name}");
+        }
+        assert!(index.contains(&format!("\"{DATA}\"")));
+    }
+
+    #[test]
+    fn options_that_make_no_sense_and_foreign_folders_are_refused() {
+        let folder = std::env::temp_dir().join(format!("rara-study-check-{}", std::process::id()));
+        let plain = Options::default();
+        assert!(check(&folder, &plain).is_ok());
+        for options in [
+            Options {
+                method: Mode::Hard,
+                ..plain.clone()
+            },
+            Options {
+                cases: 0,
+                ..plain.clone()
+            },
+            Options {
+                frames: 1,
+                ..plain.clone()
+            },
+            Options {
+                size: 0,
+                ..plain.clone()
+            },
+            Options {
+                frames: 200,
+                frame_size: 4096,
+                ..plain.clone()
+            },
+        ] {
+            assert!(check(&folder, &options).is_err(), "{options:?}");
+        }
+        fs::create_dir_all(&folder).expect("a folder");
+        fs::write(folder.join("thesis.tex"), "").expect("a file");
+        assert!(check(&folder, &plain).is_err());
+        fs::write(folder.join(DATA), "").expect("a file");
+        assert!(check(&folder, &plain).is_ok());
+        fs::remove_dir_all(&folder).expect("removed");
+    }
+}

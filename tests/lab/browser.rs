@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 /// Keys, as WebDriver has them.
 pub(crate) const TAB: &str = "\u{e004}";
 pub(crate) const ENTER: &str = "\u{e007}";
+pub(crate) const HOME: &str = "\u{e011}";
 pub(crate) const LEFT: &str = "\u{e012}";
 pub(crate) const UP: &str = "\u{e013}";
 pub(crate) const RIGHT: &str = "\u{e014}";
@@ -58,6 +59,8 @@ impl Browser {
             "--disable-component-update",
             "--disable-sync",
             "--disable-dev-shm-usage",
+            // Scripts of the tests read the pixels of pictures.
+            "--allow-file-access-from-files",
             &profile,
         ];
         let options = json!({ "args": arguments });

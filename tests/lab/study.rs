@@ -9,7 +9,7 @@ use rara_lab::cases::{Source, cases, generated};
 use rara_lab::study::{self, Metric, Options, Written};
 use serde_json::json;
 
-use crate::browser::{Browser, ENTER, LEFT, RIGHT, TAB, UP};
+use crate::browser::{Browser, ENTER, HOME, LEFT, RIGHT, TAB, UP};
 use crate::folder::Folder;
 
 /// A study of twenty cases whose pictures are tiny.
@@ -88,6 +88,38 @@ fn tab_to(browser: &Browser, selector: &str) {
         "{selector} cannot be reached by the keyboard on {:?}",
         heading(browser)
     );
+}
+
+/// The moving cut can be placed by the keyboard, and both sides show that place.
+fn check_sweep(browser: &Browser) {
+    tab_to(browser, "#place");
+    for (key, place) in [(HOME, 0), (RIGHT, 1), (RIGHT, 2)] {
+        browser.press(key);
+        let begin = Instant::now();
+        let shown = format!(
+            "const {{ columns, size }} = STUDY.sweep;
+             const [x, y] = [({place} % columns) * size, Math.floor({place} / columns) * size];
+             const {{ shown, left }} = current();
+             const sides = left === 'hard' ? [shown.hard, shown.method] : [shown.method, shown.hard];
+             const canvases = ['left-sweep', 'right-sweep'].map(find);
+             return String(canvases.every((canvas, side) => {{
+               const image = Object.assign(new Image(), {{ src: sides[side].sweep }});
+               if (!image.complete) {{ window.kept = [...(window.kept || []), image]; return false; }}
+               const other = Object.assign(document.createElement('canvas'), {{ width: size, height: size }});
+               other.getContext('2d').drawImage(image, x, y, size, size, 0, 0, size, size);
+               const pixels = (of) => String(of.getContext('2d').getImageData(0, 0, size, size).data);
+               return pixels(canvas) === pixels(other) && find('place').value === '{place}';
+             }}));"
+        );
+        while browser.text(&shown) != "true" {
+            assert!(
+                begin.elapsed() < Duration::from_secs(10),
+                "place {place} is not shown"
+            );
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+    assert_eq!(browser.text("return find('play').textContent"), "Play");
 }
 
 /// The file that the page has saved.
@@ -170,6 +202,13 @@ fn a_participant_answers_by_keyboard_on_a_phone_and_the_report_has_every_answer(
     let player =
         "return document.getElementById('play').textContent + document.getElementById('place').max";
     assert_eq!(browser.text(player), "Pause2");
+    check_sweep(&browser);
+    assert_eq!(
+        browser.text(checked),
+        "left,4",
+        "the slider's keys are its own"
+    );
+    tab_to(&browser, "input[name=choice]");
 
     // All of them; back leads to the item before, whose answer is there.
     for number in 0..3 * count {

@@ -2,7 +2,7 @@
 
 use plotters::prelude::*;
 
-use super::canvas::{self, Area, HEIGHT, WIDTH};
+use super::canvas::{self, Anchor, Area, HEIGHT, SMALL, WIDTH};
 use super::plot::Plot;
 use super::{Axis, Values, colours};
 use crate::statistics::{median, standard_deviation};
@@ -31,6 +31,10 @@ impl Violins {
         let values = self.samples.iter().flat_map(|sample| &sample.values);
         let y = self.y.span(values.copied());
         canvas::chart(&self.title, (WIDTH, HEIGHT), |area| {
+            let note =
+                "Width: how frequent values are. Dots: the values, moved aside. Bar: their median.";
+            canvas::write(area, note, (0, 10), Anchor::Start, SMALL, colours::FAINT)?;
+            let area = &area.margin(24, 0, 0, 0);
             let names: Vec<_> = self.samples.iter().map(|s| s.name.as_str()).collect();
             let plot = Plot::of_categories(area, &names, &self.x, (&self.y, y))?;
             for (number, sample) in self.samples.iter().enumerate() {
@@ -65,12 +69,15 @@ impl Violins {
             .collect::<Vec<_>>();
         plot.area
             .draw(&PathElement::new(closed, colour.stroke_width(1)))?;
-        let [left, right] = [-0.3, 0.3].map(|away| plot.at(middle + away * WIDE, median));
-        let bar = PathElement::new(vec![left, right], colours::INK.stroke_width(3));
-        plot.area.draw(&bar)?;
         dots(&plot.area, values, |value, away| {
             plot.at(middle + 0.22 * away, value)
-        })
+        })?;
+        let [left, right] = [-0.3, 0.3].map(|away| plot.at(middle + away * WIDE, median));
+        for (colour, width) in [(colours::PAPER, 8), (colours::INK, 4)] {
+            let bar = PathElement::new(vec![left, right], colour.stroke_width(width));
+            plot.area.draw(&bar)?;
+        }
+        Ok(())
     }
 
     /// The density of values by height, up to a factor: a normal distribution around each value, of Silverman's width.

@@ -50,7 +50,7 @@ impl Metric {
                 "Where is the cut surface smoother and more even, with fewer steps, spikes and ragged edges?"
             }
             Self::TemporalStability => {
-                "Watch the animations below the pictures. Where does the surface change more smoothly while the cut \
+                "Watch the animations. Where does the surface change more smoothly while the cut \
                  moves, without parts that flicker, or appear and disappear at once?"
             }
             Self::TopologicalIntegrity => {

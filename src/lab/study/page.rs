@@ -171,6 +171,8 @@ struct Asked {
     key: Metric,
     name: &'static str,
     definition: &'static str,
+    /// True where the animations matter more than the pictures.
+    moves: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -202,81 +204,33 @@ pub fn write(
     check(folder, options)?;
     let pictures = folder.join(PICTURES);
     fs::create_dir_all(&pictures).map_err(Error::io(&pictures))?;
-    let mut id = Id::new();
-    let mut shown: Vec<Shown> = Vec::new();
+    let mut drawing = Drawing {
+        folder,
+        headless,
+        options,
+        id: Id::new(),
+    };
+    let names = names(sources, cases);
+    let mut shown = Vec::new();
     let mut loaded = None;
-    for (number, case) in cases.iter().enumerate() {
+    for (number, (case, name)) in cases.iter().zip(&names).enumerate() {
         progress(number, cases.len());
-        let source = &sources[case.scene];
         if loaded != Some(case.scene) {
-            headless.load(source.scene())?;
+            drawing.headless.load(sources[case.scene].scene())?;
             loaded = Some(case.scene);
         }
+        drawing.id.add(name.as_bytes());
         // File names do not tell which of the two is which.
-        let mut draw = |letter: char, mode: Mode| -> Result<Files> {
-            let settings = Settings::default()
-                .mode(mode)
-                .background(Some(options.background));
-            let mut save = |kind: &str, picture: &Picture| -> Result<String> {
-                let name = format!("{PICTURES}/case-{:02}-{kind}-{letter}.png", number + 1);
-                picture.save(folder.join(&name))?;
-                id.add(&picture.to_rgba8());
-                Ok(name)
-            };
-            let picture = picture(headless, case, &settings, options.size, 0.5)?;
-            let sweep = sweep(headless, case, &settings, options)?;
-            Ok(Files {
-                picture: save("picture", &picture)?,
-                sweep: save("sweep", &sweep)?,
-            })
-        };
-        let (hard, method) = (draw('1', Mode::Hard)?, draw('2', options.method)?);
-        let plain = format!("{}, {}", source.name, case.cut.name());
-        let taken = |name: &String| shown.iter().any(|other| other.name == *name);
-        let others = (2..).map(|number| format!("{plain} ({number})"));
-        let name = std::iter::once(plain.clone())
-            .chain(others)
-            .find(|name| !taken(name));
+        let start = format!("{PICTURES}/case-{:02}", number + 1);
         shown.push(Shown {
-            name: name.unwrap_or_default(),
-            hard,
-            method,
+            name: name.clone(),
+            hard: drawing.files(case, Mode::Hard, &format!("{start}-1"))?,
+            method: drawing.files(case, options.method, &format!("{start}-2"))?,
         });
     }
     progress(cases.len(), cases.len());
-    shown.iter().for_each(|case| id.add(case.name.as_bytes()));
-    let method = if options.method == Mode::Rara {
-        "rara"
-    } else {
-        "exact"
-    };
-    id.add(method.as_bytes());
-    let names = shown.iter().map(|case| case.name.clone()).collect();
-    let data = Data {
-        format: super::answers::FORMAT,
-        version: super::answers::VERSION,
-        id: id.text(),
-        method,
-        size: options.size,
-        sweep: Sweep {
-            frames: options.frames,
-            columns: columns(options.frames),
-            size: options.frame_size,
-        },
-        groups: Metric::ALL
-            .chunks(3)
-            .map(|group| group.iter().map(asked).collect())
-            .collect(),
-        cases: shown,
-    };
-    let json =
-        serde_json::to_string_pretty(&data).map_err(|error| Error::Invalid(error.to_string()))?;
-    let data_js = format!("\"use strict\";\n\nconst STUDY = {json};\n");
-    for (name, content) in FILES.into_iter().chain([(DATA, data_js.as_str())]) {
-        write_atomically(&folder.join(name), |file| {
-            file.write_all(content.as_bytes())
-        })?;
-    }
+    let data = Data::of(options, drawing.id, shown);
+    data.write(folder)?;
     Ok(Written {
         page: folder.join("index.html"),
         study: data.id,
@@ -284,25 +238,69 @@ pub fn write(
     })
 }
 
+/// A name for each case, all different.
+fn names(sources: &[Source], cases: &[Case]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for case in cases {
+        let plain = format!("{}, {}", sources[case.scene].name, case.cut.name());
+        let (mut name, mut number) = (plain.clone(), 2);
+        while names.contains(&name) {
+            name = format!("{plain} ({number})");
+            number += 1;
+        }
+        names.push(name);
+    }
+    names
+}
+
+impl Data {
+    fn of(options: &Options, mut id: Id, cases: Vec<Shown>) -> Self {
+        let method = if options.method == Mode::Rara {
+            "rara"
+        } else {
+            "exact"
+        };
+        id.add(method.as_bytes());
+        let groups = Metric::ALL.chunks(3);
+        Self {
+            format: super::answers::FORMAT,
+            version: super::answers::VERSION,
+            id: id.text(),
+            method,
+            size: options.size,
+            sweep: Sweep {
+                frames: options.frames,
+                columns: columns(options.frames),
+                size: options.frame_size,
+            },
+            groups: groups
+                .map(|group| group.iter().map(asked).collect())
+                .collect(),
+            cases,
+        }
+    }
+
+    /// Writes everything but the pictures.
+    fn write(&self, folder: &Path) -> Result<()> {
+        let json = serde_json::to_string_pretty(self);
+        let json = json.map_err(|error| Error::Invalid(error.to_string()))?;
+        let data_js = format!("\"use strict\";\n\nconst STUDY = {json};\n");
+        for (name, content) in FILES.into_iter().chain([(DATA, data_js.as_str())]) {
+            write_atomically(&folder.join(name), |file| {
+                file.write_all(content.as_bytes())
+            })?;
+        }
+        Ok(())
+    }
+}
+
 fn asked(metric: &Metric) -> Asked {
     Asked {
         key: *metric,
         name: metric.name(),
         definition: metric.definition(),
+        moves: *metric == Metric::TemporalStability,
     }
-}
-
-/// A case with its cut at a share of its way.
-fn picture(
-    headless: &mut Headless,
-    case: &Case,
-    settings: &Settings,
-    size: u32,
-    share: f64,
-) -> Result<Picture> {
-    let camera = case.camera.resized((size, size))?;
-    headless.render(&camera, &case.at(share)?, settings)?;
-    headless.picture()
 }
 
 /// The number of steps in a row of the picture that holds them all.
@@ -312,25 +310,62 @@ fn columns(frames: u32) -> u32 {
         .unwrap_or(1)
 }
 
-/// All steps of the moving cut in one picture, row by row.
-fn sweep(
-    headless: &mut Headless,
-    case: &Case,
-    settings: &Settings,
-    options: &Options,
-) -> Result<Picture> {
-    let (frames, size, columns) = (options.frames, options.frame_size, columns(options.frames));
-    let mut all = Picture::filled(columns * size, frames.div_ceil(columns) * size, [0.0; 4]);
-    for frame in 0..frames {
-        let share = f64::from(frame) / f64::from(frames - 1);
-        let step = picture(headless, case, settings, size, share)?;
-        let (left, top) = (frame % columns * size, frame / columns * size);
-        for (row, pixels) in step.pixels.chunks_exact(size as usize).enumerate() {
-            let from = (top as usize + row) * all.width as usize + left as usize;
-            all.pixels[from..from + pixels.len()].copy_from_slice(pixels);
-        }
+/// Draws the pictures and keeps account of them.
+struct Drawing<'a> {
+    folder: &'a Path,
+    headless: &'a mut Headless,
+    options: &'a Options,
+    id: Id,
+}
+
+impl Drawing<'_> {
+    /// Draws and saves the pictures of one of the two in files whose names begin so.
+    fn files(&mut self, case: &Case, mode: Mode, start: &str) -> Result<Files> {
+        let background = Some(self.options.background);
+        let settings = Settings::default().mode(mode).background(background);
+        let picture = self.picture(case, &settings, self.options.size, 0.5)?;
+        let sweep = self.sweep(case, &settings)?;
+        Ok(Files {
+            picture: self.save(&picture, format!("{start}.png"))?,
+            sweep: self.save(&sweep, format!("{start}-sweep.png"))?,
+        })
     }
-    Ok(all)
+
+    fn save(&mut self, picture: &Picture, name: String) -> Result<String> {
+        picture.save(self.folder.join(&name))?;
+        self.id.add(&picture.to_rgba8());
+        Ok(name)
+    }
+
+    /// A case with its cut at a share of its way.
+    fn picture(
+        &mut self,
+        case: &Case,
+        settings: &Settings,
+        size: u32,
+        share: f64,
+    ) -> Result<Picture> {
+        let camera = case.camera.resized((size, size))?;
+        self.headless.render(&camera, &case.at(share)?, settings)?;
+        self.headless.picture()
+    }
+
+    /// All steps of the moving cut in one picture, row by row.
+    fn sweep(&mut self, case: &Case, settings: &Settings) -> Result<Picture> {
+        let (frames, size) = (self.options.frames, self.options.frame_size);
+        let columns = columns(frames);
+        let mut all = Picture::filled(columns * size, frames.div_ceil(columns) * size, [0.0; 4]);
+        for frame in 0..frames {
+            let share = f64::from(frame) / f64::from(frames - 1);
+            let step = self.picture(case, settings, size, share)?;
+            let (left, top) = (frame % columns * size, frame / columns * size);
+            for (row, pixels) in step.pixels.chunks_exact(size as usize).enumerate() {
+                let from = (top as usize + row) * all.width as usize + left as usize;
+                all.pixels[from..from + pixels.len()].copy_from_slice(pixels);
+            }
+        }
+        Ok(all)
+    }
 }
 
 /// Fowler, Noll and Vo's hash FNV-1a, of 64 bits: it tells studies apart and stays the same everywhere.

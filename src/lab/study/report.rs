@@ -89,7 +89,7 @@ impl Charts {
     fn of(evaluation: &Evaluation) -> Self {
         let names: Vec<String> = Metric::ALL.map(|metric| metric.name().into()).into();
         let method = &evaluation.study.method;
-        let signed = format!("Signed preference, -7 (hard) to 7 ({method})");
+        let signed = format!("Signed preference, \u{2212}7 (hard) to 7 ({method})");
         let samples = evaluation.metrics.iter();
         let samples = samples.map(|m| Values::new(m.metric.name(), m.answers.values.clone()));
         let violins = Violins {
@@ -122,6 +122,7 @@ impl Charts {
             values: evaluation.by_case.iter().map(row).collect(),
             unit: signed,
             colours: Colours::Diverging(7.0),
+            decimals: 1,
         };
         Self {
             heat_map: heat_map.svg(),

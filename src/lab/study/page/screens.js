@@ -42,6 +42,7 @@ const screens = {
       const sides = item.left === "hard" ? [item.shown.hard, item.shown.method] : [item.shown.method, item.shown.hard];
       document.querySelector("h1").textContent = `Case ${item.place} of ${STUDY.cases.length}: ${item.metric.name}`;
       find("definition").textContent = item.metric.definition;
+      document.querySelector(".sides").classList.toggle("moving", item.metric.moves);
       ["left", "right"].forEach((side, place) => {
         Object.assign(find(`${side}-picture`), { src: sides[place].picture, width: STUDY.size, height: STUDY.size });
       });
@@ -87,10 +88,11 @@ const screens = {
     },
     // Left and right choose a side and digits a strength; up and down change the strength.
     press(key, target) {
+      if (/^[1-7]$/.test(key)) return pick("strength", key);
+      // Arrows on the slider move it.
       if (target.type === "range") return false;
       const choice = { ArrowLeft: "left", ArrowRight: "right" }[key];
       if (choice) return pick("choice", choice);
-      if (/^[1-7]$/.test(key)) return pick("strength", key);
       const step = { ArrowUp: 1, ArrowDown: -1 }[key];
       if (!step || target.type !== "radio") return false;
       const chosen = document.querySelector("input[name=strength]:checked");

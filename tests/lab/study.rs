@@ -3,9 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use glam::DVec3;
-use rara::{Headless, HeadlessDesc, Mode};
-use rara_lab::cases::{Source, cases, generated};
+use rara::{HeadlessDesc, Mode};
 use rara_lab::study::{self, Metric, Options, Written};
 use serde_json::json;
 
@@ -16,27 +14,23 @@ use crate::folder::Folder;
 fn tiny(folder: &Path) -> Written {
     let options = Options {
         method: Mode::Rara,
+        gaussians: 200,
         size: 24,
         frames: 3,
         frame_size: 16,
         ..Options::default()
     };
-    let sources: Vec<Source> = generated(200);
-    let size = (options.size, options.size);
-    let mut all = cases(&sources, DVec3::NEG_Y, size).expect("cases");
-    all.truncate(20);
-    let mut headless = Headless::new(&HeadlessDesc::default()).expect("a device");
-    let written = study::write(
+    let mut calls = Vec::new();
+    let mut progress = |done, of| calls.push((done, of));
+    let written = study::create(
         folder,
-        &mut headless,
-        &sources,
-        &all,
+        &[],
+        &HeadlessDesc::default(),
         &options,
-        &mut |_, _| {},
+        &mut progress,
     );
-    let written = written.expect("a study");
-    headless.close().expect("nothing left");
-    written
+    assert_eq!(calls, (0..=20).map(|done| (done, 20)).collect::<Vec<_>>());
+    written.expect("a study")
 }
 
 /// What the participant prefers about an item, -7 to 7 without 0.
@@ -233,7 +227,12 @@ fn a_participant_answers_by_keyboard_on_a_phone_and_the_report_has_every_answer(
     browser.press(ENTER);
     let file = saved(&folder, "rara-study-P7.json");
 
-    let evaluation = study::evaluate(&[file], Some(&written.study)).expect("an evaluation");
+    let options = study::report::Options {
+        study: Some(written.study.clone()),
+    };
+    let report = folder.join("report");
+    let evaluation = study::report::create(&[file], &report, &options).expect("a report");
+    assert!(report.join("report.html").is_file());
     let participant = &evaluation.participants[0];
     assert!(participant.is_complete());
     assert_eq!((participant.code.as_str(), participant.group), ("P7", 1));
@@ -291,4 +290,53 @@ fn the_plan_depends_on_the_code_alone_and_is_balanced() {
     // Numbers of one digit take turns, and so do those of two within ten.
     let expected = json!({ "groups": 20, "same": true, "items": true, "balanced": true, "orders": 40, "asked": true });
     assert_eq!(found, expected);
+}
+
+#[test]
+fn scenes_of_files_keep_their_names_and_the_same_study_has_the_same_number() {
+    let folder = Folder::new("study-files");
+    let scenes = ["one/hair.ply", "two/hair.ply"].map(|name| {
+        let path = folder.join(name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("it is made");
+        let gaussians = rara::scene::generate(rara::scene::Kind::Strands, 100, 1);
+        rara::scene::save_ply(&path, &gaussians).expect("a file");
+        path
+    });
+    let options = Options {
+        cases: 4,
+        size: 16,
+        frames: 2,
+        frame_size: 8,
+        ..Options::default()
+    };
+    let device = HeadlessDesc::default();
+    let create = |name: &str, options: &Options| {
+        study::create(
+            &folder.join(name),
+            &scenes,
+            &device,
+            options,
+            &mut |_, _| {},
+        )
+    };
+    let written = create("a", &options).expect("a study");
+    let cases = [
+        "hair, face",
+        "hair, edge",
+        "hair, face (2)",
+        "hair, edge (2)",
+    ];
+    assert_eq!(written.cases, cases);
+    // Again into the same folder, and into another one.
+    for name in ["a", "b"] {
+        assert_eq!(
+            create(name, &options).expect("a study").study,
+            written.study
+        );
+    }
+    let larger = Options {
+        size: 17,
+        ..options
+    };
+    assert_ne!(create("c", &larger).expect("a study").study, written.study);
 }

@@ -109,7 +109,12 @@ impl HeatMap {
         }
         let colour = self.colours.of(value);
         area.draw(&Rectangle::new(corners, colour.filled()))?;
-        let text = format!("{value:.*}", self.decimals).replace('-', "\u{2212}");
+        let text = format!("{value:.*}", self.decimals);
+        // What is rounded to 0 has no sign.
+        let text = match text.trim_start_matches('-') {
+            plain if plain.chars().all(|c| matches!(c, '0' | '.')) => plain.into(),
+            _ => text.replace('-', "\u{2212}"),
+        };
         canvas::write(area, &text, at, Anchor::Middle, 12, colours::on(colour))
     }
 
@@ -148,7 +153,7 @@ mod tests {
             y: "Case".into(),
             rows: vec!["surfaces 1, face".into(), "hair 1, edge".into()],
             columns: vec!["Flatness".into(), "Temporal stability".into()],
-            values: vec![vec![7.0, -3.456], vec![0.0, f64::NAN]],
+            values: vec![vec![7.0, -3.456], vec![-0.001, f64::NAN]],
             unit: "Mean signed preference".into(),
             colours: Colours::Diverging(7.0),
             decimals: 2,
@@ -172,7 +177,7 @@ mod tests {
         ]);
         let hex = |RGBColor(r, g, b): RGBColor| format!("#{r:02X}{g:02X}{b:02X}");
         let full = read.rectangles(&hex(colours::diverging(1.0)));
-        let middle = read.rectangles(&hex(colours::diverging(0.0)));
+        let middle = read.rectangles(&hex(colours::diverging(-0.001 / 7.0)));
         // Row by row, from the left; the key has the strongest colour too.
         let (first, below) = (full[0], middle[0]);
         assert_eq!(first.0, below.0);

@@ -5,11 +5,14 @@
 
 mod answers;
 mod evaluation;
+mod files;
 mod metric;
 mod page;
+mod pictures;
 pub mod report;
 
-pub use answers::{Answer, Answers, Background, Questions, Side, Which};
-pub use evaluation::{Evaluation, MetricResult, Participant, Replaced, Sample, evaluate};
+pub use answers::{Answer, Answers, Background, Questions, Side, Study, Which};
+pub use evaluation::{Evaluation, MetricResult, Participant, Sample, evaluate};
+pub use files::Replaced;
 pub use metric::Metric;
 pub use page::{Options, Written, create, write};

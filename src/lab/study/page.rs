@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use rara::files::write_atomically;
-use rara::{Camera, Error, Headless, HeadlessDesc, Mode, Picture, Result, Settings};
+use rara::{Camera, Error, Headless, HeadlessDesc, Mode, Result};
 use serde::Serialize;
 
 use super::metric::Metric;
+use super::pictures::{Drawing, Files, Id, columns, names};
 use crate::cases::{Case, Source, cases, generated};
 
 /// What is shown.
@@ -182,13 +183,6 @@ struct Shown {
     method: Files,
 }
 
-/// The pictures of one of the two.
-#[derive(Debug, Serialize)]
-struct Files {
-    picture: String,
-    sweep: String,
-}
-
 /// Writes a user study about these cases of these scenes into a folder. As [`create`] otherwise, which chooses them.
 ///
 /// # Errors
@@ -236,21 +230,6 @@ pub fn write(
         study: data.id,
         cases: names,
     })
-}
-
-/// A name for each case, all different.
-fn names(sources: &[Source], cases: &[Case]) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for case in cases {
-        let plain = format!("{}, {}", sources[case.scene].name, case.cut.name());
-        let (mut name, mut number) = (plain.clone(), 2);
-        while names.contains(&name) {
-            name = format!("{plain} ({number})");
-            number += 1;
-        }
-        names.push(name);
-    }
-    names
 }
 
 impl Data {
@@ -303,105 +282,9 @@ fn asked(metric: &Metric) -> Asked {
     }
 }
 
-/// The number of steps in a row of the picture that holds them all.
-fn columns(frames: u32) -> u32 {
-    (1..)
-        .find(|columns| columns * columns >= frames)
-        .unwrap_or(1)
-}
-
-/// Draws the pictures and keeps account of them.
-struct Drawing<'a> {
-    folder: &'a Path,
-    headless: &'a mut Headless,
-    options: &'a Options,
-    id: Id,
-}
-
-impl Drawing<'_> {
-    /// Draws and saves the pictures of one of the two in files whose names begin so.
-    fn files(&mut self, case: &Case, mode: Mode, start: &str) -> Result<Files> {
-        let background = Some(self.options.background);
-        let settings = Settings::default().mode(mode).background(background);
-        let picture = self.picture(case, &settings, self.options.size, 0.5)?;
-        let sweep = self.sweep(case, &settings)?;
-        Ok(Files {
-            picture: self.save(&picture, format!("{start}.png"))?,
-            sweep: self.save(&sweep, format!("{start}-sweep.png"))?,
-        })
-    }
-
-    fn save(&mut self, picture: &Picture, name: String) -> Result<String> {
-        picture.save(self.folder.join(&name))?;
-        self.id.add(&picture.to_rgba8());
-        Ok(name)
-    }
-
-    /// A case with its cut at a share of its way.
-    fn picture(
-        &mut self,
-        case: &Case,
-        settings: &Settings,
-        size: u32,
-        share: f64,
-    ) -> Result<Picture> {
-        let camera = case.camera.resized((size, size))?;
-        self.headless.render(&camera, &case.at(share)?, settings)?;
-        self.headless.picture()
-    }
-
-    /// All steps of the moving cut in one picture, row by row.
-    fn sweep(&mut self, case: &Case, settings: &Settings) -> Result<Picture> {
-        let (frames, size) = (self.options.frames, self.options.frame_size);
-        let columns = columns(frames);
-        let mut all = Picture::filled(columns * size, frames.div_ceil(columns) * size, [0.0; 4]);
-        for frame in 0..frames {
-            let share = f64::from(frame) / f64::from(frames - 1);
-            let step = self.picture(case, settings, size, share)?;
-            let (left, top) = (frame % columns * size, frame / columns * size);
-            for (row, pixels) in step.pixels.chunks_exact(size as usize).enumerate() {
-                let from = (top as usize + row) * all.width as usize + left as usize;
-                all.pixels[from..from + pixels.len()].copy_from_slice(pixels);
-            }
-        }
-        Ok(all)
-    }
-}
-
-/// Fowler, Noll and Vo's hash FNV-1a, of 64 bits: it tells studies apart and stays the same everywhere.
-struct Id(u64);
-
-impl Id {
-    fn new() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-
-    fn add(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-
-    fn text(&self) -> String {
-        format!("{:016x}", self.0)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_hash_is_the_published_one() {
-        let mut id = Id::new();
-        id.add(b"foobar");
-        assert_eq!(id.text(), "85944171f73967e8");
-    }
-
-    #[test]
-    fn steps_lie_in_a_nearly_square_picture() {
-        assert_eq!([1, 2, 4, 5, 24, 25].map(columns), [1, 2, 2, 3, 5, 5]);
-    }
 
     #[test]
     fn the_page_needs_no_network_and_no_file_that_is_not_written() {

@@ -1,16 +1,16 @@
 //! The report of a user study: HTML and Markdown with charts, and tables for other programs.
 
-use std::fmt::Write as _;
+mod tables;
+mod text;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use askama::Template;
-use rara::counted::counted;
 use rara::files::write_atomically;
 use rara::{Error, Result};
 
-use super::answers::{Side, Which};
-use super::evaluation::{Evaluation, MetricResult, Participant, Sample, evaluate};
+use super::evaluation::{Evaluation, evaluate};
 use super::metric::Metric;
 use crate::charts::{Axis, Colours, HeatMap, Radar, Values, Violins};
 
@@ -51,8 +51,8 @@ pub fn write(evaluation: &Evaluation, folder: &Path) -> Result<()> {
             "report.md",
             Markdown { evaluation }.render().map_err(filled)?,
         ),
-        ("metrics.csv", metrics_csv(evaluation)),
-        ("answers.csv", answers_csv(evaluation)),
+        ("metrics.csv", tables::metrics_csv(evaluation)),
+        ("answers.csv", tables::answers_csv(evaluation)),
         ("heat_map.svg", charts.heat_map),
         ("violins.svg", charts.violins),
         ("radar.svg", charts.radar),
@@ -132,135 +132,6 @@ impl Charts {
     }
 }
 
-/// A number with two decimals, or a dash.
-fn short(value: Option<f64>) -> String {
-    value.map_or("\u{2013}".into(), |value| {
-        format!("{value:.2}").replace('-', "\u{2212}")
-    })
-}
-
-impl Evaluation {
-    fn is_complete(&self) -> usize {
-        self.participants.iter().filter(|p| p.is_complete()).count()
-    }
-
-    fn answer_count(&self) -> usize {
-        self.participants.iter().map(|p| p.answers.len()).sum()
-    }
-
-    /// Who and how many answers the report is about, in sentences.
-    fn summary(&self) -> String {
-        let (all, complete) = (self.participants.len(), self.is_complete());
-        let asked: usize = self.participants.iter().map(|p| p.asked).sum();
-        let answers = counted(self.answer_count(), "answer");
-        let mut text = format!("{} gave {answers} of {asked}", counted(all, "participant"));
-        match all - complete {
-            0 => text += "; all answered everything.",
-            some => {
-                let _ = write!(
-                    text,
-                    "; {some} of them answered only a part, which is used."
-                );
-            }
-        }
-        if let Some(seconds) = self.median_seconds {
-            let _ = write!(text, " The median time of an answer is {seconds:.1} s.");
-        }
-        text
-    }
-
-    /// How many participants are of each kind, by what `kind` says.
-    fn shares(&self, kind: impl Fn(&Participant) -> &str) -> String {
-        let mut counts = std::collections::BTreeMap::<&str, usize>::new();
-        for participant in &self.participants {
-            *counts.entry(kind(participant)).or_default() += 1;
-        }
-        let parts = counts
-            .iter()
-            .map(|(kind, count)| format!("{kind}: {count}"));
-        parts.collect::<Vec<_>>().join(", ")
-    }
-
-    fn ages(&self) -> String {
-        self.shares(|p| &p.background.age)
-    }
-
-    fn experience(&self) -> String {
-        self.shares(|p| &p.background.experience)
-    }
-
-    fn groups(&self) -> String {
-        self.shares(|p| if p.group == 1 { "group 1" } else { "group 2" })
-    }
-
-    /// The open questions, each with the answers that were given to it and their participants.
-    fn questions(&self) -> Vec<(&'static str, Vec<(&str, &str)>)> {
-        type Read = fn(&super::Questions) -> &str;
-        let questions: [(&str, Read); 3] = [
-            ("What an ideal cut must be like", |q| &q.properties),
-            (
-                "What is missing from both methods, or bad about them",
-                |q| &q.limitations,
-            ),
-            ("What is good about them", |q| &q.strengths),
-        ];
-        let given = |read: Read| {
-            let all = self.participants.iter();
-            let all = all.map(move |p| (p.code.as_str(), read(&p.questions).trim()));
-            all.filter(|(_, text)| !text.is_empty()).collect()
-        };
-        questions.map(|(title, read)| (title, given(read))).into()
-    }
-}
-
-impl MetricResult {
-    /// Over what, and the preferences, as the tables have them.
-    fn samples(&self) -> [(&'static str, &Sample); 2] {
-        [
-            ("answers", &self.answers),
-            ("participants", &self.participants),
-        ]
-    }
-}
-
-impl Sample {
-    fn mean_text(&self) -> String {
-        short(self.mean)
-    }
-
-    fn deviation_text(&self) -> String {
-        short(self.deviation)
-    }
-
-    fn median_text(&self) -> String {
-        short(self.median)
-    }
-
-    fn d_text(&self) -> String {
-        short(self.d)
-    }
-
-    fn p_text(&self) -> String {
-        match self.wilcoxon {
-            test if test.n == 0 => short(None),
-            test if test.p < 0.001 => "< 0.001".into(),
-            test => format!("{:.3}", test.p),
-        }
-    }
-
-    fn w_text(&self) -> String {
-        match self.wilcoxon {
-            test if test.n == 0 => short(None),
-            test => format!("{}{}", test.statistic, if test.exact { "" } else { " *" }),
-        }
-    }
-
-    fn positive_text(&self) -> String {
-        self.positive
-            .map_or(short(None), |share| format!("{:.0} %", 100.0 * share))
-    }
-}
-
 /// What the templates do to text.
 #[allow(unreachable_pub, reason = "askama makes them public")]
 mod filters {
@@ -282,81 +153,6 @@ mod filters {
         }
         Ok(line)
     }
-}
-
-/// A field of a table, quoted where it has to be.
-fn field(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.into()
-    }
-}
-
-fn metrics_csv(evaluation: &Evaluation) -> String {
-    let mut csv = String::from(
-        "metric,over,n,mean,standard_deviation,median,cohens_d,wilcoxon_n,wilcoxon_w,wilcoxon_p,exact,positive_share\n",
-    );
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-    for result in &evaluation.metrics {
-        for (over, sample) in result.samples() {
-            let test = sample.wilcoxon;
-            let fields = [
-                result.metric.name().into(),
-                over.into(),
-                sample.values.len().to_string(),
-                number(sample.mean),
-                number(sample.deviation),
-                number(sample.median),
-                number(sample.d),
-                test.n.to_string(),
-                test.statistic.to_string(),
-                test.p.to_string(),
-                test.exact.to_string(),
-                number(sample.positive),
-            ];
-            csv += &fields.map(|text: String| field(&text)).join(",");
-            csv.push('\n');
-        }
-    }
-    csv
-}
-
-fn answers_csv(evaluation: &Evaluation) -> String {
-    let mut csv = String::from(
-        "participant,group,case,metric,left,choice,strength,preference,ms,changes,position,at\n",
-    );
-    for participant in &evaluation.participants {
-        for answer in &participant.answers {
-            let left = if answer.left == Which::Hard {
-                "hard"
-            } else {
-                "method"
-            };
-            let choice = if answer.choice == Side::Left {
-                "left"
-            } else {
-                "right"
-            };
-            let fields = [
-                participant.code.clone(),
-                participant.group.to_string(),
-                answer.case.clone(),
-                answer.metric.name().into(),
-                left.into(),
-                choice.into(),
-                answer.strength.to_string(),
-                answer.preference().to_string(),
-                answer.ms.to_string(),
-                answer.changes.to_string(),
-                answer.position.to_string(),
-                answer.at.clone(),
-            ];
-            csv += &fields.map(|text: String| field(&text)).join(",");
-            csv.push('\n');
-        }
-    }
-    csv
 }
 
 #[cfg(test)]

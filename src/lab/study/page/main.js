@@ -60,7 +60,7 @@ function submit(event) {
     return;
   }
   time();
-  screens[state.screen].leave(state, current());
+  if (!screens[state.screen].leave(state, current())) return;
   if (state.screen === "item" && state.index + 1 < items.length) go("item", state.index + 1);
   else go(screens[state.screen].next);
 }

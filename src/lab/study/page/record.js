@@ -23,8 +23,10 @@ const record = {
 
   load() {
     try {
-      const kept = JSON.parse(localStorage.getItem(this.key));
-      return kept === null ? this.empty() : { ...this.empty(), ...kept };
+      const kept = { ...this.empty(), ...JSON.parse(localStorage.getItem(this.key)) };
+      // What this page cannot have written is not used.
+      const parts = [kept.background, kept.drafts, kept.questions];
+      return parts.every((part) => part && typeof part === "object") ? kept : this.empty();
     } catch {
       return this.empty();
     }

@@ -1,4 +1,4 @@
-// The screens: each fills its template from the state, and reads it back when it is left.
+// The screens: each fills its template from the state, and reads it back when it is left, if it may be.
 
 "use strict";
 
@@ -14,6 +14,7 @@ const screens = {
     },
     leave(state) {
       state.begun ||= new Date().toISOString();
+      return true;
     },
   },
 
@@ -29,9 +30,12 @@ const screens = {
       const participant = find("participant").value.trim().toUpperCase();
       if (participant !== state.participant) {
         // Another order: what was answered belongs to somebody else.
+        const answered = Object.values(state.drafts).some(({ at }) => at);
+        if (answered && !confirm("With another code the study begins again, and your answers are deleted.")) return false;
         Object.assign(state, { participant, group: groupOf(participant, location.search), drafts: {}, index: 0 });
       }
       state.background = { age: find("age").value, experience: find("experience").value };
+      return true;
     },
   },
 
@@ -85,6 +89,7 @@ const screens = {
     },
     leave(state, item) {
       state.drafts[item.key].at = new Date().toISOString();
+      return true;
     },
     // Left and right choose a side and digits a strength; up and down change the strength.
     press(key, target) {
@@ -114,7 +119,7 @@ const screens = {
         });
       }
     },
-    leave() {},
+    leave: () => true,
   },
 
   done: {
@@ -125,7 +130,6 @@ const screens = {
         ? "You have answered everything. Thank you!"
         : `You have answered ${answered} of ${items.length} questions. What is there helps too; go back to answer the others.`;
     },
-    leave() {},
   },
 };
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rara::clip::Expression;
 use rara::scene::{Bounds, Kind, generate};
-use rara::{Camera, Clip, ClipOp, Gaussians, Layer, Plane, Result, Scene, Shape};
+use rara::{Camera, Clip, ClipOp, Error, Gaussians, Layer, Plane, Result, Scene, Shape};
 
 /// A scene with its name.
 #[derive(Debug)]
@@ -114,10 +114,17 @@ impl Case {
 /// Every way of cutting each scene, in pictures of `size` pixels.
 ///
 /// # Errors
-/// If a scene has no extent, or a picture no size.
+/// If a scene has no Gaussians or no extent, or a picture no size.
 pub fn cases(scenes: &[Source], up: DVec3, size: (u32, u32)) -> Result<Vec<Case>> {
     let mut cases = Vec::new();
     for (scene, source) in scenes.iter().enumerate() {
+        if source.gaussians.is_empty() {
+            let message = "has no Gaussians, so that nothing can be cut; choose another one";
+            return Err(Error::Invalid(format!(
+                "the scene {:?} {message}",
+                source.name
+            )));
+        }
         let camera = Camera::frame(&Bounds::of(&source.gaussians), up, 40.0, size)?;
         for cut in Cut::ALL {
             let direction = cut.direction(&camera);

@@ -336,7 +336,13 @@ fn scenes_of_files_keep_their_names_and_the_same_study_has_the_same_number() {
     }
     let larger = Options {
         size: 17,
-        ..options
+        ..options.clone()
     };
     assert_ne!(create("c", &larger).expect("a study").study, written.study);
+    // A scene of nothing cannot be cut, and no folder is left.
+    let empty = folder.join("empty.ply");
+    rara::scene::save_ply(&empty, &rara::Gaussians::default()).expect("a file");
+    let page = folder.join("d");
+    let refused = study::create(&page, &[empty], &device, &options, &mut |_, _| {});
+    assert!(refused.is_err() && !page.exists(), "{refused:?}");
 }

@@ -34,6 +34,7 @@ mod model;
 mod needs;
 mod output;
 mod panorama;
+mod paper;
 mod path;
 mod pattern;
 mod pictures;
@@ -59,6 +60,7 @@ mod sheet;
 mod shell;
 mod slice;
 mod stress;
+mod study;
 mod sweep;
 mod times;
 mod training;
@@ -109,6 +111,9 @@ enum Command {
     Sweep(sweep::Sweep),
     Ablate(ablate::Ablate),
     Bench(bench::Bench),
+    Paper(paper::Paper),
+    Study(study::Study),
+    StudyReport(study::StudyReport),
     Model(model::Model),
     Demo(demo::Demo),
     Compare(compare::Compare),
@@ -133,6 +138,9 @@ impl Command {
             Self::Sweep(command) => command.run(),
             Self::Ablate(command) => command.run(),
             Self::Bench(command) => command.run(),
+            Self::Paper(command) => command.run(),
+            Self::Study(command) => command.run(),
+            Self::StudyReport(command) => command.run(),
             Self::Model(command) => command.run(),
             Self::Demo(command) => command.run(),
             Self::Compare(command) => command.run(),

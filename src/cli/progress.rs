@@ -86,6 +86,11 @@ impl Progress {
         }
     }
 
+    /// Says what is being done now.
+    pub(super) fn describe(&mut self, what: &str) {
+        self.bar.set_message(what.to_owned());
+    }
+
     pub(super) fn update(&mut self, done: u64, total: u64) {
         self.bar.set_length(total);
         self.bar.set_position(done);

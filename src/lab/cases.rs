@@ -1,9 +1,11 @@
 //! The cases that the experiments and the user study share: scenes, each cut in three ways and seen from one side.
 
+use std::path::PathBuf;
+
 use glam::DVec3;
 use rara::clip::Expression;
-use rara::scene::{Bounds, Kind, generate};
-use rara::{Camera, Clip, ClipOp, Gaussians, Layer, Plane, Result, Scene, Shape};
+use rara::scene::{Bounds, Kind, generate, load};
+use rara::{Camera, Clip, ClipOp, Error, Gaussians, Layer, Plane, Result, Scene, Shape};
 
 /// A scene with its name.
 #[derive(Debug)]
@@ -31,6 +33,24 @@ pub fn generated(count: usize) -> Vec<Source> {
         gaussians: generate(kind, count.max(1), seed),
     };
     all.into_iter().map(source).collect()
+}
+
+/// The scenes of these files, each under its file's name; without files, those that are [`generated`].
+///
+/// # Errors
+/// If a file cannot be read.
+pub fn sources(files: &[PathBuf], count: usize) -> Result<Vec<Source>> {
+    if files.is_empty() {
+        return Ok(generated(count));
+    }
+    let source = |file: &PathBuf| {
+        let stem = file.file_stem().unwrap_or(file.as_os_str());
+        Ok(Source {
+            name: stem.to_string_lossy().into(),
+            gaussians: load(file, &mut |_, _| {})?.gaussians,
+        })
+    };
+    files.iter().map(source).collect()
 }
 
 impl Source {
@@ -119,10 +139,17 @@ impl Case {
 /// Every way of cutting each scene, in pictures of `size` pixels.
 ///
 /// # Errors
-/// If a scene has no extent, or a picture no size.
+/// If a scene has no Gaussians or no extent, or a picture no size.
 pub fn cases(scenes: &[Source], up: DVec3, size: (u32, u32)) -> Result<Vec<Case>> {
     let mut cases = Vec::new();
     for (scene, source) in scenes.iter().enumerate() {
+        if source.gaussians.is_empty() {
+            let message = "has no Gaussians, so that nothing can be cut; choose another one";
+            return Err(Error::Invalid(format!(
+                "the scene {:?} {message}",
+                source.name
+            )));
+        }
         let camera = Camera::frame(&Bounds::of(&source.gaussians), up, 40.0, size)?;
         for cut in Cut::ALL {
             let direction = cut.direction(&camera);

@@ -13,6 +13,7 @@ mod determinism;
 mod films;
 mod outputs;
 mod panoramas;
+mod paper;
 mod paths;
 mod plurals;
 mod process;
@@ -66,7 +67,10 @@ fn line_with(folder: &Path, words: &str, variable: Option<(&str, &str)>) -> Outp
         .split_whitespace()
         .map(|word| word.replace('@', folder))
         .collect();
-    let draws = ["render", "sweep", "ablate", "demo", "bench", "bake"].contains(&words[0].as_str());
+    let draws = [
+        "render", "sweep", "ablate", "demo", "bench", "bake", "paper", "study",
+    ]
+    .contains(&words[0].as_str());
     if let Ok(device) = std::env::var("RARA_TEST_DEVICE")
         && draws
         && !words.iter().any(|word| word == "--device")

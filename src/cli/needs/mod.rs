@@ -50,6 +50,9 @@ const NEEDS: &[(&str, Need)] = &[
     ),
     ("trace", Nothing),
     ("statistics", Nothing),
+    ("thorough", Nothing),
+    ("method", Nothing),
+    ("cases", Nothing),
     ("repeat", Flag(&["measure"])),
     // The camera.
     ("eye", Nothing),

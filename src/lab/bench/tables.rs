@@ -1,5 +1,7 @@
 //! What was measured, as tables.
 
+use rara::counted::counted;
+
 use super::{Measures, Report};
 use crate::table::{Cell, Table};
 
@@ -31,18 +33,18 @@ pub(super) fn tables(report: &Report) -> Vec<Table> {
 fn choices(report: &Report) -> Table {
     let [width, height] = report.size;
     let note = format!(
-        "{}, {width}x{height}; {} Gaussians; {} ({}). ms: the sum of each stage's least of {} frames, one of each choice in \
+        "{}, {width}x{height}; {}; {} ({}). ms: the sum of each stage's least of {}, one of each choice in \
          turn, and the median frame. CPU: the time of this process on all cores, least and median. Errors are those against \
          the exact cut in double precision, on a scale of 0 to 255; band SSIM is over the {:.2} % of the picture in which \
-         the way of cutting shows. Pops: the largest change of a pixel in a step of {} through 1/300 of the scene each; \
+         the way of cutting shows. Pops: the largest change of a pixel in {} through 1/300 of the scene each; \
          beyond: how much of it the truth does not do. Front: no other choice is both faster and nearer.",
         report.scene,
-        report.gaussians,
+        counted(report.gaussians, "Gaussian"),
         report.device,
         report.driver,
-        report.frames,
+        counted(report.frames, "frame"),
         100.0 * report.band_share,
-        report.steps,
+        counted(report.steps, "step"),
     );
     let columns = ["choice", "flags", "ms", "median", "CPU", "median CPU", "L1"];
     let columns = columns

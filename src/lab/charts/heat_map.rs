@@ -50,6 +50,8 @@ pub struct HeatMap {
     pub unit: String,
     /// How they become colours.
     pub colours: Colours,
+    /// How many decimals are written into the cells.
+    pub decimals: usize,
 }
 
 /// The height of a row.
@@ -107,7 +109,12 @@ impl HeatMap {
         }
         let colour = self.colours.of(value);
         area.draw(&Rectangle::new(corners, colour.filled()))?;
-        let text = number((value * 100.0).round() / 100.0);
+        let text = format!("{value:.*}", self.decimals);
+        // What is rounded to 0 has no sign.
+        let text = match text.trim_start_matches('-') {
+            plain if plain.chars().all(|c| matches!(c, '0' | '.')) => plain.into(),
+            _ => text.replace('-', "\u{2212}"),
+        };
         canvas::write(area, &text, at, Anchor::Middle, 12, colours::on(colour))
     }
 
@@ -115,7 +122,8 @@ impl HeatMap {
     fn draw_key(&self, area: &Area<'_>, (left, right): (i32, i32), top: i32) -> canvas::Drawn {
         const STEPS: i32 = 64;
         let [low, high] = self.colours.ends();
-        let width = (right - left).min(320);
+        let unit = width_of(&self.unit, SMALL) + 16;
+        let width = (right - left - unit).clamp(100, 320);
         for step in 0..STEPS {
             let value = low + (high - low) * f64::from(step) / f64::from(STEPS - 1);
             let edge = |step: i32| left + width * step / STEPS;
@@ -128,7 +136,7 @@ impl HeatMap {
             canvas::write(area, &number(value), at, Anchor::Middle, 12, colours::INK)?;
         }
         let at = (left + width + 16, top + 6);
-        canvas::write(area, &self.unit, at, Anchor::Start, SMALL, colours::INK)
+        canvas::write_wrapped(area, &self.unit, at, Anchor::Start, right - at.0)
     }
 }
 
@@ -145,9 +153,10 @@ mod tests {
             y: "Case".into(),
             rows: vec!["surfaces 1, face".into(), "hair 1, edge".into()],
             columns: vec!["Flatness".into(), "Temporal stability".into()],
-            values: vec![vec![7.0, -3.456], vec![0.0, f64::NAN]],
+            values: vec![vec![7.0, -3.456], vec![-0.001, f64::NAN]],
             unit: "Mean signed preference".into(),
             colours: Colours::Diverging(7.0),
+            decimals: 2,
         };
         let read = Read::of("heat_map", &map.svg());
         read.has(&[
@@ -160,15 +169,15 @@ mod tests {
         read.has(&[
             "Flatness",
             "Temporal stability",
-            "7",
+            "7.00",
             "−3.46",
-            "0",
+            "0.00",
             "–",
             "Mean signed preference",
         ]);
         let hex = |RGBColor(r, g, b): RGBColor| format!("#{r:02X}{g:02X}{b:02X}");
         let full = read.rectangles(&hex(colours::diverging(1.0)));
-        let middle = read.rectangles(&hex(colours::diverging(0.0)));
+        let middle = read.rectangles(&hex(colours::diverging(-0.001 / 7.0)));
         // Row by row, from the left; the key has the strongest colour too.
         let (first, below) = (full[0], middle[0]);
         assert_eq!(first.0, below.0);

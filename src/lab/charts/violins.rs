@@ -2,9 +2,9 @@
 
 use plotters::prelude::*;
 
-use super::canvas::{self, Area, HEIGHT, WIDTH};
+use super::canvas::{self, Anchor, Area, HEIGHT, SMALL, WIDTH};
 use super::plot::Plot;
-use super::{Axis, Values, colours};
+use super::{Axis, Scale, Values, colours};
 use crate::statistics::{median, standard_deviation};
 
 /// How samples are distributed: as wide as values are frequent, with each value as a dot and the median as a bar.
@@ -24,6 +24,8 @@ pub struct Violins {
 const STEPS: usize = 96;
 /// The share of its column that a violin takes.
 const WIDE: f64 = 0.84;
+/// What it takes at most, in pixels, where there are few of them.
+const WIDEST: f64 = 160.0;
 
 impl Violins {
     /// The chart as an SVG document.
@@ -31,6 +33,10 @@ impl Violins {
         let values = self.samples.iter().flat_map(|sample| &sample.values);
         let y = self.y.span(values.copied());
         canvas::chart(&self.title, (WIDTH, HEIGHT), |area| {
+            let note =
+                "Width: how frequent values are. Dots: the values, moved aside. Bar: their median.";
+            canvas::write(area, note, (0, 10), Anchor::Start, SMALL, colours::FAINT)?;
+            let area = &area.margin(24, 0, 0, 0);
             let names: Vec<_> = self.samples.iter().map(|s| s.name.as_str()).collect();
             let plot = Plot::of_categories(area, &names, &self.x, (&self.y, y))?;
             for (number, sample) in self.samples.iter().enumerate() {
@@ -47,11 +53,13 @@ impl Violins {
             return Ok(());
         };
         let middle = number as f64 + 0.5;
+        let column = f64::from(plot.across(1.0) - plot.across(0.0));
+        let wide = WIDE.min(WIDEST / column.max(1.0));
         let colour = colours::series(number);
         let outline = self.outline(values);
         let most = outline.iter().map(|(_, d)| *d).fold(0.0, f64::max);
         let side = |sign: f64| {
-            let half = move |density: f64| sign * WIDE / 2.0 * density / most;
+            let half = move |density: f64| sign * wide / 2.0 * density / most;
             let at = move |&(value, density): &(f64, f64)| plot.at(middle + half(density), value);
             outline.iter().map(at)
         };
@@ -65,37 +73,45 @@ impl Violins {
             .collect::<Vec<_>>();
         plot.area
             .draw(&PathElement::new(closed, colour.stroke_width(1)))?;
-        let [left, right] = [-0.3, 0.3].map(|away| plot.at(middle + away * WIDE, median));
-        let bar = PathElement::new(vec![left, right], colours::INK.stroke_width(3));
-        plot.area.draw(&bar)?;
         dots(&plot.area, values, |value, away| {
-            plot.at(middle + 0.22 * away, value)
-        })
+            plot.at(middle + 0.25 * wide * away, value)
+        })?;
+        let [left, right] = [-0.3, 0.3].map(|away| plot.at(middle + away * wide, median));
+        for (colour, width) in [(colours::PAPER, 8), (colours::INK, 4)] {
+            let bar = PathElement::new(vec![left, right], colour.stroke_width(width));
+            plot.area.draw(&bar)?;
+        }
+        Ok(())
     }
 
-    /// The density of values by height, up to a factor: a normal distribution around each value, of Silverman's width.
+    /// The density of values by height, up to a factor: a normal distribution around each value, of Silverman's width, on
+    /// the scale of the axis. On logarithms zeros have none.
     fn outline(&self, values: &[f64]) -> Vec<(f64, f64)> {
-        let (low, high) = values
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| {
-                (low.min(v), high.max(v))
-            });
-        let deviation = standard_deviation(values).filter(|&s| s > 0.0);
+        let is_log = self.y.scale == Scale::Log;
+        let scaled = |v: f64| if is_log { v.log10() } else { v };
+        let values: Vec<f64> = values.iter().map(|&v| scaled(v)).collect();
+        let values: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if values.is_empty() {
+            return Vec::new();
+        }
+        let deviation = standard_deviation(&values).filter(|&s| s > 0.0);
         // Equal values get a width that can be seen.
-        let scale = deviation.unwrap_or(high.abs().max(1.0) / 20.0);
-        let width = 1.06 * scale * (values.len() as f64).powf(-0.2);
-        let [bottom, top] = self.y.range.unwrap_or([low, high]);
-        let is_log = self.y.scale == super::Scale::Log;
-        let bottom = (low - 2.0 * width).max(if is_log { low } else { bottom });
-        let top = (high + 2.0 * width).min(if is_log { high } else { top });
+        let deviation = deviation.unwrap_or(high.abs().max(1.0) / 20.0);
+        let width = 1.06 * deviation * (values.len() as f64).powf(-0.2);
+        // Without a range the axis ends soon after the values.
+        let ends = self.y.range.map_or([low, high], |ends| ends.map(scaled));
+        let bottom = (low - 2.0 * width).max(ends[0]);
+        let top = (high + 2.0 * width).min(ends[1]);
         let density = |at: f64| {
             let weight = |v: &f64| (-0.5 * ((at - v) / width).powi(2)).exp();
             values.iter().map(weight).sum::<f64>().max(1e-9)
         };
         let at = |step: usize| bottom + (top - bottom) * step as f64 / STEPS as f64;
-        (0..=STEPS)
-            .map(|step| (at(step), density(at(step))))
-            .collect()
+        let height = |at: f64| if is_log { 10_f64.powf(at) } else { at };
+        let steps = (0..=STEPS).map(at);
+        steps.map(|at| (height(at), density(at))).collect()
     }
 }
 

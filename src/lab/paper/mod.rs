@@ -122,7 +122,6 @@ pub fn run(
     folder: &Path,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<()> {
-    let begin = std::time::Instant::now();
     let size = (options.case_size, options.case_size);
     let all = cases(sources, DVec3::NEG_Y, size)?;
     let name = |case: &Case| format!("{}, {}", sources[case.scene].name, case.cut.name());
@@ -234,7 +233,7 @@ pub fn run(
                 series::series(headless, property, (count, size, repeats))
             })?);
     }
-    results.seconds = begin.elapsed().as_secs_f64();
+    results.seconds = store.seconds;
     report::write(folder, &results)
 }
 

@@ -126,6 +126,7 @@ pub(super) fn heat_map(outcomes: &[Outcome], way: &str) -> HeatMap {
         values: (0..outcomes.len()).map(row).collect(),
         unit: format!("log10 of the defect of {way} over that of hard; less than 0 is better"),
         colours: Colours::Diverging(3.0),
+        decimals: 1,
     }
 }
 

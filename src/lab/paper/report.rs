@@ -175,9 +175,10 @@ fn nearest(results: &Results) -> String {
         }
     }
     format!(
-        "A reading that keeps what misses the ellipsoid at 1 sigma changes little, since most of a footprint misses; one that \
-         drops it removes the soft outside of every splat, which is most of the light of round ones and little of that of thin \
-         strands. The reading whose L1 is nearest to the paper's, scene by scene: {}.",
+        "Every reading that keeps what misses the ellipsoid, or decides by the side of its densest point, changes nothing. One \
+         that drops it removes from every splat what lies outside the ellipsoid; needles thinner than a pixel are widened by \
+         the low-pass, so that most of their rays miss even at 3 sigma. The reading whose L1 is nearest to the paper's, scene \
+         by scene: {}.",
         found.join("; ")
     )
 }

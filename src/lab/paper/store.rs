@@ -28,6 +28,8 @@ pub(super) struct Store<'a> {
     /// The parts that are still to come, with estimates of their work in any unit.
     plan: Vec<(String, f64)>,
     parts: usize,
+    /// The seconds that all parts so far have taken, in whichever run.
+    pub(super) seconds: f64,
     /// Work that was measured in this run, and the seconds it took.
     measured: (f64, f64),
     progress: &'a mut dyn FnMut(&Progress),
@@ -36,6 +38,7 @@ pub(super) struct Store<'a> {
 #[derive(Serialize, Deserialize)]
 struct Stored<T> {
     origin: String,
+    seconds: f64,
     result: T,
 }
 
@@ -55,6 +58,7 @@ impl<'a> Store<'a> {
             origin,
             plan,
             parts,
+            seconds: 0.0,
             measured: (0.0, 0.0),
             progress,
         })
@@ -80,14 +84,18 @@ impl<'a> Store<'a> {
         self.plan.remove(0);
         let file = self.folder.join(file_name(key));
         if let Some(known) = self.read(&file) {
-            return Ok(known);
+            self.seconds += known.seconds;
+            return Ok(known.result);
         }
         let begin = Instant::now();
         let result = measure()?;
+        let seconds = begin.elapsed().as_secs_f64();
         self.measured.0 += work;
-        self.measured.1 += begin.elapsed().as_secs_f64();
+        self.measured.1 += seconds;
+        self.seconds += seconds;
         let stored = Stored {
             origin: self.origin.clone(),
+            seconds,
             result,
         };
         let text = serde_json::to_string(&stored).expect("results have string keys only");
@@ -107,10 +115,10 @@ impl<'a> Store<'a> {
     }
 
     /// What was kept, if it is whole and of the same origin.
-    fn read<T: DeserializeOwned>(&self, file: &Path) -> Option<T> {
+    fn read<T: DeserializeOwned>(&self, file: &Path) -> Option<Stored<T>> {
         let text = std::fs::read_to_string(file).ok()?;
         let stored: Stored<T> = serde_json::from_str(&text).ok()?;
-        (stored.origin == self.origin).then_some(stored.result)
+        (stored.origin == self.origin).then_some(stored)
     }
 }
 

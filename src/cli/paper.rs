@@ -1,0 +1,85 @@
+//! `rara paper`: the paper's experiments on this device.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use rara::Headless;
+use rara_lab::cases::sources;
+use rara_lab::paper::{self, Options};
+
+use super::failure::Failure;
+use super::output::{self, Progress, say};
+use super::process;
+use super::settings::DeviceArgs;
+
+/// Gaussians of a generated scene.
+const GENERATED: usize = 6_000;
+
+/// Repeat and extend the paper's experiments, and write a report
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  rara paper -o report
+  rara paper skull.ply hair.ply heart.ply -o report --thorough
+
+Without scenes, the experiments run on eight generated ones and take a few minutes. The folder gets index.html, which needs
+no other file, report.md, results.json, a .csv for each table, and the error maps of every case. A run that was interrupted
+goes on where it stopped, if scenes, options, device and driver are the same.")]
+pub(super) struct Paper {
+    /// Scene files, each a scene of its own [default: eight generated scenes]
+    #[arg(value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+    /// Folder for the report; made unless it is there
+    #[arg(short, long, value_name = "DIR", default_value = "paper")]
+    output: PathBuf,
+    /// Larger pictures, more frames and all choices of precision
+    #[arg(long)]
+    thorough: bool,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+impl Paper {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        output::make_folder(&self.output)?;
+        let sources = sources(&self.scenes, GENERATED)?;
+        let mut options = match self.thorough {
+            true => Options::thorough(),
+            false => Options::quick(),
+        };
+        if !self.scenes.is_empty() {
+            options.timed = (0..sources.len().min(3)).collect();
+        }
+        // What is generated is no larger than what is looked into.
+        let largest = sources.iter().map(|source| source.gaussians.len()).max();
+        options.count = options.count.min(largest.unwrap_or(0).max(1));
+        process::make_drivers_folder();
+        let mut headless = Headless::new(&self.device.meant())?;
+        let mut progress = Progress::new("measuring");
+        let mut told = String::new();
+        paper::run(
+            &mut headless,
+            &sources,
+            &options,
+            &self.output,
+            &mut |now| {
+                let left = now
+                    .seconds_left
+                    .map(|seconds| format!(", about {:.0} min left", (seconds / 60.0).ceil()));
+                let line = format!("{}{}", now.what, left.unwrap_or_default());
+                if line != told {
+                    progress.describe(&line);
+                    told = line;
+                }
+                progress.update(now.done as u64, now.parts as u64);
+            },
+        )?;
+        drop(progress);
+        headless.close()?;
+        say(format_args!(
+            "the report is {}",
+            self.output.join("index.html").display()
+        ));
+        Ok(())
+    }
+}

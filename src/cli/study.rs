@@ -1,0 +1,109 @@
+//! `rara study` and `rara study-report`: the paper's user study as a web page, and what its answers say.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use rara::Mode;
+use rara_lab::study::{self, report};
+
+use super::failure::Failure;
+use super::output::{self, Progress, counted, say};
+use super::process;
+use super::settings::DeviceArgs;
+
+/// Write a web page for a user study like the paper's
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  rara study study
+  rara study study skull.ply hair.ply --method rara --cases 12
+
+Open index.html of the folder in a browser; it needs no server and no network. Participants choose between two pictures, one
+cut by centres and one by the method, and save their answers as a file. rara study-report evaluates these files.")]
+pub(super) struct Study {
+    /// Folder for the page and its pictures; made unless it is there
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Scene files [default: eight generated scenes]
+    #[arg(value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+    /// The method that is compared with cutting by centres
+    #[arg(long, value_enum, default_value = "rara")]
+    method: Mode,
+    /// Number of cases
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    cases: u32,
+    /// Print what was written as JSON to stdout
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+impl Study {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        if !matches!(self.method, Mode::Rara | Mode::Exact) {
+            return Err(Failure::Usage(
+                "--method is rara or exact: these are what a study compares with hard".into(),
+            ));
+        }
+        let options = study::Options {
+            method: self.method,
+            cases: self.cases as usize,
+            ..study::Options::default()
+        };
+        process::make_drivers_folder();
+        let mut progress = Progress::new("drawing");
+        let written = study::create(
+            &self.folder,
+            &self.scenes,
+            &self.device.meant(),
+            &options,
+            &mut |done, total| progress.update(done as u64, total as u64),
+        )?;
+        drop(progress);
+        if self.json {
+            return Ok(output::json(&written)?);
+        }
+        say(format_args!(
+            "{} of study {}: open {}",
+            counted(written.cases.len() as u64, "case"),
+            written.study,
+            written.page.display()
+        ));
+        Ok(())
+    }
+}
+
+/// Evaluate the answers of a user study
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  rara study-report answers/*.json -o result
+
+The folder gets report.html, which needs no other file, report.md, metrics.csv, answers.csv, and the charts.")]
+pub(super) struct StudyReport {
+    /// Files that participants have saved
+    #[arg(value_name = "ANSWERS", required = true)]
+    answers: Vec<PathBuf>,
+    /// Folder for the report; made unless it is there
+    #[arg(short, long, value_name = "DIR", default_value = "study-report")]
+    output: PathBuf,
+    /// Print the evaluation as JSON to stdout
+    #[arg(long)]
+    json: bool,
+}
+
+impl StudyReport {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let evaluation = report::create(&self.answers, &self.output, &report::Options::default())?;
+        if self.json {
+            return Ok(output::json(&evaluation)?);
+        }
+        say(format_args!(
+            "the report is {}",
+            self.output.join("report.html").display()
+        ));
+        Ok(())
+    }
+}

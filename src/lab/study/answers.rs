@@ -1,0 +1,306 @@
+//! The file that a participant's page saves, and what is checked of it.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use rara::{Error, Result};
+use serde::{Deserialize, Serialize};
+
+use super::Metric;
+
+/// What the files say they are.
+pub(super) const FORMAT: &str = "rara study answers";
+/// The version of the files.
+pub(super) const VERSION: u32 = 1;
+
+/// A participant's answers.
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+pub struct Answers {
+    format: String,
+    version: u32,
+    /// The study that the page belongs to.
+    pub study: Study,
+    /// The participant's code, without spaces around it and in capitals.
+    pub participant: String,
+    /// The group, 1 or 2.
+    pub group: u8,
+    /// Who it was.
+    pub background: Background,
+    /// When the study was begun, in ISO 8601.
+    pub begun: String,
+    /// When the file was saved.
+    pub saved: String,
+    /// The answers that were confirmed.
+    pub answers: Vec<Answer>,
+    /// What was written about the methods.
+    #[serde(default)]
+    pub questions: Questions,
+}
+
+/// The study that answers belong to.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, Serialize)]
+pub struct Study {
+    /// Changes with every picture.
+    pub id: String,
+    /// What is compared with hard cuts.
+    pub method: String,
+    /// The names of the cases, in the order of the report.
+    pub cases: Vec<String>,
+}
+
+/// Who took part.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize, Serialize)]
+pub struct Background {
+    /// The age group.
+    pub age: String,
+    /// Experience with computer graphics.
+    pub experience: String,
+}
+
+/// What was written at the end.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize, Serialize)]
+#[serde(default)]
+pub struct Questions {
+    /// Which properties an ideal cut has.
+    pub properties: String,
+    /// What both methods lack.
+    pub limitations: String,
+    /// What is good about them.
+    pub strengths: String,
+}
+
+/// A side of the page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// The left one.
+    Left,
+    /// The right one.
+    Right,
+}
+
+/// One of the two that are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Which {
+    /// Hard cuts.
+    Hard,
+    /// The method.
+    Method,
+}
+
+/// One answer.
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+pub struct Answer {
+    /// The name of the case.
+    pub case: String,
+    /// In which respect.
+    pub metric: Metric,
+    /// What was on the left.
+    pub left: Which,
+    /// Which side was better.
+    pub choice: Side,
+    /// How much better: 1, barely, to 7, extremely.
+    pub strength: u8,
+    /// How long it was looked at, milliseconds.
+    pub ms: u64,
+    /// How often choice or strength were set.
+    pub changes: u64,
+    /// When it was confirmed, in ISO 8601.
+    pub at: String,
+    /// Its place among the participant's items, from 1.
+    pub position: u64,
+}
+
+impl Answer {
+    /// The strength, positive for the method and negative for hard cuts.
+    pub fn preference(&self) -> f64 {
+        let is_left = self.choice == Side::Left;
+        let is_method = is_left == (self.left == Which::Method);
+        f64::from(self.strength) * if is_method { 1.0 } else { -1.0 }
+    }
+}
+
+const AS_SAVED: &str = "use the file as the page has saved it";
+
+impl Answers {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if it cannot be read; [`Error::Format`], which names the element, if it is not what a page saves.
+    pub fn load(path: &Path) -> Result<Self> {
+        let bytes = std::fs::read(path).map_err(Error::io(path))?;
+        Self::read(&bytes).map_err(|message| Error::format(path, message))
+    }
+
+    /// Reads the bytes of a file; an error names the element.
+    fn read(bytes: &[u8]) -> std::result::Result<Self, String> {
+        // A byte order mark is what editors and mail programs add.
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let mut json = serde_json::Deserializer::from_slice(bytes);
+        let read: std::result::Result<Self, _> = serde_path_to_error::deserialize(&mut json);
+        let mut answers = read.map_err(|error| {
+            let element = error.path().to_string();
+            let error = error.into_inner();
+            format!("{element}: {error}; {AS_SAVED}")
+        })?;
+        json.end().map_err(|error| format!("{error}; {AS_SAVED}"))?;
+        answers.participant = answers.participant.trim().to_uppercase();
+        answers.check()?;
+        Ok(answers)
+    }
+
+    fn check(&self) -> std::result::Result<(), String> {
+        let refused = |element: &str, what: String| Err(format!("{element}: {what}; {AS_SAVED}"));
+        if self.format != FORMAT {
+            return refused("format", format!("{:?} is not {FORMAT:?}", self.format));
+        }
+        if self.version != VERSION {
+            let (version, known) = (self.version, VERSION);
+            return Err(format!(
+                "version: this is version {version} and the report knows {known}; use the rara that wrote the page"
+            ));
+        }
+        if self.participant.is_empty() {
+            return refused("participant", "the code is empty".into());
+        }
+        if !(1..=2).contains(&self.group) {
+            return refused("group", format!("{} is neither 1 nor 2", self.group));
+        }
+        let cases: HashSet<_> = self.study.cases.iter().collect();
+        if cases.len() < self.study.cases.len() {
+            return refused("study.cases", "two cases have the same name".into());
+        }
+        let mut seen = HashSet::new();
+        for (number, answer) in self.answers.iter().enumerate() {
+            let element = |name: &str| format!("answers[{number}].{name}");
+            let strength = answer.strength;
+            if !(1..=7).contains(&strength) {
+                return refused(&element("strength"), format!("{strength} is not 1 to 7"));
+            }
+            if !cases.contains(&answer.case) {
+                let what = format!("the study has no case {:?}", answer.case);
+                return refused(&element("case"), what);
+            }
+            if !seen.insert((&answer.case, answer.metric)) {
+                let name = answer.metric.name();
+                let what = format!("{:?} is answered twice for {name}", answer.case);
+                return refused(&element("metric"), what);
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Answers of a participant about these cases, (case, metric, preference) each; on the left by turns.
+    pub(in crate::study) fn answers(
+        participant: &str,
+        cases: &[&str],
+        given: &[(&str, Metric, i8)],
+    ) -> Answers {
+        let answer = |(number, &(case, metric, preference)): (usize, &(&str, Metric, i8))| {
+            let left = [Which::Hard, Which::Method][number % 2];
+            let is_left = (preference > 0) == (left == Which::Method);
+            Answer {
+                case: case.into(),
+                metric,
+                left,
+                choice: if is_left { Side::Left } else { Side::Right },
+                strength: preference.unsigned_abs(),
+                ms: 1000 + number as u64,
+                changes: 2,
+                at: "2026-01-02T03:04:05.000Z".into(),
+                position: number as u64 + 1,
+            }
+        };
+        Answers {
+            format: FORMAT.into(),
+            version: VERSION,
+            study: Study {
+                id: "0123456789abcdef".into(),
+                method: "exact".into(),
+                cases: cases.iter().map(|&case| case.into()).collect(),
+            },
+            participant: participant.into(),
+            group: 1,
+            background: Background {
+                age: "25-34".into(),
+                experience: "none".into(),
+            },
+            begun: "2026-01-02T03:00:00.000Z".into(),
+            saved: "2026-01-02T03:30:00.000Z".into(),
+            answers: given.iter().enumerate().map(answer).collect(),
+            questions: Questions::default(),
+        }
+    }
+
+    fn sample() -> Answers {
+        let given = [("a", Metric::Flatness, 3), ("b", Metric::Flatness, -7)];
+        answers("P1", &["a", "b"], &given)
+    }
+
+    fn bytes(answers: &Answers) -> Vec<u8> {
+        serde_json::to_vec(answers).expect("JSON")
+    }
+
+    #[test]
+    fn what_is_written_is_read_and_preferences_have_the_sign_of_the_choice() {
+        let read = Answers::read(&bytes(&sample())).expect("answers");
+        assert_eq!(read, sample());
+        let preferences: Vec<_> = read.answers.iter().map(Answer::preference).collect();
+        assert_eq!(preferences, [3.0, -7.0]);
+    }
+
+    #[test]
+    fn each_mistake_is_refused_by_the_name_of_its_element() {
+        type Change = fn(&mut Answers);
+        let cases: [(&str, Change); 7] = [
+            ("format: ", |a| a.format = "something".into()),
+            ("version: ", |a| a.version = 9),
+            ("participant: ", |a| a.participant = "  ".into()),
+            ("group: ", |a| a.group = 3),
+            ("answers[1].strength: 8 is not 1 to 7", |a| {
+                a.answers[1].strength = 8
+            }),
+            ("answers[0].case: ", |a| a.answers[0].case = "c".into()),
+            ("answers[1].metric: ", |a| a.answers[1].case = "a".into()),
+        ];
+        for (expected, change) in cases {
+            let mut answers = sample();
+            change(&mut answers);
+            let error = Answers::read(&bytes(&answers)).expect_err(expected);
+            assert!(error.starts_with(expected), "{error}");
+            assert!(error.contains("; use the"), "{error}");
+        }
+        let text = String::from_utf8(bytes(&sample())).expect("text");
+        for (from, to, element) in [
+            ("\"flatness\"", "\"beauty\"", "answers[0].metric: "),
+            ("\"strength\":7", "\"strength\":-7", "answers[1].strength: "),
+            (
+                "\"strength\":7",
+                "\"strength\":7.5",
+                "answers[1].strength: ",
+            ),
+        ] {
+            let error = Answers::read(text.replacen(from, to, 1).as_bytes()).expect_err(to);
+            assert!(error.starts_with(element), "{error}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_bytes_panic(at in 0.0..1.0_f64, with in proptest::collection::vec(any::<u8>(), 0..12), cut in any::<bool>()) {
+            let mut file = bytes(&sample());
+            let at = (at * file.len() as f64) as usize;
+            let end = if cut { file.len() } else { (at + with.len()).min(file.len()) };
+            file.splice(at..end, with.iter().copied());
+            let _ = Answers::read(&file);
+            let _ = Answers::read(&with);
+        }
+    }
+}

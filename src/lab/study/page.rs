@@ -1,0 +1,323 @@
+//! Writes the page that participants see: pictures, data, and the files of this folder.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use rara::files::write_atomically;
+use rara::{Camera, Error, Headless, HeadlessDesc, Mode, Result};
+use serde::Serialize;
+
+use super::metric::Metric;
+use super::pictures::{Drawing, Files, Id, columns, names};
+use crate::cases::{Case, Source, cases, sources};
+
+/// What is shown.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// What is compared with hard cuts: [`Mode::Rara`] or [`Mode::Exact`].
+    pub method: Mode,
+    /// The number of cases, spread over scenes and cuts; all there are where those are fewer.
+    pub cases: usize,
+    /// The Gaussians of each generated scene; scenes from files have their own.
+    pub gaussians: usize,
+    /// The direction that is up in the pictures.
+    pub up: DVec3,
+    /// Pixels a row of the pictures, and rows.
+    pub size: u32,
+    /// Steps of the animation of the moving cut.
+    pub frames: u32,
+    /// Pixels a row of each step, and rows.
+    pub frame_size: u32,
+    /// What is behind the scene.
+    pub background: [f32; 3],
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            method: Mode::Exact,
+            cases: 20,
+            gaussians: 20_000,
+            up: DVec3::NEG_Y,
+            size: 512,
+            frames: 24,
+            frame_size: 256,
+            background: [1.0; 3],
+        }
+    }
+}
+
+/// A page that was written.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Written {
+    /// The page to open.
+    pub page: PathBuf,
+    /// The study, as the answers name it.
+    pub study: String,
+    /// The names of the cases.
+    pub cases: Vec<String>,
+}
+
+/// Writes a user study about scenes from files, or about eight generated ones without any, into a folder. `progress` is
+/// called with the number of cases that are drawn and that there are.
+///
+/// # Errors
+/// If a scene cannot be read or drawn, an option makes no sense, or the folder holds something else or cannot be written.
+pub fn create(
+    folder: &Path,
+    scenes: &[PathBuf],
+    device: &HeadlessDesc,
+    options: &Options,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<Written> {
+    check(folder, options)?;
+    let sources = sources(scenes, options.gaussians)?;
+    let all = cases(&sources, options.up, (options.size, options.size))?;
+    let count = options.cases.min(all.len());
+    let spread = (0..count).map(|i| all[i * all.len() / count].clone());
+    let mut headless = Headless::new(device)?;
+    let cases: Vec<_> = spread.collect();
+    let written = write(folder, &mut headless, &sources, &cases, options, progress)?;
+    headless.close()?;
+    Ok(written)
+}
+
+/// Fails where the options make no sense, or the folder holds something that is no study.
+fn check(folder: &Path, options: &Options) -> Result<()> {
+    let invalid = |message: &str| Err(Error::Invalid(message.into()));
+    if !matches!(options.method, Mode::Rara | Mode::Exact) {
+        return invalid(
+            "a study compares hard cuts with the mode rara or exact; choose one of them",
+        );
+    }
+    let size = |pixels: u32| (1..=4096).contains(&pixels);
+    if !size(options.size) || !size(options.frame_size) {
+        return invalid("the pictures of a study have 1 to 4096 pixels a row; choose such a size");
+    }
+    if !(2..=200).contains(&options.frames) {
+        return invalid("the moving cut of a study has 2 to 200 steps; choose such a number");
+    }
+    if columns(options.frames) * options.frame_size > Camera::MAX_SIZE {
+        return invalid(
+            "all steps of a moving cut are one picture, which is too large; choose fewer or smaller steps",
+        );
+    }
+    if options.cases == 0 {
+        return invalid("a study without a case asks nothing; choose at least one");
+    }
+    let is_empty = fs::read_dir(folder).map_or(true, |mut entries| entries.next().is_none());
+    if !is_empty && !folder.join(DATA).is_file() {
+        let message = "the folder holds something else than a study; name a new one";
+        return Err(Error::format(folder, message));
+    }
+    Ok(())
+}
+
+/// The data of the page.
+const DATA: &str = "data.js";
+/// The files of the page that are the same for every study.
+const FILES: [(&str, &str); 7] = [
+    ("index.html", include_str!("page/index.html")),
+    ("style.css", include_str!("page/style.css")),
+    ("plan.js", include_str!("page/plan.js")),
+    ("record.js", include_str!("page/record.js")),
+    ("sweep.js", include_str!("page/sweep.js")),
+    ("screens.js", include_str!("page/screens.js")),
+    ("main.js", include_str!("page/main.js")),
+];
+const PICTURES: &str = "pictures";
+
+/// What the page reads as `STUDY`.
+#[derive(Debug, Serialize)]
+struct Data {
+    format: &'static str,
+    version: u32,
+    id: String,
+    method: &'static str,
+    size: u32,
+    sweep: Sweep,
+    groups: Vec<Vec<Asked>>,
+    cases: Vec<Shown>,
+}
+
+/// How the steps of a moving cut lie in their picture.
+#[derive(Debug, Serialize)]
+struct Sweep {
+    frames: u32,
+    columns: u32,
+    size: u32,
+}
+
+#[derive(Debug, Serialize)]
+struct Asked {
+    key: Metric,
+    name: &'static str,
+    definition: &'static str,
+    /// True where the animations matter more than the pictures.
+    moves: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct Shown {
+    name: String,
+    hard: Files,
+    method: Files,
+}
+
+/// Writes a user study about these cases of these scenes into a folder. As [`create`] otherwise, which chooses them.
+///
+/// # Errors
+/// As [`create`].
+pub fn write(
+    folder: &Path,
+    headless: &mut Headless,
+    sources: &[Source],
+    cases: &[Case],
+    options: &Options,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<Written> {
+    check(folder, options)?;
+    let pictures = folder.join(PICTURES);
+    fs::create_dir_all(&pictures).map_err(Error::io(&pictures))?;
+    let mut drawing = Drawing {
+        folder,
+        headless,
+        options,
+        id: Id::new(),
+    };
+    let names = names(sources, cases);
+    let mut shown = Vec::new();
+    let mut loaded = None;
+    for (number, (case, name)) in cases.iter().zip(&names).enumerate() {
+        progress(number, cases.len());
+        if loaded != Some(case.scene) {
+            drawing.headless.load(sources[case.scene].scene())?;
+            loaded = Some(case.scene);
+        }
+        drawing.id.add(name.as_bytes());
+        // File names do not tell which of the two is which.
+        let start = format!("{PICTURES}/case-{:02}", number + 1);
+        shown.push(Shown {
+            name: name.clone(),
+            hard: drawing.files(case, Mode::Hard, &format!("{start}-1"))?,
+            method: drawing.files(case, options.method, &format!("{start}-2"))?,
+        });
+    }
+    progress(cases.len(), cases.len());
+    let data = Data::of(options, drawing.id, shown);
+    data.write(folder)?;
+    Ok(Written {
+        page: folder.join("index.html"),
+        study: data.id,
+        cases: names,
+    })
+}
+
+impl Data {
+    fn of(options: &Options, mut id: Id, cases: Vec<Shown>) -> Self {
+        let method = if options.method == Mode::Rara {
+            "rara"
+        } else {
+            "exact"
+        };
+        id.add(method.as_bytes());
+        let groups = Metric::ALL.chunks(3);
+        Self {
+            format: super::answers::FORMAT,
+            version: super::answers::VERSION,
+            id: id.text(),
+            method,
+            size: options.size,
+            sweep: Sweep {
+                frames: options.frames,
+                columns: columns(options.frames),
+                size: options.frame_size,
+            },
+            groups: groups
+                .map(|group| group.iter().map(asked).collect())
+                .collect(),
+            cases,
+        }
+    }
+
+    /// Writes everything but the pictures.
+    fn write(&self, folder: &Path) -> Result<()> {
+        let json = serde_json::to_string_pretty(self);
+        let json = json.map_err(|error| Error::Invalid(error.to_string()))?;
+        let data_js = format!("\"use strict\";\n\nconst STUDY = {json};\n");
+        for (name, content) in FILES.into_iter().chain([(DATA, data_js.as_str())]) {
+            write_atomically(&folder.join(name), |file| {
+                file.write_all(content.as_bytes())
+            })?;
+        }
+        Ok(())
+    }
+}
+
+fn asked(metric: &Metric) -> Asked {
+    Asked {
+        key: *metric,
+        name: metric.name(),
+        definition: metric.definition(),
+        moves: *metric == Metric::TemporalStability,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_needs_no_network_and_no_file_that_is_not_written() {
+        for (name, content) in FILES {
+            assert!(
+                !content.contains("//www") && !content.contains("http"),
+                "{name}"
+            );
+        }
+        let index = FILES[0].1;
+        for (name, _) in &FILES[1..] {
+            assert!(index.contains(&format!("\"{name}\"")), "{name}");
+        }
+        assert!(index.contains(&format!("\"{DATA}\"")));
+    }
+
+    #[test]
+    fn options_that_make_no_sense_and_foreign_folders_are_refused() {
+        let folder = std::env::temp_dir().join(format!("rara-study-check-{}", std::process::id()));
+        let plain = Options::default();
+        assert!(check(&folder, &plain).is_ok());
+        for options in [
+            Options {
+                method: Mode::Hard,
+                ..plain.clone()
+            },
+            Options {
+                cases: 0,
+                ..plain.clone()
+            },
+            Options {
+                frames: 1,
+                ..plain.clone()
+            },
+            Options {
+                size: 0,
+                ..plain.clone()
+            },
+            Options {
+                frames: 200,
+                frame_size: 4096,
+                ..plain.clone()
+            },
+        ] {
+            assert!(check(&folder, &options).is_err(), "{options:?}");
+        }
+        fs::create_dir_all(&folder).expect("a folder");
+        fs::write(folder.join("thesis.tex"), "").expect("a file");
+        assert!(check(&folder, &plain).is_err());
+        fs::write(folder.join(DATA), "").expect("a file");
+        assert!(check(&folder, &plain).is_ok());
+        fs::remove_dir_all(&folder).expect("removed");
+    }
+}

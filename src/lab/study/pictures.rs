@@ -1,0 +1,152 @@
+//! The pictures of a study's cases, their names, and what tells studies apart.
+
+use std::path::Path;
+
+use rara::{Headless, Mode, Picture, Result, Settings};
+use serde::Serialize;
+
+use super::page::Options;
+use crate::cases::{Case, Source};
+
+/// A name for each case, all different.
+pub(super) fn names(sources: &[Source], cases: &[Case]) -> Vec<String> {
+    let plain = |case: &Case| format!("{}, {}", sources[case.scene].name, case.cut.name());
+    different(cases.iter().map(plain))
+}
+
+/// The same names, where one was there before with a number.
+fn different(plain: impl Iterator<Item = String>) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for plain in plain {
+        let (mut name, mut number) = (plain.clone(), 2);
+        while names.contains(&name) {
+            name = format!("{plain} ({number})");
+            number += 1;
+        }
+        names.push(name);
+    }
+    names
+}
+
+/// The pictures of one of the two.
+#[derive(Debug, Serialize)]
+pub(super) struct Files {
+    picture: String,
+    sweep: String,
+}
+
+/// The number of steps in a row of the picture that holds them all.
+pub(super) fn columns(frames: u32) -> u32 {
+    (1..)
+        .find(|columns| columns * columns >= frames)
+        .unwrap_or(1)
+}
+
+/// Draws the pictures and keeps account of them.
+pub(super) struct Drawing<'a> {
+    pub(super) folder: &'a Path,
+    pub(super) headless: &'a mut Headless,
+    pub(super) options: &'a Options,
+    pub(super) id: Id,
+}
+
+impl Drawing<'_> {
+    /// Draws and saves the pictures of one of the two in files whose names begin so.
+    pub(super) fn files(&mut self, case: &Case, mode: Mode, start: &str) -> Result<Files> {
+        let background = Some(self.options.background);
+        let settings = Settings::default().mode(mode).background(background);
+        let picture = self.picture(case, &settings, self.options.size, 0.5)?;
+        let sweep = self.sweep(case, &settings)?;
+        Ok(Files {
+            picture: self.save(&picture, format!("{start}.png"))?,
+            sweep: self.save(&sweep, format!("{start}-sweep.png"))?,
+        })
+    }
+
+    fn save(&mut self, picture: &Picture, name: String) -> Result<String> {
+        picture.save(self.folder.join(&name))?;
+        self.id.add(&picture.to_rgba8());
+        Ok(name)
+    }
+
+    /// A case with its cut at a share of its way.
+    fn picture(
+        &mut self,
+        case: &Case,
+        settings: &Settings,
+        size: u32,
+        share: f64,
+    ) -> Result<Picture> {
+        let camera = case.camera.resized((size, size))?;
+        self.headless.render(&camera, &case.at(share)?, settings)?;
+        self.headless.picture()
+    }
+
+    /// All steps of the moving cut in one picture, row by row.
+    fn sweep(&mut self, case: &Case, settings: &Settings) -> Result<Picture> {
+        let (frames, size) = (self.options.frames, self.options.frame_size);
+        let columns = columns(frames);
+        let mut all = Picture::filled(columns * size, frames.div_ceil(columns) * size, [0.0; 4]);
+        for frame in 0..frames {
+            let share = f64::from(frame) / f64::from(frames - 1);
+            let step = self.picture(case, settings, size, share)?;
+            let (left, top) = (frame % columns * size, frame / columns * size);
+            for (row, pixels) in step.pixels.chunks_exact(size as usize).enumerate() {
+                let from = (top as usize + row) * all.width as usize + left as usize;
+                all.pixels[from..from + pixels.len()].copy_from_slice(pixels);
+            }
+        }
+        Ok(all)
+    }
+}
+
+/// Fowler, Noll and Vo's hash FNV-1a, of 64 bits: it tells studies apart and stays the same everywhere.
+pub(super) struct Id(u64);
+
+impl Id {
+    pub(super) fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    pub(super) fn add(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+
+    pub(super) fn text(&self) -> String {
+        format!("{:016x}", self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_were_there_get_a_number() {
+        let plain = ["a, face", "a, edge", "a, face", "a, face (2)", "a, face"];
+        assert_eq!(
+            different(plain.map(String::from).into_iter()),
+            [
+                "a, face",
+                "a, edge",
+                "a, face (2)",
+                "a, face (2) (2)",
+                "a, face (3)"
+            ]
+        );
+    }
+
+    #[test]
+    fn the_hash_is_the_published_one() {
+        let mut id = Id::new();
+        id.add(b"foobar");
+        assert_eq!(id.text(), "85944171f73967e8");
+    }
+
+    #[test]
+    fn steps_lie_in_a_nearly_square_picture() {
+        assert_eq!([1, 2, 4, 5, 24, 25].map(columns), [1, 2, 2, 3, 5, 5]);
+    }
+}

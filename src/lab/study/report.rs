@@ -1,0 +1,215 @@
+//! The report of a user study: HTML and Markdown with charts, and tables for other programs.
+
+mod tables;
+mod text;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use askama::Template;
+use rara::files::write_atomically;
+use rara::{Error, Result};
+
+use super::evaluation::{Evaluation, evaluate};
+use super::metric::Metric;
+use crate::charts::{Axis, Colours, HeatMap, Radar, Values, Violins};
+
+/// What is checked.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// The study that all answers must belong to; `None` is that of the first file.
+    pub study: Option<String>,
+}
+
+/// Evaluates the files that participants have saved and writes into a folder `report.html`, which needs no other file,
+/// `report.md` with its charts, and the tables `metrics.csv` and `answers.csv`.
+///
+/// # Errors
+/// As [`evaluate`], and if the folder cannot be written.
+pub fn create(answers: &[PathBuf], folder: &Path, options: &Options) -> Result<Evaluation> {
+    let evaluation = evaluate(answers, options.study.as_deref())?;
+    write(&evaluation, folder)?;
+    Ok(evaluation)
+}
+
+/// Writes the report of an evaluation, as [`create`] says.
+///
+/// # Errors
+/// If the folder cannot be written.
+pub fn write(evaluation: &Evaluation, folder: &Path) -> Result<()> {
+    fs::create_dir_all(folder).map_err(Error::io(folder))?;
+    let charts = Charts::of(evaluation);
+    let html = Html {
+        evaluation,
+        charts: &charts,
+    };
+    let filled =
+        |error: askama::Error| Error::Invalid(format!("the report's template failed: {error}"));
+    let files = [
+        ("report.html", html.render().map_err(filled)?),
+        (
+            "report.md",
+            Markdown { evaluation }.render().map_err(filled)?,
+        ),
+        ("metrics.csv", tables::metrics_csv(evaluation)),
+        ("answers.csv", tables::answers_csv(evaluation)),
+        ("heat_map.svg", charts.heat_map),
+        ("violins.svg", charts.violins),
+        ("radar.svg", charts.radar),
+    ];
+    for (name, content) in &files {
+        write_atomically(&folder.join(name), |file| {
+            file.write_all(content.as_bytes())
+        })?;
+    }
+    Ok(())
+}
+
+#[derive(Template)]
+#[template(path = "report.html")]
+struct Html<'a> {
+    evaluation: &'a Evaluation,
+    charts: &'a Charts,
+}
+
+#[derive(Template)]
+#[template(path = "report.md")]
+struct Markdown<'a> {
+    evaluation: &'a Evaluation,
+}
+
+/// The charts of a report, as SVG documents.
+struct Charts {
+    heat_map: String,
+    violins: String,
+    radar: String,
+}
+
+impl Charts {
+    fn of(evaluation: &Evaluation) -> Self {
+        let names: Vec<String> = Metric::ALL.map(|metric| metric.name().into()).into();
+        let method = &evaluation.study.method;
+        let signed = format!("Signed preference, \u{2212}7 (hard) to 7 ({method})");
+        let samples = evaluation.metrics.iter();
+        let samples = samples.map(|m| Values::new(m.metric.name(), m.answers.values.clone()));
+        let violins = Violins {
+            title: "All answers by metric".into(),
+            x: "Metric".into(),
+            y: Axis::linear(&signed).between(-7.0, 7.0),
+            samples: samples.collect(),
+        };
+        let means: Vec<_> = evaluation
+            .metrics
+            .iter()
+            .map(|m| m.answers.mean.unwrap_or(f64::NAN))
+            .collect();
+        let least = means.iter().copied().fold(0.0, f64::min).floor();
+        let most = means.iter().copied().fold(1.0, f64::max).ceil();
+        let radar = Radar {
+            title: "Mean preference by metric".into(),
+            axes: names.clone(),
+            radius: Axis::linear(format!("Mean of all answers; 0 is neither, 7 is {method}"))
+                .between(least, most),
+            series: vec![Values::new(method, means)],
+        };
+        let row = |row: &Vec<Option<f64>>| row.iter().map(|v| v.unwrap_or(f64::NAN)).collect();
+        let heat_map = HeatMap {
+            title: "Mean preference by case and metric".into(),
+            x: "Metric".into(),
+            y: "Case".into(),
+            rows: evaluation.study.cases.clone(),
+            columns: names,
+            values: evaluation.by_case.iter().map(row).collect(),
+            unit: signed,
+            colours: Colours::Diverging(7.0),
+            decimals: 1,
+        };
+        Self {
+            heat_map: heat_map.svg(),
+            violins: violins.svg(),
+            radar: radar.svg(),
+        }
+    }
+}
+
+/// What the templates do to text.
+#[allow(unreachable_pub, reason = "askama makes them public")]
+mod filters {
+    /// Text in a line of Markdown, without meaning to it.
+    #[askama::filter_fn]
+    pub(super) fn plain(
+        text: impl std::fmt::Display,
+        _: &dyn askama::Values,
+    ) -> askama::Result<String> {
+        let mut line = String::new();
+        for c in text.to_string().chars() {
+            match c {
+                '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '#' | '!' | '&' => {
+                    line.extend(['\\', c])
+                }
+                c if c.is_control() => line.push(' '),
+                c => line.push(c),
+            }
+        }
+        Ok(line)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::answers::tests::answers;
+    use crate::study::evaluation::tests::Files;
+
+    #[test]
+    fn the_report_says_what_the_evaluation_found_and_runs_nothing_that_was_written() {
+        let metrics = [
+            Metric::Flatness,
+            Metric::TemporalStability,
+            Metric::TopologicalIntegrity,
+        ];
+        let mut all = Vec::new();
+        for (number, code) in ["P1", "P2", "<script>x</script>"].into_iter().enumerate() {
+            let given: Vec<_> = metrics
+                .iter()
+                .flat_map(|&metric| [("a, face", metric, 5), ("b|c", metric, number as i8 + 1)])
+                .collect();
+            all.push(answers(code, &["a, face", "b|c"], &given));
+        }
+        all[1].questions.strengths = "<img src=x> *bold*\nand | more".into();
+        all[1].answers.pop();
+        let (folder, files) = Files::of("report", &all.iter().collect::<Vec<_>>());
+        let out = folder.0.join("report");
+        create(&files, &out, &Options::default()).expect("a report");
+        let read = |name: &str| fs::read_to_string(out.join(name)).expect(name);
+        let (html, markdown) = (read("report.html"), read("report.md"));
+        for text in [&html, &markdown] {
+            assert!(
+                text.contains(
+                    "3 participants gave 17 answers of 18; 1 of them answered only a part"
+                )
+            );
+            assert!(text.contains("Flatness") && text.contains("3.50"), "{text}");
+        }
+        assert!(
+            !html.to_lowercase().contains("<script>") && !html.contains("<img"),
+            "{html}"
+        );
+        assert!(html.matches("<svg").count() == 3);
+        assert!(
+            markdown.contains("\\<img src=x\\> \\*bold\\* and \\| more"),
+            "{markdown}"
+        );
+        for chart in ["heat_map.svg", "violins.svg", "radar.svg"] {
+            roxmltree::Document::parse(&read(chart)).expect(chart);
+            assert!(markdown.contains(&format!("({chart})")));
+        }
+        let csv = read("answers.csv");
+        assert_eq!(csv.lines().count(), 18);
+        assert!(
+            csv.contains("P1,1,\"a, face\",Flatness,hard,right,5,5,1000,2,1,"),
+            "{csv}"
+        );
+        assert_eq!(read("metrics.csv").lines().count(), 13);
+    }
+}

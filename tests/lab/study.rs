@@ -97,8 +97,10 @@ fn check_sweep(browser: &Browser) {
              const sides = left === 'hard' ? [shown.hard, shown.method] : [shown.method, shown.hard];
              const canvases = ['left-sweep', 'right-sweep'].map(find);
              return String(canvases.every((canvas, side) => {{
-               const image = Object.assign(new Image(), {{ src: sides[side].sweep }});
-               if (!image.complete) {{ window.kept = [...(window.kept || []), image]; return false; }}
+               window.kept = window.kept || {{}};
+               const source = sides[side].sweep;
+               const image = window.kept[source] ||= Object.assign(new Image(), {{ src: source }});
+               if (!image.complete) return false;
                const other = Object.assign(document.createElement('canvas'), {{ width: size, height: size }});
                other.getContext('2d').drawImage(image, x, y, size, size, 0, 0, size, size);
                const pixels = (of) => String(of.getContext('2d').getImageData(0, 0, size, size).data);

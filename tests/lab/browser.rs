@@ -1,9 +1,9 @@
 //! A headless Chromium, driven through chromedriver by WebDriver's JSON over HTTP.
 
-use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Lines, Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::Duration;
 
 use serde_json::{Value, json};
@@ -19,16 +19,15 @@ pub(crate) const RIGHT: &str = "\u{e014}";
 /// How long one command may take.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// A browser with one page.
-pub(crate) struct Browser {
-    driver: Child,
-    port: u16,
-    session: String,
-}
+/// How often chromedriver is started before it names a port. It chooses one of IPv6 and ends if another program has that
+/// of IPv4.
+const TRIES: u32 = 5;
 
-impl Browser {
-    /// Starts one that keeps everything in this folder and saves files there; `None` where there is no chromedriver.
-    pub(crate) fn start(folder: &Path) -> Option<Self> {
+type Output = Lines<BufReader<ChildStdout>>;
+
+/// Starts chromedriver; `None` where there is none.
+fn start_driver() -> Option<(Child, u16, Output)> {
+    for _ in 0..TRIES {
         let started = Command::new("chromedriver")
             .arg("--port=0")
             .stdin(Stdio::null())
@@ -41,9 +40,29 @@ impl Browser {
         };
         let mut lines = BufReader::new(driver.stdout.take().expect("its output")).lines();
         let port = lines.by_ref().find_map(|line| port(&line.expect("a line")));
+        if let Some(port) = port {
+            return Some((driver, port, lines));
+        }
+        let status = driver.wait().expect("chromedriver ends");
+        eprintln!("chromedriver names no port: {status}");
+    }
+    panic!("chromedriver was started {TRIES} times and names no port");
+}
+
+/// A browser with one page.
+pub(crate) struct Browser {
+    driver: Child,
+    port: u16,
+    session: String,
+}
+
+impl Browser {
+    /// Starts one that keeps everything in this folder and saves files there; `None` where there is no chromedriver.
+    pub(crate) fn start(folder: &Path) -> Option<Self> {
+        let (driver, port, lines) = start_driver()?;
         let mut browser = Self {
             driver,
-            port: port.expect("chromedriver names its port"),
+            port,
             session: String::new(),
         };
         // What else it says must not fill the pipe.

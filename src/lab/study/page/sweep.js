@@ -44,10 +44,15 @@ const sweep = {
       this.isPlaying = !this.isPlaying;
       label();
     });
-    slider.addEventListener("input", () => {
+    // Whoever takes the slider stops the cut, also if the slider stays where it is.
+    const hold = () => {
       this.isPlaying = false;
       step = Number(slider.value);
       label();
+    };
+    for (const kind of ["input", "pointerdown"]) slider.addEventListener(kind, hold);
+    slider.addEventListener("keydown", (event) => {
+      if (/^(Arrow|Home$|End$|Page)/.test(event.key)) hold();
     });
     label();
     this.stop = () => {

@@ -31,7 +31,7 @@ impl JsonKind {
         }
     }
 
-    /// What a file surely describes; none where it is no short JSON file, or of no kind that is known.
+    /// Returns the kind of a JSON file if it is certain; none for long files, other files and unknown kinds.
     fn of_file(path: &Path) -> Option<Self> {
         let document = document(path)?;
         let first = document.get(0);

@@ -50,30 +50,19 @@ impl Paper {
         if !self.scenes.is_empty() {
             options.timed = (0..sources.len().min(3)).collect();
         }
-        // What is generated is no larger than what is looked into.
+        // The series use generated scenes, which are at most as large as the largest scene that was given.
         let largest = sources.iter().map(|source| source.gaussians.len()).max();
         options.count = options.count.min(largest.unwrap_or(0).max(1));
         process::make_drivers_folder();
         let mut headless = Headless::new(&self.device.meant())?;
         let mut progress = Progress::new("measuring");
-        let mut told = String::new();
-        paper::run(
-            &mut headless,
-            &sources,
-            &options,
-            &self.output,
-            &mut |now| {
-                let left = now
-                    .seconds_left
-                    .map(|seconds| format!(", about {:.0} min left", (seconds / 60.0).ceil()));
-                let line = format!("{}{}", now.what, left.unwrap_or_default());
-                if line != told {
-                    progress.describe(&line);
-                    told = line;
-                }
-                progress.update(now.done as u64, now.parts as u64);
-            },
-        )?;
+        paper::run(&mut headless, sources, &options, &self.output, &mut |now| {
+            let left = now
+                .seconds_left
+                .map(|seconds| format!(", about {:.0} min left", (seconds / 60.0).ceil()));
+            progress.describe(&format!("{}{}", now.what, left.unwrap_or_default()));
+            progress.update(now.done as u64, now.parts as u64);
+        })?;
         drop(progress);
         headless.close()?;
         say(format_args!(

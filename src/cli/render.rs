@@ -117,7 +117,7 @@ impl Pictures {
         }
     }
 
-    /// What clips them, but for sections' own planes.
+    /// Returns the clips of all pictures, without the planes of sections.
     fn regions(&self) -> &Regions {
         match self {
             Self::Views(_, regions) => regions,

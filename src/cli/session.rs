@@ -11,6 +11,8 @@ use rara::{
     Settings, ShFormat,
 };
 
+use rara_lab::frames::fresh;
+
 use super::combine::Measured;
 use super::output::Compiling;
 use super::process;
@@ -150,8 +152,7 @@ impl Session {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<FrameStats> {
-        self.headless.forget();
-        self.headless.render(camera, clip, settings)
+        fresh(&mut self.headless, camera, clip, settings)
     }
 
     /// One frame and its picture.

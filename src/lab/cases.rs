@@ -53,6 +53,29 @@ pub fn sources(files: &[PathBuf], count: usize) -> Result<Vec<Source>> {
     files.iter().map(source).collect()
 }
 
+/// A name with nothing but letters, digits and hyphens, for files.
+pub(crate) fn plain(name: &str) -> String {
+    name.replace(|c: char| !c.is_ascii_alphanumeric(), "-")
+}
+
+/// The same names, with a number where an earlier one makes the same name of a file.
+pub(crate) fn different(names: impl IntoIterator<Item = String>) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for name in names {
+        let numbered = (2..).map(|number| format!("{name} ({number})"));
+        let mut tried = std::iter::once(name.clone()).chain(numbered);
+        let is_new = |name: &String| all.iter().all(|other| plain(other) != plain(name));
+        all.push(tried.find(is_new).expect("numbers do not end"));
+    }
+    all
+}
+
+/// A name for each case, all different.
+pub(crate) fn names(sources: &[Source], cases: &[Case]) -> Vec<String> {
+    let of = |case: &Case| format!("{}, {}", sources[case.scene].name, case.cut.name());
+    different(cases.iter().map(of))
+}
+
 impl Source {
     /// The scene that the renderer takes.
     pub fn scene(&self) -> Scene<'_> {
@@ -197,5 +220,27 @@ mod tests {
             );
             assert!(kept[2] > 0.0, "{case:?}: {kept:?}");
         }
+    }
+
+    #[test]
+    fn names_that_were_there_get_a_number() {
+        let plain = ["a, face", "a, edge", "a, face", "a, face (2)", "a, face"];
+        assert_eq!(
+            different(plain.map(String::from)),
+            [
+                "a, face",
+                "a, edge",
+                "a, face (2)",
+                "a, face (2) (2)",
+                "a, face (3)"
+            ]
+        );
+    }
+
+    #[test]
+    fn equal_names_get_numbers_also_if_only_their_files_would_be_equal() {
+        let names = ["hair", "hair", "ha-r", "ha.r", "hair"].map(String::from);
+        let expected = ["hair", "hair (2)", "ha-r", "ha.r (2)", "hair (3)"];
+        assert_eq!(different(names), expected);
     }
 }

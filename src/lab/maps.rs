@@ -3,7 +3,7 @@
 use rara::{Picture, Result};
 
 use crate::charts::sequential;
-use crate::measure::same_size;
+use crate::measure::{change, same_size};
 
 /// The difference that has the darkest colour, on a scale of 0 to 255; larger ones look the same.
 pub const MOST: f64 = 100.0;
@@ -19,8 +19,7 @@ pub fn error_map(a: &Picture, b: &Picture) -> Result<Picture> {
     same_size(a, b)?;
     let mut map = a.clone();
     for (pixel, (a, b)) in map.pixels.iter_mut().zip(a.pixels.iter().zip(&b.pixels)) {
-        let apart = a.iter().zip(b).map(|(a, b)| f64::from((a - b).abs()));
-        *pixel = colour(255.0 * apart.fold(0.0, f64::max));
+        *pixel = colour(change(a, b));
     }
     Ok(map)
 }
@@ -59,11 +58,9 @@ pub fn worst_square(a: &Picture, b: &Picture, side: u32) -> Result<[u32; 2]> {
     let mut sums = vec![0.0; (width + 1) * (height + 1)];
     for y in 0..height {
         for x in 0..width {
-            let (a, b) = (a.pixels[y * width + x], b.pixels[y * width + x]);
-            let apart = a.iter().zip(b).map(|(a, b)| f64::from((a - b).abs()));
             let at = (y + 1) * (width + 1) + x + 1;
             sums[at] = sums[at - 1] + sums[at - width - 1] - sums[at - width - 2]
-                + apart.fold(0.0, f64::max);
+                + change(&a.pixels[y * width + x], &b.pixels[y * width + x]);
         }
     }
     let side = (side as usize).min(width).min(height);

@@ -306,7 +306,7 @@ fn a_bench_measures_every_choice_and_writes_its_tables() {
         assert!((l1 - leak - loss).abs() <= 1e-9 * l1.max(1.0), "{row}");
     }
     // Four ways of cutting, at 256 and at the size asked for.
-    assert_eq!(report["ways"].as_array().map(Vec::len), Some(8));
+    assert_eq!(report["paper"].as_array().map(Vec::len), Some(8));
     let shapes = report["shapes"].as_array().expect("shapes");
     for shape in shapes {
         let [l1, by_centres, cut] = ["l1", "hard_l1", "cutoff"].map(|key| shape[key].as_f64());

@@ -1,4 +1,4 @@
-//! What was drawn, and where it went.
+//! Pictures between drawing and writing.
 
 use std::path::PathBuf;
 
@@ -6,9 +6,9 @@ use rara::{Channel, Picture};
 
 use super::super::report::Frame;
 
-/// What was drawn for one picture.
+/// A picture that was drawn, and what it took.
 pub(in super::super) struct Drawn {
-    /// What is reported of it.
+    /// The line of the report.
     pub(in super::super) frame: Frame,
     /// The frames that it is made of, if they are several.
     pub(in super::super) faces: Vec<Frame>,
@@ -18,7 +18,7 @@ pub(in super::super) struct Drawn {
     pub(in super::super) channels: Vec<Channel>,
 }
 
-/// What goes nowhere.
+/// A frame whose picture is not written.
 impl From<Frame> for Drawn {
     fn from(frame: Frame) -> Self {
         Self {
@@ -30,7 +30,7 @@ impl From<Frame> for Drawn {
     }
 }
 
-/// What is known of a run's pictures when all are drawn.
+/// The frames and files of a run, once all pictures are drawn.
 #[derive(Default)]
 pub(in super::super) struct Written {
     /// A frame for each picture.

@@ -62,6 +62,11 @@ pub(crate) fn truth_settings(look: &Settings) -> Settings {
         .trace_all(true)
 }
 
+/// Where the way of cutting makes a difference: where the cut by centres and the true one differ, and a little around.
+pub(crate) fn band(by_centres: &Picture, truth: &Picture) -> Result<Region> {
+    Ok(Region::where_different(by_centres, truth, 1.0 / 255.0)?.dilated(BAND))
+}
+
 impl<'a> Judge<'a> {
     pub(crate) fn new(
         scene: &'a Scene<'a>,
@@ -76,7 +81,7 @@ impl<'a> Judge<'a> {
         let truths: Vec<_> = clips.iter().map(draw).collect();
         let hard = look.mode(Mode::Hard);
         let hard = reference::render::<f64>(scene, camera, &clips[0], &hard).picture;
-        let band = Region::where_different(&hard, &truths[0], 1.0 / 255.0)?.dilated(BAND);
+        let band = band(&hard, &truths[0])?;
         Ok(Self {
             scene,
             camera,

@@ -2,7 +2,8 @@
 
 use rara::counted::counted;
 
-use super::{Measures, Report};
+use super::judge::Measures;
+use super::report::Report;
 use crate::table::{Cell, Table};
 
 /// The columns of a picture's errors after L1.
@@ -21,13 +22,24 @@ fn errors(m: &Measures) -> [Cell; 6] {
     ]
 }
 
-/// All tables, that of the choices first.
-pub(super) fn tables(report: &Report) -> Vec<Table> {
-    let mut tables = vec![choices(report), stages(report), ways(report)];
-    if !report.shapes.is_empty() {
-        tables.push(shapes(report));
+impl Report {
+    /// As tables, that of the choices first.
+    pub fn tables(&self) -> Vec<Table> {
+        let mut tables = vec![choices(self), stages(self), ways(self)];
+        if !self.shapes.is_empty() {
+            tables.push(shapes(self));
+        }
+        tables
     }
-    tables
+
+    /// The tables, and what was not timed.
+    pub fn markdown(&self) -> String {
+        let tables: Vec<_> = self.tables().iter().map(Table::markdown).collect();
+        let refused = self.refused.iter();
+        let refused =
+            refused.map(|why| format!("\nNot timed, because its picture is wrong: {why}\n"));
+        tables.join("\n") + &refused.collect::<String>()
+    }
 }
 
 fn choices(report: &Report) -> Table {

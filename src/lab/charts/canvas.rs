@@ -94,7 +94,17 @@ pub(super) fn write(
         Anchor::Middle => HPos::Center,
         Anchor::End => HPos::Right,
     };
-    let style = style(size, colour).pos(Pos::new(across, VPos::Center));
+    put(area, text, at, across, style(size, colour))
+}
+
+fn put(
+    area: &Area<'_>,
+    text: &str,
+    at: (i32, i32),
+    across: HPos,
+    style: TextStyle<'static>,
+) -> Drawn {
+    let style = style.pos(Pos::new(across, VPos::Center));
     area.draw(&Text::new(clean(text), at, style))?;
     Ok(())
 }
@@ -102,9 +112,7 @@ pub(super) fn write(
 fn write_bold(area: &Area<'_>, text: &str, at: (i32, i32)) -> Drawn {
     let mut style = style(LARGE, INK);
     style.font = style.font.style(FontStyle::Bold);
-    let style = style.pos(Pos::new(HPos::Left, VPos::Center));
-    area.draw(&Text::new(clean(text), at, style))?;
-    Ok(())
+    put(area, text, at, HPos::Left, style)
 }
 
 /// How wide a text is at most, about; no font is asked.
@@ -177,8 +185,6 @@ pub(super) enum Key {
     Mark,
     /// The marker on a line.
     Line,
-    /// A square of the colour.
-    Patch,
 }
 
 /// Draws a legend over the top of an area and returns what is below it; a single series without a name has none.
@@ -203,10 +209,6 @@ pub(super) fn legend<'a>(
                 let line = series(number).stroke_width(2);
                 area.draw(&PathElement::new(vec![(x + 6, y), (x + 34, y)], line))?;
                 mark(area, number, (x + 20, y))?;
-            }
-            Key::Patch => {
-                let corners = [(x + 14, y - 6), (x + 26, y + 6)];
-                area.draw(&Rectangle::new(corners, series(number).filled()))?;
             }
         }
         let after = if key == Key::Line { 40 } else { 34 };

@@ -4,7 +4,6 @@
 //! and markers differ in shape as well.
 
 mod axis;
-mod bars;
 mod canvas;
 mod colours;
 mod heat_map;
@@ -17,7 +16,6 @@ mod test;
 mod violins;
 
 pub use axis::{Axis, Scale};
-pub use bars::Bars;
 pub use heat_map::{Colours, HeatMap};
 pub use lines::Lines;
 pub use radar::Radar;

@@ -11,6 +11,7 @@ mod region;
 mod ssim;
 
 pub use pareto::undominated;
+pub(crate) use popping::change;
 pub use popping::{Popping, popping};
 pub use processor::processor_ms;
 pub use qualities::{Qualities, Truth, edge_distance, pieces_apart, share_of_way};

@@ -46,7 +46,8 @@ pub fn popping(pictures: &[Picture], truth: &[Picture]) -> Result<Popping> {
     Ok(total)
 }
 
-fn change(before: &[f32; 4], after: &[f32; 4]) -> f64 {
+/// The largest difference of a channel of two pixels, on a scale of 0 to 255.
+pub(crate) fn change(before: &[f32; 4], after: &[f32; 4]) -> f64 {
     let channels = before.iter().zip(after);
     channels
         .map(|(a, b)| 255.0 * (f64::from(*a) - f64::from(*b)).abs())

@@ -19,6 +19,10 @@ pub struct Row {
     pub cutoff: u32,
     /// Mean absolute difference, on a scale of 0 to 255.
     pub l1: f64,
+    /// Root of the mean squared difference, on that scale.
+    pub rmse: f64,
+    /// Peak signal to noise ratio, decibels; `None` where the pictures are equal.
+    pub psnr: Option<f64>,
     /// Structural similarity, 1 where the pictures are equal.
     pub ssim: f64,
     /// Largest difference of a channel, on a scale of 0 to 255.
@@ -53,6 +57,8 @@ pub fn ablation(
             what: what.into(),
             cutoff: stats.counts.cutoff,
             l1: c.l1,
+            rmse: c.rmse,
+            psnr: Some(c.psnr).filter(|psnr| psnr.is_finite()),
             ssim: c.ssim,
             max: c.max,
             share_over_2: c.share_over_2,

@@ -5,6 +5,7 @@ pub mod efficiency;
 mod perception;
 mod qualities;
 mod report;
+mod results;
 mod series;
 mod store;
 
@@ -12,161 +13,105 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
 use glam::DVec3;
-use rara::{Clip, Error, Headless, Picture, Result, Settings};
-use serde::{Deserialize, Serialize};
+use rara::{Error, Headless, Picture, Result, Scene, Settings};
 
-use crate::bench::{self, Options as BenchOptions};
-use crate::cases::{Case, Cut, Source, cases};
-use crate::charts::Scatter;
+use crate::bench::{self, Options as BenchOptions, ways};
+use crate::cases::{Case, Cut, Source, cases, different, plain};
 use crate::maps;
-use crate::table::Table;
-use efficiency::Efficiency;
-use perception::{Outcome, Pictures, ways};
-use series::{Property, Series};
+use perception::Pictures;
+pub use results::Options;
+use results::{Choices, Maps, Results};
+use series::Property;
 pub use store::Progress;
 use store::Store;
 
-/// How much is measured.
-#[derive(Debug, Clone, Hash, Serialize)]
-pub struct Options {
-    /// Width and height of the pictures that are timed, pixels.
-    pub size: u32,
-    /// Width and height of the pictures of the cases, pixels.
-    pub case_size: u32,
-    /// Frames of the moving plane, as in the paper.
-    pub frames: u32,
-    /// Sweeps of each mode, and frames of each choice.
-    pub repeats: u32,
-    /// Steps of the slow sweep of each case.
-    pub steps: u32,
-    /// The scenes that are timed, by their numbers.
-    pub timed: Vec<usize>,
-    /// Gaussians of the scenes in which one property varies.
-    pub count: usize,
-    /// True for all choices of precision; only the ways of cutting and the presets otherwise.
-    pub all_choices: bool,
+/// A part of the experiments, which is measured in one go and kept.
+enum Part<'a> {
+    Efficiency(&'a Source, &'a Case),
+    Ablation(&'a Source, &'a Case),
+    Choices(&'a Source, &'a Case),
+    Case(&'a Source, &'a Case),
+    Series(Property),
 }
 
-impl Options {
-    /// A few minutes on two cores, on generated scenes of 6 000 Gaussians.
-    pub fn quick() -> Self {
-        Self {
-            size: 256,
-            case_size: 160,
-            frames: 30,
-            repeats: 3,
-            steps: 120,
-            timed: vec![0, 3, 6],
-            count: 10_000,
-            all_choices: false,
+impl Part<'_> {
+    fn name(&self) -> String {
+        match self {
+            Self::Efficiency(source, _) => format!("efficiency: {}", source.name),
+            Self::Ablation(source, _) => format!("ablation: {}", source.name),
+            Self::Choices(source, _) => format!("choices: {}", source.name),
+            Self::Case(source, case) => format!("case: {}", case_name(source, case)),
+            Self::Series(property) => format!("by {}", property.name()),
         }
     }
 
-    /// The better part of an hour on two cores, on scans of 100 000 Gaussians.
-    pub fn thorough() -> Self {
-        Self {
-            size: 512,
-            case_size: 256,
-            repeats: 5,
-            count: 100_000,
-            all_choices: true,
-            ..Self::quick()
-        }
+    /// An estimate of the work, in frames of a Gaussian; the truth takes about as long as four frames.
+    fn work(&self, options: &Options) -> f64 {
+        let repeats = f64::from(options.repeats);
+        let (gaussians, frames) = match self {
+            Self::Efficiency(source, _) => {
+                let frames = 7.0 * f64::from(options.frames) * (repeats + 1.0);
+                (source.gaussians.len(), frames)
+            }
+            Self::Ablation(source, _) => (source.gaussians.len(), 10.0),
+            Self::Choices(source, _) => {
+                let choices = if options.all_choices { 27.0 } else { 8.0 };
+                (source.gaussians.len(), choices * (repeats + 20.0))
+            }
+            Self::Case(source, _) => (source.gaussians.len(), 8.0 * f64::from(options.steps)),
+            Self::Series(_) => (options.count, 300.0),
+        };
+        frames * (gaussians as f64 + 2e4)
     }
 }
 
-/// The choices of a scene: cost against error.
-#[derive(Debug, Serialize, Deserialize)]
-struct Choices {
-    tables: Vec<Table>,
-    chart: String,
-    refused: Vec<String>,
-}
-
-/// The pictures of one case, as files below the report's folder.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct Maps {
-    case: String,
-    /// The truth, then each way: its name, picture, map of errors, and the worst piece of both, magnified. The truth has no
-    /// map.
-    pictures: Vec<(String, [Option<String>; 4])>,
-}
-
-/// Everything that was measured.
-#[derive(Debug, Serialize)]
-struct Results {
-    version: &'static str,
-    device: String,
-    driver: String,
-    options: Options,
-    scenes: Vec<(String, usize)>,
-    seconds: f64,
-    efficiency: Vec<Efficiency>,
-    ablation: Vec<(String, Vec<ablation::Row>)>,
-    outcomes: Vec<Outcome>,
-    maps: Vec<Maps>,
-    choices: Vec<(String, Choices)>,
-    series: Vec<Series>,
+/// The scene's name and the cut's.
+fn case_name(source: &Source, case: &Case) -> String {
+    format!("{}, {}", source.name, case.cut.name())
 }
 
 /// Runs every experiment on the scenes and writes the report into a folder: `index.html`, `report.md`, `results.json`, a
 /// `.csv` for each table, and the pictures. What an earlier run into the same folder has measured of the same scenes, with
-/// the same options on the same device, is not measured again.
+/// the same options, program and device, is not measured again. Scenes of one name
+/// get numbers.
 ///
 /// # Errors
 /// If a frame cannot be drawn or a file cannot be written.
 pub fn run(
     headless: &mut Headless,
-    sources: &[Source],
+    mut sources: Vec<Source>,
     options: &Options,
     folder: &Path,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<()> {
-    let size = (options.case_size, options.case_size);
-    let all = cases(sources, DVec3::NEG_Y, size)?;
-    let name = |case: &Case| format!("{}, {}", sources[case.scene].name, case.cut.name());
-    let timed: Vec<usize> = options
-        .timed
+    let names = different(sources.iter().map(|source| source.name.clone()));
+    (sources.iter_mut().zip(names)).for_each(|(source, name)| source.name = name);
+    let sources = &sources[..];
+    let of_size = |size: u32| cases(sources, DVec3::NEG_Y, (size, size));
+    let (timed, all) = (of_size(options.size)?, of_size(options.case_size)?);
+    let mut parts = Vec::new();
+    for case in timed
         .iter()
-        .copied()
-        .filter(|&s| s < sources.len())
-        .collect();
+        .filter(|case| case.cut == Cut::Face && options.timed.contains(&case.scene))
+    {
+        let source = &sources[case.scene];
+        parts.push(Part::Efficiency(source, case));
+        parts.push(Part::Ablation(source, case));
+        parts.push(Part::Choices(source, case));
+    }
+    parts.extend(
+        all.iter()
+            .map(|case| Part::Case(&sources[case.scene], case)),
+    );
+    parts.extend(Property::ALL.map(Part::Series));
 
-    // Work in frames of a Gaussian; the truth takes about as long as four frames.
-    let work = |source: &Source, frames: f64| frames * (source.gaussians.len() as f64 + 2e4);
-    let mut plan: Vec<(String, f64)> = Vec::new();
-    for &scene in &timed {
-        let frames = f64::from(7 * options.frames * (options.repeats + 1));
-        plan.push((
-            format!("efficiency: {}", sources[scene].name),
-            work(&sources[scene], frames),
-        ));
-        plan.push((
-            format!("ablation: {}", sources[scene].name),
-            work(&sources[scene], 10.0),
-        ));
-        let choices = if options.all_choices { 27.0 } else { 8.0 };
-        let frames = choices * (f64::from(options.repeats) + 20.0);
-        plan.push((
-            format!("choices: {}", sources[scene].name),
-            work(&sources[scene], frames),
-        ));
-    }
-    for case in &all {
-        let frames = f64::from(options.steps) * 8.0;
-        plan.push((
-            format!("case: {}", name(case)),
-            work(&sources[case.scene], frames),
-        ));
-    }
-    for property in Property::ALL {
-        plan.push((
-            format!("by {}", property.name()),
-            300.0 * (options.count as f64 + 2e4),
-        ));
-    }
-
-    let mut store = Store::new(folder, origin(headless, sources, options), plan, progress)?;
+    let plan = parts.iter().map(|part| (part.name(), part.work(options)));
+    let mut store = Store::new(
+        folder,
+        origin(headless, sources, options),
+        plan.collect(),
+        progress,
+    )?;
     let mut results = Results {
         version: env!("CARGO_PKG_VERSION"),
         device: headless.device_name().to_owned(),
@@ -184,62 +129,54 @@ pub fn run(
         choices: Vec::new(),
         series: Vec::new(),
     };
-    let look = Settings::default();
-    let of_timed = cases(sources, DVec3::NEG_Y, (options.size, options.size))?;
-    for &number in &timed {
-        let (source, scene) = (&sources[number], sources[number].scene());
-        let case = of_timed
-            .iter()
-            .find(|c| c.scene == number && c.cut == Cut::Face);
-        let case = case.expect("each scene is cut in each way");
-        results
-            .efficiency
-            .push(store.part(&format!("efficiency: {}", source.name), || {
-                headless.load(&scene)?;
-                let (frames, repeats) = (options.frames, options.repeats);
+    let (frames, repeats) = (options.frames, options.repeats);
+    for part in &parts {
+        match *part {
+            Part::Efficiency(source, case) => results.efficiency.push(store.part(|| {
+                let scene = loaded(headless, source)?;
                 efficiency::efficiency(headless, (&source.name, &scene), case, frames, repeats)
-            })?);
-        let rows = store.part(&format!("ablation: {}", source.name), || {
-            headless.load(&scene)?;
-            ablation::ablation(headless, &scene, &case.camera, &look)
-        })?;
-        results.ablation.push((source.name.clone(), rows));
-        let choices = store.part(&format!("choices: {}", source.name), || {
-            choices(headless, (&scene, case), options)
-        })?;
-        results.choices.push((source.name.clone(), choices));
-    }
-    for case in &all {
-        let scene = sources[case.scene].scene();
-        let (outcome, maps) = store.part(&format!("case: {}", name(case)), || {
-            headless.load(&scene)?;
-            let mut maps = None;
-            let keep = |pictures: &Pictures| {
-                maps = Some(write_maps(folder, &name(case), pictures)?);
-                Ok(())
-            };
-            let case = (&scene, case);
-            let outcome = perception::measure(headless, name(case.1), case, options.steps, keep)?;
-            Ok((outcome, maps))
-        })?;
-        results.outcomes.push(outcome);
-        results.maps.extend(maps);
-    }
-    for property in Property::ALL {
-        results
-            .series
-            .push(store.part(&format!("by {}", property.name()), || {
-                let (count, size, repeats) = (options.count, options.size, options.repeats);
-                series::series(headless, property, (count, size, repeats))
-            })?);
+            })?),
+            Part::Ablation(source, case) => {
+                let rows = store.part(|| {
+                    let scene = loaded(headless, source)?;
+                    ablation::ablation(headless, &scene, &case.camera, &Settings::default())
+                })?;
+                results.ablation.push((source.name.clone(), rows));
+            }
+            Part::Choices(source, case) => {
+                let choices = store.part(|| choices(headless, (&source.scene(), case), options))?;
+                results.choices.push((source.name.clone(), choices));
+            }
+            Part::Case(source, case) => {
+                let (outcome, maps) = store.part(|| {
+                    let scene = loaded(headless, source)?;
+                    let name = case_name(source, case);
+                    let (outcome, pictures) =
+                        perception::measure(headless, name.clone(), (&scene, case), options.steps)?;
+                    Ok((outcome, write_maps(folder, &name, &pictures)?))
+                })?;
+                results.outcomes.push(outcome);
+                results.maps.push(maps);
+            }
+            Part::Series(property) => results.series.push(store.part(|| {
+                series::series(headless, property, (options.count, options.size, repeats))
+            })?),
+        }
     }
     results.seconds = store.seconds;
     report::write(folder, &results)
 }
 
+/// Loads a scene onto the device.
+fn loaded<'a>(headless: &mut Headless, source: &'a Source) -> Result<Scene<'a>> {
+    let scene = source.scene();
+    headless.load(&scene)?;
+    Ok(scene)
+}
+
 fn choices(
     headless: &mut Headless,
-    (scene, case): (&rara::Scene<'_>, &Case),
+    (scene, case): (&Scene<'_>, &Case),
     options: &Options,
 ) -> Result<Choices> {
     let only = [
@@ -251,6 +188,7 @@ fn choices(
         "preset fast",
         "preset exact",
     ];
+    let clip = case.at(0.5)?;
     let options = BenchOptions {
         frames: options.repeats,
         steps: 6,
@@ -259,16 +197,14 @@ fn choices(
         } else {
             only.map(String::from).into()
         },
-        shapes: case.at(0.5)?.surfaces[0].as_plane(),
+        shapes: clip.surfaces[0].as_plane(),
     };
-    let clip: Clip = case.at(0.5)?;
     let look = Settings::default();
     let frame = (scene, &case.camera, &clip);
     let report = bench::bench(headless, frame, &look, &options, &mut |_, _| ())?;
-    let chart: Scatter = report.chart();
     Ok(Choices {
         tables: report.tables(),
-        chart: chart.svg(),
+        chart: report.chart().svg(),
         refused: report.refused,
     })
 }
@@ -278,10 +214,8 @@ const PIECE: (u32, u32) = (40, 4);
 
 /// Writes the pictures of a case and its maps of errors.
 fn write_maps(folder: &Path, case: &str, pictures: &Pictures) -> Result<Maps> {
-    let plain = |text: &str| text.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
     let folder_of_maps = folder.join("maps");
-    std::fs::create_dir_all(&folder_of_maps)
-        .map_err(|error| Error::Invalid(format!("{}: {error}", folder_of_maps.display())))?;
+    std::fs::create_dir_all(&folder_of_maps).map_err(Error::io(&folder_of_maps))?;
     let save = |picture: &Picture, way: &str, what: &str| {
         let name = format!("maps/{}-{}{what}.png", plain(case), plain(way));
         picture.save(folder.join(&name))?;
@@ -300,7 +234,7 @@ fn write_maps(folder: &Path, case: &str, pictures: &Pictures) -> Result<Maps> {
             None,
         ],
     )];
-    for ((way, _), picture) in ways().iter().zip(&pictures.ways) {
+    for ((way, _), picture) in ways(Settings::default()).iter().zip(&pictures.ways) {
         let map = maps::error_map(picture, truth)?;
         all.push((
             (*way).to_owned(),
@@ -318,22 +252,30 @@ fn write_maps(folder: &Path, case: &str, pictures: &Pictures) -> Result<Maps> {
     })
 }
 
-/// What every result depends on.
+/// What every result depends on: the program, the device, the scenes and the options.
 fn origin(headless: &Headless, sources: &[Source], options: &Options) -> String {
     let mut hasher = DefaultHasher::new();
     for source in sources {
         source.name.hash(&mut hasher);
-        for (position, scales) in source
-            .gaussians
+        let g = &source.gaussians;
+        let bits = |value: &f32| value.to_bits();
+        let vectors = g
             .positions()
             .iter()
-            .zip(source.gaussians.scales())
-        {
-            position.to_array().map(f32::to_bits).hash(&mut hasher);
-            scales.to_array().map(f32::to_bits).hash(&mut hasher);
-        }
+            .chain(g.scales())
+            .flat_map(|v| v.to_array());
+        let rotations = g.rotations().iter().flat_map(|q| q.to_array());
+        let numbers = vectors.chain(rotations);
+        numbers.for_each(|value| bits(&value).hash(&mut hasher));
+        g.opacities()
+            .iter()
+            .chain(g.sh())
+            .for_each(|value| bits(value).hash(&mut hasher));
     }
     options.hash(&mut hasher);
+    // Another build of the program may draw another picture.
+    let built = std::env::current_exe().and_then(|program| program.metadata()?.modified());
+    built.ok().hash(&mut hasher);
     let (device, driver) = (headless.device_name(), headless.driver());
     format!(
         "{} {device} {driver} {:016x}",

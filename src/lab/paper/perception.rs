@@ -1,33 +1,19 @@
 //! The six qualities that the paper asks people about, measured in every case.
 
-use rara::{Clip, Headless, Miss, Mode, Picture, Result, Settings, reference};
+use rara::{Clip, Headless, Mode, Picture, Result, Settings, reference};
 use serde::{Deserialize, Serialize};
 
-use crate::bench::truth_settings;
+use crate::bench::{band, truth_settings, ways};
 use crate::cases::Case;
 use crate::frames::picture;
-use crate::measure::{self, Popping, Qualities, Region, Truth};
+use crate::measure::{self, Popping, Qualities, Truth};
 
 /// How far from the middle of the cut's way the cut lies that removes a little more.
 const DEEPER: f64 = 0.1;
-/// Pixels around those in which cuts differ, as far as SSIM's window reaches.
-const BAND: usize = 5;
-
-/// The ways of cutting that are compared.
-pub(super) fn ways() -> [(&'static str, Settings); 4] {
-    let mode = |mode| Settings::default().mode(mode);
-    [
-        ("hard", mode(Mode::Hard)),
-        ("rara, paper", mode(Mode::Rara).sigma(1.0).miss(Miss::Keep)),
-        ("rara", mode(Mode::Rara)),
-        ("exact", mode(Mode::Exact)),
-    ]
-}
-
 /// One way of cutting in one case.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Measured {
-    /// Its name in [`ways`].
+    /// Its name in the list of ways.
     pub way: String,
     /// The six qualities.
     pub qualities: Qualities,
@@ -53,15 +39,14 @@ pub(super) struct Pictures {
     pub(super) ways: Vec<Picture>,
 }
 
-/// Measures all ways of cutting in one case, with a sweep of so many steps. `keep` gets the pictures of the cut. The device
-/// holds the scene.
+/// Measures all ways of cutting in one case, with a sweep of so many steps, and returns the pictures of the
+/// cut too. The device holds the scene.
 pub(super) fn measure(
     headless: &mut Headless,
     name: String,
     (scene, case): (&rara::Scene<'_>, &Case),
     steps: u32,
-    keep: impl FnOnce(&Pictures) -> Result<()>,
-) -> Result<Outcome> {
+) -> Result<(Outcome, Pictures)> {
     let settings = truth_settings(&Settings::default());
     let draw = |clip: &Clip, settings: &Settings| {
         reference::render::<f64>(scene, &case.camera, clip, settings).picture
@@ -72,14 +57,14 @@ pub(super) fn measure(
     let truth = Truth {
         whole: draw(&Clip::default(), &settings),
         deeper: draw(&case.at(0.5 + DEEPER)?, &settings),
-        band: Region::where_different(&by_centres, &cut, 1.0 / 255.0)?.dilated(BAND),
+        band: band(&by_centres, &cut)?,
         cut,
     };
     let at = |step: u32| case.at(f64::from(step) / f64::from(steps.max(1)));
     let clips = (0..=steps).map(at).collect::<Result<Vec<_>>>()?;
     let truths: Vec<Picture> = clips.iter().map(|clip| draw(clip, &settings)).collect();
     let (mut measured, mut pictures) = (Vec::new(), Vec::new());
-    for (way, settings) in ways() {
+    for (way, settings) in ways(Settings::default()) {
         let popping = popping(headless, case, &clips, &truths, &settings)?;
         let (drawn, _) = picture(headless, &case.camera, &middle, &settings)?;
         let apart = measure::differences(&drawn, &truth.cut)?;
@@ -91,14 +76,15 @@ pub(super) fn measure(
         });
         pictures.push(drawn);
     }
-    keep(&Pictures {
-        truth: truth.cut,
-        ways: pictures,
-    })?;
-    Ok(Outcome {
+    let outcome = Outcome {
         case: name,
         ways: measured,
-    })
+    };
+    let pictures = Pictures {
+        truth: truth.cut,
+        ways: pictures,
+    };
+    Ok((outcome, pictures))
 }
 
 /// What the frames of a sweep change beyond the truth's.

@@ -1,6 +1,9 @@
 //! The six qualities over all cases, as tables and charts.
 
-use super::perception::{Outcome, Quality, ways};
+use rara::Settings;
+
+use super::perception::{Outcome, Quality};
+use crate::bench::ways;
 use crate::charts::{Axis, Colours, HeatMap, Radar, Values, Violins};
 use crate::statistics::{cohens_d, mean, median, standard_deviation, wilcoxon};
 use crate::table::Table;
@@ -39,7 +42,7 @@ pub(super) fn means(outcomes: &[Outcome]) -> Table {
     ];
     let mut table = Table::new("The six qualities", note, columns);
     for quality in Quality::ALL {
-        for (way, _) in ways() {
+        for (way, _) in ways(Settings::default()) {
             let values = known(defects(outcomes, way, quality));
             table.row([
                 quality.name().into(),
@@ -142,7 +145,7 @@ pub(super) fn violins(outcomes: &[Outcome]) -> Vec<Violins> {
             title: quality.name().into(),
             x: "way of cutting".into(),
             y: Axis::linear(format!("log10 of: {}", quality.defect())),
-            samples: ways().map(of).into(),
+            samples: ways(Settings::default()).map(of).into(),
         }
     };
     Quality::ALL.map(chart).into()
@@ -162,6 +165,9 @@ pub(super) fn radar(outcomes: &[Outcome]) -> Radar {
         title: "Share of the defects of hard that is avoided".into(),
         axes: Quality::ALL.map(|quality| quality.name().into()).into(),
         radius: Axis::linear("avoided (%)").between(0.0, 100.0),
-        series: ways()[1..].iter().map(|(way, _)| avoided(way)).collect(),
+        series: ways(Settings::default())[1..]
+            .iter()
+            .map(|(way, _)| avoided(way))
+            .collect(),
     }
 }

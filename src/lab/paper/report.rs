@@ -6,10 +6,12 @@ use std::path::Path;
 use askama::Template;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use rara::{Error, Result};
+use rara::files::write_atomically;
+use rara::{Error, Result, Settings};
 
-use super::perception::ways;
-use super::{Maps, Results, ablation, efficiency, qualities, series};
+use super::results::{Choices, Maps, Results};
+use super::{ablation, efficiency, qualities, series};
+use crate::bench::ways;
 use crate::charts::{Axis, Scatter, Series as Line};
 use crate::maps;
 use crate::table::{Table, escaped};
@@ -47,7 +49,7 @@ pub(super) fn write(folder: &Path, results: &Results) -> Result<()> {
     let page = Page {
         title: "RaRa Clipper's experiments, by rara".into(),
         about: about(results),
-        columns: 1 + ways().len(),
+        columns: 1 + ways(Settings::default()).len(),
         sections,
     };
     let html = page
@@ -55,7 +57,7 @@ pub(super) fn write(folder: &Path, results: &Results) -> Result<()> {
         .map_err(|error| Error::Invalid(error.to_string()))?;
     let save = |name: &str, text: &str| {
         let path = folder.join(name);
-        std::fs::write(&path, text).map_err(|e| Error::Invalid(format!("{}: {e}", path.display())))
+        write_atomically(&path, |file| file.write_all(text.as_bytes()))
     };
     save("index.html", &html)?;
     save("report.md", &markdown(&page))?;
@@ -196,9 +198,7 @@ fn maps_section(folder: &Path, results: &Results) -> Result<Section> {
     for shown in faces.step_by(step).take(SHOWN) {
         body += &pictures(folder, shown)?;
     }
-    let temporary = folder.join("maps/scale.png");
-    maps::scale(400, 12).save(&temporary)?;
-    let scale = embedded(folder, "maps/scale.png")?;
+    let scale = data_uri(&maps::scale(400, 12).to_png()?);
     let labels = ["0.1", "1", "10", "100 of 255"].map(|label| format!("<span>{label}</span>"));
     body += &format!(
         "<div class=\"scale\"><img src=\"{scale}\" alt=\"the scale of the maps\">{}</div>\n",
@@ -255,7 +255,11 @@ fn embedded(folder: &Path, file: &str) -> Result<String> {
             path.display()
         ))
     })?;
-    Ok(format!("data:image/png;base64,{}", STANDARD.encode(bytes)))
+    Ok(data_uri(&bytes))
+}
+
+fn data_uri(png: &[u8]) -> String {
+    format!("data:image/png;base64,{}", STANDARD.encode(png))
 }
 
 fn qualities_section(results: &Results) -> Section {
@@ -331,7 +335,7 @@ fn fronts(results: &Results) -> Scatter {
             .map(|row| row.ms[1])
     };
     let names = [("hard", "Hard"), ("rara", "RaRa"), ("exact", "Exact")];
-    let of_scene = |(scene, _): &(String, super::Choices)| {
+    let of_scene = |(scene, _): &(String, Choices)| {
         let point = |(way, mode): (&str, &str)| {
             let outcome = results
                 .outcomes

@@ -3,9 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use rara::files::write_atomically;
 use rara::{Error, Result};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+
+use crate::cases::plain;
 
 /// How far a run is.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,7 +54,7 @@ impl<'a> Store<'a> {
         progress: &'a mut dyn FnMut(&Progress),
     ) -> Result<Self> {
         let folder = folder.join("parts");
-        std::fs::create_dir_all(&folder).map_err(|error| named(&folder, &error))?;
+        std::fs::create_dir_all(&folder).map_err(Error::io(&folder))?;
         let parts = plan.len();
         Ok(Self {
             folder,
@@ -64,25 +67,24 @@ impl<'a> Store<'a> {
         })
     }
 
-    /// The result of a part: what an earlier run has kept of the same origin, or what `measure` returns, which is kept.
+    /// The result of the next part: what an earlier run has kept of the same origin, or what `measure` returns, which is kept.
     pub(super) fn part<T: Serialize + DeserializeOwned>(
         &mut self,
-        key: &str,
         measure: impl FnOnce() -> Result<T>,
     ) -> Result<T> {
-        let work = match self.plan.first() {
-            Some((next, work)) if next == key => *work,
-            _ => unreachable!("parts are asked for in the order of the plan: {key}"),
-        };
+        let left = self.plan.len();
         let progress = Progress {
-            what: key.into(),
-            done: self.parts - self.plan.len(),
+            what: self
+                .plan
+                .first()
+                .map_or(String::new(), |(name, _)| name.clone()),
+            done: self.parts - left,
             parts: self.parts,
             seconds_left: self.seconds_left(),
         };
         (self.progress)(&progress);
-        self.plan.remove(0);
-        let file = self.folder.join(file_name(key));
+        let (name, work) = self.plan.remove(0);
+        let file = self.folder.join(plain(&name) + ".json");
         if let Some(known) = self.read(&file) {
             self.seconds += known.seconds;
             return Ok(known.result);
@@ -99,10 +101,7 @@ impl<'a> Store<'a> {
             result,
         };
         let text = serde_json::to_string(&stored).expect("results have string keys only");
-        // Beside it and then renamed, so that an interrupted run leaves no half of a result.
-        let beside = file.with_extension("part");
-        std::fs::write(&beside, text).map_err(|error| named(&beside, &error))?;
-        std::fs::rename(&beside, &file).map_err(|error| named(&file, &error))?;
+        write_atomically(&file, |file| file.write_all(text.as_bytes()))?;
         Ok(stored.result)
     }
 
@@ -110,7 +109,7 @@ impl<'a> Store<'a> {
         let (work, seconds) = self.measured;
         // Parts that an earlier run has kept take no time.
         let left = self.plan.iter();
-        let left = left.filter(|(key, _)| !self.folder.join(file_name(key)).exists());
+        let left = left.filter(|(name, _)| !self.folder.join(plain(name) + ".json").exists());
         (work > 0.0).then(|| seconds / work * left.map(|(_, work)| work).sum::<f64>())
     }
 
@@ -120,16 +119,6 @@ impl<'a> Store<'a> {
         let stored: Stored<T> = serde_json::from_str(&text).ok()?;
         (stored.origin == self.origin).then_some(stored)
     }
-}
-
-/// The name of the file of a part.
-fn file_name(key: &str) -> String {
-    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
-    key.chars().map(plain).collect::<String>() + ".json"
-}
-
-fn named(path: &Path, error: &std::io::Error) -> Error {
-    Error::Invalid(format!("{}: {error}", path.display()))
 }
 
 #[cfg(test)]
@@ -144,7 +133,7 @@ mod tests {
         let run = |origin: &str, value: u32, told: &mut Vec<Progress>| {
             let mut hear = |progress: &Progress| told.push(progress.clone());
             let mut store = Store::new(&folder, origin.into(), plan(), &mut hear).unwrap();
-            let first = store.part("a b", || Ok(value)).unwrap();
+            let first = store.part(|| Ok(value)).unwrap();
             // The run ends here, before the second part.
             (first, store.seconds_left().is_some())
         };

@@ -9,8 +9,8 @@ use rara::{Camera, Error, Headless, HeadlessDesc, Mode, Result};
 use serde::Serialize;
 
 use super::metric::Metric;
-use super::pictures::{Drawing, Files, Id, columns, names};
-use crate::cases::{Case, Source, cases, sources};
+use super::pictures::{Drawing, Files, Id, columns};
+use crate::cases::{Case, Source, cases, names, sources};
 
 /// What is shown.
 #[derive(Debug, Clone)]

@@ -6,27 +6,7 @@ use rara::{Headless, Mode, Picture, Result, Settings};
 use serde::Serialize;
 
 use super::page::Options;
-use crate::cases::{Case, Source};
-
-/// A name for each case, all different.
-pub(super) fn names(sources: &[Source], cases: &[Case]) -> Vec<String> {
-    let plain = |case: &Case| format!("{}, {}", sources[case.scene].name, case.cut.name());
-    different(cases.iter().map(plain))
-}
-
-/// The same names, where one was there before with a number.
-fn different(plain: impl Iterator<Item = String>) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for plain in plain {
-        let (mut name, mut number) = (plain.clone(), 2);
-        while names.contains(&name) {
-            name = format!("{plain} ({number})");
-            number += 1;
-        }
-        names.push(name);
-    }
-    names
-}
+use crate::cases::Case;
 
 /// The pictures of one of the two.
 #[derive(Debug, Serialize)]
@@ -122,21 +102,6 @@ impl Id {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn names_that_were_there_get_a_number() {
-        let plain = ["a, face", "a, edge", "a, face", "a, face (2)", "a, face"];
-        assert_eq!(
-            different(plain.map(String::from).into_iter()),
-            [
-                "a, face",
-                "a, edge",
-                "a, face (2)",
-                "a, face (2) (2)",
-                "a, face (3)"
-            ]
-        );
-    }
 
     #[test]
     fn the_hash_is_the_published_one() {

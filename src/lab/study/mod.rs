@@ -15,4 +15,5 @@ pub use answers::{Answer, Answers, Background, Questions, Side, Study, Which};
 pub use evaluation::{Evaluation, MetricResult, Participant, Sample, evaluate};
 pub use files::Replaced;
 pub use metric::Metric;
-pub use page::{Options, Written, create, write};
+pub use page::{Written, create, write};
+pub use pictures::Options;

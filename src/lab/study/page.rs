@@ -3,50 +3,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use glam::DVec3;
 use rara::files::write_atomically;
 use rara::{Camera, Error, Headless, HeadlessDesc, Mode, Result};
 use serde::Serialize;
 
 use super::metric::Metric;
-use super::pictures::{Drawing, Files, Id, columns};
+use super::pictures::{Drawing, Files, Id, Options, columns};
 use crate::cases::{Case, Source, cases, names, sources};
-
-/// What is shown.
-#[derive(Debug, Clone)]
-pub struct Options {
-    /// What is compared with hard cuts: [`Mode::Rara`] or [`Mode::Exact`].
-    pub method: Mode,
-    /// The number of cases, spread over scenes and cuts; all there are where those are fewer.
-    pub cases: usize,
-    /// The Gaussians of each generated scene; scenes from files have their own.
-    pub gaussians: usize,
-    /// The direction that is up in the pictures.
-    pub up: DVec3,
-    /// Pixels a row of the pictures, and rows.
-    pub size: u32,
-    /// Steps of the animation of the moving cut.
-    pub frames: u32,
-    /// Pixels a row of each step, and rows.
-    pub frame_size: u32,
-    /// What is behind the scene.
-    pub background: [f32; 3],
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            method: Mode::Exact,
-            cases: 20,
-            gaussians: 20_000,
-            up: DVec3::NEG_Y,
-            size: 512,
-            frames: 24,
-            frame_size: 256,
-            background: [1.0; 3],
-        }
-    }
-}
 
 /// A page that was written.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

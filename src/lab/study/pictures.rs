@@ -2,11 +2,47 @@
 
 use std::path::Path;
 
+use glam::DVec3;
 use rara::{Headless, Mode, Picture, Result, Settings};
 use serde::Serialize;
 
-use super::page::Options;
 use crate::cases::Case;
+
+/// What is shown.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// What is compared with hard cuts: [`Mode::Rara`] or [`Mode::Exact`].
+    pub method: Mode,
+    /// The number of cases, spread over scenes and cuts; all there are where those are fewer.
+    pub cases: usize,
+    /// The Gaussians of each generated scene; scenes from files have their own.
+    pub gaussians: usize,
+    /// The direction that is up in the pictures.
+    pub up: DVec3,
+    /// Pixels a row of the pictures, and rows.
+    pub size: u32,
+    /// Steps of the animation of the moving cut.
+    pub frames: u32,
+    /// Pixels a row of each step, and rows.
+    pub frame_size: u32,
+    /// What is behind the scene.
+    pub background: [f32; 3],
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            method: Mode::Exact,
+            cases: 20,
+            gaussians: 20_000,
+            up: DVec3::NEG_Y,
+            size: 512,
+            frames: 24,
+            frame_size: 256,
+            background: [1.0; 3],
+        }
+    }
+}
 
 /// The pictures of one of the two.
 #[derive(Debug, Serialize)]

@@ -1,6 +1,7 @@
 //! The six qualities over all cases, as tables and charts.
 
 use rara::Settings;
+use rara::counted::counted;
 
 use super::perception::{Outcome, Quality};
 use crate::bench::ways;
@@ -27,8 +28,8 @@ fn known(values: Vec<Option<f64>>) -> Vec<f64> {
 /// Mean, deviation and median of each defect of each way.
 pub(super) fn means(outcomes: &[Outcome]) -> Table {
     let note = format!(
-        "The defect of each quality over {} cases; 0 is the truth. The guide's page on the paper defines them.",
-        outcomes.len()
+        "The defect of each quality over {}; 0 is the truth. The guide's page on the paper defines them.",
+        counted(outcomes.len(), "case")
     );
     let columns = [
         "quality",

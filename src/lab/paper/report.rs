@@ -6,6 +6,7 @@ use std::path::Path;
 use askama::Template;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use rara::counted::counted;
 use rara::files::write_atomically;
 use rara::{Error, Result, Settings};
 
@@ -279,9 +280,9 @@ fn qualities_section(results: &Results) -> Section {
         id: "qualities",
         title: "The six perceptual qualities, measured",
         text: vec![format!(
-            "{} cases from {} scenes. A defect is 0 where a picture is the truth.",
-            outcomes.len(),
-            results.scenes.len()
+            "{} from {}. A defect is 0 where a picture is the truth.",
+            counted(outcomes.len(), "case"),
+            counted(results.scenes.len(), "scene")
         )],
         body,
         tables,

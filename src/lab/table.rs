@@ -108,6 +108,18 @@ impl Table {
         self.rows.push(cells.into_iter().collect());
     }
 
+    /// The number in a column of the row that begins with a text.
+    pub fn number(&self, row: &str, column: &str) -> Option<f64> {
+        let column = self.columns.iter().position(|name| name == column)?;
+        let begins = |cells: &&Vec<Cell>| cells.first().is_some_and(|cell| cell.text() == row);
+        match self.rows.iter().find(begins)?.get(column)? {
+            Cell::Number(number) => *number,
+            Cell::Fixed(number, _) => Some(*number),
+            Cell::Count(count) => Some(*count as f64),
+            Cell::Text(_) => None,
+        }
+    }
+
     /// True where a column has words.
     fn is_text(&self, column: usize) -> bool {
         let cells = self.rows.iter().filter_map(|row| row.get(column));

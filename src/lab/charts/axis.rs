@@ -167,16 +167,16 @@ impl Span {
         marks
     }
 
-    /// Powers of ten, and twice and five times them where there are few.
+    /// Powers of ten, and multiples of them where there are few.
     fn powers(&self) -> Vec<f64> {
         let decades = self.high - self.low;
         let within = |v: &f64| (self.low - 1e-9..=self.high + 1e-9).contains(&v.log10());
         let (first, last) = (self.low.floor() as i32, self.high.ceil() as i32);
         let every = (decades / 8.0).ceil().max(1.0) as usize;
-        let parts: &[f64] = if decades < 3.0 {
-            &[1.0, 2.0, 5.0]
-        } else {
-            &[1.0]
+        let parts: &[f64] = match decades {
+            few if few < 0.7 => &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0],
+            few if few < 3.0 => &[1.0, 2.0, 5.0],
+            _ => &[1.0],
         };
         let powers = (first..=last).step_by(every).map(power_of_ten);
         let marks = powers.flat_map(|power| parts.iter().map(move |part| part * power));

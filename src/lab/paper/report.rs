@@ -318,7 +318,7 @@ fn choices_section(results: &Results) -> Section {
         title: "Run time against error",
         text: vec![
             "Each point is a mode or a choice of precision. The line joins those that nothing else beats in both. The second chart \
-             has the ways of cutting of all scenes."
+             has the modes and presets of all scenes."
                 .into(),
         ],
         body,
@@ -326,33 +326,20 @@ fn choices_section(results: &Results) -> Section {
     }
 }
 
-/// The ways of cutting of all timed scenes in one chart: time as a ratio to mode `none`, error against the truth.
+/// The modes and presets of all timed scenes in one chart: time as a ratio to mode `none`, error against the truth.
 fn fronts(results: &Results) -> Scatter {
-    let rate = |scene: &str, mode: &str| {
-        let one = results.efficiency.iter().find(|one| one.scene == scene)?;
-        one.rows
-            .iter()
-            .find(|row| row.mode == mode && !row.reuse)
-            .map(|row| row.ms[1])
-    };
-    let names = [("hard", "Hard"), ("rara", "RaRa"), ("exact", "Exact")];
-    let of_scene = |(scene, _): &(String, Choices)| {
-        let point = |(way, mode): (&str, &str)| {
-            let outcome = results
-                .outcomes
-                .iter()
-                .find(|o| o.case == format!("{scene}, face"))?;
-            let l1 = outcome.ways.iter().find(|m| m.way == way)?.l1;
-            Some((
-                rate(scene, mode)? / rate(scene, "Original")?,
-                l1,
-                way.to_owned(),
-            ))
+    const NAMES: [&str; 5] = ["hard", "rara", "exact", "preset fast", "preset exact"];
+    let of_scene = |(scene, choices): &(String, Choices)| {
+        let value = |name: &str, column: &str| choices.tables.first()?.number(name, column);
+        let whole = value("none", "ms");
+        let point = |name: &str| {
+            let time = value(name, "ms")? / whole?;
+            Some((time, value(name, "L1")?, name.to_owned()))
         };
-        Line::labelled(scene.as_str(), names.into_iter().filter_map(point))
+        Line::labelled(scene.as_str(), NAMES.into_iter().filter_map(point))
     };
     Scatter {
-        title: "Ways of cutting, all scenes".into(),
+        title: "Modes and presets, all scenes".into(),
         x: Axis::log("time per frame over that of the whole scene"),
         y: Axis::log("L1 against the truth (of 255)"),
         series: results.choices.iter().map(of_scene).collect(),

@@ -6,7 +6,8 @@
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use crate::{Error, Result};
 
@@ -15,6 +16,17 @@ static UNFINISHED: Mutex<(Vec<PathBuf>, u64)> = Mutex::new((Vec::new(), 0));
 
 fn unfinished() -> MutexGuard<'static, (Vec<PathBuf>, u64)> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What distinguishes the unfinished files of this process from those of any other, also on another machine: its number and
+/// when it began its first one, nanoseconds since 1970 in hexadecimal digits.
+pub fn mark() -> &'static str {
+    static MARK: LazyLock<String> = LazyLock::new(|| {
+        let since = SystemTime::now().duration_since(UNIX_EPOCH);
+        let nanoseconds = since.map_or(0, |since| since.as_nanos());
+        format!("{}-{nanoseconds:x}", std::process::id())
+    });
+    &MARK
 }
 
 /// Removes what is not finished, and lets nobody begin anything more: for a process that is told to end.
@@ -150,7 +162,7 @@ fn forget(files: &mut (Vec<PathBuf>, u64), beside: &PathBuf, go: bool) {
 fn begin(path: &Path) -> (PathBuf, std::io::Result<File>) {
     let mut files = unfinished();
     loop {
-        let name = format!(".rara-{}-{}.part", std::process::id(), files.1);
+        let name = format!(".rara-{}-{}.part", mark(), files.1);
         let beside = path.with_file_name(name);
         files.1 += 1;
         // A process of the same number, in another container or on another machine, may have such a file here.

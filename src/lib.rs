@@ -73,6 +73,8 @@ pub use error::{Error, Result};
 #[doc(inline)]
 pub use gpu::{OnCompile, PipelineCache};
 pub use passes::{SceneBuffers, SceneLayer, Staging};
+#[cfg(feature = "picture")]
+pub use picture::PngCompression;
 pub use picture::{Channel, Cue, Cues, Picture};
 pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};

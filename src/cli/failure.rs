@@ -20,6 +20,17 @@ impl Failure {
         Self::Usage(error.to_string())
     }
 
+    /// The same failure of a part of the work that has a name.
+    pub(super) fn of(self, name: &str) -> Self {
+        match self {
+            Self::Usage(message) => Self::Usage(format!("{name}: {message}")),
+            Self::Work(error) if !matches!(error, rara::Error::Validation(_)) => {
+                Self::Work(rara::Error::Invalid(format!("{name}: {}", chain(&error))))
+            }
+            other => other,
+        }
+    }
+
     /// The lines before the failure itself: every message of the validation layer.
     pub(super) fn details(&self) -> impl Iterator<Item = String> {
         let messages = match self {

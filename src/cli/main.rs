@@ -9,6 +9,7 @@ mod antialiasing;
 mod aspect;
 mod axis;
 mod bake;
+mod batch;
 mod bench;
 mod camera;
 mod clip;
@@ -27,6 +28,7 @@ mod help;
 mod info;
 mod ink;
 mod json_kind;
+mod kept;
 mod layer_clip;
 mod lens;
 mod memory;
@@ -70,6 +72,8 @@ mod view;
 mod views;
 mod warm;
 
+use std::ffi::OsString;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{ArgMatches, FromArgMatches, Parser, Subcommand};
@@ -109,6 +113,7 @@ enum Command {
     #[cfg(feature = "view")]
     View(view::View),
     Sweep(sweep::Sweep),
+    Batch(batch::Batch),
     Ablate(ablate::Ablate),
     Bench(bench::Bench),
     Paper(paper::Paper),
@@ -136,6 +141,7 @@ impl Command {
             #[cfg(feature = "view")]
             Self::View(command) => command.run(),
             Self::Sweep(command) => command.run(),
+            Self::Batch(command) => command.run(),
             Self::Ablate(command) => command.run(),
             Self::Bench(command) => command.run(),
             Self::Paper(command) => command.run(),
@@ -158,12 +164,25 @@ impl Command {
     }
 }
 
-/// The command line, and where its values are from.
-fn typed() -> Result<(Cli, ArgMatches), clap::Error> {
-    let typed = help::command().try_get_matches()?;
+/// A command line, and where its values are from.
+fn parsed(words: impl Iterator<Item = OsString>) -> Result<(Cli, ArgMatches), clap::Error> {
+    let typed = help::command().try_get_matches_from(words)?;
     let cli = Cli::from_arg_matches(&typed);
     let cli = cli.map_err(|error| error.format(&mut help::command()))?;
     Ok((cli, typed))
+}
+
+/// Runs what was typed, or saves it as a job where that is wanted.
+fn run(cli: Cli, typed: &ArgMatches) -> Result<(), Failure> {
+    needs_met(typed)?;
+    if let Some((name, typed)) = typed.subcommand()
+        && let Ok(Some(file)) = typed.try_get_one::<PathBuf>("save_job")
+    {
+        let all = help::command();
+        let command = all.find_subcommand(name).expect("it was typed");
+        return batch::save_job(file, command, typed);
+    }
+    cli.command.run()
 }
 
 /// Fails where a flag has no effect.
@@ -182,12 +201,12 @@ fn needs_met(typed: &ArgMatches) -> Result<(), Failure> {
 fn main() -> ExitCode {
     process::begin();
     output::tell_warnings();
-    let outcome = match typed() {
+    let outcome = match parsed(std::env::args_os()) {
         Ok((cli, typed)) => {
             if cli.quiet {
                 output::be_quiet();
             }
-            needs_met(&typed).and_then(|()| cli.command.run())
+            run(cli, &typed)
         }
         Err(error) if !error.use_stderr() => {
             // `--help` and `--version` arrive as errors too; a closed pipe is the reader's business.

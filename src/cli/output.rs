@@ -5,9 +5,9 @@ use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard};
 
-use rara::{Error, OnCompile, Picture, Result};
+use rara::{Error, OnCompile, Picture, PngCompression, Result};
 use serde::Serialize;
 
 use super::values::STANDARD;
@@ -50,7 +50,9 @@ static AFTERWARDS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 /// Prints a line for people once the work is done; it is no use where that fails.
 pub(super) fn say_afterwards(line: String) {
     let mut lines = AFTERWARDS.lock().unwrap_or_else(PoisonError::into_inner);
-    lines.push(line);
+    if !lines.contains(&line) {
+        lines.push(line);
+    }
 }
 
 /// The work is done.
@@ -149,12 +151,18 @@ pub(super) fn answer(text: &str) -> Result<()> {
     bytes(format!("{}\n", text.trim_end()).as_bytes()).map(drop)
 }
 
-/// Locked from before a picture gets its name until its line is printed.
-static SETTLED: Mutex<()> = Mutex::new(());
+/// Held by each picture from before it gets its name until its line is printed.
+static UNSETTLED: RwLock<()> = RwLock::new(());
+
+/// Whether the process was told to end.
+static IS_ENDING: AtomicBool = AtomicBool::new(false);
 
 /// Keeps this process from being told to end until what is returned goes.
-pub(super) fn unsettled() -> MutexGuard<'static, ()> {
-    SETTLED.lock().unwrap_or_else(PoisonError::into_inner)
+pub(super) fn unsettled() -> RwLockReadGuard<'static, ()> {
+    while IS_ENDING.load(Ordering::Relaxed) {
+        std::thread::park(); // for ever: nothing is begun any more
+    }
+    UNSETTLED.read().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Waits until every picture that has its name has its line too, and lets no other get one: for a process that is told to
@@ -165,9 +173,10 @@ pub(super) fn settle() {
     use std::thread::sleep;
     use std::time::{Duration, Instant};
     const PATIENCE: Duration = Duration::from_secs(2);
+    IS_ENDING.store(true, Ordering::Relaxed);
     let begin = Instant::now();
     while begin.elapsed() < PATIENCE {
-        match SETTLED.try_lock() {
+        match UNSETTLED.try_write() {
             Err(TryLockError::WouldBlock) => sleep(Duration::from_millis(1)),
             settled => return std::mem::forget(settled),
         }
@@ -175,10 +184,19 @@ pub(super) fn settle() {
 }
 
 /// Writes a picture to a file, or to standard output as PNG.
-pub(super) fn picture(picture: &Picture, file: &Path) -> Result<()> {
-    match file == Path::new(STANDARD) {
-        true => bytes(&picture.to_png()?).map(drop),
-        false => picture.save(file),
+pub(super) fn picture(picture: &Picture, file: &Path, compression: PngCompression) -> Result<()> {
+    let png = || picture.to_png_with(compression);
+    let ending = file.extension().unwrap_or_default();
+    match (
+        file == Path::new(STANDARD),
+        ending.eq_ignore_ascii_case("png"),
+    ) {
+        (true, _) => bytes(&png()?).map(drop),
+        (_, true) => {
+            let png = png()?;
+            rara::files::write_atomically(file, |out| out.write_all(&png))
+        }
+        _ => picture.save(file),
     }
 }
 

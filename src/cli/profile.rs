@@ -61,6 +61,11 @@ impl ProfileArgs {
 }
 
 impl Profile {
+    /// True when a trace is filled.
+    pub(super) fn is_traced(&self) -> bool {
+        self.trace.is_some()
+    }
+
     /// Opens a session that records what the profile needs, with a note if its device has no statistics.
     pub(super) fn open(
         &self,

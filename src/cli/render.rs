@@ -11,11 +11,12 @@ use super::clip::Regions;
 use super::failure::Failure;
 use super::frame::FrameArgs;
 use super::framing;
+use super::kept::Kept;
 use super::memory;
 use super::output;
 use super::panorama::{self, Panorama, PanoramaArgs};
 use super::path::PathArgs;
-use super::pictures::{self, Destination, Drawn, PictureArgs, Planned};
+use super::pictures::{self, Destination, Drawn, Order, PictureArgs, Plan, Planned};
 use super::profile::{Profile, ProfileArgs};
 use super::report::{Answer, Frame, Report};
 use super::save_camera::SaveCameraArgs;
@@ -151,8 +152,38 @@ impl Pictures {
     }
 }
 
+/// What the flags mean, before the scene is known.
+struct Meant {
+    settings: Settings,
+    panorama: Option<Panorama>,
+    pictures: Pictures,
+    /// What makes several pictures, if anything does.
+    several: Option<String>,
+}
+
 impl Render {
-    pub(super) fn run(mut self) -> Result<(), Failure> {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        self.run_in(&mut Kept::default(), None)
+    }
+
+    /// What a run of many commands has to know before it draws any picture.
+    pub(super) fn plan(mut self) -> Result<Plan, Failure> {
+        let meant = self.meant()?;
+        let numbers = meant.pictures.numbers();
+        let output = self.output.as_deref();
+        let several = meant.several.as_deref();
+        let destination = (self.pictures).destination(output, (&numbers, several), None)?;
+        let size = match (&meant.panorama, &meant.pictures) {
+            (Some(panorama), _) => panorama.size(),
+            (None, Pictures::Views(Views::Given(views), _)) if !views.is_empty() => {
+                (views[0].camera.width, views[0].camera.height)
+            }
+            _ => self.frame.camera.chosen_size(),
+        };
+        Ok(destination.plan((&self.scenes, self.frame.device.meant()), &numbers, size))
+    }
+
+    fn meant(&mut self) -> Result<Meant, Failure> {
         let settings = self.frame.settings.meant()?;
         self.slice.check(&settings)?;
         let sections = self.section.meant(&self.frame.camera, &self.frame.clip)?;
@@ -174,22 +205,47 @@ impl Render {
                 Pictures::Views(views, clip)
             }
         };
-        let numbers = pictures.numbers();
-        let several = self.several(numbers.len());
-        let several = several.as_deref();
+        let several = self.several(pictures.numbers().len());
         if !self.aov.is_empty() {
             pictures::needs_floats(self.output.as_deref(), "--aov makes channels")?;
         }
         if settings.show == Show::Count {
             pictures::needs_floats(self.output.as_deref(), pictures::COUNTS)?;
         }
+        Ok(Meant {
+            settings,
+            panorama,
+            pictures,
+            several,
+        })
+    }
+
+    /// Draws the pictures that are in `order`, or all of them and reports them.
+    pub(super) fn run_in(
+        mut self,
+        kept: &mut Kept,
+        order: Option<&dyn Order>,
+    ) -> Result<(), Failure> {
+        let Meant {
+            settings,
+            panorama,
+            pictures,
+            several,
+        } = self.meant()?;
+        let numbers = pictures.numbers();
+        let several = several.as_deref();
         let output = self.output.as_deref();
-        let destination = self.pictures.destination(output, &numbers, several)?;
+        let destination = (self.pictures).destination(output, (&numbers, several), order)?;
         let settings = destination.settings(settings);
 
         let profile = self.profile.begin(|| destination.files(&numbers))?;
         let pictures = (pictures, several.is_some());
-        let done = self.draw(&profile, pictures, (panorama, &destination), &settings);
+        let done = self.draw(
+            (&profile, kept),
+            pictures,
+            (panorama, &destination),
+            &settings,
+        );
         profile.end_after(done)
     }
 
@@ -206,12 +262,14 @@ impl Render {
 
     fn draw(
         &self,
-        profile: &Profile,
+        (profile, kept): (&Profile, &mut Kept),
         (pictures, several): (Pictures, bool),
         (panorama, destination): (Option<Panorama>, &Destination<'_>),
         settings: &Settings,
     ) -> Result<(), Failure> {
-        let mut loaded = profile.span("load", || self.scenes.load())?;
+        let (device, sh) = (&self.frame.device, settings.precision.sh);
+        let session_of = format!("{device:?} {:?} {sh:?}", self.profile);
+        let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of)?;
         pictures.regions().settle(&mut loaded)?;
         let scene = loaded.scene();
         let mut shots = pictures.of(&scene)?;
@@ -227,21 +285,28 @@ impl Render {
         };
         let size = |camera: &Camera| panorama.map_or((camera.width, camera.height), Panorama::size);
         let sizes = planned.iter().map(|one| size(&one.what.view.camera));
-        let kept = panorama.map_or(0, Panorama::kept_pixels);
-        memory::check_pictures(sizes.clone(), kept)?;
+        let pixels = panorama.map_or(0, Panorama::kept_pixels);
+        memory::check_pictures(sizes.clone(), pixels)?;
         let size = destination.size(sizes)?;
-        let device = self.frame.device.meant();
-        let mut session = profile.open(device, &scene, settings.precision.sh)?;
+        let mut session = place.open(profile, device.meant(), &scene, sh)?;
+        if let Some(order) = destination.order() {
+            order.opened(session.driver());
+        }
         let is_clipped = |one: &Planned<Shot>| !one.what.clip.is_everything();
         let clips = loaded.has_clips() || planned.iter().any(is_clipped);
         let faces = panorama.map_or(1, |_| Panorama::FACES);
-        let repeat = self.repeat(planned.len() * faces);
+        let repeat = match destination.order() {
+            Some(_) => Repeat::Following,
+            None => self.repeat(planned.len() * faces),
+        };
         let mut slicer = Slicer::new(&self.slice, &scene, self.frame.device.meant());
         let written = destination.draw("rendering", profile, (&planned, size), |one| {
             if let Some(panorama) = &panorama {
                 return self.surroundings(profile, &mut session, (panorama, one), settings, repeat);
             }
-            let Planned { what: shot, file } = one;
+            let Planned {
+                what: shot, file, ..
+            } = one;
             let Shot {
                 view,
                 clip,
@@ -274,6 +339,9 @@ impl Render {
             Ok(drawn)
         })?;
         slicer.close()?;
+        if destination.order().is_some() {
+            return Ok(kept.keep(place, loaded, session)?);
+        }
 
         let mode = name(settings.mode);
         let report = Report::new(&session, &loaded, size, mode, &written.pictures);
@@ -296,7 +364,9 @@ impl Render {
         settings: &Settings,
         repeat: Repeat,
     ) -> Result<Drawn, Failure> {
-        let Planned { what: shot, file } = one;
+        let Planned {
+            what: shot, file, ..
+        } = one;
         let (mut frames, mut pictures) = (Vec::new(), Vec::new());
         for face in panorama.faces(&shot.view) {
             let measured = session.measured_frame(&face.camera, &shot.clip, settings, repeat)?;

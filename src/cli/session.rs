@@ -29,6 +29,8 @@ pub(super) struct Session {
 pub(super) enum Repeat {
     /// Once, as no time is shown.
     Unmeasured,
+    /// Once, with what the frame before has left.
+    Following,
     /// This often, after one that is not measured.
     Exactly(u32),
     /// Likewise, but no more once they have taken [`PATIENCE`] together.
@@ -94,6 +96,9 @@ impl Session {
     ) -> Result<Measured> {
         let most = match repeat {
             Repeat::Unmeasured => return self.frame(camera, clip, settings, 1),
+            Repeat::Following => {
+                return Ok(Measured::of(&[self.next_frame(camera, clip, settings)?]));
+            }
             Repeat::Exactly(most) | Repeat::UpTo(most) => most,
         };
         if self.first_ms.is_empty() {
@@ -205,6 +210,10 @@ impl Session {
     pub(super) fn shape(&self) -> (DeviceShape, &'static str) {
         let device = self.headless.device();
         (device.shape(), device.shape_reason())
+    }
+
+    pub(super) fn driver(&self) -> &str {
+        self.headless.driver()
     }
 
     /// Device name, driver, and device memory in use.

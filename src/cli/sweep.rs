@@ -13,8 +13,9 @@ use super::combine::Measured;
 use super::failure::Failure;
 use super::frame::FrameArgs;
 use super::framing;
+use super::kept::Kept;
 use super::memory;
-use super::pictures::{self, Destination, Drawn, PictureArgs};
+use super::pictures::{self, Destination, Drawn, Order, PictureArgs, Plan};
 use super::profile::{Profile, ProfileArgs};
 use super::report::{Frame, Report};
 use super::save_camera::SaveCameraArgs;
@@ -75,8 +76,30 @@ pub(super) struct Sweep {
     scenes: SceneArgs,
 }
 
+/// What makes several pictures.
+const SEVERAL: &str = "a sweep makes";
+
 impl Sweep {
     pub(super) fn run(self) -> Result<(), Failure> {
+        self.run_in(&mut Kept::default(), None)
+    }
+
+    /// What a run of many commands has to know before it draws any picture.
+    pub(super) fn plan(&self) -> Result<Plan, Failure> {
+        self.moving()?;
+        let numbers: Vec<_> = (0..self.frames as usize).collect();
+        let output = self.output.as_deref();
+        let wanted = (&numbers[..], Some(SEVERAL));
+        let destination = self.pictures.destination(output, wanted, None)?;
+        Ok(destination.plan(
+            (&self.scenes, self.frame.device.meant()),
+            &numbers,
+            self.frame.camera.chosen_size(),
+        ))
+    }
+
+    /// Draws the pictures that are in `order`, or all of them and reports them.
+    pub(super) fn run_in(self, kept: &mut Kept, order: Option<&dyn Order>) -> Result<(), Failure> {
         let settings = self.frame.settings.meant()?;
         if settings.show == Show::Count {
             pictures::needs_floats(self.output.as_deref(), pictures::COUNTS)?;
@@ -88,12 +111,13 @@ impl Sweep {
         let views = views.single("a sweep")?;
         let numbers: Vec<_> = (0..self.frames as usize).collect();
         let output = self.output.as_deref();
-        let destination = (self.pictures).destination(output, &numbers, Some("a sweep makes"))?;
+        let wanted = (&numbers[..], Some(SEVERAL));
+        let destination = self.pictures.destination(output, wanted, order)?;
         let settings = destination.settings(settings);
 
         let profile = self.profile.begin(|| destination.files(&numbers))?;
         let clips = (shapes, &moving);
-        let done = self.draw(&profile, (views, clips), &destination, &settings);
+        let done = self.draw((&profile, kept), (views, clips), &destination, &settings);
         profile.end_after(done)
     }
 
@@ -116,12 +140,14 @@ impl Sweep {
 
     fn draw(
         &self,
-        profile: &Profile,
+        (profile, kept): (&Profile, &mut Kept),
         (views, (regions, moving)): (Views, (Regions, &Moving)),
         destination: &Destination<'_>,
         settings: &Settings,
     ) -> Result<(), Failure> {
-        let mut loaded = profile.span("load", || self.scenes.load())?;
+        let (device, sh) = (&self.frame.device, settings.precision.sh);
+        let session_of = format!("{device:?} {:?} {sh:?}", self.profile);
+        let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of)?;
         regions.settle(&mut loaded)?;
         let scene = loaded.scene();
         let view = framing::views(views, &scene)?.remove(0);
@@ -138,8 +164,10 @@ impl Sweep {
         };
         let size = (camera.width, camera.height);
         memory::check_picture(size, 0)?;
-        let device = self.frame.device.meant();
-        let mut session = profile.open(device, &scene, settings.precision.sh)?;
+        let mut session = place.open(profile, device.meant(), &scene, sh)?;
+        if let Some(order) = destination.order() {
+            order.opened(session.driver());
+        }
         let mut clip_of = |index| -> rara::Result<Clip> {
             shapes.push(moving.at(position(range, index, self.frames))?);
             let clip = Clip::joined(shapes.iter().map(Expression::clip), op);
@@ -151,7 +179,9 @@ impl Sweep {
         let first = [0, middle, middle + 1, middle + 2, self.frames - 1]
             .map(|index| clip_of(index.min(self.frames - 1)));
         let first = first.into_iter().collect::<rara::Result<Vec<_>>>()?;
-        session.warm_up(first.iter().map(|clip| (&camera, clip, settings)))?;
+        if !destination.order().is_some() {
+            session.warm_up(first.iter().map(|clip| (&camera, clip, settings)))?;
+        }
 
         let written = destination.draw("sweeping", profile, (&planned, size), |one| {
             let (index, file) = (one.what, one.file.as_deref());
@@ -169,6 +199,9 @@ impl Sweep {
                 ..frame.into()
             })
         })?;
+        if destination.order().is_some() {
+            return Ok(kept.keep(place, loaded, session)?);
+        }
 
         let mode = name(settings.mode);
         let report = Report::new(&session, &loaded, size, mode, &written.pictures);

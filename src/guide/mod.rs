@@ -24,6 +24,7 @@ macro_rules! chapters {
 chapters! {
     accuracy,
     adding,
+    batches,
     building,
     c shows "mesh",
     changes,

@@ -4,7 +4,8 @@ use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::Path;
 
-use image::codecs::{openexr::OpenExrEncoder, png::PngEncoder};
+use image::codecs::openexr::OpenExrEncoder;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{
     DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, ImageResult, Limits,
 };
@@ -41,6 +42,20 @@ impl Kind {
     }
 }
 
+/// How a `.png` file is compressed, without loss in any case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[non_exhaustive]
+pub enum PngCompression {
+    /// Not at all.
+    None,
+    /// Quickly.
+    #[default]
+    Fast,
+    /// To the fewest bytes.
+    Small,
+}
+
 impl Picture {
     /// Writes the picture to a file whose extension says how: `.png` is 8-bit RGBA, un-premultiplied, `round(255 c)`
     /// clamped; `.exr` is 32-bit float RGBA, premultiplied, the values as they are. The file appears whole or not at
@@ -48,7 +63,8 @@ impl Picture {
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         let kind = Kind::of(path)?;
-        let bytes = self.encoded(kind).map_err(|error| {
+        let encoded = self.encoded(kind, PngCompression::default());
+        let bytes = encoded.map_err(|error| {
             Error::format(path, format!("the picture could not be encoded: {error}"))
         })?;
         write_atomically(path, |file| file.write_all(&bytes))
@@ -59,6 +75,14 @@ impl Picture {
     /// # Errors
     /// [`Error::Invalid`] for a picture with another number of pixels than its size says.
     pub fn to_png(&self) -> Result<Vec<u8>> {
+        self.to_png_with(PngCompression::default())
+    }
+
+    /// The same with another compression.
+    ///
+    /// # Errors
+    /// As [`to_png`](Self::to_png) has them.
+    pub fn to_png_with(&self, compression: PngCompression) -> Result<Vec<u8>> {
         let count = u64::from(self.width) * u64::from(self.height);
         if self.pixels.len() as u64 != count {
             return Err(Error::Invalid(format!(
@@ -68,7 +92,7 @@ impl Picture {
                 counted(self.pixels.len(), "pixel")
             )));
         }
-        let encoded = self.encoded(Kind::Png);
+        let encoded = self.encoded(Kind::Png, compression);
         encoded
             .map_err(|error| Error::Invalid(format!("the picture could not be encoded: {error}")))
     }
@@ -82,16 +106,19 @@ impl Picture {
             .collect()
     }
 
-    fn encoded(&self, kind: Kind) -> ImageResult<Vec<u8>> {
+    fn encoded(&self, kind: Kind, compression: PngCompression) -> ImageResult<Vec<u8>> {
         let mut bytes = Vec::new();
         let (width, height) = (self.width, self.height);
         match kind {
-            Kind::Png => PngEncoder::new(&mut bytes).write_image(
-                &self.to_rgba8(),
-                width,
-                height,
-                ExtendedColorType::Rgba8,
-            ),
+            Kind::Png => {
+                let compression = match compression {
+                    PngCompression::None => CompressionType::Uncompressed,
+                    PngCompression::Fast => CompressionType::Fast,
+                    PngCompression::Small => CompressionType::Best,
+                };
+                PngEncoder::new_with_quality(&mut bytes, compression, FilterType::Adaptive)
+                    .write_image(&self.to_rgba8(), width, height, ExtendedColorType::Rgba8)
+            }
             Kind::Exr => {
                 let pixels = bytemuck::cast_slice(&self.pixels);
                 let encoder = OpenExrEncoder::new(Cursor::new(&mut bytes));

@@ -9,6 +9,8 @@ mod cues;
 mod file;
 
 pub use cues::{Cue, Cues};
+#[cfg(feature = "picture")]
+pub use file::PngCompression;
 
 /// RGBA pixels, 32-bit float, premultiplied, blended values as they are (no transfer function).
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -5,6 +5,7 @@ mod folder;
 
 mod aov;
 mod bake;
+mod batch;
 mod cameras;
 mod clips;
 mod compare;

@@ -1,9 +1,8 @@
 //! Animated PNGs, picture by picture.
 
-use std::cell::RefCell;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use png::{BitDepth, BlendOp, ColorType, Compression, Encoder, EncodingError, Writer};
 use rara::{Error, Result};
@@ -20,15 +19,17 @@ pub(in super::super) struct Apng {
 
 /// The place that the encoder writes to, which outlives it.
 #[derive(Clone)]
-struct Shared(Rc<RefCell<Place>>);
+struct Shared(Arc<Mutex<Place>>);
 
 impl Write for Shared {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.borrow_mut().write(bytes)
+        let mut place = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        place.write(bytes)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.0.borrow_mut().flush()
+        let mut place = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        place.flush()
     }
 }
 
@@ -41,7 +42,7 @@ impl Apng {
         frames: usize,
         fps: u16,
     ) -> Result<Self> {
-        let place = Shared(Rc::new(RefCell::new(place)));
+        let place = Shared(Arc::new(Mutex::new(place)));
         let begin = || {
             let mut encoder = Encoder::new(place.clone(), width, height);
             encoder.set_color(ColorType::Rgba);
@@ -76,8 +77,8 @@ impl Apng {
         if !wanted(encoder.finish().map_err(io_error), &file)? {
             return Ok(());
         }
-        match Rc::try_unwrap(place.0) {
-            Ok(place) => place.into_inner().finish(),
+        match Arc::try_unwrap(place.0) {
+            Ok(place) => (place.into_inner().unwrap_or_else(PoisonError::into_inner)).finish(),
             Err(_) => unreachable!("the encoder is gone"),
         }
     }

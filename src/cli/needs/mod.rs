@@ -42,6 +42,8 @@ const NEEDS: &[(&str, Need)] = &[
     ("json_lines", Nothing),
     ("aov", Flag(&["output"])),
     ("skip_existing", Flag(&["output"])),
+    ("save_job", Flag(&["output"])),
+    ("png", Flag(&["output"])),
     ("fps", Flag(&["output"])),
     ("format", Flag(&["output"])),
     (
@@ -148,6 +150,11 @@ const NEEDS: &[(&str, Need)] = &[
     ("leave", Value("mode", &["exact", "rara"])),
     ("views", Nothing),
     ("all", Nothing),
+    ("shard", Nothing),
+    ("state", Nothing),
+    ("redraw", Nothing),
+    ("status", Nothing),
+    ("report", Nothing),
 ];
 
 /// Refuses flags of a command that have no effect beside what else was typed, or says so.

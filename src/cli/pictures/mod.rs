@@ -11,17 +11,18 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::{Error, Settings};
+use rara::{Error, HeadlessDesc, PngCompression, Settings};
 use serde_json::json;
 
 use super::failure::Failure;
 use super::film::{self, FilmArgs, Kind};
 use super::output::{self, counted, say};
 use super::pattern::filled;
-use super::report::Answer;
+use super::report::{Answer, Frame};
+use super::scenes::SceneArgs;
 use super::values::{self, STANDARD};
 pub(super) use drawn::Drawn;
-use part::Part;
+pub(super) use part::Part;
 
 /// What becomes of pictures, and of what is measured.
 #[derive(Debug, Args)]
@@ -29,7 +30,7 @@ pub(super) struct PictureArgs {
     /// Draw only part K of N of the pictures
     ///
     /// They are numbered as in the whole, so that N jobs draw all of them.
-    #[arg(long, value_name = "K/N", value_parser = part::part)]
+    #[arg(long, value_name = "K/N")]
     part: Option<Part>,
     /// Leave out pictures whose files are there, whatever these show
     ///
@@ -44,6 +45,12 @@ pub(super) struct PictureArgs {
     /// A line is printed as soon as the picture's file is there.
     #[arg(long, conflicts_with = "json")]
     json_lines: bool,
+    /// How .png files are compressed, without loss in any case [default: fast]
+    #[arg(long, value_name = "HOW")]
+    png: Option<PngCompression>,
+    /// Add this command to a file as a job for rara batch, and draw nothing
+    #[arg(long, value_name = "FILE")]
+    save_job: Option<PathBuf>,
     #[command(flatten)]
     film: FilmArgs,
 }
@@ -69,6 +76,22 @@ pub(super) fn needs_floats(output: Option<&Path>, what: &str) -> Result<(), Fail
 pub(super) struct Destination<'a> {
     args: &'a PictureArgs,
     place: Place,
+    order: Option<&'a dyn Order>,
+}
+
+/// A run of many commands, of which one draws some of its pictures. A film is its picture 0.
+pub(super) trait Order: Sync {
+    /// True for the pictures that are asked for.
+    fn wants(&self, number: usize) -> bool;
+
+    /// Asks for a picture before it is drawn; false where another process has drawn it, or is drawing it.
+    fn begin(&self, number: usize, file: Option<&Path>) -> Result<bool, Failure>;
+
+    /// Learns that a picture is there.
+    fn end(&self, number: usize, file: &Path, frame: &Frame) -> Result<(), Failure>;
+
+    /// Learns which driver draws the next pictures.
+    fn opened(&self, driver: &str);
 }
 
 enum Place {
@@ -82,8 +105,27 @@ enum Place {
 
 /// A picture that is to be drawn, and its file.
 pub(super) struct Planned<T> {
+    /// In the whole run.
+    number: usize,
     pub(super) what: T,
     pub(super) file: Option<PathBuf>,
+}
+
+/// Stands for a name that is not known yet.
+const NAME: &str = "{name}";
+
+/// Bytes of a Gaussian in a file of degree 3; other files are counted as if they were such.
+const BYTES: f64 = 248.0;
+
+/// What a run of many commands knows of one before it draws.
+pub(super) struct Plan {
+    /// The numbers of its pictures, and what their files are called where names are left open. A film is number 0.
+    pub(super) pictures: Vec<(usize, String)>,
+    /// An estimate of the work of one, in Gaussians that are drawn.
+    pub(super) work: f64,
+    /// The scene's flags, so that commands of one scene follow each other.
+    pub(super) scene: String,
+    pub(super) device: HeadlessDesc,
 }
 
 impl PictureArgs {
@@ -97,12 +139,12 @@ impl PictureArgs {
     }
 
     /// Where pictures of these numbers go. `several` is what makes more than one of them, if anything does.
-    pub(super) fn destination(
-        &self,
+    pub(super) fn destination<'a>(
+        &'a self,
         output: Option<&Path>,
-        numbers: &[usize],
-        several: Option<&str>,
-    ) -> Result<Destination<'_>, Failure> {
+        (numbers, several): (&[usize], Option<&str>),
+        order: Option<&'a dyn Order>,
+    ) -> Result<Destination<'a>, Failure> {
         let place = self.place(output, several.is_some())?;
         self.check(&place, several.is_some())?;
         match &place {
@@ -111,7 +153,11 @@ impl PictureArgs {
             Place::Files(pattern) => check_pattern(pattern, numbers, several)?,
             Place::Film(kind, file) => self.film.check(*kind, file)?,
         }
-        Ok(Destination { args: self, place })
+        Ok(Destination {
+            args: self,
+            place,
+            order,
+        })
     }
 
     fn place(&self, output: Option<&Path>, several: bool) -> Result<Place, Failure> {
@@ -169,6 +215,21 @@ impl PictureArgs {
                 "{flag} goes picture by picture, and a film is whole: leave it out, or name numbered pictures, as -o \
                  frame_{{:04}}.png"
             )));
+        }
+        let is_png = match place {
+            Place::Folder(_) => true,
+            Place::Files(file) => {
+                is_stream
+                    || file
+                        .extension()
+                        .is_some_and(|it| it.eq_ignore_ascii_case("png"))
+            }
+            Place::Nowhere | Place::Film(..) => false,
+        };
+        if self.png.is_some() && !is_png {
+            return Err(Failure::Usage(
+                "--png is how .png files are compressed: give -o a name that ends in .png, or leave it out".into(),
+            ));
         }
         if is_stream && self.skip_existing {
             return Err(Failure::Usage(
@@ -233,6 +294,43 @@ impl Destination<'_> {
         }
     }
 
+    /// The run of many commands that asks for single pictures, if one does.
+    pub(super) fn order(&self) -> Option<&dyn Order> {
+        self.order
+    }
+
+    /// What a run of many commands knows of this one, whose pictures have a size.
+    pub(super) fn plan(
+        &self,
+        (scenes, device): (&SceneArgs, HeadlessDesc),
+        numbers: &[usize],
+        (width, height): (u32, u32),
+    ) -> Plan {
+        let (frames, numbers) = match self.place {
+            Place::Film(..) => (numbers.len(), &[0][..]),
+            _ => (1, numbers),
+        };
+        let called = |&number: &usize| {
+            let file = self.file(number, NAME).unwrap_or_default();
+            let text = file.to_string_lossy();
+            let is_open = text.contains(NAME);
+            let number_too = format!("{text}, {number}");
+            (number, if is_open { number_too } else { text.into() })
+        };
+        let bytes = scenes.places().into_iter().map(|place| {
+            let length = std::fs::metadata(place).map_or(0, |about| about.len());
+            length as f64
+        });
+        let gaussians = bytes.sum::<f64>() / BYTES;
+        let pixels = f64::from(width) * f64::from(height);
+        Plan {
+            pictures: numbers.iter().map(called).collect(),
+            work: frames as f64 * (gaussians + 0.5 * pixels),
+            scene: format!("{scenes:?}"),
+            device,
+        }
+    }
+
     /// The files of pictures of these numbers that have no names.
     pub(super) fn files(&self, numbers: &[usize]) -> Vec<PathBuf> {
         let files = numbers.iter().filter_map(|number| self.file(*number, ""));
@@ -250,7 +348,7 @@ impl Destination<'_> {
         let of_one = |what| {
             let (number, name) = called(&what);
             let file = self.file(number, &name);
-            Planned { what, file }
+            Planned { number, what, file }
         };
         let mut planned: Vec<_> = all.into_iter().map(of_one).collect();
         if !matches!(self.place, Place::Film(..)) {
@@ -265,6 +363,9 @@ impl Destination<'_> {
                     counted(whole as u64, "picture")
                 ));
             }
+        }
+        if let (Some(order), false) = (self.order, matches!(self.place, Place::Film(..))) {
+            planned.retain(|one| order.wants(one.number));
         }
         let before = planned.len();
         if self.args.skip_existing {
@@ -313,7 +414,7 @@ fn check_distinct<T>(
     called: impl Fn(&T) -> (usize, String),
 ) -> Result<(), Failure> {
     let mut files = HashMap::new();
-    for Planned { what, file } in planned {
+    for Planned { what, file, .. } in planned {
         let Some(file) = file else {
             return Ok(());
         };

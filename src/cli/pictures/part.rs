@@ -1,23 +1,28 @@
-//! `--part`: the share of one of several jobs.
+//! `--part` and `--shard`: the share of one of several jobs.
 
 use std::fmt;
+use std::str::FromStr;
 
 /// One part of so many.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Part {
+pub(in super::super) struct Part {
     /// From 1.
     number: u32,
     of: u32,
 }
 
-/// The value of `--part`.
-pub(super) fn part(text: &str) -> Result<Part, String> {
-    let numbers = text.split_once('/');
-    let numbers = numbers.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
-    match numbers {
-        Some((number, of)) if (1..=of).contains(&number) => Ok(Part { number, of }),
-        Some((_, of)) if of > 0 => Err(format!("the parts of {of} are 1/{of} to {of}/{of}")),
-        _ => Err("expected a part and the number of parts, as 3/10".into()),
+impl FromStr for Part {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers = text.split_once('/');
+        let numbers =
+            numbers.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+        match numbers {
+            Some((number, of)) if (1..=of).contains(&number) => Ok(Self { number, of }),
+            Some((_, of)) if of > 0 => Err(format!("the parts of {of} are 1/{of} to {of}/{of}")),
+            _ => Err("expected a part and the number of parts, as 3/10".into()),
+        }
     }
 }
 
@@ -29,6 +34,12 @@ impl Part {
         let end = |part: u32| (count * u128::from(part) / u128::from(self.of)) as usize;
         all.truncate(end(self.number));
         all.split_off(end(self.number - 1))
+    }
+
+    /// True if this is the part in which a share of the whole lies, from 0 to below 1.
+    pub(in super::super) fn has(self, share: f64) -> bool {
+        let part = (share * f64::from(self.of)) as u32;
+        part.min(self.of - 1) == self.number - 1
     }
 }
 
@@ -59,8 +70,11 @@ mod tests {
 
     #[test]
     fn parts_are_read_as_they_are_written() {
-        assert_eq!(part("3/10"), Ok(Part { number: 3, of: 10 }));
-        assert_eq!(part("1/1").map(|part| part.to_string()), Ok("1/1".into()));
+        assert_eq!("3/10".parse(), Ok(Part { number: 3, of: 10 }));
+        assert_eq!(
+            "1/1".parse().map(|part: Part| part.to_string()),
+            Ok("1/1".into())
+        );
         for wrong in [
             "",
             "3",
@@ -72,7 +86,7 @@ mod tests {
             "1/2/3",
             "1/4294967296",
         ] {
-            assert!(part(wrong).is_err(), "{wrong}");
+            assert!(wrong.parse::<Part>().is_err(), "{wrong}");
         }
     }
 }

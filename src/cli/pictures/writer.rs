@@ -1,6 +1,8 @@
-//! Pictures on their way to their places.
+//! Pictures on their way to their places: the next ones are drawn while threads encode and write those before.
 
-use std::path::PathBuf;
+use std::num::NonZero;
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, RwLockReadGuard, mpsc};
+use std::thread;
 
 use super::super::failure::Failure;
 use super::super::film::Film;
@@ -10,74 +12,222 @@ use super::super::report::Answer;
 use super::drawn::{Drawn, Written};
 use super::{Destination, Place, Planned};
 
+/// The most memory of pictures that wait to be encoded, bytes.
+const WAITING: u64 = 256 << 20;
+
+/// What has become of the pictures that were drawn. They are counted in the order in which they were.
+#[derive(Default)]
+struct Outcome {
+    written: Written,
+    /// The number of pictures that are reported.
+    reported: usize,
+    /// True where nobody wants more.
+    is_over: bool,
+    failure: Option<Failure>,
+}
+
+/// A run's pictures between drawing and writing.
+struct Writer<'a, T> {
+    destination: &'a Destination<'a>,
+    profile: &'a Profile,
+    planned: &'a [Planned<T>],
+    film: Option<Mutex<Film>>,
+    outcome: Mutex<Outcome>,
+    /// Told of each change of the outcome.
+    changed: Condvar,
+}
+
 impl Destination<'_> {
     /// Draws the pictures, all of a film of one `size`, and hands each on; ends early where nobody wants more.
-    pub(in super::super) fn draw<T>(
+    pub(in super::super) fn draw<T: Sync>(
         &self,
         what: &'static str,
         profile: &Profile,
         (planned, size): (&[Planned<T>], (u32, u32)),
         mut draw: impl FnMut(&Planned<T>) -> Result<Drawn, Failure>,
     ) -> Result<Written, Failure> {
-        let mut film = match &self.place {
+        let film = match &self.place {
             Place::Film(kind, file) => {
-                Some(self.args.film.begin(*kind, file, size, planned.len())?)
+                if let Some(order) = self.order
+                    && !order.begin(0, Some(file))?
+                {
+                    return Ok(Written::default());
+                }
+                let film = self.args.film.begin(*kind, file, size, planned.len())?;
+                Some(Mutex::new(film))
             }
             _ => None,
         };
-        let mut written = Written::default();
-        let mut progress = Progress::new(what);
-        for (done, one) in planned.iter().enumerate() {
-            progress.update(done as u64, planned.len() as u64);
-            let drawn = draw(one)?;
-            if !self.put(
-                profile,
-                film.as_mut(),
-                (one.file.as_ref(), drawn),
-                &mut written,
-            )? {
-                break;
+        let threads = match planned.len() {
+            // A trace shows one thing after the other.
+            0 | 1 => 0,
+            _ if profile.is_traced() => 0,
+            _ => threads(size, film.is_some()),
+        };
+        let writer = Writer {
+            destination: self,
+            profile,
+            planned,
+            film,
+            outcome: Mutex::default(),
+            changed: Condvar::new(),
+        };
+        let (pictures, waiting) = mpsc::sync_channel::<(usize, usize, Drawn)>(threads);
+        let waiting = Mutex::new(waiting);
+        // Whoever waits for an earlier picture's turn knows that it gets one: they become unsettled in their order.
+        let next = || {
+            let waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
+            waiting.recv().map(|drawn| (drawn, writer.unsettled()))
+        };
+        let drawn = thread::scope(|scope| {
+            let pictures = pictures; // gone with the last one, so that the threads end
+            for _ in 0..threads {
+                scope.spawn(|| {
+                    while let Ok(((turn, index, drawn), _unsettled)) = next() {
+                        writer.put(turn, index, drawn);
+                    }
+                });
             }
-        }
-        if let Some(film) = film {
-            profile.span("encode", || film.finish())?;
-        }
-        Ok(written)
+            let mut progress = Progress::new(what);
+            let mut turn = 0;
+            for (index, one) in planned.iter().enumerate() {
+                progress.update(index as u64, planned.len() as u64);
+                if writer.outcome().is_over {
+                    break;
+                }
+                if let (Some(order), None) = (self.order, &writer.film)
+                    && !order.begin(one.number, one.file.as_deref())?
+                {
+                    continue;
+                }
+                let picture = draw(one)?;
+                if threads == 0 {
+                    let _unsettled = writer.unsettled();
+                    writer.put(turn, index, picture);
+                } else {
+                    let sent = pictures.send((turn, index, picture));
+                    sent.expect("the threads wait for more");
+                }
+                turn += 1;
+            }
+            Ok(())
+        });
+        writer.finish(drawn)
+    }
+}
+
+/// The number of threads that encode pictures of a size; those of a film are encoded one after the other.
+fn threads((width, height): (u32, u32), is_film: bool) -> usize {
+    let bytes = 16 * u64::from(width) * u64::from(height);
+    // Each thread has one picture, and another one waits for it.
+    let most = WAITING / (2 * bytes).max(1);
+    let cores = thread::available_parallelism().map_or(1, NonZero::get);
+    let wanted = if is_film { 1 } else { cores };
+    wanted.min(most as usize)
+}
+
+impl<T> Writer<'_, T> {
+    fn outcome(&self) -> MutexGuard<'_, Outcome> {
+        self.outcome.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Puts a picture to its place, and prints its line; false where nobody wants more.
-    fn put(
+    /// True where each picture gets a line.
+    fn prints(&self) -> bool {
+        self.destination.args.answer() == Answer::Lines
+    }
+
+    /// Keeps the process from being told to end while a picture has its name and not yet its line.
+    fn unsettled(&self) -> Option<RwLockReadGuard<'static, ()>> {
+        self.prints().then(output::unsettled)
+    }
+
+    /// Puts a picture to its place, and reports it in its turn.
+    fn put(&self, turn: usize, index: usize, mut drawn: Drawn) {
+        let one = &self.planned[index];
+        let saved = self.save(one, &mut drawn);
+        let mut outcome = self.outcome();
+        while outcome.reported != turn && !outcome.is_over {
+            let changed = self.changed.wait(outcome);
+            outcome = changed.unwrap_or_else(PoisonError::into_inner);
+        }
+        if !outcome.is_over {
+            let reported =
+                saved.and_then(|wanted| self.report(&mut outcome.written, one, drawn, wanted));
+            outcome.reported += 1;
+            match reported {
+                Ok(is_wanted) => outcome.is_over = !is_wanted,
+                Err(failure) => {
+                    outcome.is_over = true;
+                    outcome.failure = Some(failure);
+                }
+            }
+        }
+        drop(outcome);
+        self.changed.notify_all();
+    }
+
+    /// Encodes and writes a picture; false where nobody wants more.
+    fn save(&self, one: &Planned<T>, drawn: &mut Drawn) -> Result<bool, Failure> {
+        let (Some(picture), Some(file)) = (drawn.picture.take(), &one.file) else {
+            return Ok(true);
+        };
+        let channels = &drawn.channels;
+        let saved = self.profile.span("encode", || match &self.film {
+            Some(film) => film
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .add(&picture),
+            None if channels.is_empty() => {
+                let compression = self.destination.args.png.unwrap_or_default();
+                output::picture(&picture, file, compression).map(|()| true)
+            }
+            None => picture.save_with(file, channels).map(|()| true),
+        });
+        Ok(saved?)
+    }
+
+    /// Reports a picture that is at its place; false where nobody wants more.
+    fn report(
         &self,
-        profile: &Profile,
-        film: Option<&mut Film>,
-        (file, drawn): (Option<&PathBuf>, Drawn),
         written: &mut Written,
+        one: &Planned<T>,
+        Drawn { frame, faces, .. }: Drawn,
+        mut is_wanted: bool,
     ) -> Result<bool, Failure> {
-        let Drawn {
-            frame,
-            faces,
-            picture,
-            channels,
-        } = drawn;
-        let prints = self.args.answer() == Answer::Lines;
-        let _unsettled = prints.then(output::unsettled);
-        let mut is_wanted = true;
-        if let (Some(picture), Some(file)) = (picture, file) {
-            profile.span("encode", || match film {
-                Some(film) => film.add(&picture).map(|wanted| is_wanted = wanted),
-                None if channels.is_empty() => output::picture(&picture, file),
-                None => picture.save_with(file, &channels),
-            })?;
+        if let Some(file) = &one.file {
             if is_wanted && written.files.last() != Some(file) {
                 written.files.push(file.clone());
             }
+            if let (Some(order), None) = (self.destination.order, &self.film) {
+                order.end(one.number, file, &frame)?;
+            }
         }
-        if prints {
+        if self.prints() {
             // Pictures are wanted, even if nobody reads their lines.
-            is_wanted = output::json_line(&frame)? || file.is_some();
+            is_wanted = output::json_line(&frame)? || one.file.is_some();
         }
         written.pictures.push(frame);
         written.faces.extend(faces);
         Ok(is_wanted)
+    }
+
+    /// The pictures and files, once all that were `drawn` are written. The first failure is returned.
+    fn finish(self, drawn: Result<(), Failure>) -> Result<Written, Failure> {
+        let outcome = self.outcome.into_inner();
+        let Outcome {
+            written, failure, ..
+        } = outcome.unwrap_or_else(PoisonError::into_inner);
+        failure.map_or(drawn, Err)?;
+        if let Some(film) = self.film {
+            let film = film.into_inner().unwrap_or_else(PoisonError::into_inner);
+            self.profile.span("encode", || film.finish())?;
+            let first = self.planned.first().zip(written.pictures.first());
+            if let (Some(order), Some((one, frame))) = (self.destination.order, first)
+                && let Some(file) = &one.file
+            {
+                order.end(0, file, frame)?;
+            }
+        }
+        Ok(written)
     }
 }

@@ -1,0 +1,413 @@
+//! Jobs: commands as JSON, by the names of their flags, and many of them as one with `for`.
+
+use std::ffi::OsString;
+use std::fs;
+use std::io::{Read as _, Write as _};
+use std::path::Path;
+
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Command};
+use rara::Error;
+use serde_json::{Map, Value};
+
+use super::super::failure::Failure;
+use super::super::output;
+use super::super::values::STANDARD;
+
+/// Jobs of one file at most, so that a slip of a finger in a range does not fill the memory.
+const MOST: usize = 1_000_000;
+
+/// The flags that a run of many commands has itself.
+const REFUSED: [&str; 6] = [
+    "quiet",
+    "json",
+    "json-lines",
+    "part",
+    "skip-existing",
+    "save-job",
+];
+
+/// A command.
+#[derive(Debug, Clone)]
+pub(super) struct Job {
+    /// What it is called in messages: its file and its number there.
+    pub(super) name: String,
+    /// The words of its command line.
+    pub(super) words: Vec<OsString>,
+}
+
+/// The jobs of a file, or of standard input.
+pub(super) fn read(path: &Path) -> Result<Vec<Job>, Failure> {
+    let mut text = String::new();
+    match path == Path::new(STANDARD) {
+        true => std::io::stdin().read_to_string(&mut text).map(drop),
+        false => fs::read_to_string(path).map(|read| text = read),
+    }
+    .map_err(Error::io(path))?;
+    let mut jobs = Vec::new();
+    for value in serde_json::Deserializer::from_str(&text).into_iter::<Value>() {
+        let value = value.map_err(|error| {
+            let expected = "jobs are a list in JSON, or one job a line";
+            Error::format(path, format!("{error}: {expected}"))
+        })?;
+        collect(value, &Map::new(), path, &mut jobs)?;
+    }
+    Ok(jobs)
+}
+
+/// Adds the jobs that a value is or lists; what `common` says holds for each unless it says otherwise.
+fn collect(
+    value: Value,
+    common: &Map<String, Value>,
+    path: &Path,
+    jobs: &mut Vec<Job>,
+) -> Result<(), Failure> {
+    let wrong = |number: usize, why: String| {
+        let message = format!("job {number}: {why}");
+        Failure::from(Error::format(path, message))
+    };
+    match value {
+        Value::Array(all) => all
+            .into_iter()
+            .try_for_each(|one| collect(one, common, path, jobs)),
+        Value::Object(mut job) => {
+            for (key, value) in common {
+                job.entry(key).or_insert_with(|| value.clone());
+            }
+            if let Some(all) = job.remove("jobs") {
+                return collect(all, &job, path, jobs);
+            }
+            for filled in templates(job).map_err(|why| wrong(jobs.len() + 1, why))? {
+                let number = jobs.len() + 1;
+                if number > MOST {
+                    return Err(wrong(number, format!("a file has at most {MOST} jobs")));
+                }
+                jobs.push(Job {
+                    name: format!("{}, job {number}", path.display()),
+                    words: words(&filled).map_err(|why| wrong(number, why))?,
+                });
+            }
+            Ok(())
+        }
+        other => Err(wrong(
+            jobs.len() + 1,
+            format!(
+                "{other} is no job, which is an object: {{\"scene\": \"a.ply\", \"output\": \"a.png\"}}"
+            ),
+        )),
+    }
+}
+
+/// The jobs that a job with `for` stands for: each value of each name, the last name the fastest.
+fn templates(mut job: Map<String, Value>) -> Result<Vec<Map<String, Value>>, String> {
+    let names = match job.remove("for") {
+        None => return Ok(vec![job]),
+        Some(Value::Object(names)) => names,
+        Some(other) => {
+            return Err(format!(
+                "\"for\" is an object of names and values, and not {other}"
+            ));
+        }
+    };
+    let mut all = vec![Vec::new()];
+    for (name, values) in &names {
+        let values = series(values).map_err(|why| format!("\"for\", {name}: {why}"))?;
+        if all.len().saturating_mul(values.len()) > MOST {
+            return Err(format!("\"for\" makes more than {MOST} jobs"));
+        }
+        let mut longer = Vec::new();
+        for one in &all {
+            for value in &values {
+                let mut with: Vec<(&str, Value)> = one.clone();
+                with.push((name, value.clone()));
+                longer.push(with);
+            }
+        }
+        all = longer;
+    }
+    let filled = |set: Vec<(&str, Value)>| {
+        let value = substituted(&Value::Object(job.clone()), &set)?;
+        match value {
+            Value::Object(job) => Ok(job),
+            _ => unreachable!("an object stays one"),
+        }
+    };
+    all.into_iter().map(filled).collect()
+}
+
+/// The values of a list, of `0..9` (whole numbers, both ends included) or of `0..1:11` (so many numbers in equal steps).
+fn series(values: &Value) -> Result<Vec<Value>, String> {
+    let text = match values {
+        Value::Array(all) => return Ok(all.clone()),
+        Value::String(text) => text,
+        other => return Err(format!("{other} is no list and no range")),
+    };
+    let expected = || format!("'{text}' is no range, as 0..9 or 0..1:11");
+    let (from, rest) = text.split_once("..").ok_or_else(expected)?;
+    let Some((to, count)) = rest.split_once(':') else {
+        let (from, to) = (from.trim().parse::<i64>(), rest.trim().parse::<i64>());
+        let (Ok(from), Ok(to)) = (from, to) else {
+            return Err(expected());
+        };
+        if from.abs_diff(to) >= MOST as u64 {
+            return Err(format!("'{text}' is more than {MOST} values"));
+        }
+        let up = (from.min(to)..=from.max(to)).map(Value::from);
+        return Ok(match from <= to {
+            true => up.collect(),
+            false => up.rev().collect(),
+        });
+    };
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|n| n.is_finite());
+    let count = count
+        .trim()
+        .parse::<usize>()
+        .ok()
+        .filter(|count| *count > 0);
+    let (Some(from), Some(to), Some(count)) = (number(from), number(to), count) else {
+        return Err(expected());
+    };
+    if count > MOST {
+        return Err(format!("'{text}' is more than {MOST} values"));
+    }
+    let at = |index: usize| match count {
+        1 => from,
+        _ => from + (to - from) * index as f64 / (count - 1) as f64,
+    };
+    // Twelve digits, so that 0..1:11 has 0.3 and not 0.30000000000000004.
+    let rounded = |value: f64| format!("{value:.12}").parse::<f64>().unwrap_or(value);
+    Ok((0..count).map(|index| rounded(at(index)).into()).collect())
+}
+
+/// A value in whose texts `${name}` is replaced, and `${name:04}` by a number with zeros before it.
+fn substituted(value: &Value, set: &[(&str, Value)]) -> Result<Value, String> {
+    Ok(match value {
+        Value::String(text) => Value::String(filled(text, set)?),
+        Value::Array(all) => {
+            let all = all.iter().map(|one| substituted(one, set));
+            Value::Array(all.collect::<Result<_, _>>()?)
+        }
+        Value::Object(all) => {
+            let all = all
+                .iter()
+                .map(|(key, value)| Ok((key.clone(), substituted(value, set)?)));
+            Value::Object(all.collect::<Result<_, String>>()?)
+        }
+        other => other.clone(),
+    })
+}
+
+fn filled(text: &str, set: &[(&str, Value)]) -> Result<String, String> {
+    let mut made = String::new();
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once("${") {
+        let (name, after) = after
+            .split_once('}')
+            .ok_or_else(|| format!("'{text}' has ${{ and no }}"))?;
+        let (name, digits) = match name.split_once(":0") {
+            Some((name, digits)) => (name, digits.parse::<usize>().ok().filter(|d| *d < 20)),
+            None => (name, Some(0)),
+        };
+        let value = set
+            .iter()
+            .find(|(of, _)| *of == name)
+            .map(|(_, value)| value);
+        let (Some(value), Some(digits)) = (value, digits) else {
+            let names: Vec<_> = set.iter().map(|(name, _)| *name).collect();
+            return Err(format!(
+                "'{text}' asks for '{name}', and \"for\" has {}",
+                names.join(", ")
+            ));
+        };
+        made += before;
+        made += &match value {
+            Value::String(value) => format!("{value:0>digits$}"),
+            number => format!("{:0>digits$}", number.to_string()),
+        };
+        rest = after;
+    }
+    Ok(made + rest)
+}
+
+/// The command line that a job is.
+fn words(job: &Map<String, Value>) -> Result<Vec<OsString>, String> {
+    let command = match job.get("command") {
+        None => "render",
+        Some(Value::String(command)) if command == "render" || command == "sweep" => command,
+        Some(other) => {
+            return Err(format!(
+                "the command {other} is neither \"render\" nor \"sweep\""
+            ));
+        }
+    };
+    let mut words: Vec<OsString> = vec!["rara".into(), command.into()];
+    let mut scenes = Vec::new();
+    for (key, value) in job {
+        let flag = key.replace('_', "-");
+        match (key.as_str(), value) {
+            ("command", _) => {}
+            _ if REFUSED.contains(&flag.as_str()) => {
+                return Err(format!(
+                    "\"{key}\" is no part of a job: rara batch has its own"
+                ));
+            }
+            ("scene", value) => scenes = texts(key, value)?,
+            (_, Value::Bool(true)) => words.push(format!("--{flag}").into()),
+            (_, Value::Bool(false) | Value::Null) => {}
+            (_, value) => {
+                let given = texts(key, value)?;
+                words.extend(given.iter().map(|text| format!("--{flag}={text}").into()));
+            }
+        }
+    }
+    if scenes.is_empty() {
+        return Err("\"scene\" is missing: a file, or a list of files that are its layers".into());
+    }
+    words.push("--".into());
+    words.extend(scenes.into_iter().map(OsString::from));
+    Ok(words)
+}
+
+/// What is typed behind a flag, once for each.
+fn texts(key: &str, value: &Value) -> Result<Vec<String>, String> {
+    match value {
+        Value::String(text) => Ok(vec![text.clone()]),
+        Value::Number(number) => Ok(vec![number.to_string()]),
+        Value::Array(all) => {
+            let all = all.iter().map(|one| texts(key, one));
+            Ok(all.collect::<Result<Vec<_>, _>>()?.concat())
+        }
+        other => Err(format!(
+            "\"{key}\" is a text, a number or a list of these, and not {other}"
+        )),
+    }
+}
+
+/// Adds the job that a command line means to a file, as a line.
+pub(in super::super) fn save(
+    file: &Path,
+    command: &Command,
+    typed: &ArgMatches,
+) -> Result<(), Failure> {
+    output::check_file(file)?;
+    let line = format!("{}\n", of_command_line(command, typed));
+    let opened = fs::File::options().create(true).append(true).open(file);
+    let written = opened.and_then(|mut opened| opened.write_all(line.as_bytes()));
+    Ok(written.map_err(Error::io(file))?)
+}
+
+fn of_command_line(command: &Command, typed: &ArgMatches) -> Value {
+    let mut job = Map::new();
+    job.insert("command".into(), command.get_name().into());
+    for arg in command.get_arguments() {
+        let id = arg.get_id().as_str();
+        let is_typed = typed.value_source(id) == Some(ValueSource::CommandLine);
+        if !is_typed || ["save_job", "quiet"].contains(&id) {
+            continue;
+        }
+        let key = arg.get_long().unwrap_or("scene").to_owned();
+        let raw = typed.get_raw(id).into_iter().flatten();
+        let mut values: Vec<Value> = raw.map(|raw| raw.to_string_lossy().into()).collect();
+        let value = match (arg.get_action().takes_values(), values.len()) {
+            (false, _) => true.into(),
+            (true, 1) => values.remove(0),
+            (true, _) => values.into(),
+        };
+        job.insert(key, value);
+    }
+    job.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn lines(value: Value) -> Result<Vec<String>, String> {
+        let mut jobs = Vec::new();
+        let done = collect(value, &Map::new(), Path::new("f"), &mut jobs);
+        done.map_err(|failure| failure.to_string())?;
+        let line = |job: &Job| {
+            let words = job
+                .words
+                .iter()
+                .skip(1)
+                .map(|word| word.to_str().expect("text"));
+            words.collect::<Vec<_>>().join(" ")
+        };
+        Ok(jobs.iter().map(line).collect())
+    }
+
+    #[test]
+    fn flags_have_the_names_that_they_have_on_the_command_line() {
+        let job = json!({"scene": ["a.ply", "-b.ply"], "output": "o.png", "clip_op": "or", "clip": ["x", "y"],
+                         "trace-all": true, "validation": false, "sigma": 3});
+        let line = "render --clip=x --clip=y --clip-op=or --output=o.png --sigma=3 --trace-all -- a.ply -b.ply";
+        assert_eq!(lines(job).as_deref(), Ok(&[line.to_owned()][..]));
+    }
+
+    #[test]
+    fn ranges_and_templates_make_many_of_one() {
+        let job = json!({"size": "8x8", "jobs": [
+            {"scene": "${s}.ply", "output": "${s}_${n:03}.png", "clip": "plane:z=${z}%", "size": "4x4",
+             "for": {"n": "9..10", "s": ["a", "b"], "z": "0..50:2"}},
+            {"command": "sweep", "scene": "c", "output": "c"}]});
+        let made = lines(job).expect("jobs");
+        assert_eq!(made.len(), 9);
+        let third = "render --clip=plane:z=0.0% --output=b_009.png --size=4x4 -- b.ply";
+        assert_eq!(made[2], third);
+        assert_eq!(made[8], "sweep --output=c --size=8x8 -- c");
+        let numbers = |range: &str| series(&range.into()).expect("a range");
+        assert_eq!(numbers("3..1"), [3, 2, 1].map(Value::from));
+        assert_eq!(numbers("0..1:11")[3], json!(0.3));
+        assert_eq!(numbers("2..5:1"), [json!(2.0)]);
+    }
+
+    #[test]
+    fn what_is_no_job_is_refused_by_its_number_with_the_remedy() {
+        let scene = json!({"scene": "a", "output": "b"});
+        let with = |key: &str, value: Value| {
+            let mut job = scene.clone();
+            job[key] = value;
+            json!([scene, job])
+        };
+        for (value, parts) in [
+            (json!([scene, 7]), ["job 2", "is no job"]),
+            (json!([{"output": "b"}]), ["job 1", "\"scene\" is missing"]),
+            (with("command", "bake".into()), ["job 2", "neither"]),
+            (
+                with("json", true.into()),
+                ["job 2", "rara batch has its own"],
+            ),
+            (with("size", json!({})), ["job 2", "\"size\""]),
+            (
+                with("for", "0..9".into()),
+                ["job 2", "\"for\" is an object"],
+            ),
+            (with("for", json!({"z": "0.."})), ["z", "no range"]),
+            (with("for", json!({"z": "0..9999999"})), ["z", "more than"]),
+            (
+                with("for", json!({"z": "0..1:9999999"})),
+                ["z", "more than"],
+            ),
+            (
+                with("for", json!({"a": "1..9999", "b": "1..9999"})),
+                ["job 2", "more than"],
+            ),
+            (
+                json!([{"scene": "a", "output": "${no}", "for": {"z": "1..2"}}]),
+                ["'no'", "has z"],
+            ),
+            (
+                json!([{"scene": "a", "output": "${z", "for": {"z": "1..2"}}]),
+                ["job 1", "no }"],
+            ),
+        ] {
+            let said = lines(value.clone()).expect_err("refused");
+            assert!(
+                parts.iter().all(|part| said.contains(part)),
+                "{value}: {said}"
+            );
+        }
+    }
+}

@@ -1,0 +1,520 @@
+//! `rara batch`: many commands as one, over any number of workers.
+
+mod jobs;
+mod shard;
+mod state;
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
+
+use clap::Args;
+use rara::Headless;
+use serde_json::json;
+
+use super::failure::Failure;
+use super::kept::Kept;
+use super::output::{self, Progress, counted, say};
+use super::pictures::{Order, Part, Plan};
+use super::report::Frame;
+use super::times;
+use super::{Command, needs_met, parsed};
+use jobs::Job;
+pub(super) use jobs::save as save_job;
+use state::{Claim, Entry, State, Worker, stamp};
+
+/// Draw the pictures of many commands, and share them among workers
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  rara batch jobs.json
+  rara batch jobs.json --shard 3/10
+  rara batch jobs.json --status
+  rara render scene.ply -o view_{}.png --cameras cameras.json --view all --save-job jobs.json
+
+A job is a command as JSON: {\"scene\": \"a.ply\", \"output\": \"a.png\", \"clip\": [\"plane:z=40%\"], \"size\": \"512x512\"}. \
+\"scene\" is a file or a list of layers, and every other key is a flag of rara render, or of rara sweep beside \
+\"command\": \"sweep\"; true is a flag without a value. A file has one job, several jobs one after the other, a list of them, \
+or {\"jobs\": [...]} beside keys that all of them share. \"for\": {\"z\": \"0..100:101\", \"scan\": [\"a\", \"b\"]} makes a job of \
+each combination: ${z} stands for the value, ${z:03} for a number with zeros before it, 0..9 for whole numbers with both ends, \
+and 0..1:11 for 11 numbers in equal steps. Paths are relative to the working directory.
+
+What is done is noted in the folder of --state, also by workers on other machines, and is not done again. Array jobs of Slurm \
+and SGE draw their share; those of Kubernetes and PBS too if RARA_SHARDS says how many there are. A worker that is told to end, \
+or is killed, leaves pictures that are whole: start it again to draw the rest. The exit status is 1 if a picture is missing.")]
+pub(super) struct Batch {
+    /// Files of jobs; - is standard input
+    #[arg(value_name = "JOBS", required = true)]
+    files: Vec<PathBuf>,
+    /// Draw only share K of N
+    ///
+    /// Shares take about equally long, and are the same each time.
+    #[arg(long, value_name = "K/N")]
+    shard: Option<Part>,
+    /// Folder of what is done [default: the name of the first file and .done]
+    #[arg(long, value_name = "DIR")]
+    state: Option<PathBuf>,
+    /// Draw pictures again that another job, version or driver has drawn
+    #[arg(long)]
+    redraw: bool,
+    /// Say what is done and what is missing, and draw nothing
+    #[arg(long)]
+    status: bool,
+    /// Say what pictures have taken, and draw nothing
+    #[arg(long, conflicts_with = "status")]
+    report: bool,
+    /// Print that, or the statistics of each picture as a line, as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// A job and its pictures.
+struct Planned {
+    job: Job,
+    /// What stands for its text.
+    stamp: String,
+    plan: Plan,
+    /// The numbers of the pictures that are to be drawn here.
+    wanted: BTreeSet<usize>,
+}
+
+impl Batch {
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let folder = self.folder()?;
+        let mut planned = self.planned()?;
+        let share = self.share(&planned)?;
+        let state = State::read(&folder)?;
+        if state.unread > 0 {
+            say(format_args!(
+                "note: {}: {} and left out",
+                folder.display(),
+                match state.unread {
+                    1 => "1 line is no entry".into(),
+                    _ => format!("{} are no entries", counted(state.unread as u64, "line")),
+                }
+            ));
+        }
+        if self.status {
+            return self.say_status(&planned, &share, &state);
+        }
+        if self.report {
+            return self.say_report(&planned, &share, &state);
+        }
+        let stale = choose(&mut planned, &share, &state, self.redraw);
+        if stale > 0 {
+            let drawn = match self.redraw {
+                true => "drawn again",
+                false => "left as they are: --redraw draws them again",
+            };
+            say(format_args!(
+                "note: {} drawn by another job, version or driver, and {drawn}",
+                match stale {
+                    1 => "1 picture was".into(),
+                    _ => format!("{} were", counted(stale as u64, "picture")),
+                }
+            ));
+        }
+        draw(&planned, &folder, &state, self.json)?;
+        let now = State::read(&folder)?;
+        let missing = missing(&planned, &share, &now);
+        say(format_args!(
+            "{} of {} there",
+            share.len() - missing.len(),
+            match share.len() {
+                1 => "1 picture is".into(),
+                count => format!("{} are", counted(count as u64, "picture")),
+            }
+        ));
+        refuse(&missing)
+    }
+
+    /// Where it is noted what is done.
+    fn folder(&self) -> Result<PathBuf, Failure> {
+        match (&self.state, self.files.iter().find(|file| *file != Path::new("-"))) {
+            (Some(folder), _) => Ok(folder.clone()),
+            (None, Some(file)) => {
+                let mut name = file.clone().into_os_string();
+                name.push(".done");
+                Ok(name.into())
+            }
+            (None, None) => Err(Failure::Usage(
+                "jobs from standard input have no file beside which their state is kept: give --state a folder".into(),
+            )),
+        }
+    }
+
+    /// All jobs, those of one scene one after the other.
+    fn planned(&self) -> Result<Vec<Planned>, Failure> {
+        let mut planned: Vec<Planned> = Vec::new();
+        let mut names: HashMap<String, String> = HashMap::new();
+        for file in &self.files {
+            for job in jobs::read(file)? {
+                let about = |failure: Failure| failure.of(&job.name);
+                let plan = match job.command().map_err(about)? {
+                    Command::Render(command) => command.plan(),
+                    Command::Sweep(command) => command.plan(),
+                    _ => unreachable!("a job has one of these commands"),
+                }
+                .map_err(about)?;
+                for (_, name) in &plan.pictures {
+                    if let Some(other) = names.insert(name.clone(), job.name.clone()) {
+                        return Err(Failure::Usage(format!(
+                            "{}: {name} is a picture of {other} too: give them names that differ",
+                            job.name
+                        )));
+                    }
+                }
+                planned.push(Planned {
+                    stamp: stamp(&format!("{:?}", job.words)),
+                    job,
+                    plan,
+                    wanted: BTreeSet::new(),
+                });
+            }
+        }
+        let mut first: HashMap<String, usize> = HashMap::new();
+        for one in &planned {
+            let next = first.len();
+            first.entry(one.plan.scene.clone()).or_insert(next);
+        }
+        planned.sort_by_key(|one| first[&one.plan.scene]);
+        Ok(planned)
+    }
+
+    /// The pictures of this worker's share: the numbers of a job and of its picture.
+    fn share(&self, planned: &[Planned]) -> Result<Vec<(usize, usize)>, Failure> {
+        let looks = self.status || self.report;
+        let part = match self.shard {
+            None if !looks => shard::of_scheduler(|name| std::env::var(name).ok())?,
+            given => given,
+        };
+        let all = planned
+            .iter()
+            .enumerate()
+            .flat_map(|(job, one)| (0..one.plan.pictures.len()).map(move |index| (job, index)));
+        let all: Vec<_> = all.collect();
+        let Some(part) = part else {
+            return Ok(all);
+        };
+        let work: Vec<_> = all.iter().map(|(job, _)| planned[*job].plan.work).collect();
+        let is_ours = shard::share(part, &work).into_iter();
+        let ours = all.into_iter().zip(is_ours).filter(|(_, is_ours)| *is_ours);
+        let ours: Vec<_> = ours.map(|(picture, _)| picture).collect();
+        say(format_args!(
+            "share {part}: {} of {}",
+            ours.len(),
+            counted(work.len() as u64, "picture")
+        ));
+        Ok(ours)
+    }
+
+    fn say_status(
+        &self,
+        planned: &[Planned],
+        share: &[(usize, usize)],
+        state: &State,
+    ) -> Result<(), Failure> {
+        let missing = missing(planned, share, state);
+        let (version, driver) = (env!("CARGO_PKG_VERSION"), driver(planned, state));
+        let old = share.iter().filter(|(job, index)| {
+            let one = &planned[*job];
+            let entry = state.entries.get(&one.plan.pictures[*index].1);
+            entry.is_some_and(|entry| {
+                entry.is_there() && !is_current(entry, &one.stamp, version, driver.as_deref())
+            })
+        });
+        let old = old.count();
+        let there = share.len() - missing.len();
+        if self.json {
+            output::json(&json!({
+                "pictures": share.len(), "there": there, "of_another": old, "missing": missing,
+            }))?;
+        } else {
+            output::answer(&format!(
+                "pictures    {}\nthere       {there}, {old} of them by another job, version or driver\nmissing     {}",
+                share.len(),
+                missing.len()
+            ))?;
+        }
+        refuse(&missing)
+    }
+
+    fn say_report(
+        &self,
+        planned: &[Planned],
+        share: &[(usize, usize)],
+        state: &State,
+    ) -> Result<(), Failure> {
+        let name = |(job, index): &(usize, usize)| &planned[*job].plan.pictures[*index].1;
+        let entries: Vec<&Entry> = share
+            .iter()
+            .filter_map(|picture| state.entries.get(name(picture)))
+            .collect();
+        let mut workers: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
+        for entry in &entries {
+            let (count, seconds) = workers.entry(&entry.worker).or_default();
+            *count += 1;
+            *seconds += entry.seconds;
+        }
+        let ms = |entry: &&Entry| entry.frame["wall_ms"].as_f64().unwrap_or(0.0);
+        let median = super::combine::Combine::Median.of(entries.iter().map(ms).collect());
+        let seconds = times::sum(entries.iter().map(|entry| entry.seconds));
+        if self.json {
+            let workers = workers.iter().map(|(name, (count, seconds))| {
+                json!({ "worker": name, "pictures": count, "seconds": seconds })
+            });
+            let workers: Vec<_> = workers.collect();
+            return Ok(output::json(&json!({
+                "pictures": entries.len(), "seconds": seconds, "median_wall_ms": median,
+                "workers": workers, "entries": entries,
+            }))?);
+        }
+        let mut lines = vec![format!(
+            "{} in {seconds:.1} s of work, a frame in {median:.2} ms (median)",
+            counted(entries.len() as u64, "picture")
+        )];
+        lines.extend(workers.iter().map(|(name, (count, seconds))| {
+            let pictures = counted(*count as u64, "picture");
+            format!("worker {name}: {pictures} in {seconds:.1} s")
+        }));
+        let mut slowest = entries;
+        slowest.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
+        let slow = slowest.iter().take(5);
+        lines.extend(slow.map(|one| format!("{:.2} s for {}", one.seconds, one.file.display())));
+        Ok(output::answer(&lines.join("\n"))?)
+    }
+}
+
+impl Job {
+    /// The command that it is.
+    fn command(&self) -> Result<Command, Failure> {
+        let (cli, typed) = parsed(self.words.iter().cloned())?;
+        needs_met(&typed)?;
+        Ok(cli.command)
+    }
+}
+
+/// True where a picture would be drawn likewise today. Without a driver any will do.
+fn is_current(entry: &Entry, job: &str, version: &str, driver: Option<&str>) -> bool {
+    entry.job == job
+        && entry.version == version
+        && driver.is_none_or(|driver| entry.driver == driver)
+}
+
+/// The driver that would draw the first job, if any picture is to be compared with it.
+fn driver(planned: &[Planned], state: &State) -> Option<String> {
+    let first = planned.first().filter(|_| !state.entries.is_empty())?;
+    let headless = Headless::new(&first.plan.device).ok()?;
+    Some(headless.driver().to_owned())
+}
+
+/// Says of each job which of the pictures of a share are to be drawn: those that are not there, and with `redraw` those that
+/// another job, version or driver has drawn. Returns the number of these.
+fn choose(planned: &mut [Planned], share: &[(usize, usize)], state: &State, redraw: bool) -> usize {
+    let (version, driver) = (env!("CARGO_PKG_VERSION"), driver(planned, state));
+    let mut stale = 0;
+    for (job, index) in share {
+        let one = &mut planned[*job];
+        let (number, name) = &one.plan.pictures[*index];
+        let is_wanted = match state.entries.get(name).filter(|entry| entry.is_there()) {
+            None => true,
+            Some(entry) if is_current(entry, &one.stamp, version, driver.as_deref()) => false,
+            Some(_) => {
+                stale += 1;
+                redraw
+            }
+        };
+        if is_wanted {
+            one.wanted.insert(*number);
+        }
+    }
+    stale
+}
+
+/// The pictures of a share that are not there.
+fn missing<'a>(planned: &'a [Planned], share: &[(usize, usize)], state: &State) -> Vec<&'a str> {
+    let name = |(job, index): &(usize, usize)| planned[*job].plan.pictures[*index].1.as_str();
+    let is_missing = |name: &&str| {
+        state
+            .entries
+            .get(*name)
+            .is_none_or(|entry| !entry.is_there())
+    };
+    share.iter().map(name).filter(is_missing).collect()
+}
+
+/// Fails where something is missing.
+fn refuse(missing: &[&str]) -> Result<(), Failure> {
+    /// As many names as fit on a line.
+    const NAMED: usize = 5;
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let more = match missing.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let named = missing.iter().take(NAMED).copied().collect::<Vec<_>>();
+    Err(rara::Error::Invalid(format!(
+        "{} missing: {}{more}; draw the rest by the same command",
+        match missing.len() {
+            1 => "1 picture is".into(),
+            count => format!("{} are", counted(count as u64, "picture")),
+        },
+        named.join(", ")
+    ))
+    .into())
+}
+
+/// Draws the pictures that are wanted, job by job. A job that fails is said, and the others are drawn.
+fn draw(planned: &[Planned], folder: &Path, state: &State, prints: bool) -> Result<(), Failure> {
+    let left: Vec<&Planned> = planned
+        .iter()
+        .filter(|one| !one.wanted.is_empty())
+        .collect();
+    if left.is_empty() {
+        return Ok(());
+    }
+    let worker = Worker::new(folder)?;
+    let work = |one: &&Planned| one.plan.work * one.wanted.len() as f64;
+    let run = Run {
+        worker: &worker,
+        state,
+        prints,
+        progress: Mutex::new(Pace {
+            bar: Progress::new("drawing"),
+            begin: Instant::now(),
+            last: Instant::now(),
+            done: 0.0,
+            all: times::sum(left.iter().map(work)),
+        }),
+    };
+    let mut kept = Kept::wanted();
+    for one in left {
+        let order = OneJob {
+            run: &run,
+            planned: one,
+            claims: Mutex::default(),
+            driver: Mutex::default(),
+        };
+        let drawn = match one.job.command()? {
+            Command::Render(command) => command.run_in(&mut kept, Some(&order)),
+            Command::Sweep(command) => command.run_in(&mut kept, Some(&order)),
+            _ => unreachable!("a job has one of these commands"),
+        };
+        if let Err(failure) = drawn {
+            let failure = failure.of(&one.job.name);
+            failure.details().for_each(output::complain);
+            output::complain(&failure);
+        }
+    }
+    Ok(kept.close()?)
+}
+
+/// A run over all jobs.
+struct Run<'a> {
+    worker: &'a Worker,
+    state: &'a State,
+    prints: bool,
+    progress: Mutex<Pace>,
+}
+
+/// How far a run has come.
+struct Pace {
+    bar: Progress,
+    begin: Instant,
+    /// When the last picture was done.
+    last: Instant,
+    /// Work that is done, and all of it.
+    done: f64,
+    all: f64,
+}
+
+impl Pace {
+    /// Some work is done. Returns the seconds since the last time.
+    fn step(&mut self, work: f64) -> f64 {
+        self.done += work;
+        let share = (self.done / self.all).clamp(1e-9, 1.0);
+        let left = self.begin.elapsed().as_secs_f64() * (1.0 / share - 1.0);
+        self.bar.describe(&format!(
+            "drawing, about {:.0} min left",
+            (left / 60.0).ceil()
+        ));
+        self.bar.update((1e3 * share) as u64, 1000);
+        let seconds = self.last.elapsed().as_secs_f64();
+        self.last = Instant::now();
+        seconds
+    }
+}
+
+/// What a run asks of one of its jobs.
+struct OneJob<'a> {
+    run: &'a Run<'a>,
+    planned: &'a Planned,
+    /// Of the pictures that are being drawn.
+    claims: Mutex<HashMap<usize, Claim>>,
+    driver: Mutex<String>,
+}
+
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl OneJob<'_> {
+    /// What a picture is called in the state.
+    fn name(&self, number: usize) -> &str {
+        let mut pictures = self.planned.plan.pictures.iter();
+        let found = pictures.find(|(of, _)| *of == number);
+        &found.expect("it is planned").1
+    }
+}
+
+impl Order for OneJob<'_> {
+    fn wants(&self, number: usize) -> bool {
+        self.planned.wanted.contains(&number)
+    }
+
+    fn begin(&self, number: usize, file: Option<&Path>) -> Result<bool, Failure> {
+        let name = self.name(number);
+        let at = self
+            .run
+            .state
+            .entries
+            .get(name)
+            .map_or(0.0, |entry| entry.at);
+        let claim = self.run.worker.claim((name, at), file)?;
+        let is_free = claim.is_some();
+        lock(&self.claims).extend(claim.map(|claim| (number, claim)));
+        Ok(is_free)
+    }
+
+    fn opened(&self, driver: &str) {
+        *lock(&self.driver) = driver.to_owned();
+    }
+
+    fn end(&self, number: usize, file: &Path, frame: &Frame) -> Result<(), Failure> {
+        let seconds = lock(&self.run.progress).step(self.planned.plan.work);
+        let about = std::fs::metadata(file).map_err(rara::Error::io(file))?;
+        let since = SystemTime::now().duration_since(UNIX_EPOCH);
+        let entry = Entry {
+            picture: self.name(number).to_owned(),
+            file: file.to_owned(),
+            bytes: about.len(),
+            job: self.planned.stamp.clone(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            driver: lock(&self.driver).clone(),
+            worker: rara::files::mark().into(),
+            at: since.map_or(0.0, |since| since.as_secs_f64()),
+            seconds,
+            work: self.planned.plan.work,
+            frame: serde_json::to_value(frame).expect("a frame has string keys only"),
+        };
+        self.run.worker.note(&entry)?;
+        if self.run.prints {
+            output::json_line(&entry)?;
+        }
+        let claim = lock(&self.claims).remove(&number);
+        claim.map_or(Ok(()), |claim| Ok(claim.release(entry.at)?))
+    }
+}

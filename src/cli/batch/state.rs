@@ -1,0 +1,285 @@
+//! What is done of a batch: a file of lines for each worker, which all of them read, and a lock for each picture that is
+//! being drawn.
+//!
+//! A picture gets its name when it is whole, and its line after that. A worker that ends in between has lost the line and no
+//! picture: the next one draws it again, to the same bytes.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File, TryLockError};
+use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use rara::files::mark;
+use rara::{Error, Result};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::super::output;
+
+/// A picture that is done.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Entry {
+    /// Its file, or the pattern of its file and its number where names are left open.
+    pub(super) picture: String,
+    pub(super) file: PathBuf,
+    /// The size of the file.
+    pub(super) bytes: u64,
+    /// What stands for the text of its job.
+    pub(super) job: String,
+    pub(super) version: String,
+    pub(super) driver: String,
+    pub(super) worker: String,
+    /// When it was done, seconds since 1970.
+    pub(super) at: f64,
+    /// Between the picture before and this one.
+    pub(super) seconds: f64,
+    /// What shares are balanced by.
+    pub(super) work: f64,
+    /// What `--json` says of its frame.
+    pub(super) frame: Value,
+}
+
+/// What workers have done.
+#[derive(Debug, Default)]
+pub(super) struct State {
+    pub(super) entries: BTreeMap<String, Entry>,
+    /// Lines that are none of these.
+    pub(super) unread: usize,
+}
+
+impl State {
+    /// Reads what all workers have written into a folder; nothing is done where there is none.
+    pub(super) fn read(folder: &Path) -> Result<Self> {
+        let mut state = Self::default();
+        let files = match fs::read_dir(folder) {
+            Ok(files) => files,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(state),
+            Err(error) => return Err(Error::io(folder)(error)),
+        };
+        for file in files {
+            let path = file.map_err(Error::io(folder))?.path();
+            if path.extension().is_none_or(|ending| ending != "jsonl") {
+                continue;
+            }
+            let text = fs::read(&path).map_err(Error::io(&path))?;
+            let text = String::from_utf8_lossy(&text);
+            // A line without an end is one that its worker has not finished, or never will.
+            let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+            for line in whole.lines() {
+                match serde_json::from_str::<Entry>(line) {
+                    Ok(entry) => state.add(entry),
+                    Err(_) => state.unread += 1,
+                }
+            }
+        }
+        Ok(state)
+    }
+
+    /// Of two entries of one picture the later one counts.
+    fn add(&mut self, entry: Entry) {
+        match self.entries.get(&entry.picture) {
+            Some(there) if there.at > entry.at => {}
+            _ => {
+                self.entries.insert(entry.picture.clone(), entry);
+            }
+        }
+    }
+}
+
+impl Entry {
+    /// True where its file is as it was written.
+    pub(super) fn is_there(&self) -> bool {
+        fs::metadata(&self.file).is_ok_and(|about| about.is_file() && about.len() == self.bytes)
+    }
+}
+
+/// What this process adds to a batch.
+pub(super) struct Worker {
+    folder: PathBuf,
+    /// Its lines; none before the first.
+    lines: Mutex<Option<File>>,
+}
+
+/// A picture that this process draws, and no other.
+#[derive(Debug)]
+pub(super) struct Claim {
+    /// The lock, where the file system has locks.
+    lock: Option<(PathBuf, File)>,
+}
+
+impl Worker {
+    pub(super) fn new(folder: &Path) -> Result<Self> {
+        output::make_folder(&folder.join(CLAIMS))?;
+        Ok(Self {
+            folder: folder.to_owned(),
+            lines: Mutex::default(),
+        })
+    }
+
+    /// Claims a picture that was last done at a time, 0 if never; none where another process has it, or has done it since.
+    /// What a process that was killed has left beside it is removed.
+    pub(super) fn claim(
+        &self,
+        (picture, at): (&str, f64),
+        file: Option<&Path>,
+    ) -> Result<Option<Claim>> {
+        let path = self
+            .folder
+            .join(CLAIMS)
+            .join(format!("{}.lock", stamp(picture)));
+        let wrong = Error::io(&path);
+        let mut options = File::options();
+        options.create(true).truncate(false).read(true).write(true);
+        let mut lock = options.open(&path).map_err(Error::io(&path))?;
+        match lock.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Ok(None),
+            Err(TryLockError::Error(error)) => {
+                output::warn_once(format!(
+                    "note: {} has no locks ({error}): do not draw the same share twice at a time",
+                    self.folder.display()
+                ));
+                return Ok(Some(Claim { lock: None }));
+            }
+        }
+        let mut before = String::new();
+        lock.read_to_string(&mut before).map_err(wrong)?;
+        match before.strip_prefix(DONE).map(str::parse::<f64>) {
+            Some(Ok(done)) if done > at => return Ok(None),
+            Some(_) => {}
+            None if before.is_empty() => {}
+            None => {
+                file.and_then(Path::parent)
+                    .into_iter()
+                    .for_each(|folder| remove_parts(folder, &before));
+            }
+        }
+        write_over(&mut lock, mark()).map_err(Error::io(&path))?;
+        Ok(Some(Claim {
+            lock: Some((path, lock)),
+        }))
+    }
+
+    /// Notes that a picture is done.
+    pub(super) fn note(&self, entry: &Entry) -> Result<()> {
+        let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
+        let path = self.folder.join(format!("{}.jsonl", mark()));
+        if lines.is_none() {
+            let file = File::options().create(true).append(true).open(&path);
+            *lines = Some(file.map_err(Error::io(&path))?);
+        }
+        let line = serde_json::to_string(entry).expect("an entry has string keys only") + "\n";
+        let file = lines.as_mut().expect("it is open");
+        file.write_all(line.as_bytes()).map_err(Error::io(&path))
+    }
+}
+
+impl Claim {
+    /// Gives a picture free that was done at a time.
+    pub(super) fn release(self, at: f64) -> Result<()> {
+        match self.lock {
+            Some((path, mut lock)) => {
+                write_over(&mut lock, &format!("{DONE}{at}")).map_err(Error::io(&path))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// The folder of locks in that of a batch.
+const CLAIMS: &str = "claims";
+
+/// What a lock says whose picture is done, before the time.
+const DONE: &str = "done ";
+
+fn write_over(file: &mut File, text: &str) -> std::io::Result<()> {
+    file.set_len(0)?;
+    file.seek(SeekFrom::Start(0))?;
+    file.write_all(text.as_bytes())
+}
+
+/// Removes the unfinished files of a process from a folder.
+fn remove_parts(folder: &Path, mark: &str) {
+    let begin = format!(".rara-{mark}-");
+    // What cannot be removed is in nobody's way.
+    for file in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if file.file_name().to_string_lossy().starts_with(&begin) {
+            let _ = fs::remove_file(file.path());
+        }
+    }
+}
+
+/// A short text that stands for a long one (FNV-1a of 64 bits).
+pub(super) fn stamp(text: &str) -> String {
+    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+    format!("{:016x}", text.bytes().fold(0xcbf2_9ce4_8422_2325, step))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entry(picture: &str, at: f64) -> Entry {
+        Entry {
+            picture: picture.into(),
+            file: picture.into(),
+            bytes: 3,
+            job: String::new(),
+            version: String::new(),
+            driver: String::new(),
+            worker: format!("{at}"),
+            at,
+            seconds: 0.0,
+            work: 1.0,
+            frame: Value::Null,
+        }
+    }
+
+    #[test]
+    fn lines_of_all_workers_are_joined_and_half_a_line_is_none() {
+        let folder = std::env::temp_dir().join(format!("rara-state-{}", std::process::id()));
+        let worker = Worker::new(&folder).expect("a folder");
+        worker.note(&entry("a", 2.0)).expect("noted");
+        worker.note(&entry("b", 3.0)).expect("noted");
+        let line = |entry: &Entry| serde_json::to_string(entry).expect("JSON");
+        let half = &line(&entry("c", 1.0))[..20];
+        let other = format!("{}\n?\n{half}", line(&entry("a", 1.0)));
+        fs::write(folder.join("other.jsonl"), other).expect("written");
+        let state = State::read(&folder).expect("read");
+        let workers: Vec<_> = state.entries.values().map(|e| e.worker.as_str()).collect();
+        assert_eq!((workers, state.unread), (vec!["2", "3"], 1));
+        assert!(
+            State::read(&folder.join("none"))
+                .expect("read")
+                .entries
+                .is_empty()
+        );
+        fs::remove_dir_all(&folder).expect("removed");
+    }
+
+    #[test]
+    fn a_picture_has_one_claim_at_a_time_and_the_dead_leave_nothing() {
+        let folder = std::env::temp_dir().join(format!("rara-claims-{}", std::process::id()));
+        let worker = Worker::new(&folder).expect("a folder");
+        let file = folder.join("a.png");
+        let since = |at| worker.claim(("a", at), Some(&file)).expect("asked");
+        let claim = || since(0.0);
+        let first = claim().expect("free");
+        assert!(claim().is_none());
+        drop(first); // as a process that is killed
+        let parts = [
+            format!(".rara-{}-7.part", mark()),
+            ".rara-1-2-7.part".into(),
+        ];
+        parts
+            .iter()
+            .for_each(|part| fs::write(folder.join(part), "").expect("written"));
+        let second = claim().expect("free again");
+        assert_eq!(parts.map(|part| folder.join(part).exists()), [false, true]);
+        second.release(5.25).expect("released");
+        // Who has planned before it was done does not draw it again.
+        assert!(claim().is_none() && since(5.25).is_some());
+        fs::remove_dir_all(&folder).expect("removed");
+    }
+}

@@ -1,0 +1,107 @@
+//! A scene on its device, kept from one command to the next that draws the same one.
+
+use rara::{HeadlessDesc, Result, Scene, ShFormat};
+
+use super::failure::Failure;
+use super::profile::Profile;
+use super::scene_file::LayerClip;
+use super::scenes::{Loaded, SceneArgs};
+use super::session::Session;
+
+/// What the last command has left; nothing where a command runs by itself.
+#[derive(Default)]
+pub(super) struct Kept {
+    is_wanted: bool,
+    last: Option<(Place, Loaded)>,
+}
+
+/// Where a scene is drawn.
+pub(super) struct Place {
+    /// The flags of the scene and of its device.
+    flags: String,
+    /// The clips of its layers before a command changes them.
+    clips: Vec<Option<LayerClip>>,
+    session: Option<Session>,
+}
+
+impl Kept {
+    /// For several commands.
+    pub(super) fn wanted() -> Self {
+        Self {
+            is_wanted: true,
+            last: None,
+        }
+    }
+
+    /// The scene that these flags name, as the last command has left it or from its files. `device` stands for everything
+    /// that the session depends on.
+    pub(super) fn load(
+        &mut self,
+        profile: &Profile,
+        scenes: &SceneArgs,
+        device: &str,
+    ) -> std::result::Result<(Place, Loaded), Failure> {
+        let flags = format!("{scenes:?} {device}");
+        if let Some((place, mut loaded)) = self.last.take() {
+            if place.flags == flags {
+                for (layer, clip) in loaded.layers.iter_mut().zip(&place.clips) {
+                    layer.clip.clone_from(clip);
+                }
+                return Ok((place, loaded));
+            }
+            place.close()?; // before the next scene needs the memory
+        }
+        let loaded = profile.span("load", || scenes.load())?;
+        let place = Place {
+            flags,
+            clips: loaded
+                .layers
+                .iter()
+                .map(|layer| layer.clip.clone())
+                .collect(),
+            session: None,
+        };
+        Ok((place, loaded))
+    }
+
+    /// Keeps the scene for the next command, or closes its session.
+    pub(super) fn keep(&mut self, place: Place, loaded: Loaded, session: Session) -> Result<()> {
+        let place = Place {
+            session: Some(session),
+            ..place
+        };
+        if !self.is_wanted {
+            return place.close();
+        }
+        self.last = Some((place, loaded));
+        Ok(())
+    }
+
+    /// Closes the session that is left.
+    pub(super) fn close(&mut self) -> Result<()> {
+        self.last.take().map_or(Ok(()), |(place, _)| place.close())
+    }
+}
+
+impl Place {
+    /// The session that draws the scene.
+    pub(super) fn open(
+        &mut self,
+        profile: &Profile,
+        device: HeadlessDesc,
+        scene: &Scene<'_>,
+        sh: ShFormat,
+    ) -> std::result::Result<Session, Failure> {
+        match self.session.take() {
+            Some(mut session) => {
+                session.set_layer_clips(scene)?;
+                Ok(session)
+            }
+            None => profile.open(device, scene, sh),
+        }
+    }
+
+    fn close(self) -> Result<()> {
+        self.session.map_or(Ok(()), Session::close)
+    }
+}

@@ -314,7 +314,7 @@ impl Render {
             } = shot;
             let sliced = shot.cut().filter(|_| self.slice.is_shown());
             let section = section.as_ref().filter(|_| sliced.is_none());
-            let cut_scene = section.map(|section| section.of_layers(&scene));
+            let cut_scene = section.map(|section| loaded.scene_cut_by(&section.own));
             if let Some(cut_scene) = &cut_scene {
                 session.set_layer_clips(cut_scene)?;
             }

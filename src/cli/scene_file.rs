@@ -68,6 +68,17 @@ impl LayerClip {
             Self::Region(expression) => expression.clip(),
         }
     }
+
+    /// The same where a section's shapes cut as well. A layer that nothing cuts stays whole.
+    pub(super) fn cut_by(&self, section: &[Expression]) -> Self {
+        match self {
+            Self::Region(region) if !section.is_empty() && !region.clip().is_everything() => {
+                let both = [region].into_iter().chain(section);
+                Self::Region(Expression::All(both.cloned().collect()))
+            }
+            whole => whole.clone(),
+        }
+    }
 }
 
 impl fmt::Display for LayerClip {

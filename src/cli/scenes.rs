@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use rara::clip::Expression;
 use rara::{Gaussians, Layer, LayerState};
 
 use super::failure::Failure;
@@ -211,10 +212,15 @@ impl Loaded {
 
     /// The scene of the layers.
     pub(super) fn scene(&self) -> rara::Scene<'_> {
+        self.scene_cut_by(&[])
+    }
+
+    /// The scene of the layers, of whose own clips each is cut by a section.
+    pub(super) fn scene_cut_by(&self, section: &[Expression]) -> rara::Scene<'_> {
         let layers = self.layers.iter().map(|layer| {
             let mut made = Layer::new(&layer.name, &layer.gaussians).with(layer.state);
             if let Some(clip) = &layer.clip {
-                made = made.clipped(clip.clip());
+                made = made.clipped(clip.cut_by(section).clip());
             }
             if let Some((first, numbers)) = &layer.numbers {
                 made = made.numbered(*first, numbers);

@@ -139,35 +139,17 @@ enum Planned {
 pub(super) struct Section {
     pub(super) view: View,
     /// Its plane, and the one at its back where it has a thickness.
-    own: Vec<Expression>,
+    pub(super) own: Vec<Expression>,
     /// What else clips.
-    others: Vec<Expression>,
+    pub(super) others: Vec<Expression>,
     /// The plane that the camera faces, and what else clips.
     pub(super) cut: Cut,
 }
 
 impl Section {
-    /// What clips it, all together.
-    pub(super) fn shapes(&self) -> Vec<Expression> {
-        self.others.iter().chain(&self.own).cloned().collect()
-    }
-
     /// The region that it keeps.
     pub(super) fn clip(&self) -> Clip {
-        joined(&self.shapes())
-    }
-
-    /// A scene whose layers' own clips are joined with the section. A layer that nothing clips stays whole.
-    pub(super) fn of_layers<'a>(&self, scene: &Scene<'a>) -> Scene<'a> {
-        let own = joined(&self.own);
-        let layers = scene.layers().iter().map(|layer| match layer.clip() {
-            Some(clip) if !clip.is_everything() => {
-                let both = [clip.clone(), own.clone()];
-                layer.clone().clipped(Clip::joined(both, ClipOp::And))
-            }
-            _ => layer.clone(),
-        });
-        layers.collect()
+        joined(self.others.iter().chain(&self.own))
     }
 }
 
@@ -304,8 +286,8 @@ impl Sections {
 }
 
 /// What all of them keep.
-fn joined(shapes: &[Expression]) -> Clip {
-    Clip::joined(shapes.iter().map(Expression::clip), ClipOp::And)
+fn joined<'a>(shapes: impl IntoIterator<Item = &'a Expression>) -> Clip {
+    Clip::joined(shapes.into_iter().map(Expression::clip), ClipOp::And)
 }
 
 /// The direction that is up where a plane is seen that no axis is across: the world's, unless the plane lies level.

@@ -172,3 +172,54 @@ fn a_section_is_what_render_draws_and_can_be_moved() {
     let off = apart(&Picture::load(again).expect("a picture"), &turned);
     assert!(off <= 1.01, "{flags}: off by {off}/255");
 }
+
+#[test]
+fn a_section_cuts_layers_with_clips_of_their_own_as_in_render() {
+    let folder = folder("section_layers");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    let list = r#"{"layers": [{"path": "scene.ply", "name": "skin"},
+        {"path": "scene.ply", "name": "core", "scale": 0.7, "clip_expr": "!sphere:0,0,0,0.3"},
+        {"path": "scene.ply", "name": "bone", "scale": 0.2, "position": [0.6, 0.4, -0.8], "clip_expr": "whole"}]}"#;
+    fs::write(folder.join("list.json"), list).expect("a list");
+    let section = "--section axial=0.5 --size 160x120 --background 0.2,0.4,0.6";
+    let words = format!("@/list.json --no-outline {section}");
+    let mut viewer = Viewer::open(&display, &folder, &words);
+    let mut shots: Vec<Picture> = Vec::new();
+    for (name, lines, flags) in [
+        ("listed", "", ""),
+        (
+            "changed",
+            "edit core\nshape sphere:0.1,0,0,0.5",
+            "--layer-clip core=sphere:0.1,0,0,0.5",
+        ),
+        ("whole", "shape off", "--layer-clip core=whole"),
+        ("as_the_frame", "edit release", "--layer-clip core=frame"),
+    ] {
+        viewer.say(lines);
+        let shot = viewer.screenshot(name);
+        viewer.shows(name, &shot);
+        let words = format!("render @/list.json -o @/drawn_{name}.png {section} {flags}");
+        done(rara(&folder, &words));
+        let drawn = Picture::load(folder.join(format!("drawn_{name}.png"))).expect("a picture");
+        // The window's camera stands elsewhere on the same lines of sight, up to rounding.
+        let off = apart(&drawn, &shot);
+        assert!(off <= 1.01, "{name} is off by {off}/255");
+        for before in &shots {
+            assert!(apart(before, &shot) > 5.0, "{name} is a picture of its own");
+        }
+        shots.push(shot);
+    }
+    // Where the section moves, or is off, the layers follow.
+    viewer.say("edit core\nshape sphere:0.1,0,0,0.5\nedit frame\nshape +0.2");
+    let moved = viewer.screenshot("moved");
+    assert!(apart(&shots[1], &moved) > 5.0, "the section has moved");
+    viewer.say("shape off");
+    let off = viewer.screenshot("off");
+    assert!(apart(&moved, &off) > 5.0, "the section is off");
+    let printed = viewer.quit();
+    for name in ["listed", "changed", "whole", "as_the_frame", "moved", "off"] {
+        draws_again_of(&folder, "@/list.json", name, &printed);
+    }
+}

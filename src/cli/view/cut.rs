@@ -13,6 +13,8 @@ pub(super) struct Cut {
     /// At least one; shapes come before larger expressions, as flags are read.
     expressions: Vec<Expression>,
     op: ClipOp,
+    /// How many of the expressions, from the first, are a section's. They cut layers that have clips of their own as well.
+    of_section: usize,
     /// The number of the held shape, among all shapes as they are written.
     held: usize,
     /// The point that the held shape is turned about and scaled from, once it was moved; until then it is its middle.
@@ -37,10 +39,35 @@ impl Cut {
             on,
             expressions,
             op,
+            of_section: 0,
             held: 0,
             pivot: None,
             centre,
         }
+    }
+
+    /// A section, whose plane is the first of its shapes and is held, and what else clips.
+    pub(super) fn of_section(
+        section: Vec<Expression>,
+        others: Vec<Expression>,
+        centre: DVec3,
+    ) -> Self {
+        Self {
+            of_section: section.len(),
+            ..Self::new([section, others].concat(), ClipOp::And, centre)
+        }
+    }
+
+    /// True where some of it is a section's, whether it is on or off.
+    pub(super) fn has_section(&self) -> bool {
+        self.of_section > 0
+    }
+
+    /// What of it cuts layers that have clips of their own as well: the shapes of a section.
+    pub(super) fn section(&self) -> &[Expression] {
+        self.expressions()
+            .get(..self.of_section)
+            .unwrap_or_default()
     }
 
     /// The clip in force.
@@ -90,13 +117,6 @@ impl Cut {
     /// Holds the next shape.
     pub(super) fn next(&mut self) {
         self.held = (self.held + 1) % self.shapes().len();
-        self.pivot = None;
-    }
-
-    /// Holds this shape, if it is there.
-    pub(super) fn hold(&mut self, shape: &Shape) {
-        let found = self.shapes().iter().position(|other| other == shape);
-        self.held = found.unwrap_or(self.held);
         self.pivot = None;
     }
 
@@ -221,8 +241,6 @@ mod tests {
             ]
         );
         assert_eq!(cut.held(), 0);
-        cut.hold(&"!box:0,0,0,1,1,1".parse().unwrap());
-        assert_eq!(cut.words(), "outside of box 3 of 4");
     }
 
     #[test]

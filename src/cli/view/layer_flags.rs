@@ -1,5 +1,7 @@
 //! The flags of `rara render` that make the layers of files what is shown of them.
 
+use rara::clip::Expression;
+
 use super::layers::NamedLayer;
 use super::shots::quoted;
 use crate::scene_file::LayerClip;
@@ -37,7 +39,7 @@ struct Changes<'a> {
     clip: Change<Option<LayerClip>>,
 }
 
-fn changes(layers: &[NamedLayer]) -> Vec<Changes<'_>> {
+fn changes<'a>(layers: &'a [NamedLayer], section: &[Expression]) -> Vec<Changes<'a>> {
     let mut all: Vec<Changes<'_>> = Vec::new();
     for NamedLayer { name, .. } in layers {
         if all.iter().any(|known| known.name == name) {
@@ -48,7 +50,7 @@ fn changes(layers: &[NamedLayer]) -> Vec<Changes<'_>> {
         for layer in layers.iter().filter(|layer| layer.name == *name) {
             for listed in &layer.listed {
                 visible.push((listed.visible, layer.visible));
-                clip.push((listed.clip.clone(), layer.clip()));
+                clip.push((listed.clip.clone(), layer.clip(section)));
             }
         }
         all.push(Changes {
@@ -60,14 +62,14 @@ fn changes(layers: &[NamedLayer]) -> Vec<Changes<'_>> {
     all
 }
 
-/// The flags that make layers, as they are listed, what is shown of them.
-pub(super) fn flags(layers: &[NamedLayer]) -> Vec<String> {
+/// The flags that make layers, as they are listed, what is shown of them where a section cuts them.
+pub(super) fn flags(layers: &[NamedLayer], section: &[Expression]) -> Vec<String> {
     let mut flags = Vec::new();
     for Changes {
         name,
         visible,
         clip,
-    } in changes(layers)
+    } in changes(layers, section)
     {
         match visible {
             Change::To(false) => flags.push(format!("--hide={}", quoted(name))),
@@ -86,8 +88,8 @@ pub(super) fn flags(layers: &[NamedLayer]) -> Vec<String> {
 }
 
 /// A note on the layers of which the flags cannot say what is shown.
-pub(super) fn note(layers: &[NamedLayer]) -> Option<String> {
-    let all = changes(layers);
+pub(super) fn note(layers: &[NamedLayer], section: &[Expression]) -> Option<String> {
+    let all = changes(layers, section);
     let is_unsaid = |of: &&Changes<'_>| of.visible == Change::Unsaid || of.clip == Change::Unsaid;
     let names: Vec<_> = all.iter().filter(is_unsaid).map(|of| of.name).collect();
     let names = (!names.is_empty()).then(|| names.join(" and "))?;

@@ -42,9 +42,9 @@ pub(super) struct NamedLayer {
 }
 
 impl NamedLayer {
-    /// Their own clip, as flags say it.
-    pub(super) fn clip(&self) -> Option<LayerClip> {
-        self.own.as_ref().map(layer_clip)
+    /// Their own clip where a section cuts as well, as flags say it.
+    pub(super) fn clip(&self, section: &[Expression]) -> Option<LayerClip> {
+        Some(layer_clip(self.own.as_ref()?).cut_by(section))
     }
 }
 
@@ -79,13 +79,14 @@ impl Clips {
                 }),
             }
         }
+        let changed = frame.has_section();
         Self {
             frame,
             layers,
             edited: None,
             typed: Vec::new(),
             centre,
-            changed: false,
+            changed,
         }
     }
 
@@ -109,8 +110,9 @@ impl Clips {
     /// Every clip that cuts something of what is shown.
     pub(super) fn in_force(&self) -> impl Iterator<Item = &Cut> {
         let shown = || self.layers.iter().filter(|layer| layer.visible);
+        let is_cut = |own: &Cut| own.on && !self.frame.section().is_empty();
         let frame = shown()
-            .any(|layer| layer.own.is_none())
+            .any(|layer| layer.own.as_ref().is_none_or(is_cut))
             .then_some(&self.frame);
         let own = shown().filter_map(|layer| layer.own.as_ref());
         frame.into_iter().chain(own).filter(|cut| cut.on)
@@ -118,11 +120,11 @@ impl Clips {
 
     /// Puts these expressions in place of the clip that is edited.
     pub(super) fn replace(&mut self, clip: Vec<Expression>) {
+        self.changed = true;
         match self.edited {
             None => self.frame = Cut::new(clip, self.frame.op(), self.centre),
             Some(layer) => {
                 self.layers[layer].own = Some(Cut::new(clip, ClipOp::And, self.centre));
-                self.changed = true;
             }
         }
     }
@@ -142,7 +144,10 @@ impl Clips {
     /// plane through the middle of the scene.
     pub(super) fn act(&mut self, action: HeldAction, camera: &Camera, radius: f64) {
         let cut = match self.edited {
-            None => &mut self.frame,
+            None => {
+                self.changed |= self.frame.has_section();
+                &mut self.frame
+            }
             Some(layer) => {
                 let own = &mut self.layers[layer].own;
                 if own.is_none() && action == HeldAction::Next {
@@ -189,10 +194,11 @@ impl Clips {
             return Ok(());
         }
         for layer in &self.layers {
+            let clip = layer.clip(self.frame.section()).map(|clip| clip.clip());
             for &place in &layer.places {
                 let state = windowed.layers()[place].state();
                 windowed.set_layer_state(place, state.visible(layer.visible))?;
-                windowed.set_layer_clip(place, layer.own.as_ref().map(Cut::clip))?;
+                windowed.set_layer_clip(place, clip.clone())?;
             }
         }
         Ok(())
@@ -201,13 +207,13 @@ impl Clips {
     /// The flags that make the layers of the same files what they are.
     pub(super) fn flags(&self) -> Vec<String> {
         let mut flags = self.typed.clone();
-        flags.extend(layer_flags::flags(&self.layers));
+        flags.extend(layer_flags::flags(&self.layers, self.frame.section()));
         flags
     }
 
     /// A note on what no flags can say.
     pub(super) fn note(&self) -> Option<String> {
-        layer_flags::note(&self.layers)
+        layer_flags::note(&self.layers, self.frame.section())
     }
 
     /// A few words for the title: which shape of which clip is held, and which layers are hidden.

@@ -220,8 +220,7 @@ impl Begin {
                 let mut cut = Cut::new(Vec::new(), ClipOp::And, centre);
                 for section in sections.of(scene)? {
                     views.push((section.view.camera, own_up(&section.view.camera)));
-                    cut = Cut::new(section.shapes(), ClipOp::And, centre);
-                    cut.hold(&section.cut.plane.into());
+                    cut = Cut::of_section(section.own, section.others, centre);
                 }
                 Ok((views, cut))
             }

@@ -11,11 +11,19 @@ use std::{env, fs};
 
 #[path = "src/codegen/mod.rs"]
 mod codegen;
+#[path = "src/fnv.rs"]
+mod fnv;
 
 use codegen::{VARIANTS, glsl, interface, manifest, pictures, spirv};
 
 fn main() {
-    for changed in ["glsl", "build.rs", "src/codegen", "tools/pictures"] {
+    for changed in [
+        "glsl",
+        "build.rs",
+        "src/codegen",
+        "src/fnv.rs",
+        "tools/pictures",
+    ] {
         println!("cargo::rerun-if-changed={changed}");
     }
     let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets OUT_DIR"));

@@ -15,6 +15,7 @@ pub mod clip;
 mod codegen;
 mod depth;
 mod error;
+mod fnv;
 mod framing;
 pub mod gpu;
 pub mod guide;

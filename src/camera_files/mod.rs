@@ -1,4 +1,4 @@
-//! Reading cameras: 3DGS `cameras.json`, nerfstudio `transforms.json`, COLMAP sparse folders and our single camera.
+//! Files of cameras: 3DGS `cameras.json`, nerfstudio `transforms.json`, COLMAP sparse folders and our single camera.
 
 #![forbid(unsafe_code)]
 
@@ -8,6 +8,8 @@ mod colmap_text;
 mod inria;
 mod nerfstudio;
 mod single;
+
+pub use single::SavedCamera;
 
 use std::path::Path;
 

@@ -1,8 +1,8 @@
 //! Our own files of one camera, or of a list: the matrix as a renderer has it.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
-use serde::Deserialize;
 use serde::de::IgnoredAny;
+use serde::{Deserialize, Serialize, Serializer};
 
 use super::{NamedCamera, Parts, Pose};
 use crate::camera::{Camera, Projection};
@@ -15,27 +15,62 @@ const EYE_TOLERANCE: f64 = 1e-5;
 /// products of several rotations have them.
 const ROUNDING: f64 = 1e-13;
 
-#[derive(Deserialize)]
-struct Single {
+/// A camera as serde writes it to a file that [`load_camera`](super::load_camera) reads to the last bit. Files of several are
+/// lists of these.
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+pub struct SavedCamera {
+    #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<String>,
+    #[serde(serialize_with = "whole")]
     width: f64,
+    #[serde(serialize_with = "whole")]
     height: f64,
     fx: f64,
     fy: f64,
     cx: Option<f64>,
     cy: Option<f64>,
-    /// Row by row.
-    world_to_camera: [f64; 16],
     /// The matrix says it as well, but for rounding.
     eye: Option<[f64; 3]>,
+    /// Row by row.
+    world_to_camera: [f64; 16],
     #[serde(default)]
     projection: Name,
+    #[serde(skip_serializing_if = "Option::is_none")]
     clip_near: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     clip_far: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     near_cut: Option<f64>,
 }
 
-#[derive(Deserialize, Default)]
+fn whole<S: Serializer>(pixels: &f64, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_u32(*pixels as u32)
+}
+
+impl From<&Camera> for SavedCamera {
+    fn from(camera: &Camera) -> Self {
+        Self {
+            name: None,
+            width: camera.width.into(),
+            height: camera.height.into(),
+            fx: camera.fx,
+            fy: camera.fy,
+            cx: Some(camera.cx),
+            cy: Some(camera.cy),
+            eye: Some(camera.eye.to_array()),
+            world_to_camera: camera.world_to_camera().transpose().to_cols_array(),
+            projection: match camera.projection {
+                Projection::Orthographic => Name::Orthographic,
+                Projection::Perspective => Name::Perspective,
+            },
+            clip_near: camera.clip_near,
+            clip_far: camera.clip_far,
+            near_cut: camera.near_cut,
+        }
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize, Default)]
 #[serde(rename_all = "lowercase")]
 enum Name {
     #[default]
@@ -44,7 +79,7 @@ enum Name {
 }
 
 pub(super) fn parse(json: &[u8]) -> Result<Camera, String> {
-    json::parse::<Single>(json)?.camera("the camera")
+    json::parse::<SavedCamera>(json)?.camera("the camera")
 }
 
 /// True for a list of our own cameras.
@@ -58,8 +93,8 @@ pub(super) fn is_list(json: &[u8]) -> bool {
 }
 
 pub(super) fn parse_list(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
-    let entries: Vec<Single> = json::parse(json)?;
-    let named = |(number, mut entry): (usize, Single)| {
+    let entries: Vec<SavedCamera> = json::parse(json)?;
+    let named = |(number, mut entry): (usize, SavedCamera)| {
         let name = entry.name.take().unwrap_or_else(|| number.to_string());
         let camera = entry.camera(&format!("camera {number} (`{}`)", shortened(&name)))?;
         Ok(NamedCamera { name, camera })
@@ -67,7 +102,15 @@ pub(super) fn parse_list(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
     entries.into_iter().enumerate().map(named).collect()
 }
 
-impl Single {
+impl SavedCamera {
+    /// The same under this name, as a list of cameras has it.
+    pub fn named(self, name: String) -> Self {
+        Self {
+            name: Some(name),
+            ..self
+        }
+    }
+
     /// The camera, or what is wrong with it; `what` names it.
     fn camera(self, what: &str) -> Result<Camera, String> {
         let matrix = DMat4::from_cols_array(&self.world_to_camera).transpose();

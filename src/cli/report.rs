@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use rara::camera_files::SavedCamera;
 use rara::gpu::{DeviceShape, NamedBytes};
 use rara::{Counts, FrameStats, Plane};
 use serde::Serialize;
@@ -10,7 +11,6 @@ use serde::Serialize;
 use super::camera::View;
 use super::combine::{Combine, Measured, combine};
 use super::output::{self, counted, grouped, say};
-use super::save_camera::CameraJson;
 use super::scenes::Loaded;
 use super::session::Session;
 use super::times;
@@ -37,7 +37,7 @@ pub(super) struct Report {
     mode: String,
     /// The camera of all pictures, if they have one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    camera: Option<CameraJson>,
+    camera: Option<SavedCamera>,
     #[serde(flatten)]
     measured: Measured,
     /// What the driver's compilation has added to frames that are not among those measured.
@@ -66,7 +66,7 @@ pub(super) struct Frame {
     /// The section's plane, or the one that moves: normal and offset.
     plane: Option<[f64; 4]>,
     /// The camera that drew it.
-    camera: CameraJson,
+    camera: SavedCamera,
     /// The frames that it is made of.
     #[serde(skip)]
     faces: usize,

@@ -3,67 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rara::{Camera, Projection};
+use rara::camera_files::SavedCamera;
 use serde::Serialize;
 
 use super::camera::{HEADING, View};
 use super::output;
 
-/// A camera, to the last bit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct CameraJson {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    name: Option<String>,
-    width: u32,
-    height: u32,
-    fx: f64,
-    fy: f64,
-    cx: f64,
-    cy: f64,
-    /// The matrix has it too, but for rounding.
-    eye: [f64; 3],
-    /// Row by row.
-    world_to_camera: [f64; 16],
-    projection: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    clip_near: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    clip_far: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    near_cut: Option<f64>,
-}
-
-impl From<&Camera> for CameraJson {
-    fn from(camera: &Camera) -> Self {
-        Self {
-            name: None,
-            width: camera.width,
-            height: camera.height,
-            fx: camera.fx,
-            fy: camera.fy,
-            cx: camera.cx,
-            cy: camera.cy,
-            eye: camera.eye.to_array(),
-            world_to_camera: camera.world_to_camera().transpose().to_cols_array(),
-            projection: match camera.projection {
-                Projection::Orthographic => "orthographic",
-                _ => "perspective",
-            },
-            clip_near: camera.clip_near,
-            clip_far: camera.clip_far,
-            near_cut: camera.near_cut,
-        }
-    }
-}
-
-impl CameraJson {
-    /// The text of a file of it.
-    pub(super) fn text(&self) -> String {
-        text(self)
-    }
-}
-
-fn text(document: &impl Serialize) -> String {
+/// The text of a file of a [`SavedCamera`], or of several.
+pub(super) fn text(document: &impl Serialize) -> String {
     let text = serde_json::to_string_pretty(document);
     text.expect("the documents have string keys only") + "\n"
 }
@@ -90,13 +37,13 @@ impl SaveCameraArgs {
         };
         output::check_file(file)?;
         let is_one = views.len() == 1;
-        let named = views.map(|view| CameraJson {
-            name: (!is_one).then(|| view.name.clone()),
-            ..CameraJson::from(&view.camera)
+        let saved = views.map(|view| match SavedCamera::from(&view.camera) {
+            camera if is_one => camera,
+            camera => camera.named(view.name.clone()),
         });
-        let named: Vec<_> = named.collect();
-        let text = match &named[..] {
-            [one] => one.text(),
+        let saved: Vec<_> = saved.collect();
+        let text = match &saved[..] {
+            [one] => text(one),
             several => text(&several),
         };
         output::text(file, &text)
@@ -107,7 +54,7 @@ impl SaveCameraArgs {
 mod tests {
     use super::*;
     use glam::{DMat3, DQuat, DVec3};
-    use rara::camera_files;
+    use rara::{Camera, Projection, camera_files};
     use std::path::Path;
 
     fn read(text: &str) -> Camera {
@@ -137,7 +84,7 @@ mod tests {
                 .clip_far(Some(1.0 / 3.0))
                 .near_cut(Some(1e-3));
             for camera in [camera, flat, cut] {
-                assert_eq!(read(&CameraJson::from(&camera).text()), camera);
+                assert_eq!(read(&text(&SavedCamera::from(&camera))), camera);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use std::mem::discriminant;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use super::{Expression, Plane, Shape, Solid};
 use crate::error::{Error, Result};
@@ -61,104 +61,129 @@ impl Shape {
             return Ok(*if share == 0.0 { self } else { other });
         }
         let point = |from: DVec3, to: DVec3| from.lerp(to, share);
-        let number = |from: f64, to: f64| from + (to - from) * share;
-        let solid = match (self.solid(), other.solid()) {
-            (Solid::Plane(from), Solid::Plane(to)) => Solid::Plane(from.between(&to, share)?),
-            (
-                Solid::Slab { plane, thickness },
-                Solid::Slab {
-                    plane: to,
-                    thickness: other,
-                },
-            ) => Solid::Slab {
-                plane: plane.between(&to, share)?,
-                thickness: number(thickness, other),
-            },
-            (
-                Solid::Cuboid {
-                    centre,
-                    half,
-                    rotation,
-                },
-                Solid::Cuboid {
-                    centre: c,
-                    half: h,
-                    rotation: r,
-                },
-            ) => Solid::Cuboid {
-                centre: point(centre, c),
-                half: point(half, h),
-                rotation: rotation.slerp(r, share),
-            },
-            (
-                Solid::Sphere { centre, radius },
-                Solid::Sphere {
-                    centre: c,
-                    radius: r,
-                },
-            ) => Solid::Sphere {
-                centre: point(centre, c),
-                radius: number(radius, r),
-            },
-            (
-                Solid::Ellipsoid {
-                    centre,
-                    radii,
-                    rotation,
-                },
-                Solid::Ellipsoid {
-                    centre: c,
-                    radii: h,
-                    rotation: r,
-                },
-            ) => Solid::Ellipsoid {
-                centre: point(centre, c),
-                radii: point(radii, h),
-                rotation: rotation.slerp(r, share),
-            },
-            (
-                Solid::Cylinder { from, to, radius },
-                Solid::Cylinder {
-                    from: f,
-                    to: t,
-                    radius: r,
-                },
-            ) => Solid::Cylinder {
-                from: point(from, f),
-                to: point(to, t),
-                radius: number(radius, r),
-            },
-            (
-                Solid::Capsule { from, to, radius },
-                Solid::Capsule {
-                    from: f,
-                    to: t,
-                    radius: r,
-                },
-            ) => Solid::Capsule {
-                from: point(from, f),
-                to: point(to, t),
-                radius: number(radius, r),
-            },
-            (
-                Solid::Cone { apex, base, radius },
-                Solid::Cone {
-                    apex: a,
-                    base: b,
-                    radius: r,
-                },
-            ) => Solid::Cone {
-                apex: point(apex, a),
-                base: point(base, b),
-                radius: number(radius, r),
-            },
-            _ => return Err(unlike(self, other)),
-        };
+        let solid = self.solid().of_both(
+            other.solid(),
+            |from, to| from.between(&to, share),
+            point,
+            point,
+            |from, to| from + (to - from) * share,
+            |from, to| from.slerp(to, share),
+        )?;
+        let solid = solid.ok_or_else(|| unlike(self, other))?;
         let between = Self::new(solid)?;
         Ok(match self.is_outside() {
             true => between.complement(),
             false => between,
         })
+    }
+}
+
+impl Solid {
+    /// A solid of whose parts each is made of those of two solids of a kind; `None` where they are of two kinds.
+    pub(super) fn of_both(
+        self,
+        other: Self,
+        plane: impl Fn(Plane, Plane) -> Result<Plane>,
+        point: impl Fn(DVec3, DVec3) -> DVec3,
+        sizes: impl Fn(DVec3, DVec3) -> DVec3,
+        size: impl Fn(f64, f64) -> f64,
+        rotation: impl Fn(DQuat, DQuat) -> DQuat,
+    ) -> Result<Option<Self>> {
+        Ok(Some(match (self, other) {
+            (Self::Plane(from), Self::Plane(to)) => Self::Plane(plane(from, to)?),
+            (
+                Self::Slab {
+                    plane: from,
+                    thickness,
+                },
+                Self::Slab {
+                    plane: to,
+                    thickness: other,
+                },
+            ) => Self::Slab {
+                plane: plane(from, to)?,
+                thickness: size(thickness, other),
+            },
+            (
+                Self::Cuboid {
+                    centre,
+                    half,
+                    rotation: turn,
+                },
+                Self::Cuboid {
+                    centre: c,
+                    half: h,
+                    rotation: r,
+                },
+            ) => Self::Cuboid {
+                centre: point(centre, c),
+                half: sizes(half, h),
+                rotation: rotation(turn, r),
+            },
+            (
+                Self::Sphere { centre, radius },
+                Self::Sphere {
+                    centre: c,
+                    radius: r,
+                },
+            ) => Self::Sphere {
+                centre: point(centre, c),
+                radius: size(radius, r),
+            },
+            (
+                Self::Ellipsoid {
+                    centre,
+                    radii,
+                    rotation: turn,
+                },
+                Self::Ellipsoid {
+                    centre: c,
+                    radii: h,
+                    rotation: r,
+                },
+            ) => Self::Ellipsoid {
+                centre: point(centre, c),
+                radii: sizes(radii, h),
+                rotation: rotation(turn, r),
+            },
+            (
+                Self::Cylinder { from, to, radius },
+                Self::Cylinder {
+                    from: f,
+                    to: t,
+                    radius: r,
+                },
+            ) => Self::Cylinder {
+                from: point(from, f),
+                to: point(to, t),
+                radius: size(radius, r),
+            },
+            (
+                Self::Capsule { from, to, radius },
+                Self::Capsule {
+                    from: f,
+                    to: t,
+                    radius: r,
+                },
+            ) => Self::Capsule {
+                from: point(from, f),
+                to: point(to, t),
+                radius: size(radius, r),
+            },
+            (
+                Self::Cone { apex, base, radius },
+                Self::Cone {
+                    apex: a,
+                    base: b,
+                    radius: r,
+                },
+            ) => Self::Cone {
+                apex: point(apex, a),
+                base: point(base, b),
+                radius: size(radius, r),
+            },
+            _ => return Ok(None),
+        }))
     }
 }
 

@@ -89,7 +89,11 @@ impl FromStr for Expression {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let mut parser = Parser { text, at: 0 };
+        let mut parser = Parser {
+            text,
+            at: 0,
+            what: "clip expression",
+        };
         let expression = parser.expression(0)?;
         match parser.rest() {
             "" => Ok(expression),
@@ -117,36 +121,41 @@ impl fmt::Display for Expression {
     }
 }
 
-struct Parser<'a> {
-    text: &'a str,
+/// A reader of a text. What there is to be read is said where that is defined.
+pub(crate) struct Parser<'a> {
+    pub(crate) text: &'a str,
     /// Bytes that are read.
-    at: usize,
+    pub(crate) at: usize,
+    /// What the text is called.
+    pub(crate) what: &'static str,
 }
 
 impl<'a> Parser<'a> {
     /// The rest of the text, from its first character that is not blank.
-    fn rest(&mut self) -> &'a str {
+    pub(crate) fn rest(&mut self) -> &'a str {
         let rest = self.text[self.at..].trim_start();
         self.at = self.text.len() - rest.len();
         rest.trim_end()
     }
 
-    fn takes(&mut self, token: char) -> bool {
+    pub(crate) fn takes(&mut self, token: &str) -> bool {
         let takes = self.rest().starts_with(token);
-        self.at += if takes { token.len_utf8() } else { 0 };
+        self.at += if takes { token.len() } else { 0 };
         takes
     }
 
-    fn error(&self, what: &str) -> Error {
+    pub(crate) fn error(&self, what: &str) -> Error {
         let column = self.text[..self.at].chars().count() + 1;
-        Error::Invalid(format!("column {column} of the clip expression: {what}"))
+        Error::Invalid(format!("column {column} of the {}: {what}", self.what))
     }
+}
 
+impl Parser<'_> {
     fn expression(&mut self, depth: usize) -> Result<Expression> {
         if depth > DEPTH {
             return Err(self.error(&format!("it is nested deeper than {DEPTH} levels")));
         }
-        if self.takes('!') {
+        if self.takes("!") {
             let operand = self.expression(depth + 1)?;
             return Ok(match operand {
                 Expression::Shape(shape) => Expression::Shape(shape.complement()),
@@ -182,14 +191,14 @@ impl<'a> Parser<'a> {
     }
 
     fn operands(&mut self, name: &str, depth: usize) -> Result<Vec<Expression>> {
-        if !self.takes('(') {
+        if !self.takes("(") {
             return Err(self.error(&format!("{name} needs its operands in ( )")));
         }
         let mut operands = vec![self.expression(depth + 1)?];
-        while self.takes(',') {
+        while self.takes(",") {
             operands.push(self.expression(depth + 1)?);
         }
-        match self.takes(')') {
+        match self.takes(")") {
             true => Ok(operands),
             false => Err(self.error(&format!("the ) of {name}( is missing"))),
         }

@@ -20,6 +20,7 @@ mod surface;
 #[cfg(feature = "json")]
 pub use clip_file::{NamedClip, clips_from_json, clips_to_json, load_clips};
 pub use expression::Expression;
+pub(crate) use expression::Parser;
 #[cfg(feature = "json")]
 pub use file::{NamedPlane, load_planes, planes_from_json};
 pub use plane::Plane;

@@ -22,61 +22,22 @@ impl Shape {
     /// As of [`Shape::new`], where numbers overflow or a size becomes zero.
     pub fn placed(&self, placement: &Placement) -> Result<Self> {
         let (turn, scale) = (placement.rotation(), placement.scale());
-        let point = |p: DVec3| placement.to_world(p);
-        let plane = |plane: Plane| {
+        let plane = |plane: Plane, _| {
             let normal = turn * plane.normal();
             Plane::new(
                 normal,
                 scale * plane.offset() - normal.dot(placement.position()),
             )
         };
-        let solid = match self.solid() {
-            Solid::Plane(of) => Solid::Plane(plane(of)?),
-            Solid::Slab {
-                plane: of,
-                thickness,
-            } => Solid::Slab {
-                plane: plane(of)?,
-                thickness: scale * thickness,
-            },
-            Solid::Cuboid {
-                centre,
-                half,
-                rotation,
-            } => Solid::Cuboid {
-                centre: point(centre),
-                half: scale * half,
-                rotation: turn * rotation,
-            },
-            Solid::Sphere { centre, radius } => Solid::Sphere {
-                centre: point(centre),
-                radius: scale * radius,
-            },
-            Solid::Ellipsoid {
-                centre,
-                radii,
-                rotation,
-            } => Solid::Ellipsoid {
-                centre: point(centre),
-                radii: scale * radii,
-                rotation: turn * rotation,
-            },
-            Solid::Cylinder { from, to, radius } => Solid::Cylinder {
-                from: point(from),
-                to: point(to),
-                radius: scale * radius,
-            },
-            Solid::Capsule { from, to, radius } => Solid::Capsule {
-                from: point(from),
-                to: point(to),
-                radius: scale * radius,
-            },
-            Solid::Cone { apex, base, radius } => Solid::Cone {
-                apex: point(apex),
-                base: point(base),
-                radius: scale * radius,
-            },
-        };
+        let solid = self.solid().of_both(
+            self.solid(),
+            plane,
+            |point, _| placement.to_world(point),
+            |sizes, _| scale * sizes,
+            |size, _| scale * size,
+            |rotation, _| turn * rotation,
+        )?;
+        let solid = solid.expect("it is of its own kind");
         let inside = Self::new(solid)?;
         Ok(match self.is_outside() {
             true => inside.complement(),

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::VARIANTS;
+use crate::fnv;
 
 /// The shaders proper: files of the folder that end in a stage's name.
 pub(crate) fn shaders(folder: &Path) -> Vec<PathBuf> {
@@ -42,17 +43,16 @@ fn sources(folder: &Path, shader: &Path) -> BTreeSet<PathBuf> {
 
 /// The text of a shader's manifest: a hash of its sources, and one of each of its modules.
 pub(crate) fn manifest(folder: &Path, shader: &Path, spirv: &Path) -> String {
-    let mut glsl = Hash::new();
+    let mut glsl = fnv::NOTHING;
     for path in sources(folder, shader) {
         let name = path.strip_prefix(folder).expect("inside the folder");
-        glsl.add(name.to_string_lossy().as_bytes());
-        glsl.add(read(&path).as_bytes());
+        glsl = hash_with(glsl, name.to_string_lossy().as_bytes());
+        glsl = hash_with(glsl, read(&path).as_bytes());
     }
-    let mut text = format!("glsl {:016x}\n", glsl.0);
+    let mut text = format!("glsl {glsl:016x}\n");
     for (variant, _) in VARIANTS {
-        let mut module = Hash::new();
-        module.add(&fs::read(module_path(spirv, shader, variant)).unwrap_or_default());
-        text += &format!("{variant} {:016x}\n", module.0);
+        let module = fs::read(module_path(spirv, shader, variant)).unwrap_or_default();
+        text += &format!("{variant} {:016x}\n", hash_with(fnv::NOTHING, &module));
     }
     text
 }
@@ -113,20 +113,10 @@ fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// FNV-1a of 64 bits: it distinguishes versions, and is no protection.
-struct Hash(u64);
-
-impl Hash {
-    fn new() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-
-    fn add(&mut self, bytes: &[u8]) {
-        let length = bytes.len() as u64;
-        for byte in length.to_le_bytes().iter().chain(bytes) {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
+/// A hash with these bytes, and how many they are, behind it.
+fn hash_with(hash: u64, bytes: &[u8]) -> u64 {
+    let length = (bytes.len() as u64).to_le_bytes();
+    fnv::with(hash, length.iter().chain(bytes).copied())
 }
 
 #[cfg(test)]

@@ -9,42 +9,16 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Instant;
 
 use ash::vk;
 
+use super::device::Ahead;
 use super::{Buffer, BufferDesc, ComputeDesc, ComputePipeline, Device, DeviceDesc, Location};
 use crate::files::write_atomically;
-use crate::{Error, Result};
-
-/// A function that is called with `true` when the making and compiling of pipelines begins, and with `false` when it ends: for
-/// programs that say what they wait for. Both calls come from the thread that configures a frame.
-#[derive(Clone)]
-pub struct OnCompile(Arc<dyn Fn(bool) + Send + Sync>);
-
-impl OnCompile {
-    /// Has a function called.
-    pub fn new(hook: impl Fn(bool) + Send + Sync + 'static) -> Self {
-        Self(Arc::new(hook))
-    }
-}
-
-impl std::fmt::Debug for OnCompile {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("OnCompile")
-    }
-}
-
-/// A driver that compiles at the first dispatch, and the list of what it is known to have kept.
-#[derive(Debug)]
-pub(super) struct Ahead {
-    /// The file of the list, a hash a line. It is no more than a hint: where it names a kernel that the driver has lost, the
-    /// frame's own device compiles that.
-    path: PathBuf,
-    known: Mutex<BTreeSet<u64>>,
-}
+use crate::{Error, Result, fnv};
 
 impl Ahead {
     /// The list in a file. `None` for drivers that compile when a pipeline is made, or keep nothing.
@@ -147,13 +121,12 @@ impl Dispatcher {
 
 /// The hash that tells a kernel's compilation from others by the same driver.
 fn hash(device: &Device, desc: &ComputeDesc<'_>) -> u64 {
-    let step = |hash: u64, word: &u32| (hash ^ u64::from(*word)).wrapping_mul(0x0100_0000_01b3);
     let constants = desc.constants.iter().flat_map(|(id, value)| [id, value]);
     let code = desc.shader.code(desc.bindings).iter();
     let words = code
         .chain(constants)
         .chain([&device.support().subgroup_size]);
-    words.fold(0xcbf2_9ce4_8422_2325, step)
+    fnv::with(fnv::NOTHING, words.copied())
 }
 
 /// How many threads compile at once.
@@ -174,14 +147,14 @@ impl Device {
         make: impl Fn(&T) -> Result<R> + Sync,
     ) -> Result<Vec<R>> {
         let begin = Instant::now();
-        let said = |is_begun| self.compile_hook().map(|hook| hook.0(is_begun));
+        let said = |is_begun| self.inner.on_compile.get().map(|hook| hook.0(is_begun));
         said(true);
         let made = if !self.is_own() || threads() < 2 || wanted.len() < 2 {
             wanted.iter().map(make).collect()
         } else {
             let kernels: Vec<_> = wanted.iter().filter_map(kernel).collect();
             thread::scope(|scope| {
-                if let Some(ahead) = self.ahead() {
+                if let Some(ahead) = self.inner.ahead.get() {
                     scope.spawn(move || ahead.compile(self, &kernels));
                 }
                 on_threads(wanted, || Ok(()), |(), item| make(item))

@@ -1,7 +1,9 @@
 //! The device that everything else is made from.
 
 use std::any::Any;
+use std::collections::BTreeSet;
 use std::ffi::CString;
+use std::path::PathBuf;
 use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -9,7 +11,6 @@ use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::Allocator;
 
 use super::account::Account;
-use super::ahead::{Ahead, OnCompile};
 use super::clock::Clock;
 use super::commands::Commands;
 use super::instance::Instance;
@@ -42,8 +43,9 @@ pub(super) struct Inner {
     /// How long the driver has made pipelines.
     pub(super) pipeline_ns: AtomicU64,
     /// How kernels are compiled ahead; empty where they are not.
-    ahead: OnceLock<Ahead>,
-    on_compile: OnceLock<OnCompile>,
+    pub(super) ahead: OnceLock<Ahead>,
+    /// What is called when pipelines are made.
+    pub(super) on_compile: OnceLock<OnCompile>,
     commands: Commands,
     mesh_shader: Option<ext::mesh_shader::Device>,
     push_descriptor: Option<khr::push_descriptor::Device>,
@@ -61,6 +63,33 @@ pub(super) struct Inner {
     pub(super) inspector: std::sync::OnceLock<super::inspection::Inspector>,
     /// What keeps a host's device alive. It is the last field, so that it goes last.
     _keep_alive: Option<Arc<dyn Any + Send + Sync>>,
+}
+
+/// A function that is called with `true` when the making and compiling of pipelines begins, and with `false` when it ends: for
+/// programs that say what they wait for. Both calls come from the thread that configures a frame.
+#[derive(Clone)]
+pub struct OnCompile(pub(super) Arc<dyn Fn(bool) + Send + Sync>);
+
+impl OnCompile {
+    /// Has a function called.
+    pub fn new(hook: impl Fn(bool) + Send + Sync + 'static) -> Self {
+        Self(Arc::new(hook))
+    }
+}
+
+impl std::fmt::Debug for OnCompile {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("OnCompile")
+    }
+}
+
+/// A driver that compiles at the first dispatch, and the list of what it is known to have kept.
+#[derive(Debug)]
+pub(super) struct Ahead {
+    /// The file of the list, a hash a line. It is no more than a hint: where it names a kernel that the driver has lost, the
+    /// frame's own device compiles that.
+    pub(super) path: PathBuf,
+    pub(super) known: Mutex<BTreeSet<u64>>,
 }
 
 impl Device {
@@ -271,24 +300,9 @@ impl Device {
         self.inner.owned.is_some()
     }
 
-    /// How kernels are compiled ahead; `None` where they are not.
-    pub(super) fn ahead(&self) -> Option<&Ahead> {
-        self.inner.ahead.get()
-    }
-
-    /// Has kernels compiled ahead from now on, unless they are already.
-    pub(super) fn compile_ahead(&self, ahead: Ahead) {
-        let _ = self.inner.ahead.set(ahead);
-    }
-
     /// Has a function called when pipelines are made, unless one is already.
     pub(crate) fn on_compile(&self, hook: OnCompile) {
         let _ = self.inner.on_compile.set(hook);
-    }
-
-    /// The function that is called when pipelines are made.
-    pub(super) fn compile_hook(&self) -> Option<&OnCompile> {
-        self.inner.on_compile.get()
     }
 
     /// Names an object of this device for debuggers and validation messages.

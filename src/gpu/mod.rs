@@ -59,9 +59,8 @@ mod validation;
 mod write_only;
 
 pub use account::NamedBytes;
-pub use ahead::OnCompile;
 pub use attachments::Target;
-pub use device::Device;
+pub use device::{Device, OnCompile};
 pub use devices::{DeviceInfo, list_devices};
 pub use features::Features;
 pub use layout::Bindings;

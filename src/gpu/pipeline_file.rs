@@ -5,10 +5,10 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use super::ahead::Ahead;
+use super::device::Ahead;
 use super::{Device, PipelineCacheId};
 use crate::files::write_atomically;
-use crate::{Error, Result};
+use crate::{Error, Result, fnv};
 
 /// The place in which [`Headless`](crate::Headless) keeps compiled pipelines from one run to the next.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -80,10 +80,9 @@ impl Seal {
 
     fn of(data: &[u8]) -> Self {
         // FNV-1a is enough against a full disk or a broken one.
-        let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
         Self {
             length: data.len() as u64,
-            hash: data.iter().fold(0xcbf2_9ce4_8422_2325, step),
+            hash: fnv::with(fnv::NOTHING, data.iter().copied()),
         }
     }
 
@@ -108,7 +107,7 @@ impl PipelineFile {
         let id = device.pipeline_cache_id();
         let path = cache.folder()?.join(name(&id));
         if let Some(ahead) = Ahead::open(device, path.with_extension("compiled")) {
-            device.compile_ahead(ahead);
+            let _ = device.inner.ahead.set(ahead);
         }
         let mut this = Self { path, held: None };
         match read(&this.path, &id) {

@@ -146,19 +146,24 @@ impl Renderer {
     /// recorded then.
     pub unsafe fn draw(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) -> Result<()> {
         check_origin("draw", origin)?;
-        if !self
-            .configured
-            .as_ref()
-            .is_some_and(|ready| self.is_prepared(ready))
-        {
-            return out_of_order("draw needs a successful configure() and prepare() before it");
-        }
-        if let Some(ready) = self.configured.take() {
-            // SAFETY: the caller's promises are those asked for.
-            unsafe { self.draw_ready(cmd, origin, &ready) };
-            self.configured = Some(ready);
-        }
+        let ready = self.take_prepared("draw")?;
+        // SAFETY: the caller's promises are those asked for, and the frame is prepared.
+        unsafe { self.draw_ready(cmd, origin, &ready) };
+        self.configured = Some(ready);
         Ok(())
+    }
+
+    /// Takes the frame that is configured and prepared, which is to be put back.
+    fn take_prepared(&mut self, call: &str) -> Result<Ready> {
+        match self.configured.take() {
+            Some(ready) if self.is_prepared(&ready) => Ok(ready),
+            other => {
+                self.configured = other;
+                out_of_order(&format!(
+                    "{call} needs a successful configure() and prepare() before it"
+                ))
+            }
+        }
     }
 
     /// # Safety
@@ -210,20 +215,10 @@ impl Renderer {
         if self.desc.expected_depth.is_none() {
             return out_of_order("draw_depth needs RendererDesc::expected_depth");
         }
-        if !self
-            .configured
-            .as_ref()
-            .is_some_and(|ready| self.is_prepared(ready))
-        {
-            return out_of_order(
-                "draw_depth needs a successful configure() and prepare() before it",
-            );
-        }
-        if let Some(ready) = self.configured.take() {
-            // SAFETY: the caller's promises are those asked for.
-            unsafe { self.draw_depth_ready(cmd, origin, &ready) };
-            self.configured = Some(ready);
-        }
+        let ready = self.take_prepared("draw_depth")?;
+        // SAFETY: the caller's promises are those asked for, and the frame is prepared.
+        unsafe { self.draw_depth_ready(cmd, origin, &ready) };
+        self.configured = Some(ready);
         Ok(())
     }
 

@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::predicate::{Attribute, Comparison, Predicate};
-use crate::clip::Expression;
+use crate::clip::{Expression, Parser};
 use crate::error::{Error, Result, shortened};
 
 /// How deep parentheses may be nested.
@@ -40,7 +40,11 @@ impl FromStr for Predicate {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let mut parser = Parser { text, at: 0 };
+        let mut parser = Parser {
+            text,
+            at: 0,
+            what: "selection",
+        };
         let predicate = parser.any(0)?;
         match parser.rest() {
             "" => Ok(predicate),
@@ -52,26 +56,7 @@ impl FromStr for Predicate {
     }
 }
 
-struct Parser<'a> {
-    text: &'a str,
-    /// Bytes that are read.
-    at: usize,
-}
-
 impl<'a> Parser<'a> {
-    /// The rest of the text, from its first character that is not blank.
-    fn rest(&mut self) -> &'a str {
-        let rest = self.text[self.at..].trim_start();
-        self.at = self.text.len() - rest.len();
-        rest.trim_end()
-    }
-
-    fn takes(&mut self, token: &str) -> bool {
-        let takes = self.rest().starts_with(token);
-        self.at += if takes { token.len() } else { 0 };
-        takes
-    }
-
     /// The name or the number that is next; it may be empty.
     fn word(&mut self) -> &'a str {
         let rest = self.rest();
@@ -83,11 +68,6 @@ impl<'a> Parser<'a> {
         let takes = self.word() == word;
         self.at += if takes { word.len() } else { 0 };
         takes
-    }
-
-    fn error(&self, what: &str) -> Error {
-        let column = self.text[..self.at].chars().count() + 1;
-        Error::Invalid(format!("column {column} of the selection: {what}"))
     }
 
     fn any(&mut self, depth: usize) -> Result<Predicate> {

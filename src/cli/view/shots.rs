@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use rara::camera_files::SavedCamera;
 use rara::{Camera, Error, Picture, Result};
 
 use crate::output;
-use crate::save_camera::CameraJson;
+use crate::save_camera;
 
 /// The screenshots' files: `{}` becomes their number.
 #[derive(Debug)]
@@ -56,7 +57,10 @@ pub(super) fn save(picture: &Picture, camera: &Camera, path: &Path) -> Result<()
     Camera::from_world_to_camera(matrix, lens, (camera.width, camera.height))?;
     output::check_file(path)?;
     picture.save(path)?;
-    output::text(&beside(path), &CameraJson::from(camera).text())
+    output::text(
+        &beside(path),
+        &save_camera::text(&SavedCamera::from(camera)),
+    )
 }
 
 /// The line that names the file, and the flags with which `rara render` draws it again.

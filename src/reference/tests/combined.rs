@@ -139,35 +139,9 @@ fn print_errors_of_shapes() {
     }
 }
 
-#[test]
-fn single_shapes_keep_what_integration_finds() {
-    for (pixels, mean, largest) in [
-        ([0.02, 0.2], 4e-3, 0.05),
-        ([0.2, 1.0], 3e-3, 0.04),
-        ([1.0, 5.0], 1e-3, 0.02),
-        ([5.0, 30.0], 4e-4, 0.01),
-        ([30.0, 100.0], 1e-4, 2e-3),
-    ] {
-        let errors = study(pixels, 1, [3.0, 100.0], 60, 48);
-        assert!(
-            errors.partial > 10,
-            "the test would say nothing: {errors:?}"
-        );
-        assert!(
-            errors.mean < mean && errors.largest < largest,
-            "{pixels:?} px: {errors:?}"
-        );
-    }
-}
-
-#[test]
-fn combinations_keep_what_integration_finds() {
-    for (count, pixels, mean, largest) in [
-        (2, [0.2, 1.0], 0.012, 0.1),
-        (2, [5.0, 100.0], 2e-3, 0.02),
-        (3, [0.2, 1.0], 0.02, 0.12),
-        (3, [5.0, 100.0], 2e-3, 0.02),
-    ] {
+/// Checks so many shapes of these sizes in pixels, by the mean and the largest error that they may have.
+fn check(cases: &[(usize, [f64; 2], f64, f64)]) {
+    for &(count, pixels, mean, largest) in cases {
         let errors = study(pixels, count, [3.0, 100.0], 60, 48);
         assert!(
             errors.partial > 10,
@@ -178,6 +152,27 @@ fn combinations_keep_what_integration_finds() {
             "{count}, {pixels:?} px: {errors:?}"
         );
     }
+}
+
+#[test]
+fn single_shapes_keep_what_integration_finds() {
+    check(&[
+        (1, [0.02, 0.2], 4e-3, 0.05),
+        (1, [0.2, 1.0], 3e-3, 0.04),
+        (1, [1.0, 5.0], 1e-3, 0.02),
+        (1, [5.0, 30.0], 4e-4, 0.01),
+        (1, [30.0, 100.0], 1e-4, 2e-3),
+    ]);
+}
+
+#[test]
+fn combinations_keep_what_integration_finds() {
+    check(&[
+        (2, [0.2, 1.0], 0.012, 0.1),
+        (2, [5.0, 100.0], 2e-3, 0.02),
+        (3, [0.2, 1.0], 0.02, 0.12),
+        (3, [5.0, 100.0], 2e-3, 0.02),
+    ]);
 }
 
 #[test]

@@ -33,13 +33,14 @@ pub(super) struct ClipArgs {
     ///
     /// all(...) keeps what all of its operands keep, any(...) what at least one keeps, not(...) what its operand
     /// does not keep, as in 'all(box:0,0,0,1,1,1, not(sphere:1,0,0,.5))'. The flag is repeatable.
-    #[arg(long, value_name = "EXPRESSION", value_parser = Region::expression, allow_hyphen_values = true)]
+    #[arg(long, value_name = "EXPRESSION", value_parser = str::parse::<Region>, allow_hyphen_values = true)]
     clip_expr: Vec<Region>,
     /// Take clips from a JSON file (repeatable)
     ///
     /// The file is a list of planes, {"normal":[x,y,z],"d":d}, or of expressions as trees, {"clip":{"all":[...]}},
     /// as --save-clip writes them, each with a "name" or without. :NAME takes the clips of that name, or the one of
-    /// that number (from 0), and :* takes all of them. A file of several clips with names needs one of these.
+    /// that number (from 0), and :* takes all of them. A file of several clips with names needs one of these. The
+    /// file's clips of single layers are taken as well, unless the name is that of one of these.
     #[arg(long, value_name = "FILE[:NAME]")]
     clip_file: Vec<String>,
     /// Write the clip to a JSON file, which --clip-file reads
@@ -97,10 +98,7 @@ impl Regions {
 
     /// The clip in a scene.
     pub(super) fn clip(&self, scene: &Scene<'_>) -> rara::Result<Clip> {
-        Ok(match &self.of(scene)?[..] {
-            [] => Clip::default(),
-            all => Clip::joined(all.iter().map(Expression::clip), self.op),
-        })
+        Ok(joined(&self.of(scene)?, self.op))
     }
 
     /// Writes the clip to a file as one expression, and the layers' own clips, where that is wanted.
@@ -190,6 +188,14 @@ impl ClipArgs {
     }
 }
 
+/// What expressions keep together; everything where there is none.
+pub(super) fn joined(all: &[Expression], op: ClipOp) -> Clip {
+    match all {
+        [] => Clip::default(),
+        all => Clip::joined(all.iter().map(Expression::clip), op),
+    }
+}
+
 /// In place of a clip's name: all clips of a file.
 const ALL: &str = "*";
 
@@ -252,6 +258,11 @@ fn from_file(text: &str) -> Result<Vec<NamedClip>, Failure> {
             path.display(),
             output::counted(clips.len() as u64, "clip")
         )));
+    }
+    if found.iter().any(|named| named.layer.is_none()) {
+        // One of the clips of all: those of single layers belong to each of them.
+        found.retain(|named| named.layer.is_none());
+        found.extend(clips.into_iter().filter(|named| named.layer.is_some()));
     }
     Ok(found)
 }

@@ -16,16 +16,13 @@ pub(super) fn apply(texts: &[String], loaded: &mut Loaded) -> Result<(), Failure
             )));
         };
         let (name, region) = (&text[..at], &text[at + 1..]);
-        let wrong = |error: &str| Failure::Usage(format!("--layer-clip {name}: {error}"));
+        let wrong = |error: rara::Error| Failure::Usage(format!("--layer-clip {name}: {error}"));
         let clip = match region.trim() {
             "frame" => None,
-            "whole" => Some(LayerClip::Whole),
-            region => {
-                let region = Region::expression(region).map_err(|error| wrong(&error))?;
-                let region = region.of(|| Bounds::of(loaded.scene()));
-                Some(LayerClip::Region(
-                    region.map_err(|error| wrong(&error.to_string()))?,
-                ))
+            text => {
+                let clip = LayerClip::<Region>::parse(text);
+                let clip = clip.and_then(|clip| clip.within(|| Bounds::of(loaded.scene())));
+                Some(clip.map_err(wrong)?)
             }
         };
         for layer in loaded.named("--layer-clip", name)? {

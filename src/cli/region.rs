@@ -1,64 +1,74 @@
-//! The text of a clip, whose planes and slabs may lie at shares of the scene.
+//! The text of clips and predicates, whose planes and slabs may lie at shares of the scene.
+
+use std::str::FromStr;
 
 use rara::clip::Expression;
-use rara::{Bounds, Result, Shape};
+use rara::{Bounds, Error, Result, Shape};
 
 use super::axis::Axis;
 
-/// A clip as it was typed.
+/// A clip, or another thing with shapes in it, as it was typed.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Region {
-    /// A clip that says itself where it lies.
-    Fixed(Expression),
-    /// The text of a clip that lies at shares of the scene.
-    Relative(String),
+pub(super) enum Region<T = Expression> {
+    /// One that says itself where it lies.
+    Fixed(T),
+    /// One that lies at shares of the scene: its text, and what that means in an example of a scene.
+    Relative(String, T),
 }
 
 impl Region {
-    /// An expression of shapes.
-    pub(super) fn expression(text: &str) -> std::result::Result<Self, String> {
-        Self::parse(text, str::parse)
-    }
-
     /// A single shape.
-    pub(super) fn shape(text: &str) -> std::result::Result<Self, String> {
+    pub(super) fn shape(text: &str) -> Result<Self> {
         Self::parse(text, |text| text.parse::<Shape>().map(Expression::Shape))
     }
+}
 
-    fn parse(
-        text: &str,
-        parse: fn(&str) -> Result<Expression>,
-    ) -> std::result::Result<Self, String> {
+impl<T: FromStr<Err = Error>> FromStr for Region<T> {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        Self::parse(text, str::parse)
+    }
+}
+
+impl<T> Region<T> {
+    fn parse(text: &str, parse: fn(&str) -> Result<T>) -> Result<Self> {
         let some = Bounds {
             min: glam::DVec3::ZERO,
             max: glam::DVec3::ONE,
         };
         let fixed = fixed(text, &some)?;
+        if fixed == text {
+            return parse(text).map(Self::Fixed);
+        }
         // What is wrong with it is found before the scene is read.
-        let parsed = parse(&fixed).map_err(|error| match fixed == text {
-            true => error.to_string(),
-            false => format!("{error}, in '{fixed}', where shares are replaced by an example"),
+        let example = parse(&fixed).map_err(|error| {
+            Error::Invalid(format!(
+                "{error}, in '{fixed}', where shares are replaced by an example"
+            ))
         })?;
-        Ok(match fixed == text {
-            true => Self::Fixed(parsed),
-            false => Self::Relative(text.into()),
-        })
+        Ok(Self::Relative(text.into(), example))
     }
 
-    /// The clip in a scene, whose bounds are asked for if it lies at shares of them: those of a large one take a while.
-    pub(super) fn of(&self, bounds: impl FnOnce() -> Bounds) -> Result<Expression> {
+    /// What it is in some scene: in all but the places at shares it is that in every scene.
+    pub(super) fn example(&self) -> &T {
+        let (Self::Fixed(one) | Self::Relative(_, one)) = self;
+        one
+    }
+}
+
+impl<T: FromStr<Err = Error> + Clone> Region<T> {
+    /// What it is in a scene, whose bounds are asked for if it lies at shares of them: those of a large one take a while.
+    pub(super) fn of(&self, bounds: impl FnOnce() -> Bounds) -> Result<T> {
         match self {
-            Self::Fixed(expression) => Ok(expression.clone()),
-            Self::Relative(text) => {
-                let fixed = fixed(text, &bounds()).map_err(rara::Error::Invalid)?;
-                fixed.parse()
-            }
+            Self::Fixed(one) => Ok(one.clone()),
+            Self::Relative(text, _) => fixed(text, &bounds())?.parse(),
         }
     }
 }
 
-/// The text of a clip in which `plane:AXIS=SHARE%` and `slab:AXIS=FROM%..TO%` are replaced by what they mean within bounds.
-fn fixed(text: &str, bounds: &Bounds) -> std::result::Result<String, String> {
+/// The text in which `plane:AXIS=SHARE%` and `slab:AXIS=FROM%..TO%` are replaced by what they mean within bounds.
+fn fixed(text: &str, bounds: &Bounds) -> Result<String> {
     let mut fixed = String::new();
     let mut rest = text;
     while let Some((at, kind)) = ["plane:", "slab:"]
@@ -74,7 +84,7 @@ fn fixed(text: &str, bounds: &Bounds) -> std::result::Result<String, String> {
             continue;
         };
         let typed = format!("{kind}{}", &rest[..end]);
-        let wrong = |what: &str| format!("'{typed}': {what}");
+        let wrong = |what: &str| Error::Invalid(format!("'{typed}': {what}"));
         // The other side is the outside of the shape.
         let axis = Axis::of(name.trim()).filter(|_| !name.contains('!'));
         let axis = axis.ok_or_else(|| {
@@ -144,13 +154,13 @@ mod tests {
                 "all(plane:1,0,0,3, plane:0,1,0,-5)",
             ),
         ] {
-            let region = Region::expression(typed).expect(typed);
+            let region: Region = typed.parse().expect(typed);
             assert!(matches!(region, Region::Relative(..)), "{typed}");
             let meant: Expression = means.parse().expect(means);
             assert_eq!(region.of(bounds).expect(typed), meant, "{typed}");
         }
         let typed = "all(plane:1,0,0,3, sphere:0,0,0,1)";
-        let region = Region::expression(typed).expect(typed);
+        let region: Region = typed.parse().expect(typed);
         assert_eq!(region, Region::Fixed(typed.parse().expect(typed)));
     }
 
@@ -167,7 +177,7 @@ mod tests {
             ("slab:x=4%..40", "in percent"),
             ("all(plane:x=40%", "is missing, in 'all(plane:1,0,0,-0.4'"),
         ] {
-            let error = Region::expression(typed).expect_err(typed);
+            let error = typed.parse::<Region>().expect_err(typed).to_string();
             assert!(error.contains(says), "{typed}: {error}");
         }
         assert!(Region::shape("all(plane:x=4%)").is_err() && Region::shape("plane:x=4%").is_ok());

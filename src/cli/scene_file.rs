@@ -1,13 +1,17 @@
 //! Scene files: JSON that lists the layers of a scene.
 
+use std::cell::LazyCell;
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use glam::{DQuat, DVec3};
 use rara::clip::Expression;
-use rara::{Clip, Error, LayerState, Placement, Result};
+use rara::scene::Predicate;
+use rara::{Bounds, Clip, Error, Gaussians, Layer, LayerState, Placement, Result, Scene};
 use serde::Deserialize;
 
+use super::region::Region;
 use super::select::Selected;
 
 /// The longest list that is read.
@@ -23,20 +27,28 @@ pub(super) struct LayerEntry {
     pub(super) state: LayerState,
     /// Whether it was trained antialiased; none where its file says that.
     pub(super) antialiased: Option<bool>,
-    pub(super) clip: Option<LayerClip>,
+    pub(super) clip: Option<LayerClip<Region>>,
     /// The layers that take their splats from it, in the order in which they do so.
     pub(super) selected: Vec<Selected>,
 }
 
-/// The clip of one layer in place of the frame's, in the scene's space.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum LayerClip {
-    /// Nothing cuts the layer, neither the frame's clip.
-    Whole,
-    Region(Expression),
+/// What of the entry's layers is known once all files are read.
+pub(super) struct Settled {
+    /// The clips of its layers.
+    pub(super) clips: Vec<Option<LayerClip>>,
+    /// What its selections take.
+    pub(super) predicates: Vec<Predicate>,
 }
 
-impl LayerClip {
+/// The clip of one layer in place of the frame's, in the scene's space.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum LayerClip<R = Expression> {
+    /// Nothing cuts the layer, neither the frame's clip.
+    Whole,
+    Region(R),
+}
+
+impl<R: FromStr<Err = Error>> LayerClip<R> {
     /// The clip by its text: an expression, or `whole`.
     pub(super) fn parse(text: &str) -> Result<Self> {
         match text.trim() {
@@ -44,7 +56,19 @@ impl LayerClip {
             text => text.parse().map(Self::Region),
         }
     }
+}
 
+impl LayerClip<Region> {
+    /// The clip in a scene, whose bounds are asked for if it lies at shares of them.
+    pub(super) fn within(&self, bounds: impl FnOnce() -> Bounds) -> Result<LayerClip> {
+        Ok(match self {
+            Self::Whole => LayerClip::Whole,
+            Self::Region(region) => LayerClip::Region(region.of(bounds)?),
+        })
+    }
+}
+
+impl LayerClip {
     /// The clip that an expression means.
     pub(super) fn of(clip: Expression) -> Self {
         match clip {
@@ -104,9 +128,27 @@ impl LayerEntry {
         }
     }
 
+    /// The clips of the layers that the file makes: its own, then those that are selected.
+    fn clips(&self) -> impl Iterator<Item = Option<&LayerClip<Region>>> {
+        let selected = self.selected.iter().map(|one| one.clip.as_ref());
+        std::iter::once(self.clip.as_ref()).chain(selected)
+    }
+
     /// True when one of the layers that the file makes has a clip of its own.
     pub(super) fn has_clip(&self) -> bool {
-        self.clip.is_some() || self.selected.iter().any(|one| one.clip.is_some())
+        self.clips().any(|clip| clip.is_some())
+    }
+
+    /// What clips and selections mean in a scene, whose bounds are asked for if one of them lies at shares of them.
+    fn settled(&self, bounds: impl Fn() -> Bounds) -> Result<Settled> {
+        let clips = self
+            .clips()
+            .map(|clip| clip.map(|clip| clip.within(&bounds)).transpose());
+        let predicates = self.selected.iter().map(|one| one.predicate.of(&bounds));
+        Ok(Settled {
+            clips: clips.collect::<Result<_>>()?,
+            predicates: predicates.collect::<Result<_>>()?,
+        })
     }
 
     /// The names of the layers that the file makes: its own, then those that are selected.
@@ -114,6 +156,19 @@ impl LayerEntry {
         let selected = self.selected.iter().map(|one| one.name.as_str());
         std::iter::once(self.name.as_str()).chain(selected)
     }
+}
+
+/// What is known of entries once their files are read. What lies at shares lies at those of the scene that they list.
+pub(super) fn settled<'a>(
+    files: impl Iterator<Item = (&'a LayerEntry, &'a Gaussians)> + Clone,
+) -> Result<Vec<Settled>> {
+    let bounds = LazyCell::new(|| {
+        let layers = files.clone();
+        let layers = layers.map(|(entry, of)| Layer::new(&entry.name, of).with(entry.state));
+        Bounds::of(layers.collect::<Scene<'_>>())
+    });
+    let settled = files.clone().map(|(entry, _)| entry.settled(|| *bounds));
+    settled.collect()
 }
 
 /// The names of what describes an unpacked SOG scene.
@@ -172,12 +227,12 @@ struct Selection {
 }
 
 /// The clip of a layer, as a tree or as text.
-fn own_clip(tree: Option<Expression>, text: Option<String>) -> Result<Option<LayerClip>> {
+fn own_clip(tree: Option<Expression>, text: Option<String>) -> Result<Option<LayerClip<Region>>> {
     match (tree, text) {
         (Some(_), Some(_)) => Err(Error::Invalid(
             "it has both \"clip\" and \"clip_expr\"; keep one".into(),
         )),
-        (Some(tree), None) => Ok(Some(LayerClip::Region(tree))),
+        (Some(tree), None) => Ok(Some(LayerClip::Region(Region::Fixed(tree)))),
         (None, Some(text)) => LayerClip::parse(&text).map(Some),
         (None, None) => Ok(None),
     }

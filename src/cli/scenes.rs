@@ -10,7 +10,7 @@ use super::failure::Failure;
 use super::json_kind::JsonKind;
 use super::output::say;
 use super::reading::{self, Watch};
-use super::scene_file::{self, LayerClip, LayerEntry};
+use super::scene_file::{self, LayerClip, LayerEntry, Settled};
 use super::{antialiasing, layer_clip, place, select, training, values};
 use rara::scene::{Format, Property};
 
@@ -33,7 +33,8 @@ pub(super) struct SceneArgs {
     /// Predicates are opacity>0.5, size<0.01 (the largest standard deviation), red>0.6, green and blue (the colour
     /// of degree 0), 'label in 3,4,7..9' (any property of the file; property(NAME) if its name means something
     /// else) and 'inside(sphere:0,0,0,1)' (by the centre, in any expression as for --clip-expr), joined by and, or,
-    /// not and ( ). Comparisons are < <= > >= = and !=. A selection takes from every file, or as
+    /// not and ( ). Comparisons are < <= > >= = and !=. Shares, as in inside(plane:x=40%), are those of the scene's
+    /// bounds as its files are listed, before --place and --hide. A selection takes from every file, or as
     /// LAYER/NAME=PREDICATE from one layer, what earlier selections have left.
     #[arg(long, value_name = "NAME=PREDICATE")]
     select: Vec<String>,
@@ -233,21 +234,24 @@ impl Loaded {
     /// Adds the layers that an entry makes of its file's Gaussians, of which `first` are in the files before.
     fn add(
         &mut self,
-        entry: LayerEntry,
+        (entry, settled): (LayerEntry, Settled),
         gaussians: Gaussians,
         properties: &[Property],
         first: u32,
     ) -> rara::Result<()> {
-        let mut layer = LoadedLayer::new(entry.name.clone(), entry.state, entry.clip.clone());
+        let mut clips = settled.clips.into_iter();
+        let clip = clips.next().flatten();
+        let mut layer = LoadedLayer::new(entry.name.clone(), entry.state, clip);
         if entry.selected.is_empty() {
             layer.gaussians = gaussians;
             self.layers.push(layer);
             return Ok(());
         }
-        let parts = select::divide(gaussians, properties, &entry)?.into_iter();
+        let by = (&entry, &settled.predicates[..]);
+        let parts = select::divide(gaussians, properties, by)?.into_iter();
         let own = std::iter::once(layer);
-        let selected = entry.selected.into_iter();
-        let selected = selected.map(|one| LoadedLayer::new(one.name, one.state, one.clip));
+        let selected = entry.selected.into_iter().zip(clips);
+        let selected = selected.map(|(one, clip)| LoadedLayer::new(one.name, one.state, clip));
         for (number, (mut layer, part)) in own.chain(selected).zip(parts).enumerate() {
             if number > 0 && part.numbers.is_empty() {
                 self.notes.push(format!(
@@ -283,11 +287,11 @@ impl Loaded {
             .filter(|layer| layer.name == name)
             .collect();
         match found.is_empty() {
-            true => Err(Failure::Usage(format!(
-                "{flag}: no layer is called '{name}'; there are {}{}",
-                names.join(", "),
-                values::meant(name, names.iter().map(String::as_str))
-            ))),
+            true => Err(select::no_layer(
+                flag,
+                name,
+                names.iter().map(String::as_str),
+            )),
             false => Ok(found),
         }
     }
@@ -327,9 +331,18 @@ fn load(entries: Vec<LayerEntry>, flags: &[String], watch: Watch<'_>) -> Result<
         dropped: 0,
         notes: Vec::new(),
     };
-    let (mut before, files) = (0, entries.len());
+    let count = entries.len();
+    let mut read = Vec::with_capacity(count);
     for (number, entry) in (1..).zip(entries) {
-        let (mut loaded, properties) = reading::read(&entry, (number, files), watch)?;
+        let (loaded, properties) = reading::read(&entry, (number, count), watch)?;
+        read.push((entry, loaded, properties));
+    }
+    let files = read
+        .iter()
+        .map(|(entry, loaded, _)| (entry, &loaded.gaussians));
+    let settled = scene_file::settled(files)?;
+    let mut before = 0;
+    for ((entry, mut loaded, properties), settled) in read.into_iter().zip(settled) {
         let path = &entry.path;
         if let Some(antialiased) = entry.antialiased {
             loaded.gaussians.set_antialiased(antialiased);
@@ -346,7 +359,7 @@ fn load(entries: Vec<LayerEntry>, flags: &[String], watch: Watch<'_>) -> Result<
         );
         let count = loaded.gaussians.len() as u32;
         let first = all.layers.len();
-        all.add(entry, loaded.gaussians, &properties, before)?;
+        all.add((entry, settled), loaded.gaussians, &properties, before)?;
         for layer in &mut all.layers[first..] {
             layer.format = Some(loaded.format);
             layer.trained.clone_from(&trained);

@@ -7,7 +7,7 @@ use rara::{Bounds, Clip, ClipOp, Gaussians, Plane, Scene};
 
 use super::axis::Axis;
 use super::camera::{CameraArgs, View};
-use super::clip::{ClipArgs, Regions};
+use super::clip::{ClipArgs, Regions, joined};
 use super::failure::Failure;
 use super::framing::Visible;
 use super::lens::upright;
@@ -149,7 +149,7 @@ pub(super) struct Section {
 impl Section {
     /// The region that it keeps.
     pub(super) fn clip(&self) -> Clip {
-        joined(self.others.iter().chain(&self.own))
+        joined(&[&self.others[..], &self.own].concat(), ClipOp::And)
     }
 }
 
@@ -245,7 +245,7 @@ impl Sections {
     pub(super) fn of(&self, scene: &Scene<'_>) -> rara::Result<Vec<Section>> {
         let bounds = Bounds::of(scene.clone());
         let others = self.shapes.of(scene)?;
-        let rest = joined(&others);
+        let rest = joined(&others, ClipOp::And);
         let visible = Visible::nearly_all_of(scene);
         let section = |(number, planned): (usize, &Planned)| {
             let (name, plane, up) = match planned {
@@ -283,11 +283,6 @@ impl Sections {
         };
         self.planned.iter().enumerate().map(section).collect()
     }
-}
-
-/// What all of them keep.
-fn joined<'a>(shapes: impl IntoIterator<Item = &'a Expression>) -> Clip {
-    Clip::joined(shapes.into_iter().map(Expression::clip), ClipOp::And)
 }
 
 /// The direction that is up where a plane is seen that no axis is across: the world's, unless the plane lies level.

@@ -4,22 +4,24 @@ use rara::scene::{Part, Predicate, Property};
 use rara::{Gaussians, LayerState};
 
 use super::failure::Failure;
+use super::region::Region;
 use super::scene_file::{LayerClip, LayerEntry};
+use super::values;
 
 /// A layer that a selection makes of what a predicate takes of another.
 #[derive(Debug, Clone)]
 pub(super) struct Selected {
     /// What it takes from: 0 for the file's own layer, or one more than the number of an earlier selection of the file.
     from: usize,
-    pub(super) predicate: Predicate,
+    pub(super) predicate: Region<Predicate>,
     pub(super) name: String,
     pub(super) state: LayerState,
-    pub(super) clip: Option<LayerClip>,
+    pub(super) clip: Option<LayerClip<Region>>,
 }
 
 impl Selected {
     /// A selection from what a file's own layer is left with, whose state and clip it takes.
-    pub(super) fn new(name: String, predicate: Predicate, entry: &LayerEntry) -> Self {
+    pub(super) fn new(name: String, predicate: Region<Predicate>, entry: &LayerEntry) -> Self {
         Self {
             from: 0,
             predicate,
@@ -38,7 +40,7 @@ pub(super) fn add(entries: &mut [LayerEntry], text: &str) -> Result<(), Failure>
             "expected NAME=PREDICATE, as in 'vessels=label in 3,4'".into(),
         ));
     };
-    let predicate: Predicate = predicate
+    let predicate: Region<Predicate> = predicate
         .parse()
         .map_err(|error: rara::Error| usage(error.to_string()))?;
     let (layer, name) = match target.rsplit_once('/') {
@@ -72,37 +74,45 @@ pub(super) fn add(entries: &mut [LayerEntry], text: &str) -> Result<(), Failure>
     if found {
         return Ok(());
     }
-    let names: Vec<_> = entries.iter().flat_map(LayerEntry::names).collect();
-    Err(usage(format!(
-        "no layer is called '{}'; there are {}",
-        layer.unwrap_or_default(),
-        names.join(", ")
-    )))
+    let names = entries.iter().flat_map(LayerEntry::names);
+    let flag = format!("--select {text}");
+    Err(no_layer(&flag, layer.unwrap_or_default(), names))
+}
+
+/// The refusal of a name that no layer has, which `flag` asks for.
+pub(super) fn no_layer<'a>(
+    flag: &str,
+    name: &str,
+    names: impl Iterator<Item = &'a str>,
+) -> Failure {
+    let names: Vec<_> = names.collect();
+    Failure::Usage(format!(
+        "{flag}: no layer is called '{name}'; there are {}{}",
+        names.join(", "),
+        values::meant(name, names.iter().copied())
+    ))
 }
 
 /// The names of the properties that selections compare, each once.
 pub(super) fn properties(selected: &[Selected]) -> Vec<&str> {
     let mut names: Vec<_> = selected
         .iter()
-        .flat_map(|one| one.predicate.properties())
+        .flat_map(|one| one.predicate.example().properties())
         .collect();
     names.sort_unstable();
     names.dedup();
     names
 }
 
-/// Divides a file's Gaussians: what is left of them, then what each selection has taken.
+/// Divides a file's Gaussians by what its selections take: what is left of them, then what each selection has taken.
 pub(super) fn divide(
     gaussians: Gaussians,
     properties: &[Property],
-    entry: &LayerEntry,
+    (entry, predicates): (&LayerEntry, &[Predicate]),
 ) -> rara::Result<Vec<Part>> {
     let mut part_of = vec![0; gaussians.len()];
-    for (number, selected) in entry.selected.iter().enumerate() {
-        let placement = &entry.state.placement;
-        let taken = selected
-            .predicate
-            .select(&gaussians, properties, placement)?;
+    for (number, (selected, predicate)) in entry.selected.iter().zip(predicates).enumerate() {
+        let taken = predicate.select(&gaussians, properties, &entry.state.placement)?;
         for (part, taken) in part_of.iter_mut().zip(taken) {
             if taken && *part as usize == selected.from {
                 *part = number as u32 + 1;

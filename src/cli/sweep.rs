@@ -1,14 +1,15 @@
 //! `rara sweep`: the camera stands still and a clip moves: a plane across the scene, or any region to another.
 
+use std::cell::LazyCell;
 use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
 use rara::clip::Expression;
-use rara::{Clip, Plane, Settings, Show};
+use rara::{Bounds, Clip, Plane, Settings, Show};
 
 use super::camera::Views;
-use super::clip::Regions;
+use super::clip::{Regions, joined};
 use super::combine::Measured;
 use super::failure::Failure;
 use super::frame::FrameArgs;
@@ -17,6 +18,7 @@ use super::kept::Kept;
 use super::memory;
 use super::pictures::{self, Destination, Drawn, Order, PictureArgs, Plan};
 use super::profile::{Profile, ProfileArgs};
+use super::region::Region;
 use super::report::{Frame, Report};
 use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
@@ -46,13 +48,13 @@ pub(super) struct Sweep {
     #[arg(required_unless_present = "from", conflicts_with = "from")]
     clip_normal: Option<DVec3>,
     /// The clip of the first frame, an expression as for --clip-expr
-    #[arg(long, value_name = "EXPRESSION", value_parser = values::expression, allow_hyphen_values = true)]
-    from: Option<Expression>,
+    #[arg(long, value_name = "EXPRESSION", value_parser = str::parse::<Region>, allow_hyphen_values = true)]
+    from: Option<Region>,
     /// The clip of the last frame, with the same shapes in the same places
     ///
     /// Points, sizes and radii move evenly, rotations and normals along the shortest arcs.
-    #[arg(long, value_name = "EXPRESSION", value_parser = values::expression, allow_hyphen_values = true)]
-    to: Option<Expression>,
+    #[arg(long, value_name = "EXPRESSION", value_parser = str::parse::<Region>, allow_hyphen_values = true)]
+    to: Option<Region>,
     /// Number of frames
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: u32,
@@ -86,7 +88,7 @@ impl Sweep {
 
     /// What a run of many commands has to know before it draws any picture.
     pub(super) fn plan(&self) -> Result<Plan, Failure> {
-        self.moving()?;
+        self.meant()?;
         let numbers: Vec<_> = (0..self.frames as usize).collect();
         let output = self.output.as_deref();
         let wanted = (&numbers[..], Some(SEVERAL));
@@ -98,17 +100,22 @@ impl Sweep {
         ))
     }
 
-    /// Draws the pictures that are in `order`, or all of them and reports them.
-    pub(super) fn run_in(self, kept: &mut Kept, order: Option<&dyn Order>) -> Result<(), Failure> {
+    /// What the flags mean: the settings, the shapes that stand still, and the camera. Errors that do not depend on the scene
+    /// are found before it is read.
+    fn meant(&self) -> Result<(Settings, Regions, Views), Failure> {
         let settings = self.frame.settings.meant()?;
         if settings.show == Show::Count {
             pictures::needs_floats(self.output.as_deref(), pictures::COUNTS)?;
         }
-        // The shapes that stand still.
         let shapes = self.frame.clip.meant()?;
-        let moving = self.moving()?;
+        self.moving(|region| Ok(region.example().clone()))?;
         let views = self.frame.camera.meant(&self.scenes.places())?;
-        let views = views.single("a sweep")?;
+        Ok((settings, shapes, views.single("a sweep")?))
+    }
+
+    /// Draws the pictures that are in `order`, or all of them and reports them.
+    pub(super) fn run_in(self, kept: &mut Kept, order: Option<&dyn Order>) -> Result<(), Failure> {
+        let (settings, shapes, views) = self.meant()?;
         let numbers: Vec<_> = (0..self.frames as usize).collect();
         let output = self.output.as_deref();
         let wanted = (&numbers[..], Some(SEVERAL));
@@ -116,21 +123,22 @@ impl Sweep {
         let settings = destination.settings(settings);
 
         let profile = self.profile.begin(|| destination.files(&numbers))?;
-        let clips = (shapes, &moving);
-        let done = self.draw((&profile, kept), (views, clips), &destination, &settings);
+        let done = self.draw((&profile, kept), (views, shapes), &destination, &settings);
         profile.end_after(done)
     }
 
-    /// What moves.
-    fn moving(&self) -> Result<Moving, Failure> {
+    /// What moves, between regions that are meant so.
+    fn moving(
+        &self,
+        meant: impl Fn(&Region) -> rara::Result<Expression>,
+    ) -> Result<Moving, Failure> {
         let moving = match (self.clip_normal, &self.from, &self.to) {
             (Some(normal), ..) => {
                 Moving::Plane(Plane::new(normal, 0.0).map_err(Failure::usage)?.normal())
             }
-            (None, Some(from), Some(to)) => Moving::Region(from.clone(), to.clone()),
+            (None, Some(from), Some(to)) => Moving::Region(meant(from)?, meant(to)?),
             _ => unreachable!("one of them is required"),
         };
-        // Errors that do not depend on the scene are found before it is read.
         for index in 0..self.frames.min(MOST_TRIED) {
             let share = position((0.0, 1.0), index, self.frames.min(MOST_TRIED));
             moving.at(share).map_err(Failure::usage)?;
@@ -141,7 +149,7 @@ impl Sweep {
     fn draw(
         &self,
         (profile, kept): (&Profile, &mut Kept),
-        (views, (regions, moving)): (Views, (Regions, &Moving)),
+        (views, regions): (Views, Regions),
         destination: &Destination<'_>,
         settings: &Settings,
     ) -> Result<(), Failure> {
@@ -150,6 +158,8 @@ impl Sweep {
         let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of)?;
         regions.settle(&mut loaded)?;
         let scene = loaded.scene();
+        let bounds = LazyCell::new(|| Bounds::of(&scene));
+        let moving = self.moving(|region| region.of(|| *bounds))?;
         let view = framing::views(views, &scene)?.remove(0);
         self.save_camera.save([&view].into_iter())?;
         let camera = view.camera;
@@ -159,7 +169,7 @@ impl Sweep {
             return Ok(());
         };
         let range = match moving {
-            Moving::Plane(normal) => extent_along(&scene, *normal),
+            Moving::Plane(normal) => extent_along(&scene, normal),
             Moving::Region(..) => (0.0, 1.0),
         };
         let size = (camera.width, camera.height);
@@ -170,7 +180,7 @@ impl Sweep {
         }
         let mut clip_of = |index| -> rara::Result<Clip> {
             shapes.push(moving.at(position(range, index, self.frames))?);
-            let clip = Clip::joined(shapes.iter().map(Expression::clip), op);
+            let clip = joined(&shapes, op);
             shapes.pop();
             Ok(clip)
         };

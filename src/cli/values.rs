@@ -58,11 +58,6 @@ pub(super) fn direction(text: &str) -> Result<DVec3, String> {
     Ok(vector)
 }
 
-/// An expression of shapes.
-pub(super) fn expression(text: &str) -> Result<rara::clip::Expression, String> {
-    text.parse().map_err(|error: rara::Error| error.to_string())
-}
-
 /// `WxH`. The library says which sizes are possible.
 pub(super) fn size(text: &str) -> Result<(u32, u32), String> {
     let parts = text.split_once(['x', 'X']);

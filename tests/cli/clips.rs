@@ -97,6 +97,19 @@ fn clips_at_shares_lie_between_the_bounds_that_info_prints() {
         &format!("--clip-expr any({slab},{plane})"),
     );
     same("--layer-clip scene=plane:x=40%", &format!("--clip {plane}"));
+    let core = |region: &str| format!("--select core=inside({region}) --hide scene");
+    same(&core("plane:x=40%"), &core(&plane));
+    let other = format!("plane:1,0,0,{}", -at(0, 0.7));
+    let swept = |from: &str, to: &str| {
+        let ends = format!("--from {from} --to {to}");
+        drawn(
+            "sweep",
+            &format!("--size 24x24 --frames 2 -o @/s_{{}}.png {ends}"),
+        );
+        [0, 1].map(|n| fs::read(here.join(format!("s_{n}.png"))).unwrap())
+    };
+    let steps = swept("plane:x=40%", "plane:x=70%");
+    assert!(steps == swept(&plane, &other) && steps[0] != steps[1]);
     // What is saved says where it lies.
     drawn(
         "render",
@@ -119,6 +132,38 @@ fn clips_at_shares_lie_between_the_bounds_that_info_prints() {
 }
 
 #[test]
+fn shares_in_a_list_are_those_of_all_that_it_lists() {
+    let here = folder("listed_shares");
+    scene(&here);
+    let list = |name: &str, clip: &str, region: &str| {
+        let list = serde_json::json!({"layers": [
+            {"path": "scene.ply", "name": "near", "clip_expr": clip},
+            {"path": "scene.ply", "name": "far", "scale": 2,
+                "select": [{"name": "part", "where": format!("inside({region})"), "opacity": 0.3}]},
+        ]});
+        fs::write(here.join(name), list.to_string()).unwrap();
+    };
+    let drawn = |name: &str, flags: &str| {
+        let words = format!("render @/{name} --size 48x32 -o @/a.exr {flags}");
+        done(line(&here, &words));
+        fs::read(here.join("a.exr")).unwrap()
+    };
+    list("shares.json", "plane:x=40%", "plane:x=70%");
+    let info = document(line(&here, "info @/shares.json --json"));
+    let plane = |percent: f64| {
+        let [low, high] = ["min", "max"].map(|end| info["robust_bounds"][end][0].as_f64().unwrap());
+        format!("plane:1,0,0,{}", -(low + (high - low) * percent / 100.0))
+    };
+    list("places.json", &plane(40.0), &plane(70.0));
+    list("others.json", &plane(50.0), &plane(70.0));
+    for flags in ["", "--hide far", "--place near=move:0.1,0,0"] {
+        let shown = drawn("shares.json", flags);
+        assert!(shown == drawn("places.json", flags), "{flags}");
+        assert!(shown != drawn("others.json", flags), "{flags}");
+    }
+}
+
+#[test]
 fn clips_of_layers_are_saved_with_the_frames() {
     let here = folder("saved_layer_clips");
     scene(&here);
@@ -136,6 +181,10 @@ fn clips_of_layers_are_saved_with_the_frames() {
     let flags = format!("{frame} --layer-clip more2=whole --layer-clip more3=sphere:0,0,0,.4");
     let typed = drawn(&format!("{flags} --save-clip @/saved.json"));
     assert!(typed != drawn(frame) && typed == drawn("--clip-file @/saved.json"));
+    // The clip of a name comes with those of the layers, and that of a layer comes alone.
+    assert!(typed == drawn("--clip-file @/saved.json:saved"));
+    let alone = drawn("--clip-file @/saved.json:more3");
+    assert!(alone != drawn("") && alone == drawn("--layer-clip more3=sphere:0,0,0,.4"));
     let taken_back = "--layer-clip more2=plane:1,0,0,0 --layer-clip more3=plane:1,0,0,0";
     assert!(drawn(&format!("--clip-file @/saved.json {taken_back}")) == drawn(frame));
     refused(

@@ -5,7 +5,7 @@
 mod tests;
 
 use clap::parser::ValueSource;
-use clap::{ArgMatches, Command};
+use clap::{Arg, ArgMatches, Command};
 
 use super::failure::Failure;
 use super::output;
@@ -172,8 +172,12 @@ pub(super) fn check(command: &Command, typed: &ArgMatches) -> Result<(), Failure
                 output::say(format_args!("note: {shown} changes nothing without {what}"));
             }
             Some((what, false)) => {
+                let give = match need.rival(command, typed) {
+                    Some(rival) => format!("give that in place of {rival}"),
+                    None => "give that too".into(),
+                };
                 return Err(Failure::Usage(format!(
-                    "{shown} changes nothing without {what}: give that too, or leave out {shown}"
+                    "{shown} changes nothing without {what}: {give}, or leave out {shown}"
                 )));
             }
         }
@@ -214,6 +218,30 @@ impl Need {
             Two(ids) if count(ids) < 2 => Some(("a second shape".into(), true)),
             _ => None,
         }
+    }
+
+    /// What was typed that each of the needed flags conflicts with.
+    fn rival(&self, command: &Command, typed: &ArgMatches) -> Option<String> {
+        let Flag(ids) = self else {
+            return None;
+        };
+        let is_typed = |id: &str| {
+            typed
+                .value_source(id)
+                .is_some_and(|source| source == ValueSource::CommandLine)
+        };
+        let conflict = |a: &Arg, b: &Arg| command.get_arg_conflicts_with(a).contains(&b);
+        let needed = || {
+            command
+                .get_arguments()
+                .filter(|arg| ids.contains(&arg.get_id().as_str()))
+        };
+        let mut given = command
+            .get_arguments()
+            .filter(|arg| is_typed(arg.get_id().as_str()));
+        let rival =
+            given.find(|given| needed().all(|need| conflict(given, need) || conflict(need, given)));
+        rival.map(|rival| shown(command, rival.get_id().as_str()))
     }
 }
 

@@ -152,17 +152,25 @@ fn what_conflicts_with_a_need_does_not_meet_it() {
         .into_iter()
         .find(|command| command.get_name() == "render");
     let render = render.expect("it is there");
-    for words in [
-        "--section z=0.5 --frames 9",
-        "--path orbit --slice",
-        "--path orbit --section-thickness 1",
-        "--panorama --outline 1,1,1",
+    for (words, says) in [
+        (
+            "--section z=0.5 --frames 9",
+            "without --path: give that in place of --section,",
+        ),
+        (
+            "--path orbit --slice",
+            "without --section: give that in place of --path,",
+        ),
+        (
+            "--path orbit --section-thickness 1",
+            "without --section: give that in place of --path,",
+        ),
+        ("--panorama --outline 1,1,1", "without --section: give that"),
+        ("--frames 9", "without --path: give that too,"),
     ] {
         let words: Vec<_> = words.split(' ').collect();
-        assert!(
-            check(&render, &typed(&render, &words)).is_err(),
-            "{words:?}"
-        );
+        let refused = check(&render, &typed(&render, &words)).expect_err("it is refused");
+        assert!(refused.to_string().contains(says), "{words:?}: {refused}");
     }
     for words in [
         "--section z=0.5 --slice",

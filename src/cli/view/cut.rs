@@ -5,6 +5,7 @@ use rara::clip::{Expression, Solid};
 use rara::{Clip, ClipOp, Placement, Plane, Shape};
 
 use super::numbers::stands_at;
+use crate::clip::joined;
 
 /// Expressions of shapes, which of the shapes is held, and whether they cut at all.
 #[derive(Debug, Clone)]
@@ -72,10 +73,7 @@ impl Cut {
 
     /// The clip in force.
     pub(super) fn clip(&self) -> Clip {
-        match self.expressions() {
-            [] => Clip::default(),
-            all => Clip::joined(all.iter().map(Expression::clip), self.op),
-        }
+        joined(self.expressions(), self.op)
     }
 
     /// The same as shapes and expressions.

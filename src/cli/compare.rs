@@ -1,13 +1,14 @@
 //! `rara compare`: how far two pictures are apart.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rara::Picture;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::{output, values};
+use super::{ink, output, values};
+use rara_lab::maps;
 use rara_lab::measure::{self, Comparison};
 
 /// Measure how far two pictures are apart
@@ -17,11 +18,13 @@ Examples:
   rara compare picture.png reference.exr --json
   rara compare picture.png reference.png --min-psnr 40 --max-l1 0.5
   rara compare cut.png whole.png --background white
+  rara compare picture.png reference.png --map errors.png
 
 Red, green and blue are compared over the background, and alpha on a line of its own. Differences are on a scale of 0 to 255. \
 SSIM uses a Gaussian window of 11x11 pixels with a sigma of 1.5, K1 = 0.01, K2 = 0.03 and a data range of 1, and is the mean \
 over pixels and channels. Equal pictures have no PSNR: it is null in the JSON. The measures are printed even if a limit is \
-exceeded, which is exit status 1.")]
+exceeded, which is exit status 1. The map of --map has in each pixel the largest difference of a channel over the background, \
+from light to dark on a logarithmic scale whose equal steps look equal; white is less than 0.1 of 255.")]
 pub(super) struct Compare {
     /// A picture, .png or .exr
     a: PathBuf,
@@ -36,6 +39,9 @@ pub(super) struct Compare {
     /// Fail if the mean difference is more than this, of 255
     #[arg(long, value_name = "L1", value_parser = values::finite, allow_hyphen_values = true)]
     max_l1: Option<f64>,
+    /// File for a map of the differences, .png or .exr, with its scale below
+    #[arg(long, value_name = "FILE", value_parser = values::picture_file())]
+    map: Option<PathBuf>,
     /// Print the measures as JSON to stdout
     #[arg(long)]
     json: bool,
@@ -101,16 +107,10 @@ struct Apart {
 
 impl Apart {
     fn of(a: &Picture, b: &Picture, background: [f32; 3]) -> rara::Result<Self> {
-        let over = |picture: &Picture| {
-            opaque(picture, |[r, g, b, a]| {
-                let [behind_r, behind_g, behind_b] = background.map(|c| (1.0 - a) * c);
-                [r + behind_r, g + behind_g, b + behind_b]
-            })
-        };
         let alpha = |picture: &Picture| opaque(picture, |[.., a]| [a; 3]);
         let alpha = measure::differences(&alpha(a), &alpha(b))?;
         Ok(Self {
-            colours: measure::compare(&over(a), &over(b))?.into(),
+            colours: measure::compare(&over(a, background), &over(b, background))?.into(),
             alpha_l1: alpha.l1,
             alpha_max: alpha.max,
         })
@@ -125,6 +125,14 @@ impl Apart {
     }
 }
 
+/// A picture over a background.
+fn over(picture: &Picture, background: [f32; 3]) -> Picture {
+    opaque(picture, |[r, g, b, a]| {
+        let [behind_r, behind_g, behind_b] = background.map(|c| (1.0 - a) * c);
+        [r + behind_r, g + behind_g, b + behind_b]
+    })
+}
+
 /// An opaque picture of these colours of another one's pixels.
 fn opaque(picture: &Picture, colours: impl Fn([f32; 4]) -> [f32; 3]) -> Picture {
     let mut picture = picture.clone();
@@ -135,10 +143,59 @@ fn opaque(picture: &Picture, colours: impl Fn([f32; 4]) -> [f32; 3]) -> Picture 
     picture
 }
 
+/// A map of the differences, and below it its scale with numbers, which are as wide as the map or, below a narrow one, as
+/// wide as they have to be.
+fn map_with_scale(a: &Picture, b: &Picture) -> rara::Result<Picture> {
+    let map = maps::error_map(a, b)?;
+    let width = map.width.max(LEAST_WIDTH);
+    let dot = (width / 480).max(1);
+    let (words, bar) = (map.height + 3 * dot, map.height + 13 * dot);
+    let numbers = bar + 10 * dot;
+    let mut whole = Picture::filled(width, numbers + 10 * dot, PAPER);
+    let mut put = |part: &Picture, top: u32| {
+        for (row, pixels) in part.pixels.chunks(part.width as usize).enumerate() {
+            let begin = (top as usize + row) * width as usize;
+            whole.pixels[begin..begin + pixels.len()].copy_from_slice(pixels);
+        }
+    };
+    put(&map, 0);
+    put(&maps::scale(width, 8 * dot), bar);
+    let font = (ink::Font::Small, dot.into());
+    let mut write = |words: &str, left: f64, top: u32| {
+        ink::text(&mut whole, [left, top.into()], words, font, [0; 3]);
+    };
+    write("difference, of 255", dot.into(), words);
+    for number in ["0.1", "1", "10", "100"] {
+        let place = maps::place(number.parse().expect("it is a number"));
+        // Each is centred below its place, except at the ends.
+        let long = f64::from(6 * dot) * number.len() as f64;
+        let middle = place * f64::from(width);
+        let left = (middle - long / 2.0).clamp(dot.into(), f64::from(width) - long);
+        write(number, left, numbers);
+    }
+    Ok(whole)
+}
+
+/// Pixels across that the scale of a map takes at least.
+const LEAST_WIDTH: u32 = 120;
+/// The colour behind the scale of a map, which white can be told apart from.
+const PAPER: [f32; 4] = [0.85, 0.85, 0.85, 1.0];
+
 impl Compare {
     pub(super) fn run(self) -> Result<(), Failure> {
+        if let Some(file) = &self.map {
+            if file == Path::new(values::STANDARD) {
+                let message = "--map -: standard output gets the measures; name a file";
+                return Err(Failure::Usage(message.into()));
+            }
+            output::check_file(file)?;
+        }
         let (a, b) = (Picture::load(&self.a)?, Picture::load(&self.b)?);
         let apart = Apart::of(&a, &b, self.background)?;
+        if let Some(file) = &self.map {
+            let [a, b] = [&a, &b].map(|picture| over(picture, self.background));
+            output::picture(&map_with_scale(&a, &b)?, file)?;
+        }
         if self.json {
             output::json(&apart)?;
         } else {

@@ -199,7 +199,6 @@ pub(super) fn film_path(path: OsString) -> Result<PathBuf, String> {
 pub(super) const STANDARD: &str = "-";
 
 /// The parser of a picture's file name.
-#[cfg(feature = "view")]
 pub(super) fn picture_file() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(picture_path)
 }

@@ -140,6 +140,7 @@ const NEEDS: &[(&str, Need)] = &[
     ("no_reference", Nothing),
     ("min_psnr", Nothing),
     ("max_l1", Nothing),
+    ("map", Nothing),
     ("min_opacity", Nothing),
     ("scale", Nothing),
     ("rotate", Nothing),

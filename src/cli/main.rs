@@ -31,6 +31,7 @@ mod json_kind;
 mod kept;
 mod layer_clip;
 mod lens;
+mod measure;
 mod memory;
 mod model;
 mod needs;
@@ -116,6 +117,7 @@ enum Command {
     Batch(batch::Batch),
     Ablate(ablate::Ablate),
     Bench(bench::Bench),
+    Measure(measure::Measure),
     Paper(paper::Paper),
     Study(study::Study),
     StudyReport(study::StudyReport),
@@ -144,6 +146,7 @@ impl Command {
             Self::Batch(command) => command.run(),
             Self::Ablate(command) => command.run(),
             Self::Bench(command) => command.run(),
+            Self::Measure(command) => command.run(),
             Self::Paper(command) => command.run(),
             Self::Study(command) => command.run(),
             Self::StudyReport(command) => command.run(),

@@ -24,6 +24,16 @@ pub(super) fn check_gaussians(count: u64) -> Result<()> {
     )
 }
 
+/// Fails where so many Gaussians do not fit beside a renderer that draws them on this machine's processor: it holds them too,
+/// and their splats and pairs of a splat and a tile.
+pub(super) fn check_drawing(count: u64) -> Result<()> {
+    check(
+        4 * count * GAUSSIAN + DRIVER,
+        || format!("{} and a renderer", counted(count, "Gaussian")),
+        "ask for fewer",
+    )
+}
+
 /// Fails where a picture of this size does not fit beside the driver and so many pixels of others that are kept for it. Of a
 /// machine without a limit of address space the driver has its own to say.
 pub(super) fn check_picture((width, height): (u32, u32), kept: u64) -> Result<()> {

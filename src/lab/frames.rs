@@ -1,6 +1,19 @@
 //! Frames that reuse nothing, which is what is measured and compared.
 
-use rara::{Camera, Clip, FrameStats, Headless, Picture, Result, Settings};
+use std::ops::RangeInclusive;
+use std::time::{Duration, Instant};
+
+use rara::{Camera, Clip, FrameStats, Headless, Mode, Picture, Result, Settings};
+
+use crate::measure::processor_ms;
+
+/// The modes, the simplest first, as tables call them.
+pub(crate) const MODES: [(&str, Mode); 4] = [
+    ("none", Mode::None),
+    ("hard", Mode::Hard),
+    ("rara", Mode::Rara),
+    ("exact", Mode::Exact),
+];
 
 /// Draws a frame that reuses nothing of the one before.
 ///
@@ -28,4 +41,79 @@ pub fn picture(
 ) -> Result<(Picture, FrameStats)> {
     let stats = fresh(headless, camera, clip, settings)?;
     Ok((headless.picture()?, stats))
+}
+
+/// A frame that was timed.
+#[derive(Debug, Clone)]
+pub(crate) struct Timed {
+    pub(crate) stats: FrameStats,
+    /// What this process took on all cores, milliseconds; 0 where the system does not count it.
+    pub(crate) processor_ms: f64,
+}
+
+/// Draws such a frame and times it.
+pub(crate) fn timed(
+    headless: &mut Headless,
+    camera: &Camera,
+    clip: &Clip,
+    settings: &Settings,
+) -> Result<Timed> {
+    let before = processor_ms();
+    let stats = fresh(headless, camera, clip, settings)?;
+    let processor_ms = processor_ms() - before;
+    Ok(Timed {
+        stats,
+        processor_ms,
+    })
+}
+
+/// After this long the least number of rounds is enough.
+const ENOUGH: Duration = Duration::from_secs(30);
+
+/// Measures `count` things in turn, so that other work on the machine disturbs all of them alike: `one(thing, round)`; the
+/// results by thing, then by round. A round 0 comes first and its results are dropped: it compiles, allocates and fills
+/// caches.
+pub(crate) fn in_turn<T>(
+    rounds: RangeInclusive<u32>,
+    count: usize,
+    mut one: impl FnMut(usize, u32) -> Result<T>,
+) -> Result<Vec<Vec<T>>> {
+    let mut results: Vec<Vec<T>> = (0..count).map(|_| Vec::new()).collect();
+    let mut begin = Instant::now();
+    for round in 0..=*rounds.end() {
+        if round > *rounds.start() && begin.elapsed() > ENOUGH {
+            break;
+        }
+        // The order alternates, so that none always follows the same one or always has the same place in a round.
+        let mut order: Vec<usize> = (0..count).collect();
+        if round % 2 == 1 {
+            order.reverse();
+        }
+        for thing in order {
+            let result = one(thing, round)?;
+            if round > 0 {
+                results[thing].push(result);
+            }
+        }
+        if round == 0 {
+            begin = Instant::now();
+        }
+    }
+    Ok(results)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn things_take_turns_in_both_directions_and_the_first_round_does_not_count() {
+        let mut order = Vec::new();
+        let results = in_turn(2..=2, 2, |thing, round| {
+            order.push((round, thing));
+            Ok(10 * round + thing as u32)
+        });
+        assert_eq!(results.expect("none fails"), [[10, 20], [11, 21]]);
+        assert_eq!(order, [(0, 0), (0, 1), (1, 1), (1, 0), (2, 0), (2, 1)]);
+    }
 }

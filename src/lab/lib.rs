@@ -1,6 +1,6 @@
 //! The laboratory of rara: what measures it, and the experiments of the paper. What embeds rara compiles none of it.
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)] // only what measures Vulkan itself needs it
 
 pub mod bench;
 pub mod cases;
@@ -9,6 +9,7 @@ pub mod frames;
 pub mod maps;
 pub mod measure;
 pub mod paper;
+pub mod run_time;
 pub mod statistics;
 pub mod stress;
 pub mod study;

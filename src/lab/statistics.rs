@@ -26,6 +26,11 @@ pub fn median(values: &[f64]) -> Option<f64> {
     }
 }
 
+/// The least value; infinite of nothing.
+pub fn least(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
 /// Cohen's d of one sample against 0, or of differences of pairs: the mean in standard deviations. `None` of fewer than
 /// two values, and where all are the same.
 pub fn cohens_d(values: &[f64]) -> Option<f64> {
@@ -121,6 +126,7 @@ mod tests {
         assert!(close(standard_deviation(&values).expect("one"), deviation));
         assert_eq!(median(&values), Some(4.5));
         assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(least(&[3.0, 1.0, 2.0]), 1.0);
         assert!(close(cohens_d(&values).expect("one"), 5.0 / deviation));
         assert_eq!((mean(&[]), median(&[])), (None, None));
         assert_eq!(standard_deviation(&[1.0]), None);

@@ -1,6 +1,5 @@
-//! Tests that need no device: files of scenes and cameras, and the benchmark's arithmetic.
+//! Tests that need no device: files of scenes and cameras.
 
-mod benchmark;
 mod cameras;
 mod colmap;
 #[path = "../common/folder.rs"]

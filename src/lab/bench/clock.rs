@@ -1,10 +1,10 @@
 //! Times of several choices, taken in turn so that their ratios hold on a machine that does other things too.
 
-use crate::measure::processor_ms;
-use rara::{Camera, Clip, Headless, PassTime, Result, Scene, Settings};
+use rara::{Camera, Clip, Headless, Result, Scene, Settings};
 use serde::Serialize;
 
-use crate::frames::fresh;
+use crate::frames::{Timed, fresh, in_turn, timed};
+use crate::statistics::least;
 
 /// The times of one choice, milliseconds.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -43,78 +43,51 @@ pub(crate) fn time(
     all: &[(&Clip, Settings)],
     rounds: u32,
 ) -> Result<Vec<Times>> {
-    let mut samples = vec![Samples::default(); all.len()];
     let mut loaded = None;
-    for round in 0..=rounds {
-        // The order alternates, so that none always follows the same one or always has the same place in a round.
-        let mut order: Vec<usize> = (0..all.len()).collect();
-        if round % 2 == 1 {
-            order.reverse();
+    let frames = in_turn(rounds..=rounds, all.len(), |index, _| {
+        let (clip, settings) = &all[index];
+        let sh = settings.precision.sh;
+        if loaded != Some(sh) {
+            headless.load_as(scene, sh)?;
+            // The frame after an upload finds other data in the caches, so it is not timed.
+            fresh(headless, camera, clip, settings)?;
+            loaded = Some(sh);
         }
-        for index in order {
-            let ((clip, settings), samples) = (&all[index], &mut samples[index]);
-            let sh = settings.precision.sh;
-            if loaded != Some(sh) {
-                headless.load_as(scene, sh)?;
-                // The frame after an upload finds other data in the caches, so it is not timed.
-                fresh(headless, camera, clip, settings)?;
-                loaded = Some(sh);
-            }
-            let before = processor_ms();
-            let frame = fresh(headless, camera, clip, settings)?;
-            let after = processor_ms();
-            if round > 0 {
-                samples.ms.extend(frame.gpu_ms);
-                samples.wall.push(frame.wall_ms);
-                samples.cpu.push(after - before);
-                samples.passes.push(frame.passes);
-            }
-        }
-    }
+        timed(headless, camera, clip, settings)
+    })?;
     let on_cpu = headless.device().info().kind_name() == "cpu";
-    Ok(samples.iter().map(|s| s.times(on_cpu)).collect())
+    Ok(frames.iter().map(|frames| times(frames, on_cpu)).collect())
 }
 
-#[derive(Debug, Clone, Default)]
-struct Samples {
-    ms: Vec<f64>,
-    wall: Vec<f64>,
-    cpu: Vec<f64>,
-    passes: Vec<Vec<PassTime>>,
-}
-
-impl Samples {
-    fn times(&self, on_cpu: bool) -> Times {
-        let names = self.passes.first().into_iter().flatten();
-        let pass = |name: &str| {
-            let ms = self.passes.iter().flatten().filter(|p| p.name == name);
-            let ms: Vec<f64> = ms.map(|p| p.ms).collect();
-            Pass {
-                name: name.to_owned(),
-                ms: median(&ms),
-                ms_min: least(&ms),
-            }
-        };
-        let passes: Vec<Pass> = names.map(|p| pass(p.name)).collect();
-        let (ms_min, cpu_ms_min) = (
-            passes.iter().fold(0.0, |sum, p| sum + p.ms_min),
-            least(&self.cpu),
-        );
-        let has_cpu_time = on_cpu && cpu_ms_min.is_finite() && cpu_ms_min > 0.0;
-        Times {
-            ms: median(&self.ms),
-            ms_min,
-            cpu_ms_min: if has_cpu_time { cpu_ms_min } else { 0.0 },
-            cost: if has_cpu_time { cpu_ms_min } else { ms_min },
-            wall_ms: median(&self.wall),
-            cpu_ms: median(&self.cpu),
-            passes,
+fn times(frames: &[Timed], on_cpu: bool) -> Times {
+    let of = |value: fn(&Timed) -> Option<f64>| frames.iter().filter_map(value).collect::<Vec<_>>();
+    let cpu = of(|frame| Some(frame.processor_ms));
+    let stages = frames
+        .first()
+        .into_iter()
+        .flat_map(|frame| &frame.stats.passes);
+    let pass = |name: &str| {
+        let all = frames.iter().flat_map(|frame| &frame.stats.passes);
+        let ms = all.filter(|pass| pass.name == name).map(|pass| pass.ms);
+        let ms: Vec<f64> = ms.collect();
+        Pass {
+            name: name.to_owned(),
+            ms: median(&ms),
+            ms_min: least(&ms),
         }
+    };
+    let passes: Vec<Pass> = stages.map(|p| pass(p.name)).collect();
+    let ms_min = passes.iter().fold(0.0, |sum, p| sum + p.ms_min);
+    let cpu_ms_min = Some(least(&cpu)).filter(|&ms| on_cpu && ms > 0.0 && ms.is_finite());
+    Times {
+        ms: median(&of(|frame| frame.stats.gpu_ms)),
+        ms_min,
+        cpu_ms_min: cpu_ms_min.unwrap_or(0.0),
+        cost: cpu_ms_min.unwrap_or(ms_min),
+        wall_ms: median(&of(|frame| Some(frame.stats.wall_ms))),
+        cpu_ms: median(&cpu),
+        passes,
     }
-}
-
-fn least(values: &[f64]) -> f64 {
-    values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
 fn median(values: &[f64]) -> f64 {
@@ -124,32 +97,31 @@ fn median(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rara::{FrameStats, PassTime};
 
     #[test]
     fn medians_and_minima() {
-        let pass = |ms| vec![PassTime { name: "sort", ms }];
-        let samples = Samples {
-            ms: vec![4.0, 1.0, 9.0, 2.0],
-            wall: vec![5.0],
-            cpu: vec![],
-            passes: vec![pass(3.0), pass(1.0), pass(2.0)],
+        let frame = |(gpu_ms, sort_ms, processor_ms)| {
+            let mut stats = FrameStats::default();
+            (stats.gpu_ms, stats.wall_ms) = (Some(gpu_ms), 5.0);
+            let (name, ms) = ("sort", sort_ms);
+            stats.passes.push(PassTime { name, ms });
+            Timed {
+                stats,
+                processor_ms,
+            }
         };
-        let times = samples.times(true);
-        assert_eq!((times.ms, times.ms_min, times.wall_ms), (3.0, 1.0, 5.0));
-        assert_eq!((times.passes[0].ms, times.passes[0].ms_min), (2.0, 1.0));
-        assert_eq!(
-            (times.cpu_ms, times.cpu_ms_min, times.cost),
-            (0.0, 0.0, 1.0)
-        );
-        let counted = Samples {
-            cpu: vec![9.0, 8.0],
-            ..samples
-        };
-        assert_eq!(counted.times(true).cost, 8.0);
-        assert_eq!(
-            counted.times(false).cost,
-            1.0,
-            "a processor's time is not a GPU's"
-        );
+        let uncounted = [(4.0, 3.0, 0.0), (1.0, 1.0, 0.0), (9.0, 2.0, 0.0)].map(frame);
+        let measured = times(&uncounted, true);
+        assert_eq!((measured.ms, measured.wall_ms), (4.0, 5.0));
+        assert_eq!((measured.ms_min, measured.cost), (1.0, 1.0));
+        let pass = &measured.passes[0];
+        assert_eq!((pass.ms, pass.ms_min), (2.0, 1.0));
+        assert_eq!((measured.cpu_ms, measured.cpu_ms_min), (0.0, 0.0));
+        let counted = [(4.0, 3.0, 9.0), (1.0, 1.0, 8.0)].map(frame);
+        let measured = times(&counted, true);
+        assert_eq!((measured.cost, measured.cpu_ms), (8.0, 8.5));
+        let cost = times(&counted, false).cost;
+        assert_eq!(cost, 1.0, "a processor's time is not a GPU's");
     }
 }

@@ -8,7 +8,8 @@ use rara::{Clip, ClipOp, Headless, Mode, Plane, Result, Scene, Settings};
 use serde::{Deserialize, Serialize};
 
 use crate::cases::Case;
-use crate::statistics::{mean, median, standard_deviation};
+use crate::frames::in_turn;
+use crate::statistics::{least, mean, median, standard_deviation};
 use crate::table::{Cell, Table};
 
 /// What the paper has for each mode, frames a second of its own renderer on its own GPU: Original, Hard, RaRa.
@@ -84,16 +85,9 @@ pub fn efficiency(
     let mut rows = Vec::new();
     for reuse in [false, true] {
         let modes = &MODES[usize::from(reuse)..]; // the original has nothing to compute when nothing moves
-        let mut sweeps = vec![Vec::new(); modes.len()];
-        // The first round compiles and is not counted.
-        for round in 0..=repeats {
-            for (index, (_, mode)) in modes.iter().enumerate() {
-                let sweep = sweep(headless, case, &clips, *mode, reuse)?;
-                if round > 0 {
-                    sweeps[index].push(sweep);
-                }
-            }
-        }
+        let sweeps = in_turn(repeats..=repeats, modes.len(), |index, _| {
+            sweep(headless, case, &clips, modes[index].1, reuse)
+        })?;
         let of = |((name, _), sweeps): (&(&str, Mode), Vec<Sweep>)| row(name, reuse, &sweeps);
         rows.extend(modes.iter().zip(sweeps).map(of));
     }
@@ -136,13 +130,8 @@ fn sweep(
 
 fn row(mode: &str, reuse: bool, sweeps: &[Sweep]) -> Row {
     let frames = sweeps.first().map_or(0, |sweep| sweep.wall.len());
-    let least = |frame: usize| {
-        sweeps
-            .iter()
-            .map(|s| s.wall[frame])
-            .fold(f64::INFINITY, f64::min)
-    };
-    let least: Vec<f64> = (0..frames).map(least).collect();
+    let of_frame = |frame: usize| sweeps.iter().map(|s| s.wall[frame]).collect::<Vec<_>>();
+    let least: Vec<f64> = (0..frames).map(|frame| least(&of_frame(frame))).collect();
     let rates: Vec<f64> = sweeps.iter().map(|s| frames as f64 / s.seconds).collect();
     let nothing = |value: Option<f64>| value.unwrap_or(0.0);
     let names = sweeps.first().into_iter().flat_map(|sweep| &sweep.passes);

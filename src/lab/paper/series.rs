@@ -10,16 +10,9 @@ use serde::{Deserialize, Serialize};
 use crate::bench::{time, truth_settings};
 use crate::cases::{Cut, Source, cases};
 use crate::charts::{Axis, Lines, Series as Line};
-use crate::frames::picture;
+use crate::frames::{MODES, picture};
 use crate::measure;
 use crate::table::Table;
-
-const MODES: [(&str, Mode); 4] = [
-    ("none", Mode::None),
-    ("hard", Mode::Hard),
-    ("rara", Mode::Rara),
-    ("exact", Mode::Exact),
-];
 
 /// What is varied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

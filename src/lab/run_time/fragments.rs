@@ -10,7 +10,7 @@ use rara::{Camera, Clip, Decay, Gaussians, Settings};
 const BAND: u32 = 16;
 
 /// Counts the fragments of a frame without a clip.
-pub(crate) fn count(scene: &Gaussians, camera: &Camera, settings: &Settings) -> u64 {
+pub(super) fn count(scene: &Gaussians, camera: &Camera, settings: &Settings) -> u64 {
     let view = View::<f32>::new(camera);
     let sides = classify::classify(scene, &view, &Clip::default(), settings);
     let drawn = compact::compact(&sides);
@@ -81,4 +81,31 @@ fn in_band(
         }
     }
     count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DVec3, Quat, Vec3};
+
+    #[test]
+    fn fragments_count_until_a_pixel_is_saturated() {
+        let eye = DVec3::new(0.0, 0.0, -4.0);
+        let camera =
+            Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, (37, 41)).expect("a view");
+        let count = |copies, scale, opacity| {
+            let mut scene = Gaussians::default();
+            for _ in 0..copies {
+                let scale = Vec3::splat(scale);
+                scene.push(Vec3::ZERO, scale, Quat::IDENTITY, opacity, &[0.0; 3]);
+            }
+            super::count(&scene, &camera, &Settings::default())
+        };
+        // Larger than the picture: 1/100 of the light is left, then 1e-4, then 1e-6, where 4e-6 are enough.
+        assert_eq!(count(10, 200.0, 1.0), 3 * 37 * 41);
+        assert_eq!(count(10, 200.0, 0.1), 10 * 37 * 41);
+        let small = count(1, 0.1, 0.5);
+        assert!((10..200).contains(&small), "{small}");
+        assert_eq!(count(5, 0.1, 0.003), 0, "below 1/255");
+    }
 }

@@ -1,18 +1,18 @@
-//! Reads what callgrind writes. `tests/files/benchmark.rs` tests it.
+//! Reads what callgrind writes.
 
 use std::collections::HashMap;
 use std::path::Path;
 
 /// Instructions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) struct Counted {
-    pub(crate) all: u64,
+pub(super) struct Counted {
+    pub(super) all: u64,
     /// Instructions in the program's own code; the others are in libraries and drivers.
-    pub(crate) own: u64,
+    pub(super) own: u64,
 }
 
 /// Sums up a `callgrind.out` with `Ir` as its only event (see Callgrind Format Specification in valgrind's manual).
-pub(crate) fn read(text: &str, program: &Path) -> Counted {
+pub(super) fn read(text: &str, program: &Path) -> Counted {
     // Objects have a number, and their name only where they first appear.
     let mut objects: HashMap<&str, bool> = HashMap::new();
     let mut counted = Counted::default();
@@ -49,4 +49,48 @@ fn object(line: &str) -> Option<(&str, Option<&str>)> {
         .or_else(|| line.strip_prefix("cob="))?;
     let (id, name) = rest.split_once(')')?;
     Some((id, name.strip_prefix(' ')))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn costs_are_kept_apart_and_counted_once() {
+        let text = "\
+version: 1
+positions: line
+events: Ir
+summary: 1165
+
+ob=(1) /bin/ours
+fl=(1) a.rs
+fn=(1) main
+16 100
++2 5
+cob=(2) /lib/driver.so
+cfn=(2) record
+calls=3 50
+18 1000
+* 10
+
+ob=(2)
+fn=(2)
+50 1000
+
+ob=(1)
+fn=(3) more
+-1 50
+totals: 1165
+";
+        let counted = read(text, Path::new("/bin/ours"));
+        assert_eq!(
+            counted,
+            Counted {
+                all: 1165,
+                own: 165
+            }
+        );
+        assert_eq!(read("", Path::new("/bin/ours")), Counted::default());
+    }
 }

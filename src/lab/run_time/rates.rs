@@ -16,7 +16,7 @@ const SPLATS: u32 = 128;
 const OPACITY: f32 = 0.015;
 const TILE_BYTES: u64 = 16 * (TILE_WIDTH * TILE_HEIGHT) as u64;
 
-pub(crate) struct Rates {
+pub(super) struct Rates {
     device: Device,
     copy: ComputePipeline,
     /// One invocation has a tile's column, as CPU drivers like it, or a pixel.
@@ -28,7 +28,7 @@ pub(crate) struct Rates {
 
 impl Rates {
     /// Buffers with so many bytes to move, more than caches hold.
-    pub(crate) fn new(device: &Device, bytes: u64) -> Result<Self> {
+    pub(super) fn new(device: &Device, bytes: u64) -> Result<Self> {
         let buffer = |name, size| {
             let location = Location::GpuOnly;
             device.create_buffer(&BufferDesc {
@@ -56,7 +56,8 @@ impl Rates {
             [[x, y, 0.02, 0.01], [0.02, OPACITY, 0.0, 0.0], [0.5; 4]]
         });
         let each: Vec<[f32; 4]> = each.collect();
-        device.upload(&splats, 0, bytemuck::cast_slice(&each))?;
+        let bytes_of = each.as_flattened().iter().flat_map(|v| v.to_le_bytes());
+        device.upload(&splats, 0, &bytes_of.collect::<Vec<u8>>())?;
         let rates = Self {
             device: device.clone(),
             copy: pipeline(shader(include_bytes!("shaders/copy.comp.spv"))?, &[])?,
@@ -74,7 +75,7 @@ impl Rates {
     }
 
     /// Bytes read and bytes written in a second, by a shader or by the driver's own copy.
-    pub(crate) fn moved(&self) -> Result<f64> {
+    pub(super) fn moved(&self) -> Result<f64> {
         let (from, to, size) = (&self.source, &self.target, self.source.size());
         let words = (size / 16) as u32;
         let shader = self.seconds(|recorder| {
@@ -88,7 +89,7 @@ impl Rates {
     }
 
     /// Fragments blended in a second.
-    pub(crate) fn blended(&self) -> Result<f64> {
+    pub(super) fn blended(&self) -> Result<f64> {
         let tiles = self.target.size() / TILE_BYTES;
         let fragments = tiles * u64::from(TILE_WIDTH * TILE_HEIGHT * SPLATS);
         let mut least = f64::INFINITY;

@@ -1,0 +1,232 @@
+//! What was measured of one scene, as a table for people and as rows for programs.
+
+use crate::frames::Timed;
+use crate::statistics::{least, median};
+use crate::table::{Cell, Table, small};
+
+use super::world::World;
+
+/// What [`Numbers::rows`] are of.
+pub(super) const COLUMNS: [&str; 12] = [
+    "device",
+    "driver",
+    "section",
+    "scene",
+    "gaussians",
+    "size",
+    "variant",
+    "pass",
+    "unit",
+    "n",
+    "min",
+    "median",
+];
+
+/// All numbers of a scene and of pictures of one size.
+#[derive(Debug)]
+pub(super) struct Numbers {
+    section: &'static str,
+    scene: String,
+    gaussians: usize,
+    size: [u32; 2],
+    /// The raster path of all of them, where it was chosen.
+    raster: &'static str,
+    /// Those of a column follow each other.
+    all: Vec<Number>,
+}
+
+/// What was measured in each round.
+#[derive(Debug)]
+struct Number {
+    column: String,
+    row: String,
+    unit: &'static str,
+    values: Vec<f64>,
+}
+
+/// What frames have beside their stages: from the call to the picture, of all processors, and all stages together.
+const TOTALS: [&str; 3] = ["frame", "processor", "device"];
+
+/// One of [`TOTALS`] or a stage, frame by frame; nothing where no frame went through the stage.
+pub(super) fn times(frames: &[Timed], name: &str) -> Vec<f64> {
+    let time = |timed: &Timed| match name {
+        "frame" => Some(timed.stats.wall_ms),
+        "processor" => Some(timed.processor_ms),
+        "device" => timed.stats.gpu_ms,
+        _ => {
+            let pass = timed.stats.passes.iter().find(|pass| pass.name == name)?;
+            Some(pass.ms)
+        }
+    };
+    frames.iter().filter_map(time).collect()
+}
+
+impl Numbers {
+    pub(super) fn new(section: &'static str, world: &World, size: [u32; 2]) -> Self {
+        Self {
+            section,
+            scene: world.name.clone(),
+            gaussians: world.scene.len(),
+            size,
+            raster: "",
+            all: Vec::new(),
+        }
+    }
+
+    /// Those of the same scene in other pictures.
+    pub(super) fn of(&self, size: [u32; 2], raster: &'static str) -> Self {
+        Self {
+            scene: self.scene.clone(),
+            size,
+            raster,
+            all: Vec::new(),
+            ..*self
+        }
+    }
+
+    /// Adds a number, unless nothing was measured.
+    pub(super) fn add(&mut self, column: &str, row: &str, unit: &'static str, values: Vec<f64>) {
+        if !values.is_empty() {
+            self.all.push(Number {
+                column: column.into(),
+                row: row.into(),
+                unit,
+                values,
+            });
+        }
+    }
+
+    /// Adds the stages of frames and their totals.
+    pub(super) fn add_frames(&mut self, column: &str, frames: &[Timed]) {
+        let stages = frames
+            .last()
+            .into_iter()
+            .flat_map(|timed| &timed.stats.passes);
+        for name in stages.map(|pass| pass.name).chain(TOTALS) {
+            self.add(column, name, "ms", times(frames, name));
+        }
+    }
+
+    /// Adds the ratios of frames' totals to those of other frames of the same rounds, which other work disturbs alike.
+    pub(super) fn add_ratios(&mut self, column: &str, frames: &[Timed], to: (&str, &[Timed])) {
+        for total in &TOTALS[..2] {
+            let pairs = times(frames, total).into_iter().zip(times(to.1, total));
+            let ratios = pairs.map(|(ms, to)| ms / to).collect();
+            self.add(column, &format!("{total} / {}", to.0), "ratio", ratios);
+        }
+    }
+
+    fn title(&self) -> String {
+        let (section, scene, [width, height]) = (self.section, &self.scene, self.size);
+        let gaussians = rara::counted::counted(self.gaussians, "Gaussian");
+        let raster = match self.raster {
+            "" => String::new(),
+            raster => format!(", {raster}"),
+        };
+        format!("{section}: {scene}, {gaussians}, {width}x{height}{raster}")
+    }
+
+    /// The medians and, where there are several values, the least ones. Rows are in the order in which each column has them.
+    pub(super) fn table(&self) -> Table {
+        let (mut columns, mut rows, mut next) = (Vec::new(), Vec::new(), 0);
+        for number in &self.all {
+            if columns.last() != Some(&&number.column) {
+                columns.push(&number.column);
+                next = 0;
+            }
+            let row = (&number.row, number.unit);
+            let known = rows.iter().position(|known| *known == row);
+            next = 1 + known.unwrap_or_else(|| {
+                rows.insert(next, row);
+                next
+            });
+        }
+        let names = ["", "unit"].into_iter();
+        let names = names.chain(columns.iter().map(|column| &***column));
+        let mut table = Table::new(self.title(), "", names);
+        for row in rows {
+            let cell = |column: &&String| -> Cell {
+                let mut of_row = self.all.iter().filter(|n| (&n.row, n.unit) == row);
+                match of_row.find(|number| number.column == **column) {
+                    None => "-".into(),
+                    Some(number) => number.text().into(),
+                }
+            };
+            let first = [Cell::from(row.0.as_str()), row.1.into()];
+            table.row(first.into_iter().chain(columns.iter().map(cell)));
+        }
+        table
+    }
+
+    /// A row for each number.
+    pub(super) fn rows(&self, device: &[String; 2]) -> impl Iterator<Item = Vec<Cell>> {
+        self.all.iter().map(|number| {
+            let [width, height] = self.size;
+            let variant = format!("{} {}", number.column, self.raster);
+            vec![
+                device[0].as_str().into(),
+                device[1].as_str().into(),
+                self.section.into(),
+                self.scene.as_str().into(),
+                Cell::Count(self.gaussians as u64),
+                format!("{width}x{height}").into(),
+                variant.trim_end().into(),
+                number.row.as_str().into(),
+                number.unit.into(),
+                Cell::Count(number.values.len() as u64),
+                least(&number.values).into(),
+                median(&number.values).into(),
+            ]
+        })
+    }
+}
+
+impl Number {
+    fn text(&self) -> String {
+        let median = small(median(&self.values).unwrap_or(f64::NAN));
+        match self.values.len() {
+            1 => median,
+            _ => format!("{median} ({})", small(least(&self.values))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rara::scene::Kind;
+
+    #[test]
+    fn rows_of_a_table_stand_where_each_column_has_them() {
+        let world = World::made("general", Kind::General, 3);
+        let mut numbers = Numbers::new("passes", &world, [8, 4]).of([6, 5], "tiles");
+        for (column, rows) in [("none", ["sort", "bin"]), ("hard", ["clip", "sort"])] {
+            for row in rows {
+                numbers.add(column, row, "ms", vec![3.0, 1.0, 2.0]);
+            }
+        }
+        numbers.add("hard", "skipped", "ms", Vec::new());
+        numbers.add("hard", "sort / none", "ratio", vec![0.5]);
+        let table = numbers.table();
+        assert_eq!(table.title, "passes: general, 3 Gaussians, 6x5, tiles");
+        assert_eq!(table.columns, ["", "unit", "none", "hard"]);
+        let texts = |row: &Vec<Cell>| row.iter().map(Cell::text).collect::<Vec<_>>().join(" ");
+        let rows: Vec<String> = table.rows.iter().map(texts).collect();
+        let expected = [
+            "clip ms - 2.00 (1.00)",
+            "sort ms 2.00 (1.00) 2.00 (1.00)",
+            "sort / none ratio - 0.500",
+            "bin ms 2.00 (1.00) -",
+        ];
+        assert_eq!(rows, expected);
+        let rows: Vec<String> = numbers
+            .rows(&["d".into(), "e".into()])
+            .map(|row| texts(&row))
+            .collect();
+        assert_eq!(
+            rows[0],
+            "d e passes general 3 6x5 none tiles sort ms 3 1.00 2.00"
+        );
+        assert_eq!(rows.len(), 5);
+    }
+}

@@ -1,0 +1,111 @@
+//! What the sections share.
+
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use rara::{Headless, HeadlessDesc, Mode, Raster, Result, Settings};
+
+use super::numbers::Numbers;
+use super::world::World;
+use crate::table::Table;
+
+/// What is measured, and how much.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// The names of the sections; all if empty. `correct` is measured in any case.
+    pub sections: Vec<String>,
+    /// Tiny scenes and one round: only whether everything runs.
+    pub quick: bool,
+    /// Scene files in place of generated scenes.
+    pub scenes: Vec<PathBuf>,
+    /// The cameras that frames of these scenes take in turn; without a file an orbit.
+    pub cameras: Option<PathBuf>,
+    /// How many Gaussians generated scenes have; each section's own if empty.
+    pub gaussians: Vec<u32>,
+    /// Widths of pictures; sections other than `passes` take the first.
+    pub sizes: Vec<u32>,
+    /// Rounds at most.
+    pub rounds: Option<u32>,
+    /// The device to measure.
+    pub device: HeadlessDesc,
+}
+
+impl Options {
+    /// The pictures' width outside of `passes`.
+    pub(super) fn size(&self) -> u32 {
+        let usual = if self.quick { 64 } else { 1024 };
+        self.sizes.first().copied().unwrap_or(usual)
+    }
+}
+
+/// The program that measures.
+pub trait Program {
+    /// Hears what is done now.
+    fn hear(&mut self, what: &str);
+    /// Takes a table for people, and all numbers so far, a row each.
+    fn take(&mut self, table: &Table, all: &Table) -> Result<()>;
+    /// The program itself, to do what `child` does with a scene file and pictures of this width.
+    fn child(&self, work: &str, scene: &Path, width: u32) -> Result<Command>;
+    /// Fails where this machine has no memory for so many Gaussians and a renderer of them.
+    fn check_room(&self, gaussians: u64) -> Result<()>;
+}
+
+/// What the sections share.
+pub(super) struct Run<'a> {
+    pub(super) options: &'a Options,
+    pub(super) program: &'a mut dyn Program,
+    /// The name of the device and its driver.
+    pub(super) device: [String; 2],
+    pub(super) all: Table,
+    /// Names of ways of drawing whose pictures are wrong.
+    pub(super) wrong: Vec<String>,
+    /// A folder for files that only this run needs.
+    pub(super) folder: PathBuf,
+}
+
+impl Run<'_> {
+    pub(super) fn rounds(&self) -> RangeInclusive<u32> {
+        let usual = if self.options.quick { 1 } else { 9 };
+        let most = self.options.rounds.unwrap_or(usual);
+        most.min(3)..=most
+    }
+
+    /// A device that holds the scene as frames of default settings want it.
+    pub(super) fn headless(&self, world: &World) -> Result<Headless> {
+        let mut headless = Headless::new(&self.options.device)?;
+        headless.load_as(&world.scene, Settings::default().precision.sh)?;
+        Ok(headless)
+    }
+
+    /// True where a mode may be timed on a raster path.
+    pub(super) fn allows(&mut self, mode: &str, raster: &str) -> bool {
+        let name = format!("{mode} {raster}");
+        let allowed = !self.wrong.contains(&name);
+        if !allowed {
+            self.program
+                .hear(&format!("{name}: not timed: it is wrong"));
+        }
+        allowed
+    }
+
+    /// Numbers are complete.
+    pub(super) fn finish(&mut self, numbers: &Numbers) -> Result<()> {
+        self.all.rows.extend(numbers.rows(&self.device));
+        self.program.take(&numbers.table(), &self.all)
+    }
+}
+
+/// The raster paths that a device has, without the choice between them.
+pub(super) fn rasters(headless: &Headless) -> Vec<(&'static str, Raster)> {
+    let mut rasters = vec![("tiles", Raster::Tiles), ("quad", Raster::Quad)];
+    if headless.device().support().mesh_shader {
+        rasters.push(("mesh", Raster::Mesh));
+    }
+    rasters
+}
+
+/// The default settings in a mode.
+pub(super) fn in_mode(mode: Mode) -> Settings {
+    Settings::default().mode(mode)
+}

@@ -15,7 +15,6 @@ pub mod clip;
 mod codegen;
 mod depth;
 mod error;
-mod fnv;
 mod framing;
 pub mod gpu;
 pub mod guide;
@@ -46,6 +45,10 @@ mod counted;
 pub mod files;
 #[cfg(not(feature = "lab"))]
 mod files;
+#[cfg(feature = "lab")]
+pub mod fnv;
+#[cfg(not(feature = "lab"))]
+mod fnv;
 #[cfg(feature = "lab")]
 pub mod limits;
 #[cfg(not(feature = "lab"))]

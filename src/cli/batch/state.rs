@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use rara::files::mark;
-use rara::{Error, Result};
+use rara::{Error, Result, fnv};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -210,10 +210,9 @@ fn remove_parts(folder: &Path, mark: &str) {
     }
 }
 
-/// A short text that stands for a long one (FNV-1a of 64 bits).
+/// A short text that stands for a long one.
 pub(super) fn stamp(text: &str) -> String {
-    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
-    format!("{:016x}", text.bytes().fold(0xcbf2_9ce4_8422_2325, step))
+    format!("{:016x}", fnv::with(fnv::NOTHING, text.bytes()))
 }
 
 #[cfg(test)]

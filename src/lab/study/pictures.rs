@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::DVec3;
-use rara::{Headless, Mode, Picture, Result, Settings};
+use rara::{Headless, Mode, Picture, Result, Settings, fnv};
 use serde::Serialize;
 
 use crate::cases::Case;
@@ -116,18 +116,16 @@ impl Drawing<'_> {
     }
 }
 
-/// Fowler, Noll and Vo's hash FNV-1a, of 64 bits: it tells studies apart and stays the same everywhere.
+/// A hash that tells studies apart and stays the same everywhere.
 pub(super) struct Id(u64);
 
 impl Id {
     pub(super) fn new() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
+        Self(fnv::NOTHING)
     }
 
     pub(super) fn add(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
+        self.0 = fnv::with(self.0, bytes.iter().copied());
     }
 
     pub(super) fn text(&self) -> String {

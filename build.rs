@@ -12,6 +12,7 @@ use std::{env, fs};
 #[path = "src/codegen/mod.rs"]
 mod codegen;
 #[path = "src/fnv.rs"]
+#[allow(unreachable_pub)]
 mod fnv;
 
 use codegen::{VARIANTS, glsl, interface, manifest, pictures, spirv};

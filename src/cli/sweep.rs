@@ -189,7 +189,7 @@ impl Sweep {
         let first = [0, middle, middle + 1, middle + 2, self.frames - 1]
             .map(|index| clip_of(index.min(self.frames - 1)));
         let first = first.into_iter().collect::<rara::Result<Vec<_>>>()?;
-        if !destination.order().is_some() {
+        if destination.order().is_none() {
             session.warm_up(first.iter().map(|clip| (&camera, clip, settings)))?;
         }
 

@@ -39,7 +39,9 @@ fn main() {
     );
     let modules = spirv_of(Path::new("glsl"), &out);
     write("shaders.rs", shaders(Path::new("glsl"), &modules));
-    for name in ["brain", "layers", "linear", "mesh", "stored"] {
+    for name in [
+        "brain", "layers", "linear", "mesh", "modes", "report", "stored",
+    ] {
         let png = fs::read(format!("tools/pictures/{name}.png")).expect("tools/pictures/");
         write(&format!("{name}.md"), pictures::definition(name, &png));
     }

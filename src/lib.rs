@@ -3,6 +3,7 @@
 #![doc = include_str!("guide/links.md")]
 #![cfg_attr(doc, doc = include_str!(concat!(env!("OUT_DIR"), "/layers.md")))]
 #![cfg_attr(doc, doc = include_str!(concat!(env!("OUT_DIR"), "/brain.md")))]
+#![cfg_attr(doc, doc = include_str!(concat!(env!("OUT_DIR"), "/modes.md")))]
 #![doc = include_str!("../README.md")]
 
 #[cfg(feature = "bake")]

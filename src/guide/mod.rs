@@ -36,7 +36,7 @@ chapters! {
     gpu,
     library,
     modes,
-    paper,
+    paper shows "report",
     profiling,
     speed,
     testing,

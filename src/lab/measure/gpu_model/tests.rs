@@ -63,7 +63,7 @@ fn the_guide_and_the_front_page_say_what_is_predicted() {
         let sum = |gpu: &Gpu| predict(gpu, &frame).iter().map(|p| p.ms).sum::<f64>();
         let sums = GPUS.each_ref().map(sum).map(told);
         let cut = if frame.is_cut {
-            ", cut in half exactly"
+            ", cut in half, mode `exact`"
         } else {
             ""
         };

@@ -39,9 +39,7 @@ fn main() {
     );
     let modules = spirv_of(Path::new("glsl"), &out);
     write("shaders.rs", shaders(Path::new("glsl"), &modules));
-    for name in [
-        "brain", "layers", "linear", "mesh", "modes", "report", "stored",
-    ] {
+    for name in pictures::NAMES {
         let png = fs::read(format!("tools/pictures/{name}.png")).expect("tools/pictures/");
         write(&format!("{name}.md"), pictures::definition(name, &png));
     }

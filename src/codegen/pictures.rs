@@ -1,6 +1,11 @@
 //! The documentation's pictures. Generated pages have no file that a relative link could lead to, so there the link holds
 //! the picture itself.
 
+/// The pictures in `tools/pictures` to which links of the documentation lead.
+pub(crate) const NAMES: [&str; 7] = [
+    "brain", "layers", "linear", "mesh", "modes", "report", "stored",
+];
+
 /// The definition of the link `NAME picture`.
 pub(crate) fn definition(name: &str, png: &[u8]) -> String {
     format!("[{name} picture]: data:image/png;base64,{}\n", base64(png))

@@ -77,8 +77,7 @@ fn the_front_page_is_short() {
 fn links_lead_somewhere_in_the_repository_and_among_generated_pages() {
     let guide = root().join("src/guide");
     let links = read(&guide.join("links.md"));
-    let pictures =
-        ["brain", "layers", "linear", "mesh", "stored"].map(|name| format!("{name} picture")); // build.rs defines these
+    let pictures = crate::codegen::pictures::NAMES.map(|name| format!("{name} picture"));
     let generated: BTreeSet<_> = definitions(&links)
         .into_iter()
         .map(|(name, _)| name)

@@ -20,6 +20,7 @@ pub(super) fn of_stage(frame: &FrameStats, name: &str) -> Option<f64> {
 }
 
 /// The time of all stages; none where none was timed.
+#[cfg(feature = "view")]
 pub(super) fn total(frame: &FrameStats) -> Option<f64> {
     let is_timed = !frame.passes.is_empty();
     is_timed.then(|| sum(frame.passes.iter().map(|pass| pass.ms)))

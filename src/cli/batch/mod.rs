@@ -197,7 +197,17 @@ impl Batch {
         let Some(part) = part else {
             return Ok(all);
         };
-        let work: Vec<_> = all.iter().map(|(job, _)| planned[*job].plan.work).collect();
+        let scene = |job: usize| &planned[job].plan.scene;
+        let mut scenes = 0;
+        let mut last = 0;
+        let work: Vec<_> = all
+            .iter()
+            .map(|&(job, _)| {
+                scenes += usize::from(scene(job) != scene(last));
+                last = job;
+                (scenes, planned[job].plan.work)
+            })
+            .collect();
         let is_ours = shard::share(part, &work).into_iter();
         let ours = all.into_iter().zip(is_ours).filter(|(_, is_ours)| *is_ours);
         let ours: Vec<_> = ours.map(|(picture, _)| picture).collect();

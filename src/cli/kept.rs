@@ -1,5 +1,7 @@
 //! A scene on its device, kept from one command to the next that draws the same one.
 
+use std::fmt::Debug;
+
 use rara::{HeadlessDesc, Result, Scene, ShFormat};
 
 use super::failure::Failure;
@@ -39,9 +41,9 @@ impl Kept {
         &mut self,
         profile: &Profile,
         scenes: &SceneArgs,
-        device: &str,
+        device: &impl Debug,
     ) -> std::result::Result<(Place, Loaded), Failure> {
-        let flags = format!("{scenes:?} {device}");
+        let flags = format!("{scenes:?} {device:?}");
         if let Some((place, mut loaded)) = self.last.take() {
             if place.flags == flags {
                 for (layer, clip) in loaded.layers.iter_mut().zip(&place.clips) {

@@ -186,11 +186,7 @@ pub(super) fn settle() {
 /// Writes a picture to a file, or to standard output as PNG.
 pub(super) fn picture(picture: &Picture, file: &Path, compression: PngCompression) -> Result<()> {
     let png = || picture.to_png_with(compression);
-    let ending = file.extension().unwrap_or_default();
-    match (
-        file == Path::new(STANDARD),
-        ending.eq_ignore_ascii_case("png"),
-    ) {
+    match (file == Path::new(STANDARD), ends_in(file, "png")) {
         (true, _) => bytes(&png()?).map(drop),
         (_, true) => {
             let png = png()?;
@@ -269,6 +265,18 @@ fn check_folder(folder: &Path) -> Result<()> {
 /// So many of what is called `one`: "1 picture", "1 234 pictures".
 pub(super) fn counted(number: u64, one: &str) -> String {
     rara::counted::counted(grouped(number), one)
+}
+
+/// The same with a verb: "1 picture is", "1 234 pictures are".
+pub(super) fn counted_are(number: u64, one: &str) -> String {
+    let verb = if number == 1 { "is" } else { "are" };
+    format!("{} {verb}", counted(number, one))
+}
+
+/// True for a file whose name has this ending, in whatever case.
+pub(super) fn ends_in(file: &Path, ending: &str) -> bool {
+    file.extension()
+        .is_some_and(|it| it.eq_ignore_ascii_case(ending))
 }
 
 /// 1234567 as "1 234 567".

@@ -154,7 +154,7 @@ impl Sweep {
         settings: &Settings,
     ) -> Result<(), Failure> {
         let (device, sh) = (&self.frame.device, settings.precision.sh);
-        let session_of = format!("{device:?} {:?} {sh:?}", self.profile);
+        let session_of = (device, &self.profile, sh);
         let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of)?;
         regions.settle(&mut loaded)?;
         let scene = loaded.scene();

@@ -30,7 +30,7 @@ const REFUSED: [&str; 6] = [
 /// A command.
 #[derive(Debug, Clone)]
 pub(super) struct Job {
-    /// What it is called in messages: its file and its number there.
+    /// Messages call it by its file and its number there.
     pub(super) name: String,
     /// The words of its command line.
     pub(super) words: Vec<OsString>,
@@ -268,7 +268,7 @@ fn words(job: &Map<String, Value>) -> Result<Vec<OsString>, String> {
     Ok(words)
 }
 
-/// What is typed behind a flag, once for each.
+/// Returns what is typed behind a flag, once for each time.
 fn texts(key: &str, value: &Value) -> Result<Vec<String>, String> {
     match value {
         Value::String(text) => Ok(vec![text.clone()]),

@@ -4,7 +4,7 @@ mod jobs;
 mod shard;
 mod state;
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
@@ -15,7 +15,7 @@ use serde_json::json;
 
 use super::failure::Failure;
 use super::kept::Kept;
-use super::output::{self, Progress, counted, say};
+use super::output::{self, Progress, counted, counted_are, say};
 use super::pictures::{Order, Part, Plan};
 use super::report::Frame;
 use super::times;
@@ -72,11 +72,11 @@ pub(super) struct Batch {
 /// A job and its pictures.
 struct Planned {
     job: Job,
-    /// What stands for its text.
+    /// A short text stands for its own.
     stamp: String,
     plan: Plan,
-    /// The numbers of the pictures that are to be drawn here.
-    wanted: BTreeSet<usize>,
+    /// The numbers of the pictures that are to be drawn here, and where they are in the plan.
+    wanted: BTreeMap<usize, usize>,
 }
 
 impl Batch {
@@ -91,7 +91,7 @@ impl Batch {
                 folder.display(),
                 match state.unread {
                     1 => "1 line is no entry".into(),
-                    _ => format!("{} are no entries", counted(state.unread as u64, "line")),
+                    _ => format!("{} no entries", counted_are(state.unread as u64, "line")),
                 }
             ));
         }
@@ -101,7 +101,15 @@ impl Batch {
         if self.report {
             return self.say_report(&planned, &share, &state);
         }
-        let stale = choose(&mut planned, &share, &state, self.redraw);
+        let done = done(&planned, &share, &state);
+        let stale = done.iter().filter(|done| **done == Done::Otherwise).count();
+        for ((job, index), done) in share.iter().zip(done) {
+            if done == Done::Not || (self.redraw && done == Done::Otherwise) {
+                let one = &mut planned[*job];
+                let (number, _) = one.plan.pictures[*index];
+                one.wanted.insert(number, *index);
+            }
+        }
         if stale > 0 {
             let drawn = match self.redraw {
                 true => "drawn again",
@@ -121,10 +129,7 @@ impl Batch {
         say(format_args!(
             "{} of {} there",
             share.len() - missing.len(),
-            match share.len() {
-                1 => "1 picture is".into(),
-                count => format!("{} are", counted(count as u64, "picture")),
-            }
+            counted_are(share.len() as u64, "picture")
         ));
         refuse(&missing)
     }
@@ -169,7 +174,7 @@ impl Batch {
                     stamp: stamp(&format!("{:?}", job.words)),
                     job,
                     plan,
-                    wanted: BTreeSet::new(),
+                    wanted: BTreeMap::new(),
                 });
             }
         }
@@ -226,15 +231,8 @@ impl Batch {
         state: &State,
     ) -> Result<(), Failure> {
         let missing = missing(planned, share, state);
-        let (version, driver) = (env!("CARGO_PKG_VERSION"), driver(planned, state));
-        let old = share.iter().filter(|(job, index)| {
-            let one = &planned[*job];
-            let entry = state.entries.get(&one.plan.pictures[*index].1);
-            entry.is_some_and(|entry| {
-                entry.is_there() && !is_current(entry, &one.stamp, version, driver.as_deref())
-            })
-        });
-        let old = old.count();
+        let done = done(planned, share, state);
+        let old = done.iter().filter(|done| **done == Done::Otherwise).count();
         let there = share.len() - missing.len();
         if self.json {
             output::json(&json!({
@@ -305,13 +303,6 @@ impl Job {
     }
 }
 
-/// True where a picture would be drawn likewise today. Without a driver any will do.
-fn is_current(entry: &Entry, job: &str, version: &str, driver: Option<&str>) -> bool {
-    entry.job == job
-        && entry.version == version
-        && driver.is_none_or(|driver| entry.driver == driver)
-}
-
 /// The driver that would draw the first job, if any picture is to be compared with it.
 fn driver(planned: &[Planned], state: &State) -> Option<String> {
     let first = planned.first().filter(|_| !state.entries.is_empty())?;
@@ -319,38 +310,43 @@ fn driver(planned: &[Planned], state: &State) -> Option<String> {
     Some(headless.driver().to_owned())
 }
 
-/// Says of each job which of the pictures of a share are to be drawn: those that are not there, and with `redraw` those that
-/// another job, version or driver has drawn. Returns the number of these.
-fn choose(planned: &mut [Planned], share: &[(usize, usize)], state: &State, redraw: bool) -> usize {
-    let (version, driver) = (env!("CARGO_PKG_VERSION"), driver(planned, state));
-    let mut stale = 0;
-    for (job, index) in share {
-        let one = &mut planned[*job];
-        let (number, name) = &one.plan.pictures[*index];
-        let is_wanted = match state.entries.get(name).filter(|entry| entry.is_there()) {
-            None => true,
-            Some(entry) if is_current(entry, &one.stamp, version, driver.as_deref()) => false,
-            Some(_) => {
-                stale += 1;
-                redraw
+/// What is done of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Done {
+    Not,
+    /// It was drawn by another job, version or driver.
+    Otherwise,
+    /// It would be drawn likewise today.
+    Likewise,
+}
+
+/// What is done of each picture of a share.
+fn done(planned: &[Planned], share: &[(usize, usize)], state: &State) -> Vec<Done> {
+    let driver = driver(planned, state);
+    let of = |(job, index): &(usize, usize)| {
+        let one = &planned[*job];
+        let entry = state.entries.get(&one.plan.pictures[*index].1);
+        match entry.filter(|entry| entry.is_there()) {
+            None => Done::Not,
+            Some(entry)
+                if entry.job == one.stamp
+                    && entry.version == env!("CARGO_PKG_VERSION")
+                    // Without a driver any will do.
+                    && driver.as_ref().is_none_or(|driver| entry.driver == *driver) =>
+            {
+                Done::Likewise
             }
-        };
-        if is_wanted {
-            one.wanted.insert(*number);
+            Some(_) => Done::Otherwise,
         }
-    }
-    stale
+    };
+    share.iter().map(of).collect()
 }
 
 /// The pictures of a share that are not there.
 fn missing<'a>(planned: &'a [Planned], share: &[(usize, usize)], state: &State) -> Vec<&'a str> {
     let name = |(job, index): &(usize, usize)| planned[*job].plan.pictures[*index].1.as_str();
-    let is_missing = |name: &&str| {
-        state
-            .entries
-            .get(*name)
-            .is_none_or(|entry| !entry.is_there())
-    };
+    let entry = |name: &str| state.entries.get(name);
+    let is_missing = |name: &&str| !entry(name).is_some_and(Entry::is_there);
     share.iter().map(name).filter(is_missing).collect()
 }
 
@@ -368,10 +364,7 @@ fn refuse(missing: &[&str]) -> Result<(), Failure> {
     let named = missing.iter().take(NAMED).copied().collect::<Vec<_>>();
     Err(rara::Error::Invalid(format!(
         "{} missing: {}{more}; draw the rest by the same command",
-        match missing.len() {
-            1 => "1 picture is".into(),
-            count => format!("{} are", counted(count as u64, "picture")),
-        },
+        counted_are(missing.len() as u64, "picture"),
         named.join(", ")
     ))
     .into())
@@ -458,11 +451,11 @@ impl Pace {
     }
 }
 
-/// What a run asks of one of its jobs.
+/// A run asks this of one of its jobs.
 struct OneJob<'a> {
     run: &'a Run<'a>,
     planned: &'a Planned,
-    /// Of the pictures that are being drawn.
+    /// Each picture that is being drawn has one.
     claims: Mutex<HashMap<usize, Claim>>,
     driver: Mutex<String>,
 }
@@ -472,27 +465,22 @@ fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl OneJob<'_> {
-    /// What a picture is called in the state.
+    /// Returns the name that a picture has in the state.
     fn name(&self, number: usize) -> &str {
-        let mut pictures = self.planned.plan.pictures.iter();
-        let found = pictures.find(|(of, _)| *of == number);
-        &found.expect("it is planned").1
+        let index = self.planned.wanted[&number];
+        &self.planned.plan.pictures[index].1
     }
 }
 
 impl Order for OneJob<'_> {
     fn wants(&self, number: usize) -> bool {
-        self.planned.wanted.contains(&number)
+        self.planned.wanted.contains_key(&number)
     }
 
     fn begin(&self, number: usize, file: Option<&Path>) -> Result<bool, Failure> {
         let name = self.name(number);
-        let at = self
-            .run
-            .state
-            .entries
-            .get(name)
-            .map_or(0.0, |entry| entry.at);
+        let entry = self.run.state.entries.get(name);
+        let at = entry.map_or(0.0, |entry| entry.at);
         let claim = self.run.worker.claim((name, at), file)?;
         let is_free = claim.is_some();
         lock(&self.claims).extend(claim.map(|claim| (number, claim)));

@@ -3,7 +3,7 @@
 use super::super::failure::Failure;
 use super::super::pictures::Part;
 
-/// What a scheduler sets for a task of an array: its index, the first index, the last one, and the step between two.
+/// A scheduler sets these for a task of an array: its index, the first index, the last one, and the step between two.
 const SCHEDULERS: [[&str; 4]; 2] = [
     [
         "SLURM_ARRAY_TASK_ID",
@@ -76,7 +76,7 @@ fn part(number: u32, of: u32) -> Result<Part, Failure> {
     format!("{number}/{of}").parse().map_err(Failure::Usage)
 }
 
-/// Which of the pictures are a part's, by the number of the scene and the work of each. Parts follow each other, so that few
+/// Says which of the pictures are a part's, by the number of the scene and the work of each. Parts follow each other, so that few
 /// workers load a scene. Within a scene, neighbours are spread over its parts, since they take about equally long, and more or
 /// less than others of the same estimate.
 pub(super) fn share(part: Part, pictures: &[(usize, f64)]) -> Vec<bool> {

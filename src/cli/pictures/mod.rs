@@ -16,7 +16,7 @@ use serde_json::json;
 
 use super::failure::Failure;
 use super::film::{self, FilmArgs, Kind};
-use super::output::{self, counted, say};
+use super::output::{self, counted, counted_are, say};
 use super::pattern::filled;
 use super::report::{Answer, Frame};
 use super::scenes::SceneArgs;
@@ -60,11 +60,7 @@ pub(super) const COUNTS: &str = "--show count makes numbers of splats";
 
 /// Refuses `what` for files that do not hold it: 8 bits end at the colour white.
 pub(super) fn needs_floats(output: Option<&Path>, what: &str) -> Result<(), Failure> {
-    let is_exr = |file: &Path| {
-        let ending = file.extension();
-        ending.is_some_and(|ending| ending.eq_ignore_ascii_case("exr"))
-    };
-    match output.is_none_or(is_exr) {
+    match output.is_none_or(|file| output::ends_in(file, "exr")) {
         true => Ok(()),
         false => Err(Failure::Usage(format!(
             "{what}, which only .exr files hold: give -o a name that ends in .exr"
@@ -218,12 +214,7 @@ impl PictureArgs {
         }
         let is_png = match place {
             Place::Folder(_) => true,
-            Place::Files(file) => {
-                is_stream
-                    || file
-                        .extension()
-                        .is_some_and(|it| it.eq_ignore_ascii_case("png"))
-            }
+            Place::Files(file) => is_stream || output::ends_in(file, "png"),
             Place::Nowhere | Place::Film(..) => false,
         };
         if self.png.is_some() && !is_png {
@@ -374,10 +365,7 @@ impl Destination<'_> {
             say(format_args!(
                 "note: {} of {} there and left out",
                 before - planned.len(),
-                match before {
-                    1 => "1 picture is".into(),
-                    _ => format!("{} are", counted(before as u64, "picture")),
-                }
+                counted_are(before as u64, "picture")
             ));
         }
         let files = planned.iter().filter_map(|one| one.file.as_deref());

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::{Picture, PngCompression};
+use rara::Picture;
 use serde::Serialize;
 
 use super::failure::Failure;
@@ -194,7 +194,7 @@ impl Compare {
         let apart = Apart::of(&a, &b, self.background)?;
         if let Some(file) = &self.map {
             let [a, b] = [&a, &b].map(|picture| over(picture, self.background));
-            output::picture(&map_with_scale(&a, &b)?, file, PngCompression::default())?;
+            map_with_scale(&a, &b)?.save(file)?;
         }
         if self.json {
             output::json(&apart)?;

@@ -84,8 +84,8 @@ pub use picture::{Channel, Cue, Cues, Picture};
 pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 pub use renderer::{
-    ColorSpace, DepthDesc, ExpectedDepthDesc, FrameLimits, FrameToken, Pick, PickTicket, Picker,
-    Picks, Renderer, RendererDesc,
+    ColorSpace, ConfiguredFrame, DepthDesc, ExpectedDepthDesc, FrameLimits, Pick, PickTicket,
+    Picker, Picks, PreparedFrame, Renderer, RendererDesc,
 };
 #[doc(inline)]
 pub use scene::{Bounds, GaussianArrays, Gaussians, Layer, LayerState, Scene};

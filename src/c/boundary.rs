@@ -38,7 +38,7 @@ pub const RARA_ERROR_DEVICE_LOST: RaraResult = 8;
 
 /// The version of this header. It changes when a host must be compiled anew; structs that grow at their end and functions
 /// that are added do not change it.
-pub const RARA_ABI_VERSION: u32 = 3;
+pub const RARA_ABI_VERSION: u32 = 4;
 
 /// The version of the library that is linked: the RARA_ABI_VERSION of its header.
 #[unsafe(no_mangle)]

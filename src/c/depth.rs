@@ -38,7 +38,7 @@ pub struct RaraDepthDesc {
     pub format: vk::Format,
     /// True when a dynamic rendering scope has the same image as stencil attachment too. Default: false.
     pub stencil: vk::Bool32,
-    /// True when the host shows each frame's depth to rara_renderer_prepare_behind. Tiles need that; without it quads
+    /// True when the host gives each frame's depth to rara_renderer_prepare. Tiles need that; without it quads
     /// replace them. Default: false.
     pub readable: vk::Bool32,
     /// The buffer's value for a depth; rara_renderer_set_depth_map changes it from frame to frame.

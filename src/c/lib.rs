@@ -16,6 +16,7 @@ pub mod channels;
 pub mod clip;
 pub mod depth;
 pub mod device;
+pub mod frame;
 pub mod gaussians;
 mod handles;
 pub mod layer;
@@ -42,6 +43,5 @@ pub mod support;
 #[cfg(test)]
 mod tests;
 mod text;
-pub mod token;
 #[cfg(test)]
 mod versions;

@@ -14,6 +14,7 @@ use crate::channels::*;
 use crate::clip::*;
 use crate::depth::*;
 use crate::device::*;
+use crate::frame::*;
 use crate::gaussians::*;
 use crate::layer::*;
 use crate::layer_info::*;
@@ -33,7 +34,6 @@ use crate::staging::*;
 use crate::stats::*;
 use crate::support::*;
 use crate::tests::{assert_fails, message};
-use crate::token::*;
 
 thread_local! {
     static PANIC: Cell<bool> = const { Cell::new(false) };
@@ -166,27 +166,30 @@ fn calls() -> Vec<Called> {
         "renderer is null"
     );
     call!(
-        rara_renderer_configure_orthographic(null_mut(), null(), null(), null(), null()),
+        rara_renderer_configure_orthographic(
+            null_mut(),
+            null(),
+            null(),
+            null(),
+            null(),
+            null_mut()
+        ),
+        "frame is null"
+    );
+    call!(
+        rara_renderer_configure(null_mut(), null(), null(), null(), null(), null_mut()),
+        "frame is null"
+    );
+    call!(
+        rara_renderer_prepare(null_mut(), no_cmd, null(), null(), null_mut()),
         "renderer is null"
     );
     call!(
-        rara_renderer_configure(null_mut(), null(), null(), null(), null()),
+        rara_renderer_draw(null_mut(), no_cmd, 0.0, 0.0, null()),
         "renderer is null"
     );
     call!(
-        rara_renderer_prepare(null_mut(), no_cmd, null()),
-        "renderer is null"
-    );
-    call!(
-        rara_renderer_prepare_behind(null_mut(), no_cmd, null(), null()),
-        "renderer is null"
-    );
-    call!(
-        rara_renderer_draw(null_mut(), no_cmd, 0.0, 0.0),
-        "renderer is null"
-    );
-    call!(
-        rara_renderer_draw_depth(null_mut(), no_cmd, 0.0, 0.0),
+        rara_renderer_draw_depth(null_mut(), no_cmd, 0.0, 0.0, null()),
         "renderer is null"
     );
     call!(rara_renderer_forget(null_mut()), "renderer is null");
@@ -213,23 +216,7 @@ fn calls() -> Vec<Called> {
         rara_renderer_reserve(null_mut(), null()),
         "renderer is null"
     );
-    call!(rara_renderer_trim(null_mut()), "renderer is null");
-    call!(
-        rara_renderer_configure_ahead(null_mut(), null(), null(), null(), null(), null_mut()),
-        "token is null"
-    );
-    call!(
-        rara_renderer_prepare_token(null_mut(), no_cmd, null(), null(), null_mut()),
-        "renderer is null"
-    );
-    call!(
-        rara_renderer_draw_token(null_mut(), no_cmd, 0.0, 0.0, null()),
-        "renderer is null"
-    );
-    call!(
-        rara_renderer_draw_token_depth(null_mut(), no_cmd, 0.0, 0.0, null()),
-        "renderer is null"
-    );
+    call!(rara_renderer_trim(null_mut(), null()), "renderer is null");
     call!(
         rara_scene_buffers_estimated_pairs(null(), null(), null_mut()),
         "pairs is null"
@@ -274,7 +261,7 @@ fn assert_nothing_comes_of_null() {
         rara_renderer_destroy(null_mut());
         rara_device_destroy(null_mut());
         rara_region_destroy(null_mut());
-        rara_frame_token_destroy(null_mut());
+        rara_frame_destroy(null_mut());
         rara_picker_destroy(null_mut());
         assert_eq!(
             rara_device_bytes(null())

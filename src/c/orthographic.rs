@@ -5,7 +5,8 @@ use rara::{Camera, DepthMap, Projection};
 use crate::boundary::RaraResult;
 use crate::camera::{RaraCamera, look, make};
 use crate::clip::{self, RaraClip};
-use crate::renderer::{RaraRenderer, configure, with};
+use crate::frame::{RaraFrame, configure};
+use crate::renderer::{RaraRenderer, with};
 use crate::scene::RaraSceneBuffers;
 use crate::settings::RaraSettings;
 
@@ -47,11 +48,12 @@ pub unsafe extern "C" fn rara_renderer_configure_orthographic(
     camera: *const RaraCamera,
     clip: *const RaraClip,
     settings: *const RaraSettings,
+    frame: *mut *mut RaraFrame,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
     unsafe {
         let seen = || Ok((Projection::Orthographic, clip::kept(clip)?));
-        configure(renderer, scene, camera, seen, settings)
+        configure(renderer, scene, camera, seen, settings, frame)
     }
 }
 

@@ -19,7 +19,7 @@
 
 // The version of this header. It changes when a host must be compiled anew; structs that grow at their end and functions
 // that are added do not change it.
-#define RARA_ABI_VERSION 3
+#define RARA_ABI_VERSION 4
 
 // Room for a camera's name in RaraNamedCamera, the NUL included.
 #define RARA_MAX_CAMERA_NAME 256
@@ -39,8 +39,10 @@
 // A host's device as rara uses it. Several threads may use it at once.
 typedef struct RaraDevice RaraDevice;
 
-// A frame that was configured ahead, to be prepared and drawn whatever is configured after it. One thread at a time uses it.
-typedef struct RaraFrameToken RaraFrameToken;
+// A frame that rara_renderer_configure has made, rara_renderer_prepare records and rara_renderer_draw draws, whatever is
+// configured after it. It keeps the memory that it is recorded with: destroy it after its last draw. One thread at a time
+// uses it.
+typedef struct RaraFrame RaraFrame;
 
 // A scene in the host's memory. It may be destroyed once it is on the device. Several threads may read it at once.
 typedef struct RaraGaussians RaraGaussians;
@@ -54,12 +56,15 @@ typedef struct RaraRegion RaraRegion;
 
 // Draws scenes into the host's rendering scopes. One thread at a time uses it.
 //
-// A frame is three calls: rara_renderer_configure allocates and compiles what is new; rara_renderer_prepare records
-// compute stages, outside any rendering scope; rara_renderer_draw records the splats inside one. The host submits both
-// in this order, to the queue that it lent.
+// A frame is three calls: rara_renderer_configure allocates and compiles what is new, and makes the frame;
+// rara_renderer_prepare records its compute stages, outside any rendering scope; rara_renderer_draw records its splats
+// inside one. The host submits both in this order, to the queue that it lent.
 //
 // Frames in flight: before the host configures frame n it has waited for frame n - frames_in_flight, and before it
-// destroys the renderer it has waited for all of its frames.
+// destroys the renderer it has waited for all of its frames. Frames are prepared in the order in which they are configured,
+// and each is drawn before the next is prepared; one that is configured while another waits to be prepared takes nothing
+// over from it. Where the next frame is configured before this one's slot is free, frames_in_flight is one more than the
+// host's slots.
 //
 // Synchronisation: none is needed between the two recorded calls, nor for the buffers of renderer and scene. The
 // attachments are the host's to synchronise, as for any draw of its own.
@@ -171,7 +176,7 @@ typedef struct RaraDepthDesc {
     VkFormat format;
     // True when a dynamic rendering scope has the same image as stencil attachment too. Default: false.
     VkBool32 stencil;
-    // True when the host shows each frame's depth to rara_renderer_prepare_behind. Tiles need that; without it quads
+    // True when the host gives each frame's depth to rara_renderer_prepare. Tiles need that; without it quads
     // replace them. Default: false.
     VkBool32 readable;
     // The buffer's value for a depth; rara_renderer_set_depth_map changes it from frame to frame.
@@ -722,7 +727,7 @@ typedef struct RaraPassTime {
 } RaraPassTime;
 
 // The statistics of a frame. Counts and times are of the oldest frame in flight, which is the last one where there is
-// only one; raster and skipped are of the frame that is configured.
+// only one.
 typedef struct RaraFrameStats {
     // Set by rara_renderer_stats.
     size_t struct_size;
@@ -736,9 +741,9 @@ typedef struct RaraFrameStats {
     uint32_t culled;
     // Splats handed to the rasteriser.
     uint32_t drawn;
-    // How splats become pixels; RARA_RASTER_AUTO before the first frame.
+    // How splats became pixels; RARA_RASTER_AUTO before the first frame.
     RaraRaster raster;
-    // Why splats become pixels in that way.
+    // Why splats became pixels in that way.
     char raster_reason[RARA_REASON_SIZE];
     // True when tiles had no room for their lists, so that the frame was drawn as quads, which is slower and gives the
     // same picture; of RARA_SHOW_COUNT and RARA_SHOW_MEAN nothing was drawn. The next rara_renderer_configure makes the room.
@@ -751,7 +756,7 @@ typedef struct RaraFrameStats {
     double gpu_ms;
     // Number of skipped stages.
     uint32_t skipped_count;
-    // The stages that the frame does not need.
+    // The stages that the frame did not need.
     char skipped[RARA_MAX_PASSES][RARA_NAME_SIZE];
 } RaraFrameStats;
 
@@ -1177,64 +1182,6 @@ RaraResult rara_renderer_set_depth_map(struct RaraRenderer *renderer, const stru
 RaraResult rara_renderer_set_color_format(struct RaraRenderer *renderer,
                                           VkFormat color_format);
 
-// Decides what the next frame needs, and allocates and compiles what is missing. The camera's picture is the viewport that
-// rara_renderer_draw sets. A null `clip` clips nothing, null `settings` are the defaults. After an error nothing can be
-// recorded until a call succeeds.
-//
-// # Safety
-// `renderer` and `scene` are alive and of one device; no other thread uses `renderer`; the other pointers are null or
-// point to what they say. The host has waited for the frames that RaraRenderer says.
-RaraResult rara_renderer_configure(struct RaraRenderer *renderer,
-                                   const struct RaraSceneBuffers *scene,
-                                   const struct RaraCamera *camera,
-                                   const struct RaraClip *clip,
-                                   const struct RaraSettings *settings);
-
-// Records the stages up to the draw, outside any rendering scope.
-//
-// # Safety
-// `cmd` is recording outside a rendering scope, and will be submitted to the device's queue, or never. `scene` is the
-// one given to rara_renderer_configure, and lives until the commands have executed.
-RaraResult rara_renderer_prepare(struct RaraRenderer *renderer,
-                                 VkCommandBuffer cmd,
-                                 const struct RaraSceneBuffers *scene);
-
-// Like rara_renderer_prepare, for a renderer whose RaraDepthDesc is readable. It also takes the depths of what the host
-// has already drawn, so that tiles leave out the splats behind it.
-//
-// The part of the image under the viewport is copied, at VK_PIPELINE_STAGE_2_COPY_BIT by VK_ACCESS_2_TRANSFER_READ_BIT:
-// the host's barrier before the call makes its depths visible to that, its barrier after the call waits for it.
-//
-// # Safety
-// As for rara_renderer_prepare; and `depth` is as its fields say, visible to the copy, and lives until the commands have
-// executed.
-RaraResult rara_renderer_prepare_behind(struct RaraRenderer *renderer,
-                                        VkCommandBuffer cmd,
-                                        const struct RaraSceneBuffers *scene,
-                                        const struct RaraDepthImage *depth);
-
-// Records the splats inside the host's rendering scope, premultiplied and over what is there. `x` and `y` are the upper
-// left corner of the camera's picture in the attachment, whole pixels; the viewport is set to that picture, upright where
-// row 0 of the attachment is the upper one, whatever viewport the host has. The host's scissor holds. The call may be
-// recorded more than once for a prepared frame. RARA_ERROR_INVALID where `x` or `y` is not finite.
-//
-// # Safety
-// `cmd` is inside a rendering scope with the attachments of RaraRendererDesc and no others, one layer and no view mask;
-// a scissor is set by vkCmdSetScissor; rara_renderer_prepare was recorded for the same frame before it.
-RaraResult rara_renderer_draw(struct RaraRenderer *renderer,
-                              VkCommandBuffer cmd,
-                              float x,
-                              float y);
-
-// Records the splats' depths inside a rendering scope of their own, with a colour attachment of expected_depth_format
-// and, if there is one, the same depth attachment. Where the host has cleared both channels to 0, red / green is the
-// pixel's expected depth along the view axis, world units, and green its alpha. `x` and `y` are as for
-// rara_renderer_draw.
-//
-// # Safety
-// As for rara_renderer_draw, in such a scope.
-RaraResult rara_renderer_draw_depth(struct RaraRenderer *renderer, VkCommandBuffer cmd, float x, float y);
-
 // Forgets what earlier frames have computed, as is needed after a frame that was prepared and not submitted.
 // rara_renderer_configure comes after it.
 //
@@ -1281,7 +1228,8 @@ RaraResult rara_renderer_configure_orthographic(struct RaraRenderer *renderer,
                                                 const struct RaraSceneBuffers *scene,
                                                 const struct RaraCamera *camera,
                                                 const struct RaraClip *clip,
-                                                const struct RaraSettings *settings);
+                                                const struct RaraSettings *settings,
+                                                struct RaraFrame **frame);
 
 // Changes what the host's depth buffer holds for a depth, from the next rara_renderer_configure_orthographic on: 0 at
 // `z_zero` along the view axis, 1 at `z_one`, world units, and linear between them. Nearer is more where `z_one` is the
@@ -1366,13 +1314,13 @@ RaraResult rara_frame_limits_default(struct RaraFrameLimits *limits,
 RaraResult rara_renderer_reserve(struct RaraRenderer *renderer,
                                  const struct RaraFrameLimits *limits);
 
-// Gives back the working memory that the configured frame does not need, and what was reserved; without a configured frame
-// all of it. The host has waited for all of the renderer's frames. rara_renderer_configure comes after it, and allocates
-// nothing for the same frame.
+// Gives back the working memory, also what was reserved, but for what a frame like `keep` needs, which is prepared or null:
+// for that rara_renderer_configure then allocates nothing. The host has waited for all of the renderer's frames.
 //
 // # Safety
-// `renderer` is alive, no other thread uses it, and the device has finished its frames.
-RaraResult rara_renderer_trim(struct RaraRenderer *renderer);
+// `renderer` is alive, no other thread uses it, and the device has finished its frames; `keep` is null or alive.
+RaraResult rara_renderer_trim(struct RaraRenderer *renderer,
+                              const struct RaraFrame *keep);
 
 // Bytes of device memory that the renderer's working memory takes, 0 for null.
 //
@@ -1404,57 +1352,71 @@ RaraResult rara_device_memory(const struct RaraDevice *device, struct RaraDevice
 RaraResult rara_device_set_memory_budget(const struct RaraDevice *device,
                                          uint64_t bytes);
 
-// As rara_renderer_configure, for a host that configures a frame while it records another: the frame goes with the token, and
-// what rara_renderer_configure has configured stays. Frames are prepared in the order in which they are configured, and
-// each is drawn before the next is prepared. Before it prepares frame n, the host has waited for frame
-// n - frames_in_flight. A frame that is configured while another one waits to be prepared takes nothing over from it.
+// Decides what a frame needs, and allocates and compiles what is missing. The camera's picture is the viewport that
+// rara_renderer_draw sets. A null `clip` clips nothing, null `settings` are the defaults.
 //
 // # Safety
-// As for rara_renderer_configure, and `token` may be overwritten.
-RaraResult rara_renderer_configure_ahead(struct RaraRenderer *renderer,
-                                         const struct RaraSceneBuffers *scene,
-                                         const struct RaraCamera *camera,
-                                         const struct RaraClip *clip,
-                                         const struct RaraSettings *settings,
-                                         struct RaraFrameToken **token);
+// `renderer` and `scene` are alive and of one device; no other thread uses `renderer`; the other pointers are null or
+// point to what they say; `frame` may be overwritten. The host has waited for the frames that RaraRenderer says.
+RaraResult rara_renderer_configure(struct RaraRenderer *renderer,
+                                   const struct RaraSceneBuffers *scene,
+                                   const struct RaraCamera *camera,
+                                   const struct RaraClip *clip,
+                                   const struct RaraSettings *settings,
+                                   struct RaraFrame **frame);
 
-// Records the stages of a token's frame, as rara_renderer_prepare does, or with `depth`, which else is null,
-// rara_renderer_prepare_behind. RARA_ERROR_INVALID for another renderer's token, for one that is prepared already, and for
-// one that takes over from another frame than the one prepared last; nothing is recorded then.
+// Records a frame's stages up to the draw, outside any rendering scope. `depth` is null, or for a renderer whose
+// RaraDepthDesc is readable the depths of what the host has already drawn, so that tiles leave out the splats behind it.
+// RARA_ERROR_INVALID for a frame of another renderer, of another scene, that is prepared already, or that takes over from
+// another one than the frame prepared last; nothing is recorded then, and the frame is of no more use.
+//
+// The part of the depth image under the viewport is copied, at VK_PIPELINE_STAGE_2_COPY_BIT by
+// VK_ACCESS_2_TRANSFER_READ_BIT: the host's barrier before the call makes its depths visible to that, its barrier after the
+// call waits for it.
 //
 // # Safety
-// As for those; `scene` is the one given to rara_renderer_configure_ahead.
-RaraResult rara_renderer_prepare_token(struct RaraRenderer *renderer,
-                                       VkCommandBuffer cmd,
-                                       const struct RaraSceneBuffers *scene,
-                                       const struct RaraDepthImage *depth,
-                                       struct RaraFrameToken *token);
+// `cmd` is recording outside a rendering scope, and will be submitted to the device's queue, or never. `scene` is the
+// one given to rara_renderer_configure, and lives until the commands have executed; so does the depth image, which is as
+// its fields say and visible to the copy.
+RaraResult rara_renderer_prepare(struct RaraRenderer *renderer,
+                                 VkCommandBuffer cmd,
+                                 const struct RaraSceneBuffers *scene,
+                                 const struct RaraDepthImage *depth,
+                                 struct RaraFrame *frame);
 
-// Records a token's splats, as rara_renderer_draw does, before another frame is prepared.
+// Records a frame's splats inside the host's rendering scope, premultiplied and over what is there. `x` and `y` are the upper
+// left corner of the camera's picture in the attachment, whole pixels; the viewport is set to that picture, upright where
+// row 0 of the attachment is the upper one, whatever viewport the host has. The host's scissor holds. The call may be
+// recorded more than once for a frame. RARA_ERROR_INVALID for another frame than the one that the renderer has prepared
+// last, and where `x` or `y` is not finite.
 //
 // # Safety
-// As for rara_renderer_draw.
-RaraResult rara_renderer_draw_token(struct RaraRenderer *renderer,
+// `cmd` is inside a rendering scope with the attachments of RaraRendererDesc and no others, one layer and no view mask;
+// a scissor is set by vkCmdSetScissor; the commands of rara_renderer_prepare come before it.
+RaraResult rara_renderer_draw(struct RaraRenderer *renderer,
+                              VkCommandBuffer cmd,
+                              float x,
+                              float y,
+                              const struct RaraFrame *frame);
+
+// Records a frame's depths inside a rendering scope of their own, with a colour attachment of expected_depth_format
+// and, if there is one, the same depth attachment. Where the host has cleared both channels to 0, red / green is the
+// pixel's expected depth along the view axis, world units, and green its alpha. `x` and `y` are as for
+// rara_renderer_draw.
+//
+// # Safety
+// As for rara_renderer_draw, in such a scope.
+RaraResult rara_renderer_draw_depth(struct RaraRenderer *renderer,
                                     VkCommandBuffer cmd,
                                     float x,
                                     float y,
-                                    const struct RaraFrameToken *token);
+                                    const struct RaraFrame *frame);
 
-// Records a token's expected depths, as rara_renderer_draw_depth does, before another frame is prepared.
+// Ends a frame, prepared or not; null is ignored. The memory of a frame that the device works on stays until it is done.
 //
 // # Safety
-// As for rara_renderer_draw_depth.
-RaraResult rara_renderer_draw_token_depth(struct RaraRenderer *renderer,
-                                          VkCommandBuffer cmd,
-                                          float x,
-                                          float y,
-                                          const struct RaraFrameToken *token);
-
-// Ends a token, prepared or not; null is ignored. The memory of a frame that the device works on stays until it is done.
-//
-// # Safety
-// `token` is null, or alive and not used any more.
-void rara_frame_token_destroy(struct RaraFrameToken *token);
+// `frame` is null, or alive and not used any more.
+void rara_frame_destroy(struct RaraFrame *frame);
 
 // Makes a picker beside a renderer, whose compiled pipelines it shares, and whose placement of this moment it takes. So many
 // requests, from 1 to 16, may be unfinished at once.
@@ -1849,7 +1811,8 @@ RaraResult rara_renderer_configure_region(struct RaraRenderer *renderer,
                                           const struct RaraCamera *camera,
                                           RaraProjection projection,
                                           const struct RaraRegion *region,
-                                          const struct RaraSettings *settings);
+                                          const struct RaraSettings *settings,
+                                          struct RaraFrame **frame);
 
 // As rara_scene_buffers_set_layer_clip, with a region in place of planes; null gives the layer the frame's clip again.
 //

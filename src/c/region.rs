@@ -9,9 +9,10 @@ use rara::{Clip, Error, Projection, Result};
 
 use crate::boundary::{RaraResult, exclusive, guard, invalid, list};
 use crate::camera::{RaraCamera, vector};
+use crate::frame::{RaraFrame, configure};
 use crate::handles::{alive, alone, create, destroy};
 use crate::layer_info::check_index;
-use crate::renderer::{RaraRenderer, configure};
+use crate::renderer::RaraRenderer;
 use crate::scene::RaraSceneBuffers;
 use crate::settings::RaraSettings;
 use crate::text::{self, text};
@@ -143,6 +144,7 @@ pub unsafe extern "C" fn rara_renderer_configure_region(
     projection: RaraProjection,
     region: *const RaraRegion,
     settings: *const RaraSettings,
+    frame: *mut *mut RaraFrame,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
     unsafe {
@@ -152,7 +154,7 @@ pub unsafe extern "C" fn rara_renderer_configure_region(
                 clip(region, "region")?.unwrap_or_default().into(),
             ))
         };
-        configure(renderer, scene, camera, seen, settings)
+        configure(renderer, scene, camera, seen, settings, frame)
     }
 }
 

@@ -5,6 +5,7 @@ use rara::{FrameLimits, Preset, Result, Settings};
 use crate::boundary::{RaraResult, Versioned, exclusive, guard, read, read_list, shared, write};
 use crate::camera::RaraCamera;
 use crate::device::RaraDevice;
+use crate::frame::RaraFrame;
 use crate::handles::{alive, number};
 use crate::renderer::{RaraRenderer, with};
 use crate::scene::{RARA_SH_FORMAT_PACKED, RaraSceneBuffers, RaraShFormat, sh_format};
@@ -131,15 +132,23 @@ pub unsafe extern "C" fn rara_renderer_reserve(
     })
 }
 
-/// Gives back the working memory that the configured frame does not need, and what was reserved; without a configured frame
-/// all of it. The host has waited for all of the renderer's frames. rara_renderer_configure comes after it, and allocates
-/// nothing for the same frame.
+/// Gives back the working memory, also what was reserved, but for what a frame like `keep` needs, which is prepared or null:
+/// for that rara_renderer_configure then allocates nothing. The host has waited for all of the renderer's frames.
 ///
 /// # Safety
-/// `renderer` is alive, no other thread uses it, and the device has finished its frames.
+/// `renderer` is alive, no other thread uses it, and the device has finished its frames; `keep` is null or alive.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_renderer_trim(renderer: *mut RaraRenderer) -> RaraResult {
-    with(renderer, |renderer| renderer.trim())
+pub unsafe extern "C" fn rara_renderer_trim(
+    renderer: *mut RaraRenderer,
+    keep: *const RaraFrame,
+) -> RaraResult {
+    with(renderer, |renderer| {
+        let keep = match keep.is_null() {
+            true => None,
+            false => Some(alive(keep, "keep")?),
+        };
+        renderer.trim(keep.as_deref().map(RaraFrame::prepared).transpose()?)
+    })
 }
 
 /// Bytes of device memory that the renderer's working memory takes, 0 for null.

@@ -30,7 +30,7 @@ pub struct RaraPassTime {
 }
 
 /// The statistics of a frame. Counts and times are of the oldest frame in flight, which is the last one where there is
-/// only one; raster and skipped are of the frame that is configured.
+/// only one.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraFrameStats {
@@ -46,9 +46,9 @@ pub struct RaraFrameStats {
     pub culled: u32,
     /// Splats handed to the rasteriser.
     pub drawn: u32,
-    /// How splats become pixels; RARA_RASTER_AUTO before the first frame.
+    /// How splats became pixels; RARA_RASTER_AUTO before the first frame.
     pub raster: RaraRaster,
-    /// Why splats become pixels in that way.
+    /// Why splats became pixels in that way.
     pub raster_reason: [c_char; RARA_REASON_SIZE],
     /// True when tiles had no room for their lists, so that the frame was drawn as quads, which is slower and gives the
     /// same picture; of RARA_SHOW_COUNT and RARA_SHOW_MEAN nothing was drawn. The next rara_renderer_configure makes the room.
@@ -61,7 +61,7 @@ pub struct RaraFrameStats {
     pub gpu_ms: f64,
     /// Number of skipped stages.
     pub skipped_count: u32,
-    /// The stages that the frame does not need.
+    /// The stages that the frame did not need.
     pub skipped: [[c_char; RARA_NAME_SIZE]; RARA_MAX_PASSES],
 }
 

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::Renderer;
 use super::choose;
 use super::desc::ColorSpace;
-use super::frames::{Configured, Ready, RecordedFrame};
+use super::frame::FrameState;
+use super::frames::{Decision, RecordedFrame};
 use super::outcome::Submission;
 use super::request::FrameRequest;
+use super::{ConfiguredFrame, Renderer};
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::depth::DepthMap;
@@ -38,44 +39,43 @@ struct Planned {
 }
 
 impl Renderer {
-    /// Decides what the next frame needs, and allocates and compiles the missing parts. The camera's picture is the
+    /// Decides what a frame needs, and allocates and compiles the missing parts. The camera's picture is the
     /// viewport that [`draw`](Self::draw) sets. [`Settings::background`] is the host's business and ignored here.
     ///
-    /// Where a frame needs more memory than the one before, old and new exist side by side while frames are in flight;
-    /// with one frame in flight the old goes first. After an error nothing can be recorded until a call succeeds.
+    /// Where a frame needs more memory than the one before, old and new exist side by side while frames are in flight, or as
+    /// long as the host holds a frame that needs the old; else the old goes first.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for what no frame can show, [`Error::Memory`] and [`Error::Budget`] where there is no room for it,
+    /// and [`Error::Device`] where the driver fails.
     pub fn configure(
         &mut self,
         scene: &SceneBuffers,
         camera: &Camera,
         clip: &Clip,
         settings: &Settings,
-    ) -> Result<()> {
+    ) -> Result<ConfiguredFrame> {
         self.configure_frame(&FrameRequest::in_flight(scene, camera, clip, settings))
     }
 
     /// As [`configure`](Self::configure), for a frame that is submitted as the request says.
-    pub(crate) fn configure_frame(&mut self, request: &FrameRequest<'_>) -> Result<()> {
-        self.configured = None;
-        self.configured = Some(self.ready(request)?);
-        self.note_frame();
-        Ok(())
-    }
-
-    /// A frame that is ready to be recorded.
-    pub(super) fn ready(&mut self, request: &FrameRequest<'_>) -> Result<Ready> {
-        let frame = self.in_scene(request, Self::configure_in_scene)?;
-        Ok(Ready {
-            buffers: self.memory.buffers().clone(),
-            pipelines: self.pipelines.get(frame.bindings).clone(),
+    pub(crate) fn configure_frame(
+        &mut self,
+        request: &FrameRequest<'_>,
+    ) -> Result<ConfiguredFrame> {
+        let decision = self.in_scene(request, Self::configure_in_scene)?;
+        let frame = ConfiguredFrame {
+            state: FrameState {
+                buffers: self.memory.buffers().clone(),
+                pipelines: self.pipelines.get(decision.bindings).clone(),
+                renderer: self.id,
+                decision,
+            },
             basis: self.basis(),
-            number: 0,
-            frame,
-        })
-    }
-
-    /// True when a frame is the last one that was prepared.
-    pub(super) fn is_prepared(&self, ready: &Ready) -> bool {
-        ready.frame.prepared && ready.number == self.frames.prepared()
+            _pending: self.pending.clone(),
+        };
+        self.note_frame(&frame);
+        Ok(frame)
     }
 
     /// What a frame that is configured now may take over from.
@@ -94,7 +94,7 @@ impl Renderer {
     fn compiles_in_scene(&mut self, request: &FrameRequest<'_>) -> Result<bool> {
         let Planned { mut plan, .. } = self.planned(request)?;
         if self.memory.fits(&plan) {
-            plan.work = self.work(request.scene.id, &plan, request.submission)?;
+            plan.work = self.work(request.scene.id, &plan)?;
         }
         let held = self.memory.allocated().map(|held| held.sizes().largest());
         let needed = Sizes::of(&plan).largest().max(held.unwrap_or(0));
@@ -166,7 +166,7 @@ impl Renderer {
     }
 
     /// Configures a frame whose camera and clip are in the scene's units already.
-    fn configure_in_scene(&mut self, request: &FrameRequest<'_>) -> Result<Configured> {
+    fn configure_in_scene(&mut self, request: &FrameRequest<'_>) -> Result<Decision> {
         let Planned {
             mut plan,
             raster,
@@ -181,7 +181,8 @@ impl Renderer {
                 kept.holds = false;
             }
             let memory = &mut self.memory;
-            match memory.replace(&self.device, &plan, &self.frames, submission) {
+            let frames = (self.frames.prepared(), self.frames.finished(submission));
+            match memory.replace(&self.device, &plan, frames) {
                 // Frames with more pairs than there is room for are drawn as quads: that is no reason to draw none.
                 Err(Error::Budget(_)) if memory.pairs.hold(self.device.memory_budget()) => {
                     return self.configure_in_scene(request);
@@ -196,12 +197,12 @@ impl Renderer {
                 replaced => replaced?,
             }
         }
-        plan.work = self.work(scene.id, &plan, submission)?;
+        plan.work = self.work(scene.id, &plan)?;
         let bindings = self.bindings(scene);
         let targets = self.targets();
         let pipelines = &mut self.pipelines;
         let is_first_use = pipelines.ensure(&self.device, bindings, targets, &plan)?;
-        Ok(Configured {
+        Ok(Decision {
             scene: scene.id,
             plan,
             reason,
@@ -213,7 +214,6 @@ impl Renderer {
             redrawn,
             needs_tiles,
             is_first_use,
-            prepared: false,
         })
     }
 
@@ -286,7 +286,7 @@ impl Renderer {
     }
 
     /// Configures the same frame as quads, on a device that has no memory for so many tiles and their lists.
-    fn configure_without_tiles(&mut self, request: &FrameRequest<'_>) -> Result<Configured> {
+    fn configure_without_tiles(&mut self, request: &FrameRequest<'_>) -> Result<Decision> {
         self.memory.pairs.refuse();
         let quads = Settings {
             raster: Raster::Quad,
@@ -296,7 +296,7 @@ impl Renderer {
             settings: &quads,
             ..*request
         })?;
-        Ok(Configured {
+        Ok(Decision {
             reason: "the device has no memory for the tiles' lists",
             ..configured
         })
@@ -306,7 +306,7 @@ impl Renderer {
     /// to have. Returns whether nothing is to be drawn of the next frame where that is not enough.
     fn make_room(&mut self, request: &FrameRequest<'_>, tiles: u32) -> bool {
         let undrawn = |frame: &RecordedFrame| {
-            let redrawn = frame.configured.as_ref().is_some_and(|had| had.redrawn);
+            let redrawn = frame.decision.as_ref().is_some_and(|had| had.redrawn);
             redrawn && frame.fell_back()
         };
         if self.kept.is_some() && self.frames.newest().is_some_and(undrawn) {
@@ -329,11 +329,9 @@ impl Renderer {
     }
 
     /// The part of a plan that has to be computed after the frame before it.
-    fn work(&mut self, scene: u64, plan: &Plan, submission: Submission) -> Result<Work> {
+    fn work(&mut self, scene: u64, plan: &Plan) -> Result<Work> {
         // The host's depth may change with each frame, and a frame that is yet to be prepared leaves other results.
-        let waits = |ready: &Ready| !ready.frame.prepared;
-        let is_next = Arc::strong_count(&self.pending) == 1
-            && (submission != Submission::Ahead || !self.configured.as_ref().is_some_and(waits));
+        let is_next = Arc::strong_count(&self.pending) == 1;
         let kept = self.kept.as_ref();
         let kept = kept.filter(|_| is_next && plan.occluders.is_none());
         let work = Kept::work(kept, scene, plan);

@@ -85,7 +85,7 @@ pub struct DepthDesc {
     /// The buffer's value for a depth, on ordinary or reversed depth;
     /// [`Renderer::set_depth_map`](super::Renderer::set_depth_map) changes it from frame to frame.
     pub map: DepthMap,
-    /// True when the host shows each frame's depth to [`Renderer::prepare_behind`](super::Renderer::prepare_behind),
+    /// True when the host gives each frame's depth to [`Renderer::prepare`](super::Renderer::prepare),
     /// before its scope. Tiles need that; without it they are replaced by quads.
     pub readable: bool,
 }
@@ -211,7 +211,7 @@ impl RendererDesc {
         }
         if depth.readable && self.samples != vk::SampleCountFlags::TYPE_1 {
             return Err(Error::Invalid(
-                "DepthDesc::readable is set and RendererDesc::samples are several: prepare_behind copies an image of one \
+                "DepthDesc::readable is set and RendererDesc::samples are several: prepare copies an image of one \
                  sample; without it splats are drawn as quads, whose samples are tested each"
                     .into(),
             ));

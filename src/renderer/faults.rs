@@ -65,14 +65,14 @@ fn life(host: &Device) -> Result<()> {
                 buffers = Some(uploaded?);
             }
             let buffers = buffers.as_ref().expect("just uploaded");
-            renderer.configure(buffers, &camera, &clip, &Settings::default())?;
+            let frame = renderer.configure(buffers, &camera, &clip, &Settings::default())?;
             // SAFETY: `cmd` is recording outside rendering, and all that is used outlives the wait. The scope is opened
             // and closed around the draw, on an attachment of the renderer's format.
             unsafe {
-                renderer.prepare(cmd, buffers)?;
+                let frame = renderer.prepare(cmd, buffers, None, frame)?;
                 target.begin_rendering(cmd, [0.0; 4]);
                 Drawer::new(&device, cmd, None).viewport(target.extent().into());
-                renderer.draw(cmd, [0.0; 2])?;
+                renderer.draw(cmd, [0.0; 2], &frame)?;
                 target.end_rendering(cmd);
             }
             Ok(())

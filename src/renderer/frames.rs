@@ -1,17 +1,15 @@
 //! The frames that may be unfinished at once, and what is known of each once it was waited for.
 
-use std::sync::Arc;
-
 use super::outcome::Submission;
 use crate::depth::DepthMap;
 use crate::error::Result;
 use crate::gpu::{Bindings, Buffer, BufferDesc, Device, Location, Timer};
-use crate::passes::{Buffers, Pipelines, Plan, Targets, Work};
+use crate::passes::{Plan, Targets, Work};
 use crate::types::{self, FrameCounts};
 
-/// A frame as [`Renderer::configure`](super::Renderer::configure) has decided it.
+/// What [`Renderer::configure`](super::Renderer::configure) has decided about a frame.
 #[derive(Debug, Clone)]
-pub(super) struct Configured {
+pub(super) struct Decision {
     /// The scene's number.
     pub(super) scene: u64,
     pub(super) plan: Plan,
@@ -31,32 +29,15 @@ pub(super) struct Configured {
     pub(super) needs_tiles: bool,
     /// True when it is the first to use a pipeline: drivers may compile that within the frame.
     pub(super) is_first_use: bool,
-    /// True when it has been prepared.
-    pub(super) prepared: bool,
 }
 
-/// A frame that is configured, and what it is recorded with, whatever is configured after it.
-#[derive(Debug)]
-pub(super) struct Ready {
-    pub(super) frame: Configured,
-    pub(super) buffers: Arc<Buffers>,
-    pub(super) pipelines: Arc<Pipelines>,
-    /// The frames prepared, and how often all was forgotten, when it was configured: what it takes over is as it was then.
-    pub(super) basis: (u64, u64),
-    /// The number of frames that had been prepared with it; 0 before it is.
-    pub(super) number: u64,
-}
-
-impl Ready {
+impl Decision {
     /// True when it takes something over from the frame before.
     pub(super) fn takes_over(&self) -> bool {
-        let plan = &self.frame.plan;
-        let clip = plan.mode() != types::MODE_NONE;
-        plan.work != Work::Whole { clip }
+        let clip = self.plan.mode() != types::MODE_NONE;
+        self.plan.work != Work::Whole { clip }
     }
-}
 
-impl Configured {
     /// True when its pixels are those of the frame before it.
     pub(super) fn changes_nothing(&self) -> bool {
         self.plan.work == Work::Draw || self.plan.gaussians() == 0
@@ -70,7 +51,7 @@ pub(crate) struct RecordedFrame {
     /// The buffer in which the host reads the frame's [`FrameCounts`].
     pub(super) counts: Buffer,
     /// The recorded frame; `None` before the first one, and for one that was never submitted.
-    pub(super) configured: Option<Configured>,
+    pub(super) decision: Option<Decision>,
 }
 
 impl RecordedFrame {
@@ -90,7 +71,7 @@ impl RecordedFrame {
         Ok(Self {
             timer: timing.then(timer).transpose()?,
             counts,
-            configured: None,
+            decision: None,
         })
     }
 }
@@ -101,8 +82,6 @@ pub(super) struct FramesInFlight {
     slots: Box<[RecordedFrame]>,
     /// Frames prepared so far.
     prepared: u64,
-    /// Whether the frame whose slot was taken last had no room for its pairs, and how many pairs it had.
-    replaced: (bool, u32),
 }
 
 impl FramesInFlight {
@@ -111,17 +90,15 @@ impl FramesInFlight {
         Ok(Self {
             slots: slots.collect::<Result<_>>()?,
             prepared: 0,
-            replaced: (false, 0),
         })
     }
 
     /// The slot for one more frame.
-    pub(super) fn begin(&mut self, configured: &Configured) -> &mut RecordedFrame {
-        self.replaced = self.oldest().map_or((false, 0), RecordedFrame::need);
+    pub(super) fn begin(&mut self, decision: &Decision) -> &mut RecordedFrame {
         let at = self.slot(self.prepared);
         self.prepared += 1;
         let slot = &mut self.slots[at];
-        slot.configured = Some(configured.clone());
+        slot.decision = Some(decision.clone());
         slot
     }
 
@@ -155,8 +132,6 @@ impl FramesInFlight {
         let frame = match submission {
             Submission::Awaited => self.newest(),
             Submission::InFlight => self.oldest(),
-            // The slot of the frame before that is taken, and the oldest one may not be finished.
-            Submission::Ahead => return self.replaced,
         };
         frame.map_or((false, 0), RecordedFrame::need)
     }
@@ -171,15 +146,17 @@ impl FramesInFlight {
         self.prepared
     }
 
-    /// How many of these, counted from the first, are finished before one of this submission.
+    /// How many of these, counted from the first, are finished when one of this submission is configured.
     pub(super) fn finished(&self, submission: Submission) -> u64 {
-        let slots = self.slots.len() as u64;
         match submission {
             Submission::Awaited => self.prepared,
-            Submission::InFlight => (self.prepared + 1).saturating_sub(slots),
-            // As the host has promised when it prepared the last one.
-            Submission::Ahead => self.prepared.saturating_sub(slots),
+            Submission::InFlight => self.finished_at_least() + u64::from(self.oldest().is_some()),
         }
+    }
+
+    /// How many of these are finished whenever the host calls, as it has waited for them before the last one.
+    pub(super) fn finished_at_least(&self) -> u64 {
+        self.prepared.saturating_sub(self.slots.len() as u64)
     }
 
     fn slot(&self, frame: u64) -> usize {

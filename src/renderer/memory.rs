@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use super::frames::FramesInFlight;
-use super::outcome::Submission;
 use super::pair_room::PairRoom;
 use crate::error::{Error, Result};
 use crate::gpu::Device;
@@ -27,15 +25,15 @@ impl WorkingMemory {
             .is_some_and(|buffers| buffers.fit(plan))
     }
 
-    /// Replaces the buffers that a plan does not fit into, and keeps the others; after an error there are none.
+    /// Replaces the buffers that a plan does not fit into, and keeps the others; after an error there are none. `frames` are
+    /// the numbers of frames that were prepared, and of those of them that are finished.
     pub(super) fn replace(
         &mut self,
         device: &Device,
         plan: &Plan,
-        frames: &FramesInFlight,
-        submission: Submission,
+        frames: (u64, u64),
     ) -> Result<()> {
-        self.reserve(device, (plan, Sizes::of(plan), false), frames, submission)
+        self.reserve(device, (plan, Sizes::of(plan), false), frames)
     }
 
     /// As [`replace`](Self::replace), by buffers of these sizes at least, and on demand those of reclipped frames. Where the
@@ -44,8 +42,7 @@ impl WorkingMemory {
         &mut self,
         device: &Device,
         (plan, need, reclips): (&Plan, Sizes, bool),
-        frames: &FramesInFlight,
-        submission: Submission,
+        (prepared, finished): (u64, u64),
     ) -> Result<()> {
         let had = self.buffers.as_deref();
         let spare = had.map(|buffers| buffers.spare_for(need));
@@ -54,7 +51,6 @@ impl WorkingMemory {
         let all = need.or(sizes);
         spare.retain(all, plan);
         let missing = Buffers::missing(&spare, all, plan, reclips);
-        let (prepared, finished) = (frames.prepared(), frames.finished(submission));
         // What no frame in flight uses goes before the rest comes.
         let goes = had.filter(|_| finished >= prepared);
         let goes = goes.map_or(0, |buffers| buffers.outgrown(&spare));

@@ -9,7 +9,7 @@ use ash::vk;
 use crate::depth::DepthMap;
 use crate::error::{Error, Result};
 use crate::gpu::Device;
-use crate::passes::{Kept, TilePicture};
+use crate::passes::Kept;
 use crate::placement::Placement;
 use crate::stats::RasterChoice;
 
@@ -19,6 +19,7 @@ mod desc;
 mod estimate;
 #[cfg(test)]
 mod faults;
+mod frame;
 mod frames;
 mod limits;
 mod memory;
@@ -33,28 +34,28 @@ mod shared;
 mod stats;
 #[cfg(test)]
 mod tests;
-mod token;
 #[cfg(feature = "lab")]
 mod working;
 
 pub use desc::{ColorSpace, DepthDesc, ExpectedDepthDesc, RendererDesc};
+pub use frame::{ConfiguredFrame, PreparedFrame};
 pub(crate) use frames::RecordedFrame;
 pub use limits::FrameLimits;
 pub(crate) use outcome::{Outcome, Submission};
 pub use pick::{Pick, PickTicket, Picker, Picks};
 pub(crate) use request::FrameRequest;
-pub use token::FrameToken;
 
 use estimate::PairEstimate;
-use frames::{Configured, FramesInFlight, Ready};
+use frames::FramesInFlight;
 use memory::WorkingMemory;
 use shared::SharedPipelines;
 
 /// Draws a scene into the host's rendering scope.
 ///
 /// A frame is three calls: [`configure`](Self::configure) allocates and compiles what the frame needs and has not
-/// been needed before; [`prepare`](Self::prepare) records the compute stages outside any rendering scope;
-/// [`draw`](Self::draw) records the splats inside one. The host submits both in this order, to the device's queue.
+/// been needed before, and returns the frame; [`prepare`](Self::prepare) takes it and records the compute stages outside any
+/// rendering scope; [`draw`](Self::draw) records the splats inside one. The host submits both in this order, to the device's
+/// queue.
 ///
 /// **Frames in flight.** Before it configures frame `n`, the host has waited for frame `n - frames_in_flight` (each
 /// `prepare` is a frame, also where two of them are views of one picture). Frames share their working memory: each
@@ -62,13 +63,18 @@ use shared::SharedPipelines;
 /// reads. Memory that a frame outgrows is freed `frames_in_flight` frames later. Before dropping the renderer, the host
 /// waits for all of its frames.
 ///
+/// **Frames that overlap.** A frame is recorded with what it was configured with, whatever is configured in between: a host
+/// may configure the next frame while it records this one. Frames are prepared in the order in which they are configured. One
+/// that is configured while another waits to be prepared takes nothing over from it, whatever [`RendererDesc::reuse`] says.
+/// Where the next frame is configured before this one's slot is free, `frames_in_flight` is one more than the host's slots.
+///
 /// **Synchronisation.** The commands of `prepare` begin with a global barrier, from all draws, dispatches and copies that
 /// are earlier in the queue to its own. They end with one that makes what they wrote visible to the shaders and indirect
 /// arguments of `draw`, and the counts to the host. The host needs no barrier between the two, and none at all for the
 /// buffers of the renderer and the scene. `draw` reads those in the vertex or mesh and the fragment stage; it reads and
 /// writes the colour attachment (`COLOR_ATTACHMENT_OUTPUT`) and reads the depth attachment (`EARLY_FRAGMENT_TESTS`,
 /// `LATE_FRAGMENT_TESTS`), whose layout may be read-only. For these the host waits as for any draw of its own.
-/// [`prepare_behind`](Self::prepare_behind) says what it needs.
+/// [`prepare`](Self::prepare) says what the host's depth needs.
 ///
 /// **What recording leaves behind.** `prepare` binds a compute pipeline, `draw` a graphics pipeline; both write push
 /// constants. `draw` sets the viewport. The host binds its own pipelines again, pushes its own constants, and sets all
@@ -78,16 +84,13 @@ use shared::SharedPipelines;
 /// the host's dynamic state `draw` reads one thing, the scissor, which `vkCmdSetScissor` sets and
 /// `vkCmdSetScissorWithCount` does not. The host's viewport may be any, upside down or not yet set.
 ///
-/// **What lives how long.** The scene's buffers, and the image of `prepare_behind`, live until the frame has executed; a
+/// **What lives how long.** The scene's buffers, and the image of the host's depth, live until the frame has executed; a
 /// render pass of [`RendererDesc::target`] until no renderer that shares pipelines with this one is left; a host's device
 /// and instance longer than all.
 ///
-/// **Errors while recording.** [`prepare`](Self::prepare) and the draws return [`Error::Invalid`] where calls come in an
-/// order that makes no sense; then nothing was recorded. They neither submit nor wait, take no lock, and allocate nothing
+/// **Errors while recording.** [`prepare`](Self::prepare) and the draws return [`Error::Invalid`] for frames of another
+/// renderer or in another order; then nothing was recorded. They neither submit nor wait, take no lock, and allocate nothing
 /// once a frame like it has been recorded.
-///
-/// **Frames that overlap.** [`configure_ahead`](Self::configure_ahead) configures a frame that is recorded later, whatever is
-/// configured in between, as hosts do that record one frame while they work on the next.
 ///
 /// **Several views.** Views one after the other, each with a scope of its own (`prepare`, `draw`, `prepare`, `draw`), need
 /// one renderer, whose memory they share; each counts as a frame in flight. Views in one scope need a renderer each:
@@ -107,8 +110,6 @@ pub struct Renderer {
     pipelines: SharedPipelines,
     memory: WorkingMemory,
     frames: FramesInFlight,
-    /// The frame that is recorded next, replaced as a whole.
-    configured: Option<Ready>,
     /// The results that the last prepared frame has left in the memory.
     kept: Option<Kept>,
     /// The pairs that were estimated last.
@@ -117,7 +118,7 @@ pub struct Renderer {
     id: u64,
     /// How often all was forgotten.
     forgotten: u64,
-    /// Shared with the tokens of frames that are configured and not prepared.
+    /// Shared with the frames that are configured and not prepared.
     pending: Arc<()>,
     /// How splats become pixels, as the log was told last.
     noted: RasterChoice,
@@ -192,7 +193,6 @@ impl Renderer {
             pipelines,
             memory: WorkingMemory::default(),
             frames,
-            configured: None,
             kept: None,
             estimate: PairEstimate::default(),
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
@@ -233,36 +233,15 @@ impl Renderer {
     /// after it.
     pub fn forget(&mut self) {
         self.kept = None;
-        // The configured frame may count on them, and so may those of tokens.
-        self.configured = None;
-        self.forgotten += 1;
+        self.forgotten += 1; // frames that are configured may count on it
     }
 
-    /// The frame that is recorded next.
-    fn configured(&self) -> Option<&Configured> {
-        self.configured.as_ref().map(|ready| &ready.frame)
-    }
-
-    /// Forgets the configured frame, which has not been submitted, prepared or not, and what it would have computed.
+    /// Forgets the frame that was prepared last and never submitted, and what it would have computed.
     pub(crate) fn abandon(&mut self) {
-        if self.configured().is_some_and(|frame| frame.prepared)
-            && let Some(newest) = self.frames.newest_mut()
-        {
-            newest.configured = None;
+        if let Some(newest) = self.frames.newest_mut() {
+            newest.decision = None;
         }
         self.forget();
-    }
-
-    /// True when the configured frame's pixels are those of the last prepared one.
-    pub(crate) fn changes_nothing(&self) -> bool {
-        self.configured().is_some_and(Configured::changes_nothing)
-    }
-
-    /// The tiles' picture, if it is the configured frame's; `None` where that is drawn.
-    pub(crate) fn picture(&self) -> Option<&Arc<TilePicture>> {
-        let plan = &self.configured()?.plan;
-        let tiles = self.memory.buffers().tiles.as_ref()?;
-        (!plan.is_drawn).then_some(&tiles.picture)
     }
 
     /// Leaves room for only so many pairs of tile and splat, as on a small device.

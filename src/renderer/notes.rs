@@ -1,25 +1,24 @@
 //! The log's lines about frames, for whoever embeds the renderer: how splats become pixels and why, where that changes, and
 //! at trace level each frame and the outcome of the oldest one.
 
-use super::Renderer;
-use super::frames::Configured;
+use super::{ConfiguredFrame, Renderer};
 use crate::counted::counted;
 
 impl Renderer {
-    /// Writes what is new about the frame that has been configured.
-    pub(super) fn note_frame(&mut self) {
-        let raster = self.raster();
+    /// Writes what is new about a frame that has been configured.
+    pub(super) fn note_frame(&mut self, frame: &ConfiguredFrame) {
+        let raster = frame.state.decision.raster(self.fell_back());
         if raster != self.noted {
             log::info!("splats become pixels by {}: {}", raster.path, raster.reason);
             self.noted = raster;
         }
         // Nothing is put together where no logger asks for lines; C's function is one that asks for all.
         if log::log_enabled!(log::Level::Trace) {
-            self.trace_frame();
+            self.trace_frame(frame);
         }
     }
 
-    fn trace_frame(&self) {
+    fn trace_frame(&self, frame: &ConfiguredFrame) {
         let number = self.frames.prepared();
         if self.oldest().is_some() {
             let (counts, times) = (self.counts(), self.pass_times());
@@ -35,18 +34,17 @@ impl Renderer {
                 counted(self.pairs(), "pair"),
             );
         }
-        if let Some(Configured { plan, .. }) = self.configured() {
-            let [width, height] = plan.size();
-            log::trace!(
-                "frame {number} shows {} in {width}x{height} px with {}, room for {}, and without {}",
-                counted(plan.gaussians(), "Gaussian"),
-                counted(plan.layers.most_surfaces(), "surface"),
-                counted(plan.data.room.pair_capacity, "pair"),
-                match self.skipped() {
-                    skipped if skipped.is_empty() => "skipping a stage".into(),
-                    skipped => skipped.join(", "),
-                }
-            );
-        }
+        let plan = &frame.state.decision.plan;
+        let [width, height] = plan.size();
+        log::trace!(
+            "frame {number} shows {} in {width}x{height} px with {}, room for {}, and without {}",
+            counted(plan.gaussians(), "Gaussian"),
+            counted(plan.layers.most_surfaces(), "surface"),
+            counted(plan.data.room.pair_capacity, "pair"),
+            match frame.skipped() {
+                skipped if skipped.is_empty() => "skipping a stage".into(),
+                skipped => skipped.join(", "),
+            }
+        );
     }
 }

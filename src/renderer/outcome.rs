@@ -6,8 +6,6 @@ pub(crate) enum Submission {
     /// It is submitted while earlier ones are unfinished. If its tiles' lists have no room, it is drawn as quads: the same
     /// picture, but slower.
     InFlight,
-    /// The same, but it is configured before the host has waited for the frame whose slot it takes.
-    Ahead,
     /// It is submitted when all earlier ones are finished, and waited for itself. If its tiles' lists have no room, nothing
     /// is drawn, and it is submitted again, with more room or as quads.
     Awaited,

@@ -159,7 +159,7 @@ impl Picker {
             .show(Show::Strongest)
             .raster(Raster::Auto)
             .background(None);
-        self.renderer.configure_frame(&FrameRequest {
+        let frame = self.renderer.configure_frame(&FrameRequest {
             picture: Some(TargetFormat::Float),
             whole: Some(camera),
             ..FrameRequest::in_flight(scene, &part, clip, &settings)
@@ -169,8 +169,8 @@ impl Picker {
         slot.asked = None;
         let readback = slot.room(&device, rect.extent)?;
         // SAFETY: the caller's promises are those asked for.
-        unsafe { self.renderer.prepare(cmd, scene) }?;
-        let tiles = self.renderer.picture().filter(|_| scene.count > 0);
+        let frame = unsafe { self.renderer.prepare(cmd, scene, None, frame) }?;
+        let tiles = frame.picture().filter(|_| scene.count > 0);
         if let Some(tiles) = tiles {
             // SAFETY: the caller's promises are those of `prepare`; the tiles' buffers live as the frame's do, and the slot's
             // until its next request or the picker's end, which come after this one has finished.

@@ -2,185 +2,129 @@
 
 use ash::vk;
 
-use super::frames::Ready;
-use super::{Renderer, out_of_order};
+use super::frame::FrameState;
+use super::{ConfiguredFrame, PreparedFrame, Renderer, out_of_order};
 use crate::error::Result;
 use crate::gpu::{DepthImage, Drawer, Recorder};
 use crate::passes::{self, Frame, Kept, SceneBuffers, Work, tiles};
 
 impl Renderer {
-    /// Records the stages up to the draw, outside any rendering scope.
+    /// Records a frame's stages up to the draw, outside any rendering scope. `depth` is what the host has drawn already, for a
+    /// renderer whose [`DepthDesc::readable`](crate::DepthDesc::readable) asks for it: tiles leave out the splats behind it.
+    /// The picture is the same as that of quads, which test each sample against the attachment itself. Tiles of such a frame
+    /// are computed anew even where [`RendererDesc::reuse`](crate::RendererDesc::reuse) is set.
+    ///
+    /// The part of the depth image under the viewport is copied, at `COPY` by `TRANSFER_READ`. The host's barrier before makes
+    /// its depths visible to the copy, and its barrier after waits for the copy before the image changes layout or contents.
     ///
     /// # Safety
     /// `cmd` is in the recording state, outside a rendering scope, on a queue family with compute and graphics, and
     /// will be submitted to the device's queue, or never. `scene` is the one given to [`configure`](Self::configure)
-    /// and lives until the commands have executed. The host has waited for the frames that [`Renderer`] says.
+    /// and lives until the commands have executed. `depth` is as its description says, visible to the copy, and lives as
+    /// long. The host has waited for the frames that [`Renderer`] says.
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) without a successful [`configure`](Self::configure) before it, with another
-    /// scene, and where [`DepthDesc::readable`](crate::DepthDesc::readable) promises the host's depth. Nothing is recorded then.
-    pub unsafe fn prepare(&mut self, cmd: vk::CommandBuffer, scene: &SceneBuffers) -> Result<()> {
-        if self.desc.depth.is_some_and(|depth| depth.readable) {
-            return out_of_order("prepare was promised the host's depth: prepare_behind takes it");
-        }
-        // SAFETY: the caller's promises are those asked for.
-        unsafe { self.prepare_with(cmd, scene, None) }
-    }
-
-    /// As [`prepare`](Self::prepare), but with the depth that the host has drawn already, so that tiles leave out the splats
-    /// behind it. The renderer's [`DepthDesc::readable`](crate::DepthDesc::readable) asks for it. The picture is the same
-    /// as that of quads, which test each sample against the attachment itself. Tiles of such a frame are computed anew even
-    /// where [`RendererDesc::reuse`](crate::RendererDesc::reuse) is set.
-    ///
-    /// The part of the image under the viewport is copied, at `COPY` by `TRANSFER_READ`. The host's barrier before makes its
-    /// depths visible to the copy, and its barrier after waits for the copy before the image changes layout or contents.
-    ///
-    /// # Safety
-    /// As for [`prepare`](Self::prepare); and `depth` is as its description says, visible to the copy, and lives until
-    /// the commands have executed.
-    ///
-    /// # Errors
-    /// As for [`prepare`](Self::prepare), and where [`DepthDesc::readable`](crate::DepthDesc::readable) is not set.
-    pub unsafe fn prepare_behind(
-        &mut self,
-        cmd: vk::CommandBuffer,
-        scene: &SceneBuffers,
-        depth: &DepthImage,
-    ) -> Result<()> {
-        if !self.desc.depth.is_some_and(|depth| depth.readable) {
-            return out_of_order("prepare_behind needs DepthDesc::readable");
-        }
-        // SAFETY: the caller's promises are those asked for.
-        unsafe { self.prepare_with(cmd, scene, Some(depth)) }
-    }
-
-    /// # Safety
-    /// As for [`prepare`](Self::prepare) or, with `depth`, [`prepare_behind`](Self::prepare_behind).
-    unsafe fn prepare_with(
+    /// [`Error::Invalid`](crate::Error::Invalid) for another renderer's frame, with another scene than its own, without the
+    /// depth that [`DepthDesc::readable`](crate::DepthDesc::readable) promises or with one that it does not, and for a frame
+    /// that takes over from another frame than the last prepared one. Nothing is recorded then.
+    pub unsafe fn prepare(
         &mut self,
         cmd: vk::CommandBuffer,
         scene: &SceneBuffers,
         depth: Option<&DepthImage>,
-    ) -> Result<()> {
-        let Some(mut ready) = self.configured.take() else {
-            return out_of_order("prepare needs a successful configure() before it");
-        };
-        // SAFETY: the caller's promises are those asked for.
-        let prepared = unsafe { self.prepare_ready(cmd, scene, depth, &mut ready) };
-        self.configured = Some(ready);
-        prepared
-    }
-
-    /// # Safety
-    /// As for [`prepare_with`](Self::prepare_with).
-    pub(super) unsafe fn prepare_ready(
-        &mut self,
-        cmd: vk::CommandBuffer,
-        scene: &SceneBuffers,
-        depth: Option<&DepthImage>,
-        ready: &mut Ready,
-    ) -> Result<()> {
-        if ready.frame.scene != scene.id {
+        frame: ConfiguredFrame,
+    ) -> Result<PreparedFrame> {
+        let ConfiguredFrame { state, basis, .. } = frame;
+        let readable = self.desc.depth.is_some_and(|depth| depth.readable);
+        if state.renderer != self.id {
+            return out_of_order("prepare was given another renderer's frame");
+        }
+        if state.decision.scene != scene.id {
             return out_of_order("prepare was given another scene than configure()");
         }
-        if ready.takes_over() && !ready.frame.prepared && ready.basis != self.basis() {
+        match depth {
+            None if readable => {
+                return out_of_order("prepare was promised the host's depth, which is missing");
+            }
+            Some(_) if !readable => {
+                return out_of_order("prepare takes a depth only with DepthDesc::readable");
+            }
+            _ => {}
+        }
+        if state.decision.takes_over() && basis != self.basis() {
             return out_of_order(
                 "prepare was given a frame that takes over from another than the one before: prepare frames in the order in \
                  which they were configured, and configure again after forget()",
             );
         }
-        let Ready {
-            frame: configured,
-            buffers,
-            pipelines,
-            number,
-            ..
-        } = ready;
-        configured.prepared = true;
-        *number = self.frames.prepared() + 1;
-        let slot = self.frames.begin(configured);
-        let plan = &configured.plan;
-        if plan.gaussians() == 0 {
-            return Ok(());
-        }
-        // SAFETY: the caller promises that `cmd` is recording, outside a rendering scope.
-        let mut recorder = unsafe { Recorder::begin(&self.device, cmd, slot.timer.as_mut()) };
-        let occluders = depth.zip(plan.occluders).zip(buffers.tiles.as_ref()).map(
-            |((depth, occluders), tiles)| {
+        let slot = self.frames.begin(&state.decision);
+        let plan = &state.decision.plan;
+        if plan.gaussians() > 0 {
+            // SAFETY: the caller promises that `cmd` is recording, outside a rendering scope.
+            let mut recorder = unsafe { Recorder::begin(&self.device, cmd, slot.timer.as_mut()) };
+            let tiles = state.buffers.tiles.as_ref();
+            let occluders = depth.zip(plan.occluders).zip(tiles);
+            let copied = occluders.map(|((depth, occluders), tiles)| {
                 // SAFETY: the caller promises the image, its layout and that its depths are visible.
                 unsafe { recorder.copy_depth(depth, &tiles.occluders, occluders.size) }
-            },
-        );
-        let copied = occluders.unwrap_or_default();
-        let frame = Frame {
-            plan,
-            pipelines,
-            scene,
-            buffers,
-            copied,
-        };
-        passes::record(&frame, &mut recorder, &slot.counts);
-        let is_replaced = self.memory.keep_replaced(buffers, self.frames.prepared());
+            });
+            let frame = Frame {
+                plan,
+                pipelines: &state.pipelines,
+                scene,
+                buffers: &state.buffers,
+                copied: copied.unwrap_or_default(),
+            };
+            passes::record(&frame, &mut recorder, &slot.counts);
+            self.keep(scene, &state);
+        }
+        Ok(PreparedFrame {
+            number: self.frames.prepared(),
+            state,
+        })
+    }
+
+    /// Keeps what a frame has left in its buffers for the next one.
+    fn keep(&mut self, scene: &SceneBuffers, state: &FrameState) {
+        let plan = &state.decision.plan;
+        let prepared = self.frames.prepared();
+        let is_replaced = self.memory.keep_replaced(&state.buffers, prepared);
         if plan.work != Work::Draw {
             let before = self.kept.take();
             // Later frames find nothing in buffers that have been replaced.
             let keeps = self.desc.reuse && plan.occluders.is_none() && !is_replaced;
             self.kept = keeps.then(|| Kept::after(before, scene.id, plan));
         }
-        Ok(())
     }
 
     /// Records the splats, or the picture that the tiles have made of them, inside the host's rendering scope, blended
     /// `over` what is there: premultiplied colours, the same for all samples of a pixel. `origin` is the upper left corner
     /// of the camera's picture in the attachment, whole px, where row 0 of the attachment is the upper one. This sets the
     /// viewport to that picture: the host's own, which may have a negative height, has no say in it. The host's scissor has.
-    /// This may be recorded more than once for a prepared frame.
+    /// This may be recorded more than once for a frame.
     ///
     /// # Safety
     /// `cmd` is inside a rendering scope with the attachments of the [`RendererDesc`](crate::RendererDesc) and no others,
-    /// one layer and no view mask; a scissor is set by `vkCmdSetScissor`; [`prepare`](Self::prepare) was recorded for the
-    /// same frame before it.
+    /// one layer and no view mask; a scissor is set by `vkCmdSetScissor`; the commands of [`prepare`](Self::prepare) come
+    /// before it.
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) without a prepared frame, and for an `origin` that is not finite; nothing is
-    /// recorded then.
-    pub unsafe fn draw(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) -> Result<()> {
-        check_origin("draw", origin)?;
-        let ready = self.take_prepared("draw")?;
-        // SAFETY: the caller's promises are those asked for, and the frame is prepared.
-        unsafe { self.draw_ready(cmd, origin, &ready) };
-        self.configured = Some(ready);
-        Ok(())
-    }
-
-    /// Takes the frame that is configured and prepared, which is to be put back.
-    fn take_prepared(&mut self, call: &str) -> Result<Ready> {
-        match self.configured.take() {
-            Some(ready) if self.is_prepared(&ready) => Ok(ready),
-            other => {
-                self.configured = other;
-                out_of_order(&format!(
-                    "{call} needs a successful configure() and prepare() before it"
-                ))
-            }
-        }
-    }
-
-    /// # Safety
-    /// As for [`draw`](Self::draw); the frame is prepared.
-    pub(super) unsafe fn draw_ready(
+    /// [`Error::Invalid`](crate::Error::Invalid) for another frame than the one that this renderer has prepared last, and for
+    /// an `origin` that is not finite; nothing is recorded then.
+    pub unsafe fn draw(
         &mut self,
         cmd: vk::CommandBuffer,
         origin: [f32; 2],
-        ready: &Ready,
-    ) {
-        let (configured, buffers) = (&ready.frame, &*ready.buffers);
-        let plan = &configured.plan;
+        frame: &PreparedFrame,
+    ) -> Result<()> {
+        let state = self.checked("draw", origin, frame)?;
+        let (decision, buffers) = (&state.decision, &*state.buffers);
+        let plan = &decision.plan;
         if plan.gaussians() == 0 || !plan.is_drawn {
-            return;
+            return Ok(());
         }
-        let (map, targets) = (configured.depth_map, configured.targets);
-        let pipelines = &ready.pipelines;
+        let (map, targets) = (decision.depth_map, decision.targets);
+        let pipelines = &state.pipelines;
         let tiled = buffers.tiles.as_ref().filter(|_| plan.is_tiled());
         let newest = self.frames.newest_mut();
         let timer = newest.and_then(|frame| frame.timer.as_mut());
@@ -194,6 +138,7 @@ impl Renderer {
                 tiles::record_composite(drawer, pipelines, (plan, buffers, t), targets, origin);
             }
         });
+        Ok(())
     }
 
     /// Records the splats' depths inside a rendering scope of their own, with the attachments of
@@ -210,36 +155,23 @@ impl Renderer {
     ///
     /// # Errors
     /// As for [`draw`](Self::draw), and without [`RendererDesc::expected_depth`](crate::RendererDesc::expected_depth).
-    pub unsafe fn draw_depth(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) -> Result<()> {
-        check_origin("draw_depth", origin)?;
-        if self.desc.expected_depth.is_none() {
-            return out_of_order("draw_depth needs RendererDesc::expected_depth");
-        }
-        let ready = self.take_prepared("draw_depth")?;
-        // SAFETY: the caller's promises are those asked for, and the frame is prepared.
-        unsafe { self.draw_depth_ready(cmd, origin, &ready) };
-        self.configured = Some(ready);
-        Ok(())
-    }
-
-    /// # Safety
-    /// As for [`draw_depth`](Self::draw_depth); the frame is prepared.
-    pub(super) unsafe fn draw_depth_ready(
+    pub unsafe fn draw_depth(
         &mut self,
         cmd: vk::CommandBuffer,
         origin: [f32; 2],
-        ready: &Ready,
-    ) {
-        let (configured, buffers) = (&ready.frame, &*ready.buffers);
-        let plan = &configured.plan;
-        if plan.gaussians() == 0 {
-            return;
+        frame: &PreparedFrame,
+    ) -> Result<()> {
+        let state = self.checked("draw_depth", origin, frame)?;
+        if self.desc.expected_depth.is_none() {
+            return out_of_order("draw_depth needs RendererDesc::expected_depth");
         }
-        let targets = configured.targets;
-        let (Some(attachments), Some(depths)) = (targets.expected_depth, &buffers.depth) else {
-            return;
+        let (decision, buffers) = (&state.decision, &*state.buffers);
+        let plan = &decision.plan;
+        let depths = decision.targets.expected_depth.zip(buffers.depth.as_ref());
+        let Some((attachments, depths)) = depths.filter(|_| plan.gaussians() > 0) else {
+            return Ok(());
         };
-        let pipelines = &ready.pipelines;
+        let pipelines = &state.pipelines;
         let newest = self.frames.newest_mut();
         let timer = newest.and_then(|frame| frame.timer.as_mut());
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
@@ -247,19 +179,31 @@ impl Renderer {
         drawer.pass("splat_depth", |drawer| {
             drawer.picture(origin, plan.size());
             let frame = (plan, buffers, depths);
-            let map = (configured.depth_map, configured.unit);
+            let map = (decision.depth_map, decision.unit);
             passes::depth::record_draw(drawer, pipelines, frame, attachments, origin, map);
         });
+        Ok(())
     }
-}
 
-/// Refuses a corner that is nowhere, which would draw nothing without a word.
-pub(super) fn check_origin(call: &str, origin: [f32; 2]) -> Result<()> {
-    if origin.iter().all(|number| number.is_finite()) {
-        return Ok(());
+    /// What a frame is drawn with, if it is the last prepared one and `origin` a place.
+    fn checked<'a>(
+        &self,
+        call: &str,
+        origin: [f32; 2],
+        frame: &'a PreparedFrame,
+    ) -> Result<&'a FrameState> {
+        let [x, y] = origin;
+        if !(x.is_finite() && y.is_finite()) {
+            return out_of_order(&format!(
+                "{call} was given the origin {x}, {y}: give the upper left corner of the camera's picture in the attachment, px"
+            ));
+        }
+        let is_newest = frame.number == self.frames.prepared();
+        if frame.state.renderer != self.id || !is_newest {
+            return out_of_order(&format!(
+                "{call} needs the frame that this renderer has prepared last"
+            ));
+        }
+        Ok(&frame.state)
     }
-    let [x, y] = origin;
-    out_of_order(&format!(
-        "{call} was given the origin {x}, {y}: give the upper left corner of the camera's picture in the attachment, px"
-    ))
 }

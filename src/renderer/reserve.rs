@@ -5,9 +5,8 @@ use glam::DVec3;
 use super::choose;
 use super::frames::FramesInFlight;
 use super::limits::FrameLimits;
-use super::outcome::Submission;
 use super::pair_room::PairRoom;
-use super::{Renderer, configure};
+use super::{PreparedFrame, Renderer, configure};
 use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::error::Result;
@@ -51,23 +50,23 @@ impl Renderer {
             return Ok(());
         };
         let reclips = self.desc.reuse;
-        let (frames, submission) = (&self.frames, Submission::Ahead); // a thread of its own waits for nothing
         let memory = &mut self.memory;
-        memory.reserve(&self.device, (&plan, sizes, reclips), frames, submission)?;
+        // A thread of its own waits for nothing.
+        let frames = (self.frames.prepared(), self.frames.finished_at_least());
+        memory.reserve(&self.device, (&plan, sizes, reclips), frames)?;
         memory.pairs = pairs;
         self.compile(limits, pairs, sizes)
     }
 
-    /// Gives back the working memory that the configured frame does not need, and what was
-    /// [reserved](Self::reserve); without a configured frame all of it. The host has waited for all of its frames, as
-    /// before dropping the renderer; what a [`FrameToken`](super::FrameToken) holds goes with it.
-    /// [`configure`](Self::configure) comes after it, and allocates nothing for the same frame.
+    /// Gives back the working memory, also what was [reserved](Self::reserve), but for what a frame like `keep` needs: for
+    /// that [`configure`](Self::configure) then allocates nothing. The host has waited for all of its frames, as before
+    /// dropping the renderer; what a frame that it holds needs goes with that.
     ///
     /// # Errors
     /// [`Error::Memory`](crate::Error::Memory) or [`Error::Budget`](crate::Error::Budget) where there is no memory for smaller
     /// buffers in place of the larger ones; there are none then, and the next [`configure`](Self::configure) allocates them.
-    pub fn trim(&mut self) -> Result<()> {
-        let plan = self.configured.take().map(|ready| ready.frame.plan);
+    pub fn trim(&mut self, keep: Option<&PreparedFrame>) -> Result<()> {
+        let plan = keep.map(|frame| frame.state.decision.plan.clone());
         self.kept = None;
         let mut pairs = PairRoom::default();
         let plan = plan.map(|mut plan| {

@@ -1,8 +1,8 @@
 //! The statistics of frames: counts, times, and what was left out.
 
-use super::Renderer;
-use super::frames::{Configured, RecordedFrame};
+use super::frames::{Decision, RecordedFrame};
 use super::outcome::{Outcome, Submission};
+use super::{ConfiguredFrame, Renderer};
 use crate::gpu::{PassSpan, Timer};
 use crate::passes::DRAW;
 use crate::settings::Raster;
@@ -10,18 +10,15 @@ use crate::stats::{Counts, FrameStats, PassStatistics, PassTime, RasterChoice};
 use crate::types::FrameCounts;
 
 impl Renderer {
-    /// The stages that the configured frame does not need.
-    pub fn skipped(&self) -> Vec<&'static str> {
-        let configured = self.configured();
-        configured.map(Configured::skipped).unwrap_or_default()
+    /// How splats became pixels in the frame that [`counts`](Self::counts) is about, and why in that way.
+    pub fn raster(&self) -> RasterChoice {
+        self.oldest().map(RecordedFrame::raster).unwrap_or_default()
     }
 
-    /// How splats become pixels in the configured frame, or became pixels in the one that [`counts`](Self::counts) is about
-    /// where its tiles had no room; and why in that way.
-    pub fn raster(&self) -> RasterChoice {
-        let configured = self.configured();
-        let choice = configured.map(|configured| configured.raster(self.fell_back()));
-        choice.unwrap_or_default()
+    /// The stages that the same frame did not need.
+    pub fn skipped(&self) -> Vec<&'static str> {
+        let decision = self.oldest().and_then(|frame| frame.decision.as_ref());
+        decision.map(Decision::skipped).unwrap_or_default()
     }
 
     /// True when the frame that [`counts`](Self::counts) is about had more pairs of tile and splat than there was room
@@ -75,48 +72,48 @@ impl Renderer {
 
     /// The outcome of a frame that was waited for.
     pub(crate) fn outcome(&self, frame: &RecordedFrame) -> Outcome {
-        let configured = frame.configured.as_ref();
-        if configured.is_none_or(Configured::changes_nothing) {
+        let Some(decision) = &frame.decision else {
+            return Outcome::Unchanged;
+        };
+        if decision.changes_nothing() {
             return Outcome::Unchanged;
         }
         if !frame.fell_back() {
             return Outcome::Drawn;
         }
-        let needs_tiles = configured.is_some_and(|configured| configured.needs_tiles);
-        let redrawn = configured.is_some_and(|configured| configured.redrawn);
         match self.memory.pairs.can_grow_to(frame.pairs()) {
             true => Outcome::NeedsRoom,
-            false if needs_tiles => Outcome::NoRoom,
-            false if redrawn => Outcome::NeedsRoom,
+            false if decision.needs_tiles => Outcome::NoRoom,
+            false if decision.redrawn => Outcome::NeedsRoom,
             false => Outcome::Drawn,
         }
     }
 
-    /// The statistics of a configured frame that [changes nothing](Self::changes_nothing) and is not even recorded.
-    pub(crate) fn unchanged_stats(&self) -> FrameStats {
+    /// The statistics of a frame that changes nothing and is not even recorded.
+    pub(crate) fn unchanged_stats(&self, frame: &ConfiguredFrame) -> FrameStats {
         let newest = self.newest();
         let fell_back = newest.is_some_and(RecordedFrame::fell_back);
-        let raster = self.configured().map(|c| c.raster(fell_back));
-        let mut skipped = self.skipped();
+        let mut skipped = frame.skipped();
         if !skipped.contains(&DRAW) {
             skipped.push(DRAW);
         }
         FrameStats {
             counts: newest.map(RecordedFrame::counts).unwrap_or_default(),
             skipped,
-            raster: raster.unwrap_or_default(),
+            raster: frame.state.decision.raster(fell_back),
             gpu_ms: self.desc.timing.then_some(0.0),
             ..FrameStats::default()
         }
     }
 }
 
-impl Configured {
-    fn skipped(&self) -> Vec<&'static str> {
+impl Decision {
+    pub(super) fn skipped(&self) -> Vec<&'static str> {
         self.plan.skipped()
     }
 
-    fn raster(&self, fell_back: bool) -> RasterChoice {
+    /// How splats become pixels, where its tiles have no room or where they do, and why in that way.
+    pub(super) fn raster(&self, fell_back: bool) -> RasterChoice {
         let path = match self.plan.way.raster {
             Raster::Tiles if fell_back && self.needs_tiles => {
                 return RasterChoice {
@@ -144,37 +141,42 @@ impl RecordedFrame {
     /// True when it was submitted while earlier frames were unfinished.
     #[cfg_attr(not(feature = "view"), allow(dead_code))]
     pub(crate) fn is_in_flight(&self) -> bool {
-        let configured = self.configured.as_ref();
-        configured.is_some_and(|configured| configured.submission == Submission::InFlight)
+        let decision = self.decision.as_ref();
+        decision.is_some_and(|decision| decision.submission == Submission::InFlight)
     }
 
     /// True when it was the first to use a pipeline, which the driver may have compiled within it.
     #[cfg_attr(not(feature = "view"), allow(dead_code))]
     pub(crate) fn is_first_use(&self) -> bool {
-        let configured = self.configured.as_ref();
-        configured.is_some_and(|configured| configured.is_first_use)
+        let decision = self.decision.as_ref();
+        decision.is_some_and(|decision| decision.is_first_use)
     }
 
     /// All that is known of it but the time until it was ready, which only the one who waited knows.
     pub(crate) fn stats(&self) -> FrameStats {
         let passes = self.pass_times();
-        let configured = self.configured.as_ref();
+        let decision = self.decision.as_ref();
         FrameStats {
             counts: self.counts(),
             gpu_ms: self.gpu_ms(&passes),
             passes,
             wall_ms: 0.0,
-            skipped: configured.map(Configured::skipped).unwrap_or_default(),
-            raster: configured.map_or_else(RasterChoice::default, |configured| {
-                configured.raster(self.fell_back())
-            }),
+            skipped: decision.map(Decision::skipped).unwrap_or_default(),
+            raster: self.raster(),
             statistics: self.pass_statistics(),
         }
     }
 
+    fn raster(&self) -> RasterChoice {
+        let decision = self.decision.as_ref();
+        decision.map_or_else(RasterChoice::default, |decision| {
+            decision.raster(self.fell_back())
+        })
+    }
+
     /// The sum of its times, if they were taken.
     fn gpu_ms(&self, passes: &[PassTime]) -> Option<f64> {
-        let was_submitted = self.configured.is_some();
+        let was_submitted = self.decision.is_some();
         let has_times = self.timer.is_some()
             && was_submitted
             && (self.recorded_nothing() || !passes.is_empty());
@@ -247,7 +249,7 @@ impl RecordedFrame {
 
     /// True when nothing was recorded, so that nothing was counted.
     fn recorded_nothing(&self) -> bool {
-        let configured = self.configured.as_ref();
-        configured.is_none_or(|configured| configured.plan.gaussians() == 0)
+        let decision = self.decision.as_ref();
+        decision.is_none_or(|decision| decision.plan.gaussians() == 0)
     }
 }

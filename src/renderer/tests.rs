@@ -34,19 +34,19 @@ fn recording_waits_for_no_compiler() {
     let other = renderer.sharing(RendererDesc::new(FORMAT)).expect("shares");
     let (clip, settings) = (Clip::default(), Settings::default());
     let configured = renderer.configure(&buffers, &camera, &clip, &settings);
-    configured.expect("configures");
+    drop(configured.expect("configures"));
 
     let compiling = other.pipelines.all.lock().expect("nobody has panicked");
     let configured = renderer.configure(&buffers, &camera, &clip, &settings);
-    configured.expect("configures");
+    let frame = configured.expect("configures");
     let submitted = device.submit_and_wait(|cmd| {
         // SAFETY: `cmd` is recording outside rendering, and all that is used outlives the wait. The scope is opened and
         // closed around the draw, on an attachment of the renderer's format.
         unsafe {
-            renderer.prepare(cmd, &buffers)?;
+            let frame = renderer.prepare(cmd, &buffers, None, frame)?;
             target.begin_rendering(cmd, [0.0; 4]);
             Drawer::new(&device, cmd, None).viewport(target.extent().into());
-            renderer.draw(cmd, [0.0; 2])?;
+            renderer.draw(cmd, [0.0; 2], &frame)?;
             target.end_rendering(cmd);
         }
         Ok(())
@@ -90,7 +90,7 @@ fn buffers_that_suffice_stay_when_others_grow() {
             let clip = Clip::of(planes[..count].iter().copied(), ClipOp::And);
             let settings = Settings::default().raster(raster);
             let configured = renderer.configure(&buffers, &camera, &clip, &settings);
-            configured.expect("configures");
+            drop(configured.expect("configures"));
             let now = places(&renderer);
             if let Some(before) = before {
                 let before: BTreeMap<String, (u64, u64)> = before;
@@ -127,10 +127,11 @@ fn pairs_are_estimated_before_they_are_counted() {
         for camera in [far, near.expect("a view"), flat] {
             let settings = Settings::default().raster(Raster::Tiles);
             let configured = renderer.configure(&buffers, &camera, &Clip::default(), &settings);
-            configured.expect("configures");
-            // SAFETY: `cmd` is recording outside rendering, and all that is used outlives the wait.
-            let submitted =
-                device.submit_and_wait(|cmd| unsafe { renderer.prepare(cmd, &buffers) });
+            let frame = configured.expect("configures");
+            let submitted = device.submit_and_wait(|cmd| {
+                // SAFETY: `cmd` is recording outside rendering, and all that is used outlives the wait.
+                unsafe { renderer.prepare(cmd, &buffers, None, frame) }
+            });
             submitted.expect("submits");
             assert!(!renderer.fell_back());
             let counted = f64::from(renderer.pairs());

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{Device, Drawer, PipelineFile};
 use crate::passes::{SceneBuffers, SceneLayer};
 use crate::precision::ShFormat;
-use crate::renderer::{FrameRequest, Outcome, Renderer, RendererDesc, Submission};
+use crate::renderer::{ConfiguredFrame, FrameRequest, Outcome, Renderer, RendererDesc, Submission};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
@@ -141,37 +141,39 @@ impl Session {
             whole: None,
         };
         let configure = |renderer: &mut Renderer, target: &mut Target| {
-            trace::span(trace, "configure", || renderer.configure_frame(&request))?;
-            match renderer.picture() {
-                Some(_) => {
-                    target.free_image();
-                    Ok(())
-                }
-                None => target.make_image(&self.device, camera),
+            let frame = trace::span(trace, "configure", || renderer.configure_frame(&request))?;
+            match frame.picture() {
+                Some(_) => target.free_image(),
+                None => target.make_image(&self.device, camera)?,
             }
+            Ok::<_, Error>(frame)
         };
-        configure(renderer, target)?;
+        let mut frame = configure(renderer, target)?;
         let begin = Instant::now();
-        if renderer.changes_nothing() && target.holds(renderer.picture(), settings.background) {
+        if frame.changes_nothing() && target.holds(frame.picture(), settings.background) {
             return Ok(FrameStats {
                 wall_ms: ms_since(begin),
-                ..renderer.unchanged_stats()
+                ..renderer.unchanged_stats(&frame)
             });
         }
-        let (wall_ms, stats) = loop {
-            submit(&self.device, renderer, &request, target, trace)?;
-            let frame = renderer.newest().expect("it was prepared just now");
+        let (tiles, wall_ms, stats) = loop {
+            let tiles = frame.picture().cloned();
+            submit(&self.device, renderer, &request, (target, frame), trace)?;
+            let recorded = renderer.newest().expect("it was prepared just now");
             // A first frame finds out how much room the tiles need.
-            match renderer.outcome(frame) {
+            match renderer.outcome(recorded) {
                 Outcome::NeedsRoom => {}
                 Outcome::NoRoom => return Err(no_room(settings)),
-                Outcome::Drawn | Outcome::Unchanged => break (ms_since(begin), frame.stats()),
+                Outcome::Drawn | Outcome::Unchanged => {
+                    break (tiles, ms_since(begin), recorded.stats());
+                }
             }
-            configure(renderer, target)?;
+            drop(tiles);
+            frame = configure(renderer, target)?;
         };
         self.check_validation()?;
-        match self.renderer.picture() {
-            Some(tiles) => target.set_tiles(tiles.clone(), camera),
+        match tiles {
+            Some(tiles) => target.set_tiles(tiles, camera),
             None => target.set_held(settings.background),
         }
         Ok(FrameStats { wall_ms, ..stats })
@@ -197,12 +199,12 @@ impl Drop for Session {
     }
 }
 
-/// Records the configured frame, submits it and waits for it.
+/// Records a frame, submits it and waits for it.
 fn submit(
     device: &Device,
     renderer: &mut Renderer,
     request: &FrameRequest<'_>,
-    target: &mut Target,
+    (target, frame): (&mut Target, ConfiguredFrame),
     trace: Option<&Trace>,
 ) -> Result<()> {
     let clear = request
@@ -217,11 +219,11 @@ fn submit(
         // for this one; the rendering scope is opened and closed here around the draw, on an attachment of the renderer's
         // format.
         unsafe {
-            renderer.prepare(cmd, request.scene)?;
+            let frame = renderer.prepare(cmd, request.scene, None, frame)?;
             if let Some(image) = image {
                 image.begin_rendering(cmd, clear);
                 Drawer::new(device, cmd, None).viewport(image.extent().into());
-                renderer.draw(cmd, [0.0, 0.0])?;
+                renderer.draw(cmd, [0.0, 0.0], &frame)?;
                 image.end_rendering(cmd);
             }
         }

@@ -48,13 +48,19 @@ fn show(session: &mut Session, camera: &Camera, settings: &Settings) -> Outcome 
     let renderer = &mut session.renderer;
     let (scene, clip) = (session.scene.as_ref().expect("loaded"), Clip::default());
     let request = FrameRequest::in_flight(scene, camera, &clip, settings);
-    renderer.configure_frame(&request).expect("configures");
+    let frame = renderer.configure_frame(&request).expect("configures");
     let mut target = Target::default();
     let format = settings.precision.target;
     target.set_format(&session.device, format).expect("blends");
     let made = target.make_image(&session.device, camera);
     made.expect("an image");
-    let submitted = submit(&session.device, renderer, &request, &mut target, None);
+    let submitted = submit(
+        &session.device,
+        renderer,
+        &request,
+        (&mut target, frame),
+        None,
+    );
     submitted.expect("submits");
     let frame = renderer.newest().expect("just prepared");
     renderer.outcome(frame)
@@ -111,9 +117,9 @@ fn a_frame_that_was_not_submitted_has_no_statistics() {
     let failed = session.device.submit_and_wait(|cmd| {
         let renderer = &mut session.renderer;
         let scene = session.scene.as_ref().expect("loaded");
-        renderer.configure(scene, &camera, &Clip::default(), &settings)?;
+        let frame = renderer.configure(scene, &camera, &Clip::default(), &settings)?;
         // SAFETY: `cmd` is recording outside rendering, and is never submitted.
-        unsafe { renderer.prepare(cmd, scene) }?;
+        unsafe { renderer.prepare(cmd, scene, None, frame) }?;
         Err::<(), _>(Error::Invalid("changed my mind".into()))
     });
     failed.expect_err("as it says");

@@ -189,8 +189,8 @@ impl Windowed {
         let renderer = &mut self.session.renderer;
         let scene = loaded(&self.session.scene, "show")?;
         renderer.set_color_format(swapchain.format());
-        renderer.configure_frame(&FrameRequest::in_flight(scene, camera, clip, settings))?;
-        let changes_nothing = renderer.changes_nothing();
+        let configured = renderer.configure(scene, camera, clip, settings)?;
+        let changes_nothing = configured.changes_nothing();
         let seen: Vec<_> = lines
             .iter()
             .filter_map(|line| line.seen_by(camera))
@@ -214,9 +214,9 @@ impl Windowed {
         // image and apart from each other.
         let shown = unsafe {
             let submitted = frames.submit(swapchain.drawn(image), |cmd| {
-                renderer.prepare(cmd, scene)?;
+                let prepared = renderer.prepare(cmd, scene, None, configured)?;
                 swapchain.begin_rendering(cmd, image, [r, g, b, 1.0]);
-                renderer.draw(cmd, [0.0, 0.0])?;
+                renderer.draw(cmd, [0.0, 0.0], &prepared)?;
                 if !seen.is_empty() {
                     let mut drawer = Drawer::new(device, cmd, None);
                     let size = (camera.width, camera.height);

@@ -64,17 +64,17 @@ fn recording_allocates_nothing() {
             for (number, planes) in [0, 1, 3, 1, 1].into_iter().enumerate() {
                 let clip = common::clip(&scene, planes, ClipOp::And);
                 let configured = renderer.configure(&buffers, &camera, &clip, &settings);
-                configured.expect("configures");
+                let frame = configured.expect("configures");
                 let submitted = device.submit_and_wait(|cmd| {
                     let before = ASKED.get();
                     // SAFETY: `cmd` is recording outside rendering; all that is used outlives the wait. The scope is
                     // opened and closed around the draw, on an attachment of the renderer's format.
                     unsafe {
-                        renderer.prepare(cmd, &buffers)?;
+                        let frame = renderer.prepare(cmd, &buffers, None, frame)?;
                         target.begin_rendering(cmd, [0.0; 4]);
                         let area = target.extent().into();
                         Drawer::new(device, cmd, None).viewport(area);
-                        renderer.draw(cmd, [0.0; 2])?;
+                        renderer.draw(cmd, [0.0; 2], &frame)?;
                         target.end_rendering(cmd);
                     }
                     let asked = ASKED.get() - before;

@@ -13,6 +13,7 @@ use rara::ash::{Entry, vk};
 use rara_c::boundary::*;
 use rara_c::camera::*;
 use rara_c::device::*;
+use rara_c::frame::*;
 use rara_c::gaussians::*;
 use rara_c::logging::*;
 use rara_c::renderer::*;
@@ -55,19 +56,22 @@ unsafe fn draw(
 ) {
     // SAFETY: the caller's promise; the command buffer is where each call needs it, and the frame is waited for.
     unsafe {
+        let mut frame = null_mut();
         assert_ok(rara_renderer_configure(
             renderer,
             scene,
             camera,
             null(),
             null(),
+            &mut frame,
         ));
         let cmd = host.begin().expect("begins");
-        assert_ok(rara_renderer_prepare(renderer, cmd, scene));
+        assert_ok(rara_renderer_prepare(renderer, cmd, scene, null(), frame));
         host.begin_rendering(VIEW.into());
-        assert_ok(rara_renderer_draw(renderer, cmd, 0.0, 0.0));
+        assert_ok(rara_renderer_draw(renderer, cmd, 0.0, 0.0, frame));
         host.submit().expect("submits");
         host.wait_for_all().expect("waits");
+        rara_frame_destroy(frame);
     }
 }
 

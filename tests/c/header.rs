@@ -49,7 +49,7 @@ fn the_header_is_current() {
         "orthographic",
         "matrices",
         "reserve",
-        "token",
+        "frame",
         "picker",
         "gaussians",
         "staging",

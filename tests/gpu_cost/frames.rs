@@ -169,10 +169,10 @@ impl Frames {
     /// to have a depth, only its pipelines are made.
     pub fn draw(&self, frame: &Frame) -> Drawn {
         let mut recorded = Recorded::default();
-        let renderer = self.configured(frame, |renderer, scene| {
+        let renderer = self.configured(frame, |renderer, scene, configured| {
             let submitted = self.device.submit_and_wait(|cmd| {
                 // SAFETY: `cmd` is recording outside rendering, and all that is used outlives the wait.
-                unsafe { renderer.prepare(cmd, scene) }
+                unsafe { renderer.prepare(cmd, scene, None, configured) }
             });
             submitted.unwrap_or_else(|error| panic!("{}: {error}", frame.name));
             recorded = self.device.recorded();
@@ -182,15 +182,15 @@ impl Frames {
 
     /// Records a frame, its draws into `target` included, and submits nothing.
     pub fn record(&self, frame: &Frame, target: &Image) {
-        self.configured(frame, |renderer, scene| {
+        self.configured(frame, |renderer, scene, configured| {
             let unsubmitted = self.device.submit_and_wait(|cmd| {
                 // SAFETY: `cmd` is recording outside rendering, and what is recorded is never executed. The scope is opened
                 // and closed around the draw, on an attachment of the renderer's format.
                 unsafe {
-                    renderer.prepare(cmd, scene)?;
+                    let prepared = renderer.prepare(cmd, scene, None, configured)?;
                     target.begin_rendering(cmd, [0.0; 4]);
                     Drawer::new(&self.device, cmd, None).viewport(target.extent().into());
-                    renderer.draw(cmd, [0.0; 2])?;
+                    renderer.draw(cmd, [0.0; 2], &prepared)?;
                     target.end_rendering(cmd);
                 }
                 Err::<(), _>(Error::Invalid("recorded".into()))
@@ -205,7 +205,7 @@ impl Frames {
     fn configured(
         &self,
         frame: &Frame,
-        mut record: impl FnMut(&mut Renderer, &SceneBuffers),
+        mut record: impl FnMut(&mut Renderer, &SceneBuffers, rara::ConfiguredFrame),
     ) -> Renderer {
         let mut desc = RendererDesc::new(FORMAT)
             .reuse(true)
@@ -240,9 +240,9 @@ impl Frames {
         for moves in 0..=frame.moves {
             let clip = self.clip(frame.planes, moves);
             let configured = renderer.configure(scene, &self.camera, &clip, &settings);
-            configured.unwrap_or_else(|error| panic!("{}: {error}", frame.name));
+            let configured = configured.unwrap_or_else(|error| panic!("{}: {error}", frame.name));
             if frame.host != Host::HasDepth {
-                record(&mut renderer, scene);
+                record(&mut renderer, scene, configured);
             }
         }
         renderer

@@ -38,12 +38,12 @@ fn draw(device: &Device, scene: &Gaussians, is_cut: bool) -> Drawn {
     // The first frames learn how many pairs there are.
     for _ in 0..3 {
         renderer.forget();
-        renderer
+        let frame = renderer
             .configure(&buffers, &camera, &clip, &settings)
             .expect("it can be drawn");
         let submitted = device.submit_and_wait(|cmd| {
             // SAFETY: `cmd` is recording outside rendering, and all that is used outlives the wait.
-            unsafe { renderer.prepare(cmd, &buffers) }
+            unsafe { renderer.prepare(cmd, &buffers, None, frame) }
         });
         submitted.expect("it is drawn");
     }

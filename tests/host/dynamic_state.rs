@@ -1,7 +1,7 @@
 //! A host whose pipelines have all of Vulkan 1.3's dynamic state and whose viewport is upside down, as engines with y up
 //! have it: splats lie upright between its meshes, under its scissor, and it sets its own state again after them.
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 
 use crate::canvas::{Canvas, CanvasDesc, Frame, with_host};
 use crate::common;
@@ -217,20 +217,26 @@ fn splats_lie_upright_between_meshes_whose_viewport_is_upside_down() {
                 Renderer::new(device, RendererDesc::new(FLOATS)).expect("a renderer");
             let settings = Settings::default().raster(raster);
             let configured = renderer.configure(&buffers, &camera, &clip, &settings);
-            configured.expect("configures");
-            let splats = canvas.draw_frame(&mut renderer, &buffers, &Frame::new(SIZE));
+            let splats = canvas.draw_frame(&mut renderer, &buffers, configured, &Frame::new(SIZE));
             for seen in [SIZE.0, SIZE.0 / 2] {
                 let configured = renderer.configure(&buffers, &camera, &clip, &settings);
-                configured.expect("configures");
+                let mut configured = Some(configured.expect("configures"));
+                let prepared = OnceCell::new();
                 let shared = RefCell::new(&mut renderer);
                 let [picture, _] = canvas.draw(
                     // SAFETY: `cmd` is recording outside a scope, and all is waited for.
-                    |cmd| unsafe { shared.borrow_mut().prepare(cmd, &buffers) }.expect("prepares"),
+                    |cmd| unsafe {
+                        let frame = configured.take().expect("once");
+                        let made = shared.borrow_mut().prepare(cmd, &buffers, None, frame);
+                        prepared.get_or_init(|| made.expect("prepares"));
+                    },
                     // SAFETY: `cmd` is inside the canvas's scope, which the renderer was made for.
                     |cmd| unsafe {
                         mesh.draw(cmd, UPPER_LEFT);
                         lent.device.cmd_set_scissor(cmd, 0, &[scissor(seen)]);
-                        shared.borrow_mut().draw(cmd, [0.0; 2]).expect("draws");
+                        let prepared = prepared.get().expect("it was prepared");
+                        let drawn = shared.borrow_mut().draw(cmd, [0.0; 2], prepared);
+                        drawn.expect("draws");
                         mesh.draw(cmd, LOWER_RIGHT);
                     },
                 );

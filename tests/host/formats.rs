@@ -52,8 +52,8 @@ fn every_format_holds_the_picture_as_well_as_it_can() {
                 let mut renderer = Renderer::new(device, desc).expect("a renderer");
                 let settings = Settings::default().raster(raster);
                 let configured = renderer.configure(&buffers, &camera, &clip, &settings);
-                configured.expect("configures");
-                let pixels = canvas.draw_frame(&mut renderer, &buffers, &Frame::new(SIZE));
+                let pixels =
+                    canvas.draw_frame(&mut renderer, &buffers, configured, &Frame::new(SIZE));
                 let pairs = pixels.iter().flatten().zip(truth.iter().flatten());
                 let differences: Vec<_> = pairs
                     .map(|(a, b)| 255.0 * (a.clamp(0.0, 1.0) - b).abs())

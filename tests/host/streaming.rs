@@ -8,8 +8,8 @@ use rara::ash::vk;
 use rara::gpu::{Bindings, Buffer, BufferDesc, Device, Location};
 use rara::scene::{Kind, generate};
 use rara::{
-    Clip, ClipOp, Gaussians, Picture, Raster, Renderer, RendererDesc, SceneBuffers, Settings,
-    ShFormat, Staging,
+    Clip, ClipOp, ConfiguredFrame, Gaussians, Picture, Raster, Renderer, RendererDesc,
+    SceneBuffers, Settings, ShFormat, Staging,
 };
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -34,12 +34,19 @@ fn open(validation: bool) -> (Host, Device) {
 }
 
 /// Records the rest of a frame that is configured.
-fn record(host: &mut Host, renderer: &mut Renderer, cmd: vk::CommandBuffer, scene: &SceneBuffers) {
+fn record(
+    host: &mut Host,
+    renderer: &mut Renderer,
+    cmd: vk::CommandBuffer,
+    scene: &SceneBuffers,
+    frame: rara::Result<ConfiguredFrame>,
+) {
+    let frame = frame.expect("configures");
     // SAFETY: `cmd` is recording outside rendering, and every test keeps scenes until their frames are done.
-    unsafe { renderer.prepare(cmd, scene).expect("prepares") };
+    let frame = unsafe { renderer.prepare(cmd, scene, None, frame) }.expect("prepares");
     host.begin_rendering(VIEW.into());
     // SAFETY: `cmd` is inside rendering to a target of the renderer's format.
-    unsafe { renderer.draw(cmd, [0.0, 0.0]).expect("draws") };
+    unsafe { renderer.draw(cmd, [0.0, 0.0], &frame) }.expect("draws");
     host.submit().expect("submits");
 }
 
@@ -150,8 +157,7 @@ fn scenes_and_clips_change_while_frames_are_in_flight() {
             let settings = Settings::default().raster(raster);
             let configured =
                 renderer.configure(scene, &cameras[at], &clip(&scenes[at], frame), &settings);
-            configured.expect("configures");
-            record(&mut host, &mut renderer, cmd, scene);
+            record(&mut host, &mut renderer, cmd, scene, configured);
         }
         let pixels = host.wait_for_all().expect("waits");
         check("the last frame", &host, &pixels, &truth[frames - 1]);
@@ -196,8 +202,7 @@ fn memory_stays_flat_over_a_thousand_frames_of_a_host() {
         let cut = common::clip(&scenes[at], 2, ClipOp::And);
         let cut = common::moved(cut, 0.05 * (frame % STAY) as f64);
         let configured = renderer.configure(scene, &camera, &cut, &Settings::default());
-        configured.expect("configures");
-        record(&mut host, &mut renderer, cmd, scene);
+        record(&mut host, &mut renderer, cmd, scene, configured);
         if frame % STAY == STAY - 1 && stay >= 2 * scenes.len() {
             taken[at].push(device.device_bytes());
         }

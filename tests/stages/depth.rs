@@ -23,10 +23,10 @@ fn depths<'a>(
     let scene = scene.into();
     let there = SceneBuffers::upload(device, &scene, ShFormat::Float).expect("uploads");
     let configured = renderer.configure(&there, camera, clip, &settings());
-    configured.expect("configures");
+    let frame = configured.expect("configures");
     let submitted = device.submit_and_wait(|cmd| {
         // SAFETY: `cmd` is recording outside a scope, and all outlives the wait for it.
-        unsafe { renderer.prepare(cmd, &there) }
+        unsafe { renderer.prepare(cmd, &there, None, frame) }
     });
     submitted.expect("runs");
     if scene.gaussians() == 0 {

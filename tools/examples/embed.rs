@@ -56,13 +56,14 @@ fn main() -> rara::Result<()> {
         let clip = Clip::of([Plane::new(DVec3::X, 0.1 * f64::from(frame))?], ClipOp::And);
 
         host.wait()?;
-        renderer.configure(&scene, &camera, &clip, &Settings::default())?;
+        let frame = renderer.configure(&scene, &camera, &clip, &Settings::default())?;
         let cmd = host.begin()?;
         // SAFETY: `cmd` is recording outside rendering, the scene outlives the wait at the end.
-        unsafe { renderer.prepare(cmd, &scene) }?;
+        let frame = unsafe { renderer.prepare(cmd, &scene, None, frame) }?;
         host.begin_rendering(VIEW);
+        let origin = [VIEW.offset.x as f32, VIEW.offset.y as f32];
         // SAFETY: `cmd` is inside rendering to a target of this format, viewport and scissor are set.
-        unsafe { renderer.draw(cmd, [VIEW.offset.x as f32, VIEW.offset.y as f32]) }?;
+        unsafe { renderer.draw(cmd, origin, &frame) }?;
         host.submit()?;
     }
     let pixels = host.wait_for_all()?;

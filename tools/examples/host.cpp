@@ -115,10 +115,11 @@ int main(int count, char **arguments) {
     }
 
     // A frame: stages before the host's rendering scope, then the mesh and the splats inside it.
-    RARA(rara_renderer_configure(renderer, scene, &camera, &clip, nullptr));
+    RaraFrame *frame;
+    RARA(rara_renderer_configure(renderer, scene, &camera, &clip, nullptr, &frame));
     VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr, VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     VK(vkBeginCommandBuffer(cmd, &begin));
-    RARA(rara_renderer_prepare(renderer, cmd, scene));
+    RARA(rara_renderer_prepare(renderer, cmd, scene, nullptr, frame));
     barrier(cmd, colour.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     barrier(cmd, depth.image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
     VkRenderingAttachmentInfo onto{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO, nullptr, colour.view, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
@@ -135,7 +136,8 @@ int main(int count, char **arguments) {
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     vkCmdPushConstants(cmd, layout, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);
     if (what != "splats") vkCmdDraw(cmd, 24, 1, 0, 0);
-    if (what != "mesh") RARA(rara_renderer_draw(renderer, cmd, 0, 0));
+    if (what != "mesh") RARA(rara_renderer_draw(renderer, cmd, 0, 0, frame));
+    rara_frame_destroy(frame);
     vkCmdEndRendering(cmd);
     barrier(cmd, colour.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     copy(cmd, colour.image, readback);

@@ -110,8 +110,8 @@ pub(super) fn calls(called: &mut Vec<Called>) {
         "kept is null"
     );
     call!(
-        rara_renderer_configure_region(null_mut(), null(), null(), 0, null(), null()),
-        "renderer is null"
+        rara_renderer_configure_region(null_mut(), null(), null(), 0, null(), null(), null_mut()),
+        "frame is null"
     );
     call!(
         rara_bake_settings_default(null_mut(), size_of::<RaraBakeSettings>()),

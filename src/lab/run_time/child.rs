@@ -93,23 +93,25 @@ fn frames(work: &str, world: &World, width: u32, device: &HeadlessDesc) -> Resul
             extent: image.extent(),
         };
         let counts = |what| index >= WARM_UP && work == what;
-        count_if(counts("configure"), || {
+        let frame = count_if(counts("configure"), || {
             renderer.configure(&scene, &camera, &clip, &settings)
         })?;
         let recorded = device.submit_and_wait(|cmd| {
             let counts = counts("record");
             // SAFETY: `cmd` is recording outside rendering; scene, image and renderer outlive the recording, which is
             // never submitted.
-            count_if(counts, || unsafe {
-                renderer.prepare(cmd, &scene).expect("prepares")
+            let frame = count_if(counts, || unsafe {
+                renderer
+                    .prepare(cmd, &scene, None, frame)
+                    .expect("prepares")
             });
             // SAFETY: as above; the rendering scope has one attachment of the renderer's format.
             unsafe { image.begin_rendering(cmd, [0.0; 4]) };
             // SAFETY: as above.
             unsafe { Drawer::new(device, cmd, None) }.viewport(area);
-            // SAFETY: as above, inside the scope, after its prepare().
+            // SAFETY: as above, inside the scope.
             count_if(counts, || unsafe {
-                renderer.draw(cmd, [0.0, 0.0]).expect("draws")
+                renderer.draw(cmd, [0.0, 0.0], &frame).expect("draws")
             });
             // SAFETY: as above.
             unsafe { image.end_rendering(cmd) };

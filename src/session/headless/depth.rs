@@ -42,7 +42,7 @@ impl Headless {
         // Depths are drawn as quads in any case, and lists of tiles could lack room. They are the same whatever a picture
         // shows, of which some is made by tiles alone.
         let drawn = settings.raster(Raster::Quad).show(Show::Colour);
-        renderer.configure(scene, camera, clip, &drawn)?;
+        let frame = renderer.configure(scene, camera, clip, &drawn)?;
         let image = device.create_image(&ImageDesc {
             name: "expected depth",
             width: camera.width,
@@ -60,10 +60,10 @@ impl Headless {
             // outlive the wait for this one; the rendering scope is opened and closed here around the draw, on an
             // attachment of the format of the renderer's depths, and leaves the image ready to be copied from.
             unsafe {
-                renderer.prepare(cmd, scene)?;
+                let frame = renderer.prepare(cmd, scene, None, frame)?;
                 image.begin_rendering(cmd, [0.0; 4]);
                 Drawer::new(device, cmd, None).viewport(image.extent().into());
-                renderer.draw_depth(cmd, [0.0, 0.0])?;
+                renderer.draw_depth(cmd, [0.0, 0.0], &frame)?;
                 image.end_rendering(cmd);
                 image.copy_to(cmd, &readback);
             }

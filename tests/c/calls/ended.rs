@@ -56,7 +56,11 @@ fn what_was_destroyed_is_refused_and_the_device_is_released_at_last() {
             FORMAT,
         ));
         assert_ok(rara_renderer_create(device, &desc, &mut renderer));
-        let configure = |scene| rara_renderer_configure(renderer, scene, &camera, null(), null());
+        let mut frame = null_mut();
+        let mut configure = |scene| {
+            rara_frame_destroy(frame);
+            rara_renderer_configure(renderer, scene, &camera, null(), null(), &mut frame)
+        };
         assert_ok(configure(scene));
 
         rara_gaussians_destroy(gaussians);
@@ -84,7 +88,7 @@ fn what_was_destroyed_is_refused_and_the_device_is_released_at_last() {
         assert_fails(configure(scene), RARA_ERROR_INVALID, says);
         // Nothing is recorded into it: the scene is seen to be none before.
         let cmd = <vk::CommandBuffer as vk::Handle>::from_raw(8);
-        let failed = rara_renderer_prepare(renderer, cmd, scene);
+        let failed = rara_renderer_prepare(renderer, cmd, scene, null(), null_mut());
         assert_fails(failed, RARA_ERROR_INVALID, says);
         assert_eq!(rara_scene_buffers_layer_count(scene), 0);
         rara_scene_buffers_destroy(scene);

@@ -3,9 +3,12 @@
 use super::*;
 use crate::clips::clip_of;
 use crate::results::assert_fails;
+use std::ptr::{null, null_mut};
+
 use rara_c::boundary::{RARA_ERROR_INVALID, RARA_ERROR_MEMORY};
 use rara_c::camera::*;
 use rara_c::clip::*;
+use rara_c::frame::*;
 use rara_c::renderer::*;
 use rara_c::renderer_desc::*;
 use rara_c::reserve::*;
@@ -110,14 +113,18 @@ fn a_host_in_c_reserves_within_a_budget_and_gives_back() {
                 assert!((1..200_000).contains(&pairs), "{pairs}");
                 let clip = clip_of(&planes[..index]);
                 for settings in &all {
-                    let configured =
-                        rara_renderer_configure(renderer, uploaded, &camera, &clip, settings);
-                    assert_ok(configured);
+                    let mut frame = null_mut();
+                    assert_ok(rara_renderer_configure(
+                        renderer, uploaded, &camera, &clip, settings, &mut frame,
+                    ));
+                    let refused = rara_renderer_trim(renderer, frame);
+                    assert_fails(refused, RARA_ERROR_INVALID, "frame was not prepared");
+                    rara_frame_destroy(frame);
                 }
             }
             assert_eq!(made(device), reserved, "pipelines and allocations");
             let bytes = rara_renderer_bytes(renderer);
-            assert_ok(rara_renderer_trim(renderer));
+            assert_ok(rara_renderer_trim(renderer, null()));
             assert!(rara_renderer_bytes(renderer) < bytes);
             let memory = memory(device);
             assert!(memory.bytes < memory.peak_bytes && memory.peak_bytes <= budget);

@@ -18,6 +18,7 @@ use rara_c::boundary::*;
 use rara_c::camera::*;
 use rara_c::clip::*;
 use rara_c::depth::*;
+use rara_c::frame::*;
 use rara_c::matrices::*;
 use rara_c::orthographic::*;
 use rara_c::placement::*;
@@ -25,7 +26,6 @@ use rara_c::region::*;
 use rara_c::renderer::*;
 use rara_c::renderer_desc::*;
 use rara_c::settings::*;
-use rara_c::token::*;
 
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const DEPTHS: vk::Format = vk::Format::R32G32_SFLOAT;
@@ -150,13 +150,12 @@ impl<'a> World<'a> {
         renderer.set_placement(self.placement);
         let settings = Settings::default().raster(self.raster);
         let configured = renderer.configure(&scene, &self.camera, &self.clip(), &settings);
-        configured.expect("configures");
         let frame = Frame {
             behind: Some(canvas.depth_image(0, 0)),
             depths: self.depths,
             ..Frame::new(VIEW)
         };
-        canvas.draw_frame(&mut renderer, &scene, &frame)
+        canvas.draw_frame(&mut renderer, &scene, configured, &frame)
     }
 
     /// Draws by rara.h the scene that `scene` returns, which may upload it in the frame's own commands.
@@ -240,28 +239,12 @@ impl<'a> World<'a> {
             if is_between && !region.is_null() {
                 (clip.region, clip.plane_count) = (region, 0);
             }
-            // Quads are configured ahead, where there is a function for it.
-            let is_ahead =
-                self.raster == Raster::Quad && !is_flat && (region.is_null() || is_between);
-            let token = Cell::new(null_mut());
+            let made = Cell::new(null_mut());
             let before = |cmd| {
                 let scene = scene(cmd);
-                if is_ahead {
-                    let mut made = null_mut();
-                    let (camera, clip) = (&camera, &clip);
-                    assert_ok(rara_renderer_configure_ahead(
-                        renderer, scene, camera, clip, &settings, &mut made,
-                    ));
-                    token.set(made);
-                    assert_ok(rara_renderer_prepare_token(
-                        renderer, cmd, scene, &shown, made,
-                    ));
-                    let again = rara_renderer_prepare_token(renderer, cmd, scene, &shown, made);
-                    assert_eq!(again, RARA_ERROR_INVALID);
-                    return;
-                }
+                let mut frame = null_mut();
                 assert_ok(match region.is_null() || is_between {
-                    true => configure(renderer, scene, &camera, &clip, &settings),
+                    true => configure(renderer, scene, &camera, &clip, &settings, &mut frame),
                     false => rara_renderer_configure_region(
                         renderer,
                         scene,
@@ -269,23 +252,27 @@ impl<'a> World<'a> {
                         is_flat.into(),
                         region,
                         &settings,
+                        &mut frame,
                     ),
                 });
-                assert_ok(rara_renderer_prepare_behind(renderer, cmd, scene, &shown));
+                made.set(frame);
+                let early = rara_renderer_draw(renderer, cmd, 0.0, 0.0, frame);
+                assert_eq!(early, RARA_ERROR_INVALID);
+                assert_ok(rara_renderer_prepare(renderer, cmd, scene, &shown, frame));
+                let again = rara_renderer_prepare(renderer, cmd, scene, &shown, frame);
+                assert_eq!(again, RARA_ERROR_INVALID);
             };
             let inside = |cmd| {
                 canvas.viewport(cmd, 0, 0, VIEW);
-                let made = token.get();
-                assert_ok(match (self.depths, is_ahead) {
-                    (true, true) => rara_renderer_draw_token_depth(renderer, cmd, 0.0, 0.0, made),
-                    (false, true) => rara_renderer_draw_token(renderer, cmd, 0.0, 0.0, made),
-                    (true, false) => rara_renderer_draw_depth(renderer, cmd, 0.0, 0.0),
-                    (false, false) => rara_renderer_draw(renderer, cmd, 0.0, 0.0),
-                });
+                let draw = match self.depths {
+                    true => rara_renderer_draw_depth,
+                    false => rara_renderer_draw,
+                };
+                assert_ok(draw(renderer, cmd, 0.0, 0.0, made.get()));
             };
             let [pixels, _] = canvas.draw(before, inside);
             rara_region_destroy(region);
-            rara_frame_token_destroy(token.get());
+            rara_frame_destroy(made.get());
             rara_renderer_destroy(renderer);
             pixels
         }

@@ -1,9 +1,9 @@
 //! A renderer's frame on a canvas.
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 
 use rara::gpu::DepthImage;
-use rara::{Renderer, SceneBuffers};
+use rara::{ConfiguredFrame, Renderer, SceneBuffers};
 
 use super::Canvas;
 
@@ -32,35 +32,35 @@ impl Frame {
 }
 
 impl Canvas {
-    /// Draws the frame that the renderer is configured for, and waits; returns the picture of the first colour attachment.
+    /// Draws a frame that the renderer has configured, and waits; returns the picture of the first colour attachment.
     pub fn draw_frame(
         &self,
         renderer: &mut Renderer,
         scene: &SceneBuffers,
+        configured: rara::Result<ConfiguredFrame>,
         frame: &Frame,
     ) -> Vec<[f32; 4]> {
         let renderer = RefCell::new(renderer);
+        let mut configured = Some(configured.expect("configures"));
+        let prepared = OnceCell::new();
         let before = |cmd| {
             let mut renderer = renderer.borrow_mut();
+            let (depth, configured) = (frame.behind.as_ref(), configured.take().expect("once"));
             // SAFETY: `cmd` is recording outside a scope, a depth is ready to be copied, and all is waited for.
-            let prepared = unsafe {
-                match &frame.behind {
-                    Some(depth) => renderer.prepare_behind(cmd, scene, depth),
-                    None => renderer.prepare(cmd, scene),
-                }
-            };
-            prepared.expect("prepares");
+            let made = unsafe { renderer.prepare(cmd, scene, depth, configured) };
+            prepared.get_or_init(|| made.expect("prepares"));
         };
         let inside = |cmd| {
             let (x, y) = frame.origin;
             self.viewport(cmd, x, y, frame.size);
             let mut renderer = renderer.borrow_mut();
             let origin = [x as f32, y as f32];
+            let prepared = prepared.get().expect("it was prepared");
             // SAFETY: `cmd` is inside the canvas's scope, which the renderer was made for.
             let drawn = unsafe {
                 match frame.depths {
-                    true => renderer.draw_depth(cmd, origin),
-                    false => renderer.draw(cmd, origin),
+                    true => renderer.draw_depth(cmd, origin, prepared),
+                    false => renderer.draw(cmd, origin, prepared),
                 }
             };
             drawn.expect("draws");

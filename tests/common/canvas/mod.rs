@@ -148,7 +148,7 @@ impl Canvas {
         self.render_pass
     }
 
-    /// The depth buffer as `prepare_behind` takes it, for a viewport that begins at (x, y).
+    /// The depth buffer as `prepare` takes it, for a viewport that begins at (x, y).
     pub fn depth_image(&self, x: i32, y: i32) -> DepthImage {
         DepthImage {
             image: self.depth.as_ref().expect("a depth buffer").raw,

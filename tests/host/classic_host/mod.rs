@@ -5,7 +5,7 @@
 mod engine;
 mod target;
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 
 use crate::common;
 use engine::Host;
@@ -74,18 +74,22 @@ fn check(version: u32) {
                 .target(unsafe { Target::render_pass(host.render_pass, 0) });
             let mut renderer = Renderer::new(&device, desc).expect("a renderer");
             let configured = renderer.configure(&buffers, &camera, &clip, &settings);
-            configured.expect("configures");
+            let configured = configured.expect("configures");
+            let prepared = OnceCell::new();
             let renderer = RefCell::new(renderer);
             // SAFETY: the frame is waited for before renderer and scene are dropped; `cmd` is where each call needs it.
             let picture = unsafe {
                 host.frame(
                     |cmd| {
-                        renderer
-                            .borrow_mut()
-                            .prepare(cmd, &buffers)
-                            .expect("prepares")
+                        let mut renderer = renderer.borrow_mut();
+                        let made = renderer.prepare(cmd, &buffers, None, configured);
+                        prepared.get_or_init(|| made.expect("prepares"));
                     },
-                    |cmd| renderer.borrow_mut().draw(cmd, [0.0, 0.0]).expect("draws"),
+                    |cmd| {
+                        let prepared = prepared.get().expect("it was prepared");
+                        let drawn = renderer.borrow_mut().draw(cmd, [0.0, 0.0], prepared);
+                        drawn.expect("draws");
+                    },
                 )
             };
             let times = renderer.borrow_mut().pass_times();

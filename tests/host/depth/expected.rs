@@ -36,12 +36,11 @@ fn draw_placed(
     let mut renderer = first.sharing(desc).expect("a renderer");
     renderer.set_placement(placement);
     let configured = renderer.configure(&scene, camera, clip, settings);
-    configured.expect("configures");
     let frame = Frame {
         depths: true,
         ..frame
     };
-    canvas.draw_frame(&mut renderer, &scene, &frame)
+    canvas.draw_frame(&mut renderer, &scene, configured, &frame)
 }
 
 /// A frame of expected depths on a canvas of two channels is the reference's, in every way of drawing the colours.

@@ -173,9 +173,8 @@ fn draw_behind(
     let mut renderer = first.sharing(desc).expect("a renderer");
     let settings = Settings::default().raster(raster);
     let configured = renderer.configure(&scene, &world.camera, &world.clip, &settings);
-    configured.expect("configures");
+    let pixels = canvas.draw_frame(&mut renderer, &scene, configured, &frame(behind));
     let path = renderer.raster().path;
-    let pixels = canvas.draw_frame(&mut renderer, &scene, &frame(behind));
     (part(&pixels), path)
 }
 

@@ -107,8 +107,10 @@ fn a_promised_depth_that_is_not_given_is_refused() {
     let format = rara::ShFormat::Float;
     let scene = SceneBuffers::upload(device, &world.scene, format).expect("uploads");
     let mut renderer = Renderer::new(device, desc).expect("a renderer");
+    let configured = renderer.configure(&scene, &world.camera, &world.clip, &Settings::default());
+    let configured = configured.expect("configures");
     // SAFETY: refused before anything is recorded.
-    let refused = unsafe { renderer.prepare(vk::CommandBuffer::null(), &scene) };
+    let refused = unsafe { renderer.prepare(vk::CommandBuffer::null(), &scene, None, configured) };
     let text = refused.unwrap_err().to_string();
-    assert!(text.contains("prepare_behind takes it"), "{text}");
+    assert!(text.contains("promised the host's depth"), "{text}");
 }

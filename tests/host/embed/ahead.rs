@@ -1,25 +1,22 @@
 //! A host that configures the next frame while it records this one gets the pictures of one that does not.
 
 use super::*;
-use rara::{Error, FrameToken};
+use rara::Error;
 
 impl Engine {
-    fn ahead(&mut self, (camera, clip, settings): &Frame) -> FrameToken {
+    fn ahead(&mut self, (camera, clip, settings): &Frame) -> ConfiguredFrame {
         let renderer = &mut self.renderer;
-        let configured = renderer.configure_ahead(&self.scene, camera, clip, settings);
+        let configured = renderer.configure(&self.scene, camera, clip, settings);
         configured.expect("configures")
     }
 
-    /// Records and submits a token's frame; `meanwhile` comes between its stages and its draw.
-    fn record_token(&mut self, token: &mut FrameToken, meanwhile: impl FnOnce(&mut Self)) {
-        let cmd = self.host.begin().expect("begins");
-        let (renderer, scene) = (&mut self.renderer, &self.scene);
-        // SAFETY: `cmd` is recording outside rendering, and every test waits before it drops the scene.
-        unsafe { renderer.prepare_token(cmd, scene, None, token) }.expect("prepares");
+    /// Records and submits a frame; `meanwhile` comes between its stages and its draw.
+    fn record_frame(&mut self, frame: ConfiguredFrame, meanwhile: impl FnOnce(&mut Self)) {
+        self.configured = Some(frame);
+        let cmd = self.prepare();
         meanwhile(self);
         self.host.begin_rendering(VIEW.into());
-        // SAFETY: `cmd` is inside rendering to a target of the renderer's format, viewport and scissor are set.
-        unsafe { self.renderer.draw_token(cmd, [0.0; 2], token) }.expect("draws");
+        self.draw(cmd, [0.0; 2]);
         self.host.submit().expect("submits");
     }
 }
@@ -37,15 +34,14 @@ fn drawn(
     let mut next = engine.ahead(&frames[0]);
     for index in 0..frames.len() {
         pictures.extend(engine.wait());
-        let mut token = next;
         let following = &frames[(index + 1) % frames.len()];
         let before = (when == 0).then(|| engine.ahead(following));
         let mut between = None;
-        engine.record_token(&mut token, |engine| {
+        engine.record_frame(next, |engine| {
             between = (when == 1).then(|| engine.ahead(following));
         });
         next = match before.or(between) {
-            Some(token) => token,
+            Some(frame) => frame,
             None => engine.ahead(following),
         };
     }
@@ -69,10 +65,9 @@ fn frames_that_are_configured_ahead_show_the_same_pictures() {
         let clip = common::moved(common::clip(&scene, 2, ClipOp::And), shift);
         frames.push((camera, clip, settings));
     }
-    for desc in [
-        in_flight(FLOATS, Bindings::Mixed),
-        in_flight(FLOATS, Bindings::Mixed).reuse(true),
-    ] {
+    // The next frame is configured before the slot of this one is free.
+    let usual = in_flight(FLOATS, Bindings::Mixed).frames_in_flight(FRAMES as u32 + 1);
+    for desc in [usual, usual.reuse(true)] {
         let host = open_host(FLOATS, VIEW, true);
         let mut engine = Engine::new(host, &scene, ShFormat::default(), desc.reuse(false));
         let mut expected = Vec::new();
@@ -94,7 +89,7 @@ fn frames_that_are_configured_ahead_show_the_same_pictures() {
 }
 
 #[test]
-fn tokens_in_an_order_that_makes_no_sense_are_refused() {
+fn frames_in_an_order_that_makes_no_sense_are_refused() {
     let scene = scene();
     let frames = frames(&scene);
     let desc = in_flight(FLOATS, Bindings::Mixed).reuse(true);
@@ -108,40 +103,46 @@ fn tokens_in_an_order_that_makes_no_sense_are_refused() {
         );
     };
     let mut other = engine.renderer.sharing(desc).expect("a renderer");
-    let mut first = engine.ahead(&frames[1]);
+    let [first, second] = [0; 2].map(|_| engine.ahead(&frames[1]));
     let cmd = engine.host.begin().expect("begins");
     // SAFETY: `cmd` is recording outside rendering; nothing is recorded by calls that are refused.
-    unsafe {
-        let drawn = engine.renderer.draw_token(cmd, [0.0; 2], &first);
-        refused(drawn, "prepared last");
-        let prepared = other.prepare_token(cmd, &engine.scene, None, &mut first);
-        refused(prepared, "another renderer's");
+    let prepared = unsafe {
+        let theirs = engine.ahead(&frames[1]);
+        let prepared = other.prepare(cmd, &engine.scene, None, theirs);
+        refused(prepared.map(drop), "another renderer's");
         let renderer = &mut engine.renderer;
-        renderer
-            .prepare_token(cmd, &engine.scene, None, &mut first)
-            .expect("prepares");
-        let again = renderer.prepare_token(cmd, &engine.scene, None, &mut first);
-        refused(again, "prepared already");
-    }
+        [first, second].map(|frame| {
+            let prepared = renderer.prepare(cmd, &engine.scene, None, frame);
+            prepared.expect("prepares")
+        })
+    };
     engine.host.begin_rendering(VIEW.into());
     // SAFETY: `cmd` is inside rendering to a target of the renderer's format, viewport and scissor are set.
-    unsafe { engine.renderer.draw_token(cmd, [0.0; 2], &first) }.expect("draws");
+    unsafe {
+        let renderer = &mut engine.renderer;
+        refused(renderer.draw(cmd, [0.0; 2], &prepared[0]), "prepared last");
+        refused(other.draw(cmd, [0.0; 2], &prepared[1]), "prepared last");
+        let drawn = renderer.draw(cmd, [f32::NAN, 0.0], &prepared[1]);
+        refused(drawn, "draw was given the origin NaN, 0:");
+        let drawn = renderer.draw_depth(cmd, [7.0, f32::INFINITY], &prepared[1]);
+        let why = "draw_depth was given the origin 7, inf: give the upper left corner";
+        refused(drawn, why);
+        let drawn = renderer.draw_depth(cmd, [0.0; 2], &prepared[1]);
+        refused(drawn, "expected_depth");
+        renderer.draw(cmd, [0.0; 2], &prepared[1]).expect("draws");
+    }
     engine.host.submit().expect("submits");
     engine.wait_for_all();
     // One that takes over from the frame before cannot be prepared once that is forgotten.
-    let mut second = engine.ahead(&frames[1]);
+    let frame = engine.ahead(&frames[1]);
     engine.renderer.forget();
     let cmd = engine.host.begin().expect("begins");
     // SAFETY: as above.
-    let prepared = unsafe {
-        engine
-            .renderer
-            .prepare_token(cmd, &engine.scene, None, &mut second)
-    };
-    refused(prepared, "takes over");
+    let refuses = unsafe { engine.renderer.prepare(cmd, &engine.scene, None, frame) };
+    refused(refuses.map(drop), "takes over");
     engine.host.begin_rendering(VIEW.into());
     engine.host.submit().expect("submits");
     engine.wait_for_all();
-    drop((first, second, other));
+    drop((prepared, other));
     engine.close();
 }

@@ -91,7 +91,8 @@ fn the_splats_picture_meets_a_hosts_pixels_as_linear_light() {
         let host = open_host(FLOATS, VIEW, true);
         let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
         engine.configure(&shown);
-        assert_eq!(engine.renderer.raster().path, "tiles");
+        let configured = engine.configured.as_ref().expect("it was configured");
+        assert_eq!(configured.raster().path, "tiles");
         engine.record(vk::Offset2D::default());
         let pixels = engine.wait_for_all();
         let (right, name) = match space {
@@ -125,7 +126,7 @@ fn linear_light_is_of_colours_and_of_tiles() {
     engine.record(vk::Offset2D::default());
     let pixels = engine.wait_for_all();
     assert_eq!(pixels, over_stripes(&engine.host, &picture));
-    let refused = |result: rara::Result<()>| {
+    let refused = |result: rara::Result<ConfiguredFrame>| {
         let error = result.expect_err("only quads could");
         assert!(matches!(&error, Error::Invalid(text) if text.contains("ColorSpace::Linear")));
     };

@@ -16,8 +16,8 @@ use rara::ash::vk;
 use rara::gpu::{Bindings, Device};
 use rara::scene::{Kind, generate};
 use rara::{
-    Camera, Clip, ClipOp, Gaussians, Picture, Raster, Renderer, RendererDesc, SceneBuffers,
-    Settings, ShFormat,
+    Camera, Clip, ClipOp, ConfiguredFrame, Gaussians, Picture, PreparedFrame, Raster, Renderer,
+    RendererDesc, SceneBuffers, Settings, ShFormat,
 };
 
 const BYTES: vk::Format = vk::Format::R8G8B8A8_UNORM;
@@ -58,6 +58,10 @@ struct Engine {
     device: Device,
     scene: SceneBuffers,
     renderer: Renderer,
+    /// The next frame, between `configure` and `prepare`.
+    configured: Option<ConfiguredFrame>,
+    /// The last frame, from `prepare` to the next `configure`.
+    prepared: Option<PreparedFrame>,
 }
 
 impl Engine {
@@ -68,20 +72,32 @@ impl Engine {
             renderer: Renderer::new(&device, desc).expect("a renderer"),
             device,
             host,
+            configured: None,
+            prepared: None,
         }
     }
 
     fn configure(&mut self, (camera, clip, settings): &Frame) {
+        (self.configured, self.prepared) = (None, None);
         let configured = self.renderer.configure(&self.scene, camera, clip, settings);
-        configured.expect("configures");
+        self.configured = Some(configured.expect("configures"));
     }
 
     /// Begins the frame that is configured and prepares it.
     fn prepare(&mut self) -> vk::CommandBuffer {
         let cmd = self.host.begin().expect("begins");
+        let configured = self.configured.take().expect("it was configured");
         // SAFETY: `cmd` is recording outside rendering, and every test waits before it drops the scene.
-        unsafe { self.renderer.prepare(cmd, &self.scene).expect("prepares") };
+        let prepared = unsafe { self.renderer.prepare(cmd, &self.scene, None, configured) };
+        self.prepared = Some(prepared.expect("prepares"));
         cmd
+    }
+
+    /// Draws the frame that is prepared, inside the host's rendering.
+    fn draw(&mut self, cmd: vk::CommandBuffer, origin: [f32; 2]) {
+        let prepared = self.prepared.as_ref().expect("it was prepared");
+        // SAFETY: `cmd` is inside rendering to a target of the renderer's format, viewport and scissor are set.
+        unsafe { self.renderer.draw(cmd, origin, prepared) }.expect("draws");
     }
 
     /// Records and submits the frame that is configured. The splats go to `at`.
@@ -91,9 +107,7 @@ impl Engine {
             offset: at,
             extent: VIEW,
         });
-        // SAFETY: `cmd` is inside rendering to a target of the renderer's format, viewport and scissor are set.
-        let drawn = unsafe { self.renderer.draw(cmd, [at.x as f32, at.y as f32]) };
-        drawn.expect("draws");
+        self.draw(cmd, [at.x as f32, at.y as f32]);
         self.host.submit().expect("submits");
     }
 
@@ -109,6 +123,7 @@ impl Engine {
 
     /// Drops everything, which leaves no memory and no message of the validation layer behind.
     fn close(self) {
+        drop((self.configured, self.prepared));
         drop((self.renderer, self.scene));
         assert_eq!(
             self.device.device_bytes(),

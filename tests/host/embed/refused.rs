@@ -70,31 +70,16 @@ fn calls_in_an_order_that_makes_no_sense_are_refused() {
     // A scene as large as the other, but not the same.
     let (one, other) = (upload(scene()), upload(generate(Kind::General, 3_000, 6)));
     let mut renderer = Renderer::new(device, RendererDesc::new(BYTES)).expect("a renderer");
-    // SAFETY: all of them are refused before anything is recorded.
-    unsafe {
-        let why = "draw needs a successful configure() and prepare() before it";
-        refused(renderer.draw(null, [0.0; 2]), why);
-        refused(renderer.draw_depth(null, [0.0; 2]), "expected_depth");
-        refused(
-            renderer.draw(null, [f32::NAN, 0.0]),
-            "draw was given the origin NaN, 0:",
-        );
-        let why = "draw_depth was given the origin 7, inf: give the upper left corner";
-        refused(renderer.draw_depth(null, [7.0, f32::INFINITY]), why);
-        let why = "prepare needs a successful configure() before it";
-        refused(renderer.prepare(null, &one), why);
-        let configured = renderer.configure(&one, &camera, &clip, &settings);
-        configured.expect("configures");
-        let why = "another scene than configure()";
-        refused(renderer.prepare(null, &other), why);
-        let why = "draw needs a successful configure() and prepare() before it";
-        refused(renderer.draw(null, [0.0; 2]), why);
-    }
+    let configured = renderer.configure(&one, &camera, &clip, &settings);
+    let configured = configured.expect("configures");
+    // SAFETY: it is refused before anything is recorded.
+    let prepared = unsafe { renderer.prepare(null, &other, None, configured) };
+    refused(prepared.map(drop), "another scene than configure()");
     let map = rara::DepthMap::ordinary(0.1, 10.0).expect("a map");
     refused(renderer.set_depth_map(map), "depth attachment");
     // A scene on a device of its own.
     let elsewhere = common::headless();
     let scene = SceneBuffers::upload(elsewhere.device(), &scene(), rara::ShFormat::default());
     let configured = renderer.configure(&scene.expect("uploads"), &camera, &clip, &settings);
-    refused(configured, "another device");
+    refused(configured.map(drop), "another device");
 }

@@ -222,7 +222,7 @@ fn a_budget_is_kept_and_says_what_to_do() {
     let configured = engine
         .renderer
         .configure(&engine.scene, camera, clip, settings);
-    refused(configured, "a frame's working memory");
+    refused(configured.map(drop), "a frame's working memory");
     let uploaded = SceneBuffers::upload(&device, &scene, ShFormat::Float).map(drop);
     refused(uploaded, "a scene of 3000 Gaussians");
 
@@ -300,7 +300,9 @@ fn what_the_frame_does_not_need_is_given_back() {
     engine.configure(&shown);
     engine.record(vk::Offset2D::default());
     let picture = engine.wait_for_all();
-    engine.renderer.trim().expect("trims");
+    let trimmed = engine.renderer.trim(engine.prepared.as_ref());
+    trimmed.expect("trims");
+    engine.prepared = None;
     assert_eq!(engine.renderer.bytes(), needed);
     let scene_bytes = engine.scene.bytes();
     let beside = engine.device.device_bytes() - scene_bytes - needed;
@@ -311,17 +313,8 @@ fn what_the_frame_does_not_need_is_given_back() {
     assert_eq!(made(&engine.device), before, "the same frame");
     engine.record(vk::Offset2D::default());
     assert!(engine.wait_for_all() == picture);
-    // A frame that is prepared comes after a configure of its own.
-    engine.renderer.trim().expect("trims");
-    let cmd = engine.host.begin().expect("begins");
-    // SAFETY: `cmd` is recording; nothing is recorded.
-    let refused = unsafe { engine.renderer.prepare(cmd, &engine.scene) };
-    assert!(matches!(refused, Err(Error::Invalid(_))));
-    engine.host.begin_rendering(VIEW.into());
-    engine.host.submit().expect("submits");
-    engine.wait_for_all();
-    // Nothing is configured: all of the working memory goes.
-    engine.renderer.trim().expect("trims");
+    engine.prepared = None;
+    engine.renderer.trim(None).expect("trims");
     assert!(engine.renderer.bytes() < 4096, "the counts of frames");
     engine.close();
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use rara::gpu::Device;
+use rara::{ConfiguredFrame, PreparedFrame};
 
 /// Two eyes before a scene.
 fn eyes(scene: &Gaussians) -> [Camera; 2] {
@@ -54,12 +55,47 @@ fn with_eyes(planes: usize, test: impl FnOnce(&Eyes)) {
     });
 }
 
+/// A renderer, and the frame that it draws next.
+struct EyeFrame {
+    renderer: Renderer,
+    configured: Option<ConfiguredFrame>,
+    prepared: Option<PreparedFrame>,
+}
+
+type Eye = RefCell<EyeFrame>;
+
+impl EyeFrame {
+    fn new(renderer: Renderer) -> Eye {
+        RefCell::new(Self {
+            renderer,
+            configured: None,
+            prepared: None,
+        })
+    }
+
+    fn configure(&mut self, eyes: &Eyes<'_>, camera: &Camera, way: Raster) {
+        let configured = self
+            .renderer
+            .configure(&eyes.scene, camera, &eyes.clip, &raster(way));
+        self.configured = Some(configured.expect("configures"));
+    }
+
+    fn prepare(&mut self, eyes: &Eyes<'_>, cmd: vk::CommandBuffer) {
+        let frame = self.configured.take().expect("it was configured");
+        // SAFETY: recording outside a scope, and all is waited for.
+        let prepared = unsafe { self.renderer.prepare(cmd, &eyes.scene, None, frame) };
+        self.prepared = Some(prepared.expect("prepares"));
+    }
+}
+
 impl Eyes<'_> {
     /// Draws an eye's picture, inside the canvas's scope and after it was prepared.
-    fn draw(&self, cmd: vk::CommandBuffer, renderer: &RefCell<Renderer>, left: u32) {
+    fn draw(&self, cmd: vk::CommandBuffer, eye: &Eye, left: u32) {
         self.canvas.viewport(cmd, left as i32, 0, SIZE);
+        let mut eye = eye.borrow_mut();
+        let prepared = eye.prepared.take().expect("it was prepared");
         // SAFETY: every test calls this in the canvas's scope, which the renderer was made for.
-        let drawn = unsafe { renderer.borrow_mut().draw(cmd, [left as f32, 0.0]) };
+        let drawn = unsafe { eye.renderer.draw(cmd, [left as f32, 0.0], &prepared) };
         drawn.expect("draws");
     }
 
@@ -78,21 +114,18 @@ fn two_eyes_share_a_scope_and_compile_nothing_twice() {
         for way in [Raster::Tiles, Raster::Quad] {
             let first = Renderer::new(eyes.device, desc()).expect("a renderer");
             let second = first.sharing(desc()).expect("another");
-            let renderers = [first, second].map(RefCell::new);
+            let renderers = [first, second].map(EyeFrame::new);
             let mut compiled = Vec::new();
             for (renderer, eye) in renderers.iter().zip(&eyes.cameras) {
                 let mut renderer = renderer.borrow_mut();
-                let configured = renderer.configure(&eyes.scene, eye, &eyes.clip, &raster(way));
-                configured.expect("configures");
-                compiled.push(pipelines(&renderer));
+                renderer.configure(eyes, eye, way);
+                compiled.push(pipelines(&renderer.renderer));
             }
             assert!(compiled[0] > 5, "{compiled:?}");
             assert_eq!(compiled[0], compiled[1], "the second found them all");
             let before = |cmd| {
                 for renderer in &renderers {
-                    // SAFETY: recording outside a scope, and all is waited for.
-                    let prepared = unsafe { renderer.borrow_mut().prepare(cmd, &eyes.scene) };
-                    prepared.expect("prepares");
+                    renderer.borrow_mut().prepare(eyes, cmd);
                 }
             };
             let inside = |cmd| {
@@ -115,14 +148,11 @@ fn one_renderer_draws_views_one_after_the_other_in_one_command_buffer() {
             (Raster::Tiles, Bindings::Address),
         ] {
             let two = desc().frames_in_flight(2).bindings(bindings);
-            let renderer = RefCell::new(Renderer::new(eyes.device, two).expect("a renderer"));
+            let renderer = EyeFrame::new(Renderer::new(eyes.device, two).expect("a renderer"));
             let prepare = |cmd, eye: usize| {
                 let mut renderer = renderer.borrow_mut();
-                let (camera, clip) = (&eyes.cameras[eye], &eyes.clip);
-                let configured = renderer.configure(&eyes.scene, camera, clip, &raster(way));
-                configured.expect("configures");
-                // SAFETY: recording outside a scope, and all is waited for.
-                unsafe { renderer.prepare(cmd, &eyes.scene).expect("prepares") };
+                renderer.configure(eyes, &eyes.cameras[eye], way);
+                renderer.prepare(eyes, cmd);
             };
             let draw = |cmd, left| eyes.draw(cmd, &renderer, left);
             let [pixels, _] = eyes.canvas.draw_scopes(&mut [

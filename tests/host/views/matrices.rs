@@ -22,12 +22,11 @@ fn drawn(
     let settings = Settings::default();
     let clip = Clip::default();
     let configured = renderer.configure(scene, camera, &clip, &settings);
-    configured.expect("configures");
     let frame = Frame {
         behind: Some(canvas.depth_image(0, 0)),
         ..Frame::new(VIEW)
     };
-    canvas.draw_frame(renderer, scene, &frame)
+    canvas.draw_frame(renderer, scene, configured, &frame)
 }
 
 type Seen = (Camera, DepthMap);

@@ -173,30 +173,31 @@ fn two_placed_scenes_stand_in_one_picture_with_a_mesh() {
             let first = Renderer::new(device, desc).expect("a renderer");
             let second = first.sharing(desc).expect("another");
             let renderers = [first, second].map(RefCell::new);
+            let mut configured = Vec::new();
             for ((renderer, buffers), placement) in renderers.iter().zip(&buffers).zip(&placements)
             {
                 let mut renderer = renderer.borrow_mut();
                 renderer.set_placement(*placement);
-                let configured = renderer.configure(buffers, &camera, &clip, &raster(way));
-                configured.expect("configures");
+                let frame = renderer.configure(buffers, &camera, &clip, &raster(way));
+                configured.push(frame.expect("configures"));
             }
             let depth = canvas.depth_image(0, 0);
+            let prepared = RefCell::new(Vec::new());
             let before = |cmd| {
-                for (renderer, buffers) in renderers.iter().zip(&buffers) {
+                let frames = configured.drain(..);
+                for ((renderer, buffers), frame) in renderers.iter().zip(&buffers).zip(frames) {
+                    let mut renderer = renderer.borrow_mut();
                     // SAFETY: recording outside a scope, the depth is ready to be copied, and all is waited for.
-                    unsafe {
-                        renderer
-                            .borrow_mut()
-                            .prepare_behind(cmd, buffers, &depth)
-                            .expect("prepares")
-                    };
+                    let frame = unsafe { renderer.prepare(cmd, buffers, Some(&depth), frame) };
+                    prepared.borrow_mut().push(frame.expect("prepares"));
                 }
             };
             let inside = |cmd| {
                 canvas.viewport(cmd, 0, 0, SIZE);
-                for renderer in &renderers {
+                for (renderer, frame) in renderers.iter().zip(&*prepared.borrow()) {
                     // SAFETY: inside the canvas's scope, after both were prepared.
-                    unsafe { renderer.borrow_mut().draw(cmd, [0.0; 2]).expect("draws") };
+                    let drawn = unsafe { renderer.borrow_mut().draw(cmd, [0.0; 2], frame) };
+                    drawn.expect("draws");
                 }
             };
             let [pixels, _] = canvas.draw(before, inside);

@@ -78,7 +78,7 @@ impl Splats {
             host.wait(Some(self.in_flight.remove(0)))?;
         }
         let (renderer, scene) = (&mut self.renderer, &self.scene);
-        renderer.configure(scene, &view.camera, &view.clip, &view.settings)?;
+        let frame = renderer.configure(scene, &view.camera, &view.clip, &view.settings)?;
 
         // 1. wgpu draws, then brings its textures to where rara wants them: colours to be drawn onto once more, for which they
         //    need a barrier although their layout stays, and depths to be copied.
@@ -93,9 +93,9 @@ impl Splats {
         let (prepared, stages) = host.raw("splats' stages", |cmd| {
             // SAFETY: `cmd` is recording outside any scope, wgpu has made the depths visible to copies, and all is kept until
             // the frame has executed.
-            unsafe { renderer.prepare_behind(cmd, scene, &target.depth_image()) }
+            unsafe { renderer.prepare(cmd, scene, Some(&target.depth_image()), frame) }
         });
-        prepared?;
+        let frame = prepared?;
 
         // 3. wgpu takes the depths back.
         let mut encoder = self::encoder(host, "depth");
@@ -108,7 +108,7 @@ impl Splats {
             // SAFETY: as above; the scope's attachments are of the renderer's formats.
             unsafe {
                 target.begin(host, cmd);
-                let drawn = renderer.draw(cmd, [0.0, 0.0]);
+                let drawn = renderer.draw(cmd, [0.0, 0.0], &frame);
                 host.rara.raw().cmd_end_rendering(cmd);
                 drawn
             }

@@ -1,0 +1,74 @@
+//! The frames that a host holds between the calls that draw them.
+
+use std::sync::Arc;
+
+use super::frames::Decision;
+use crate::passes::{Buffers, Pipelines, TilePicture};
+use crate::stats::RasterChoice;
+
+/// A frame that [`Renderer::configure`](super::Renderer::configure) has configured and
+/// [`Renderer::prepare`](super::Renderer::prepare) takes. It keeps the memory that it is recorded with, whatever is
+/// configured after it. One that is never prepared is dropped.
+#[derive(Debug)]
+pub struct ConfiguredFrame {
+    pub(super) state: FrameState,
+    /// How many frames were prepared, and how often all was forgotten, when it was configured: it takes over results of then.
+    pub(super) basis: (u64, u64),
+    /// Shared by the renderer and all of its frames that are configured and not prepared.
+    pub(super) _pending: Arc<()>,
+}
+
+/// A frame that [`Renderer::prepare`](super::Renderer::prepare) has recorded and
+/// [`Renderer::draw`](super::Renderer::draw) draws. It keeps the memory that it is drawn with: drop it after its last draw.
+#[derive(Debug)]
+pub struct PreparedFrame {
+    pub(super) state: FrameState,
+    /// The frames that had been prepared with it.
+    pub(super) number: u64,
+}
+
+/// What a frame is recorded with.
+#[derive(Debug)]
+pub(super) struct FrameState {
+    pub(super) decision: Decision,
+    pub(super) buffers: Arc<Buffers>,
+    pub(super) pipelines: Arc<Pipelines>,
+    /// The number of its renderer.
+    pub(super) renderer: u64,
+}
+
+impl ConfiguredFrame {
+    /// The stages that the frame does not need.
+    pub fn skipped(&self) -> Vec<&'static str> {
+        self.state.decision.skipped()
+    }
+
+    /// How splats become pixels in the frame if its tiles have room, and why in that way.
+    pub fn raster(&self) -> RasterChoice {
+        self.state.decision.raster(false)
+    }
+
+    /// True when its pixels are those of the frame that was prepared last.
+    pub(crate) fn changes_nothing(&self) -> bool {
+        self.state.decision.changes_nothing()
+    }
+
+    /// As of a [`PreparedFrame`].
+    pub(crate) fn picture(&self) -> Option<&Arc<TilePicture>> {
+        self.state.picture()
+    }
+}
+
+impl PreparedFrame {
+    /// The tiles' picture, if it is the frame's; `None` where that is drawn.
+    pub(crate) fn picture(&self) -> Option<&Arc<TilePicture>> {
+        self.state.picture()
+    }
+}
+
+impl FrameState {
+    fn picture(&self) -> Option<&Arc<TilePicture>> {
+        let tiles = self.buffers.tiles.as_ref()?;
+        (!self.decision.plan.is_drawn).then_some(&tiles.picture)
+    }
+}

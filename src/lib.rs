@@ -89,7 +89,7 @@ pub use renderer::{
 };
 #[doc(inline)]
 pub use scene::{Bounds, GaussianArrays, Gaussians, Layer, LayerState, Scene};
-pub use session::{Aov, Headless, HeadlessDesc};
+pub use session::{Aov, Headless, HeadlessDesc, StoredPicture};
 #[cfg(feature = "view")]
 pub use session::{Line, Panel, Redraw, Windowed};
 pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};

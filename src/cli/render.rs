@@ -16,7 +16,7 @@ use super::memory;
 use super::output;
 use super::panorama::{self, Panorama, PanoramaArgs};
 use super::path::PathArgs;
-use super::pictures::{self, Destination, Drawn, Order, PictureArgs, Plan, Planned};
+use super::pictures::{self, Destination, Drawn, Order, PictureArgs, Pixels, Plan, Planned};
 use super::profile::{Profile, ProfileArgs};
 use super::report::{Answer, Frame, Report};
 use super::save_camera::SaveCameraArgs;
@@ -326,11 +326,14 @@ impl Render {
             let plane = shot.cut().map(|cut| &cut.plane);
             let mut drawn = Drawn::from(Frame::new(view, file.as_deref(), plane, measured));
             if file.is_some() {
-                let mut picture = session.last_picture()?;
-                if let Some(cut) = shot.cut().filter(|_| slicer.has_cues()) {
-                    slicer.draw_cues(&mut picture, (view, cut, settings))?;
-                }
-                drawn.picture = Some(picture);
+                drawn.picture = Some(match shot.cut().filter(|_| slicer.has_cues()) {
+                    None => Pixels::Stored(session.last_stored()?),
+                    Some(cut) => {
+                        let mut picture = session.last_picture()?;
+                        slicer.draw_cues(&mut picture, (view, cut, settings))?;
+                        Pixels::Decoded(picture)
+                    }
+                });
                 if !self.aov.is_empty() {
                     let frame = (&view.camera, clip, settings);
                     drawn.channels = session.channels(&self.aov, scene, frame)?;
@@ -377,7 +380,7 @@ impl Render {
         }
         let picture = || profile.span("panorama", || panorama.assembled(&pictures));
         Ok(Drawn {
-            picture: file.as_ref().map(|_| picture()),
+            picture: file.as_ref().map(|_| Pixels::Decoded(picture())),
             faces: frames.clone(),
             ..Drawn::from(Frame::together(&shot.view, file.as_deref(), &frames))
         })

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use rara::gpu::DeviceShape;
 use rara::{
     Aov, Camera, Channel, Clip, FrameStats, Headless, HeadlessDesc, Picture, Result, Scene,
-    Settings, ShFormat,
+    Settings, ShFormat, StoredPicture,
 };
 
 use rara_lab::frames::fresh;
@@ -184,6 +184,11 @@ impl Session {
     /// The picture of the last frame.
     pub(super) fn last_picture(&mut self) -> Result<Picture> {
         self.headless.picture()
+    }
+
+    /// The same, for a thread to decode.
+    pub(super) fn last_stored(&mut self) -> Result<StoredPicture> {
+        self.headless.read_back()
     }
 
     /// Frees everything; an error is what the validation layer has reported about it.

@@ -16,7 +16,7 @@ use super::frame::FrameArgs;
 use super::framing;
 use super::kept::Kept;
 use super::memory;
-use super::pictures::{self, Destination, Drawn, Order, PictureArgs, Plan};
+use super::pictures::{self, Destination, Drawn, Order, PictureArgs, Pixels, Plan};
 use super::profile::{Profile, ProfileArgs};
 use super::region::Region;
 use super::report::{Frame, Report};
@@ -203,9 +203,9 @@ impl Sweep {
             };
             let plane = moving.plane(position(range, index, self.frames))?;
             let frame = Frame::new(&view, file, plane.as_ref(), measured);
-            let picture = file.map(|_| session.last_picture()).transpose()?;
+            let stored = file.map(|_| session.last_stored()).transpose()?;
             Ok(Drawn {
-                picture,
+                picture: stored.map(Pixels::Stored),
                 ..frame.into()
             })
         })?;

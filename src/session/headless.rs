@@ -1,5 +1,6 @@
 //! Turns scenes into pictures without a window.
 
+use super::stored::{SpareMemory, Stored, StoredPicture};
 use super::target::{Target, blendable_on};
 use super::{HeadlessDesc, Session};
 use crate::camera::Camera;
@@ -23,6 +24,7 @@ pub struct Headless {
     target: Target,
     /// Bytes of compiled pipelines that were there at the start.
     kept_pipeline_bytes: u64,
+    spare_memory: SpareMemory,
     // Last, so that everything above is freed before its device.
     session: Session,
 }
@@ -55,6 +57,7 @@ impl Headless {
         Ok(Self {
             target: Target::of_tiles(),
             kept_pipeline_bytes: 0,
+            spare_memory: SpareMemory::default(),
             session: Session::beside(renderer, format.vulkan())?,
         })
     }
@@ -71,6 +74,7 @@ impl Headless {
         Ok(Self {
             target: Target::of_tiles(),
             kept_pipeline_bytes: held_bytes.unwrap_or(0),
+            spare_memory: SpareMemory::default(),
             session,
         })
     }
@@ -170,10 +174,21 @@ impl Headless {
 
     /// Reads the picture of the last frame back.
     pub fn picture(&mut self) -> Result<Picture> {
+        self.stored(|stored, _| stored.decode())
+    }
+
+    /// Copies the picture of the last frame from the device and leaves it as it is stored there, for another thread to decode
+    /// while the next frame is drawn.
+    pub fn read_back(&mut self) -> Result<StoredPicture> {
+        self.stored(StoredPicture::new)
+    }
+
+    fn stored<R>(&mut self, act: impl FnOnce(Stored<'_>, &SpareMemory) -> R) -> Result<R> {
         let read_back = || {
-            let picture = self.target.read_back(&self.session.device)?;
+            let act = |stored: Stored<'_>| act(stored, &self.spare_memory);
+            let result = self.target.stored(&self.session.device, act)?;
             self.session.check_validation()?;
-            Ok(picture)
+            Ok(result)
         };
         let read = trace::span(self.session.trace.as_ref(), "readback", read_back);
         read.map_err(|error| self.session.explain(error))

@@ -24,6 +24,7 @@ mod lines;
 #[cfg(feature = "view")]
 mod panels;
 mod spans;
+mod stored;
 mod target;
 #[cfg(feature = "view")]
 mod windowed;
@@ -34,6 +35,7 @@ pub use headless::{Aov, Headless};
 pub use lines::Line;
 #[cfg(feature = "view")]
 pub use panels::Panel;
+pub use stored::StoredPicture;
 #[cfg(feature = "view")]
 pub use windowed::{Redraw, Windowed};
 

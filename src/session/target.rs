@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::stored::Stored;
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::gpu::{Buffer, BufferDesc, Device, Image, ImageDesc, Location};
@@ -129,8 +130,24 @@ impl Target {
 
     /// Reads the picture back.
     pub(super) fn read_back(&mut self, device: &Device) -> Result<Picture> {
+        self.stored(device, |stored| stored.decode())
+    }
+
+    /// Does something with the bytes of the picture, which are where the host can read them.
+    pub(super) fn stored<R>(
+        &mut self,
+        device: &Device,
+        act: impl FnOnce(Stored<'_>) -> R,
+    ) -> Result<R> {
+        let format = self.format;
         if let Some((tiles, extent)) = &self.tiles {
-            return self.read_tiles(device, tiles, *extent);
+            let [begins, pixels] = TilePicture::sizes(*extent, format);
+            return Ok(act(Stored {
+                begins: &read(device, &tiles.begins, begins)?,
+                pixels: &read(device, &tiles.pixels, pixels)?,
+                extent: *extent,
+                format,
+            }));
         }
         let Some(image) = &self.image else {
             return Err(Error::Invalid("nothing has been rendered yet".into()));
@@ -151,24 +168,14 @@ impl Target {
             unsafe { image.copy_to(cmd, &readback) };
             Ok(())
         })?;
-        let pixels = self.format.decode(&readback.mapped()[..size as usize]);
-        let pixels = pixels.collect();
+        let result = act(Stored {
+            begins: &[],
+            pixels: &readback.mapped()[..size as usize],
+            extent,
+            format,
+        });
         self.readback = Some(readback);
-        Ok(picture(extent, pixels))
-    }
-
-    /// Reads the tiles' picture back.
-    fn read_tiles(
-        &self,
-        device: &Device,
-        tiles: &TilePicture,
-        extent: vk::Extent2D,
-    ) -> Result<Picture> {
-        let [begins, pixels] = TilePicture::sizes(extent, self.format);
-        let begins = read(device, &tiles.begins, begins)?;
-        let bytes = read(device, &tiles.pixels, pixels)?;
-        let pixels = TilePicture::decode(&begins, &bytes, extent, self.format);
-        Ok(picture(extent, pixels))
+        Ok(result)
     }
 
     /// The bytes of a picture.
@@ -183,14 +190,6 @@ fn read<'a>(device: &Device, buffer: &'a Buffer, size: u64) -> Result<Cow<'a, [u
         Location::Readback => Cow::Borrowed(&buffer.mapped()[..size as usize]),
         _ => Cow::Owned(device.download_range(buffer, 0, size)?),
     })
-}
-
-fn picture(extent: vk::Extent2D, pixels: Vec<[f32; 4]>) -> Picture {
-    Picture {
-        width: extent.width,
-        height: extent.height,
-        pixels,
-    }
 }
 
 fn extent(camera: &Camera) -> vk::Extent2D {

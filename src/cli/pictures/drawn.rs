@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use rara::{Channel, Picture};
+use rara::{Channel, Picture, StoredPicture};
 
 use super::super::report::Frame;
 
@@ -13,9 +13,24 @@ pub(in super::super) struct Drawn {
     /// The frames that it is made of, if they are several.
     pub(in super::super) faces: Vec<Frame>,
     /// None where it goes nowhere.
-    pub(in super::super) picture: Option<Picture>,
+    pub(in super::super) picture: Option<Pixels>,
     /// Beside its colours.
     pub(in super::super) channels: Vec<Channel>,
+}
+
+/// A picture that a thread may have to decode before it encodes it.
+pub(in super::super) enum Pixels {
+    Stored(StoredPicture),
+    Decoded(Picture),
+}
+
+impl Pixels {
+    pub(super) fn picture(self) -> Picture {
+        match self {
+            Self::Stored(stored) => stored.decode(),
+            Self::Decoded(picture) => picture,
+        }
+    }
 }
 
 /// A frame whose picture is not written.

@@ -21,7 +21,7 @@ use super::pattern::filled;
 use super::report::{Answer, Frame};
 use super::scenes::SceneArgs;
 use super::values::{self, STANDARD};
-pub(super) use drawn::Drawn;
+pub(super) use drawn::{Drawn, Pixels};
 pub(super) use part::Part;
 
 /// What becomes of pictures, and of what is measured.

@@ -168,9 +168,10 @@ impl<T> Writer<'_, T> {
 
     /// Encodes and writes a picture; false where nobody wants more.
     fn save(&self, one: &Planned<T>, drawn: &mut Drawn) -> Result<bool, Failure> {
-        let (Some(picture), Some(file)) = (drawn.picture.take(), &one.file) else {
+        let (Some(pixels), Some(file)) = (drawn.picture.take(), &one.file) else {
             return Ok(true);
         };
+        let picture = self.profile.span("decode", || pixels.picture());
         let channels = &drawn.channels;
         let saved = self.profile.span("encode", || match &self.film {
             Some(film) => film

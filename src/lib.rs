@@ -36,9 +36,6 @@ mod trace;
 // The modules that measure and test rara itself. They are public only with the feature `lab`, and any version may change
 // them.
 #[cfg(feature = "lab")]
-#[doc(hidden)]
-pub use passes::cost;
-#[cfg(feature = "lab")]
 pub mod counted;
 #[cfg(not(feature = "lab"))]
 mod counted;

@@ -2,23 +2,11 @@
 
 use crate::gpu::{Buffer, Recorder};
 use crate::passes::blocks::groups_of_list;
-#[cfg(feature = "lab")]
-use crate::passes::blocks::loads_of_list;
 use crate::passes::buffers::buffers;
-#[cfg(feature = "lab")]
-use crate::passes::cost::{self, Cost};
 use crate::passes::shaders::block_list;
 use crate::passes::stage::Frame;
 
 pub(super) use block_list::Program;
-
-#[cfg(feature = "lab")]
-pub(super) const COSTS: &[Cost] = &[Cost::of::<Program>(
-    |n| n.blocks,
-    |n| loads_of_list(n, 1),
-    // It reads the blocks' sides, and writes the list.
-    |n| n.blocks * 2 * cost::WORD,
-)];
 
 /// The stage that will look at the blocks of the list.
 #[derive(Debug, Clone, Copy)]

@@ -5,8 +5,6 @@ use crate::gpu::{DeviceShape, Groups, Recorder};
 use crate::limits;
 use crate::passes::block_list::{self, ListFor};
 use crate::passes::buffers::buffers;
-#[cfg(feature = "lab")]
-use crate::passes::cost::{self, Cost, FrameNumbers};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::blocks;
 use crate::passes::stage::{Frame, Stage, key};
@@ -19,14 +17,6 @@ pub(crate) const STAGE: Stage = Stage::when_finding_view(
     },
     record,
 );
-
-#[cfg(feature = "lab")]
-pub(super) const COSTS: &[Cost] = &[Cost::of::<blocks::Program>(
-    |n| n.blocks,
-    |n| 1 + n.layer() + n.asked_surfaces(),
-    // It reads the bounds and their side of the clip, and writes their side.
-    |n| n.blocks * (cost::BOUNDS + 2 * cost::WORD),
-)];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;
@@ -51,13 +41,6 @@ pub(crate) fn groups_of_list(plan: &Plan) -> Groups<'static> {
             .div_ceil(limits::BLOCK_SIZE)
             .max(1),
     })
-}
-
-/// The loads of an invocation of such a workgroup on a GPU, of which each block takes `loads`: those of the blocks before, 8
-/// at once (glsl/block_runs.glsl), and its own, to count and to list it.
-#[cfg(feature = "lab")]
-pub(super) fn loads_of_list(numbers: &FrameNumbers, loads: u64) -> u64 {
-    1 + (numbers.blocks.div_ceil(8 * u64::from(limits::BLOCK_SIZE)) + 2) * loads
 }
 
 /// An invocation a block.

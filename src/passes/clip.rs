@@ -2,13 +2,9 @@
 //! blocks that are cut: the paper's three classes (section 3.2). The camera has no part in it.
 
 use crate::gpu::Recorder;
-#[cfg(feature = "lab")]
-use crate::limits;
 use crate::passes::block_list::{self, ListFor};
 use crate::passes::blocks::groups_of_blocks;
 use crate::passes::buffers::{buffers, indirect};
-#[cfg(feature = "lab")]
-use crate::passes::cost::{self, Cost};
 use crate::passes::shaders::{clip, clip_blocks};
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
@@ -24,22 +20,6 @@ pub(crate) const STAGE: Stage = Stage {
     },
     record,
 };
-
-#[cfg(feature = "lab")]
-pub(super) const COSTS: &[Cost] = &[
-    // It reads the bounds, and writes their side.
-    Cost::of::<clip_blocks::Program>(
-        |n| n.blocks,
-        |n| 1 + n.layer() + n.surfaces,
-        |n| n.blocks * (cost::BOUNDS + cost::WORD),
-    ),
-    // The number of its group's block, the block, its layer, its Gaussian. It writes the masks.
-    Cost::of::<clip::Program>(
-        |n| n.clip_blocks * u64::from(limits::BLOCK_SIZE),
-        |n| 2 + n.layer() + 1 + n.asked_surfaces(),
-        |n| n.clip_blocks * (cost::WORD + cost::BLOCK + cost::MASKS),
-    ),
-];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (scene, b) = (frame.scene, frame.buffers);

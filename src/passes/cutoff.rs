@@ -2,8 +2,6 @@
 
 use crate::gpu::Recorder;
 use crate::passes::buffers::{buffers, indirect};
-#[cfg(feature = "lab")]
-use crate::passes::cost::{self, Cost};
 use crate::passes::shaders::cutoff;
 use crate::passes::stage::{Frame, Stage, key};
 use crate::types::FrameCounts;
@@ -23,16 +21,6 @@ pub(crate) const STAGE_OF_RECLIP: Stage = Stage {
     missed: |plan| plan.reclips(),
     ..STAGE
 };
-
-#[cfg(feature = "lab")]
-pub(super) const COSTS: &[Cost] = &[
-    // How many there are, its Gaussian's number, the layer; the Gaussian meanwhile. It writes the record.
-    Cost::of::<cutoff::Program>(
-        |n| n.cut,
-        |n| 2 + n.layer() + n.asked_surfaces(),
-        |n| n.cut * (cost::WORD + cost::gathered(cost::GAUSSIAN) + n.record_bytes),
-    ),
-];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let b = frame.buffers;

@@ -6,8 +6,6 @@ use std::mem::offset_of;
 use crate::depth::DepthMap;
 use crate::gpu::{Attachments, Drawer, Recorder};
 use crate::passes::buffers::{Buffers, DepthBuffers, buffers, indirect};
-#[cfg(feature = "lab")]
-use crate::passes::cost::{self, Cost};
 use crate::passes::pipelines::{Draw, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{depth, splat_depth};
@@ -15,8 +13,6 @@ use crate::passes::stage::{Frame, Stage, key};
 use crate::passes::weight::Weight;
 use crate::passes::work::Work;
 use crate::types::FrameCounts;
-#[cfg(feature = "lab")]
-use crate::types::SplatDepth;
 
 /// The splats' depths.
 pub(crate) const STAGE: Stage = Stage {
@@ -26,14 +22,6 @@ pub(crate) const STAGE: Stage = Stage {
     pipelines: |plan, need| need(key::<depth::Program>(plan)),
     record,
 };
-
-#[cfg(feature = "lab")]
-pub(super) const COSTS: &[Cost] = &[Cost::of::<depth::Program>(
-    |n| n.survivors,
-    |n| 2 + n.layer() + n.asked_surfaces(),
-    // It reads the survivor and the Gaussian, and writes the depth.
-    |n| n.survivors * (cost::SURVIVOR + cost::GAUSSIAN + size_of::<SplatDepth>() as u64),
-)];
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (b, d) = (frame.buffers, frame.depths());

@@ -8,8 +8,6 @@ mod buffers;
 mod classify;
 mod clip;
 mod compact;
-#[cfg(feature = "lab")]
-pub mod cost;
 mod cutoff;
 pub(crate) mod depth;
 mod depth_keys;

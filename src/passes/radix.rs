@@ -20,11 +20,6 @@ const _: () = {
     assert!(limits::RADIX_GROUP_SIZE.is_multiple_of(128));
 };
 
-/// The names of the kernels that sort pairs.
-pub(super) const PAIR_COUNT: &str = "pair_radix_count";
-pub(super) const PAIR_SCAN: &str = "pair_radix_scan";
-pub(super) const PAIR_SCATTER: &str = "pair_radix_scatter";
-
 /// The keys that are sorted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Keys {
@@ -60,9 +55,9 @@ impl Kernels {
                 scatter,
             },
             Keys::Pairs => Self {
-                count: count.named(PAIR_COUNT),
-                scan: scan.named(PAIR_SCAN),
-                scatter: scatter.named(PAIR_SCATTER),
+                count: count.named("pair_radix_count"),
+                scan: scan.named("pair_radix_scan"),
+                scatter: scatter.named("pair_radix_scatter"),
             },
         }
     }
@@ -80,12 +75,6 @@ pub(super) fn histogram_words(keys: u64) -> u64 {
     let partitions = keys.div_ceil(limits::RADIX_PARTITION.into());
     let digits = 1 << limits::SORT_BITS;
     partitions * (digits + 2) + digits
-}
-
-/// The turns of the scan over so many partitions.
-#[cfg(feature = "lab")]
-pub(super) fn scan_turns(partitions: u64) -> u64 {
-    partitions.div_ceil((limits::RADIX_GROUP_SIZE * limits::RADIX_SCAN_COUNTS).into())
 }
 
 /// A pass: the keys and what they order go from the first pair of buffers to the second.

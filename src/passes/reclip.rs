@@ -3,15 +3,9 @@
 //! colours, order and tiles stay.
 
 use crate::gpu::Recorder;
-#[cfg(feature = "lab")]
-use crate::limits;
 use crate::passes::block_list::{self, ListFor};
-#[cfg(feature = "lab")]
-use crate::passes::blocks::loads_of_list;
 use crate::passes::blocks::{groups_of_blocks, groups_of_list};
 use crate::passes::buffers::{buffers, indirect};
-#[cfg(feature = "lab")]
-use crate::passes::cost::{self, Cost};
 use crate::passes::shaders::{reclip, reclip_blocks, reclip_compact, reclip_scan, recut};
 use crate::passes::stage::{Frame, Stage, key};
 use crate::passes::work::Work;
@@ -40,60 +34,6 @@ pub(crate) const RECUT: Stage = Stage {
     pipelines: |plan, need| need(key::<recut::Program>(plan)),
     record: record_recut,
 };
-
-#[cfg(feature = "lab")]
-pub(super) const COSTS: &[Cost] = &[
-    // The layer, the block's side in view, its totals. It reads the bounds too, reads and writes the block's side of the clip,
-    // and writes whether it is revisited.
-    Cost::of::<reclip_blocks::Program>(
-        |n| n.blocks,
-        |n| 1 + n.layer() + 2 + n.surfaces,
-        |n| n.blocks * (cost::BOUNDS + cost::TOTALS + 4 * cost::WORD),
-    ),
-    // The number of its group's block, the block, its layer, whether the Gaussian is in view, its side before, that of the
-    // block now, the Gaussian. It reads and writes the words that a reclipped frame keeps of the block.
-    Cost::of::<reclip::Program>(
-        |n| n.clip_blocks * u64::from(limits::BLOCK_SIZE),
-        |n| 2 + n.layer() + 2 + 2 + 2 + n.asked_surfaces(),
-        |n| n.clip_blocks * (3 * cost::WORD + cost::BLOCK + cost::MASKS / 2 + 2 * KEPT),
-    ),
-    // Each block says whether it is revisited and then has totals. It writes the block's places.
-    Cost::of::<reclip_scan::Program>(
-        |n| n.blocks,
-        |n| loads_of_list(n, 2),
-        |n| n.blocks * (cost::WORD + cost::TOTALS + 2 * cost::WORD),
-    ),
-    // The number of its group's block, the block, whether its Gaussian changes, its places; and the words of the masks. It
-    // writes which survivors change, and the numbers of those that are cut.
-    Cost::of::<reclip_compact::Program>(
-        |n| n.clip_blocks * u64::from(limits::BLOCK_SIZE),
-        |_| 4 + u64::from(limits::BLOCK_SIZE / u32::BITS) + 1,
-        |n| {
-            let block = 4 * cost::WORD + cost::MASKS / 2 + KEPT;
-            n.clip_blocks * block + n.changed * CHANGE + n.cut * cost::WORD
-        },
-    ),
-    // How many there are, which survivor, which Gaussian, its layer, the cutoff record, the mask and the splat, most of which
-    // it writes.
-    Cost::of::<recut::Program>(
-        |n| n.changed,
-        |n| 3 + n.layer() + 2 + 2,
-        |n| {
-            let survivor = cost::gathered(cost::SURVIVOR) + cost::gathered(cost::GAUSSIAN);
-            let splat =
-                cost::gathered(cost::TILE_MASK) + cost::SPLAT + cost::gathered(cost::CURVATURE);
-            n.changed * (CHANGE + survivor + n.record_bytes + splat)
-        },
-    ),
-];
-
-/// Bytes of a change: the survivor, and its place among those that are cut.
-#[cfg(feature = "lab")]
-const CHANGE: u64 = 2 * cost::WORD;
-
-/// Bytes that a reclipped frame keeps of a block.
-#[cfg(feature = "lab")]
-const KEPT: u64 = limits::RECLIP_WORDS as u64 * cost::WORD;
 
 fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (scene, b, s) = (frame.scene, frame.buffers, frame.reclip());

@@ -7,8 +7,6 @@ use std::mem::offset_of;
 use crate::gpu::{DeviceShape, Drawer, Recorder};
 use crate::limits;
 use crate::passes::buffers::{Buffers, TileBuffers, buffers, indirect};
-#[cfg(feature = "lab")]
-use crate::passes::cost::{self, Cost, FrameNumbers};
 use crate::passes::pipelines::{Draw, Kernel, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{composite, tiles};
@@ -105,9 +103,6 @@ enum List {
     Several,
 }
 
-/// The name of the kernel that draws the tiles in which several surfaces cut a splat.
-const SEVERAL_TILES: &str = "several_tiles";
-
 /// True when tiles in which several surfaces cut a splat are told from the others.
 pub(super) fn has_several_kinds(plan: &Plan) -> bool {
     let weight = Weight::of(plan);
@@ -153,54 +148,8 @@ fn kernel(plan: &Plan, list: List) -> Kernel<tiles::Program> {
     let kernel = Kernel::new(shader, constants);
     match list {
         List::All | List::Few => kernel,
-        List::Several => kernel.named(SEVERAL_TILES),
+        List::Several => kernel.named("several_tiles"),
     }
-}
-
-#[cfg(feature = "lab")]
-pub(super) const COSTS: &[Cost] = &[
-    Cost::of::<tiles::Program>(
-        |n| n.filled_tiles * TILE,
-        batches,
-        |n| bytes(n, n.filled_tiles),
-    )
-    .turning(splats_of_tile),
-    Cost::named(
-        SEVERAL_TILES,
-        |n| n.several_tiles * TILE,
-        batches,
-        |n| bytes(n, n.several_tiles),
-    )
-    .turning(splats_of_tile),
-];
-
-/// Bytes of the lists of so many tiles and of their splats, as far as they are loaded, each once for a macro-tile; and of the
-/// pixels.
-#[cfg(feature = "lab")]
-fn bytes(numbers: &FrameNumbers, tiles: u64) -> u64 {
-    let share = tiles as f64 / numbers.filled().max(1) as f64;
-    let loaded = numbers.loaded as f64 / numbers.pairs.max(1) as f64;
-    let splats = numbers.macro_pairs as f64 * loaded * cost::gathered(cost::SPLAT) as f64;
-    let lists = (numbers.loaded * cost::WORD) as f64;
-    (share * (lists + splats)) as u64 + tiles * (cost::WORD + TILE * TilePixels::Float.bytes())
-}
-
-/// The turns of the loop over a tile's splats, which stands in that over its batches.
-#[cfg(feature = "lab")]
-fn splats_of_tile(numbers: &FrameNumbers) -> f64 {
-    numbers.loaded as f64 / numbers.filled().max(1) as f64 / 32.0
-}
-
-#[cfg(feature = "lab")]
-const TILE: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64;
-
-/// The tile, its bounds, the count of its list; and in a tile as full as the others, for each batch its splats' numbers, the
-/// splats and what else their side of the tile takes, and for each splat that is weighed its record's header and its planes.
-#[cfg(feature = "lab")]
-fn batches(numbers: &FrameNumbers) -> u64 {
-    let splats = numbers.loaded.div_ceil(numbers.filled().max(1));
-    let weighed = splats * numbers.cut / numbers.survivors.max(1);
-    3 + 3 * splats.div_ceil(TILE) + 2 * weighed
 }
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {

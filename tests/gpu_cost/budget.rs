@@ -43,13 +43,13 @@ fn explained(table: &str) -> &'static str {
         "frames" => "\n# The commands of a frame with the kernels for GPUs.\n",
         "bytes" => {
             "\n\
-# Bytes of device memory that each pass reads and writes for a thousand of five million Gaussians at 1920x1080, as declared\n\
-# beside the passes.\n"
+# Bytes of device memory that each pass reads and writes for a thousand of five million Gaussians at 1920x1080, by the\n\
+# costs of the model of GPUs.\n"
         }
         "passes" => {
             "\n\
 # Debts: passes with fewer than 16384 invocations, or with more than 64 loads of which each waits for the one before, at five\n\
-# million Gaussians. They are as declared beside the passes (COSTS in src/passes), and can only get better.\n"
+# million Gaussians. They are as src/lab/measure/gpu_model/costs.rs says, and can only get better.\n"
         }
         _ => {
             "\n\

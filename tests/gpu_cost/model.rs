@@ -6,14 +6,13 @@ use std::path::Path;
 use std::{env, fs};
 
 use rara::ash::vk;
-use rara::cost::{FrameNumbers, costs};
 use rara::gpu::{Device, DeviceDesc, DeviceShape};
 use rara::types::{FrameData, Splat};
 use rara::{
     Gaussians, Mode, Raster, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat, limits,
 };
 use rara_lab::measure::gpu_model::{
-    self, CountedFrame, FRAMES_FILE, KERNELS_FILE, Kernel, frames, kernels,
+    self, COSTS, CountedFrame, FRAMES_FILE, FrameNumbers, KERNELS_FILE, Kernel, frames, kernels,
 };
 
 use crate::common;
@@ -252,7 +251,10 @@ fn kernels_of_the_device_that_is_pretended() {
         let drawn = draw(&device, &scene, is_cut);
         let recorded: BTreeSet<_> = drawn.recorded.dispatches.iter().map(|d| d.name).collect();
         for pass in recorded {
-            assert!(costs().any(|cost| cost.name == pass), "{pass} has no cost");
+            assert!(
+                COSTS.iter().any(|cost| cost.name == pass),
+                "{pass} has no cost"
+            );
             let shaders = device.compiled_shaders();
             let mut of_pass = shaders.iter().filter(|shader| shader.name == pass);
             let shader = of_pass.next().expect("it was compiled");

@@ -1,12 +1,12 @@
-//! The commands of real frames, and what the passes declare about their invocations and their loads, held to each other and to
+//! The commands of real frames, and what the model of GPUs (`rara_lab::measure::gpu_model`) takes for their invocations and their loads, held to each other and to
 //! ceilings.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use rara::cost::{FrameNumbers, costs};
 use rara::gpu::{Dispatched, DispatchedGroups};
 use rara::types::{FrameCounts, FrameData};
 use rara::{Raster, limits};
+use rara_lab::measure::gpu_model::{COSTS, FrameNumbers};
 
 use crate::budget::{self, Rule, Table};
 use crate::frames::{Drawn, Frame, Frames, SMALL};
@@ -28,7 +28,7 @@ fn passes_are_wide_short_and_frugal_at_five_million_gaussians() {
         .find(|frame| frame.name == "tiles, exact, one plane");
     let numbers = heavy(numbers(&frames.draw(cut.expect("it is drawn"))));
     let (mut debts, mut moved) = (Table::new(), Table::new());
-    for cost in costs() {
+    for cost in &COSTS {
         let invocations = (cost.invocations)(&numbers);
         let loads = (cost.loads)(&numbers);
         if invocations < FEWEST_INVOCATIONS || loads > MOST_LOADS {
@@ -100,7 +100,7 @@ fn frames_have_the_commands_in_the_budget_and_the_invocations_that_passes_declar
     let first = &frames.all()[0];
     seen.extend(check_invocations(&frames, first, &frames.draw(first)));
     frames.close();
-    let declared: BTreeSet<_> = costs().map(|cost| cost.name).collect();
+    let declared: BTreeSet<_> = COSTS.iter().map(|cost| cost.name).collect();
     assert_eq!(seen, declared, "some are declared that no frame has");
 }
 
@@ -124,7 +124,7 @@ fn check_invocations(frames: &Frames, frame: &Frame, drawn: &Drawn) -> BTreeSet<
     let numbers = numbers(drawn);
     let mut seen = BTreeSet::new();
     for dispatch in &drawn.recorded.dispatches {
-        let cost = costs().find(|cost| cost.name == dispatch.name);
+        let cost = COSTS.iter().find(|cost| cost.name == dispatch.name);
         let cost = cost.unwrap_or_else(|| panic!("{}: no cost is declared", dispatch.name));
         let declared = (cost.invocations)(&numbers);
         let size = workgroup(frames, dispatch.name);

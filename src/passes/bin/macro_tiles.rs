@@ -147,7 +147,7 @@ const _: () = assert!(
 );
 
 /// Chunks of splats in a partition, as in glsl/macro_tiles.glsl.
-pub(super) const CHUNKS: u64 = (limits::RADIX_PARTITION / limits::RADIX_GROUP_SIZE) as u64;
+const CHUNKS: u64 = (limits::RADIX_PARTITION / limits::RADIX_GROUP_SIZE) as u64;
 
 fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
     let (b, t) = (frame.buffers, frame.tiles());

@@ -4,8 +4,6 @@
 //! lists and where they begin, how many pairs of tile and splat there are, and on GPUs lists of the tiles themselves. The plan says which kernels do it: each set
 //! has a file here, shaders and scratch of its own, and may use the buffers that the sort has left over.
 
-#[cfg(feature = "lab")]
-mod macro_costs;
 mod macro_tiles;
 mod spans;
 
@@ -21,10 +19,6 @@ pub(crate) const STAGE: Stage = Stage {
     pipelines: |plan, need| (kernels(plan).pipelines)(plan, need),
     record: |frame, recorder| (kernels(frame.plan).record)(frame, recorder),
 };
-
-/// The costs of those for GPUs.
-#[cfg(feature = "lab")]
-pub(in crate::passes) use macro_costs::COSTS;
 
 /// The kernels that suit the plan's kind of device.
 fn kernels(plan: &Plan) -> &'static KernelSet {

@@ -23,10 +23,6 @@ pub(crate) const STAGE: Stage = Stage::when_finding_view(
     |frame, recorder| (kernels(frame.plan).record)(frame, recorder),
 );
 
-/// The costs of those for GPUs.
-#[cfg(feature = "lab")]
-pub(in crate::passes) use radix::{COSTS, stretches};
-
 /// The kernels that suit the plan's kind of device.
 fn kernels(plan: &Plan) -> &'static KernelSet {
     match plan.way.shape {

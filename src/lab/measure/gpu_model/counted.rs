@@ -3,14 +3,15 @@
 
 use glam::DVec3;
 
-use rara::cost::FrameNumbers;
 use rara::scene::{Bounds, Kind, generate};
 use rara::{Camera, Clip, ClipOp, Gaussians, Plane, Result};
 
-/// Where the frames are, from the crate's root.
-pub const FRAMES_FILE: &str = "src/measure/gpu_model/frames.txt";
-/// Where the kernels are, from the crate's root.
-pub const KERNELS_FILE: &str = "src/measure/gpu_model/kernels.txt";
+use super::numbers::FrameNumbers;
+
+/// Where the frames are, from the repository's root.
+pub const FRAMES_FILE: &str = "src/lab/measure/gpu_model/frames.txt";
+/// Where the kernels are, from the repository's root.
+pub const KERNELS_FILE: &str = "src/lab/measure/gpu_model/kernels.txt";
 
 /// The size of the frames' pictures.
 pub const SIZE: (u32, u32) = (1920, 1080);
@@ -38,9 +39,10 @@ impl CountedFrame {
     /// The lines of the file that are about it.
     pub fn text(&self) -> String {
         let mut numbers = self.numbers;
-        let numbers = numbers
-            .named()
-            .map(|(name, value)| format!("{name}={value}"));
+        let numbers = numbers.named();
+        let numbers: Vec<_> = numbers
+            .map(|(name, value)| format!("{name}={value}"))
+            .collect();
         format!(
             "frame {} {}\nnumbers {}\ndispatches {}\n",
             self.gaussians,
@@ -116,7 +118,7 @@ pub fn frames() -> Vec<CountedFrame> {
         match what {
             "numbers" => rest.split(' ').for_each(|field| {
                 let (name, value) = field.split_once('=').expect("a name and a number");
-                let mut named = frame.numbers.named().into_iter();
+                let mut named = frame.numbers.named();
                 let (_, place) = named.find(|(known, _)| *known == name).expect(name);
                 *place = value.parse().expect(field);
             }),

@@ -4,13 +4,15 @@
 //! A pass takes the longest of three times, and a gap until the next one: its bytes at the memory's bandwidth, its
 //! instructions at the rate of all lanes, and the longest chain of what one invocation waits for.
 
+mod costs;
 mod counted;
+mod numbers;
 
+pub use costs::{COSTS, Cost};
 pub use counted::{
     CountedFrame, FRAMES_FILE, KERNELS_FILE, Kernel, SIZE, camera, clip, frames, kernels, scene,
 };
-
-use rara::cost::{Cost, FrameNumbers, costs};
+pub use numbers::FrameNumbers;
 
 /// The numbers of a GPU.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -124,7 +126,7 @@ pub fn predict(gpu: &Gpu, frame: &CountedFrame) -> Vec<PassPrediction> {
     let mut all: Vec<PassPrediction> = Vec::new();
     let mut stage = "";
     for name in &frame.dispatches {
-        let cost = costs().find(|cost| cost.name == *name);
+        let cost = COSTS.iter().find(|cost| cost.name == *name);
         let cost = cost.unwrap_or_else(|| panic!("{name} has no cost"));
         let kernel = kernels
             .iter()

@@ -4,7 +4,7 @@ use std::cell::LazyCell;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::clip::{Expression, NamedClip, clips_to_json, load_clips};
+use rara::clip::{Expression, NamedClip, Solid, clips_to_json, load_clips};
 use rara::{Bounds, Clip, ClipOp, Plane, Scene};
 
 use super::failure::Failure;
@@ -20,14 +20,7 @@ use super::values;
 #[command(next_help_heading = "Clip")]
 pub(super) struct ClipArgs {
     /// Keep the inside of a shape (repeatable); '!SHAPE' keeps its outside
-    ///
-    /// plane:nx,ny,nz,d keeps n.x + d >= 0. plane:x=40% lies across an axis at 40 % of the scene's robust bounds
-    /// and keeps what lies beyond. slab:nx,ny,nz,d,thickness begins at such a plane; slab:z=40%..60% lies between
-    /// two shares. box:cx,cy,cz,hx,hy,hz[,qw,qx,qy,qz] has a centre, half sizes and a rotation. sphere:cx,cy,cz,r.
-    /// ellipsoid:cx,cy,cz,rx,ry,rz[,qw,qx,qy,qz]. cylinder:ax,ay,az,bx,by,bz,r lies between two discs.
-    /// capsule:ax,ay,az,bx,by,bz,r is within r of a stretch of a line. cone:ax,ay,az,bx,by,bz,r has its tip at a
-    /// and a disc around b. Shells need single quotes around a leading !: '!box:0,0,0,1,1,1'.
-    #[arg(long, value_name = "SHAPE", value_parser = Region::shape, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SHAPE", value_parser = Region::shape, allow_hyphen_values = true, long_help = shapes())]
     clip: Vec<Region>,
     /// Keep what an expression of shapes keeps: all(...), any(...), not(...)
     ///
@@ -51,6 +44,17 @@ pub(super) struct ClipArgs {
     /// Keep what is in all shapes, or what is in any of them
     #[arg(long, value_name = "OP", default_value = "and")]
     clip_op: ClipOp,
+}
+
+/// The help of `--clip`.
+fn shapes() -> String {
+    let usages: Vec<&str> = Solid::usages().collect();
+    format!(
+        "Keep the inside of a shape (repeatable); '!SHAPE' keeps its outside\n\n{} plane:x=40% lies across an axis at 40 % of \
+         the scene's robust bounds and keeps what lies beyond; slab:z=40%..60% lies between two shares. Shells need single \
+         quotes around a leading !: '!box:0,0,0,1,1,1'.",
+        usages.join(" ")
+    )
 }
 
 /// The clip that flags make, before the scene is known in which parts of it may lie at shares.

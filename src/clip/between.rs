@@ -2,9 +2,8 @@
 
 use std::mem::discriminant;
 
-use glam::{DQuat, DVec3};
-
-use super::{Expression, Plane, Shape, Solid};
+use super::parameter::Parameter;
+use super::{Expression, Plane, Shape};
 use crate::error::{Error, Result};
 
 impl Expression {
@@ -60,130 +59,37 @@ impl Shape {
         if share == 0.0 || share == 1.0 {
             return Ok(*if share == 0.0 { self } else { other });
         }
-        let point = |from: DVec3, to: DVec3| from.lerp(to, share);
-        let solid = self.solid().of_both(
-            other.solid(),
-            |from, to| from.between(&to, share),
-            point,
-            point,
-            |from, to| from + (to - from) * share,
-            |from, to| from.slerp(to, share),
-        )?;
-        let solid = solid.ok_or_else(|| unlike(self, other))?;
-        let between = Self::new(solid)?;
-        Ok(match self.is_outside() {
-            true => between.complement(),
-            false => between,
-        })
+        let pairs = self
+            .solid()
+            .values()
+            .into_iter()
+            .zip(other.solid().values());
+        self.with(pairs.map(|(from, to)| from.between(to, share)))
     }
 }
 
-impl Solid {
-    /// A solid of whose parts each is made of those of two solids of a kind; `None` where they are of two kinds.
-    pub(super) fn of_both(
-        self,
-        other: Self,
-        plane: impl Fn(Plane, Plane) -> Result<Plane>,
-        point: impl Fn(DVec3, DVec3) -> DVec3,
-        sizes: impl Fn(DVec3, DVec3) -> DVec3,
-        size: impl Fn(f64, f64) -> f64,
-        rotation: impl Fn(DQuat, DQuat) -> DQuat,
-    ) -> Result<Option<Self>> {
-        Ok(Some(match (self, other) {
-            (Self::Plane(from), Self::Plane(to)) => Self::Plane(plane(from, to)?),
+impl Parameter {
+    /// The parameter at a share of the way to another of its role.
+    fn between(self, other: Self, share: f64) -> Result<Self> {
+        Ok(match (self, other) {
+            (Self::Plane(from), Self::Plane(to)) => Self::Plane(from.between(&to, share)?),
+            (Self::Point(from), Self::Point(to)) => Self::Point(from.lerp(to, share)),
+            (Self::Sizes(from), Self::Sizes(to)) => Self::Sizes(from.lerp(to, share)),
+            (Self::Size(from), Self::Size(to)) => Self::Size(from + (to - from) * share),
+            (Self::Rotation(from), Self::Rotation(to)) => Self::Rotation(from.slerp(to, share)),
             (
-                Self::Slab {
-                    plane: from,
-                    thickness,
-                },
-                Self::Slab {
-                    plane: to,
-                    thickness: other,
-                },
-            ) => Self::Slab {
-                plane: plane(from, to)?,
-                thickness: size(thickness, other),
-            },
-            (
-                Self::Cuboid {
-                    centre,
-                    half,
-                    rotation: turn,
-                },
-                Self::Cuboid {
-                    centre: c,
-                    half: h,
-                    rotation: r,
-                },
-            ) => Self::Cuboid {
-                centre: point(centre, c),
-                half: sizes(half, h),
-                rotation: rotation(turn, r),
-            },
-            (
-                Self::Sphere { centre, radius },
-                Self::Sphere {
-                    centre: c,
-                    radius: r,
-                },
-            ) => Self::Sphere {
-                centre: point(centre, c),
-                radius: size(radius, r),
-            },
-            (
-                Self::Ellipsoid {
-                    centre,
-                    radii,
-                    rotation: turn,
-                },
-                Self::Ellipsoid {
-                    centre: c,
-                    radii: h,
-                    rotation: r,
-                },
-            ) => Self::Ellipsoid {
-                centre: point(centre, c),
-                radii: sizes(radii, h),
-                rotation: rotation(turn, r),
-            },
-            (
-                Self::Cylinder { from, to, radius },
-                Self::Cylinder {
-                    from: f,
-                    to: t,
-                    radius: r,
-                },
-            ) => Self::Cylinder {
-                from: point(from, f),
-                to: point(to, t),
-                radius: size(radius, r),
-            },
-            (
-                Self::Capsule { from, to, radius },
-                Self::Capsule {
-                    from: f,
-                    to: t,
-                    radius: r,
-                },
-            ) => Self::Capsule {
-                from: point(from, f),
-                to: point(to, t),
-                radius: size(radius, r),
-            },
-            (
-                Self::Cone { apex, base, radius },
-                Self::Cone {
-                    apex: a,
-                    base: b,
-                    radius: r,
-                },
-            ) => Self::Cone {
-                apex: point(apex, a),
-                base: point(base, b),
-                radius: size(radius, r),
-            },
-            _ => return Ok(None),
-        }))
+                Self::Plane(_)
+                | Self::Point(_)
+                | Self::Sizes(_)
+                | Self::Size(_)
+                | Self::Rotation(_),
+                _,
+            ) => {
+                return Err(Error::Invalid(
+                    "nothing lies between numbers of two roles".into(),
+                ));
+            }
+        })
     }
 }
 
@@ -214,6 +120,7 @@ impl Plane {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
 
     fn between(from: &str, to: &str, share: f64) -> Result<Expression> {
         let [from, to] = [from, to].map(|text| text.parse::<Expression>().expect("an expression"));

@@ -1,14 +1,17 @@
 //! Clips in JSON: a list of planes, or of regions with names,
 //! `[{"name": "core", "clip": {"all": [{"sphere": {"centre": [0, 0, 0], "radius": 1}}, {"not": ...}]}}, ...]`.
 
+use std::collections::HashMap;
 use std::fmt;
 use std::path::Path;
 
-use glam::{DQuat, DVec3};
-use serde::de::{Error as _, SeqAccess, Visitor};
-use serde::{Deserialize, Serialize};
+use serde::de::{EnumAccess, Error as _, MapAccess, SeqAccess, Unexpected, VariantAccess, Visitor};
+use serde::ser::SerializeStructVariant;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{Expression, Plane, Shape, Solid};
+use super::shape_text::{kind, names};
+use super::solid::Kind;
+use super::{Expression, Plane, Shape};
 use crate::error::{Error, Result};
 use crate::json;
 
@@ -37,86 +40,128 @@ struct Saved<'a> {
     name: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     layer: Option<&'a str>,
-    clip: Node,
+    clip: &'a Expression,
 }
 
-/// An expression as JSON has it.
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
+/// An expression as JSON has it, of which nothing but its form is known.
 enum Node {
-    /// Keeps everything.
     Whole,
     All(Vec<Node>),
     Any(Vec<Node>),
     Not(Box<Node>),
-    Plane {
-        normal: [f64; 3],
-        d: f64,
-    },
-    Slab {
-        normal: [f64; 3],
-        d: f64,
-        thickness: f64,
-    },
-    Box {
-        centre: [f64; 3],
-        half: [f64; 3],
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        rotation: Option<[f64; 4]>,
-    },
-    Sphere {
-        centre: [f64; 3],
-        radius: f64,
-    },
-    Ellipsoid {
-        centre: [f64; 3],
-        radii: [f64; 3],
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        rotation: Option<[f64; 4]>,
-    },
-    Cylinder {
-        from: [f64; 3],
-        to: [f64; 3],
-        radius: f64,
-    },
-    Capsule {
-        from: [f64; 3],
-        to: [f64; 3],
-        radius: f64,
-    },
-    Cone {
-        apex: [f64; 3],
-        base: [f64; 3],
-        radius: f64,
-    },
+    /// The kind of a solid, and its numbers.
+    Solid(&'static Kind, Vec<f64>),
 }
 
-/// Quaternions are w, x, y, z.
-fn quaternion(rotation: Option<[f64; 4]>) -> DQuat {
-    rotation.map_or(DQuat::IDENTITY, |[w, x, y, z]| DQuat::from_xyzw(x, y, z, w))
+impl<'de> Deserialize<'de> for Node {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
+        from.deserialize_enum("Node", &[], NodeVisitor)
+    }
 }
 
-fn numbers(rotation: DQuat) -> Option<[f64; 4]> {
-    (rotation != DQuat::IDENTITY).then_some([rotation.w, rotation.x, rotation.y, rotation.z])
+struct NodeVisitor;
+
+impl<'de> Visitor<'de> for NodeVisitor {
+    type Value = Node;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "whole, all, any, not or a shape ({})", names())
+    }
+
+    fn visit_enum<A: EnumAccess<'de>>(self, node: A) -> std::result::Result<Node, A::Error> {
+        let (name, content) = node.variant::<String>()?;
+        match name.as_str() {
+            "whole" => content.unit_variant().map(|()| Node::Whole),
+            "all" => content.newtype_variant().map(Node::All),
+            "any" => content.newtype_variant().map(Node::Any),
+            "not" => content.newtype_variant().map(Node::Not),
+            _ => match kind(&name) {
+                Some(kind) => {
+                    let numbers = content.struct_variant(&[], kind)?;
+                    Ok(Node::Solid(kind, numbers))
+                }
+                None => Err(A::Error::invalid_value(Unexpected::Str(&name), &self)),
+            },
+        }
+    }
+}
+
+/// Reads the numbers of a solid of its kind.
+impl<'de> Visitor<'de> for &'static Kind {
+    type Value = Vec<f64>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let fields: Vec<&str> = self.fields().map(|(field, _)| field).collect();
+        write!(f, "the fields {} of a {}", fields.join(", "), self.name)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> std::result::Result<Vec<f64>, A::Error> {
+        let mut values = HashMap::new();
+        while let Some(name) = map.next_key::<String>()? {
+            let field = self.fields().find(|(field, _)| *field == name);
+            let (field, count) =
+                field.ok_or_else(|| A::Error::invalid_value(Unexpected::Str(&name), &self))?;
+            let value = match count {
+                1 => vec![map.next_value()?],
+                3 => map.next_value::<[f64; 3]>()?.to_vec(),
+                _ => map
+                    .next_value::<Option<[f64; 4]>>()?
+                    .map_or(Vec::new(), Vec::from),
+            };
+            if values.insert(field, value).is_some() {
+                return Err(A::Error::duplicate_field(field));
+            }
+        }
+        let mut numbers = Vec::new();
+        for (field, count) in self.fields() {
+            match values.remove(field) {
+                Some(value) => numbers.extend(value),
+                None if count == 4 => {}
+                None => return Err(A::Error::missing_field(field)),
+            }
+        }
+        Ok(numbers)
+    }
 }
 
 /// As a node of the tree of [`load_clips`].
 impl<'de> Deserialize<'de> for Expression {
-    fn deserialize<D: serde::Deserializer<'de>>(
-        deserializer: D,
-    ) -> std::result::Result<Self, D::Error> {
-        let node = Node::deserialize(deserializer)?;
-        node.expression().map_err(serde::de::Error::custom)
+    fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
+        let node = Node::deserialize(from)?;
+        node.expression().map_err(D::Error::custom)
     }
 }
 
 /// As a node of the tree of [`load_clips`].
 impl Serialize for Expression {
-    fn serialize<S: serde::Serializer>(
-        &self,
-        serializer: S,
-    ) -> std::result::Result<S::Ok, S::Error> {
-        Node::of(self).serialize(serializer)
+    fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
+        match self {
+            Self::All(all) if all.is_empty() => to.serialize_unit_variant("Node", 0, "whole"),
+            Self::All(all) => to.serialize_newtype_variant("Node", 0, "all", all),
+            Self::Any(any) => to.serialize_newtype_variant("Node", 0, "any", any),
+            Self::Not(operand) => to.serialize_newtype_variant("Node", 0, "not", operand),
+            Self::Shape(shape) if shape.is_outside() => {
+                let inside = Self::Shape(shape.complement());
+                to.serialize_newtype_variant("Node", 0, "not", &inside)
+            }
+            Self::Shape(shape) => {
+                let (solid, numbers) = (shape.solid(), shape.solid().numbers());
+                let mut node =
+                    to.serialize_struct_variant("Node", 0, solid.name(), numbers.len())?;
+                let mut rest = &numbers[..];
+                for (name, count) in solid.kind().fields() {
+                    // Of a rotation that turns nothing there are no numbers.
+                    let (own, others) = rest.split_at(count.min(rest.len()));
+                    match own {
+                        [] => {}
+                        [number] => node.serialize_field(name, number)?,
+                        list => node.serialize_field(name, list)?,
+                    }
+                    rest = others;
+                }
+                node.end()
+            }
+        }
     }
 }
 
@@ -131,133 +176,18 @@ impl Node {
                 .map(Self::expression)
                 .collect::<Result<Vec<_>>>(),
         };
-        let v = DVec3::from;
-        let solid = match self {
-            Self::Whole => return Ok(Expression::All(Vec::new())),
-            Self::All(all) => return Ok(Expression::All(list("all", all)?)),
-            Self::Any(any) => return Ok(Expression::Any(list("any", any)?)),
-            Self::Not(node) => {
-                return Ok(match node.expression()? {
-                    Expression::Shape(shape) if !shape.is_outside() => {
-                        Expression::Shape(shape.complement())
-                    }
-                    other => Expression::Not(Box::new(other)),
-                });
-            }
-            Self::Plane { normal, d } => Solid::Plane(Plane::new(v(normal), d)?),
-            Self::Slab {
-                normal,
-                d,
-                thickness,
-            } => Solid::Slab {
-                plane: Plane::new(v(normal), d)?,
-                thickness,
+        Ok(match self {
+            Self::Whole => Expression::All(Vec::new()),
+            Self::All(all) => Expression::All(list("all", all)?),
+            Self::Any(any) => Expression::Any(list("any", any)?),
+            Self::Not(node) => match node.expression()? {
+                Expression::Shape(shape) if !shape.is_outside() => {
+                    Expression::Shape(shape.complement())
+                }
+                other => Expression::Not(Box::new(other)),
             },
-            Self::Box {
-                centre,
-                half,
-                rotation,
-            } => Solid::Cuboid {
-                centre: v(centre),
-                half: v(half),
-                rotation: quaternion(rotation),
-            },
-            Self::Sphere { centre, radius } => Solid::Sphere {
-                centre: v(centre),
-                radius,
-            },
-            Self::Ellipsoid {
-                centre,
-                radii,
-                rotation,
-            } => Solid::Ellipsoid {
-                centre: v(centre),
-                radii: v(radii),
-                rotation: quaternion(rotation),
-            },
-            Self::Cylinder { from, to, radius } => Solid::Cylinder {
-                from: v(from),
-                to: v(to),
-                radius,
-            },
-            Self::Capsule { from, to, radius } => Solid::Capsule {
-                from: v(from),
-                to: v(to),
-                radius,
-            },
-            Self::Cone { apex, base, radius } => Solid::Cone {
-                apex: v(apex),
-                base: v(base),
-                radius,
-            },
-        };
-        Shape::new(solid).map(Expression::Shape)
-    }
-
-    fn of(expression: &Expression) -> Self {
-        let list = |all: &[Expression]| all.iter().map(Self::of).collect();
-        match expression {
-            Expression::All(all) if all.is_empty() => Self::Whole,
-            Expression::All(all) => Self::All(list(all)),
-            Expression::Any(any) => Self::Any(list(any)),
-            Expression::Not(operand) => Self::Not(Box::new(Self::of(operand))),
-            Expression::Shape(shape) if shape.is_outside() => {
-                Self::Not(Box::new(Self::of_solid(&shape.solid())))
-            }
-            Expression::Shape(shape) => Self::of_solid(&shape.solid()),
-        }
-    }
-
-    fn of_solid(solid: &Solid) -> Self {
-        let v = |v: DVec3| v.to_array();
-        match *solid {
-            Solid::Plane(plane) => Self::Plane {
-                normal: v(plane.normal()),
-                d: plane.offset(),
-            },
-            Solid::Slab { plane, thickness } => Self::Slab {
-                normal: v(plane.normal()),
-                d: plane.offset(),
-                thickness,
-            },
-            Solid::Cuboid {
-                centre,
-                half,
-                rotation,
-            } => Self::Box {
-                centre: v(centre),
-                half: v(half),
-                rotation: numbers(rotation),
-            },
-            Solid::Sphere { centre, radius } => Self::Sphere {
-                centre: v(centre),
-                radius,
-            },
-            Solid::Ellipsoid {
-                centre,
-                radii,
-                rotation,
-            } => Self::Ellipsoid {
-                centre: v(centre),
-                radii: v(radii),
-                rotation: numbers(rotation),
-            },
-            Solid::Cylinder { from, to, radius } => Self::Cylinder {
-                from: v(from),
-                to: v(to),
-                radius,
-            },
-            Solid::Capsule { from, to, radius } => Self::Capsule {
-                from: v(from),
-                to: v(to),
-                radius,
-            },
-            Solid::Cone { apex, base, radius } => Self::Cone {
-                apex: v(apex),
-                base: v(base),
-                radius,
-            },
-        }
+            Self::Solid(kind, numbers) => Expression::Shape(Shape::new(kind.solid(&numbers)?)?),
+        })
     }
 }
 
@@ -290,10 +220,8 @@ pub fn clips_from_json(json: &[u8], name: &Path) -> Result<Vec<NamedClip>> {
 struct List(Vec<NamedClip>);
 
 impl<'de> Deserialize<'de> for List {
-    fn deserialize<D: serde::Deserializer<'de>>(
-        deserializer: D,
-    ) -> std::result::Result<Self, D::Error> {
-        deserializer.deserialize_seq(Self(Vec::new()))
+    fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
+        from.deserialize_seq(Self(Vec::new()))
     }
 }
 
@@ -316,16 +244,17 @@ impl<'de> Visitor<'de> for List {
 impl Entry {
     /// The clip of the element of this number.
     fn named(self, number: usize) -> std::result::Result<NamedClip, String> {
-        let node = match (self.clip, self.normal, self.d) {
-            (Some(node), None, None) => node,
-            (None, Some(normal), Some(d)) => Node::Plane { normal, d },
+        let clip = match (self.clip, self.normal, self.d) {
+            (Some(node), None, None) => node.expression(),
+            (None, Some(normal), Some(d)) => {
+                Plane::new(normal.into(), d).map(|plane| Expression::Shape(plane.into()))
+            }
             _ => {
                 return Err(format!(
                     "element {number} needs either \"clip\", or \"normal\" and \"d\""
                 ));
             }
         };
-        let clip = node.expression();
         Ok(NamedClip {
             clip: clip.map_err(|error| format!("element {number}: {error}"))?,
             name: self.name.unwrap_or_else(|| number.to_string()),
@@ -339,7 +268,7 @@ pub fn clips_to_json(clips: &[NamedClip]) -> String {
     let saved = clips.iter().map(|named| Saved {
         name: &named.name,
         layer: named.layer.as_deref(),
-        clip: Node::of(&named.clip),
+        clip: &named.clip,
     });
     let saved: Vec<_> = saved.collect();
     // Numbers and strings always have a form in JSON.

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::shape_text::NAMES;
+use super::shape_text::{kind, names};
 use super::{Clip, ClipOp, Plane, Shape};
 use crate::error::{Error, Result, shortened};
 
@@ -180,12 +180,12 @@ impl Parser<'_> {
                     _ => Expression::Not(Box::new(operands.remove(0))),
                 })
             }
-            _ if NAMES.contains(&name) => self.shape(rest),
+            _ if kind(name).is_some() => self.shape(rest),
             "" => Err(self.error("a shape, all(...), any(...) or not(...) is missing")),
             _ => Err(self.error(&format!(
                 "'{}' is neither a shape ({}) nor all, any or not",
                 shortened(name),
-                NAMES.join(", ")
+                names()
             ))),
         }
     }

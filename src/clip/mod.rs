@@ -9,12 +9,14 @@ mod expression;
 #[cfg(feature = "json")]
 mod file;
 mod outline;
+mod parameter;
 mod placed;
 mod plane;
 pub(crate) mod postfix;
 mod quadric;
 mod shape;
 mod shape_text;
+mod solid;
 mod surface;
 
 #[cfg(feature = "json")]
@@ -23,11 +25,13 @@ pub use expression::Expression;
 pub(crate) use expression::Parser;
 #[cfg(feature = "json")]
 pub use file::{NamedPlane, load_planes, planes_from_json};
+pub use parameter::Parameter;
 pub use plane::Plane;
 pub use quadric::Quadric;
-pub use shape::{Shape, Solid};
+pub use shape::Shape;
 #[cfg(feature = "lab")]
 pub use shape_text::numbers;
+pub use solid::Solid;
 pub use surface::Surface;
 
 use glam::DVec3;

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::{Plane, Shape, Solid};
+use super::Plane;
 use crate::camera::{Camera, Projection};
 
 /// Stretches of a circle: they leave it by less than 1/1800 of its radius.
@@ -13,73 +13,162 @@ const STRETCHES: usize = 96;
 /// A line between two points of a surface.
 type Stretch = [DVec3; 2];
 
-impl Shape {
-    /// Lines on its surface as a camera sees it, world units, whose ends lie on the surface: the edges of boxes; three great
-    /// ellipses of spheres and ellipsoids, and where they turn away from the eye; the circles of cylinders, cones and capsules,
-    /// and the lines of their sides where those turn away. An eye within such a side sees four of its lines. Planes are
-    /// squares of half the size `reach` around the point nearest to `near`.
-    ///
-    /// ```
-    /// use rara::{Camera, Shape, glam::DVec3};
-    ///
-    /// let eye = DVec3::new(3.0, 2.0, -4.0);
-    /// let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, (64, 64))?;
-    /// let block: Shape = "box:0,0,0,1,1,1".parse()?;
-    /// assert_eq!(block.outline(&camera, DVec3::ZERO, 1.0).len(), 12);
-    /// # Ok::<(), rara::Error>(())
-    /// ```
-    pub fn outline(&self, camera: &Camera, near: DVec3, reach: f64) -> Vec<[DVec3; 2]> {
-        let sight = Sight(camera);
-        let mut lines = Vec::new();
-        match self.solid() {
-            Solid::Plane(plane) => {
-                square(&mut lines, &plane, near, reach);
-                cross(&mut lines, &plane, near, reach);
-            }
-            Solid::Slab { plane, thickness } => {
-                square(&mut lines, &plane, near, reach);
-                // The other side is as far along the normal as the slab is thick.
-                for at in 0..lines.len() {
-                    lines.push(lines[at].map(|p| p + thickness * plane.normal()));
-                }
-            }
-            Solid::Cuboid {
-                centre,
-                half,
-                rotation,
-            } => edges(&mut lines, centre, half, rotation),
-            Solid::Sphere { centre, radius } => {
-                let axes = DMat3::from_diagonal(DVec3::splat(radius));
-                ellipsoid(&mut lines, centre, axes, sight);
-            }
-            Solid::Ellipsoid {
-                centre,
-                radii,
-                rotation,
-            } => {
-                let axes = DMat3::from_quat(rotation) * DMat3::from_diagonal(radii);
-                ellipsoid(&mut lines, centre, axes, sight);
-            }
-            Solid::Cylinder { from, to, radius } => {
-                tube(&mut lines, &Tube::new(from, to, radius), sight);
-            }
-            Solid::Capsule { from, to, radius } => {
-                let side = Tube::new(from, to, radius);
-                tube(&mut lines, &side, sight);
-                cap(&mut lines, &side, sight);
-                cap(&mut lines, &Tube::new(to, from, radius), sight);
-            }
-            Solid::Cone { apex, base, radius } => {
-                let around = Tube::new(base, apex, radius);
-                around.circle(&mut lines, base);
-                let slope = radius / around.length;
-                let to_eye = sight.from(apex);
-                // A cone's axis leads away from its apex, where the tube's leads to it.
-                let sides = around.angles(to_eye, -slope * to_eye.dot(around.axis));
-                lines.extend(sides.map(|angle| [apex, base + around.radial(angle)]));
-            }
+/// Draws lines as a camera sees them.
+pub(super) struct Pen<'a> {
+    pub(super) lines: Vec<Stretch>,
+    sight: Sight<'a>,
+    /// The middle of what is drawn of a plane is the point nearest to it.
+    near: DVec3,
+    /// Half the size of what is drawn of a plane.
+    reach: f64,
+}
+
+impl<'a> Pen<'a> {
+    pub(super) fn new(camera: &'a Camera, near: DVec3, reach: f64) -> Self {
+        Self {
+            lines: Vec::new(),
+            sight: Sight(camera),
+            near,
+            reach,
         }
-        lines
+    }
+
+    /// A square on a plane, and a small cross in its middle, where the plane is turned about.
+    pub(super) fn plane(&mut self, plane: &Plane) {
+        self.square(plane);
+        let [right, up] = <[DVec3; 2]>::from(plane.normal().any_orthonormal_pair());
+        let (middle, arm) = (self.middle(plane), 0.05 * self.reach);
+        let line = |along| [middle - arm * along, middle + arm * along];
+        self.lines.extend([right, up].map(line));
+    }
+
+    /// Squares on a plane and on the one that is so far along its normal.
+    pub(super) fn slab(&mut self, plane: &Plane, thickness: f64) {
+        self.square(plane);
+        for at in 0..self.lines.len() {
+            let line = self.lines[at].map(|p| p + thickness * plane.normal());
+            self.lines.push(line);
+        }
+    }
+
+    /// The twelve edges of a box.
+    pub(super) fn cuboid(&mut self, centre: DVec3, half: DVec3, rotation: DQuat) {
+        let corner = |bits: usize| {
+            let side = |axis: usize| if bits >> axis & 1 == 1 { 1.0 } else { -1.0 };
+            centre + rotation * (half * DVec3::new(side(0), side(1), side(2)))
+        };
+        for axis in 0..3 {
+            let lows = (0..8).filter(|bits| bits >> axis & 1 == 0);
+            let edges = lows.map(|bits| [corner(bits), corner(bits | 1 << axis)]);
+            self.lines.extend(edges);
+        }
+    }
+
+    /// Three great ellipses of an ellipsoid, and its contour.
+    pub(super) fn ellipsoid(&mut self, centre: DVec3, radii: DVec3, rotation: DQuat) {
+        let axes = DMat3::from_quat(rotation) * DMat3::from_diagonal(radii);
+        for axis in 0..3 {
+            self.circle([centre, axes.col((axis + 1) % 3), axes.col((axis + 2) % 3)]);
+        }
+        // Of the unit ball the contour is a circle across the line to the eye, at one over the eye's distance.
+        let eye = axes.inverse() * self.sight.from(centre);
+        let squared = eye.length_squared();
+        let (ahead, radius) = match self.sight.is_parallel() {
+            true => (0.0, 1.0),
+            false => (1.0 / squared, (1.0 - 1.0 / squared).sqrt()),
+        };
+        // An eye within sees no contour: its radius is no number.
+        if let Some(towards) = eye.try_normalize().filter(|_| radius > 0.0) {
+            let (right, up) = towards.any_orthonormal_pair();
+            let middle = centre + axes * (ahead * eye);
+            self.circle([middle, axes * (radius * right), axes * (radius * up)]);
+        }
+    }
+
+    /// The side of a tube, and a half ball at each end.
+    pub(super) fn capsule(&mut self, tube: &Tube) {
+        let [from, to] = tube.ends;
+        self.side(tube);
+        self.cap(tube);
+        self.cap(&Tube::new(to, from, tube.radius));
+    }
+
+    /// The circle at the first end of a tube, and lines from there to the other end, which is the tip of a cone.
+    pub(super) fn cone(&mut self, tube: &Tube) {
+        let [base, apex] = tube.ends;
+        self.around(tube, base);
+        let slope = tube.radius / tube.length;
+        let to_eye = self.sight.from(apex);
+        // A cone's axis leads away from its apex, where the tube's leads to it.
+        let sides = tube.angles(to_eye, -slope * to_eye.dot(tube.axis));
+        let sides = sides.map(|angle| [apex, base + tube.radial(angle)]);
+        self.lines.extend(sides);
+    }
+
+    /// The circle around a centre that goes through `centre + right` and `centre + up`, from its start to an angle.
+    fn arc(&mut self, [centre, right, up]: [DVec3; 3], angle: f64, stretches: usize) {
+        let point = |step: usize| {
+            let angle = angle * step as f64 / stretches as f64;
+            centre + right * angle.cos() + up * angle.sin()
+        };
+        let arc = (0..stretches).map(|step| [point(step), point(step + 1)]);
+        self.lines.extend(arc);
+    }
+
+    fn circle(&mut self, around: [DVec3; 3]) {
+        self.arc(around, TAU, STRETCHES);
+    }
+
+    fn middle(&self, plane: &Plane) -> DVec3 {
+        self.near - plane.normal() * plane.distance(self.near)
+    }
+
+    /// The sides of a square on a plane.
+    fn square(&mut self, plane: &Plane) {
+        let [right, up] = <[DVec3; 2]>::from(plane.normal().any_orthonormal_pair());
+        let (middle, reach) = (self.middle(plane), self.reach);
+        let corner = |[x, y]: [f64; 2]| middle + reach * (x * right + y * up);
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner);
+        let sides = (0..4).map(|at| [corners[at], corners[(at + 1) % 4]]);
+        self.lines.extend(sides);
+    }
+
+    /// The circle around a tube's axis at a point of it.
+    fn around(&mut self, tube: &Tube, at: DVec3) {
+        let [right, up] = tube.across.map(|direction| tube.radius * direction);
+        self.circle([at, right, up]);
+    }
+
+    /// The circles at both ends, and lines of the side.
+    pub(super) fn side(&mut self, tube: &Tube) {
+        for at in tube.ends {
+            self.around(tube, at);
+        }
+        let product = match self.sight.is_parallel() {
+            true => 0.0,
+            false => tube.radius,
+        };
+        let angles = tube.angles(self.sight.from(tube.ends[0]), product);
+        let lines = angles.map(|angle| tube.ends.map(|end| end + tube.radial(angle)));
+        self.lines.extend(lines);
+    }
+
+    /// The half ball at the tube's first end: two half circles over its pole, and what of the ball's contour is on this half.
+    fn cap(&mut self, tube: &Tube) {
+        let centre = tube.ends[0];
+        let pole = -tube.radius * tube.axis;
+        for across in tube.across {
+            self.arc(
+                [centre, tube.radius * across, pole],
+                TAU / 2.0,
+                STRETCHES / 2,
+            );
+        }
+        let begin = self.lines.len();
+        self.ellipsoid(centre, DVec3::splat(tube.radius), DQuat::IDENTITY);
+        let is_outer = |line: &Stretch| line.iter().all(|p| (p - centre).dot(tube.axis) <= 0.0);
+        let ball = self.lines.split_off(begin).into_iter().skip(3 * STRETCHES);
+        self.lines.extend(ball.filter(is_outer));
     }
 }
 
@@ -101,79 +190,8 @@ impl Sight<'_> {
     }
 }
 
-/// The circle around a centre that goes through `centre + right` and `centre + up`, from one angle to another.
-fn arc(
-    lines: &mut Vec<Stretch>,
-    (centre, right, up): (DVec3, DVec3, DVec3),
-    [from, to]: [f64; 2],
-    stretches: usize,
-) {
-    let point = |step: usize| {
-        let angle = from + (to - from) * step as f64 / stretches as f64;
-        centre + right * angle.cos() + up * angle.sin()
-    };
-    lines.extend((0..stretches).map(|step| [point(step), point(step + 1)]));
-}
-
-fn circle(lines: &mut Vec<Stretch>, around: (DVec3, DVec3, DVec3)) {
-    arc(lines, around, [0.0, TAU], STRETCHES);
-}
-
-/// The sides of a square on a plane.
-fn square(lines: &mut Vec<Stretch>, plane: &Plane, near: DVec3, reach: f64) {
-    let [right, up] = <[DVec3; 2]>::from(plane.normal().any_orthonormal_pair());
-    let middle = near - plane.normal() * plane.distance(near);
-    let corner = |[x, y]: [f64; 2]| middle + reach * (x * right + y * up);
-    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner);
-    lines.extend((0..4).map(|at| [corners[at], corners[(at + 1) % 4]]));
-}
-
-/// A small cross in the middle of that square, where a plane is turned about.
-fn cross(lines: &mut Vec<Stretch>, plane: &Plane, near: DVec3, reach: f64) {
-    let [right, up] = <[DVec3; 2]>::from(plane.normal().any_orthonormal_pair());
-    let middle = near - plane.normal() * plane.distance(near);
-    let arm = 0.05 * reach;
-    lines.extend([right, up].map(|along| [middle - arm * along, middle + arm * along]));
-}
-
-/// The twelve edges of a box.
-fn edges(lines: &mut Vec<Stretch>, centre: DVec3, half: DVec3, rotation: DQuat) {
-    let corner = |bits: usize| {
-        let side = |axis: usize| if bits >> axis & 1 == 1 { 1.0 } else { -1.0 };
-        centre + rotation * (half * DVec3::new(side(0), side(1), side(2)))
-    };
-    for axis in 0..3 {
-        let lows = (0..8).filter(|bits| bits >> axis & 1 == 0);
-        lines.extend(lows.map(|bits| [corner(bits), corner(bits | 1 << axis)]));
-    }
-}
-
-/// Three great ellipses, and the contour. `axes` takes the unit ball to the ellipsoid around its centre.
-fn ellipsoid(lines: &mut Vec<Stretch>, centre: DVec3, axes: DMat3, sight: Sight<'_>) {
-    for axis in 0..3 {
-        let (right, up) = (axes.col((axis + 1) % 3), axes.col((axis + 2) % 3));
-        circle(lines, (centre, right, up));
-    }
-    // Of the unit ball the contour is a circle across the line to the eye, at one over the eye's distance.
-    let eye = axes.inverse() * sight.from(centre);
-    let squared = eye.length_squared();
-    let (ahead, radius) = match sight.is_parallel() {
-        true => (0.0, 1.0),
-        false => (1.0 / squared, (1.0 - 1.0 / squared).sqrt()),
-    };
-    // An eye within sees no contour: its radius is no number.
-    if let Some(towards) = eye.try_normalize().filter(|_| radius > 0.0) {
-        let (right, up) = towards.any_orthonormal_pair();
-        let middle = centre + axes * (ahead * eye);
-        circle(
-            lines,
-            (middle, axes * (radius * right), axes * (radius * up)),
-        );
-    }
-}
-
 /// A stretch of a line, and a distance around it.
-struct Tube {
+pub(super) struct Tube {
     ends: [DVec3; 2],
     /// From the first end to the other, of length one.
     axis: DVec3,
@@ -184,7 +202,7 @@ struct Tube {
 }
 
 impl Tube {
-    fn new(from: DVec3, to: DVec3, radius: f64) -> Self {
+    pub(super) fn new(from: DVec3, to: DVec3, radius: f64) -> Self {
         // A shape that was accepted has an axis.
         let axis = (to - from).try_normalize().unwrap_or(DVec3::Z);
         Self {
@@ -202,11 +220,6 @@ impl Tube {
         self.radius * (angle.cos() * right + angle.sin() * up)
     }
 
-    fn circle(&self, lines: &mut Vec<Stretch>, at: DVec3) {
-        let [right, up] = self.across.map(|direction| self.radius * direction);
-        circle(lines, (at, right, up));
-    }
-
     /// The angles around the axis whose direction has this product with the one to the eye: there the side turns away. Four
     /// angles where there are none.
     fn angles(&self, to_eye: DVec3, product: f64) -> impl Iterator<Item = f64> + use<> {
@@ -222,39 +235,11 @@ impl Tube {
     }
 }
 
-/// The circles at both ends, and lines of the side.
-fn tube(lines: &mut Vec<Stretch>, tube: &Tube, sight: Sight<'_>) {
-    for at in tube.ends {
-        tube.circle(lines, at);
-    }
-    let product = match sight.is_parallel() {
-        true => 0.0,
-        false => tube.radius,
-    };
-    let [from, to] = tube.ends;
-    let angles = tube.angles(sight.from(from), product);
-    lines.extend(angles.map(|angle| [from, to].map(|end| end + tube.radial(angle))));
-}
-
-/// The half ball at the tube's first end: two half circles over its pole, and what of the ball's contour is on this half.
-fn cap(lines: &mut Vec<Stretch>, tube: &Tube, sight: Sight<'_>) {
-    let centre = tube.ends[0];
-    let pole = -tube.radius * tube.axis;
-    for across in tube.across {
-        let around = (centre, tube.radius * across, pole);
-        arc(lines, around, [0.0, TAU / 2.0], STRETCHES / 2);
-    }
-    let mut ball = Vec::new();
-    let axes = DMat3::from_diagonal(DVec3::splat(tube.radius));
-    ellipsoid(&mut ball, centre, axes, sight);
-    let is_outer = |line: &Stretch| line.iter().all(|p| (p - centre).dot(tube.axis) <= 0.0);
-    lines.extend(ball.into_iter().skip(3 * STRETCHES).filter(is_outer));
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::clip::placed::tests::shapes;
+    use crate::clip::{Shape, Solid};
     use crate::scene::Random;
 
     fn cameras(random: &mut Random) -> [Camera; 2] {

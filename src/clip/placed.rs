@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::{Plane, Shape, Solid};
+use super::parameter::Parameter;
+use super::{Plane, Shape};
 use crate::error::Result;
 use crate::placement::Placement;
 
@@ -21,50 +22,47 @@ impl Shape {
     /// # Errors
     /// As of [`Shape::new`], where numbers overflow or a size becomes zero.
     pub fn placed(&self, placement: &Placement) -> Result<Self> {
-        let (turn, scale) = (placement.rotation(), placement.scale());
-        let plane = |plane: Plane, _| {
-            let normal = turn * plane.normal();
-            Plane::new(
-                normal,
-                scale * plane.offset() - normal.dot(placement.position()),
-            )
-        };
-        let solid = self.solid().of_both(
-            self.solid(),
-            plane,
-            |point, _| placement.to_world(point),
-            |sizes, _| scale * sizes,
-            |size, _| scale * size,
-            |rotation, _| turn * rotation,
-        )?;
-        let solid = solid.expect("it is of its own kind");
-        let inside = Self::new(solid)?;
-        Ok(match self.is_outside() {
-            true => inside.complement(),
-            false => inside,
-        })
+        let values = self.solid().values().into_iter();
+        self.with(values.map(|value| value.placed(placement)))
     }
 
     /// The solid's middle, world units: halfway along the axis of one that has ends. Planes and slabs have none; theirs is the
     /// point nearest to `near`, halfway between the sides of a slab.
     pub fn middle(&self, near: DVec3) -> DVec3 {
-        match self.solid() {
-            Solid::Plane(plane) => near - plane.normal() * plane.distance(near),
-            Solid::Slab { plane, thickness } => {
+        match self.solid().values()[..] {
+            [Parameter::Plane(plane)] => near - plane.normal() * plane.distance(near),
+            [Parameter::Plane(plane), Parameter::Size(thickness)] => {
                 near - plane.normal() * (plane.distance(near) - thickness / 2.0)
             }
-            Solid::Cuboid { centre, .. }
-            | Solid::Sphere { centre, .. }
-            | Solid::Ellipsoid { centre, .. } => centre,
-            Solid::Cylinder { from, to, .. } | Solid::Capsule { from, to, .. } => from.midpoint(to),
-            Solid::Cone { apex, base, .. } => apex.midpoint(base),
+            [Parameter::Point(from), Parameter::Point(to), ..] => from.midpoint(to),
+            [Parameter::Point(centre), ..] => centre,
+            _ => near,
         }
+    }
+}
+
+impl Parameter {
+    fn placed(self, placement: &Placement) -> Result<Self> {
+        let (turn, scale) = (placement.rotation(), placement.scale());
+        Ok(match self {
+            Self::Plane(plane) => {
+                let normal = turn * plane.normal();
+                let offset = scale * plane.offset() - normal.dot(placement.position());
+                Self::Plane(Plane::new(normal, offset)?)
+            }
+            Self::Point(point) => Self::Point(placement.to_world(point)),
+            Self::Sizes(sizes) => Self::Sizes(scale * sizes),
+            Self::Size(size) => Self::Size(scale * size),
+            Self::Rotation(rotation) => Self::Rotation(turn * rotation),
+        })
     }
 }
 
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::clip::parameter::Role;
+    use crate::clip::solid::KINDS;
     use crate::scene::Random;
     use glam::DQuat;
 
@@ -74,44 +72,29 @@ pub(super) mod tests {
 
     /// One of each kind, within a few units of the origin, kept inside or outside.
     pub(in crate::clip) fn shapes(random: &mut Random) -> Vec<Shape> {
+        let size = |random: &mut Random| random.range(0.3, 1.5);
         let mut shapes = Vec::new();
-        for kind in 0..8 {
-            let size = |random: &mut Random| random.range(0.3, 1.5);
-            let (from, to) = (direction(random), 2.0 * direction(random));
-            let radius = size(random);
-            let sizes = DVec3::from_array([(); 3].map(|()| size(random)));
-            let axis = direction(random);
-            let rotation = DQuat::from_axis_angle(axis, random.range(0.0, 6.0));
-            let plane = Plane::new(from, random.range(-1.0, 1.0)).unwrap();
-            let shape = Shape::new(match kind {
-                0 => Solid::Plane(plane),
-                1 => Solid::Slab {
-                    plane,
-                    thickness: radius,
-                },
-                2 => Solid::Cuboid {
-                    centre: from,
-                    half: sizes,
-                    rotation,
-                },
-                3 => Solid::Sphere {
-                    centre: from,
-                    radius,
-                },
-                4 => Solid::Ellipsoid {
-                    centre: from,
-                    radii: sizes,
-                    rotation,
-                },
-                5 => Solid::Cylinder { from, to, radius },
-                6 => Solid::Capsule { from, to, radius },
-                _ => Solid::Cone {
-                    apex: from,
-                    base: to,
-                    radius,
-                },
+        for kind in KINDS {
+            let mut far = 0.0;
+            let values = kind.parameters.iter().map(|(.., role)| {
+                let towards = direction(random);
+                Ok(match role {
+                    Role::Plane => Parameter::Plane(Plane::new(towards, random.range(-1.0, 1.0))?),
+                    Role::Point => {
+                        far += 1.0;
+                        Parameter::Point(far * towards)
+                    }
+                    Role::Sizes => {
+                        Parameter::Sizes(DVec3::from_array([(); 3].map(|()| size(random))))
+                    }
+                    Role::Size => Parameter::Size(size(random)),
+                    Role::Rotation => {
+                        let angle = random.range(0.0, 6.0);
+                        Parameter::Rotation(DQuat::from_axis_angle(towards, angle))
+                    }
+                })
             });
-            let shape = shape.unwrap();
+            let shape = Shape::new(kind.with(values).unwrap()).unwrap();
             shapes.push(match random.unit() < 0.5 {
                 true => shape,
                 false => shape.complement(),

@@ -2,76 +2,13 @@
 
 use glam::{DQuat, DVec3};
 
+use super::outline::Pen;
+use super::parameter::Parameter;
 use super::quadric::unit;
-use super::{Clip, ClipOp, Plane, Quadric};
-use crate::error::{Error, Result};
-
-/// A solid, by the numbers that it is given with. Lengths are world units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Solid {
-    /// A half-space.
-    Plane(Plane),
-    /// What lies between a plane and another that is parallel to it.
-    Slab {
-        /// The side of it that the slab is on.
-        plane: Plane,
-        /// How thick the slab is.
-        thickness: f64,
-    },
-    /// A box.
-    Cuboid {
-        /// Its centre.
-        centre: DVec3,
-        /// Half its sizes along its own axes.
-        half: DVec3,
-        /// Its rotation, a unit quaternion.
-        rotation: DQuat,
-    },
-    /// A sphere.
-    Sphere {
-        /// Its centre.
-        centre: DVec3,
-        /// Its radius.
-        radius: f64,
-    },
-    /// An ellipsoid.
-    Ellipsoid {
-        /// Its centre.
-        centre: DVec3,
-        /// Its radii along its own axes.
-        radii: DVec3,
-        /// Its rotation, a unit quaternion.
-        rotation: DQuat,
-    },
-    /// A cylinder between two discs.
-    Cylinder {
-        /// The centre of one disc.
-        from: DVec3,
-        /// The centre of the other.
-        to: DVec3,
-        /// Its radius.
-        radius: f64,
-    },
-    /// All points within a distance of a stretch of a line.
-    Capsule {
-        /// One end of the stretch.
-        from: DVec3,
-        /// The other end.
-        to: DVec3,
-        /// The distance.
-        radius: f64,
-    },
-    /// A cone.
-    Cone {
-        /// Its tip.
-        apex: DVec3,
-        /// The centre of the disc that it stands on.
-        base: DVec3,
-        /// The disc's radius.
-        radius: f64,
-    },
-}
+use super::solid::Solid;
+use super::{Clip, ClipOp, Plane};
+use crate::camera::Camera;
+use crate::error::Result;
 
 /// A solid, of which the inside or the outside stays visible. It parses from text, as `sphere:0,0,0,1`; a leading `!` keeps
 /// the outside.
@@ -97,28 +34,15 @@ impl Shape {
     /// [`Error::Invalid`] for numbers that are not finite, sizes that are not above zero, rotations that are zero and axes
     /// without length.
     pub fn new(solid: Solid) -> Result<Self> {
-        let solid = match solid {
-            Solid::Cuboid {
-                centre,
-                half,
-                rotation,
-            } => Solid::Cuboid {
-                centre,
-                half,
-                rotation: unit(rotation)?,
-            },
-            Solid::Ellipsoid {
-                centre,
-                radii,
-                rotation,
-            } => Solid::Ellipsoid {
-                centre,
-                radii,
-                rotation: unit(rotation)?,
-            },
-            other => other,
-        };
-        region(&solid)?;
+        let values = solid.values().into_iter();
+        let solid = solid.with(values.map(|value| match value {
+            Parameter::Rotation(rotation) => unit(rotation).map(Parameter::Rotation),
+            Parameter::Plane(_)
+            | Parameter::Point(_)
+            | Parameter::Sizes(_)
+            | Parameter::Size(_) => Ok(value),
+        }))?;
+        solid.region()?;
         Ok(Self {
             solid,
             outside: false,
@@ -148,8 +72,8 @@ impl Shape {
     /// The plane, if the shape is a half-space.
     pub fn as_plane(&self) -> Option<Plane> {
         match self.solid {
-            Solid::Plane(plane) if self.outside => Some(plane.flipped()),
-            Solid::Plane(plane) => Some(plane),
+            Solid::Plane { plane } if self.outside => Some(plane.flipped()),
+            Solid::Plane { plane } => Some(plane),
             _ => None,
         }
     }
@@ -167,11 +91,40 @@ impl Shape {
     /// The region that the shape keeps.
     pub fn clip(&self) -> Clip {
         // A solid that was accepted makes a region.
-        let inside = region(&self.solid).unwrap_or_default();
+        let inside = self.solid.region().unwrap_or_default();
         match self.outside {
             true => inside.complement(),
             false => inside,
         }
+    }
+
+    /// Lines on its surface as a camera sees it, world units, whose ends lie on the surface: the edges of boxes; three great
+    /// ellipses of spheres and ellipsoids, and where they turn away from the eye; the circles of cylinders, cones and capsules,
+    /// and the lines of their sides where those turn away. An eye within such a side sees four of its lines. Planes are
+    /// squares of half the size `reach` around the point nearest to `near`.
+    ///
+    /// ```
+    /// use rara::{Camera, Shape, glam::DVec3};
+    ///
+    /// let eye = DVec3::new(3.0, 2.0, -4.0);
+    /// let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 50.0, (64, 64))?;
+    /// let block: Shape = "box:0,0,0,1,1,1".parse()?;
+    /// assert_eq!(block.outline(&camera, DVec3::ZERO, 1.0).len(), 12);
+    /// # Ok::<(), rara::Error>(())
+    /// ```
+    pub fn outline(&self, camera: &Camera, near: DVec3, reach: f64) -> Vec<[DVec3; 2]> {
+        let mut pen = Pen::new(camera, near, reach);
+        self.solid.draw(&mut pen);
+        pen.lines
+    }
+
+    /// One with other parameters, on the same side.
+    pub(super) fn with(&self, values: impl Iterator<Item = Result<Parameter>>) -> Result<Self> {
+        let inside = Self::new(self.solid.with(values)?)?;
+        Ok(Self {
+            outside: self.outside,
+            ..inside
+        })
     }
 
     /// The shape that keeps what this one does not.
@@ -187,7 +140,7 @@ impl Shape {
 impl From<Plane> for Shape {
     fn from(plane: Plane) -> Self {
         Self {
-            solid: Solid::Plane(plane),
+            solid: Solid::Plane { plane },
             outside: false,
         }
     }
@@ -201,71 +154,6 @@ impl Clip {
             shapes => Self::joined(shapes.iter().map(Shape::clip), op),
         }
     }
-}
-
-/// The inside of a solid.
-fn region(solid: &Solid) -> Result<Clip> {
-    match *solid {
-        Solid::Plane(plane) => Ok(Clip::of([plane], ClipOp::And)),
-        Solid::Slab { plane, thickness } => {
-            let beyond = Plane::new(-plane.normal(), thickness - plane.offset())?;
-            match thickness > 0.0 {
-                true => Ok(Clip::of([plane, beyond], ClipOp::And)),
-                false => Err(Error::Invalid("a slab's thickness is above zero".into())),
-            }
-        }
-        Solid::Cuboid {
-            centre,
-            half,
-            rotation,
-        } => {
-            let has_sizes = half.min_element() > 0.0;
-            if !has_sizes {
-                return Err(Error::Invalid("a box's half sizes are above zero".into()));
-            }
-            let side = |index: usize| {
-                let inward = if index < 3 { -1.0 } else { 1.0 };
-                let normal = rotation * (DVec3::AXES[index % 3] * inward);
-                Plane::new(normal, half[index % 3] - normal.dot(centre))
-            };
-            let sides: Vec<Plane> = (0..6).map(side).collect::<Result<_>>()?;
-            Ok(Clip::of(sides, ClipOp::And))
-        }
-        Solid::Sphere { centre, radius } => {
-            Ok(Clip::of([Quadric::sphere(centre, radius)?], ClipOp::And))
-        }
-        Solid::Ellipsoid {
-            centre,
-            radii,
-            rotation,
-        } => Ok(Clip::of(
-            [Quadric::ellipsoid(centre, radii, rotation)?],
-            ClipOp::And,
-        )),
-        Solid::Cylinder { from, to, radius } => {
-            between(Quadric::cylinder(from, to, radius)?, from, to)
-        }
-        Solid::Capsule { from, to, radius } => {
-            let ends = [Quadric::sphere(from, radius)?, Quadric::sphere(to, radius)?];
-            let side = between(Quadric::cylinder(from, to, radius)?, from, to)?;
-            Ok(Clip::joined([Clip::of(ends, ClipOp::Or), side], ClipOp::Or))
-        }
-        Solid::Cone { apex, base, radius } => {
-            between(Quadric::cone(apex, base, radius)?, apex, base)
-        }
-    }
-}
-
-/// What a quadric keeps between the planes across a line at two of its points.
-fn between(quadric: Quadric, from: DVec3, to: DVec3) -> Result<Clip> {
-    let along = to - from;
-    let along = along / along.abs().max_element();
-    let mut clip = Clip::of([quadric], ClipOp::And);
-    for (normal, point) in [(along, from), (-along, to)] {
-        clip.surfaces
-            .push(Plane::new(normal, -normal.dot(point))?.into());
-    }
-    Ok(clip)
 }
 
 #[cfg(test)]

@@ -3,23 +3,20 @@
 use std::fmt;
 use std::str::FromStr;
 
-use glam::{DQuat, DVec3};
-
-use super::{Plane, Shape, Solid};
-use crate::counted::counted;
+use super::Shape;
+use super::solid::{KINDS, Kind};
 use crate::error::{Error, Result, shortened};
 
-/// The names of the shapes.
-pub(super) const NAMES: [&str; 8] = [
-    "plane",
-    "slab",
-    "box",
-    "sphere",
-    "ellipsoid",
-    "cylinder",
-    "capsule",
-    "cone",
-];
+/// The kind of solids of this name.
+pub(super) fn kind(name: &str) -> Option<&'static Kind> {
+    KINDS.iter().copied().find(|kind| kind.name == name)
+}
+
+/// The names of all kinds, for messages.
+pub(super) fn names() -> String {
+    let names: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
+    names.join(", ")
+}
 
 impl FromStr for Shape {
     type Err = Error;
@@ -35,121 +32,27 @@ impl FromStr for Shape {
                 shortened(bare)
             )));
         };
-        let shape = Self::new(solid(name.trim(), numbers)?)?;
+        let name = name.trim();
+        let kind = kind(name).ok_or_else(|| {
+            Error::Invalid(format!(
+                "'{}' is not a shape; use {}",
+                shortened(name),
+                names()
+            ))
+        })?;
+        let shape = Self::new(kind.solid(&self::numbers(numbers)?)?)?;
         Ok(if outside { shape.complement() } else { shape })
     }
-}
-
-/// The solid of this name and with these numbers.
-fn solid(name: &str, text: &str) -> Result<Solid> {
-    if !NAMES.contains(&name) {
-        return Err(Error::Invalid(format!(
-            "'{}' is not a shape; use {}",
-            shortened(name),
-            NAMES.join(", ")
-        )));
-    }
-    let list = numbers(text)?;
-    let vector = |at: usize| DVec3::from_slice(&list[at..]);
-    let rotation = match list[..] {
-        [.., w, x, y, z] if list.len() == 10 => DQuat::from_xyzw(x, y, z, w),
-        _ => DQuat::IDENTITY,
-    };
-    let needs = |what: &str| {
-        Err(Error::Invalid(format!(
-            "a {name} has {what}, not {}",
-            counted(list.len(), "number")
-        )))
-    };
-    Ok(match (name, list.len()) {
-        ("plane", 4) => Solid::Plane(Plane::new(vector(0), list[3])?),
-        ("plane", _) => return needs("4 numbers (normal, distance)"),
-        ("slab", 5) => Solid::Slab {
-            plane: Plane::new(vector(0), list[3])?,
-            thickness: list[4],
-        },
-        ("slab", _) => return needs("5 numbers (normal, distance, thickness)"),
-        ("box", 6 | 10) => Solid::Cuboid {
-            centre: vector(0),
-            half: vector(3),
-            rotation,
-        },
-        ("box", _) => {
-            return needs("6 numbers (centre, half sizes) or 10 (and a quaternion w,x,y,z)");
-        }
-        ("sphere", 4) => Solid::Sphere {
-            centre: vector(0),
-            radius: list[3],
-        },
-        ("sphere", _) => return needs("4 numbers (centre, radius)"),
-        ("ellipsoid", 6 | 10) => Solid::Ellipsoid {
-            centre: vector(0),
-            radii: vector(3),
-            rotation,
-        },
-        ("ellipsoid", _) => {
-            return needs("6 numbers (centre, radii) or 10 (and a quaternion w,x,y,z)");
-        }
-        ("cylinder", 7) => Solid::Cylinder {
-            from: vector(0),
-            to: vector(3),
-            radius: list[6],
-        },
-        ("cylinder", _) => return needs("7 numbers (two ends of the axis, radius)"),
-        ("capsule", 7) => Solid::Capsule {
-            from: vector(0),
-            to: vector(3),
-            radius: list[6],
-        },
-        ("capsule", _) => return needs("7 numbers (two ends of the axis, radius)"),
-        (_, 7) => Solid::Cone {
-            apex: vector(0),
-            base: vector(3),
-            radius: list[6],
-        },
-        _ => return needs("7 numbers (apex, centre of the base, radius of the base)"),
-    })
 }
 
 /// The text that it parses from.
 impl fmt::Display for Shape {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let list = |v: DVec3| format!("{},{},{}", v.x, v.y, v.z);
-        let turned = |q: DQuat| match q == DQuat::IDENTITY {
-            true => String::new(),
-            false => format!(",{},{},{},{}", q.w, q.x, q.y, q.z),
-        };
-        f.write_str(if self.is_outside() { "!" } else { "" })?;
-        match self.solid() {
-            Solid::Plane(plane) => write!(f, "plane:{},{}", list(plane.normal()), plane.offset()),
-            Solid::Slab { plane, thickness } => {
-                let normal = list(plane.normal());
-                write!(f, "slab:{normal},{},{thickness}", plane.offset())
-            }
-            Solid::Cuboid {
-                centre,
-                half,
-                rotation,
-            } => write!(f, "box:{},{}{}", list(centre), list(half), turned(rotation)),
-            Solid::Sphere { centre, radius } => write!(f, "sphere:{},{radius}", list(centre)),
-            Solid::Ellipsoid {
-                centre,
-                radii,
-                rotation,
-            } => {
-                let (centre, radii) = (list(centre), list(radii));
-                write!(f, "ellipsoid:{centre},{radii}{}", turned(rotation))
-            }
-            Solid::Cylinder { from, to, radius } => {
-                write!(f, "cylinder:{},{},{radius}", list(from), list(to))
-            }
-            Solid::Capsule { from, to, radius } => {
-                write!(f, "capsule:{},{},{radius}", list(from), list(to))
-            }
-            Solid::Cone { apex, base, radius } => {
-                write!(f, "cone:{},{},{radius}", list(apex), list(base))
-            }
-        }
+        let solid = self.solid();
+        let numbers = solid.numbers().into_iter().map(|number| number.to_string());
+        let numbers: Vec<String> = numbers.collect();
+        let not = if self.is_outside() { "!" } else { "" };
+        write!(f, "{not}{}:{}", solid.name(), numbers.join(","))
     }
 }
 

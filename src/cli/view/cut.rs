@@ -1,7 +1,7 @@
 //! A clip that is shown, and the one of its shapes that is held.
 
 use glam::DVec3;
-use rara::clip::{Expression, Solid};
+use rara::clip::Expression;
 use rara::{Clip, ClipOp, Placement, Plane, Shape};
 
 use super::numbers::stands_at;
@@ -135,9 +135,9 @@ impl Cut {
     /// Keeps the other side of the held shape.
     pub(super) fn flip(&mut self) {
         let shape = self.shape();
-        self.replace(match shape.solid() {
-            Solid::Plane(plane) => plane.flipped().into(),
-            _ => shape.complement(),
+        self.replace(match shape.as_plane() {
+            Some(plane) => plane.flipped().into(),
+            None => shape.complement(),
         });
     }
 
@@ -157,17 +157,15 @@ impl Cut {
     /// A few words on the held shape, for the title: `plane at 0.5000`, `outside of sphere 2 of 3`.
     pub(super) fn words(&self) -> String {
         let (shape, count) = (self.shape(), self.shapes().len());
-        let text = shape.to_string();
-        let name = text.trim_start_matches('!').split(':').next();
         let mut words = match shape.is_outside() {
             true => "outside of ".to_owned(),
             false => String::new(),
         };
-        words += name.unwrap_or_default();
+        words += shape.solid().name();
         if count > 1 {
             words += &format!(" {} of {count}", self.held + 1);
         }
-        if let Solid::Plane(plane) = shape.solid() {
+        if let Some(plane) = shape.as_plane() {
             words += &format!(" at {:.4}", stands_at(&plane));
         }
         words

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::{DQuat, DVec2, DVec3};
-use rara::clip::Solid;
+use rara::clip::Parameter;
 use rara::{Camera, Placement, Projection, Shape};
 
 use super::action::HeldAction;
@@ -78,22 +78,24 @@ impl Cut {
 
     /// Turns the held shape's axis to an axis of the world. A plane also goes through the middle of the scene.
     pub(super) fn align(&mut self, axis: DVec3) {
-        let shape = self.shape();
-        let turn = match shape.solid() {
-            Solid::Plane(_) => return self.set(self.across(axis)),
-            Solid::Cuboid { rotation, .. } | Solid::Ellipsoid { rotation, .. } => {
-                DQuat::from_rotation_arc(DVec3::X, axis) * rotation.inverse()
+        let arc = |from: DVec3| DQuat::from_rotation_arc(from, axis);
+        let mut ends = Vec::new();
+        for parameter in values(&self.shape()) {
+            match parameter {
+                Parameter::Plane(_) if self.shape().as_plane().is_some() => {
+                    return self.set(self.across(axis));
+                }
+                Parameter::Plane(plane) => return self.turn(arc(plane.normal())),
+                Parameter::Rotation(rotation) => {
+                    return self.turn(arc(DVec3::X) * rotation.inverse());
+                }
+                Parameter::Point(end) => ends.push(end),
+                Parameter::Sizes(_) | Parameter::Size(_) => {}
             }
-            Solid::Slab { plane, .. } => DQuat::from_rotation_arc(plane.normal(), axis),
-            Solid::Cylinder { from, to, .. } | Solid::Capsule { from, to, .. } => {
-                DQuat::from_rotation_arc((to - from).normalize(), axis)
-            }
-            Solid::Cone { apex, base, .. } => {
-                DQuat::from_rotation_arc((base - apex).normalize(), axis)
-            }
-            _ => return,
-        };
-        self.turn(turn);
+        }
+        if let [from, to] = ends[..] {
+            self.turn(arc((to - from).normalize()));
+        }
     }
 
     fn shift(&mut self, by: DVec3) {
@@ -116,10 +118,15 @@ impl Cut {
 
 /// The normal of what has a single one.
 fn normal(shape: &Shape) -> Option<DVec3> {
-    match shape.solid() {
-        Solid::Plane(plane) | Solid::Slab { plane, .. } => Some(plane.normal()),
+    values(shape).find_map(|parameter| match parameter {
+        Parameter::Plane(plane) => Some(plane.normal()),
         _ => None,
-    }
+    })
+}
+
+fn values(shape: &Shape) -> impl Iterator<Item = Parameter> {
+    let named = shape.solid().parameters().into_iter();
+    named.map(|(_, parameter)| parameter)
 }
 
 #[cfg(test)]

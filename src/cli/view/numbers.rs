@@ -2,58 +2,24 @@
 
 use std::fmt::Write;
 
-use glam::{DQuat, DVec3};
-use rara::clip::Solid;
+use glam::DQuat;
+use rara::clip::Parameter;
 use rara::{Plane, Shape};
 
 /// The numbers of a shape, a line each. Lengths are world units, and rotations an axis and degrees about it.
 pub(super) fn lines(shape: &Shape) -> Vec<String> {
     let mut lines = Vec::new();
     let mut say = |name: &str, numbers: &[f64]| lines.push(named(name, numbers));
-    let point = |at: DVec3| at.to_array();
-    match shape.solid() {
-        Solid::Plane(plane) => {
-            say("normal", &point(plane.normal()));
-            say("at", &[stands_at(&plane)]);
+    for (name, parameter) in shape.solid().parameters() {
+        match parameter {
+            Parameter::Plane(plane) => {
+                say("normal", &plane.normal().to_array());
+                say("at", &[stands_at(&plane)]);
+            }
+            Parameter::Point(vector) | Parameter::Sizes(vector) => say(name, &vector.to_array()),
+            Parameter::Size(size) => say(name, &[size]),
+            Parameter::Rotation(rotation) => turned(rotation, &mut say),
         }
-        Solid::Slab { plane, thickness } => {
-            say("normal", &point(plane.normal()));
-            say("at", &[stands_at(&plane)]);
-            say("thickness", &[thickness]);
-        }
-        Solid::Cuboid {
-            centre,
-            half,
-            rotation,
-        } => {
-            say("centre", &point(centre));
-            say("half size", &point(half));
-            lines.extend(turned(rotation));
-        }
-        Solid::Sphere { centre, radius } => {
-            say("centre", &point(centre));
-            say("radius", &[radius]);
-        }
-        Solid::Ellipsoid {
-            centre,
-            radii,
-            rotation,
-        } => {
-            say("centre", &point(centre));
-            say("radii", &point(radii));
-            lines.extend(turned(rotation));
-        }
-        Solid::Cylinder { from, to, radius } | Solid::Capsule { from, to, radius } => {
-            say("from", &point(from));
-            say("to", &point(to));
-            say("radius", &[radius]);
-        }
-        Solid::Cone { apex, base, radius } => {
-            say("tip", &point(apex));
-            say("base", &point(base));
-            say("radius", &[radius]);
-        }
-        _ => lines.push(shape.to_string()),
     }
     lines
 }
@@ -63,19 +29,14 @@ pub(super) fn stands_at(plane: &Plane) -> f64 {
     0.0 - plane.offset() // -0 is 0
 }
 
-fn turned(rotation: DQuat) -> Option<String> {
-    // Either sign is the same rotation; this one is less than half a turn.
-    let rotation = if rotation.w < 0.0 {
-        -rotation
-    } else {
-        rotation
-    };
-    let (axis, angle) = rotation.to_axis_angle();
+/// Says a rotation that can be seen, by the axis and the degrees of less than half a turn.
+fn turned(rotation: DQuat, say: &mut impl FnMut(&str, &[f64])) {
+    let sign = if rotation.w < 0.0 { -1.0 } else { 1.0 };
+    let (axis, angle) = (rotation * sign).to_axis_angle();
     let degrees = angle.to_degrees();
-    (degrees > 5e-3).then(|| {
-        let [x, y, z] = axis.to_array();
-        named("turned", &[x, y, z, degrees])
-    })
+    if degrees > 5e-3 {
+        say("turned", &[axis.x, axis.y, axis.z, degrees]);
+    }
 }
 
 /// A name and its numbers, in columns.

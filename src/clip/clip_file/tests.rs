@@ -1,6 +1,8 @@
 //! Clips in JSON.
 
 use super::*;
+use crate::clip::placed::tests::shapes;
+use crate::scene::Random;
 
 #[test]
 fn clips_round_trip() {
@@ -31,6 +33,27 @@ fn clips_round_trip() {
     let json = clips_to_json(&clips);
     let again = clips_from_json(json.as_bytes(), Path::new("clips.json")).unwrap();
     assert_eq!(again, clips);
+}
+
+#[test]
+fn shapes_of_every_kind_round_trip() {
+    let mut random = Random::new(12);
+    let shapes = [(); 20].map(|()| shapes(&mut random)).concat();
+    let clips = shapes.into_iter().map(|shape| NamedClip {
+        name: shape.solid().name().into(),
+        clip: Expression::Shape(shape),
+        layer: None,
+    });
+    let clips: Vec<NamedClip> = clips.collect();
+    let json = clips_to_json(&clips);
+    let again = clips_from_json(json.as_bytes(), Path::new("clips.json")).unwrap();
+    for (clip, again) in clips.iter().zip(&again) {
+        assert_eq!(again, clip);
+        assert_eq!(
+            clip.clip.to_string().parse::<Expression>().unwrap(),
+            clip.clip
+        );
+    }
 }
 
 #[test]

@@ -2,9 +2,9 @@
 
 use crate::measure;
 use glam::{DQuat, DVec3};
-use rara::clip::{Expression, Solid};
+use rara::clip::Expression;
 use rara::scene::Bounds;
-use rara::{Camera, Headless, Mode, Plane, Result, Scene, Settings, Shape, reference};
+use rara::{Camera, Headless, Mode, Plane, Result, Scene, Settings, reference};
 use serde::Serialize;
 
 use crate::frames::picture;
@@ -79,79 +79,40 @@ fn regions(bounds: &Bounds, plane: Plane) -> Result<Vec<(&'static str, Expressio
     let radius = bounds.radius();
     let (across, aside) = normal.any_orthonormal_pair();
     let turned = DQuat::from_rotation_arc(DVec3::X, normal);
-    let solid = |solid: Solid| Shape::new(solid).map(Expression::Shape);
-    let sphere = |at: DVec3, radius: f64| Shape::sphere(at, radius).map(Expression::Shape);
-    let ends = |inside: f64, half: f64| {
-        let axis = middle + normal * inside;
-        (axis - across * half, axis + across * half)
-    };
-    let (from, to) = ends(0.6 * radius, 1.5 * radius);
-    let cuboid = || {
-        solid(Solid::Cuboid {
-            centre: middle + normal * (0.6 * radius),
-            half: DVec3::new(0.6, 1.0, 1.0) * radius,
-            rotation: turned,
-        })
-    };
-    let whole = sphere(middle + normal * radius, radius);
-    Ok(vec![
-        ("plane", solid(Solid::Plane(plane))?),
-        (
-            "slab",
-            solid(Solid::Slab {
-                plane,
-                thickness: 0.8 * radius,
-            })?,
-        ),
-        ("box", cuboid()?),
-        ("sphere", whole?),
-        (
-            "ellipsoid",
-            solid(Solid::Ellipsoid {
-                centre: middle + normal * (0.6 * radius),
-                radii: DVec3::new(0.6, 1.0, 0.8) * radius,
-                rotation: turned,
-            })?,
-        ),
-        (
-            "cylinder",
-            solid(Solid::Cylinder {
-                from,
-                to,
-                radius: 0.6 * radius,
-            })?,
-        ),
-        (
-            "capsule",
-            solid(Solid::Capsule {
-                from,
-                to,
-                radius: 0.6 * radius,
-            })?,
-        ),
-        (
-            "cone",
-            solid(Solid::Cone {
-                apex: from,
-                base: to,
-                radius: 1.2 * radius,
-            })?,
-        ),
+    let list = |vector: DVec3| format!("{},{},{}", vector.x, vector.y, vector.z);
+    let near = middle + normal * (0.6 * radius);
+    let [from, to] = [-1.5, 1.5].map(|half| list(near + across * (half * radius)));
+    let (near, turned) = (list(near), format!("{},{}", turned.w, list(turned.xyz())));
+    let plane = format!("{},{}", list(normal), plane.offset());
+    let half = list(DVec3::new(0.6, 1.0, 1.0) * radius);
+    let cuboid = format!("box:{near},{half},{turned}");
+    let radii = list(DVec3::new(0.6, 1.0, 0.8) * radius);
+    let sphere = |at: DVec3, share: f64| format!("sphere:{},{}", list(at), share * radius);
+    let regions = [
+        ("plane", format!("plane:{plane}")),
+        ("slab", format!("slab:{plane},{}", 0.8 * radius)),
+        ("box", cuboid.clone()),
+        ("sphere", sphere(middle + normal * radius, 1.0)),
+        ("ellipsoid", format!("ellipsoid:{near},{radii},{turned}")),
+        ("cylinder", format!("cylinder:{from},{to},{}", 0.6 * radius)),
+        ("capsule", format!("capsule:{from},{to},{}", 0.6 * radius)),
+        ("cone", format!("cone:{from},{to},{}", 1.2 * radius)),
         (
             "box and not sphere",
-            Expression::All(vec![
-                cuboid()?,
-                Expression::Not(Box::new(sphere(middle, 0.4 * radius)?)),
-            ]),
+            format!("all({cuboid}, not({}))", sphere(middle, 0.4)),
         ),
         (
             "sphere or sphere or plane",
-            Expression::Any(vec![
-                sphere(middle + aside * (0.4 * radius), 0.3 * radius)?,
-                sphere(middle - aside * (0.4 * radius), 0.3 * radius)?,
-                solid(Solid::Plane(plane))?,
-            ]),
+            format!(
+                "any({}, {}, plane:{plane})",
+                sphere(middle + aside * (0.4 * radius), 0.3),
+                sphere(middle - aside * (0.4 * radius), 0.3)
+            ),
         ),
-        ("sphere around everything", sphere(middle, 100.0 * radius)?),
-    ])
+        ("sphere around everything", sphere(middle, 100.0)),
+    ];
+    let parsed = regions
+        .into_iter()
+        .map(|(name, text)| Ok((name, text.parse()?)));
+    parsed.collect()
 }

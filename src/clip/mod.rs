@@ -6,8 +6,6 @@ mod between;
 #[cfg(feature = "json")]
 mod clip_file;
 mod expression;
-#[cfg(feature = "json")]
-mod file;
 mod outline;
 mod parameter;
 mod placed;
@@ -23,8 +21,6 @@ mod surface;
 pub use clip_file::{NamedClip, clips_from_json, clips_to_json, load_clips};
 pub use expression::Expression;
 pub(crate) use expression::Parser;
-#[cfg(feature = "json")]
-pub use file::{NamedPlane, load_planes, planes_from_json};
 pub use parameter::Parameter;
 pub use plane::Plane;
 pub use quadric::Quadric;

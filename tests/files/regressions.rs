@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rara::camera_files::{ColmapFormat, camera_from_json, cameras_from_colmap, cameras_from_json};
-use rara::clip::planes_from_json;
+use rara::clip::clips_from_json;
 
 /// Asserts that an error is one line, whatever names the file contains.
 fn assert_one_line<T: std::fmt::Debug>(result: rara::Result<T>) {
@@ -44,7 +44,7 @@ fn names_with_control_characters_in_errors() {
 fn words_that_json_does_not_know_in_errors() {
     let name = Path::new("file");
     for word in ["\u{7f}", "\u{9b}31m", &"a".repeat(4000)] {
-        assert_one_line(planes_from_json(
+        assert_one_line(clips_from_json(
             format!(r#"[["{word}",1]]"#).as_bytes(),
             name,
         ));

@@ -3,6 +3,7 @@
 use super::*;
 use crate::clip::placed::tests::shapes;
 use crate::scene::Random;
+use glam::DVec3;
 
 #[test]
 fn clips_round_trip() {
@@ -57,10 +58,22 @@ fn shapes_of_every_kind_round_trip() {
 }
 
 #[test]
-fn planes_are_clips_too() {
-    let json = "[{\"name\": \"axial\", \"normal\": [0, 0, 2], \"d\": -5}]";
+fn planes_are_normalised_and_named_or_numbered() {
+    let json = "\u{feff} [{\"name\": \"axial\", \"normal\": [0, 0, 2], \"d\": -5, \"note\": null},
+                 {\"d\": 1e-3, \"normal\": [-1.0, 0, 0]}]";
     let clips = clips_from_json(json.as_bytes(), Path::new("planes.json")).unwrap();
-    assert_eq!(clips[0].clip.to_string(), "plane:0,0,1,-2.5");
+    let names: Vec<_> = clips.iter().map(|clip| clip.name.as_str()).collect();
+    assert_eq!(names, ["axial", "1"]);
+    let planes: Vec<_> = clips
+        .iter()
+        .filter_map(|named| named.clip.as_plane())
+        .collect();
+    assert_eq!(planes[0], Plane::new(DVec3::Z, -2.5).unwrap());
+    assert_eq!(planes[1], Plane::new(-DVec3::X, 1e-3).unwrap());
+    let tree = "[{\"clip\": {\"not\": {\"plane\": {\"normal\": [0, 0, 1], \"d\": 2}}}}]";
+    let clips = clips_from_json(tree.as_bytes(), Path::new("planes.json")).unwrap();
+    let other = clips[0].clip.as_plane().unwrap();
+    assert_eq!(other, Plane::new(-DVec3::Z, -2.0).unwrap());
 }
 
 #[test]
@@ -71,8 +84,18 @@ fn nonsense_is_refused_with_its_place() {
         "}".repeat(200)
     );
     for (json, words) in [
-        ("[]", "no clip"),
+        ("", "line 1"),
+        ("{}", "line 1"),
+        ("[]", "there is no clip in it"),
         ("[{}]", "element 0"),
+        ("[{\"normal\": [1, 0, 0]}]", "\"d\""),
+        ("[\n{\"normal\": [1, 0], \"d\": 0}]", "line 2"),
+        ("[{\"normal\": [1, 0, 0], \"d\": 1e999}]", "line 1"),
+        (
+            "[{\"normal\": [1, 0, 0], \"d\": 0}, {\"normal\": [0, 0, 0], \"d\": 0}]",
+            "element 1: ",
+        ),
+        ("[{\"normal\": [1e-300, 0, 0], \"d\": 1e300}]", "overflows"),
         ("[{\"clip\": {\"all\": []}}]", "no operand"),
         ("[{\"clip\": {\"globe\": {}}}]", "globe"),
         (

@@ -18,7 +18,7 @@ use super::values;
 
 /// Write a scene in another format
 #[derive(Debug, Args)]
-#[command(after_help = "\
+#[command(after_help = format!("\
 Examples:
   rara convert scene.ply -o scene.spz
   rara convert scene.sog -o scene.ply
@@ -26,12 +26,11 @@ Examples:
   rara convert scene.splat -o turned.glb --rotate 1,0,0,180 --scale 0.1 --move 0,1,0
   rara convert body.ply organ.ply -o both.sog --sh-degree 1
 
-OUT's name says the format: .ply, .compressed.ply, .spz (version 3), .sog (version 2) or .glb. Nothing writes .splat,
-.ksplat, streamed SOG or .gltf. Several scenes become one; where their list places, fades or hides layers, the Gaussians are
+OUT's name says the format; it ends in {}. Several scenes become one; where their list places, fades or hides layers, the Gaussians are
 placed and faded, and hidden layers are left out.
 
 --clip and the like keep whole Gaussians by their centres, in the space of the scene as it was read; `rara bake` cuts
-them. After the clip, the scene is scaled, then turned, then moved.")]
+them. After the clip, the scene is scaled, then turned, then moved.", scene::Format::endings()))]
 pub(super) struct Convert {
     /// The file to write; its name says the format
     #[arg(short, long, value_name = "OUT")]

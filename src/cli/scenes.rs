@@ -14,19 +14,25 @@ use super::scene_file::{self, LayerClip, LayerEntry, Settled};
 use super::{antialiasing, layer_clip, place, select, training, values};
 use rara::scene::{Format, Property};
 
+/// The help of scenes.
+fn files() -> String {
+    format!(
+        "Scene files or a folder; - is standard input\n\nFormats: {}, or a folder of SOG; or a folder that training left, of \
+         which the last iteration counts. Several files are the layers of one scene. A layer has the name of its file, or a \
+         name given as NAME=FILE. A .json file lists layers: \
+         {{\"layers\":[{{\"path\":\"skin.ply\",\"name\":\"skin\",\"opacity\":0.5,\"visible\":true,\
+         \"antialiased\":true,\"position\":[x,y,z],\"rotation\":[w,x,y,z],\"scale\":s,\"clip\":{{...}} or \
+         \"clip_expr\":\"...\",\"select\":[{{\"name\":\"vessels\",\"where\":\"label in 3,4\"}}]}}]}}",
+        Format::readable()
+    )
+}
+
 /// The flags that name the scene.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Layers")]
 pub(super) struct SceneArgs {
     /// Scene files or a folder; - is standard input
-    ///
-    /// Formats: 3DGS .ply, .compressed.ply, .splat, .ksplat, .spz, .sog, a folder of SOG, .glb and .gltf; or a
-    /// folder that training left, of which the last iteration counts. Several files are the layers of one scene. A
-    /// layer has the name of its file, or a name given as NAME=FILE. A .json file lists layers:
-    /// {"layers":[{"path":"skin.ply","name":"skin","opacity":0.5,"visible":true,
-    /// "antialiased":true,"position":[x,y,z],"rotation":[w,x,y,z],"scale":s,"clip":{...} or "clip_expr":"...",
-    /// "select":[{"name":"vessels","where":"label in 3,4"}]}]}
-    #[arg(value_name = "SCENE", required = true, help_heading = None)]
+    #[arg(value_name = "SCENE", required = true, help_heading = None, long_help = files())]
     files: Vec<PathBuf>,
     /// Make a layer of the splats that fulfil a predicate (repeatable)
     ///

@@ -1,7 +1,6 @@
 //! The formats of scene files by their names.
 
 use std::fmt;
-use std::path::Path;
 
 /// The format of a scene file, which [`load`](super::load) finds by what is in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -25,76 +24,43 @@ pub enum Format {
     Gltf,
 }
 
+/// Makes the code of all formats from a row for each: its name, and in words its files, where no other row has them. A format
+/// without a row does not compile.
+macro_rules! formats {
+    ($($format:ident => $name:literal $(, $files:literal)?;)+) => {
+        const FILES: &[&str] = &[$($($files,)?)+];
+
+        fn name(self) -> &'static str {
+            match self {
+                $(Self::$format => $name,)+
+            }
+        }
+    };
+}
+
 impl Format {
-    /// The formats that are written, with the endings of their files' names.
-    #[cfg(feature = "formats")]
-    const WRITTEN: [(&str, Self); 5] = [
-        (".compressed.ply", Self::CompressedPly),
-        (".ply", Self::Ply),
-        (".spz", Self::Spz),
-        (".sog", Self::Sog),
-        (".glb", Self::Gltf),
-    ];
-
-    /// The formats that are written, with the endings of their files' names.
-    #[cfg(not(feature = "formats"))]
-    const WRITTEN: [(&str, Self); 1] = [(".ply", Self::Ply)];
-
-    /// The format that a file of this name is [saved](super::save) in; `None` for a name whose ending says none that is
-    /// written.
-    pub fn of_name(path: &Path) -> Option<Self> {
-        let name = path.file_name()?.to_string_lossy().to_ascii_lowercase();
-        let mut written = Self::WRITTEN.iter();
-        written
-            .find(|(ending, _)| name.ends_with(ending))
-            .map(|(_, format)| *format)
+    formats! {
+        Ply => "3DGS .ply", ".ply";
+        CompressedPly => "compressed .ply", ".compressed.ply";
+        Splat => ".splat", ".splat";
+        Ksplat => ".ksplat", ".ksplat";
+        Spz => ".spz", ".spz";
+        Sog => "SOG", ".sog";
+        StreamedSog => "streamed SOG";
+        Gltf => "glTF", "glTF with KHR_gaussian_splatting";
     }
 
-    /// The endings of the formats that are written, for messages.
-    pub(super) fn endings() -> String {
-        Self::WRITTEN.map(|(ending, _)| ending).join(", ")
+    /// The files that are read, for messages and help.
+    pub fn readable() -> String {
+        match Self::FILES {
+            [files @ .., last] => format!("{} and {last}", files.join(", ")),
+            [] => String::new(),
+        }
     }
 }
 
 impl fmt::Display for Format {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        to.write_str(match self {
-            Self::Ply => "3DGS .ply",
-            Self::CompressedPly => "compressed .ply",
-            Self::Splat => ".splat",
-            Self::Ksplat => ".ksplat",
-            Self::Spz => ".spz",
-            Self::Sog => "SOG",
-            Self::StreamedSog => "streamed SOG",
-            Self::Gltf => "glTF",
-        })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_say_the_format_that_is_written() {
-        let of = |name: &str| Format::of_name(Path::new(name));
-        assert_eq!(of("a/b.PLY"), Some(Format::Ply));
-        assert_eq!((of("b.splat"), of("ply"), of("")), (None, None, None));
-        #[cfg(feature = "formats")]
-        assert_eq!(
-            [
-                of("b.compressed.ply"),
-                of("c.glb"),
-                of("c.d.spz"),
-                of("x.sog")
-            ],
-            [
-                Format::CompressedPly,
-                Format::Gltf,
-                Format::Spz,
-                Format::Sog
-            ]
-            .map(Some)
-        );
+        to.write_str(self.name())
     }
 }

@@ -19,27 +19,8 @@ pub(super) struct Input<'a> {
     pub(super) properties: &'a [&'a str],
 }
 
-/// How a format reads.
-pub(super) type Found = fn(Input<'_>, &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)>;
-
 /// Bytes that a format is recognised by, at most.
 const START: u64 = 4096;
-
-/// The format of a file, by its first bytes and its size. What is of none is read as a PLY, which says what is wrong with
-/// it, where no other format can be.
-fn find(start: &[u8], total: u64, name: &Path) -> Result<Found> {
-    if start.starts_with(b"ply") {
-        return Ok(ply::read);
-    }
-    #[cfg(feature = "formats")]
-    return super::formats::find(start, total)
-        .ok_or_else(|| Error::format(name, super::formats::unknown(start)));
-    #[cfg(not(feature = "formats"))]
-    {
-        let _ = (total, name);
-        Ok(ply::read)
-    }
-}
 
 /// A source that a scene is read from.
 pub(super) trait Source: Read + Seek {}
@@ -157,7 +138,6 @@ fn read<R: Read + Seek>(
     let mut beginning = (&mut source).take(START);
     beginning.read_to_end(&mut start).map_err(Error::io(name))?;
     source.rewind().map_err(Error::io(name))?;
-    let found = find(&start, total, name)?;
     let mut progress = Progress {
         total,
         call: progress,
@@ -168,7 +148,15 @@ fn read<R: Read + Seek>(
         folder,
         properties,
     };
-    let loaded = found(input, &mut progress)?;
+    // What is of no known format is read as a PLY, which says what is wrong with it, where no other format can be.
+    #[cfg(feature = "formats")]
+    let loaded = match start.starts_with(b"ply") {
+        true => ply::read(input, &mut progress),
+        false => super::formats::read(&start, input, &mut progress),
+    };
+    #[cfg(not(feature = "formats"))]
+    let loaded = ply::read(input, &mut progress);
+    let loaded = loaded?;
     progress.left(0);
     Ok(loaded)
 }

@@ -1,8 +1,11 @@
 //! Writing scenes; 3DGS `.ply` as INRIA's trainer does: the same properties in the same order, binary little endian.
 
+use std::cmp::Reverse;
 use std::io::{self, Write};
 use std::path::Path;
 
+#[cfg(feature = "formats")]
+use super::formats::WRITERS;
 use super::{Format, Gaussians};
 use crate::error::{Error, Result};
 use crate::files::write_atomically;
@@ -43,18 +46,16 @@ pub fn save_ply(path: &Path, gaussians: &Gaussians) -> Result<()> {
 /// [`Error::Invalid`] for a name of another format, for a number that no reader could draw, and for centres that the format
 /// cannot hold; [`Error::Io`] if the file can't be written.
 pub fn save(path: &Path, gaussians: &Gaussians) -> Result<u64> {
-    match saved_format(path)? {
-        Format::Ply => save_ply(path, gaussians).map(|()| 0),
-        #[cfg(feature = "formats")]
-        format => {
-            check(path, gaussians)?;
-            let (bytes, clamped) = super::formats::encode(gaussians, format)?;
-            write_atomically(path, |out| out.write_all(&bytes))?;
-            Ok(clamped)
-        }
-        #[cfg(not(feature = "formats"))]
-        _ => Ok(0), // no name says another
+    let format = saved_format(path)?;
+    #[cfg(feature = "formats")]
+    if let Some(writer) = WRITERS.iter().find(|writer| writer.format == format) {
+        check(path, gaussians)?;
+        let (bytes, clamped) = writer.encode(gaussians)?;
+        write_atomically(path, |out| out.write_all(&bytes))?;
+        return Ok(clamped);
     }
+    debug_assert_eq!(format, Format::Ply);
+    save_ply(path, gaussians).map(|()| 0)
 }
 
 /// The format that [`save`] writes to a file of this name.
@@ -69,6 +70,31 @@ pub fn saved_format(path: &Path) -> Result<Format> {
             Format::endings()
         ))
     })
+}
+
+impl Format {
+    /// The format that a file of this name is [saved](save) in; `None` for a name whose ending says none that is written.
+    pub fn of_name(path: &Path) -> Option<Self> {
+        let name = path.file_name()?.to_string_lossy().to_ascii_lowercase();
+        let mut written = Self::written().into_iter();
+        let found = written.find(|(ending, _)| name.ends_with(ending));
+        found.map(|(_, format)| format)
+    }
+
+    /// The endings of the names of files that are written, for messages and help.
+    pub fn endings() -> String {
+        let endings: Vec<&str> = Self::written().iter().map(|(ending, _)| *ending).collect();
+        endings.join(", ")
+    }
+
+    /// The endings of names and the formats that they say. Longer endings come first.
+    fn written() -> Vec<(&'static str, Self)> {
+        let mut written = vec![(".ply", Self::Ply)];
+        #[cfg(feature = "formats")]
+        written.extend(WRITERS.iter().map(|writer| (writer.ending, writer.format)));
+        written.sort_by_key(|(ending, _)| Reverse(ending.len()));
+        written
+    }
 }
 
 /// Refuses what cannot be drawn, which whoever changes Gaussians in place can make.
@@ -152,5 +178,28 @@ mod tests {
         let back = |o: f32| (1.0 / (1.0 + (-f64::from(logit(o))).exp())) as f32;
         assert_eq!((back(0.0), back(1.0), back(0.5)), (0.0, 1.0, 0.5));
         assert!((back(1.0 - 6e-8) - 1.0).abs() < 1e-6 && back(1e-40) > 0.0);
+    }
+
+    #[test]
+    fn names_say_the_format_that_is_written() {
+        let of = |name: &str| Format::of_name(Path::new(name));
+        assert_eq!(of("a/b.PLY"), Some(Format::Ply));
+        assert_eq!((of("b.splat"), of("ply"), of("")), (None, None, None));
+        #[cfg(feature = "formats")]
+        assert_eq!(
+            [
+                of("b.compressed.ply"),
+                of("c.glb"),
+                of("c.d.spz"),
+                of("x.sog")
+            ],
+            [
+                Format::CompressedPly,
+                Format::Gltf,
+                Format::Spz,
+                Format::Sog
+            ]
+            .map(Some)
+        );
     }
 }

@@ -13,9 +13,9 @@ mod write;
 use std::io::Read;
 use std::path::Path;
 
-pub(super) use self::write::encode;
+pub(super) use self::write::WRITERS;
 use super::assemble::{Assembler, Stored};
-use super::load::{Found, Input, Progress};
+use super::load::{Input, Progress};
 use super::{Format, Gaussians, LoadReport, Loaded, Property, SH_0};
 use crate::counted::counted;
 use crate::error::{Error, Result};
@@ -131,22 +131,47 @@ fn colour(byte: u8) -> f64 {
     (f64::from(byte) / 255.0 - 0.5) / SH_0
 }
 
-/// The format of a file that is no PLY, by its first bytes and its size.
-pub(super) fn find(start: &[u8], total: u64) -> Option<Found> {
-    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
-    match start {
-        [0x1f, 0x8b, ..] | [b'N', b'G', b'S', b'P', ..] => Some(read_spz),
-        [b'P', b'K', 3 | 5, 4 | 6, ..] => Some(read_sog),
-        [b'g', b'l', b'T', b'F', ..] => Some(read_glb),
-        _ if text.trim_ascii_start().starts_with(b"{") => Some(read_json),
-        _ if ksplat::is(start, total) => Some(read_ksplat),
-        _ if splat::is(start, total) => Some(read_splat),
-        _ => None,
-    }
+/// What a reader makes of a file, and which format that is.
+type Outcome = std::result::Result<(Made, Format), Failure>;
+
+/// How files of a format are read.
+struct Reader {
+    /// Whether a file is of the format, by its first bytes and its size.
+    is: fn(&[u8], u64) -> bool,
+    /// What is made of a whole file, with the folder of those that it may name.
+    read: fn(&[u8], Option<&Path>) -> Outcome,
 }
 
+/// The readers, of which the first whose format a file is of reads it.
+const READERS: [Reader; 6] = [
+    Reader {
+        is: |start, _| matches!(start, [0x1f, 0x8b, ..] | [b'N', b'G', b'S', b'P', ..]),
+        read: |bytes, _| Ok((spz::read(bytes, true)?, Format::Spz)),
+    },
+    Reader {
+        is: |start, _| matches!(start, [b'P', b'K', 3 | 5, 4 | 6, ..]),
+        read: |bytes, _| Ok((sog::read_archive(bytes)?, Format::Sog)),
+    },
+    Reader {
+        is: |start, _| start.starts_with(b"glTF"),
+        read: |bytes, folder| Ok((gltf::read_binary(bytes, folder)?, Format::Gltf)),
+    },
+    Reader {
+        is: |start, _| bare(start).trim_ascii_start().starts_with(b"{"),
+        read: read_json,
+    },
+    Reader {
+        is: ksplat::is,
+        read: |bytes, _| Ok((ksplat::read(bytes)?, Format::Ksplat)),
+    },
+    Reader {
+        is: splat::is,
+        read: |bytes, _| Ok((splat::read(bytes)?, Format::Splat)),
+    },
+];
+
 /// What a file is that none of the formats reads, and what to do about it.
-pub(super) fn unknown(start: &[u8]) -> String {
+fn unknown(start: &[u8]) -> String {
     let guess = match start {
         [] => "it is empty",
         [b'P', b'X', b'R', b'-', ..] | [b'#', b'u', b's', b'd', b'a', ..] => "it is a USD scene",
@@ -161,16 +186,17 @@ pub(super) fn unknown(start: &[u8]) -> String {
         _ => "its first bytes are those of none",
     };
     format!(
-        "this is no scene of a format that is read, {guess}; .ply, .compressed.ply, .splat, .ksplat, .spz, .sog and glTF \
-         with KHR_gaussian_splatting are: convert it to one of these, for example with splat-transform"
+        "this is no scene of a format that is read, {guess}; {} are: convert it to one of these, for example with \
+         splat-transform",
+        Format::readable()
     )
 }
 
-/// Reads the whole file and what `read` makes of it.
-fn whole(
+/// Reads a file that is no PLY and begins like this.
+pub(super) fn read(
+    start: &[u8],
     input: Input<'_>,
     progress: &mut Progress<'_>,
-    read: impl FnOnce(&[u8]) -> std::result::Result<(Made, Format), Failure>,
 ) -> Result<(Loaded, Vec<Property>)> {
     let Input { source, name, .. } = input;
     let memory = |what: String| {
@@ -180,6 +206,8 @@ fn whole(
         ))
     };
     let total = progress.total();
+    let reader = READERS.iter().find(|reader| (reader.is)(start, total));
+    let reader = reader.ok_or_else(|| Error::format(name, unknown(start)))?;
     let mut bytes = Vec::new();
     let room = usize::try_from(total).is_ok_and(|total| bytes.try_reserve_exact(total).is_ok());
     if !room {
@@ -189,7 +217,7 @@ fn whole(
         .take(total)
         .read_to_end(&mut bytes)
         .map_err(Error::io(name))?;
-    let (made, format) = read(&bytes).map_err(|failure| match failure {
+    let (made, format) = (reader.read)(&bytes, input.folder).map_err(|failure| match failure {
         Failure::Format(message) => Error::format(name, message),
         Failure::Memory(what) => memory(what),
         Failure::Other(error) => error,
@@ -213,67 +241,35 @@ fn whole(
     Ok((loaded, Vec::new()))
 }
 
-fn read_spz(input: Input<'_>, progress: &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)> {
-    whole(input, progress, |bytes| {
-        Ok((spz::read(bytes, true)?, Format::Spz))
-    })
-}
-
-fn read_ksplat(input: Input<'_>, progress: &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)> {
-    whole(input, progress, |bytes| {
-        Ok((ksplat::read(bytes)?, Format::Ksplat))
-    })
-}
-
-fn read_splat(input: Input<'_>, progress: &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)> {
-    whole(input, progress, |bytes| {
-        Ok((splat::read(bytes)?, Format::Splat))
-    })
-}
-
-fn read_sog(input: Input<'_>, progress: &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)> {
-    whole(input, progress, |bytes| {
-        Ok((sog::read_archive(bytes)?, Format::Sog))
-    })
-}
-
-fn read_glb(input: Input<'_>, progress: &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)> {
-    let folder = input.folder;
-    whole(input, progress, |bytes| {
-        Ok((gltf::read_binary(bytes, folder)?, Format::Gltf))
-    })
-}
-
 /// JSON of any of the formats that are JSON.
-fn read_json(input: Input<'_>, progress: &mut Progress<'_>) -> Result<(Loaded, Vec<Property>)> {
-    let folder = input.folder;
-    whole(input, progress, |bytes| {
-        let document = json(bytes)?;
-        let has = |key: &str| document.get(key).is_some();
-        if has("means") {
-            Ok((sog::read_folder(&document, folder)?, Format::Sog))
-        } else if has("tree") && has("filenames") {
-            Ok((sog::read_streamed(&document, folder)?, Format::StreamedSog))
-        } else if has("asset") {
-            Ok((gltf::read_document(&document, None, folder)?, Format::Gltf))
-        } else {
-            let what = match has("layers") {
-                true => {
-                    "it is a list of layers, which the program rara reads where its name ends in .json"
-                }
-                false => "it is JSON, but neither the meta.json of a SOG scene nor glTF",
-            };
-            Err(Failure::Format(format!(
-                "this is no scene: {what}; give a .ply, .splat, .ksplat, .spz, .sog or .glb file"
-            )))
-        }
-    })
+fn read_json(bytes: &[u8], folder: Option<&Path>) -> Outcome {
+    let document = json(bytes)?;
+    let has = |key: &str| document.get(key).is_some();
+    if has("means") {
+        return Ok((sog::read_folder(&document, folder)?, Format::Sog));
+    }
+    if has("tree") && has("filenames") {
+        return Ok((sog::read_streamed(&document, folder)?, Format::StreamedSog));
+    }
+    if has("asset") {
+        return Ok((gltf::read_document(&document, None, folder)?, Format::Gltf));
+    }
+    let what = match has("layers") {
+        true => "it is a list of layers, which the program rara reads where its name ends in .json",
+        false => "it is JSON, but neither the meta.json of a SOG scene nor glTF",
+    };
+    let read = Format::readable();
+    Err(format!("this is no scene: {what}; {read} are read").into())
+}
+
+/// Text without a byte-order mark.
+fn bare(text: &[u8]) -> &[u8] {
+    text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
 }
 
 /// A JSON document; its text is the limit of its memory, and its depth is bounded.
 fn json(bytes: &[u8]) -> std::result::Result<serde_json::Value, String> {
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    serde_json::from_slice(text)
+    serde_json::from_slice(bare(bytes))
         .map_err(|error| format!("its JSON is damaged: {error}; export the scene again"))
 }
 

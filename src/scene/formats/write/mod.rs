@@ -7,28 +7,54 @@ mod sog;
 mod spz;
 
 use super::super::{Format, Gaussians};
-use crate::error::{Error, Result};
+use crate::error::Result;
 
-/// The bytes of a file of this format, and how many Gaussians have a number that it holds no nearer than at an end of its
-/// range.
-///
-/// # Errors
-/// [`Error::Invalid`] for a format that is not written this way, and for Gaussians that it cannot hold.
-pub(in super::super) fn encode(gaussians: &Gaussians, format: Format) -> Result<(Vec<u8>, u64)> {
-    let (bytes, ranges) = match format {
-        Format::CompressedPly => (packed::encode(gaussians), packed::RANGES),
-        Format::Spz => (spz::encode(gaussians)?, spz::RANGES),
-        Format::Sog => (sog::encode(gaussians)?, sog::RANGES),
-        Format::Gltf => (glb::encode(gaussians)?, Ranges::ALL),
-        other => {
-            return Err(Error::Invalid(format!(
-                "{other} is read but not written; use a name that ends in {}",
-                Format::endings()
-            )));
-        }
-    };
-    let beyond = |&at: &usize| !ranges.hold(gaussians, at);
-    Ok((bytes, (0..gaussians.len()).filter(beyond).count() as u64))
+/// How files of a format are written.
+pub(in super::super) struct Writer {
+    pub(in super::super) format: Format,
+    /// The ending of their names.
+    pub(in super::super) ending: &'static str,
+    encode: fn(&Gaussians) -> Result<Vec<u8>>,
+    ranges: Ranges,
+}
+
+pub(in super::super) const WRITERS: [Writer; 4] = [
+    Writer {
+        format: Format::CompressedPly,
+        ending: ".compressed.ply",
+        encode: |gaussians| Ok(packed::encode(gaussians)),
+        ranges: packed::RANGES,
+    },
+    Writer {
+        format: Format::Spz,
+        ending: ".spz",
+        encode: spz::encode,
+        ranges: spz::RANGES,
+    },
+    Writer {
+        format: Format::Sog,
+        ending: ".sog",
+        encode: sog::encode,
+        ranges: sog::RANGES,
+    },
+    Writer {
+        format: Format::Gltf,
+        ending: ".glb",
+        encode: glb::encode,
+        ranges: Ranges::ALL,
+    },
+];
+
+impl Writer {
+    /// The bytes of a file, and how many Gaussians have a number that it holds no nearer than at an end of its range.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`](crate::Error::Invalid) for Gaussians that it cannot hold.
+    pub(in super::super) fn encode(&self, gaussians: &Gaussians) -> Result<(Vec<u8>, u64)> {
+        let bytes = (self.encode)(gaussians)?;
+        let beyond = |&at: &usize| !self.ranges.hold(gaussians, at);
+        Ok((bytes, (0..gaussians.len()).filter(beyond).count() as u64))
+    }
 }
 
 /// The ends of what a format holds: logarithms of scales, and coefficients of degree 0 and above.

@@ -35,7 +35,7 @@ impl Shape {
     /// without length.
     pub fn new(solid: Solid) -> Result<Self> {
         let values = solid.values().into_iter();
-        let solid = solid.with(values.map(|value| match value {
+        let solid = solid.kind().with(values.map(|value| match value {
             Parameter::Rotation(rotation) => unit(rotation).map(Parameter::Rotation),
             Parameter::Plane(_)
             | Parameter::Point(_)
@@ -120,7 +120,7 @@ impl Shape {
 
     /// One with other parameters, on the same side.
     pub(super) fn with(&self, values: impl Iterator<Item = Result<Parameter>>) -> Result<Self> {
-        let inside = Self::new(self.solid.with(values)?)?;
+        let inside = Self::new(self.solid.kind().with(values)?)?;
         Ok(Self {
             outside: self.outside,
             ..inside

@@ -232,11 +232,6 @@ impl Solid {
             .flat_map(Parameter::numbers)
             .collect()
     }
-
-    /// One of its kind with these parameters.
-    pub(super) fn with(&self, values: impl Iterator<Item = Result<Parameter>>) -> Result<Self> {
-        self.kind().with(values)
-    }
 }
 
 impl Kind {

@@ -135,39 +135,37 @@ fn colour(byte: u8) -> f64 {
 type Outcome = std::result::Result<(Made, Format), Failure>;
 
 /// How files of a format are read.
-struct Reader {
+struct Reader(
     /// Whether a file is of the format, by its first bytes and its size.
-    is: fn(&[u8], u64) -> bool,
+    fn(&[u8], u64) -> bool,
     /// What is made of a whole file, with the folder of those that it may name.
-    read: fn(&[u8], Option<&Path>) -> Outcome,
-}
+    fn(&[u8], Option<&Path>) -> Outcome,
+);
 
 /// The readers, of which the first whose format a file is of reads it.
 const READERS: [Reader; 6] = [
-    Reader {
-        is: |start, _| matches!(start, [0x1f, 0x8b, ..] | [b'N', b'G', b'S', b'P', ..]),
-        read: |bytes, _| Ok((spz::read(bytes, true)?, Format::Spz)),
-    },
-    Reader {
-        is: |start, _| matches!(start, [b'P', b'K', 3 | 5, 4 | 6, ..]),
-        read: |bytes, _| Ok((sog::read_archive(bytes)?, Format::Sog)),
-    },
-    Reader {
-        is: |start, _| start.starts_with(b"glTF"),
-        read: |bytes, folder| Ok((gltf::read_binary(bytes, folder)?, Format::Gltf)),
-    },
-    Reader {
-        is: |start, _| bare(start).trim_ascii_start().starts_with(b"{"),
-        read: read_json,
-    },
-    Reader {
-        is: ksplat::is,
-        read: |bytes, _| Ok((ksplat::read(bytes)?, Format::Ksplat)),
-    },
-    Reader {
-        is: splat::is,
-        read: |bytes, _| Ok((splat::read(bytes)?, Format::Splat)),
-    },
+    Reader(
+        |start, _| matches!(start, [0x1f, 0x8b, ..] | [b'N', b'G', b'S', b'P', ..]),
+        |bytes, _| Ok((spz::read(bytes, true)?, Format::Spz)),
+    ),
+    Reader(
+        |start, _| matches!(start, [b'P', b'K', 3 | 5, 4 | 6, ..]),
+        |bytes, _| Ok((sog::read_archive(bytes)?, Format::Sog)),
+    ),
+    Reader(
+        |start, _| start.starts_with(b"glTF"),
+        |bytes, folder| Ok((gltf::read_binary(bytes, folder)?, Format::Gltf)),
+    ),
+    Reader(
+        |start, _| bare(start).trim_ascii_start().starts_with(b"{"),
+        read_json,
+    ),
+    Reader(ksplat::is, |bytes, _| {
+        Ok((ksplat::read(bytes)?, Format::Ksplat))
+    }),
+    Reader(splat::is, |bytes, _| {
+        Ok((splat::read(bytes)?, Format::Splat))
+    }),
 ];
 
 /// What a file is that none of the formats reads, and what to do about it.
@@ -206,8 +204,8 @@ pub(super) fn read(
         ))
     };
     let total = progress.total();
-    let reader = READERS.iter().find(|reader| (reader.is)(start, total));
-    let reader = reader.ok_or_else(|| Error::format(name, unknown(start)))?;
+    let reader = READERS.iter().find(|Reader(is, _)| is(start, total));
+    let Reader(_, read) = reader.ok_or_else(|| Error::format(name, unknown(start)))?;
     let mut bytes = Vec::new();
     let room = usize::try_from(total).is_ok_and(|total| bytes.try_reserve_exact(total).is_ok());
     if !room {
@@ -217,7 +215,7 @@ pub(super) fn read(
         .take(total)
         .read_to_end(&mut bytes)
         .map_err(Error::io(name))?;
-    let (made, format) = (reader.read)(&bytes, input.folder).map_err(|failure| match failure {
+    let (made, format) = read(&bytes, input.folder).map_err(|failure| match failure {
         Failure::Format(message) => Error::format(name, message),
         Failure::Memory(what) => memory(what),
         Failure::Other(error) => error,

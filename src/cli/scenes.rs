@@ -20,9 +20,9 @@ fn files() -> String {
         "Scene files or a folder; - is standard input\n\nFormats: {}, or a folder of SOG; or a folder that training left, of \
          which the last iteration counts. Several files are the layers of one scene. A layer has the name of its file, or a \
          name given as NAME=FILE. A .json file lists layers: \
-         {{\"layers\":[{{\"path\":\"skin.ply\",\"name\":\"skin\",\"opacity\":0.5,\"visible\":true,\
+         {{\"layers\":[{{\"path\":\"skin.ply\",\"name\":\"skin\",\"opacity\":0.5,\"visible\":true, \
          \"antialiased\":true,\"position\":[x,y,z],\"rotation\":[w,x,y,z],\"scale\":s,\"clip\":{{...}} or \
-         \"clip_expr\":\"...\",\"select\":[{{\"name\":\"vessels\",\"where\":\"label in 3,4\"}}]}}]}}",
+         \"clip_expr\":\"...\", \"select\":[{{\"name\":\"vessels\",\"where\":\"label in 3,4\"}}]}}]}}",
         Format::readable()
     )
 }

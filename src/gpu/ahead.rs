@@ -15,10 +15,14 @@ use std::time::Instant;
 
 use ash::vk;
 
-use super::device::Ahead;
-use super::{Buffer, BufferDesc, ComputeDesc, ComputePipeline, Device, DeviceDesc, Location};
+use super::desc::DeviceDesc;
+use super::device::{Ahead, Device};
+use super::lent::Location;
+use super::memory::{Buffer, BufferDesc};
+use super::pipeline::{ComputeDesc, ComputePipeline};
+use crate::error::{Error, Result};
 use crate::files::write_atomically;
-use crate::{Error, Result, fnv};
+use crate::fnv;
 
 impl Ahead {
     /// The list in a file. `None` for drivers that compile when a pipeline is made, or keep nothing.

@@ -4,10 +4,10 @@ use std::time::{Duration, Instant};
 
 use ash::{ext, khr, vk};
 
-use super::Device;
+use super::device::Device;
 
 /// Reads the device's clock without a submission; for devices that are opened here.
-pub(super) enum Clock {
+enum Clock {
     Khr(khr::calibrated_timestamps::Device),
     Ext(ext::calibrated_timestamps::Device),
 }
@@ -24,7 +24,7 @@ pub struct Calibration {
 }
 
 impl Clock {
-    pub(super) fn new(device: &Device, instance: &ash::Instance) -> Option<Self> {
+    fn new(device: &Device, instance: &ash::Instance) -> Option<Self> {
         let name = device.support().calibrated_timestamps?;
         Some(if name == khr::calibrated_timestamps::NAME {
             Self::Khr(khr::calibrated_timestamps::Device::new(
@@ -41,7 +41,7 @@ impl Clock {
 
     /// Returns the one of a few readings that took least. The processor's clock is read around the device's and not by the
     /// same call: `Instant` cannot be made from what that would give, and the error is known all the same.
-    pub(super) fn read(&self) -> Option<Calibration> {
+    fn read(&self) -> Option<Calibration> {
         let info =
             [vk::CalibratedTimestampInfoKHR::default().time_domain(vk::TimeDomainKHR::DEVICE)];
         let reading = || {
@@ -60,5 +60,13 @@ impl Clock {
         };
         let readings = (0..5).filter_map(|_| reading());
         readings.min_by_key(|reading| reading.within)
+    }
+}
+
+impl Device {
+    /// The device's clock now; `None` where it cannot be read.
+    #[cfg_attr(not(feature = "lab"), doc(hidden))]
+    pub fn calibrate(&self) -> Option<Calibration> {
+        Clock::new(self, self.instance())?.read()
     }
 }

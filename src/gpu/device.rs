@@ -11,17 +11,15 @@ use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::Allocator;
 
 use super::account::Account;
-use super::clock::Clock;
 use super::commands::Commands;
+use super::desc::AdoptDesc;
+use super::devices::DeviceInfo;
 use super::instance::Instance;
-use super::lent::Memory;
-use super::submit::OneOff;
+use super::lent::MemorySource;
+use super::one_off::OneOff;
+use super::requirements::Support;
+use super::shape::DeviceShape;
 use super::validation::Messages;
-use super::{
-    AdoptDesc, Buffer, BufferDesc, Calibration, DeviceInfo, DeviceShape, Image, ImageDesc,
-    MemorySource, Support,
-};
-use crate::Result;
 
 /// A device, shared by everything made from it; clones are the same device.
 #[derive(Clone)]
@@ -60,7 +58,7 @@ pub(super) struct Inner {
     /// `None` for a host's device, which is never destroyed here. Shared with a window's surface.
     owned: Option<Arc<Instance>>,
     #[cfg(feature = "lab")]
-    pub(super) inspector: std::sync::OnceLock<super::inspection::Inspector>,
+    pub(super) inspector: std::sync::OnceLock<super::inspector::Inspector>,
     /// What keeps a host's device alive. It is the last field, so that it goes last.
     _keep_alive: Option<Arc<dyn Any + Send + Sync>>,
 }
@@ -228,24 +226,6 @@ impl Device {
         self.inner.queue_family
     }
 
-    /// Creates a buffer.
-    #[cfg_attr(not(feature = "lab"), doc(hidden))]
-    pub fn create_buffer(&self, desc: &BufferDesc<'_>) -> Result<Buffer> {
-        Buffer::new(self, desc)
-    }
-
-    /// Creates a colour target.
-    #[cfg_attr(not(feature = "lab"), doc(hidden))]
-    pub fn create_image(&self, desc: &ImageDesc<'_>) -> Result<Image> {
-        Image::new(self, desc)
-    }
-
-    /// The device's clock now; `None` where it cannot be read.
-    #[cfg_attr(not(feature = "lab"), doc(hidden))]
-    pub fn calibrate(&self) -> Option<Calibration> {
-        Clock::new(self, &self.inner.instance)?.read()
-    }
-
     /// Takes the validation layer's warnings and errors since the last call, from all threads. Empty without the
     /// layer, and for a host's device, whose messages go to the host.
     pub fn validation_messages(&self) -> Vec<String> {
@@ -321,21 +301,6 @@ impl Device {
     /// What is made on it.
     pub(super) fn account(&self) -> &Account {
         &self.inner.account
-    }
-
-    /// Names the memory of something of a name for debuggers.
-    pub(super) fn name_memory(&self, name: &str, allocation: &Memory) {
-        // Blocks that a host's allocator shares among its buffers and ours are the host's to name.
-        let is_lent = self.inner.source.is_some();
-        if !is_lent && (allocation.is_dedicated() || self.inner.owned.is_some()) {
-            let name = if allocation.is_dedicated() {
-                name
-            } else {
-                "shared"
-            };
-            // SAFETY: the memory is alive as long as the allocation, and only named here.
-            self.set_name(unsafe { allocation.memory() }, name);
-        }
     }
 
     pub(super) fn memory_source(&self) -> Option<&dyn MemorySource> {

@@ -4,9 +4,10 @@ use std::ffi::CStr;
 
 use ash::vk;
 
-use super::instance::Instance;
+use super::failure::failed;
+use super::instance::{API_VERSION, Instance, no_device};
 use super::requirements::{self, Support};
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// A physical device as `rara devices` shows it; its number is its place in the list.
 #[derive(Debug, Clone)]
@@ -98,6 +99,26 @@ pub(crate) unsafe fn describe(
     }
 }
 
+impl Instance {
+    /// Every device, in the loader's order.
+    pub(crate) fn devices(&self) -> Result<Vec<(vk::PhysicalDevice, DeviceInfo)>> {
+        // SAFETY: the instance is alive.
+        let physical = unsafe { self.raw.enumerate_physical_devices() };
+        let physical = match physical {
+            Err(vk::Result::ERROR_INITIALIZATION_FAILED) => Vec::new(),
+            other => other.map_err(failed("vkEnumeratePhysicalDevices"))?,
+        };
+        Ok(physical
+            .into_iter()
+            .map(|physical| {
+                // SAFETY: the instance is alive and created for this version, and the device is its own.
+                let info = unsafe { describe(&self.raw, physical, API_VERSION) };
+                (physical, info)
+            })
+            .collect())
+    }
+}
+
 /// Every device that Vulkan finds on this machine, the unusable ones with the reason.
 pub fn list_devices() -> Result<Vec<DeviceInfo>> {
     let instance = Instance::new("rara", false, &[])?;
@@ -150,15 +171,6 @@ pub(crate) fn choose(devices: &[DeviceInfo], selector: Option<&str>) -> Result<u
                 .collect();
             Error::Device(reasons.join("; "))
         })
-}
-
-/// The error where there is nothing to choose from.
-pub(crate) fn no_device() -> Error {
-    Error::Device(
-        "no Vulkan device was found; install the graphics card's Vulkan driver, or the software driver lavapipe \
-         (package mesa-vulkan-drivers)"
-            .into(),
-    )
 }
 
 #[cfg(test)]

@@ -4,8 +4,11 @@
 
 use ash::vk;
 
+use super::device::Device;
 use super::label::{begin_pass, end_pass};
-use super::{Buffer, Device, GraphicsPipeline, Timer};
+use super::memory::Buffer;
+use super::pipeline::GraphicsPipeline;
+use super::timer::Timer;
 
 /// Records draws whose number stands in buffers.
 #[derive(Debug)]

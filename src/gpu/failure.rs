@@ -2,7 +2,7 @@
 
 use ash::vk;
 
-use crate::Error;
+use crate::error::Error;
 
 /// The error for `call`, to be used with `map_err`: a lost device and exhausted memory get sentences of their own.
 pub(crate) fn failed(call: &'static str) -> impl FnOnce(vk::Result) -> Error {

@@ -15,7 +15,7 @@ use ash::vk::Handle;
 
 use super::instance::Instance;
 use super::{AdoptDesc, Device, testing};
-use crate::Result;
+use crate::error::Result;
 pub(crate) use pretence::Pretence;
 
 /// A fault: which call fails, and with which result.

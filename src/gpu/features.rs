@@ -4,8 +4,8 @@ use std::ffi::c_void;
 
 use ash::vk;
 
-use super::Support;
-use crate::{Error, Result};
+use super::requirements::Support;
+use crate::error::{Error, Result};
 
 impl Support {
     /// The features to enable, as structs to be chained into the device's create info. A host that has structs with the same

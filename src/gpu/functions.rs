@@ -4,8 +4,8 @@ use std::ffi::CStr;
 
 use ash::vk;
 
-use super::AdoptDesc;
-use crate::{Error, Result};
+use super::desc::AdoptDesc;
+use crate::error::{Error, Result};
 
 /// What is to be done where a function of the version's own is missing.
 const ENABLE: &str =

@@ -4,12 +4,12 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme};
 
+use super::device::Device;
 use super::failure::failed;
 use super::label::{begin_label, end_label};
 use super::lent::Memory;
-use super::memory::bytes;
-use super::{Buffer, Device};
-use crate::{Error, Result};
+use super::memory::{Buffer, bytes};
+use crate::error::{Error, Result};
 
 /// The description from which an image is created.
 #[derive(Debug, Clone, Copy)]
@@ -43,6 +43,14 @@ pub(super) const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
     base_array_layer: 0,
     layer_count: 1,
 };
+
+impl Device {
+    /// Creates a colour target.
+    #[cfg_attr(not(feature = "lab"), doc(hidden))]
+    pub fn create_image(&self, desc: &ImageDesc<'_>) -> Result<Image> {
+        Image::new(self, desc)
+    }
+}
 
 impl Image {
     pub(crate) fn new(device: &Device, desc: &ImageDesc<'_>) -> Result<Self> {

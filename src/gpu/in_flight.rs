@@ -2,9 +2,9 @@
 
 use ash::vk;
 
-use super::Device;
+use super::device::Device;
 use super::failure::failed;
-use crate::Result;
+use crate::error::Result;
 
 /// How many frames may be unfinished at once: one is drawn while the next is recorded.
 pub(crate) const FRAMES: usize = 2;

@@ -5,68 +5,15 @@ use std::sync::{Mutex, PoisonError};
 
 use ash::{khr, vk};
 
+use super::desc::DeviceDesc;
+use super::device::Device;
 use super::failure::failed;
+use super::inspector::{CompiledShader, Dispatched, DispatchedGroups, Inspector, Recorded};
 use super::instance::Instance;
+use super::recorder::Groups;
 use super::requirements::offers;
-use super::{Device, DeviceDesc, Groups, Shader};
-use crate::Result;
-
-/// A shader of a pipeline, as it was asked for and as the driver has compiled it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct CompiledShader {
-    /// The pipeline's name.
-    pub name: &'static str,
-    /// The shader's file in `glsl/`.
-    pub file: String,
-    /// The pipeline's specialisation constants: id and value.
-    pub constants: Vec<(u32, u32)>,
-    /// Invocations of the whole subgroups that are asked for; 0 where the driver may choose.
-    pub asked_subgroup: u32,
-    /// Invocations of the subgroups that it is compiled for; 0 where the driver does not say.
-    pub subgroup: u32,
-    /// The driver's numbers by the driver's names; none where it has no `VK_KHR_pipeline_executable_properties`.
-    pub numbers: Vec<(String, u64)>,
-}
-
-/// The commands of a recording.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Recorded {
-    /// How many barriers there are.
-    pub barriers: u32,
-    /// The dispatches in order.
-    pub dispatches: Vec<Dispatched>,
-}
-
-/// A dispatch.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Dispatched {
-    /// The pipeline's name.
-    pub name: &'static str,
-    /// Its workgroups.
-    pub groups: DispatchedGroups,
-}
-
-/// The workgroups of a dispatch.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum DispatchedGroups {
-    /// So many.
-    Count(u32),
-    /// As many as a command says.
-    Indirect {
-        /// The debug name of the buffer that holds it.
-        buffer: String,
-        /// The command's place in it, bytes.
-        offset: u64,
-    },
-}
-
-/// The notes of a device.
-pub(super) struct Inspector {
-    /// Where the driver tells what it has compiled.
-    executables: Option<khr::pipeline_executable_properties::Device>,
-    compiled: Mutex<Vec<CompiledShader>>,
-    recorded: Mutex<Recorded>,
-}
+use super::shader::Shader;
+use crate::error::Result;
 
 impl Device {
     /// As [`headless`](Self::headless), but the device notes what its pipelines are compiled to and which commands are

@@ -5,11 +5,10 @@ use std::sync::Arc;
 
 use ash::{ext, khr, vk};
 
-use super::devices::{DeviceInfo, describe, no_device};
 use super::failure::failed;
 use super::requirements::offers;
 use super::validation::{self, Messages, Validation};
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// The version that an instance of our own is created for; its devices may offer less.
 pub(super) const API_VERSION: u32 = vk::API_VERSION_1_3;
@@ -116,24 +115,6 @@ impl Instance {
         }
         Ok(instance)
     }
-
-    /// Every device, in the loader's order.
-    pub(crate) fn devices(&self) -> Result<Vec<(vk::PhysicalDevice, DeviceInfo)>> {
-        // SAFETY: the instance is alive.
-        let physical = unsafe { self.raw.enumerate_physical_devices() };
-        let physical = match physical {
-            Err(vk::Result::ERROR_INITIALIZATION_FAILED) => Vec::new(),
-            other => other.map_err(failed("vkEnumeratePhysicalDevices"))?,
-        };
-        Ok(physical
-            .into_iter()
-            .map(|physical| {
-                // SAFETY: the instance is alive and created for this version, and the device is its own.
-                let info = unsafe { describe(&self.raw, physical, API_VERSION) };
-                (physical, info)
-            })
-            .collect())
-    }
 }
 
 impl Drop for Instance {
@@ -146,4 +127,13 @@ impl Drop for Instance {
             self.raw.destroy_instance(None);
         }
     }
+}
+
+/// The error where there is nothing to choose from.
+pub(crate) fn no_device() -> Error {
+    Error::Device(
+        "no Vulkan device was found; install the graphics card's Vulkan driver, or the software driver lavapipe \
+         (package mesa-vulkan-drivers)"
+            .into(),
+    )
 }

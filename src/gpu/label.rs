@@ -4,7 +4,9 @@ use std::ffi::CStr;
 
 use ash::vk;
 
-use super::{Device, Timer, validation};
+use super::device::Device;
+use super::timer::Timer;
+use super::validation;
 
 /// Opens a debug label on a command buffer, which the caller has made sure is recording on `device`.
 pub(super) fn begin_label(device: &Device, cmd: vk::CommandBuffer, name: &str) {

@@ -2,23 +2,13 @@
 
 use ash::vk;
 
+use super::device::Device;
 use super::failure::failed;
-use super::{Buffer, BufferUse, Device, DeviceShape, MAX_BUFFERS, MAX_PARAMS, Shader};
+use super::memory::Buffer;
+use super::shader::{Bindings, BufferUse, MAX_BUFFERS, MAX_PARAMS, Shader};
+use super::shape::DeviceShape;
 use crate::counted::counted;
-use crate::{Error, Result};
-
-/// How shaders reach their buffers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Bindings {
-    /// They are reached by device address: there is no size limit, but the validation layer cannot watch.
-    #[default]
-    Address,
-    /// They are storage buffers of descriptor set 0, pushed with each command. The validation layer sees every hazard; a
-    /// buffer may not exceed [`Support::max_storage_buffer_range`](super::Support::max_storage_buffer_range).
-    Bound,
-    /// The frame's constants are bound, and all else is reached by device address.
-    Mixed,
-}
+use crate::error::{Error, Result};
 
 impl Bindings {
     /// The fastest way on a device. CPU drivers load what all lanes share once from a bound buffer, and for each lane from

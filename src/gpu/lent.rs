@@ -2,14 +2,22 @@
 
 use std::ffi::c_void;
 use std::ptr::NonNull;
-use std::sync::{MutexGuard, PoisonError};
 
 use ash::vk;
-use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, Allocator};
+use gpu_allocator::vulkan::Allocation;
 
-use super::memory::Location;
-use super::{Device, WriteOnly};
+use super::write_only::WriteOnly;
+
+/// Who reaches a buffer's memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Location {
+    /// The device alone.
+    GpuOnly,
+    /// Mapped, for the host to write.
+    Upload,
+    /// Mapped, for the host to read.
+    Readback,
+}
 
 /// What a [`MemorySource`] is asked for.
 #[derive(Debug, Clone, Copy)]
@@ -116,69 +124,5 @@ impl Memory {
         // SAFETY: the mapped part is as long as the memory, by the allocator's or the source's promise, and is borrowed as a
         // whole.
         Some(unsafe { WriteOnly::new(bytes) })
-    }
-}
-
-impl Device {
-    /// Memory from the host, or from the allocator. The error says why there is none.
-    pub(super) fn take_memory(&self, desc: &AllocationCreateDesc<'_>) -> Result<Memory, String> {
-        let Some(source) = self.memory_source() else {
-            let allocation = self.allocator().allocate(desc);
-            return allocation
-                .map(Memory::Own)
-                .map_err(|error| error.to_string());
-        };
-        let location = match desc.location {
-            MemoryLocation::CpuToGpu => Location::Upload,
-            MemoryLocation::GpuToCpu => Location::Readback,
-            MemoryLocation::GpuOnly | MemoryLocation::Unknown => Location::GpuOnly,
-        };
-        let lent = source
-            .allocate(&MemoryRequest {
-                name: desc.name,
-                requirements: desc.requirements,
-                location,
-            })
-            .map_err(|result| format!("the host's allocator said {result:?}"))?;
-        let vk::MemoryRequirements {
-            size, alignment, ..
-        } = desc.requirements;
-        let wrong = if lent.memory == vk::DeviceMemory::null() {
-            Some("is null".into())
-        } else if !lent.offset.is_multiple_of(alignment.max(1)) {
-            Some(format!(
-                "is at {}, and needs a multiple of {alignment}",
-                lent.offset
-            ))
-        } else if location != Location::GpuOnly && lent.mapped.is_null() {
-            Some("is not mapped".into())
-        } else {
-            None
-        };
-        if let Some(wrong) = wrong {
-            source.free(lent);
-            return Err(format!("what the host's allocator lent {wrong}"));
-        }
-        Ok(Memory::Lent { lent, size })
-    }
-
-    /// Gives memory back to where it is from.
-    pub(super) fn give_memory_back(&self, memory: Memory) {
-        match memory {
-            Memory::Own(allocation) => {
-                if let Err(error) = self.allocator().free(allocation) {
-                    log::error!("device memory could not be freed: {error}");
-                }
-            }
-            Memory::Lent { lent, .. } => {
-                let source = self.memory_source().expect("it has lent the memory");
-                source.free(lent);
-            }
-        }
-    }
-
-    fn allocator(&self) -> MutexGuard<'_, Allocator> {
-        let allocator = self.lent_allocator().lock();
-        allocator.unwrap_or_else(PoisonError::into_inner)
     }
 }

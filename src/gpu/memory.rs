@@ -6,26 +6,16 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme};
 
+use super::device::Device;
 use super::failure::failed;
-use super::lent::Memory;
-use super::{Device, WriteOnly};
+use super::lent::{Location, Memory};
+use super::write_only::WriteOnly;
 use crate::counted::counted;
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// Allocations from this size on get memory of their own; smaller ones share blocks. With a lower limit small buffers would
 /// waste pages and the driver's limited number of allocations; with a higher one freed buffers would leave large holes.
 const DEDICATED_FROM: u64 = 16 << 20;
-
-/// Who reaches a buffer's memory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Location {
-    /// The device alone.
-    GpuOnly,
-    /// Mapped, for the host to write.
-    Upload,
-    /// Mapped, for the host to read.
-    Readback,
-}
 
 /// The description from which a buffer is created.
 #[derive(Debug, Clone, Copy)]
@@ -54,6 +44,14 @@ struct Owned {
     location: Location,
     /// `None` only while being dropped.
     allocation: Option<Memory>,
+}
+
+impl Device {
+    /// Creates a buffer.
+    #[cfg_attr(not(feature = "lab"), doc(hidden))]
+    pub fn create_buffer(&self, desc: &BufferDesc<'_>) -> Result<Buffer> {
+        Buffer::new(self, desc)
+    }
 }
 
 impl Buffer {

@@ -16,9 +16,11 @@
 mod access;
 mod account;
 mod ahead;
+mod allocation;
 mod attachments;
 mod clock;
 mod commands;
+mod desc;
 mod device;
 mod devices;
 mod draw;
@@ -32,11 +34,14 @@ mod image;
 mod in_flight;
 #[cfg(feature = "lab")]
 mod inspection;
+#[cfg(feature = "lab")]
+mod inspector;
 mod instance;
 mod label;
 mod layout;
 mod lent;
 mod memory;
+mod one_off;
 mod open;
 mod pipeline;
 mod pipeline_cache;
@@ -60,19 +65,18 @@ mod write_only;
 
 pub use account::NamedBytes;
 pub use attachments::Target;
+pub use desc::{AdoptDesc, DeviceDesc};
 pub use device::{Device, OnCompile};
 pub use devices::{DeviceInfo, list_devices};
 pub use features::Features;
-pub use layout::Bindings;
-pub use lent::{LentMemory, MemoryRequest, MemorySource};
-pub use memory::Location;
-pub use open::{AdoptDesc, DeviceDesc};
+pub use lent::{LentMemory, Location, MemoryRequest, MemorySource};
 pub use pipeline_cache::PipelineCacheId;
 pub use pipeline_file::PipelineCache;
 pub use recorder::DepthImage;
+pub(crate) use requirements::LEAST_SUBGROUP;
 pub use requirements::{Support, check};
+pub use shader::Bindings;
 pub use shape::DeviceShape;
-pub(crate) use shape::LEAST_SUBGROUP;
 pub use timer::PassSpan;
 pub use write_only::WriteOnly;
 
@@ -96,7 +100,7 @@ mod inner {
     pub use super::draw::Drawer;
     pub use super::image::{Image, ImageDesc};
     #[cfg(feature = "lab")]
-    pub use super::inspection::{CompiledShader, Dispatched, DispatchedGroups, Recorded};
+    pub use super::inspector::{CompiledShader, Dispatched, DispatchedGroups, Recorded};
     pub use super::memory::{Buffer, BufferDesc};
     pub use super::pipeline::{ComputeDesc, ComputePipeline, GraphicsDesc, GraphicsPipeline};
     #[cfg(feature = "lab")]

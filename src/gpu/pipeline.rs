@@ -5,10 +5,15 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::access::Access;
+use super::attachments::Attachments;
+use super::device::Device;
 use super::failure::failed;
 use super::layout::Layout;
-use super::{Access, Attachments, Bindings, BufferAccess, Device, DeviceShape, Shader};
-use crate::{Error, Result};
+use super::shader::Bindings;
+use super::shader::{BufferAccess, Shader};
+use super::shape::DeviceShape;
+use crate::error::{Error, Result};
 
 /// Entry point of every shader.
 const MAIN: &CStr = c"main";

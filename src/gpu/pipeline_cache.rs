@@ -5,9 +5,9 @@ use std::sync::atomic::Ordering;
 
 use ash::vk;
 
-use super::Device;
+use super::device::Device;
 use super::failure::failed;
-use crate::Result;
+use crate::error::Result;
 
 /// The driver and the device that have compiled pipelines; no others can use them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

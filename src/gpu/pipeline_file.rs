@@ -5,10 +5,11 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use super::device::Ahead;
-use super::{Device, PipelineCacheId};
+use super::device::{Ahead, Device};
+use super::pipeline_cache::PipelineCacheId;
+use crate::error::{Error, Result};
 use crate::files::write_atomically;
-use crate::{Error, Result, fnv};
+use crate::fnv;
 
 /// The place in which [`Headless`](crate::Headless) keeps compiled pipelines from one run to the next.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

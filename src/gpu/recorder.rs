@@ -4,8 +4,14 @@
 use ash::vk;
 use smallvec::SmallVec;
 
+use super::access::Access;
+use super::device::Device;
 use super::label::{begin_label, begin_pass, end_label, end_pass};
-use super::{Access, Buffer, ComputePipeline, Device, MAX_BUFFERS, Timer, Tracker};
+use super::memory::Buffer;
+use super::pipeline::ComputePipeline;
+use super::shader::MAX_BUFFERS;
+use super::timer::Timer;
+use super::tracker::Tracker;
 use crate::limits::GROUP_COLUMNS;
 
 /// How many workgroups a dispatch has.

@@ -4,11 +4,13 @@ use std::ffi::CStr;
 
 use ash::{ext, khr, vk};
 
-use super::MAX_BUFFERS;
 use super::failure::failed;
-use super::shape::LEAST_SUBGROUP;
+use super::shader::MAX_BUFFERS;
+use crate::error::{Error, Result};
 use crate::limits::{BLOCK_SIZE, RADIX_GROUP_SIZE};
-use crate::{Error, Result};
+
+/// The least size for which a workgroup of the sort has room to count the digits of each subgroup.
+pub(crate) const LEAST_SUBGROUP: u32 = 8;
 
 /// The optional features of a physical device that meets the requirements.
 ///

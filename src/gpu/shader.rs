@@ -2,7 +2,18 @@
 
 use ash::vk;
 
-use super::Bindings;
+/// How shaders reach their buffers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Bindings {
+    /// They are reached by device address: there is no size limit, but the validation layer cannot watch.
+    #[default]
+    Address,
+    /// They are storage buffers of descriptor set 0, pushed with each command. The validation layer sees every hazard; a
+    /// buffer may not exceed [`Support::max_storage_buffer_range`](super::Support::max_storage_buffer_range).
+    Bound,
+    /// The frame's constants are bound, and all else is reached by device address.
+    Mixed,
+}
 
 /// How a shader uses a buffer, as its GLSL declares it (`readonly`, `writeonly` or neither).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

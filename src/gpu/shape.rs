@@ -2,8 +2,9 @@
 
 use ash::vk;
 
-use super::{DeviceInfo, Support};
-use crate::{Error, Result};
+use super::devices::DeviceInfo;
+use super::requirements::Support;
+use crate::error::{Error, Result};
 
 /// The kind of machine that runs the stages. It decides which kernels are used and how finely their work is divided;
 /// pictures depend on it only by the rounding of sums.
@@ -24,9 +25,6 @@ pub enum DeviceShape {
 
 /// The size that kernels were written with in mind. Drivers that offer several take it; the others have one.
 const USUAL_SUBGROUP: u32 = 32;
-
-/// The least size for which a workgroup of the sort has room to count the digits of each subgroup.
-pub(crate) const LEAST_SUBGROUP: u32 = 8;
 
 /// The shared memory of a workgroup that kernels for GPUs take at most, bytes.
 const SHARED_MEMORY: u32 = 28 << 10;

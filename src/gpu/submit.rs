@@ -4,16 +4,10 @@ use std::sync::{MutexGuard, PoisonError};
 
 use ash::vk;
 
-use super::Device;
+use super::device::Device;
 use super::failure::failed;
-use crate::Result;
-
-/// A command buffer for one submission at a time, with the fence that says when it is done.
-pub(super) struct OneOff {
-    pool: vk::CommandPool,
-    cmd: vk::CommandBuffer,
-    fence: vk::Fence,
-}
+use super::one_off::OneOff;
+use crate::error::Result;
 
 impl OneOff {
     fn new(device: &Device) -> Result<Self> {
@@ -53,14 +47,6 @@ impl OneOff {
                 this.destroy(raw);
                 Err(error)
             }
-        }
-    }
-
-    pub(super) fn destroy(self, raw: &ash::Device) {
-        // SAFETY: a `OneOff` is destroyed only when idle; null handles are ignored.
-        unsafe {
-            raw.destroy_fence(self.fence, None);
-            raw.destroy_command_pool(self.pool, None);
         }
     }
 

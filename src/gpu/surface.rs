@@ -6,11 +6,12 @@ use std::sync::Arc;
 use ash::{khr, vk};
 use raw_window_handle::{HandleError, HasDisplayHandle, HasWindowHandle};
 
+use super::desc::DeviceDesc;
+use super::device::Device;
 use super::failure::failed;
 use super::instance::Instance;
-use super::requirements::offers;
-use super::{Device, DeviceDesc, Support};
-use crate::{Error, Result};
+use super::requirements::{Support, offers};
+use crate::error::{Error, Result};
 
 /// An object that has a window and the display that the window is on.
 pub(crate) trait Window: HasWindowHandle + HasDisplayHandle {}

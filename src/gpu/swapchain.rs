@@ -2,11 +2,13 @@
 
 use ash::{khr, vk};
 
+use super::device::Device;
+use super::draw::Drawer;
 use super::failure::failed;
 use super::image::{WHOLE, barrier, begin_rendering, to_be_drawn};
+use super::memory::Buffer;
 use super::surface::{Surface, lost};
-use super::{Buffer, Device, Drawer};
-use crate::Result;
+use crate::error::Result;
 
 /// A window's images; none while the window has no size.
 pub(crate) struct Swapchain {

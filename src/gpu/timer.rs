@@ -2,9 +2,9 @@
 
 use ash::vk;
 
-use super::Device;
+use super::device::Device;
 use super::failure::failed;
-use crate::Result;
+use crate::error::Result;
 use crate::stats::PassStatistics;
 
 /// Timestamps around the passes of one recording. Where the device has none, it does nothing and reads nothing.

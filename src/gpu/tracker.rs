@@ -3,8 +3,7 @@
 use ash::vk;
 use smallvec::SmallVec;
 
-use super::Access;
-use super::access::{Memory, Stages};
+use super::access::{Access, Memory, Stages};
 
 /// A set of [`Access`] names, one bit each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

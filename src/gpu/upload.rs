@@ -2,8 +2,11 @@
 
 use ash::vk;
 
-use super::{Buffer, BufferDesc, Device, Location, Recorder};
-use crate::Result;
+use super::device::Device;
+use super::lent::Location;
+use super::memory::{Buffer, BufferDesc};
+use super::recorder::Recorder;
+use crate::error::Result;
 
 /// The most bytes staged at once. More would gain nothing, since a chunk takes milliseconds; with fewer, submissions would
 /// cost noticeable time.

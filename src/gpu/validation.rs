@@ -8,7 +8,7 @@ use ash::{ext, vk};
 
 use super::failure::failed;
 use super::requirements::offers;
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// The layer's name.
 pub(crate) const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";

@@ -70,9 +70,6 @@ const NOTHING: RaraGaussianArrays = RaraGaussianArrays {
 };
 
 /// No Gaussians, of degree 0, in arrays without gaps. `arrays_size` is sizeof *arrays.
-///
-/// # Safety
-/// `arrays` has room for `arrays_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussian_arrays_default(
     arrays: *mut RaraGaussianArrays,
@@ -85,9 +82,6 @@ pub unsafe extern "C" fn rara_gaussian_arrays_default(
 /// Copies Gaussians from a host's arrays. RARA_ERROR_INVALID names the array and, where a number in it cannot be drawn (one
 /// that is not finite, a negative scale, a rotation that is no unit quaternion, an opacity that is not between 0 and 1), the
 /// element.
-///
-/// # Safety
-/// `arrays` is as its fields say; `gaussians` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussians_from_arrays(
     arrays: *const RaraGaussianArrays,

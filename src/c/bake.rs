@@ -3,12 +3,12 @@
 use rara::{BakeCounts, BakeSettings, bake};
 
 use crate::boundary::{RaraResult, Versioned, guard, read, write};
+use crate::clip::RaraClip;
 use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, create};
-use crate::region::RaraRegion;
 use crate::settings::{RaraMode, mode, mode_code};
 
-/// How a region is baked.
+/// How a clip is baked.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraBakeSettings {
@@ -21,7 +21,7 @@ pub struct RaraBakeSettings {
     pub sigma: f32,
     /// How many Gaussians stand for a cut one, 1 to 3. Default: 1.
     pub children: u32,
-    /// A cut Gaussian stays whole where the region keeps all within this many standard deviations of its centre. Default: 1, at
+    /// A cut Gaussian stays whole where the clip keeps all within this many standard deviations of its centre. Default: 1, at
     /// which baking twice is baking once.
     pub leave: f32,
 }
@@ -49,7 +49,7 @@ impl From<BakeSettings> for RaraBakeSettings {
 pub struct RaraBakeCounts {
     /// Set by rara_gaussians_bake.
     pub struct_size: usize,
-    /// Gaussians that the region leaves whole; they are kept.
+    /// Gaussians that the clip leaves whole; they are kept.
     pub visible: u64,
     /// Gaussians that it cuts; they are replaced, except the next two.
     pub cutoff: u64,
@@ -83,9 +83,6 @@ impl From<BakeCounts> for RaraBakeCounts {
 }
 
 /// The default settings. `settings_size` is sizeof *settings.
-///
-/// # Safety
-/// `settings` has room for `settings_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_bake_settings_default(
     settings: *mut RaraBakeSettings,
@@ -96,21 +93,17 @@ pub unsafe extern "C" fn rara_bake_settings_default(
     guard(|| unsafe { write(settings, settings_size, &default, "settings") })
 }
 
-/// Makes Gaussians that show a cut without a region, wherever they are drawn: those outside it are dropped, those that it
+/// Makes Gaussians that show a cut without a clip, wherever they are drawn: those outside it are dropped, those that it
 /// leaves whole are kept, and each that it cuts is replaced by one with the mass, the mean and the covariance of what is left.
 /// A Gaussian has no edge, so that this is a preview: against the exact cut, 12 to 17 % of the light of cut Gaussians is off,
 /// where a cut by centres is off by 35 %. It needs no device; all processors work at it.
 /// Properties, for rara_gaussians_select, stay those of the Gaussians that they come from.
 ///
 /// Null `settings` are the defaults. `counts` says what has been done; it may be null, and `counts_size` is sizeof *counts.
-///
-/// # Safety
-/// `gaussians` and `region` are alive; `settings` is null or points to one; `baked` may be overwritten; `counts` is null, or has
-/// room for `counts_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussians_bake(
     gaussians: *const RaraGaussians,
-    region: *const RaraRegion,
+    clip: *const RaraClip,
     settings: *const RaraBakeSettings,
     baked: *mut *mut RaraGaussians,
     counts: *mut RaraBakeCounts,
@@ -120,7 +113,7 @@ pub unsafe extern "C" fn rara_gaussians_bake(
     guard(|| unsafe {
         create(baked, "baked", || {
             let gaussians = alive(gaussians, "gaussians")?;
-            let region = alive(region, "region")?;
+            let clip = alive(clip, "clip")?;
             let default = BakeSettings::default();
             let settings = match settings.is_null() {
                 true => default,
@@ -133,7 +126,7 @@ pub unsafe extern "C" fn rara_gaussians_bake(
                         .leave(given.leave)
                 }
             };
-            let made = bake(&gaussians.gaussians, &region.0, &settings)?;
+            let made = bake(&gaussians.gaussians, &clip.0, &settings)?;
             if !counts.is_null() {
                 write(counts, counts_size, &made.counts.into(), "counts")?;
             }

@@ -2,12 +2,11 @@
 
 use rara::{Aov, Headless, Result, ShFormat};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, read, shared, write};
-use crate::camera::RaraCamera;
+use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
+use crate::camera::{self, RaraCamera};
 use crate::clip::{self, RaraClip};
 use crate::handles::alive;
 use crate::layer::{RaraLayer, given};
-use crate::region::{RaraProjection, projection};
 use crate::renderer::RaraRenderer;
 use crate::scene::{numbers_of, of_layers};
 use crate::settings::{self, RaraSettings};
@@ -91,9 +90,6 @@ impl RaraChannels {
 
 /// Channels of these quantities, of pictures of `width` x `height` pixels; the host gives `values`, with room for
 /// `value_count` numbers. `channels_size` is sizeof *channels.
-///
-/// # Safety
-/// `channels` has room for `channels_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_channels_default(
     channels: *mut RaraChannels,
@@ -126,7 +122,7 @@ pub unsafe extern "C" fn rara_channels_default(
 ///
 /// The renderer lends its device, its compiled pipelines and its placement; its frames, attachments and depths have no say,
 /// and stay as they are. The scene is given as layers because one that is on the device has no colours that could be changed:
-/// states and regions that were set there are given with them. What `settings` show is ignored.
+/// states and clips that were set there are given with them. What `settings` show is ignored.
 ///
 /// RARA_ERROR_INVALID where the sizes of `channels` are not the camera's, or too few or too many; after an error `values` are as
 /// they were.
@@ -141,7 +137,6 @@ pub unsafe extern "C" fn rara_renderer_channels(
     layers: *const RaraLayer,
     layer_count: usize,
     camera: *const RaraCamera,
-    projection: RaraProjection,
     clip: *const RaraClip,
     settings: *const RaraSettings,
     channels: *const RaraChannels,
@@ -151,8 +146,7 @@ pub unsafe extern "C" fn rara_renderer_channels(
         let renderer = alive(renderer, "renderer")?;
         let room = read(channels, NOWHERE, "channels")?;
         let (aovs, count) = room.wanted()?;
-        let camera = shared(camera, "camera")?.camera()?;
-        let camera = camera.projection(self::projection(projection)?);
+        let camera = camera::camera(camera)?;
         if (room.width, room.height) != (camera.width, camera.height) {
             return invalid(format!(
                 "channels->width and height are {}x{}, and the camera's {}x{}: give those",
@@ -168,7 +162,7 @@ pub unsafe extern "C" fn rara_renderer_channels(
         if room.values.is_null() {
             return invalid("channels->values is null");
         }
-        let (camera, clip) = clip::kept(clip)?.seen_by(camera);
+        let clip = clip::clip(clip, "clip")?.unwrap_or_default();
         let settings = settings::settings(settings)?;
         let layers = given(layers, layer_count)?;
         let numbers = numbers_of(&layers);

@@ -1,10 +1,21 @@
-//! Clips: planes and how they combine.
+//! Clips: the regions that stay visible, from planes, from text and from files.
 
+use std::ffi::c_char;
+use std::path::Path;
+
+use rara::ash::vk;
+use rara::clip::{Expression, NamedClip, clips_from_json, load_clips};
 use rara::glam::DVec3;
-use rara::{Camera, Clip, ClipOp, Error, Plane, Result};
+use rara::{Clip, ClipOp, Error, Plane, Result};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, list, read, write};
-use crate::region::{self, RaraRegion};
+use crate::boundary::{RaraResult, exclusive, guard, invalid, list};
+use crate::camera::vector;
+use crate::handles::{alive, create, destroy};
+use crate::text::{self, text};
+
+/// The region that stays visible, made of planes, slabs, boxes, spheres, ellipsoids, cylinders, capsules and cones. Where a
+/// function takes one, null means everything. It does not change; several threads, renderers and layers may use it at once.
+pub struct RaraClip(pub(crate) Clip);
 
 /// A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but must
 /// not be zero. It never grows.
@@ -24,165 +35,144 @@ pub const RARA_CLIP_OP_AND: RaraClipOp = 0;
 /// Visible where any plane keeps it.
 pub const RARA_CLIP_OP_OR: RaraClipOp = 1;
 
-/// The region that stays visible. Where a function takes one, null means everything.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct RaraClip {
-    /// Set by rara_clip_default.
-    pub struct_size: usize,
-    /// The half-spaces; only the call itself reads them.
-    pub planes: *const RaraPlane,
-    /// How many planes there are, at most 32. With 0, the default, they keep everything.
-    pub plane_count: usize,
-    /// How they combine. Default: RARA_CLIP_OP_AND.
-    pub op: RaraClipOp,
-    /// A region in place of planes; null, the default, for none. Only the call itself reads it.
-    pub region: *const RaraRegion,
-    /// The depth along the view axis, world units, from which on the scene is kept: a plane across the axis that moves with
-    /// the camera and cuts every layer, whatever else cuts it, those with a clip of their own too. Splats are cut exactly, as
-    /// by any other plane; RARA_MODE_NONE does not ask. Default: -INFINITY, for no such plane.
-    pub clip_near: f64,
-    /// The depth up to which the scene is kept, likewise. Default: INFINITY, for no such plane.
-    pub clip_far: f64,
-    /// The depth along the view axis, world units, from which on splats are drawn: those whose centres are nearer are left out
-    /// whole. 0, the default, stands for 0.2 units of the scene, as in 3DGS.
-    pub near_cut: f64,
-}
-
-// SAFETY: repr(C), numbers, pointers and a handle, the size first.
-unsafe impl Versioned for RaraClip {
-    const NAME: &'static str = "RaraClip";
-}
-
-impl RaraClip {
-    /// Everything.
-    pub(crate) const WHOLE: Self = Self {
-        struct_size: size_of::<Self>(),
-        planes: std::ptr::null(),
-        plane_count: 0,
-        op: RARA_CLIP_OP_AND,
-        region: std::ptr::null(),
-        clip_near: f64::NEG_INFINITY,
-        clip_far: f64::INFINITY,
-        near_cut: 0.0,
-    };
-}
-
-/// A clip that keeps everything. `clip_size` is sizeof *clip.
-///
-/// # Safety
-/// `clip` has room for `clip_size` bytes.
+/// Makes a clip of half-spaces, at most 32; none keep everything.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_clip_default(clip: *mut RaraClip, clip_size: usize) -> RaraResult {
-    // SAFETY: the caller's promise.
-    guard(|| unsafe { write(clip, clip_size, &RaraClip::WHOLE, "clip") })
-}
-
-/// What a frame keeps: a clip in the world, between planes that move with the camera.
-pub(crate) struct FrameClip {
-    pub(crate) clip: Clip,
-    pub(crate) near: Option<f64>,
-    pub(crate) far: Option<f64>,
-    pub(crate) cut: Option<f64>,
-}
-
-/// All that a clip keeps.
-impl From<Clip> for FrameClip {
-    fn from(clip: Clip) -> Self {
-        Self {
-            clip,
-            near: None,
-            far: None,
-            cut: None,
-        }
-    }
-}
-
-impl FrameClip {
-    /// The camera with its planes and its near cut, and the clip.
-    pub(crate) fn seen_by(self, camera: Camera) -> (Camera, Clip) {
-        let camera = camera.clip_near(self.near).clip_far(self.far);
-        (camera.near_cut(self.cut), self.clip)
-    }
-}
-
-/// Reads a frame's clip.
-///
-/// # Safety
-/// `clip` is null, or points to one whose planes are there.
-pub(crate) unsafe fn kept(clip: *const RaraClip) -> Result<FrameClip> {
-    if clip.is_null() {
-        return Ok(Clip::default().into());
-    }
-    // SAFETY: the caller's promise.
-    let given = unsafe { read(clip, RaraClip::WHOLE, "clip") }?;
-    let depth = |depth: f64, none: f64, field: &str| {
-        let is_none = depth == none;
-        match is_none || depth.is_finite() {
-            true => Ok((!is_none).then_some(depth)),
-            false => invalid(format!(
-                "clip->{field} is {depth}: give a depth, or for none what rara_clip_default sets"
-            )),
-        }
-    };
-    Ok(FrameClip {
-        near: depth(given.clip_near, f64::NEG_INFINITY, "clip_near")?,
-        far: depth(given.clip_far, f64::INFINITY, "clip_far")?,
-        cut: depth(given.near_cut, 0.0, "near_cut")?,
-        // SAFETY: as above.
-        clip: unsafe { in_place(&given) }?,
+pub unsafe extern "C" fn rara_clip_of_planes(
+    planes: *const RaraPlane,
+    count: usize,
+    op: RaraClipOp,
+    clip: *mut *mut RaraClip,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        create(clip, "clip", || {
+            if count > Clip::MAX_SURFACES {
+                return invalid(format!(
+                    "count is {count}, and a clip has at most {} planes",
+                    Clip::MAX_SURFACES
+                ));
+            }
+            let plane = |(index, plane): (usize, &RaraPlane)| {
+                let made = Plane::new(DVec3::from(plane.normal), plane.offset);
+                made.map_err(|error| Error::Invalid(format!("planes[{index}]: {error}")))
+            };
+            let planes = list(planes, count, "planes")?.iter().enumerate();
+            let planes: Vec<_> = planes.map(plane).collect::<Result<_>>()?;
+            let op = match op {
+                RARA_CLIP_OP_AND => ClipOp::And,
+                RARA_CLIP_OP_OR => ClipOp::Or,
+                other => return invalid(format!("op {other} is no RaraClipOp")),
+            };
+            Ok(RaraClip(Clip::of(planes, op)))
+        })
     })
 }
 
-/// Reads a layer's clip.
-///
-/// # Safety
-/// As for [`kept`].
-pub(crate) unsafe fn clip(clip: *const RaraClip) -> Result<Clip> {
-    // SAFETY: the caller's promise.
-    let kept = unsafe { kept(clip) }?;
-    if kept.near.is_some() || kept.far.is_some() || kept.cut.is_some() {
-        return invalid(
-            "clip->clip_near, clip_far and near_cut are the camera's, and a layer's clip stands in the scene: give them to \
-             rara_renderer_configure",
-        );
-    }
-    Ok(kept.clip)
+/// Makes a clip of the text of an expression: a shape, as "sphere:0,0,0,1" or "!box:0,0,0,1,1,2", whose "!" keeps the
+/// outside, or all(...), any(...) and not(...) of expressions, as in "all(box:0,0,0,1,1,2, not(sphere:1,0,0,0.5))".
+/// `rara help render` has the numbers of each shape. RARA_ERROR_INVALID says what is wrong and in which column.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_clip_parse(
+    expression: *const c_char,
+    clip: *mut *mut RaraClip,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        create(clip, "clip", || {
+            let expression: Expression = text(expression, "expression")?.parse()?;
+            Ok(RaraClip(expression.clip()))
+        })
+    })
 }
 
-/// What a clip keeps wherever the camera is.
+/// Makes a clip of JSON, of which `rara --save-clip` writes files: a list whose elements have a "name" or not, and
+/// either "clip", an expression as a tree, or "normal" and "d", a plane. `name` is the name of the element to take, or its
+/// number where none is called so; null takes the only one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_clip_from_json(
+    json: *const u8,
+    size: usize,
+    name: *const c_char,
+    clip: *mut *mut RaraClip,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        create(clip, "clip", || {
+            let path = Path::new("json");
+            let clips = clips_from_json(list(json, size, "json")?, path)?;
+            named(&clips, name, path)
+        })
+    })
+}
+
+/// Makes a clip of a JSON file, as rara_clip_from_json does. `path` is as for rara_gaussians_load.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_clip_load(
+    path: *const c_char,
+    name: *const c_char,
+    clip: *mut *mut RaraClip,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        create(clip, "clip", || {
+            let path = text::path(path, "path")?;
+            named(&load_clips(&path)?, name, &path)
+        })
+    })
+}
+
+/// The clip of a name or, where none is called so, of a number; for null the only one.
 ///
 /// # Safety
-/// Its planes are there.
-unsafe fn in_place(clip: &RaraClip) -> Result<Clip> {
-    if let Some(region) = region::clip(clip.region, "clip->region")? {
-        if clip.plane_count > 0 {
-            return invalid(
-                "clip->region and clip->planes are both given: make one region of them, or set plane_count to 0",
-            );
+/// `name` is null or ends in NUL.
+unsafe fn named(clips: &[NamedClip], name: *const c_char, path: &Path) -> Result<RaraClip> {
+    let found = match name.is_null() {
+        true => <&[NamedClip; 1]>::try_from(clips).ok().map(|[only]| only),
+        false => {
+            // SAFETY: the caller's promise.
+            let name = unsafe { text(name, "name") }?;
+            let called = clips.iter().find(|clip| clip.name == name);
+            called.or_else(|| clips.get(name.parse::<usize>().ok()?))
         }
-        return Ok(region);
-    }
-    if clip.plane_count > Clip::MAX_SURFACES {
-        return invalid(format!(
-            "clip->plane_count is {}, and a clip has at most {} planes",
-            clip.plane_count,
-            Clip::MAX_SURFACES
-        ));
-    }
-    // SAFETY: the caller's promise.
-    let planes = unsafe { list(clip.planes, clip.plane_count, "clip->planes") }?;
-    let plane = |(index, plane): (usize, &RaraPlane)| {
-        let made = Plane::new(DVec3::from(plane.normal), plane.offset);
-        made.map_err(|error| Error::Invalid(format!("clip->planes[{index}]: {error}")))
     };
-    let planes: Vec<_> = (planes.iter().enumerate().map(plane)).collect::<Result<_>>()?;
-    let op = match clip.op {
-        RARA_CLIP_OP_AND => ClipOp::And,
-        RARA_CLIP_OP_OR => ClipOp::Or,
-        other => return invalid(format!("clip->op {other} is no RaraClipOp")),
-    };
-    Ok(Clip::of(planes, op))
+    match found {
+        Some(found) => Ok(RaraClip(found.clip.clip())),
+        None => {
+            let names: Vec<_> = clips.iter().map(|clip| clip.name.as_str()).collect();
+            let message = format!("name one of its clips: {}", names.join(", "));
+            Err(Error::format(path, message))
+        }
+    }
+}
+
+/// Frees a clip; null is ignored. Renderers and layers that were given it have copies of their own.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_clip_destroy(clip: *mut RaraClip) {
+    destroy(clip);
+}
+
+/// The clip that a handle is, which messages call so; `None` for null.
+pub(crate) fn clip(clip: *const RaraClip, name: &str) -> Result<Option<Clip>> {
+    if clip.is_null() {
+        return Ok(None);
+    }
+    Ok(Some(alive(clip, name)?.0.clone()))
+}
+
+/// Says in `kept` whether a clip keeps a point, three numbers; a surface's own points are kept.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_clip_keeps(
+    clip: *const RaraClip,
+    point: *const f64,
+    kept: *mut vk::Bool32,
+) -> RaraResult {
+    // SAFETY: the caller's promises.
+    guard(|| unsafe {
+        let kept = exclusive(kept, "kept")?;
+        let clip = alive(clip, "clip")?;
+        *kept = clip.0.keeps(vector(point, "point")?).into();
+        Ok(())
+    })
 }
 
 #[cfg(test)]

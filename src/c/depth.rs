@@ -2,29 +2,74 @@
 
 use rara::ash::vk;
 use rara::gpu::DepthImage;
-use rara::{DepthDesc, DepthMap, Result};
+use rara::{DepthDesc, DepthMap, Projection, Result};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
+use crate::boundary::{RaraResult, Versioned, exclusive, guard, invalid, read, write};
+use crate::camera::{RARA_PROJECTION_PERSPECTIVE, RaraProjection, projection, projection_in_c};
 
-/// The values in a depth buffer, for any perspective projection into depths from 0 to 1. It never grows.
+/// The values in a depth buffer: at a depth z along the view axis, world units, it holds offset + scale / z in perspective,
+/// offset - scale z without. It never grows.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraDepthMap {
-    /// Depth along the view axis that becomes 0, or 1 if reversed, world units above 0.
-    pub z_near: f64,
-    /// Depth along the view axis that becomes 1, or 0 if reversed; beyond z_near, INFINITY too.
-    pub z_far: f64,
-    /// True when nearer is more.
-    pub reversed: vk::Bool32,
+    /// See RaraDepthMap.
+    pub offset: f64,
+    /// See RaraDepthMap. Nearer is more where it is above zero.
+    pub scale: f64,
+    /// The projection of the cameras that it is for.
+    pub projection: RaraProjection,
 }
 
 impl RaraDepthMap {
     pub(crate) fn map(&self) -> Result<DepthMap> {
-        match self.reversed {
-            vk::FALSE => DepthMap::ordinary(self.z_near, self.z_far),
-            _ => DepthMap::reversed(self.z_near, self.z_far),
+        DepthMap::new(projection(self.projection)?, self.offset, self.scale)
+    }
+
+    pub(crate) fn new(map: DepthMap, projection: Projection) -> Self {
+        Self {
+            offset: map.offset(),
+            scale: map.scale(),
+            projection: projection_in_c(projection),
         }
     }
+}
+
+/// The map of a perspective projection into depths from 0 to 1: `z_near`, world units above 0, becomes 0, or 1 if `reversed`,
+/// and `z_far`, beyond it and INFINITY too, the other.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_depth_map_perspective(
+    z_near: f64,
+    z_far: f64,
+    reversed: vk::Bool32,
+    map: *mut RaraDepthMap,
+) -> RaraResult {
+    // SAFETY: the caller's promise.
+    guard(|| unsafe {
+        let map = exclusive(map, "map")?;
+        let made = match reversed {
+            vk::FALSE => DepthMap::ordinary(z_near, z_far),
+            _ => DepthMap::reversed(z_near, z_far),
+        };
+        *map = RaraDepthMap::new(made?, Projection::Perspective);
+        Ok(())
+    })
+}
+
+/// The map of an orthographic projection: 0 at `z_zero` along the view axis, 1 at `z_one`, world units, and linear between
+/// them. Nearer is more where `z_one` is the nearer one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_depth_map_orthographic(
+    z_zero: f64,
+    z_one: f64,
+    map: *mut RaraDepthMap,
+) -> RaraResult {
+    // SAFETY: the caller's promise.
+    guard(|| unsafe {
+        let map = exclusive(map, "map")?;
+        let made = DepthMap::orthographic(z_zero, z_one)?;
+        *map = RaraDepthMap::new(made, Projection::Orthographic);
+        Ok(())
+    })
 }
 
 /// The host's depth attachment. Splats behind what it holds are hidden, and splats write nothing into it. In all of its
@@ -66,9 +111,9 @@ impl RaraDepthDesc {
 /// `desc` points to one.
 pub(crate) unsafe fn depth_desc(desc: *const RaraDepthDesc) -> Result<DepthDesc> {
     let nowhere = RaraDepthMap {
-        z_near: 0.0,
-        z_far: 0.0,
-        reversed: vk::FALSE,
+        offset: 0.0,
+        scale: 0.0,
+        projection: RARA_PROJECTION_PERSPECTIVE,
     };
     let default = RaraDepthDesc::new(vk::Format::UNDEFINED, nowhere);
     // SAFETY: the caller's promise.
@@ -82,9 +127,6 @@ pub(crate) unsafe fn depth_desc(desc: *const RaraDepthDesc) -> Result<DepthDesc>
 }
 
 /// A depth attachment without stencil, not readable. `desc_size` is sizeof *desc.
-///
-/// # Safety
-/// `desc` has room for `desc_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_depth_desc_default(
     desc: *mut RaraDepthDesc,
@@ -140,9 +182,6 @@ impl RaraDepthImage {
 }
 
 /// An image of `width` x `height` pixels, whose upper left corner is the viewport's. `depth_size` is sizeof *depth.
-///
-/// # Safety
-/// `depth` has room for `depth_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_depth_image_default(
     depth: *mut RaraDepthImage,

@@ -140,9 +140,6 @@ impl Drop for Release {
 }
 
 /// Enables nothing optional and sets all handles to null; the host replaces them. `desc_size` is sizeof *desc.
-///
-/// # Safety
-/// `desc` has room for `desc_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_adopt_desc_default(
     desc: *mut RaraAdoptDesc,
@@ -198,9 +195,6 @@ pub unsafe extern "C" fn rara_device_adopt(
 }
 
 /// Bytes of device memory that rara has allocated on the device, 0 for null.
-///
-/// # Safety
-/// `device` is null or alive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_device_bytes(device: *const RaraDevice) -> u64 {
     number(device, "device", |device| device.0.device_bytes())
@@ -208,9 +202,6 @@ pub unsafe extern "C" fn rara_device_bytes(device: *const RaraDevice) -> u64 {
 
 /// Gives the device back; the VkDevice lives on. What was made from the RaraDevice may be destroyed later, but before the
 /// VkDevice. Null is ignored.
-///
-/// # Safety
-/// `device` is null, or alive and not used any more.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_device_destroy(device: *mut RaraDevice) {
     destroy(device);

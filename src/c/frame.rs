@@ -1,11 +1,11 @@
 //! Frames: configured, prepared, drawn.
 
 use rara::ash::vk;
-use rara::{ConfiguredFrame, PreparedFrame, Projection, Result};
+use rara::{ConfiguredFrame, PreparedFrame, Result};
 
-use crate::boundary::{RaraResult, guard, invalid, recording, shared};
-use crate::camera::RaraCamera;
-use crate::clip::{self, FrameClip, RaraClip};
+use crate::boundary::{RaraResult, guard, invalid, recording};
+use crate::camera::{self, RaraCamera};
+use crate::clip::{self, RaraClip};
 use crate::depth::{self, RaraDepthImage};
 use crate::handles::{alive, alone, create, destroy};
 use crate::renderer::RaraRenderer;
@@ -52,32 +52,12 @@ pub unsafe extern "C" fn rara_renderer_configure(
     frame: *mut *mut RaraFrame,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    unsafe {
-        let seen = || Ok((Projection::Perspective, clip::kept(clip)?));
-        configure(renderer, scene, camera, seen, settings, frame)
-    }
-}
-
-/// Configures with the projection and the clip that `seen` reads.
-///
-/// # Safety
-/// As for [`rara_renderer_configure`].
-pub(crate) unsafe fn configure(
-    renderer: *mut RaraRenderer,
-    scene: *const RaraSceneBuffers,
-    camera: *const RaraCamera,
-    seen: impl FnOnce() -> Result<(Projection, FrameClip)>,
-    settings: *const RaraSettings,
-    frame: *mut *mut RaraFrame,
-) -> RaraResult {
-    // SAFETY: the caller's promises.
     guard(|| unsafe {
         create(frame, "frame", || {
             let mut renderer = alone(renderer, "renderer")?;
             let scene = alive(scene, "scene")?;
-            let camera = shared(camera, "camera")?.camera()?;
-            let (projection, kept) = seen()?;
-            let (camera, clip) = kept.seen_by(camera.projection(projection));
+            let camera = camera::camera(camera)?;
+            let clip = clip::clip(clip, "clip")?.unwrap_or_default();
             let settings = settings::settings(settings)?;
             let renderer = &mut renderer.0;
             let frame = renderer.configure(&scene.buffers, &camera, &clip, &settings)?;
@@ -185,9 +165,6 @@ pub unsafe extern "C" fn rara_renderer_draw_depth(
 }
 
 /// Ends a frame, prepared or not; null is ignored. The memory of a frame that the device works on stays until it is done.
-///
-/// # Safety
-/// `frame` is null, or alive and not used any more.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_frame_destroy(frame: *mut RaraFrame) {
     destroy(frame);

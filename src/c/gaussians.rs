@@ -75,9 +75,6 @@ unsafe impl Versioned for RaraGaussiansInfo {
 /// SOG (an archive, its folder or meta.json) or glTF with KHR_gaussian_splatting. The format is found by what is in the file.
 ///
 /// `path` is UTF-8, or on Unix whatever the file system takes.
-///
-/// # Safety
-/// `path` ends in NUL; `gaussians` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussians_load(
     path: *const c_char,
@@ -94,9 +91,6 @@ pub unsafe extern "C" fn rara_gaussians_load(
 
 /// Loads a scene that is in memory, such as an archive's entry, in any format that is one file. `name` stands for it in
 /// messages.
-///
-/// # Safety
-/// `data` points to `size` bytes, which are not used afterwards; `name` ends in NUL; `gaussians` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussians_load_from(
     data: *const u8,
@@ -116,9 +110,6 @@ pub unsafe extern "C" fn rara_gaussians_load_from(
 
 /// Appends another scene to one, so that both are sorted and composited as one. Properties that both have
 /// stay, for rara_gaussians_select.
-///
-/// # Safety
-/// Both are alive and not the same; nobody else uses `gaussians` meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussians_append(
     gaussians: *mut RaraGaussians,
@@ -148,9 +139,6 @@ pub unsafe extern "C" fn rara_gaussians_append(
 /// Says whether Gaussians were trained antialiased, as by Mip-Splatting or gsplat's rasterize_mode antialiased: what the
 /// low-pass makes larger on the screen then gets no brighter for it. Files that say so are loaded so. It holds for a whole
 /// scene; what is appended to one is drawn like it. A scene that is on the device already stays as it is.
-///
-/// # Safety
-/// `gaussians` is alive; nobody else uses it meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussians_set_antialiased(
     gaussians: *mut RaraGaussians,
@@ -166,9 +154,6 @@ pub unsafe extern "C" fn rara_gaussians_set_antialiased(
 }
 
 /// Describes a scene. `info_size` is sizeof *info.
-///
-/// # Safety
-/// `gaussians` is alive; `info` has room for `info_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussians_info(
     gaussians: *const RaraGaussians,
@@ -197,9 +182,6 @@ pub unsafe extern "C" fn rara_gaussians_info(
 }
 
 /// Frees a scene's memory; null is ignored.
-///
-/// # Safety
-/// `gaussians` is null, or alive and not used any more.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussians_destroy(gaussians: *mut RaraGaussians) {
     destroy(gaussians);

@@ -7,13 +7,12 @@ use rara::ash::vk;
 use rara::{Error, LayerState, Result};
 
 use crate::boundary::{RaraResult, Versioned, guard, invalid, read, read_list, write};
-use crate::clip::RaraClip;
+use crate::clip::{self, RaraClip};
 use crate::device::RaraDevice;
 use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, alone};
 use crate::layer_info::check_index;
 use crate::placement::RaraPlacement;
-use crate::region::{self, RaraRegion};
 use crate::scene::{self, GivenLayer, RaraSceneBuffers, RaraShFormat};
 use crate::staging::RaraStaging;
 use crate::text::text;
@@ -80,8 +79,8 @@ pub struct RaraLayer {
     pub gaussians: *const RaraGaussians,
     /// The state in which it is uploaded; null, the default, stands for that of rara_layer_state_default.
     pub state: *const RaraLayerState,
-    /// Its own region, as rara_scene_buffers_set_layer_region sets it; null, the default, for the frame's clip.
-    pub region: *const RaraRegion,
+    /// Its own clip, as rara_scene_buffers_set_layer_clip sets it; null, the default, for the frame's clip.
+    pub clip: *const RaraClip,
 }
 
 // SAFETY: repr(C), a number, pointers and handles, the size first.
@@ -96,7 +95,7 @@ impl RaraLayer {
             name,
             gaussians,
             state: null(),
-            region: null(),
+            clip: null(),
         }
     }
 
@@ -111,7 +110,7 @@ impl RaraLayer {
             gaussians: alive(self.gaussians, &format!("{place}.gaussians"))?,
             name: name.to_owned(),
             state: LayerState::default(),
-            clip: region::clip(self.region, &format!("{place}.region"))?,
+            clip: clip::clip(self.clip, &format!("{place}.clip"))?,
         };
         if !self.state.is_null() {
             // SAFETY: as above.
@@ -147,9 +146,6 @@ pub(crate) unsafe fn given(
 
 /// The state of a layer that stands where it was made, visible and with the opacities of its Gaussians. `state_size` is
 /// sizeof *state.
-///
-/// # Safety
-/// `state` has room for `state_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_layer_state_default(
     state: *mut RaraLayerState,
@@ -161,9 +157,6 @@ pub unsafe extern "C" fn rara_layer_state_default(
 }
 
 /// A layer of Gaussians in the default state; `layer` keeps both pointers as they are. `layer_size` is sizeof *layer.
-///
-/// # Safety
-/// `layer` has room for `layer_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_layer_default(
     layer: *mut RaraLayer,
@@ -196,10 +189,6 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_layers(
 }
 
 /// Bytes of staging memory that rara_scene_buffers_upload_layers_with needs for a scene.
-///
-/// # Safety
-/// `layers` points to `layer_count` layers, which are as their fields say and all of one struct_size; `bytes` may be
-/// overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_staging_bytes_of_layers(
     layers: *const RaraLayer,
@@ -235,9 +224,6 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_layers_with(
 }
 
 /// The state of a layer, as it was uploaded or last set; its rotation has length one. `state_size` is sizeof *state.
-///
-/// # Safety
-/// `scene` is alive, and no other thread sets a state meanwhile; `state` has room for `state_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_layer_state(
     scene: *const RaraSceneBuffers,
@@ -257,10 +243,6 @@ pub unsafe extern "C" fn rara_scene_buffers_layer_state(
 /// Sets the state of a layer: the next rara_renderer_configure of every renderer takes it, and frames that are already
 /// configured keep theirs, so that nothing has to be waited for. RARA_ERROR_INVALID for an opacity that is not 0 to 1 and
 /// for an impossible placement; the state then stays as it was.
-///
-/// # Safety
-/// `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;
-/// `state` points to one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_set_layer_state(
     scene: *mut RaraSceneBuffers,
@@ -277,15 +259,11 @@ pub unsafe extern "C" fn rara_scene_buffers_set_layer_state(
     })
 }
 
-/// Sets a clip for a layer alone, in place of the clip of rara_renderer_configure, which then has no say in it: a clip
-/// without planes keeps the whole layer. Null gives the layer the frame's clip again. The clip stands in the scene: neither
+/// Sets a clip for a layer alone, in place of the clip of rara_renderer_configure: a clip without planes keeps the whole
+/// layer. Null gives the layer the frame's clip again. The clip stands in the scene: neither
 /// the layer's placement nor that of rara_renderer_set_placement moves it, and the camera's planes are no part of it. It holds
 /// from the next rara_renderer_configure of every renderer on. RARA_ERROR_INVALID for what is no clip; the layer's clip then
 /// stays as it was.
-///
-/// # Safety
-/// `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;
-/// `clip` is null or points to one whose planes are there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_set_layer_clip(
     scene: *mut RaraSceneBuffers,
@@ -295,12 +273,9 @@ pub unsafe extern "C" fn rara_scene_buffers_set_layer_clip(
     guard(|| {
         let mut scene = alone(scene, "scene")?;
         check_index(&scene, index)?;
-        let own = match clip.is_null() {
-            true => None,
-            // SAFETY: the caller's promise.
-            false => Some(unsafe { crate::clip::clip(clip) }?),
-        };
-        scene.buffers.set_layer_clip(index, own)
+        scene
+            .buffers
+            .set_layer_clip(index, clip::clip(clip, "clip")?)
     })
 }
 

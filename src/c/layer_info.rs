@@ -28,9 +28,6 @@ unsafe impl Versioned for RaraLayerInfo {
 }
 
 /// How many layers a scene has, one or more; 0 for null.
-///
-/// # Safety
-/// `scene` is null or alive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_layer_count(scene: *const RaraSceneBuffers) -> usize {
     number(scene, "scene", |scene| scene.names.len())
@@ -48,9 +45,6 @@ pub(crate) fn check_index(scene: &RaraSceneBuffers, index: usize) -> Result<()> 
 }
 
 /// Describes a layer. Layers are numbered from 0, in the order in which they were given. `info_size` is sizeof *info.
-///
-/// # Safety
-/// `scene` is alive; `info` has room for `info_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_layer_info(
     scene: *const RaraSceneBuffers,
@@ -73,9 +67,6 @@ pub unsafe extern "C" fn rara_scene_buffers_layer_info(
 
 /// The number of the first layer of a name. RARA_ERROR_INVALID, which lists the names that there are, where no layer is called
 /// so; `index` is then left alone.
-///
-/// # Safety
-/// `scene` is alive, `name` ends in NUL, and `index` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_layer_by_name(
     scene: *const RaraSceneBuffers,

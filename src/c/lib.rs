@@ -3,6 +3,13 @@
 //! Names are those of the Rust crate with a prefix: [`Renderer`](rara::Renderer) is `RaraRenderer`. Nothing is decided
 //! here: a function checks what it was given, translates it, and calls its namesake. [`boundary`] is where panics end,
 //! where errors become codes, and where structs of other versions are read.
+//!
+//! # Safety
+//! Of every function: pointers that go in are null where that is allowed, or point to what their types say, as many values as
+//! the count beside them says; strings end in NUL; what a call fills may be overwritten, and a `..._size` is its room in
+//! bytes. A function that asks for more says so.
+
+#![allow(clippy::missing_safety_doc)] // it is said above
 
 #[cfg(not(panic = "unwind"))]
 compile_error!("rara-c stops panics at its boundary, and needs panic = \"unwind\" for that");
@@ -27,10 +34,8 @@ pub mod matrices;
 #[cfg(test)]
 mod nulls;
 mod numbering;
-pub mod orthographic;
 pub mod picker;
 pub mod placement;
-pub mod region;
 pub mod renderer;
 pub mod renderer_desc;
 pub mod reserve;

@@ -2,14 +2,11 @@
 
 use rara::ash::vk;
 use rara::glam::{DMat4, Mat4};
-use rara::{Camera, DepthMap, Ndc, Projection, Result};
+use rara::{Camera, Ndc, Result};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, list, read, write};
-use crate::camera::RaraCamera;
-use crate::region::{
-    RARA_PROJECTION_ORTHOGRAPHIC, RARA_PROJECTION_PERSPECTIVE, RaraProjection, projection,
-};
-use crate::renderer::{RaraRenderer, with};
+use crate::boundary::{RaraResult, Versioned, exclusive, guard, invalid, list, read, write};
+use crate::camera::{NOWHERE, RaraCamera};
+use crate::depth::RaraDepthMap;
 
 /// How the 16 numbers of a matrix lie in memory.
 pub type RaraMatrixOrder = u32;
@@ -54,58 +51,15 @@ const VULKAN: RaraNdc = RaraNdc {
 
 /// Vulkan's own: y down, depths from 0 to 1, nearer is less, a view's translation in numbers 12 to 14. `ndc_size` is sizeof
 /// *ndc.
-///
-/// # Safety
-/// `ndc` has room for `ndc_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_ndc_default(ndc: *mut RaraNdc, ndc_size: usize) -> RaraResult {
     // SAFETY: the caller's promise.
     guard(|| unsafe { write(ndc, ndc_size, &VULKAN, "ndc") })
 }
 
-/// What a host's matrices are to a renderer.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RaraHostView {
-    /// The size that rara_camera_of_projection was given, or less where this library knows less.
-    pub struct_size: usize,
-    /// The camera, whose rotation has a mirror in it where the world is left-handed.
-    pub camera: RaraCamera,
-    /// How it sees: rara_renderer_configure and rara_renderer_configure_orthographic are each of one kind, and
-    /// rara_renderer_configure_region takes this.
-    pub projection: RaraProjection,
-    /// With depth_scale, what the host's depth buffer holds at a depth z along the view axis, world units: depth_offset +
-    /// depth_scale / z in perspective, depth_offset - depth_scale z without.
-    pub depth_offset: f64,
-    /// See depth_offset. Nearer is more where it is above zero.
-    pub depth_scale: f64,
-}
-
-// SAFETY: repr(C), plain numbers, the size first.
-unsafe impl Versioned for RaraHostView {
-    const NAME: &'static str = "RaraHostView";
-}
-
-const NOWHERE: RaraHostView = RaraHostView {
-    struct_size: size_of::<RaraHostView>(),
-    camera: RaraCamera {
-        width: 0,
-        height: 0,
-        fx: 0.0,
-        fy: 0.0,
-        cx: 0.0,
-        cy: 0.0,
-        eye: [0.0; 3],
-        rotation: [0.0; 9],
-    },
-    projection: RARA_PROJECTION_PERSPECTIVE,
-    depth_offset: 0.0,
-    depth_scale: 0.0,
-};
-
-/// The camera of a host's matrices of 16 numbers each, and what its depth buffer holds: for rara_renderer_configure or
-/// rara_renderer_configure_region, and for rara_renderer_set_depth_of_projection. `width` and `height` are the viewport's,
-/// pixels; `seen_size` is sizeof *seen. A null `ndc` is rara_ndc_default's.
+/// The camera of a host's matrices of 16 numbers each, whose rotation has a mirror in it where the world is left-handed, and
+/// what its depth buffer holds, for rara_renderer_set_depth_map; `map` may be null. `width` and `height` are the viewport's,
+/// pixels; `camera_size` is sizeof *camera. A null `ndc` is rara_ndc_default's.
 ///
 /// The axes of the view may be any, with y up or down and z forward or back, left-handed ones too. The view may scale,
 /// evenly along its axes, and lead from a scene instead of the world (the view times a model's matrix), mirrors included.
@@ -114,11 +68,8 @@ const NOWHERE: RaraHostView = RaraHostView {
 /// that is singular or looks transposed, a view that shears or scales unevenly, a projection that shears, or whose depth is
 /// not a function of the distance alone (as with an oblique near plane).
 ///
-/// RaraClip::near_cut says from which depth on splats are drawn, whatever the projection's near plane. An orthographic camera's eye is moved back
-/// where that would leave out what lies behind the near plane; depths count from there.
-///
-/// # Safety
-/// `view` and `projection` point to 16 numbers each; `ndc` is null or points to one; `seen` has room for `seen_size` bytes.
+/// RaraCamera::near_cut says from which depth on splats are drawn, whatever the projection's near plane. An orthographic
+/// camera's eye is moved back where that would leave out what lies behind the near plane; depths count from there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_camera_of_projection(
     view: *const f64,
@@ -126,21 +77,19 @@ pub unsafe extern "C" fn rara_camera_of_projection(
     ndc: *const RaraNdc,
     width: u32,
     height: u32,
-    seen: *mut RaraHostView,
-    seen_size: usize,
+    camera: *mut RaraCamera,
+    camera_size: usize,
+    map: *mut RaraDepthMap,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         let matrices = [(view, "view"), (projection, "projection")]
             .map(|(numbers, name)| list(numbers, 16, name).map(DMat4::from_cols_slice));
-        of_projection(matrices, ndc, (width, height), seen, seen_size)
+        of_projection(matrices, ndc, (width, height), (camera, camera_size), map)
     })
 }
 
 /// As rara_camera_of_projection, of matrices in single precision.
-///
-/// # Safety
-/// As for rara_camera_of_projection.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_camera_of_projection_floats(
     view: *const f32,
@@ -148,15 +97,16 @@ pub unsafe extern "C" fn rara_camera_of_projection_floats(
     ndc: *const RaraNdc,
     width: u32,
     height: u32,
-    seen: *mut RaraHostView,
-    seen_size: usize,
+    camera: *mut RaraCamera,
+    camera_size: usize,
+    map: *mut RaraDepthMap,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
     guard(|| unsafe {
         let wide = |numbers: &[f32]| Mat4::from_cols_slice(numbers).as_dmat4();
         let matrices = [(view, "view"), (projection, "projection")]
             .map(|(numbers, name)| list(numbers, 16, name).map(wide));
-        of_projection(matrices, ndc, (width, height), seen, seen_size)
+        of_projection(matrices, ndc, (width, height), (camera, camera_size), map)
     })
 }
 
@@ -166,12 +116,12 @@ unsafe fn of_projection(
     [view, projection]: [Result<DMat4>; 2],
     ndc: *const RaraNdc,
     size: (u32, u32),
-    seen: *mut RaraHostView,
-    seen_size: usize,
+    (camera, camera_size): (*mut RaraCamera, usize),
+    map: *mut RaraDepthMap,
 ) -> Result<()> {
     // What is null or of no version is named first.
     // SAFETY: the caller's promise.
-    unsafe { write(seen, seen_size, &NOWHERE, "seen") }?;
+    unsafe { write(camera, camera_size, &NOWHERE, "camera") }?;
     let ndc = match ndc.is_null() {
         true => VULKAN,
         // SAFETY: the caller's promise.
@@ -187,41 +137,15 @@ unsafe fn of_projection(
         .negative_one_to_one(ndc.negative_one_to_one != 0)
         .reversed(ndc.reversed != 0);
     let (view, projection) = (ordered(view?)?, ordered(projection?)?);
-    let (camera, depth) = Camera::of_projection(view, projection, space, size)?;
-    let made = RaraHostView {
-        struct_size: size_of::<RaraHostView>(),
-        camera: camera.into(),
-        projection: match camera.projection {
-            Projection::Orthographic => RARA_PROJECTION_ORTHOGRAPHIC,
-            _ => RARA_PROJECTION_PERSPECTIVE,
-        },
-        depth_offset: depth.offset(),
-        depth_scale: depth.scale(),
-    };
-    // SAFETY: the caller's promise.
-    unsafe { write(seen, seen_size, &made, "seen") }
-}
-
-/// Changes what the host's depth buffer holds for a depth to what rara_camera_of_projection has found, from the next
-/// rara_renderer_configure on. The configure that follows is of the same projection.
-///
-/// # Safety
-/// `renderer` is alive, was created with a depth attachment, and is not used by another thread; `seen` points to one.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_renderer_set_depth_of_projection(
-    renderer: *mut RaraRenderer,
-    seen: *const RaraHostView,
-) -> RaraResult {
-    with(renderer, |renderer| {
-        // SAFETY: the caller's promise.
-        let seen = unsafe { read(seen, NOWHERE, "seen") }?;
-        let projection = projection(seen.projection)?;
-        renderer.set_depth_map(DepthMap::new(
-            projection,
-            seen.depth_offset,
-            seen.depth_scale,
-        )?)
-    })
+    let (made, depth) = Camera::of_projection(view, projection, space, size)?;
+    // SAFETY: the caller's promises.
+    unsafe {
+        write(camera, camera_size, &made.into(), "camera")?;
+        if !map.is_null() {
+            *exclusive(map, "map")? = RaraDepthMap::new(depth, made.projection);
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -4,11 +4,10 @@ use rara::ash::vk;
 use rara::{PickTicket, Picker};
 
 use crate::boundary::{RaraResult, exclusive, guard, invalid, recording, shared};
-use crate::camera::RaraCamera;
+use crate::camera::{self, RaraCamera};
 use crate::clip::{self, RaraClip};
 use crate::handles::{alive, alone, create, destroy};
 use crate::placement::RaraPlacement;
-use crate::region::{self, RaraProjection};
 use crate::renderer::RaraRenderer;
 use crate::scene::RaraSceneBuffers;
 use crate::settings::{self, RaraSettings};
@@ -42,9 +41,6 @@ pub struct RaraPick {
 
 /// Makes a picker beside a renderer, whose compiled pipelines it shares, and whose placement of this moment it takes. So many
 /// requests, from 1 to 16, may be unfinished at once.
-///
-/// # Safety
-/// `renderer` is alive, and no other thread changes it; `picker` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_picker_create(
     renderer: *const RaraRenderer,
@@ -61,9 +57,6 @@ pub unsafe extern "C" fn rara_picker_create(
 }
 
 /// Places the scene in the world, as rara_renderer_set_placement does for what is drawn.
-///
-/// # Safety
-/// `picker` is alive, and nobody else uses it meanwhile; `placement` points to one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_picker_set_placement(
     picker: *mut RaraPicker,
@@ -94,7 +87,6 @@ pub unsafe extern "C" fn rara_picker_record(
     cmd: vk::CommandBuffer,
     scene: *const RaraSceneBuffers,
     camera: *const RaraCamera,
-    projection: RaraProjection,
     clip: *const RaraClip,
     settings: *const RaraSettings,
     x: i32,
@@ -108,9 +100,8 @@ pub unsafe extern "C" fn rara_picker_record(
         let ticket = exclusive(ticket, "ticket")?;
         let mut picker = alone(picker, "picker")?;
         let scene = alive(scene, "scene")?;
-        let camera = shared(camera, "camera")?.camera()?;
-        let camera = camera.projection(region::projection(projection)?);
-        let (camera, clip) = clip::kept(clip)?.seen_by(camera);
+        let camera = camera::camera(camera)?;
+        let clip = clip::clip(clip, "clip")?.unwrap_or_default();
         let settings = settings::settings(settings)?;
         let rect = vk::Rect2D {
             offset: vk::Offset2D { x, y },
@@ -174,9 +165,6 @@ pub unsafe extern "C" fn rara_picker_read(
 }
 
 /// Ends a picker; null is ignored. The device is done with its requests.
-///
-/// # Safety
-/// `picker` is null, or alive and not used any more.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_picker_destroy(picker: *mut RaraPicker) {
     destroy(picker);

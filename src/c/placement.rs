@@ -43,11 +43,8 @@ impl RaraPlacement {
 ///
 /// The picture is that of the placed Gaussians, spherical harmonics turn with the scene, and no Gaussian is touched: a
 /// scene can be moved in every frame, and one RaraSceneBuffers can be drawn in several places, by a renderer each. All
-/// lengths are then in the scene's units, also the depth of 0.2 below which centres are culled where RaraClip::near_cut
+/// lengths are then in the scene's units, also the depth of 0.2 below which centres are culled where RaraCamera::near_cut
 /// says no other, in world units.
-///
-/// # Safety
-/// `renderer` is alive, and no other thread uses it; `placement` points to one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_set_placement(
     renderer: *mut RaraRenderer,

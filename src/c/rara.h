@@ -8,6 +8,10 @@
  * structs, elements of arrays or given by value, and never grow. Handles come from a function that makes them and end with
  * their rara_..._destroy; "alive" is the time between. A handle that is not alive is refused with RARA_ERROR_INVALID, as is
  * one of another kind, and one that another thread's call changes at the same time.
+ *
+ * Pointers that go in are null where that is allowed, or point to what their types say, as many values as the count beside
+ * them says. Strings end in NUL. What a call fills may be overwritten, and ..._size is its room in bytes. A function that
+ * asks for more says so.
  */
 
 #ifndef RARA_H
@@ -21,7 +25,7 @@
 // that are added do not change it.
 #define RARA_ABI_VERSION 4
 
-// Room for a camera's name in RaraNamedCamera, the NUL included.
+// Room for a camera's name, the NUL included.
 #define RARA_MAX_CAMERA_NAME 256
 
 // Room for the names of extensions in RaraSupport.
@@ -36,6 +40,10 @@
 // Room for the stages of a frame.
 #define RARA_MAX_PASSES 32
 
+// The region that stays visible, made of planes, slabs, boxes, spheres, ellipsoids, cylinders, capsules and cones. Where a
+// function takes one, null means everything. It does not change; several threads, renderers and layers may use it at once.
+typedef struct RaraClip RaraClip;
+
 // A host's device as rara uses it. Several threads may use it at once.
 typedef struct RaraDevice RaraDevice;
 
@@ -49,10 +57,6 @@ typedef struct RaraGaussians RaraGaussians;
 
 // Finds the Gaussians that pixels show most of. One thread at a time uses it.
 typedef struct RaraPicker RaraPicker;
-
-// The region that stays visible, made of planes, slabs, boxes, spheres, ellipsoids, cylinders, capsules and cones. It does
-// not change; several threads, renderers and layers may use it at once.
-typedef struct RaraRegion RaraRegion;
 
 // Draws scenes into the host's rendering scopes. One thread at a time uses it.
 //
@@ -92,13 +96,19 @@ typedef uint32_t RaraLogLevel;
 // call nothing of rara's and throw nothing.
 typedef void (*RaraLog)(RaraLogLevel level, const char *text, void *user);
 
-// A camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers. It is a pinhole, unless
-// rara_renderer_configure_orthographic takes it. It never grows.
+// How a camera sees.
+typedef uint32_t RaraProjection;
+
+// A camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers.
 typedef struct RaraCamera {
+    // Set by the functions that make a camera: the size that they were given, or less where this library knows less.
+    size_t struct_size;
     // Picture width, pixels.
     uint32_t width;
     // Picture height, pixels.
     uint32_t height;
+    // How it sees.
+    RaraProjection projection;
     // Focal length along x, pixels; without perspective the pixels of a world unit.
     double fx;
     // Focal length along y, pixels; without perspective the pixels of a world unit.
@@ -112,15 +122,23 @@ typedef struct RaraCamera {
     // World to camera rotation, row-major: the rows are the camera's right, down and forward axes in the world. A determinant
     // of -1 mirrors the picture's world, as rara_camera_of_projection does for a left-handed host.
     double rotation[9];
+    // The depth along the view axis, world units, from which on the scene is kept: a plane across the axis that moves with
+    // the camera and cuts every layer, whatever else cuts it, those with a clip of their own too. Splats are cut exactly, as
+    // by any other plane; RARA_MODE_NONE does not ask. -INFINITY, which the functions that make a camera set, for no such
+    // plane.
+    double clip_near;
+    // The depth up to which the scene is kept, likewise. INFINITY, which these functions set, for no such plane.
+    double clip_far;
+    // The depth along the view axis, world units, from which on splats are drawn: those whose centres are nearer are left out
+    // whole. 0, which these functions set, stands for 0.2 units of the scene, as in 3DGS.
+    double near_cut;
 } RaraCamera;
 
-// A camera and what its file calls it. It never grows.
-typedef struct RaraNamedCamera {
+// What a file calls a camera. It never grows.
+typedef struct RaraCameraName {
     // The picture's name in the file, or the camera's number there: UTF-8, cut off where it does not fit.
-    char name[RARA_MAX_CAMERA_NAME];
-    // The camera.
-    struct RaraCamera camera;
-} RaraNamedCamera;
+    char text[RARA_MAX_CAMERA_NAME];
+} RaraCameraName;
 
 // A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but must
 // not be zero. It never grows.
@@ -134,37 +152,15 @@ typedef struct RaraPlane {
 // How several planes combine.
 typedef uint32_t RaraClipOp;
 
-// The region that stays visible. Where a function takes one, null means everything.
-typedef struct RaraClip {
-    // Set by rara_clip_default.
-    size_t struct_size;
-    // The half-spaces; only the call itself reads them.
-    const struct RaraPlane *planes;
-    // How many planes there are, at most 32. With 0, the default, they keep everything.
-    size_t plane_count;
-    // How they combine. Default: RARA_CLIP_OP_AND.
-    RaraClipOp op;
-    // A region in place of planes; null, the default, for none. Only the call itself reads it.
-    const struct RaraRegion *region;
-    // The depth along the view axis, world units, from which on the scene is kept: a plane across the axis that moves with
-    // the camera and cuts every layer, whatever else cuts it, those with a clip of their own too. Splats are cut exactly, as
-    // by any other plane; RARA_MODE_NONE does not ask. Default: -INFINITY, for no such plane.
-    double clip_near;
-    // The depth up to which the scene is kept, likewise. Default: INFINITY, for no such plane.
-    double clip_far;
-    // The depth along the view axis, world units, from which on splats are drawn: those whose centres are nearer are left out
-    // whole. 0, the default, stands for 0.2 units of the scene, as in 3DGS.
-    double near_cut;
-} RaraClip;
-
-// The values in a depth buffer, for any perspective projection into depths from 0 to 1. It never grows.
+// The values in a depth buffer: at a depth z along the view axis, world units, it holds offset + scale / z in perspective,
+// offset - scale z without. It never grows.
 typedef struct RaraDepthMap {
-    // Depth along the view axis that becomes 0, or 1 if reversed, world units above 0.
-    double z_near;
-    // Depth along the view axis that becomes 1, or 0 if reversed; beyond z_near, INFINITY too.
-    double z_far;
-    // True when nearer is more.
-    VkBool32 reversed;
+    // See RaraDepthMap.
+    double offset;
+    // See RaraDepthMap. Nearer is more where it is above zero.
+    double scale;
+    // The projection of the cameras that it is for.
+    RaraProjection projection;
 } RaraDepthMap;
 
 // The host's depth attachment. Splats behind what it holds are hidden, and splats write nothing into it. In all of its
@@ -387,6 +383,30 @@ typedef struct RaraRendererDesc {
     RaraColorSpace color_space;
 } RaraRendererDesc;
 
+// How the 16 numbers of a matrix lie in memory.
+typedef uint32_t RaraMatrixOrder;
+
+// What a host's matrices do not say of themselves and of its clip space, after the division by w: its normalised device
+// coordinates.
+typedef struct RaraNdc {
+    // Set by rara_ndc_default.
+    size_t struct_size;
+    // How both matrices lie in memory.
+    RaraMatrixOrder order;
+    // True when a y of 1 is the picture's upper edge, as in Direct3D, Metal, WebGPU and OpenGL, and in Vulkan with a viewport
+    // of negative height. Default: false.
+    VkBool32 y_up;
+    // True when depths go from -1 to 1, as in OpenGL and by VK_EXT_depth_clip_control; the buffer then holds (z + 1) / 2.
+    // Default: false, from 0 to 1.
+    VkBool32 negative_one_to_one;
+    // True when nearer is more in the depth buffer. It is asked of orthographic projections alone, whose matrix is the same
+    // for one that looks the other way; that of a perspective one says it. Default: false.
+    VkBool32 reversed;
+} RaraNdc;
+
+// How spherical harmonics lie in device memory; the sizes are of one Gaussian of degree 3.
+typedef uint32_t RaraShFormat;
+
 // How a clip treats the Gaussians that it cuts.
 typedef uint32_t RaraMode;
 
@@ -441,49 +461,6 @@ typedef struct RaraSettings {
     float transmittance_min;
 } RaraSettings;
 
-// How the 16 numbers of a matrix lie in memory.
-typedef uint32_t RaraMatrixOrder;
-
-// What a host's matrices do not say of themselves and of its clip space, after the division by w: its normalised device
-// coordinates.
-typedef struct RaraNdc {
-    // Set by rara_ndc_default.
-    size_t struct_size;
-    // How both matrices lie in memory.
-    RaraMatrixOrder order;
-    // True when a y of 1 is the picture's upper edge, as in Direct3D, Metal, WebGPU and OpenGL, and in Vulkan with a viewport
-    // of negative height. Default: false.
-    VkBool32 y_up;
-    // True when depths go from -1 to 1, as in OpenGL and by VK_EXT_depth_clip_control; the buffer then holds (z + 1) / 2.
-    // Default: false, from 0 to 1.
-    VkBool32 negative_one_to_one;
-    // True when nearer is more in the depth buffer. It is asked of orthographic projections alone, whose matrix is the same
-    // for one that looks the other way; that of a perspective one says it. Default: false.
-    VkBool32 reversed;
-} RaraNdc;
-
-// How a camera sees.
-typedef uint32_t RaraProjection;
-
-// What a host's matrices are to a renderer.
-typedef struct RaraHostView {
-    // The size that rara_camera_of_projection was given, or less where this library knows less.
-    size_t struct_size;
-    // The camera, whose rotation has a mirror in it where the world is left-handed.
-    struct RaraCamera camera;
-    // How it sees: rara_renderer_configure and rara_renderer_configure_orthographic are each of one kind, and
-    // rara_renderer_configure_region takes this.
-    RaraProjection projection;
-    // With depth_scale, what the host's depth buffer holds at a depth z along the view axis, world units: depth_offset +
-    // depth_scale / z in perspective, depth_offset - depth_scale z without.
-    double depth_offset;
-    // See depth_offset. Nearer is more where it is above zero.
-    double depth_scale;
-} RaraHostView;
-
-// How spherical harmonics lie in device memory; the sizes are of one Gaussian of degree 3.
-typedef uint32_t RaraShFormat;
-
 // The most that frames will ask for, for rara_renderer_reserve.
 typedef struct RaraFrameLimits {
     // Set by rara_frame_limits_default.
@@ -498,10 +475,9 @@ typedef struct RaraFrameLimits {
     uint32_t layers;
     // How the scenes' spherical harmonics are stored. Default: RARA_SH_FORMAT_PACKED.
     RaraShFormat sh_format;
-    // Planes of a RaraClip, or of a RaraRegion that is a list of planes; RaraClip::clip_near and clip_far add one each.
-    // Default: 6.
+    // Planes of a RaraClip that is a list of planes; RaraCamera::clip_near and clip_far add one each. Default: 6.
     uint32_t planes;
-    // Surfaces of a RaraRegion that bends or combines. Default: 0, for none.
+    // Surfaces of a RaraClip that bends or combines. Default: 0, for none.
     uint32_t surfaces;
     // Pairs of tile and splat, for which there is then exactly this room: a frame with more is drawn as quads, the same
     // picture but slower, and RaraFrameStats::fell_back says so. rara_scene_buffers_estimated_pairs tells a camera's.
@@ -645,8 +621,8 @@ typedef struct RaraLayer {
     const struct RaraGaussians *gaussians;
     // The state in which it is uploaded; null, the default, stands for that of rara_layer_state_default.
     const struct RaraLayerState *state;
-    // Its own region, as rara_scene_buffers_set_layer_region sets it; null, the default, for the frame's clip.
-    const struct RaraRegion *region;
+    // Its own clip, as rara_scene_buffers_set_layer_clip sets it; null, the default, for the frame's clip.
+    const struct RaraClip *clip;
 } RaraLayer;
 
 // A layer of a scene in device memory.
@@ -663,7 +639,7 @@ typedef struct RaraLayerInfo {
 // A choice of all settings that give up exactness for time: phi, key_bits, beam_switch and transmittance_min.
 typedef uint32_t RaraPreset;
 
-// How a region is baked.
+// How a clip is baked.
 typedef struct RaraBakeSettings {
     // Set by rara_bake_settings_default.
     size_t struct_size;
@@ -674,7 +650,7 @@ typedef struct RaraBakeSettings {
     float sigma;
     // How many Gaussians stand for a cut one, 1 to 3. Default: 1.
     uint32_t children;
-    // A cut Gaussian stays whole where the region keeps all within this many standard deviations of its centre. Default: 1, at
+    // A cut Gaussian stays whole where the clip keeps all within this many standard deviations of its centre. Default: 1, at
     // which baking twice is baking once.
     float leave;
 } RaraBakeSettings;
@@ -683,7 +659,7 @@ typedef struct RaraBakeSettings {
 typedef struct RaraBakeCounts {
     // Set by rara_gaussians_bake.
     size_t struct_size;
-    // Gaussians that the region leaves whole; they are kept.
+    // Gaussians that the clip leaves whole; they are kept.
     uint64_t visible;
     // Gaussians that it cuts; they are replaced, except the next two.
     uint64_t cutoff;
@@ -803,6 +779,12 @@ typedef struct RaraFrameStats {
 
 // Every step.
 #define RARA_LOG_LEVEL_TRACE 5
+
+// In perspective.
+#define RARA_PROJECTION_PERSPECTIVE 0
+
+// Lines of sight run along the view axis.
+#define RARA_PROJECTION_ORTHOGRAPHIC 1
 
 // Visible where every plane keeps it.
 #define RARA_CLIP_OP_AND 0
@@ -948,12 +930,6 @@ typedef struct RaraFrameStats {
 // Only approximations that pictures hardly show. It goes with scenes in RARA_SH_FORMAT_PACKED.
 #define RARA_PRESET_FAST 2
 
-// In perspective, as rara_renderer_configure.
-#define RARA_PROJECTION_PERSPECTIVE 0
-
-// Without, as rara_renderer_configure_orthographic.
-#define RARA_PROJECTION_ORTHOGRAPHIC 1
-
 // The mean depth of what is left, along the view axis, world units; 0 where nothing is.
 #define RARA_AOV_DEPTH 1
 
@@ -1007,22 +983,29 @@ RaraResult rara_set_log_level(RaraLogLevel most);
 
 // A camera in perspective at `eye` that looks at `target`; each is three numbers in world units. `up` points up in the
 // picture; in the usual world, where y is down, it is 0, -1, 0. `fov_y` is the full vertical field of view in degrees.
-//
-// # Safety
-// `eye`, `target` and `up` point to three numbers each; `camera` may be overwritten.
+// `camera_size` is sizeof *camera.
 RaraResult rara_camera_look_at(const double *eye,
                                const double *target,
                                const double *up,
                                double fov_y,
                                uint32_t width,
                                uint32_t height,
-                               struct RaraCamera *camera);
+                               struct RaraCamera *camera,
+                               size_t camera_size);
+
+// A camera without perspective at `eye` that looks at `target`, whose picture of `width` x `height` pixels is `view_height`
+// world units high. `eye`, `target` and `up` are as for rara_camera_look_at.
+RaraResult rara_camera_orthographic(const double *eye,
+                                    const double *target,
+                                    const double *up,
+                                    double view_height,
+                                    uint32_t width,
+                                    uint32_t height,
+                                    struct RaraCamera *camera,
+                                    size_t camera_size);
 
 // A camera from a rigid world-to-camera matrix: 16 numbers, row-major, so that the translation is in numbers 3, 7
 // and 11. Focal lengths and principal point are in pixels.
-//
-// # Safety
-// `matrix` points to 16 numbers; `camera` may be overwritten.
 RaraResult rara_camera_from_world_to_camera(const double *matrix,
                                             double fx,
                                             double fy,
@@ -1030,50 +1013,77 @@ RaraResult rara_camera_from_world_to_camera(const double *matrix,
                                             double cy,
                                             uint32_t width,
                                             uint32_t height,
-                                            struct RaraCamera *camera);
+                                            struct RaraCamera *camera,
+                                            size_t camera_size);
 
 // A camera that shows a scene from the front, the right and above, near enough to fill the picture. `up` and `fov_y` are
 // as for rara_camera_look_at.
-//
-// # Safety
-// `gaussians` is alive; `up` points to three numbers; `camera` may be overwritten.
 RaraResult rara_camera_frame(const struct RaraGaussians *gaussians,
                              const double *up,
                              double fov_y,
                              uint32_t width,
                              uint32_t height,
-                             struct RaraCamera *camera);
+                             struct RaraCamera *camera,
+                             size_t camera_size);
 
 // Loads the cameras of a 3DGS cameras.json, a nerfstudio transforms.json, a COLMAP sparse folder, or a single one from
 // JSON with width, height, fx, fy, cx, cy and world_to_camera. JSON files keep their order, COLMAP's cameras are
-// sorted by name. Cameras with lens distortion, and orthographic ones, are RARA_ERROR_FORMAT.
+// sorted by name. Cameras with lens distortion are RARA_ERROR_FORMAT.
 //
-// On entry `*count` is how many cameras there is room for at `cameras`; it becomes how many the file has. No more are
-// written than there is room for; with `cameras` null the call only counts. `path` is as for rara_gaussians_load.
-//
-// # Safety
-// `path` ends in NUL; `count` points to a number; `cameras` is null, or has room for `*count` cameras.
-RaraResult rara_cameras_load(const char *path, struct RaraNamedCamera *cameras, size_t *count);
+// On entry `*count` is how many cameras there is room for at `cameras` and `names`; it becomes how many the file has. No more
+// are written than there is room for, and none where `cameras` or `names` is null. `camera_size` is sizeof *cameras. `path` is
+// as for rara_gaussians_load.
+RaraResult rara_cameras_load(const char *path,
+                             struct RaraCamera *cameras,
+                             size_t camera_size,
+                             struct RaraCameraName *names,
+                             size_t *count);
 
-// A clip that keeps everything. `clip_size` is sizeof *clip.
-//
-// # Safety
-// `clip` has room for `clip_size` bytes.
-RaraResult rara_clip_default(struct RaraClip *clip, size_t clip_size);
+// Makes a clip of half-spaces, at most 32; none keep everything.
+RaraResult rara_clip_of_planes(const struct RaraPlane *planes, size_t count, RaraClipOp op, struct RaraClip **clip);
+
+// Makes a clip of the text of an expression: a shape, as "sphere:0,0,0,1" or "!box:0,0,0,1,1,2", whose "!" keeps the
+// outside, or all(...), any(...) and not(...) of expressions, as in "all(box:0,0,0,1,1,2, not(sphere:1,0,0,0.5))".
+// `rara help render` has the numbers of each shape. RARA_ERROR_INVALID says what is wrong and in which column.
+RaraResult rara_clip_parse(const char *expression, struct RaraClip **clip);
+
+// Makes a clip of JSON, of which `rara --save-clip` writes files: a list whose elements have a "name" or not, and
+// either "clip", an expression as a tree, or "normal" and "d", a plane. `name` is the name of the element to take, or its
+// number where none is called so; null takes the only one.
+RaraResult rara_clip_from_json(const uint8_t *json,
+                               size_t size,
+                               const char *name,
+                               struct RaraClip **clip);
+
+// Makes a clip of a JSON file, as rara_clip_from_json does. `path` is as for rara_gaussians_load.
+RaraResult rara_clip_load(const char *path, const char *name, struct RaraClip **clip);
+
+// Frees a clip; null is ignored. Renderers and layers that were given it have copies of their own.
+void rara_clip_destroy(struct RaraClip *clip);
+
+// Says in `kept` whether a clip keeps a point, three numbers; a surface's own points are kept.
+RaraResult rara_clip_keeps(const struct RaraClip *clip, const double *point, VkBool32 *kept);
+
+// The map of a perspective projection into depths from 0 to 1: `z_near`, world units above 0, becomes 0, or 1 if `reversed`,
+// and `z_far`, beyond it and INFINITY too, the other.
+RaraResult rara_depth_map_perspective(double z_near,
+                                      double z_far,
+                                      VkBool32 reversed,
+                                      struct RaraDepthMap *map);
+
+// The map of an orthographic projection: 0 at `z_zero` along the view axis, 1 at `z_one`, world units, and linear between
+// them. Nearer is more where `z_one` is the nearer one.
+RaraResult rara_depth_map_orthographic(double z_zero,
+                                       double z_one,
+                                       struct RaraDepthMap *map);
 
 // A depth attachment without stencil, not readable. `desc_size` is sizeof *desc.
-//
-// # Safety
-// `desc` has room for `desc_size` bytes.
 RaraResult rara_depth_desc_default(struct RaraDepthDesc *desc,
                                    size_t desc_size,
                                    VkFormat format,
                                    struct RaraDepthMap map);
 
 // An image of `width` x `height` pixels, whose upper left corner is the viewport's. `depth_size` is sizeof *depth.
-//
-// # Safety
-// `depth` has room for `depth_size` bytes.
 RaraResult rara_depth_image_default(struct RaraDepthImage *depth,
                                     size_t depth_size,
                                     VkImage image,
@@ -1107,9 +1117,6 @@ RaraResult rara_support_features(const struct RaraSupport *support,
                                  void *p_next);
 
 // Enables nothing optional and sets all handles to null; the host replaces them. `desc_size` is sizeof *desc.
-//
-// # Safety
-// `desc` has room for `desc_size` bytes.
 RaraResult rara_adopt_desc_default(struct RaraAdoptDesc *desc, size_t desc_size);
 
 // Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload,
@@ -1124,16 +1131,10 @@ RaraResult rara_device_adopt(const struct RaraAdoptDesc *desc,
                              struct RaraDevice **device);
 
 // Bytes of device memory that rara has allocated on the device, 0 for null.
-//
-// # Safety
-// `device` is null or alive.
 uint64_t rara_device_bytes(const struct RaraDevice *device);
 
 // Gives the device back; the VkDevice lives on. What was made from the RaraDevice may be destroyed later, but before the
 // VkDevice. Null is ignored.
-//
-// # Safety
-// `device` is null, or alive and not used any more.
 void rara_device_destroy(struct RaraDevice *device);
 
 // Sets where the scene stands, from the next rara_renderer_configure on; camera, clip, depth map and expected depths are
@@ -1142,51 +1143,33 @@ void rara_device_destroy(struct RaraDevice *device);
 //
 // The picture is that of the placed Gaussians, spherical harmonics turn with the scene, and no Gaussian is touched: a
 // scene can be moved in every frame, and one RaraSceneBuffers can be drawn in several places, by a renderer each. All
-// lengths are then in the scene's units, also the depth of 0.2 below which centres are culled where RaraClip::near_cut
+// lengths are then in the scene's units, also the depth of 0.2 below which centres are culled where RaraCamera::near_cut
 // says no other, in world units.
-//
-// # Safety
-// `renderer` is alive, and no other thread uses it; `placement` points to one.
 RaraResult rara_renderer_set_placement(struct RaraRenderer *renderer,
                                        const struct RaraPlacement *placement);
 
 // Creates a renderer. The first frame that needs a pipeline or buffer creates it. RARA_ERROR_DEVICE where the device
 // cannot draw into such attachments.
-//
-// # Safety
-// `device` is alive, `desc` is as its fields say, and `renderer` may be overwritten.
 RaraResult rara_renderer_create(const struct RaraDevice *device,
                                 const struct RaraRendererDesc *desc,
                                 struct RaraRenderer **renderer);
 
 // Creates another renderer on the same device that shares the compiled pipelines of `other`: one for each view that is
 // drawn in the same scope. Its working memory is its own.
-//
-// # Safety
-// `other` is alive, `desc` is as its fields say, and `renderer` may be overwritten.
 RaraResult rara_renderer_create_sharing(const struct RaraRenderer *other,
                                         const struct RaraRendererDesc *desc,
                                         struct RaraRenderer **renderer);
 
 // Changes what the host's depth buffer holds for a depth, from the next rara_renderer_configure on.
-//
-// # Safety
-// `renderer` is alive, was created with a depth attachment, and is not used by another thread; `map` points to one.
 RaraResult rara_renderer_set_depth_map(struct RaraRenderer *renderer, const struct RaraDepthMap *map);
 
 // Changes the format of the colour attachment, from the next rara_renderer_configure on, which compiles what the format needs
 // and keeps what was compiled for others: for a host whose swapchain changes, or that draws into several targets.
-//
-// # Safety
-// `renderer` is alive, and no other thread uses it.
 RaraResult rara_renderer_set_color_format(struct RaraRenderer *renderer,
                                           VkFormat color_format);
 
 // Forgets what earlier frames have computed, as is needed after a frame that was prepared and not submitted.
 // rara_renderer_configure comes after it.
-//
-// # Safety
-// `renderer` is alive, and no other thread uses it.
 RaraResult rara_renderer_forget(struct RaraRenderer *renderer);
 
 // Frees a renderer's memory and pipelines; null is ignored. The host has waited for all of its frames.
@@ -1197,59 +1180,18 @@ void rara_renderer_destroy(struct RaraRenderer *renderer);
 
 // One colour attachment of one sample in dynamic rendering, no timestamps, no reuse, one frame in flight. `desc_size` is
 // sizeof *desc.
-//
-// # Safety
-// `desc` has room for `desc_size` bytes.
 RaraResult rara_renderer_desc_default(struct RaraRendererDesc *desc,
                                       size_t desc_size,
                                       VkFormat color_format);
 
-// A camera for rara_renderer_configure_orthographic at `eye` that looks at `target`, whose picture of `width` x `height`
-// pixels is `view_height` world units high. `eye`, `target` and `up` are as for rara_camera_look_at; RaraClip::near_cut
-// says from which depth on splats are drawn.
-//
-// # Safety
-// `eye`, `target` and `up` point to three numbers each; `camera` may be overwritten.
-RaraResult rara_camera_orthographic(const double *eye,
-                                    const double *target,
-                                    const double *up,
-                                    double view_height,
-                                    uint32_t width,
-                                    uint32_t height,
-                                    struct RaraCamera *camera);
-
-// As rara_renderer_configure, for a frame without perspective: lines of sight run along the view axis, and the camera's `fx`
-// and `fy` are the pixels of a world unit. A renderer with a depth attachment needs
-// rara_renderer_set_orthographic_depth_map before.
-//
-// # Safety
-// As for rara_renderer_configure.
-RaraResult rara_renderer_configure_orthographic(struct RaraRenderer *renderer,
-                                                const struct RaraSceneBuffers *scene,
-                                                const struct RaraCamera *camera,
-                                                const struct RaraClip *clip,
-                                                const struct RaraSettings *settings,
-                                                struct RaraFrame **frame);
-
-// Changes what the host's depth buffer holds for a depth, from the next rara_renderer_configure_orthographic on: 0 at
-// `z_zero` along the view axis, 1 at `z_one`, world units, and linear between them. Nearer is more where `z_one` is the
-// nearer one.
-//
-// # Safety
-// `renderer` is alive, was created with a depth attachment, and is not used by another thread.
-RaraResult rara_renderer_set_orthographic_depth_map(struct RaraRenderer *renderer, double z_zero, double z_one);
-
 // Vulkan's own: y down, depths from 0 to 1, nearer is less, a view's translation in numbers 12 to 14. `ndc_size` is sizeof
 // *ndc.
-//
-// # Safety
-// `ndc` has room for `ndc_size` bytes.
 RaraResult rara_ndc_default(struct RaraNdc *ndc,
                             size_t ndc_size);
 
-// The camera of a host's matrices of 16 numbers each, and what its depth buffer holds: for rara_renderer_configure or
-// rara_renderer_configure_region, and for rara_renderer_set_depth_of_projection. `width` and `height` are the viewport's,
-// pixels; `seen_size` is sizeof *seen. A null `ndc` is rara_ndc_default's.
+// The camera of a host's matrices of 16 numbers each, whose rotation has a mirror in it where the world is left-handed, and
+// what its depth buffer holds, for rara_renderer_set_depth_map; `map` may be null. `width` and `height` are the viewport's,
+// pixels; `camera_size` is sizeof *camera. A null `ndc` is rara_ndc_default's.
 //
 // The axes of the view may be any, with y up or down and z forward or back, left-handed ones too. The view may scale,
 // evenly along its axes, and lead from a scene instead of the world (the view times a model's matrix), mirrors included.
@@ -1258,42 +1200,28 @@ RaraResult rara_ndc_default(struct RaraNdc *ndc,
 // that is singular or looks transposed, a view that shears or scales unevenly, a projection that shears, or whose depth is
 // not a function of the distance alone (as with an oblique near plane).
 //
-// RaraClip::near_cut says from which depth on splats are drawn, whatever the projection's near plane. An orthographic camera's eye is moved back
-// where that would leave out what lies behind the near plane; depths count from there.
-//
-// # Safety
-// `view` and `projection` point to 16 numbers each; `ndc` is null or points to one; `seen` has room for `seen_size` bytes.
+// RaraCamera::near_cut says from which depth on splats are drawn, whatever the projection's near plane. An orthographic
+// camera's eye is moved back where that would leave out what lies behind the near plane; depths count from there.
 RaraResult rara_camera_of_projection(const double *view,
                                      const double *projection,
                                      const struct RaraNdc *ndc,
                                      uint32_t width,
                                      uint32_t height,
-                                     struct RaraHostView *seen,
-                                     size_t seen_size);
+                                     struct RaraCamera *camera,
+                                     size_t camera_size,
+                                     struct RaraDepthMap *map);
 
 // As rara_camera_of_projection, of matrices in single precision.
-//
-// # Safety
-// As for rara_camera_of_projection.
 RaraResult rara_camera_of_projection_floats(const float *view,
                                             const float *projection,
                                             const struct RaraNdc *ndc,
                                             uint32_t width,
                                             uint32_t height,
-                                            struct RaraHostView *seen,
-                                            size_t seen_size);
-
-// Changes what the host's depth buffer holds for a depth to what rara_camera_of_projection has found, from the next
-// rara_renderer_configure on. The configure that follows is of the same projection.
-//
-// # Safety
-// `renderer` is alive, was created with a depth attachment, and is not used by another thread; `seen` points to one.
-RaraResult rara_renderer_set_depth_of_projection(struct RaraRenderer *renderer, const struct RaraHostView *seen);
+                                            struct RaraCamera *camera,
+                                            size_t camera_size,
+                                            struct RaraDepthMap *map);
 
 // Limits of frames of one layer that is cut by up to six planes in any mode. `limits_size` is sizeof *limits.
-//
-// # Safety
-// `limits` has room for `limits_size` bytes.
 RaraResult rara_frame_limits_default(struct RaraFrameLimits *limits,
                                      size_t limits_size,
                                      uint32_t width,
@@ -1308,9 +1236,6 @@ RaraResult rara_frame_limits_default(struct RaraFrameLimits *limits,
 // the renderer is used by no other call meanwhile. A renderer of rara_renderer_create_sharing compiles for both.
 // rara_renderer_configure comes after it. RARA_ERROR_MEMORY where there is no room; of a budget's it is said before
 // anything is allocated or compiled.
-//
-// # Safety
-// `renderer` is alive; `limits` is as its fields say.
 RaraResult rara_renderer_reserve(struct RaraRenderer *renderer,
                                  const struct RaraFrameLimits *limits);
 
@@ -1323,32 +1248,20 @@ RaraResult rara_renderer_trim(struct RaraRenderer *renderer,
                               const struct RaraFrame *keep);
 
 // Bytes of device memory that the renderer's working memory takes, 0 for null.
-//
-// # Safety
-// `renderer` is null or alive.
 uint64_t rara_renderer_bytes(const struct RaraRenderer *renderer);
 
 // An estimate of the pairs of tile and splat in a camera's picture, for RaraFrameLimits::pairs: without what a clip leaves
 // out, with the scene where it was made, and with the usual near cut. Splats that are nearer have the most pairs of all.
-//
-// # Safety
-// `scene` is alive; `camera` points to one; `pairs` may be overwritten.
 RaraResult rara_scene_buffers_estimated_pairs(const struct RaraSceneBuffers *scene,
                                               const struct RaraCamera *camera,
                                               uint32_t *pairs);
 
 // The device memory that rara has allocated, and the pipelines that it has compiled. `memory_size` is sizeof *memory.
-//
-// # Safety
-// `device` is alive; `memory` has room for `memory_size` bytes.
 RaraResult rara_device_memory(const struct RaraDevice *device, struct RaraDeviceMemory *memory, size_t memory_size);
 
 // Sets the most bytes of device memory that all scenes and renderers of a device may take together; 0, as in the
 // beginning, for no limit but the device's. What would exceed it fails with RARA_ERROR_MEMORY before any of it is allocated,
 // and the message says what to do. What is there already stays. Any thread may call this at any time.
-//
-// # Safety
-// `device` is alive.
 RaraResult rara_device_set_memory_budget(const struct RaraDevice *device,
                                          uint64_t bytes);
 
@@ -1413,24 +1326,15 @@ RaraResult rara_renderer_draw_depth(struct RaraRenderer *renderer,
                                     const struct RaraFrame *frame);
 
 // Ends a frame, prepared or not; null is ignored. The memory of a frame that the device works on stays until it is done.
-//
-// # Safety
-// `frame` is null, or alive and not used any more.
 void rara_frame_destroy(struct RaraFrame *frame);
 
 // Makes a picker beside a renderer, whose compiled pipelines it shares, and whose placement of this moment it takes. So many
 // requests, from 1 to 16, may be unfinished at once.
-//
-// # Safety
-// `renderer` is alive, and no other thread changes it; `picker` may be overwritten.
 RaraResult rara_picker_create(const struct RaraRenderer *renderer,
                               uint32_t in_flight,
                               struct RaraPicker **picker);
 
 // Places the scene in the world, as rara_renderer_set_placement does for what is drawn.
-//
-// # Safety
-// `picker` is alive, and nobody else uses it meanwhile; `placement` points to one.
 RaraResult rara_picker_set_placement(struct RaraPicker *picker, const struct RaraPlacement *placement);
 
 // Records the question what the pixels of a rectangle show most of, in the picture of a camera, outside a rendering scope. The
@@ -1447,7 +1351,6 @@ RaraResult rara_picker_record(struct RaraPicker *picker,
                               VkCommandBuffer cmd,
                               const struct RaraSceneBuffers *scene,
                               const struct RaraCamera *camera,
-                              RaraProjection projection,
                               const struct RaraClip *clip,
                               const struct RaraSettings *settings,
                               int32_t x,
@@ -1472,26 +1375,17 @@ RaraResult rara_picker_read(const struct RaraPicker *picker,
                             VkBool32 *answered);
 
 // Ends a picker; null is ignored. The device is done with its requests.
-//
-// # Safety
-// `picker` is null, or alive and not used any more.
 void rara_picker_destroy(struct RaraPicker *picker);
 
 // Loads a scene: 3DGS .ply (ascii or binary, spherical harmonics of degree 0 to 3), .compressed.ply, .splat, .ksplat, .spz,
 // SOG (an archive, its folder or meta.json) or glTF with KHR_gaussian_splatting. The format is found by what is in the file.
 //
 // `path` is UTF-8, or on Unix whatever the file system takes.
-//
-// # Safety
-// `path` ends in NUL; `gaussians` may be overwritten.
 RaraResult rara_gaussians_load(const char *path,
                                struct RaraGaussians **gaussians);
 
 // Loads a scene that is in memory, such as an archive's entry, in any format that is one file. `name` stands for it in
 // messages.
-//
-// # Safety
-// `data` points to `size` bytes, which are not used afterwards; `name` ends in NUL; `gaussians` may be overwritten.
 RaraResult rara_gaussians_load_from(const uint8_t *data,
                                     size_t size,
                                     const char *name,
@@ -1499,36 +1393,21 @@ RaraResult rara_gaussians_load_from(const uint8_t *data,
 
 // Appends another scene to one, so that both are sorted and composited as one. Properties that both have
 // stay, for rara_gaussians_select.
-//
-// # Safety
-// Both are alive and not the same; nobody else uses `gaussians` meanwhile.
 RaraResult rara_gaussians_append(struct RaraGaussians *gaussians, const struct RaraGaussians *other);
 
 // Says whether Gaussians were trained antialiased, as by Mip-Splatting or gsplat's rasterize_mode antialiased: what the
 // low-pass makes larger on the screen then gets no brighter for it. Files that say so are loaded so. It holds for a whole
 // scene; what is appended to one is drawn like it. A scene that is on the device already stays as it is.
-//
-// # Safety
-// `gaussians` is alive; nobody else uses it meanwhile.
 RaraResult rara_gaussians_set_antialiased(struct RaraGaussians *gaussians,
                                           VkBool32 antialiased);
 
 // Describes a scene. `info_size` is sizeof *info.
-//
-// # Safety
-// `gaussians` is alive; `info` has room for `info_size` bytes.
 RaraResult rara_gaussians_info(const struct RaraGaussians *gaussians, struct RaraGaussiansInfo *info, size_t info_size);
 
 // Frees a scene's memory; null is ignored.
-//
-// # Safety
-// `gaussians` is null, or alive and not used any more.
 void rara_gaussians_destroy(struct RaraGaussians *gaussians);
 
 // No memory; the host replaces the buffer and what follows. `staging_size` is sizeof *staging.
-//
-// # Safety
-// `staging` has room for `staging_size` bytes.
 RaraResult rara_staging_default(struct RaraStaging *staging, size_t staging_size);
 
 // Uploads a scene of one layer. Only this function, rara_scene_buffers_upload_layers and rara_renderer_channels submit to the
@@ -1542,9 +1421,6 @@ RaraResult rara_scene_buffers_upload(const struct RaraDevice *device,
                                      struct RaraSceneBuffers **scene);
 
 // Bytes of staging memory that rara_scene_buffers_upload_with needs for a scene of one layer.
-//
-// # Safety
-// `gaussians` is alive; `bytes` may be overwritten.
 RaraResult rara_scene_buffers_staging_bytes(const struct RaraGaussians *gaussians,
                                             RaraShFormat sh_format,
                                             uint64_t *bytes);
@@ -1574,9 +1450,6 @@ RaraResult rara_scene_buffers_upload_with(const struct RaraDevice *device,
                                           struct RaraSceneBuffers **scene);
 
 // Bytes of device memory that a scene takes, 0 for null.
-//
-// # Safety
-// `scene` is null or alive.
 uint64_t rara_scene_buffers_bytes(const struct RaraSceneBuffers *scene);
 
 // Frees a scene's device memory; null is ignored. The host has waited for the frames that use it.
@@ -1586,35 +1459,23 @@ uint64_t rara_scene_buffers_bytes(const struct RaraSceneBuffers *scene);
 void rara_scene_buffers_destroy(struct RaraSceneBuffers *scene);
 
 // No Gaussians, of degree 0, in arrays without gaps. `arrays_size` is sizeof *arrays.
-//
-// # Safety
-// `arrays` has room for `arrays_size` bytes.
 RaraResult rara_gaussian_arrays_default(struct RaraGaussianArrays *arrays, size_t arrays_size);
 
 // Copies Gaussians from a host's arrays. RARA_ERROR_INVALID names the array and, where a number in it cannot be drawn (one
 // that is not finite, a negative scale, a rotation that is no unit quaternion, an opacity that is not between 0 and 1), the
 // element.
-//
-// # Safety
-// `arrays` is as its fields say; `gaussians` may be overwritten.
 RaraResult rara_gaussians_from_arrays(const struct RaraGaussianArrays *arrays,
                                       struct RaraGaussians **gaussians);
 
 // Loads a scene as rara_gaussians_load does, with what rara_gaussians_select will ask for: the properties that the file's
 // `vertex` element has beside those of a Gaussian, such as labels, and that any of these predicates compares. Each takes 8
 // bytes a Gaussian. RARA_ERROR_FORMAT where the file has no such property.
-//
-// # Safety
-// `path` ends in NUL; `predicates` points to `predicate_count` texts that end in NUL; `gaussians` may be overwritten.
 RaraResult rara_gaussians_load_with(const char *path,
                                     const char *const *predicates,
                                     size_t predicate_count,
                                     struct RaraGaussians **gaussians);
 
 // Loads a scene that is in memory as rara_gaussians_load_from does, with properties as rara_gaussians_load_with does.
-//
-// # Safety
-// As for both.
 RaraResult rara_gaussians_load_from_with(const uint8_t *data,
                                          size_t size,
                                          const char *name,
@@ -1625,9 +1486,6 @@ RaraResult rara_gaussians_load_from_with(const uint8_t *data,
 // Gives each Gaussian a number of the host's own, such as a label, for the predicates of rara_gaussians_select: a property
 // of this name, in place of one that it had. `count` is that of the Gaussians. The values are copied; one that is no number
 // fulfils no comparison.
-//
-// # Safety
-// `gaussians` is alive, and nobody else uses it meanwhile; `name` ends in NUL; `values` points to `count` numbers.
 RaraResult rara_gaussians_set_property(struct RaraGaussians *gaussians,
                                        const char *name,
                                        const double *values,
@@ -1635,21 +1493,17 @@ RaraResult rara_gaussians_set_property(struct RaraGaussians *gaussians,
 
 // Takes the Gaussians that fulfil a predicate out of others: `gaussians` keeps the rest, and `*taken`, which the host
 // destroys as any, has those that were taken; there may be none. Each becomes a layer of a scene, with a state (hidden,
-// faded, moved) and a region of its own. In that scene, Gaussians of both that are equally deep are drawn in the order in
+// faded, moved) and a clip of its own. In that scene, Gaussians of both that are equally deep are drawn in the order in
 // which they were before, whichever layer they are in, so that a selection by itself changes no picture. Either may be
 // selected from again.
 //
 // `predicate` is what the program's `--select` takes: comparisons as "opacity>0.5", "size<=0.01", "red>0.6" and "label in
 // 3,4,7..9", where label is a property of rara_gaussians_load_with or rara_gaussians_set_property, and
-// "inside(sphere:0,0,0,1)", which takes any expression of rara_region_parse; joined by `and`, `or`, `not` and ( ).
+// "inside(sphere:0,0,0,1)", which takes any expression of rara_clip_parse; joined by `and`, `or`, `not` and ( ).
 // RARA_ERROR_INVALID says what is wrong and in which column, and names a property that is not there.
 //
-// Regions and sizes are the scene's: `placement` is that of the layer that the Gaussians will be, and null leaves it where
+// Clips and sizes are the scene's: `placement` is that of the layer that the Gaussians will be, and null leaves it where
 // it was made. After an error `gaussians` is as it was.
-//
-// # Safety
-// `gaussians` is alive, and nobody else uses it meanwhile; `predicate` ends in NUL; `placement` is null or points to one;
-// `taken` may be overwritten.
 RaraResult rara_gaussians_select(struct RaraGaussians *gaussians,
                                  const char *predicate,
                                  const struct RaraPlacement *placement,
@@ -1657,15 +1511,9 @@ RaraResult rara_gaussians_select(struct RaraGaussians *gaussians,
 
 // The state of a layer that stands where it was made, visible and with the opacities of its Gaussians. `state_size` is
 // sizeof *state.
-//
-// # Safety
-// `state` has room for `state_size` bytes.
 RaraResult rara_layer_state_default(struct RaraLayerState *state, size_t state_size);
 
 // A layer of Gaussians in the default state; `layer` keeps both pointers as they are. `layer_size` is sizeof *layer.
-//
-// # Safety
-// `layer` has room for `layer_size` bytes.
 RaraResult rara_layer_default(struct RaraLayer *layer,
                               size_t layer_size,
                               const char *name,
@@ -1685,10 +1533,6 @@ RaraResult rara_scene_buffers_upload_layers(const struct RaraDevice *device,
                                             struct RaraSceneBuffers **scene);
 
 // Bytes of staging memory that rara_scene_buffers_upload_layers_with needs for a scene.
-//
-// # Safety
-// `layers` points to `layer_count` layers, which are as their fields say and all of one struct_size; `bytes` may be
-// overwritten.
 RaraResult rara_scene_buffers_staging_bytes_of_layers(const struct RaraLayer *layers,
                                                       size_t layer_count,
                                                       RaraShFormat sh_format,
@@ -1708,9 +1552,6 @@ RaraResult rara_scene_buffers_upload_layers_with(const struct RaraDevice *device
                                                  struct RaraSceneBuffers **scene);
 
 // The state of a layer, as it was uploaded or last set; its rotation has length one. `state_size` is sizeof *state.
-//
-// # Safety
-// `scene` is alive, and no other thread sets a state meanwhile; `state` has room for `state_size` bytes.
 RaraResult rara_scene_buffers_layer_state(const struct RaraSceneBuffers *scene,
                                           size_t index,
                                           struct RaraLayerState *state,
@@ -1719,37 +1560,23 @@ RaraResult rara_scene_buffers_layer_state(const struct RaraSceneBuffers *scene,
 // Sets the state of a layer: the next rara_renderer_configure of every renderer takes it, and frames that are already
 // configured keep theirs, so that nothing has to be waited for. RARA_ERROR_INVALID for an opacity that is not 0 to 1 and
 // for an impossible placement; the state then stays as it was.
-//
-// # Safety
-// `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;
-// `state` points to one.
 RaraResult rara_scene_buffers_set_layer_state(struct RaraSceneBuffers *scene,
                                               size_t index,
                                               const struct RaraLayerState *state);
 
-// Sets a clip for a layer alone, in place of the clip of rara_renderer_configure, which then has no say in it: a clip
-// without planes keeps the whole layer. Null gives the layer the frame's clip again. The clip stands in the scene: neither
+// Sets a clip for a layer alone, in place of the clip of rara_renderer_configure: a clip without planes keeps the whole
+// layer. Null gives the layer the frame's clip again. The clip stands in the scene: neither
 // the layer's placement nor that of rara_renderer_set_placement moves it, and the camera's planes are no part of it. It holds
 // from the next rara_renderer_configure of every renderer on. RARA_ERROR_INVALID for what is no clip; the layer's clip then
 // stays as it was.
-//
-// # Safety
-// `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;
-// `clip` is null or points to one whose planes are there.
 RaraResult rara_scene_buffers_set_layer_clip(struct RaraSceneBuffers *scene,
                                              size_t index,
                                              const struct RaraClip *clip);
 
 // How many layers a scene has, one or more; 0 for null.
-//
-// # Safety
-// `scene` is null or alive.
 size_t rara_scene_buffers_layer_count(const struct RaraSceneBuffers *scene);
 
 // Describes a layer. Layers are numbered from 0, in the order in which they were given. `info_size` is sizeof *info.
-//
-// # Safety
-// `scene` is alive; `info` has room for `info_size` bytes.
 RaraResult rara_scene_buffers_layer_info(const struct RaraSceneBuffers *scene,
                                          size_t index,
                                          struct RaraLayerInfo *info,
@@ -1757,97 +1584,25 @@ RaraResult rara_scene_buffers_layer_info(const struct RaraSceneBuffers *scene,
 
 // The number of the first layer of a name. RARA_ERROR_INVALID, which lists the names that there are, where no layer is called
 // so; `index` is then left alone.
-//
-// # Safety
-// `scene` is alive, `name` ends in NUL, and `index` may be overwritten.
 RaraResult rara_scene_buffers_layer_by_name(const struct RaraSceneBuffers *scene,
                                             const char *name,
                                             size_t *index);
 
 // The default settings with a preset's precision. `settings_size` is sizeof *settings.
-//
-// # Safety
-// `settings` has room for `settings_size` bytes.
 RaraResult rara_settings_default(struct RaraSettings *settings, size_t settings_size, RaraPreset preset);
 
-// Makes a region of the text of an expression: a shape, as "sphere:0,0,0,1" or "!box:0,0,0,1,1,2", whose "!" keeps the
-// outside, or all(...), any(...) and not(...) of expressions, as in "all(box:0,0,0,1,1,2, not(sphere:1,0,0,0.5))".
-// `rara help render` has the numbers of each shape. RARA_ERROR_INVALID says what is wrong and in which column.
-//
-// # Safety
-// `expression` ends in NUL; `region` may be overwritten.
-RaraResult rara_region_parse(const char *expression, struct RaraRegion **region);
-
-// Makes a region of a clip in JSON, of which `rara --save-clip` writes files: a list whose elements have a "name" or not, and
-// either "clip", an expression as a tree, or "normal" and "d", a plane. `name` is the name of the element to take, or its
-// number where none is called so; null takes the only one.
-//
-// # Safety
-// `json` points to `size` bytes, which are not used afterwards; `name` is null or ends in NUL; `region` may be overwritten.
-RaraResult rara_region_from_json(const uint8_t *json,
-                                 size_t size,
-                                 const char *name,
-                                 struct RaraRegion **region);
-
-// Makes a region of a clip in a JSON file, as rara_region_from_json does. `path` is as for rara_gaussians_load.
-//
-// # Safety
-// `path` ends in NUL, `name` is null or ends in NUL, and `region` may be overwritten.
-RaraResult rara_region_load(const char *path, const char *name, struct RaraRegion **region);
-
-// Frees a region; null is ignored. Renderers and layers that were given it have copies of their own.
-//
-// # Safety
-// `region` is null, or alive and not used any more.
-void rara_region_destroy(struct RaraRegion *region);
-
-// As rara_renderer_configure or rara_renderer_configure_orthographic, with a region in place of a clip; null keeps
-// everything. A region with planes that move with the camera is a RaraClip.
-//
-// # Safety
-// As for rara_renderer_configure; `region` is null or alive.
-RaraResult rara_renderer_configure_region(struct RaraRenderer *renderer,
-                                          const struct RaraSceneBuffers *scene,
-                                          const struct RaraCamera *camera,
-                                          RaraProjection projection,
-                                          const struct RaraRegion *region,
-                                          const struct RaraSettings *settings,
-                                          struct RaraFrame **frame);
-
-// As rara_scene_buffers_set_layer_clip, with a region in place of planes; null gives the layer the frame's clip again.
-//
-// # Safety
-// `scene` is alive, and no other thread uses it meanwhile, rara_renderer_configure and rara_renderer_prepare included;
-// `region` is null or alive.
-RaraResult rara_scene_buffers_set_layer_region(struct RaraSceneBuffers *scene,
-                                               size_t index,
-                                               const struct RaraRegion *region);
-
-// Says in `kept` whether a region keeps a point; a surface's own points are kept.
-//
-// # Safety
-// `region` is alive, `point` points to three numbers, and `kept` may be overwritten.
-RaraResult rara_region_keeps(const struct RaraRegion *region, const double *point, VkBool32 *kept);
-
 // The default settings. `settings_size` is sizeof *settings.
-//
-// # Safety
-// `settings` has room for `settings_size` bytes.
 RaraResult rara_bake_settings_default(struct RaraBakeSettings *settings, size_t settings_size);
 
-// Makes Gaussians that show a cut without a region, wherever they are drawn: those outside it are dropped, those that it
+// Makes Gaussians that show a cut without a clip, wherever they are drawn: those outside it are dropped, those that it
 // leaves whole are kept, and each that it cuts is replaced by one with the mass, the mean and the covariance of what is left.
 // A Gaussian has no edge, so that this is a preview: against the exact cut, 12 to 17 % of the light of cut Gaussians is off,
 // where a cut by centres is off by 35 %. It needs no device; all processors work at it.
 // Properties, for rara_gaussians_select, stay those of the Gaussians that they come from.
 //
 // Null `settings` are the defaults. `counts` says what has been done; it may be null, and `counts_size` is sizeof *counts.
-//
-// # Safety
-// `gaussians` and `region` are alive; `settings` is null or points to one; `baked` may be overwritten; `counts` is null, or has
-// room for `counts_size` bytes.
 RaraResult rara_gaussians_bake(const struct RaraGaussians *gaussians,
-                               const struct RaraRegion *region,
+                               const struct RaraClip *clip,
                                const struct RaraBakeSettings *settings,
                                struct RaraGaussians **baked,
                                struct RaraBakeCounts *counts,
@@ -1855,9 +1610,6 @@ RaraResult rara_gaussians_bake(const struct RaraGaussians *gaussians,
 
 // Channels of these quantities, of pictures of `width` x `height` pixels; the host gives `values`, with room for
 // `value_count` numbers. `channels_size` is sizeof *channels.
-//
-// # Safety
-// `channels` has room for `channels_size` bytes.
 RaraResult rara_channels_default(struct RaraChannels *channels,
                                  size_t channels_size,
                                  RaraAovs aovs,
@@ -1870,7 +1622,7 @@ RaraResult rara_channels_default(struct RaraChannels *channels,
 //
 // The renderer lends its device, its compiled pipelines and its placement; its frames, attachments and depths have no say,
 // and stay as they are. The scene is given as layers because one that is on the device has no colours that could be changed:
-// states and regions that were set there are given with them. What `settings` show is ignored.
+// states and clips that were set there are given with them. What `settings` show is ignored.
 //
 // RARA_ERROR_INVALID where the sizes of `channels` are not the camera's, or too few or too many; after an error `values` are as
 // they were.
@@ -1883,16 +1635,12 @@ RaraResult rara_renderer_channels(const struct RaraRenderer *renderer,
                                   const struct RaraLayer *layers,
                                   size_t layer_count,
                                   const struct RaraCamera *camera,
-                                  RaraProjection projection,
                                   const struct RaraClip *clip,
                                   const struct RaraSettings *settings,
                                   const struct RaraChannels *channels);
 
 // The statistics of a frame, to be asked for after waiting for it and before the next rara_renderer_prepare.
 // `stats_size` is sizeof *stats.
-//
-// # Safety
-// `renderer` is alive, and no other thread changes it; `stats` has room for `stats_size` bytes.
 RaraResult rara_renderer_stats(const struct RaraRenderer *renderer, struct RaraFrameStats *stats, size_t stats_size);
 
 #ifdef __cplusplus

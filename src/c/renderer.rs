@@ -40,9 +40,6 @@ pub(crate) fn with(
 
 /// Creates a renderer. The first frame that needs a pipeline or buffer creates it. RARA_ERROR_DEVICE where the device
 /// cannot draw into such attachments.
-///
-/// # Safety
-/// `device` is alive, `desc` is as its fields say, and `renderer` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_create(
     device: *const RaraDevice,
@@ -60,9 +57,6 @@ pub unsafe extern "C" fn rara_renderer_create(
 
 /// Creates another renderer on the same device that shares the compiled pipelines of `other`: one for each view that is
 /// drawn in the same scope. Its working memory is its own.
-///
-/// # Safety
-/// `other` is alive, `desc` is as its fields say, and `renderer` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_create_sharing(
     other: *const RaraRenderer,
@@ -79,9 +73,6 @@ pub unsafe extern "C" fn rara_renderer_create_sharing(
 }
 
 /// Changes what the host's depth buffer holds for a depth, from the next rara_renderer_configure on.
-///
-/// # Safety
-/// `renderer` is alive, was created with a depth attachment, and is not used by another thread; `map` points to one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_set_depth_map(
     renderer: *mut RaraRenderer,
@@ -95,9 +86,6 @@ pub unsafe extern "C" fn rara_renderer_set_depth_map(
 
 /// Changes the format of the colour attachment, from the next rara_renderer_configure on, which compiles what the format needs
 /// and keeps what was compiled for others: for a host whose swapchain changes, or that draws into several targets.
-///
-/// # Safety
-/// `renderer` is alive, and no other thread uses it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_set_color_format(
     renderer: *mut RaraRenderer,
@@ -114,9 +102,6 @@ pub unsafe extern "C" fn rara_renderer_set_color_format(
 
 /// Forgets what earlier frames have computed, as is needed after a frame that was prepared and not submitted.
 /// rara_renderer_configure comes after it.
-///
-/// # Safety
-/// `renderer` is alive, and no other thread uses it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_forget(renderer: *mut RaraRenderer) -> RaraResult {
     with(renderer, |renderer| {

@@ -154,9 +154,6 @@ pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<Rend
 
 /// One colour attachment of one sample in dynamic rendering, no timestamps, no reuse, one frame in flight. `desc_size` is
 /// sizeof *desc.
-///
-/// # Safety
-/// `desc` has room for `desc_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_desc_default(
     desc: *mut RaraRendererDesc,

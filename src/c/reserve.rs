@@ -2,8 +2,8 @@
 
 use rara::{FrameLimits, Preset, Result, Settings};
 
-use crate::boundary::{RaraResult, Versioned, exclusive, guard, read, read_list, shared, write};
-use crate::camera::RaraCamera;
+use crate::boundary::{RaraResult, Versioned, exclusive, guard, read, read_list, write};
+use crate::camera::{self, RaraCamera};
 use crate::device::RaraDevice;
 use crate::frame::RaraFrame;
 use crate::handles::{alive, number};
@@ -27,10 +27,9 @@ pub struct RaraFrameLimits {
     pub layers: u32,
     /// How the scenes' spherical harmonics are stored. Default: RARA_SH_FORMAT_PACKED.
     pub sh_format: RaraShFormat,
-    /// Planes of a RaraClip, or of a RaraRegion that is a list of planes; RaraClip::clip_near and clip_far add one each.
-    /// Default: 6.
+    /// Planes of a RaraClip that is a list of planes; RaraCamera::clip_near and clip_far add one each. Default: 6.
     pub planes: u32,
-    /// Surfaces of a RaraRegion that bends or combines. Default: 0, for none.
+    /// Surfaces of a RaraClip that bends or combines. Default: 0, for none.
     pub surfaces: u32,
     /// Pairs of tile and splat, for which there is then exactly this room: a frame with more is drawn as quads, the same
     /// picture but slower, and RaraFrameStats::fell_back says so. rara_scene_buffers_estimated_pairs tells a camera's.
@@ -93,9 +92,6 @@ impl RaraFrameLimits {
 }
 
 /// Limits of frames of one layer that is cut by up to six planes in any mode. `limits_size` is sizeof *limits.
-///
-/// # Safety
-/// `limits` has room for `limits_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_frame_limits_default(
     limits: *mut RaraFrameLimits,
@@ -117,9 +113,6 @@ pub unsafe extern "C" fn rara_frame_limits_default(
 /// the renderer is used by no other call meanwhile. A renderer of rara_renderer_create_sharing compiles for both.
 /// rara_renderer_configure comes after it. RARA_ERROR_MEMORY where there is no room; of a budget's it is said before
 /// anything is allocated or compiled.
-///
-/// # Safety
-/// `renderer` is alive; `limits` is as its fields say.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_reserve(
     renderer: *mut RaraRenderer,
@@ -152,9 +145,6 @@ pub unsafe extern "C" fn rara_renderer_trim(
 }
 
 /// Bytes of device memory that the renderer's working memory takes, 0 for null.
-///
-/// # Safety
-/// `renderer` is null or alive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_bytes(renderer: *const RaraRenderer) -> u64 {
     number(renderer, "renderer", |renderer| renderer.0.bytes())
@@ -162,9 +152,6 @@ pub unsafe extern "C" fn rara_renderer_bytes(renderer: *const RaraRenderer) -> u
 
 /// An estimate of the pairs of tile and splat in a camera's picture, for RaraFrameLimits::pairs: without what a clip leaves
 /// out, with the scene where it was made, and with the usual near cut. Splats that are nearer have the most pairs of all.
-///
-/// # Safety
-/// `scene` is alive; `camera` points to one; `pairs` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_estimated_pairs(
     scene: *const RaraSceneBuffers,
@@ -175,7 +162,7 @@ pub unsafe extern "C" fn rara_scene_buffers_estimated_pairs(
     guard(|| unsafe {
         let pairs = exclusive(pairs, "pairs")?;
         let scene = alive(scene, "scene")?;
-        let camera = shared(camera, "camera")?.camera()?;
+        let camera = camera::camera(camera)?;
         *pairs = scene.buffers.estimated_pairs(&camera);
         Ok(())
     })
@@ -205,9 +192,6 @@ unsafe impl Versioned for RaraDeviceMemory {
 }
 
 /// The device memory that rara has allocated, and the pipelines that it has compiled. `memory_size` is sizeof *memory.
-///
-/// # Safety
-/// `device` is alive; `memory` has room for `memory_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_device_memory(
     device: *const RaraDevice,
@@ -232,9 +216,6 @@ pub unsafe extern "C" fn rara_device_memory(
 /// Sets the most bytes of device memory that all scenes and renderers of a device may take together; 0, as in the
 /// beginning, for no limit but the device's. What would exceed it fails with RARA_ERROR_MEMORY before any of it is allocated,
 /// and the message says what to do. What is there already stays. Any thread may call this at any time.
-///
-/// # Safety
-/// `device` is alive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_device_set_memory_budget(
     device: *const RaraDevice,

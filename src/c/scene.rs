@@ -187,9 +187,6 @@ pub(crate) unsafe fn upload_with(
 }
 
 /// Bytes of staging memory that rara_scene_buffers_upload_with needs for a scene of one layer.
-///
-/// # Safety
-/// `gaussians` is alive; `bytes` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_staging_bytes(
     gaussians: *const RaraGaussians,
@@ -235,9 +232,6 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_with(
 }
 
 /// Bytes of device memory that a scene takes, 0 for null.
-///
-/// # Safety
-/// `scene` is null or alive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_bytes(scene: *const RaraSceneBuffers) -> u64 {
     number(scene, "scene", |scene| scene.buffers.bytes())

@@ -17,9 +17,6 @@ use crate::text::{self, text};
 /// Loads a scene as rara_gaussians_load does, with what rara_gaussians_select will ask for: the properties that the file's
 /// `vertex` element has beside those of a Gaussian, such as labels, and that any of these predicates compares. Each takes 8
 /// bytes a Gaussian. RARA_ERROR_FORMAT where the file has no such property.
-///
-/// # Safety
-/// `path` ends in NUL; `predicates` points to `predicate_count` texts that end in NUL; `gaussians` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussians_load_with(
     path: *const c_char,
@@ -38,9 +35,6 @@ pub unsafe extern "C" fn rara_gaussians_load_with(
 }
 
 /// Loads a scene that is in memory as rara_gaussians_load_from does, with properties as rara_gaussians_load_with does.
-///
-/// # Safety
-/// As for both.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussians_load_from_with(
     data: *const u8,
@@ -64,9 +58,6 @@ pub unsafe extern "C" fn rara_gaussians_load_from_with(
 /// Gives each Gaussian a number of the host's own, such as a label, for the predicates of rara_gaussians_select: a property
 /// of this name, in place of one that it had. `count` is that of the Gaussians. The values are copied; one that is no number
 /// fulfils no comparison.
-///
-/// # Safety
-/// `gaussians` is alive, and nobody else uses it meanwhile; `name` ends in NUL; `values` points to `count` numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussians_set_property(
     gaussians: *mut RaraGaussians,
@@ -96,21 +87,17 @@ pub unsafe extern "C" fn rara_gaussians_set_property(
 
 /// Takes the Gaussians that fulfil a predicate out of others: `gaussians` keeps the rest, and `*taken`, which the host
 /// destroys as any, has those that were taken; there may be none. Each becomes a layer of a scene, with a state (hidden,
-/// faded, moved) and a region of its own. In that scene, Gaussians of both that are equally deep are drawn in the order in
+/// faded, moved) and a clip of its own. In that scene, Gaussians of both that are equally deep are drawn in the order in
 /// which they were before, whichever layer they are in, so that a selection by itself changes no picture. Either may be
 /// selected from again.
 ///
 /// `predicate` is what the program's `--select` takes: comparisons as "opacity>0.5", "size<=0.01", "red>0.6" and "label in
 /// 3,4,7..9", where label is a property of rara_gaussians_load_with or rara_gaussians_set_property, and
-/// "inside(sphere:0,0,0,1)", which takes any expression of rara_region_parse; joined by `and`, `or`, `not` and ( ).
+/// "inside(sphere:0,0,0,1)", which takes any expression of rara_clip_parse; joined by `and`, `or`, `not` and ( ).
 /// RARA_ERROR_INVALID says what is wrong and in which column, and names a property that is not there.
 ///
-/// Regions and sizes are the scene's: `placement` is that of the layer that the Gaussians will be, and null leaves it where
+/// Clips and sizes are the scene's: `placement` is that of the layer that the Gaussians will be, and null leaves it where
 /// it was made. After an error `gaussians` is as it was.
-///
-/// # Safety
-/// `gaussians` is alive, and nobody else uses it meanwhile; `predicate` ends in NUL; `placement` is null or points to one;
-/// `taken` may be overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussians_select(
     gaussians: *mut RaraGaussians,

@@ -241,9 +241,6 @@ pub(crate) unsafe fn settings(settings: *const RaraSettings) -> Result<Settings>
 }
 
 /// The default settings with a preset's precision. `settings_size` is sizeof *settings.
-///
-/// # Safety
-/// `settings` has room for `settings_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_settings_default(
     settings: *mut RaraSettings,

@@ -38,9 +38,6 @@ const NOTHING: RaraStaging = RaraStaging {
 };
 
 /// No memory; the host replaces the buffer and what follows. `staging_size` is sizeof *staging.
-///
-/// # Safety
-/// `staging` has room for `staging_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_staging_default(
     staging: *mut RaraStaging,

@@ -72,9 +72,6 @@ unsafe impl Versioned for RaraFrameStats {
 
 /// The statistics of a frame, to be asked for after waiting for it and before the next rara_renderer_prepare.
 /// `stats_size` is sizeof *stats.
-///
-/// # Safety
-/// `renderer` is alive, and no other thread changes it; `stats` has room for `stats_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_stats(
     renderer: *const RaraRenderer,

@@ -152,6 +152,7 @@ fn cameras() {
                 width,
                 60,
                 camera,
+                size_of::<RaraCamera>(),
             )
         };
         assert_fails(
@@ -175,6 +176,7 @@ fn cameras() {
             90,
             60,
             &mut again,
+            size_of::<RaraCamera>(),
         );
         assert_eq!(result, RARA_OK);
         assert!(again.camera().expect("a camera").eye.distance(made.eye) < 1e-12);
@@ -185,6 +187,44 @@ fn cameras() {
             ..again
         };
         assert!(nan.camera().is_err(), "nowhere");
+        let flat = RaraCamera {
+            projection: RARA_PROJECTION_ORTHOGRAPHIC,
+            clip_near: 1.5,
+            clip_far: 9.0,
+            near_cut: -1.0,
+            ..again
+        };
+        let made = flat.camera().expect("a camera");
+        assert_eq!(made.projection, rara::Projection::Orthographic);
+        let planes = (made.clip_near, made.clip_far, made.near_cut);
+        assert_eq!(planes, (Some(1.5), Some(9.0), Some(-1.0)));
+        assert_eq!(RaraCamera::from(made), flat);
+        for (wrong, says) in [
+            (
+                RaraCamera {
+                    projection: 2,
+                    ..flat
+                },
+                "projection 2 is no RaraProjection",
+            ),
+            (
+                RaraCamera {
+                    clip_far: f64::NAN,
+                    ..flat
+                },
+                "camera->clip_far is NaN",
+            ),
+            (
+                RaraCamera {
+                    clip_near: f64::INFINITY,
+                    ..flat
+                },
+                "camera->clip_near is inf",
+            ),
+        ] {
+            let error = wrong.camera().expect_err(says).to_string();
+            assert!(error.contains(says), "{error}");
+        }
     }
 }
 
@@ -235,7 +275,15 @@ fn scenes() {
         assert_eq!(rara_gaussians_info(scene, &mut info, size), RARA_OK);
         assert_eq!(info.antialiased, 1);
         let mut camera: RaraCamera = std::mem::zeroed();
-        let framed = rara_camera_frame(scene, [0.0, -1.0, 0.0].as_ptr(), 50.0, 90, 60, &mut camera);
+        let framed = rara_camera_frame(
+            scene,
+            [0.0, -1.0, 0.0].as_ptr(),
+            50.0,
+            90,
+            60,
+            &mut camera,
+            size_of::<RaraCamera>(),
+        );
         assert_eq!(framed, RARA_OK);
         assert!(camera.camera().is_ok());
         let upload = rara_scene_buffers_upload(null(), scene, 0, &mut null_mut());
@@ -282,20 +330,28 @@ fn cameras_of_files() {
     let (mut count, missing) = (9, c"no/such.json".as_ptr());
     // SAFETY: strings that end in NUL, and as much room as the count says.
     unsafe {
-        let result = rara_cameras_load(missing, null_mut(), &mut count);
+        let size = size_of::<RaraCamera>();
+        let load = |path, cameras, names, count: &mut usize| {
+            rara_cameras_load(path, cameras, size, names, count)
+        };
+        let result = load(missing, null_mut(), null_mut(), &mut count);
         assert_fails(result, RARA_ERROR_IO, "no/such.json");
-        let result = rara_cameras_load(name.as_ptr(), null_mut(), &mut count);
+        let result = load(name.as_ptr(), null_mut(), null_mut(), &mut count);
         assert_eq!((result, count), (RARA_OK, 2));
-        let mut cameras: [RaraNamedCamera; 2] = std::mem::zeroed();
+        let mut cameras: [RaraCamera; 2] = std::mem::zeroed();
+        let mut names: [RaraCameraName; 2] = std::mem::zeroed();
+        let room = (cameras.as_mut_ptr(), names.as_mut_ptr());
         count = 1; // room for one
-        let result = rara_cameras_load(name.as_ptr(), cameras.as_mut_ptr(), &mut count);
+        let result = load(name.as_ptr(), room.0, room.1, &mut count);
         assert_eq!((result, count), (RARA_OK, 2));
-        assert_eq!(cameras[1].camera.width, 0, "left alone");
-        let result = rara_cameras_load(name.as_ptr(), cameras.as_mut_ptr(), &mut count);
+        assert_eq!(cameras[1].width, 0, "left alone");
+        let result = load(name.as_ptr(), room.0, room.1, &mut count);
         assert_eq!((result, count), (RARA_OK, 2));
-        for (ours, truth) in cameras.iter().zip(&truth) {
-            assert_eq!(ours.camera.camera().expect("a camera"), truth.camera);
-            let name = CStr::from_ptr(ours.name.as_ptr()).to_str();
+        let result = rara_cameras_load(name.as_ptr(), room.0, 3, room.1, &mut count);
+        assert_fails(result, RARA_ERROR_INVALID, "sizeof(RaraCamera)");
+        for ((ours, called), truth) in cameras.iter().zip(&names).zip(&truth) {
+            assert_eq!(ours.camera().expect("a camera"), truth.camera);
+            let name = CStr::from_ptr(called.text.as_ptr()).to_str();
             let name = name.expect("whole characters");
             assert!(truth.name.starts_with(name) && name.len() >= truth.name.len().min(254));
         }

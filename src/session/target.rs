@@ -10,7 +10,6 @@ use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::gpu::{Buffer, BufferDesc, Device, Image, ImageDesc, Location};
 use crate::passes::TilePicture;
-use crate::picture::Picture;
 use crate::precision::TargetFormat;
 
 /// A picture for frames, replaced where a frame needs another size or format: an image that is drawn into or, without one,
@@ -129,7 +128,8 @@ impl Target {
     }
 
     /// Reads the picture back.
-    pub(super) fn read_back(&mut self, device: &Device) -> Result<Picture> {
+    #[cfg(any(feature = "view", test))]
+    pub(super) fn read_back(&mut self, device: &Device) -> Result<crate::picture::Picture> {
         self.stored(device, |stored| stored.decode())
     }
 

@@ -1,16 +1,17 @@
-//! Clips as a host fills them.
+//! Clips of a host's planes.
 
-use crate::results::assert_ok;
+use std::ptr::null_mut;
+
 use rara_c::clip::*;
 
-/// A clip of planes that all keep what is kept, which it points to.
-pub(crate) fn clip_of(planes: &[RaraPlane]) -> RaraClip {
-    // SAFETY: the struct may hold any bytes, and has the room that the call is given.
-    let mut clip = unsafe {
-        let mut clip: RaraClip = std::mem::zeroed();
-        assert_ok(rara_clip_default(&mut clip, size_of_val(&clip)));
-        clip
-    };
-    (clip.planes, clip.plane_count) = (planes.as_ptr(), planes.len());
+use crate::results::assert_ok;
+
+/// A clip that keeps what is on the visible side of all planes.
+pub(crate) fn clip_of(planes: &[RaraPlane]) -> *mut RaraClip {
+    let mut clip = null_mut();
+    // SAFETY: the planes are there, and the pointer may be overwritten.
+    assert_ok(unsafe {
+        rara_clip_of_planes(planes.as_ptr(), planes.len(), RARA_CLIP_OP_AND, &mut clip)
+    });
     clip
 }

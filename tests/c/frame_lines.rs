@@ -131,7 +131,15 @@ fn a_frame_has_lines_for_those_who_embed() {
         let mut camera: RaraCamera = std::mem::zeroed();
         let up = [0.0, -1.0, 0.0];
         let (width, height) = (VIEW.width, VIEW.height);
-        let framed = rara_camera_frame(gaussians, up.as_ptr(), 50.0, width, height, &mut camera);
+        let framed = rara_camera_frame(
+            gaussians,
+            up.as_ptr(),
+            50.0,
+            width,
+            height,
+            &mut camera,
+            size_of::<RaraCamera>(),
+        );
         assert_ok(framed);
         let mut desc: RaraRendererDesc = std::mem::zeroed();
         assert_ok(rara_renderer_desc_default(

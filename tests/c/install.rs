@@ -14,13 +14,13 @@ const PROGRAM: &str = r#"
 #include <stdio.h>
 int main(void) {
     const double inside[3] = {0.1, 0, 0};
-    RaraRegion *region = NULL;
+    RaraClip *clip = NULL;
     VkBool32 kept = VK_FALSE;
     if (rara_abi_version() != RARA_ABI_VERSION) return 2;
-    if (rara_region_parse("sphere:0,0,0,1", &region) != RARA_OK) return 3;
-    if (rara_region_keeps(region, inside, &kept) != RARA_OK || !kept) return 4;
-    rara_region_destroy(region);
-    if (rara_region_parse("cube:1", &region) != RARA_ERROR_INVALID) return 5;
+    if (rara_clip_parse("sphere:0,0,0,1", &clip) != RARA_OK) return 3;
+    if (rara_clip_keeps(clip, inside, &kept) != RARA_OK || !kept) return 4;
+    rara_clip_destroy(clip);
+    if (rara_clip_parse("cube:1", &clip) != RARA_ERROR_INVALID) return 5;
     printf("%u %s", rara_abi_version(), rara_last_error_message());
     return 0;
 }

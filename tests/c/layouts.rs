@@ -29,68 +29,25 @@ use rara_c::support::*;
 /// A struct, its size, and the name and the offset of its last field.
 type Layout = (&'static str, usize, &'static str, usize);
 
-macro_rules! layouts {
-    ($($name:ident: $last:ident),* $(,)?) => {
-        [$((
-            stringify!($name),
-            size_of::<$name>(),
-            stringify!($last),
-            std::mem::offset_of!($name, $last),
-        )),*]
-    };
-}
+include!(concat!(env!("OUT_DIR"), "/lists.rs"));
 
-/// The same of structs whose size comes first, which is checked when this is compiled.
-macro_rules! growing {
-    ($($name:ident: $last:ident),* $(,)?) => {{
-        $(const _: () = assert!(std::mem::offset_of!($name, struct_size) == 0);)*
-        layouts![$($name: $last),*]
-    }};
-}
-
-/// Structs that later versions may make larger.
-fn growing() -> Vec<Layout> {
-    growing![
-        RaraAdoptDesc: allocator_user,
-        RaraBakeCounts: children,
-        RaraBakeSettings: leave,
-        RaraChannels: value_count,
-        RaraClip: near_cut,
-        RaraDepthDesc: map,
-        RaraDepthImage: y,
-        RaraDeviceMemory: pipeline_count,
-        RaraFrameLimits: settings_count,
-        RaraFrameStats: skipped,
-        RaraGaussianArrays: antialiased,
-        RaraGaussiansInfo: antialiased,
-        RaraHostView: depth_scale,
-        RaraLayer: region,
-        RaraLayerInfo: count,
-        RaraLayerState: visible,
-        RaraMemory: user,
-        RaraMemoryRequest: memory_use,
-        RaraNdc: reversed,
-        RaraRendererDesc: color_space,
-        RaraSettings: transmittance_min,
-        RaraStaging: size,
-        RaraSupport: full_subgroups,
-    ]
-    .into()
-}
-
-/// Parts of structs, elements of arrays and what is given by value: they stay as they are.
-fn fixed() -> Vec<Layout> {
-    layouts![
-        RaraCamera: rotation,
-        RaraDepthMap: reversed,
-        RaraNamedCamera: camera,
-        RaraPassTime: ms,
-        RaraPick: alpha,
-        RaraPickTicket: request,
-        RaraPlacement: scale,
-        RaraPlane: offset,
-    ]
-    .into()
+/// The structs, and whether later versions may make each larger; the others are parts of structs, elements of arrays and what
+/// is given by value.
+fn layouts() -> Vec<(Layout, bool)> {
+    macro_rules! layout {
+        ($($name:ident $last:ident $grows:literal,)*) => {
+            vec![$((
+                (
+                    stringify!($name),
+                    size_of::<$name>(),
+                    stringify!($last),
+                    std::mem::offset_of!($name, $last),
+                ),
+                $grows,
+            )),*]
+        };
+    }
+    structs!(layout)
 }
 
 /// The structs of the header whose fields are known: what their comments say, their names and their first fields.
@@ -119,14 +76,11 @@ fn of_header(header: &str) -> Vec<(String, &str, &str)> {
 fn structs_begin_with_their_size_or_never_grow() {
     let header = std::fs::read_to_string(root().join("src/c/rara.h")).expect("a header");
     let structs = of_header(&header);
-    let (growing, fixed) = (growing(), fixed());
-    assert_eq!(structs.len(), growing.len() + fixed.len());
+    let layouts = layouts();
+    assert_eq!(structs.len(), layouts.len());
     for (comment, name, first) in structs {
-        let grows = growing.iter().any(|(own, ..)| *own == name);
-        assert!(
-            grows || fixed.iter().any(|(own, ..)| *own == name),
-            "{name} is in neither list above"
-        );
+        let own = layouts.iter().find(|((own, ..), _)| *own == name);
+        let (_, grows) = *own.unwrap_or_else(|| panic!("{name} is in no source"));
         assert_eq!(first == "size_t struct_size;", grows, "{name}: {first}");
         assert_eq!(
             comment.ends_with(" It never grows."),
@@ -142,7 +96,7 @@ fn structs_lie_in_memory_as_in_c() {
         return;
     };
     let mut code = String::from("#include <stddef.h>\n#include \"rara.h\"\n");
-    for (name, size, last, offset) in growing().into_iter().chain(fixed()) {
+    for ((name, size, last, offset), _) in layouts() {
         let _ = writeln!(
             code,
             "_Static_assert(sizeof({name}) == {size} && offsetof({name}, {last}) == {offset}, \"{name}\");"

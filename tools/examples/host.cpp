@@ -6,7 +6,7 @@
 #include <cstring>
 
 #define RARA(call) check((call) == RARA_OK, rara_last_error_message())
-constexpr RaraDepthMap REVERSED{0.05, INFINITY, VK_TRUE};  // 1 at 0.05, 0 at infinity
+constexpr RaraDepthMap REVERSED{0, 0.05, RARA_PROJECTION_PERSPECTIVE};  // 0.05 / z: 1 at 0.05, 0 at infinity
 
 int main(int count, char **arguments) {
     check(count >= 3, "usage: host SCENE.ply PICTURE.ppm [both|mesh|splats]");
@@ -78,7 +78,7 @@ int main(int count, char **arguments) {
     RARA(rara_gaussians_info(gaussians, &scene_info, sizeof scene_info));
     RaraCamera camera;
     const double up[3]{0, -1, 0};
-    RARA(rara_camera_frame(gaussians, up, 50, W, H, &camera));
+    RARA(rara_camera_frame(gaussians, up, 50, W, H, &camera, sizeof camera));
     RaraSceneBuffers *scene;
     RARA(rara_scene_buffers_upload(lent, gaussians, RARA_SH_FORMAT_PACKED, &scene));
     rara_gaussians_destroy(gaussians);
@@ -101,22 +101,22 @@ int main(int count, char **arguments) {
     }
     push.centre_radius[3] = float(0.4 * size);
     RaraPlane plane{{-0.28, 0, 0.96}, -(-0.28 * centre[0] + 0.96 * centre[2])};
-    RaraClip clip;
-    RARA(rara_clip_default(&clip, sizeof clip));
-    clip.planes = &plane, clip.plane_count = 1;
+    RaraClip *clip;
+    RARA(rara_clip_of_planes(&plane, 1, RARA_CLIP_OP_AND, &clip));
     for (int column = 0; column < 4; column++) {
         double p[3]{};
         for (int row = 0; row < 3; row++)
             for (int i = 0; i < 3; i++) p[row] += camera.rotation[3 * row + i] * (column < 3 ? i == column : -camera.eye[i]);
         push.world_to_clip[4 * column] = float(2 * camera.fx / W * p[0] + (2 * camera.cx / W - 1) * p[2]);
         push.world_to_clip[4 * column + 1] = -float(2 * camera.fy / H * p[1] + (2 * camera.cy / H - 1) * p[2]);  // y is up
-        push.world_to_clip[4 * column + 2] = column < 3 ? 0 : float(REVERSED.z_near);
+        push.world_to_clip[4 * column + 2] = column < 3 ? 0 : float(REVERSED.scale);
         push.world_to_clip[4 * column + 3] = float(p[2]);
     }
 
     // A frame: stages before the host's rendering scope, then the mesh and the splats inside it.
     RaraFrame *frame;
-    RARA(rara_renderer_configure(renderer, scene, &camera, &clip, nullptr, &frame));
+    RARA(rara_renderer_configure(renderer, scene, &camera, clip, nullptr, &frame));
+    rara_clip_destroy(clip);
     VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr, VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     VK(vkBeginCommandBuffer(cmd, &begin));
     RARA(rara_renderer_prepare(renderer, cmd, scene, nullptr, frame));

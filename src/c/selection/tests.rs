@@ -7,9 +7,9 @@ use super::*;
 use crate::arrays::*;
 use crate::bake::*;
 use crate::boundary::*;
+use crate::clip::{rara_clip_destroy, rara_clip_parse};
 use crate::gaussians::*;
 use crate::handles::alive;
-use crate::region::{rara_region_destroy, rara_region_parse};
 use crate::tests::assert_fails;
 
 /// Five Gaussians with a label each.
@@ -121,7 +121,7 @@ fn what_is_baked_keeps_its_properties() {
     // SAFETY: a string that ends in NUL, handles that are alive, pointers that may be overwritten.
     unsafe {
         assert_eq!(
-            rara_region_parse(c"plane:1,0,0,-2.5".as_ptr(), &mut region),
+            rara_clip_parse(c"plane:1,0,0,-2.5".as_ptr(), &mut region),
             RARA_OK
         );
         let result = rara_gaussians_bake(whole, region, null(), &mut baked, null_mut(), 0);
@@ -141,7 +141,7 @@ fn what_is_baked_keeps_its_properties() {
     assert_eq!(result, RARA_OK);
     // SAFETY: they are alive.
     unsafe {
-        rara_region_destroy(region);
+        rara_clip_destroy(region);
         for handle in [whole, baked, threes] {
             rara_gaussians_destroy(handle);
         }
@@ -181,7 +181,7 @@ fn a_host_labels_its_own_gaussians() {
         let taken_of = alive(taken, "taken").expect("is alive");
         assert_eq!(taken_of.gaussians.positions()[0].x, 1.0);
         drop(taken_of);
-        // Regions and sizes are those of the scene that the layer is placed in.
+        // Clips and sizes are those of the scene that the layer is placed in.
         let placement = RaraPlacement {
             position: [5.0, 0.0, 0.0],
             rotation: [0.0, 0.0, 0.0, 1.0],

@@ -47,7 +47,15 @@ fn what_was_destroyed_is_refused_and_the_device_is_released_at_last() {
         ));
         let mut camera: RaraCamera = std::mem::zeroed();
         let up = [0.0, -1.0, 0.0];
-        let framed = rara_camera_frame(gaussians, up.as_ptr(), 50.0, 90, 60, &mut camera);
+        let framed = rara_camera_frame(
+            gaussians,
+            up.as_ptr(),
+            50.0,
+            90,
+            60,
+            &mut camera,
+            size_of::<RaraCamera>(),
+        );
         assert_ok(framed);
         let mut desc: RaraRendererDesc = std::mem::zeroed();
         assert_ok(rara_renderer_desc_default(

@@ -1,9 +1,9 @@
 //! Calls on a scene's layers.
 
 use super::*;
+use rara_c::clip::*;
 use rara_c::layer::*;
 use rara_c::layer_info::*;
-use rara_c::region::*;
 
 /// # Safety
 /// The handles are alive, and nobody else uses them; the scene is of one layer.
@@ -60,12 +60,14 @@ pub(super) unsafe fn what_is_wrong_is_said(
         let set = |index, state: *const RaraLayerState| {
             rara_scene_buffers_set_layer_state(scene, index, state)
         };
-        let mut clip = clip_of(&[]);
-        clip.plane_count = 33;
-        let failed = rara_scene_buffers_set_layer_clip(scene, 0, &clip);
-        assert_fails(failed, RARA_ERROR_INVALID, "clip->plane_count is 33");
-        let failed = rara_scene_buffers_set_layer_region(scene, 1, null());
-        assert_fails(failed, RARA_ERROR_INVALID, beyond);
+        let clip = clip_of(&[]);
+        rara_clip_destroy(clip);
+        let failed = rara_scene_buffers_set_layer_clip(scene, 0, clip);
+        assert_fails(
+            failed,
+            RARA_ERROR_INVALID,
+            "clip is no RaraClip that is alive",
+        );
         let mut index = 7;
         let failed = rara_scene_buffers_layer_by_name(scene, c"skin".as_ptr(), &mut index);
         assert_fails(

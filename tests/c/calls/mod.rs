@@ -144,6 +144,7 @@ fn what_is_wrong_is_said() {
             90,
             60,
             &mut camera,
+            size_of::<RaraCamera>(),
         ));
         rara_gaussians_destroy(gaussians);
 
@@ -160,20 +161,19 @@ fn what_is_wrong_is_said() {
         assert_fails(failed, RARA_ERROR_DEVICE, "BC1_RGB_UNORM_BLOCK");
         desc.color_format = FORMAT;
         let mut depth: RaraDepthDesc = std::mem::zeroed();
-        let mut map = RaraDepthMap {
-            z_near: 0.0,
-            z_far: 9.0,
-            reversed: vk::TRUE,
-        };
+        let mut map = std::mem::zeroed();
+        let failed = rara_depth_map_perspective(0.0, 9.0, vk::TRUE, &mut map);
+        assert_fails(failed, RARA_ERROR_INVALID, "0 < near < far");
+        map.offset = f64::NAN;
         let size = size_of_val(&depth);
         let filled = rara_depth_desc_default(&mut depth, size, vk::Format::D32_SFLOAT, map);
         assert_ok(filled);
         desc.depth = &depth;
         let failed = rara_renderer_create(device, &desc, &mut renderer);
-        assert_fails(failed, RARA_ERROR_INVALID, "0 < near < far");
+        assert_fails(failed, RARA_ERROR_INVALID, "NaN");
         desc.depth = null();
         assert_ok(rara_renderer_create(device, &desc, &mut renderer));
-        map.z_near = 1.0;
+        assert_ok(rara_depth_map_perspective(1.0, 9.0, vk::TRUE, &mut map));
         let failed = rara_renderer_set_depth_map(renderer, &map);
         assert_fails(failed, RARA_ERROR_INVALID, "depth attachment");
 
@@ -194,14 +194,14 @@ fn what_is_wrong_is_said() {
         let failed = rara_renderer_draw(renderer, cmd, 0.0, 0.0, frame);
         let says = "frame is no RaraFrame that is alive";
         assert_fails(failed, RARA_ERROR_INVALID, says);
-        let plane = RaraPlane {
-            normal: [0.0; 3],
-            offset: 0.0,
-        };
-        let planes = [plane];
-        let clip = clip_of(&planes);
-        let failed = rara_renderer_configure(renderer, scene, &camera, &clip, null(), &mut frame);
-        assert_fails(failed, RARA_ERROR_INVALID, "clip->planes[0]");
+        let clip = clip_of(&[]);
+        rara_clip_destroy(clip);
+        let failed = rara_renderer_configure(renderer, scene, &camera, clip, null(), &mut frame);
+        assert_fails(
+            failed,
+            RARA_ERROR_INVALID,
+            "clip is no RaraClip that is alive",
+        );
         assert!(frame.is_null());
         let mut stats: RaraFrameStats = std::mem::zeroed();
         let result = rara_renderer_stats(renderer, &mut stats, size_of_val(&stats));

@@ -4,7 +4,6 @@ use std::ffi::CStr;
 use std::ptr::null;
 
 use super::*;
-use crate::clips::clip_of;
 use crate::results::assert_fails;
 use rara::clip::Expression;
 use rara::gpu::Bindings;
@@ -13,9 +12,9 @@ use rara::{Aov, Camera, Clip, Headless, HeadlessDesc, Layer, LayerState, Setting
 use rara_c::boundary::*;
 use rara_c::camera::*;
 use rara_c::channels::*;
+use rara_c::clip::*;
 use rara_c::layer::*;
 use rara_c::placement::*;
-use rara_c::region::*;
 use rara_c::renderer::*;
 use rara_c::renderer_desc::*;
 
@@ -105,17 +104,15 @@ fn channels_are_those_of_a_headless_renderer() {
             // SAFETY: the handles are alive, and the pointers are null, or point to what they say.
             unsafe {
                 let (mut cut, mut kept) = (null_mut(), null_mut());
-                assert_ok(rara_region_parse(text.as_ptr(), &mut cut));
-                assert_ok(rara_region_parse(whole.as_ptr(), &mut kept));
+                assert_ok(rara_clip_parse(text.as_ptr(), &mut cut));
+                assert_ok(rara_clip_parse(whole.as_ptr(), &mut kept));
                 let mut layers = [layer_in_c(ours.gaussians); 2];
                 let state = RaraLayerState::from(state);
-                (layers[1].state, layers[1].region) = (&state, kept);
-                let mut clip = clip_of(&[]);
-                (clip.region, clip.clip_far) = (cut, depth + 0.4);
+                (layers[1].state, layers[1].clip) = (&state, kept);
                 let camera = RaraCamera::from(camera);
                 let draw = |room: &RaraChannels| {
                     let list = layers.as_ptr();
-                    rara_renderer_channels(renderer, list, 2, &camera, 0, &clip, null(), room)
+                    rara_renderer_channels(renderer, list, 2, &camera, cut, null(), room)
                 };
                 let before = rara_device_bytes(ours.device);
                 let mut values = vec![-7.0; 7 * PIXELS];
@@ -136,8 +133,8 @@ fn channels_are_those_of_a_headless_renderer() {
                 assert_ok(draw(&room(RARA_AOV_COUNT | RARA_AOV_LAYER, &mut some)));
                 assert!(some[..PIXELS] == values[4 * PIXELS..5 * PIXELS]);
                 assert!(some[PIXELS..] == values[6 * PIXELS..]);
-                rara_region_destroy(cut);
-                rara_region_destroy(kept);
+                rara_clip_destroy(cut);
+                rara_clip_destroy(kept);
             }
         });
     });
@@ -166,7 +163,6 @@ fn channels_are_of_a_scene_where_the_renderer_places_it() {
                     &layer,
                     1,
                     &camera,
-                    0,
                     null(),
                     null(),
                     &room,
@@ -196,17 +192,8 @@ fn what_is_wrong_with_channels_is_said() {
             let layer = layer_in_c(ours.gaussians);
             let usual = room(RARA_AOV_DEPTH, &mut values);
             // SAFETY: the handles are alive, and the pointers are null, or point to what they say.
-            let draw = |count, projection, room: *const RaraChannels| unsafe {
-                rara_renderer_channels(
-                    renderer,
-                    &layer,
-                    count,
-                    &camera,
-                    projection,
-                    null(),
-                    null(),
-                    room,
-                )
+            let draw = |count, camera: &RaraCamera, room: *const RaraChannels| unsafe {
+                rara_renderer_channels(renderer, &layer, count, camera, null(), null(), room)
             };
             for (room, says) in [
                 (
@@ -248,11 +235,23 @@ fn what_is_wrong_with_channels_is_said() {
                     "channels->struct_size is 7",
                 ),
             ] {
-                assert_fails(draw(1, 0, &room), RARA_ERROR_INVALID, says);
+                assert_fails(draw(1, &camera, &room), RARA_ERROR_INVALID, says);
             }
-            assert_fails(draw(1, 0, null()), RARA_ERROR_INVALID, "channels is null");
-            assert_fails(draw(0, 0, &usual), RARA_ERROR_INVALID, "layer_count is 0");
-            assert_fails(draw(1, 2, &usual), RARA_ERROR_INVALID, "projection 2");
+            assert_fails(
+                draw(1, &camera, null()),
+                RARA_ERROR_INVALID,
+                "channels is null",
+            );
+            assert_fails(
+                draw(0, &camera, &usual),
+                RARA_ERROR_INVALID,
+                "layer_count is 0",
+            );
+            let odd = RaraCamera {
+                projection: 2,
+                ..camera
+            };
+            assert_fails(draw(1, &odd, &usual), RARA_ERROR_INVALID, "projection 2");
             let mut made = usual;
             // SAFETY: the struct has the room that the call is given.
             let failed = unsafe { rara_channels_default(&mut made, size_of_val(&usual), 0, 1, 1) };

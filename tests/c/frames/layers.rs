@@ -147,7 +147,7 @@ fn layers_are_the_same_bytes() {
             for index in 0..2 {
                 assert_ok(rara_scene_buffers_set_layer_state(uploaded, index, &given));
             }
-            assert_ok(rara_scene_buffers_set_layer_clip(uploaded, 1, &whole));
+            assert_ok(rara_scene_buffers_set_layer_clip(uploaded, 1, whole));
             let drawn = world.drawn_in_c(ours.device, &canvas, |_| uploaded);
             assert!(drawn == truth, "a clip of its own");
             assert_ok(rara_scene_buffers_set_layer_clip(uploaded, 1, null()));

@@ -4,7 +4,6 @@ use std::ptr::null;
 
 use super::channels::{SIZE, camera, with_renderer};
 use super::*;
-use crate::clips::clip_of;
 use crate::results::assert_fails;
 use rara::scene::Bounds;
 use rara::{Clip, Headless, Settings};
@@ -29,21 +28,18 @@ fn picks_are_those_of_a_headless_renderer() {
             unsafe {
                 let mut picker = null_mut();
                 assert_ok(rara_picker_create(renderer, 1, &mut picker));
-                let mut clip = clip_of(&[]);
-                clip.near_cut = middle;
                 let seen = RaraCamera::from(camera);
                 let ask = |x: i32| {
                     let mut ticket = RaraPickTicket::default();
                     let mut result = RARA_OK;
                     let submitted = device.submit_and_wait(|cmd| {
-                        let (clip, to) = (&raw const clip, &mut ticket);
+                        let to = &mut ticket;
                         result = rara_picker_record(
                             picker,
                             cmd,
                             uploaded,
                             &seen,
-                            0,
-                            clip,
+                            null(),
                             null(),
                             x,
                             y,

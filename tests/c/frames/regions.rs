@@ -1,15 +1,13 @@
 //! Frames and layers that are cut by regions of any shapes.
 
-use std::ptr::null;
-
 use super::*;
 use crate::clips::clip_of;
 use rara::clip::Expression;
 use rara::scene::Bounds;
 use rara::{Clip, Layer};
+use rara_c::clip::*;
 use rara_c::layer::*;
 use rara_c::layer_info::*;
-use rara_c::region::*;
 
 #[test]
 fn regions_are_the_same_bytes() {
@@ -73,7 +71,7 @@ fn planes_of_the_camera_are_the_same_bytes() {
             };
             let canvas = world.canvas(lent, device);
             let truth = world.drawn(device, &canvas);
-            let own = if own { &raw const whole } else { null() };
+            let own = if own { whole } else { null_mut() };
             // SAFETY: the handles are alive, and nobody else uses the scene.
             let drawn = unsafe {
                 assert_ok(rara_scene_buffers_set_layer_clip(uploaded, 0, own));
@@ -87,7 +85,10 @@ fn planes_of_the_camera_are_the_same_bytes() {
             seen.push(drawn);
         }
         // SAFETY: all frames were waited for.
-        unsafe { rara_scene_buffers_destroy(uploaded) };
+        unsafe {
+            rara_clip_destroy(whole);
+            rara_scene_buffers_destroy(uploaded);
+        }
     });
 }
 
@@ -134,18 +135,18 @@ fn layers_have_regions_of_their_own() {
             let json =
                 br#"[{"clip": {"cone": {"apex": [0,0,-1], "base": [0,0,1], "radius": 0.8}}}]"#;
             let (bytes, size) = (json.as_ptr(), json.len());
-            assert_ok(rara_region_from_json(
+            assert_ok(rara_clip_from_json(
                 bytes,
                 size,
                 std::ptr::null(),
                 &mut region,
             ));
-            assert_ok(rara_scene_buffers_set_layer_region(uploaded, index, region));
-            rara_region_destroy(region); // the layer has a copy
+            assert_ok(rara_scene_buffers_set_layer_clip(uploaded, index, region));
+            rara_clip_destroy(region); // the layer has a copy
             let drawn = own.drawn_in_c(ours.device, &canvas, |_| uploaded);
             assert!(drawn == own.drawn(device, &canvas), "a region of its own");
             let none = std::ptr::null();
-            assert_ok(rara_scene_buffers_set_layer_region(uploaded, index, none));
+            assert_ok(rara_scene_buffers_set_layer_clip(uploaded, index, none));
             let again = shared.drawn_in_c(ours.device, &canvas, |_| uploaded);
             assert!(
                 again == shared.drawn(device, &canvas) && again != drawn,

@@ -105,6 +105,7 @@ fn a_host_in_c_reserves_within_a_budget_and_gives_back() {
                     width,
                     height,
                     &mut camera,
+                    size_of::<RaraCamera>(),
                 );
                 assert_ok(looked);
                 assert_ok(rara_scene_buffers_estimated_pairs(
@@ -115,12 +116,13 @@ fn a_host_in_c_reserves_within_a_budget_and_gives_back() {
                 for settings in &all {
                     let mut frame = null_mut();
                     assert_ok(rara_renderer_configure(
-                        renderer, uploaded, &camera, &clip, settings, &mut frame,
+                        renderer, uploaded, &camera, clip, settings, &mut frame,
                     ));
                     let refused = rara_renderer_trim(renderer, frame);
                     assert_fails(refused, RARA_ERROR_INVALID, "frame was not prepared");
                     rara_frame_destroy(frame);
                 }
+                rara_clip_destroy(clip);
             }
             assert_eq!(made(device), reserved, "pipelines and allocations");
             let bytes = rara_renderer_bytes(renderer);

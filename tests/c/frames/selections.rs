@@ -6,8 +6,8 @@ use super::*;
 use rara::clip::Expression;
 use rara::scene::{Predicate, generate};
 use rara::{Layer, LayerState};
+use rara_c::clip::*;
 use rara_c::layer::*;
-use rara_c::region::*;
 use rara_c::selection::*;
 
 /// Gaussians of which many are equally deep, whose order the picture shows.
@@ -80,7 +80,7 @@ fn selections_are_the_same_bytes() {
                 let (mut uploaded, mut region) = (null_mut(), null_mut());
                 // SAFETY: the handles are alive, and the pointers may be overwritten.
                 unsafe {
-                    assert_ok(rara_region_parse(cut.as_ptr(), &mut region));
+                    assert_ok(rara_clip_parse(cut.as_ptr(), &mut region));
                     let states = states.map(RaraLayerState::from);
                     let layers: Vec<RaraLayer> = (0..handles.len())
                         .map(|index| {
@@ -89,7 +89,7 @@ fn selections_are_the_same_bytes() {
                             assert_ok(rara_layer_default(&mut layer, size, name, handles[index]));
                             layer.state = &states[index];
                             if is_cut && index == 1 {
-                                layer.region = region;
+                                layer.clip = region;
                             }
                             layer
                         })
@@ -101,7 +101,7 @@ fn selections_are_the_same_bytes() {
                         RARA_SH_FORMAT_PACKED,
                         &mut uploaded,
                     ));
-                    rara_region_destroy(region);
+                    rara_clip_destroy(region);
                     let drawn = world.drawn_in_c(ours.device, &canvas, |_| uploaded);
                     assert!(drawn == truth, "{states:?}");
                     if seen.is_empty() {

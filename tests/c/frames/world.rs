@@ -20,9 +20,7 @@ use rara_c::clip::*;
 use rara_c::depth::*;
 use rara_c::frame::*;
 use rara_c::matrices::*;
-use rara_c::orthographic::*;
 use rara_c::placement::*;
-use rara_c::region::*;
 use rara_c::renderer::*;
 use rara_c::renderer_desc::*;
 use rara_c::settings::*;
@@ -31,11 +29,8 @@ const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const DEPTHS: vk::Format = vk::Format::R32G32_SFLOAT;
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 const VIEW: (u32, u32) = (121, 83);
-const MAP: RaraDepthMap = RaraDepthMap {
-    z_near: 0.05,
-    z_far: f64::INFINITY,
-    reversed: vk::TRUE,
-};
+/// The depth that becomes 1 in perspective, where infinity becomes 0.
+const NEAR: f64 = 0.05;
 
 /// The depths that become 0 and 1 without perspective.
 const FLAT: [f64; 2] = [40.0, 0.0];
@@ -116,7 +111,7 @@ impl<'a> World<'a> {
         }
         let map = match self.camera.projection {
             Projection::Orthographic => DepthMap::orthographic(FLAT[0], FLAT[1]),
-            _ => DepthMap::reversed(MAP.z_near, MAP.z_far),
+            _ => DepthMap::reversed(NEAR, f64::INFINITY),
         };
         map.expect("proper depths")
     }
@@ -170,9 +165,15 @@ impl<'a> World<'a> {
     ) -> Pixels {
         // SAFETY: the caller's promises; everything below is alive, or to be overwritten.
         unsafe {
+            let is_flat = self.camera.projection == Projection::Orthographic;
+            let (mut map, [zero, one]) = (std::mem::zeroed(), FLAT);
+            assert_ok(match is_flat {
+                true => rara_depth_map_orthographic(zero, one, &mut map),
+                false => rara_depth_map_perspective(NEAR, f64::INFINITY, vk::TRUE, &mut map),
+            });
             let mut depth: RaraDepthDesc = std::mem::zeroed();
             let size = size_of_val(&depth);
-            assert_ok(rara_depth_desc_default(&mut depth, size, DEPTH, MAP));
+            assert_ok(rara_depth_desc_default(&mut depth, size, DEPTH, map));
             depth.readable = vk::TRUE;
             let mut desc: RaraRendererDesc = std::mem::zeroed();
             let size = size_of_val(&desc);
@@ -202,59 +203,29 @@ impl<'a> World<'a> {
                 normal: self.plane.normal().into(),
                 offset: self.plane.offset(),
             };
-            let planes = [plane];
-            let mut clip = clip_of(&planes);
-            let (near, far) = (self.camera.clip_near, self.camera.clip_far);
-            let is_between = near.is_some() || far.is_some();
-            if let Some(near) = near {
-                clip.clip_near = near;
-            }
-            if let Some(far) = far {
-                clip.clip_far = far;
-            }
             let mut camera = RaraCamera::from(self.camera);
             let shown = canvas.depth_image(0, 0);
             let shown = depth_image_in_c(&shown);
-            let is_flat = self.camera.projection == Projection::Orthographic;
-            if is_flat && self.matrices.is_none() {
-                let [zero, one] = FLAT;
-                assert_ok(rara_renderer_set_orthographic_depth_map(
-                    renderer, zero, one,
-                ));
-            }
             if let Some(matrices) = self.matrices {
-                let seen = host_view_in_c(matrices);
-                assert_ok(rara_renderer_set_depth_of_projection(renderer, &seen));
-                assert_eq!(seen.projection, u32::from(is_flat));
-                camera = seen.camera;
+                let (near, far) = (camera.clip_near, camera.clip_far);
+                (camera, map) = host_view_in_c(matrices);
+                (camera.clip_near, camera.clip_far) = (near, far);
+                assert_ok(rara_renderer_set_depth_map(renderer, &map));
+                assert_eq!(map.projection, u32::from(is_flat));
             }
-            let configure = match is_flat {
-                true => rara_renderer_configure_orthographic,
-                false => rara_renderer_configure,
-            };
-            let mut region = null_mut();
+            let mut clip = clip_of(&[plane]);
             if let Some(text) = self.region {
-                assert_ok(rara_region_parse(text.as_ptr(), &mut region));
-            }
-            if is_between && !region.is_null() {
-                (clip.region, clip.plane_count) = (region, 0);
+                rara_clip_destroy(clip);
+                assert_ok(rara_clip_parse(text.as_ptr(), &mut clip));
             }
             let made = Cell::new(null_mut());
             let before = |cmd| {
                 let scene = scene(cmd);
                 let mut frame = null_mut();
-                assert_ok(match region.is_null() || is_between {
-                    true => configure(renderer, scene, &camera, &clip, &settings, &mut frame),
-                    false => rara_renderer_configure_region(
-                        renderer,
-                        scene,
-                        &camera,
-                        is_flat.into(),
-                        region,
-                        &settings,
-                        &mut frame,
-                    ),
-                });
+                let (camera, settings) = (&camera, &settings);
+                assert_ok(rara_renderer_configure(
+                    renderer, scene, camera, clip, settings, &mut frame,
+                ));
                 made.set(frame);
                 let early = rara_renderer_draw(renderer, cmd, 0.0, 0.0, frame);
                 assert_eq!(early, RARA_ERROR_INVALID);
@@ -271,7 +242,7 @@ impl<'a> World<'a> {
                 assert_ok(draw(renderer, cmd, 0.0, 0.0, made.get()));
             };
             let [pixels, _] = canvas.draw(before, inside);
-            rara_region_destroy(region);
+            rara_clip_destroy(clip);
             rara_frame_destroy(made.get());
             rara_renderer_destroy(renderer);
             pixels
@@ -294,19 +265,26 @@ fn depth_image_in_c(shown: &DepthImage) -> RaraDepthImage {
 }
 
 /// What a host's matrices are in C, which it keeps row by row.
-unsafe fn host_view_in_c(matrices: [DMat4; 2]) -> RaraHostView {
+unsafe fn host_view_in_c(matrices: [DMat4; 2]) -> (RaraCamera, RaraDepthMap) {
     let [view, projection] = matrices.map(|matrix| matrix.transpose().to_cols_array());
     // SAFETY: both have 16 numbers, and the structs have the room that the calls are given.
     unsafe {
-        let (mut ndc, mut seen): (RaraNdc, RaraHostView) = (std::mem::zeroed(), std::mem::zeroed());
+        let (mut ndc, mut camera): (RaraNdc, RaraCamera) = (std::mem::zeroed(), std::mem::zeroed());
+        let mut map = std::mem::zeroed();
         assert_ok(rara_ndc_default(&mut ndc, size_of_val(&ndc)));
         ndc.order = RARA_MATRIX_ORDER_TRANSLATION_BESIDE;
         (ndc.y_up, ndc.reversed) = (vk::TRUE, vk::TRUE);
-        let (view, projection, size) = (view.as_ptr(), projection.as_ptr(), size_of_val(&seen));
         let (width, height) = VIEW;
-        let made =
-            rara_camera_of_projection(view, projection, &ndc, width, height, &mut seen, size);
-        assert_ok(made);
-        seen
+        assert_ok(rara_camera_of_projection(
+            view.as_ptr(),
+            projection.as_ptr(),
+            &ndc,
+            width,
+            height,
+            &mut camera,
+            size_of::<RaraCamera>(),
+            &mut map,
+        ));
+        (camera, map)
     }
 }
